@@ -15,7 +15,7 @@ from hydrostat.cli.design_wishes import DesignArguments, parse_request
 from hydrostat.cli.fabricate import print_kit
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result_folder
 from hydrostat.cli.options import DefaultText
-from hydrostat.cli.remedies import design_remedy
+from hydrostat.cli.remedies import body_refusals, design_remedy
 from hydrostat.cli.waiting import one_interrupt, progress_bar, read_robot
 from hydrostat.units import plural
 
@@ -201,10 +201,13 @@ def design(
         lock_cable=lock_cable or [],
     )
     from hydrostat.design import kit_fits
+    from hydrostat.robot import in_words
 
     began = time.perf_counter()
     source = read_robot(robot)
     request = parse_request(source, typed)
+    for reason in body_refusals(source):
+        print(f"warning: no kit can be made of this body: {in_words(reason)}", file=sys.stderr, flush=True)
     network, made = _search(source, request, out, kit=kit)
     printed = print_poses(network, time.perf_counter() - began)
     _tell_count(network, request)

@@ -31,9 +31,14 @@ def kit_remedy(robot: "Robot", folder: Path, out: Path, *, options: "KitOptions"
 
 
 def design_remedy(network: "Network", source: Path, out: Path) -> str:
-    """Command to continue with if the kit of a design would be rejected: an alternative, or fewer winches."""
+    """Command to continue with if the kit of a design would be rejected: an alternative, or fewer winches.
+
+    It is `hydrostat check` if no kit can be made of the body itself.
+    """
     from hydrostat.design import kit_fits
 
+    if body_refusals(network.source):
+        return f"hydrostat check {quote(str(source))}"
     for number, other in enumerate(network.alternatives, start=1):
         if kit_fits(other):
             name = f"{number:02d}_{len(other.robot.winches)}_winches_{len(other.robot.cables)}_cables"
@@ -41,3 +46,10 @@ def design_remedy(network: "Network", source: Path, out: Path) -> str:
     winches, cables = len(network.robot.winches), len(network.robot.cables)
     fewer = f"--winches {max(winches - 1, 1)} --cables {max(cables - 1, 1)}"
     return f"hydrostat design {quote(str(source))} {fewer} --out {quote(str(out))}"
+
+
+def body_refusals(robot: "Robot") -> tuple[str, ...]:
+    """Reasons why no kit can be made of a body, whatever its winches and cables are."""
+    from hydrostat.fabrication import find_refusals
+
+    return find_refusals(robot.with_network((), ()))

@@ -25,7 +25,7 @@ from hydrostat.design import (
     Zone,
 )
 from hydrostat.fabrication import write_files
-from hydrostat.robot import robot_hash, save_robot
+from hydrostat.robot import Marker, PoseTarget, robot_hash, save_robot
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -148,6 +148,28 @@ def test_a_design_that_no_kit_can_be_made_of_is_an_error(
         assert "Next: " not in told
         assert "the kit of this network would be rejected" in err
         assert (out / "robot" / "robot.toml").exists()
+
+
+def test_a_body_without_a_kit_is_reported_before_the_search(
+    run: Run, search: Search, no_report: None, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Oracle: a hole narrower than two seams. No network helps, so the next command is not another design."""
+    ring = "M0,0 H200 V60 H0 Z M100,28 V32 H104 V28 Z"
+    drawing = (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 200 60"><path fill-rule="evenodd" d="{ring}"/></svg>'
+    )
+    (tmp_path / "holed.svg").write_text(drawing)
+    plain = plain_network()
+    robot = hs.new_robot(tmp_path / "holed.svg", size=0.2)
+    marker = Marker(name="tip", at=tuple(robot.body.mesh.nodes[0].tolist()))
+    posed = replace(robot, markers=(marker,), poses={"up": PoseTarget(name="up", targets={"tip": marker.at})})
+    save_robot(posed, tmp_path / "holed")
+    search.answer = replace(plain, source=posed)
+    monkeypatch.setattr("hydrostat.design.kit_fits", lambda network: False)
+    code, told, err = run("design", tmp_path / "holed", "--out", tmp_path / "out")
+    assert code == 1
+    assert "warning: no kit can be made of this body: hole 1 of the outline" in err
+    assert f"Try: hydrostat check {tmp_path / 'holed'}" in told
 
 
 @pytest.mark.slow
