@@ -125,7 +125,8 @@ def _corner_values(
 
 
 def _unit(vectors: Float[np.ndarray, "height width 3"]) -> np.ndarray:
-    return vectors / np.maximum(np.linalg.norm(vectors, axis=2, keepdims=True), 1e-12)
+    x, y, z = np.moveaxis(vectors, 2, 0)
+    return vectors / np.maximum(np.sqrt(x * x + y * y + z * z), 1e-12)[..., None]
 
 
 def _table(pale: float) -> Float[np.ndarray, "256 3"]:

@@ -8,7 +8,7 @@ from itertools import chain, pairwise
 from pathlib import Path
 
 import numpy as np
-from jaxtyping import UInt8
+from jaxtyping import Bool, UInt8
 
 from hydrostat.drawing import DARK, ERROR, INK, MUTED, PAPER, channels, winch_colors
 from hydrostat.errors import HydrostatError, InputError
@@ -35,14 +35,21 @@ def gif_bytes(pictures: Iterable[Picture], palette: Palette, times: Sequence[int
     height = width = 0
     parts: list[bytes] = []
     last: Indices | None = None
+    before, nearest = None, None
     for picture, time in zip(pictures, times, strict=True):
         height, width, _ = picture.shape
-        indices = _nearest(picture, palette)
+        if before is None or nearest is None:
+            nearest = _nearest(picture.reshape(-1, 3), palette).reshape(height, width)
+        else:
+            new = _differs(picture, before)
+            nearest[new] = _nearest(picture[new], palette)
+        before, indices = picture, nearest.copy()
         if last is None:
             box, shown = (0, 0, width, height), indices
         else:
-            off = np.abs(palette[last].astype(np.int16) - picture).max(axis=2)
-            stays = (off <= STAYS) | (indices == last)
+            off = np.abs(palette[last].astype(np.int16) - picture)
+            near = (off[..., 0] <= STAYS) & (off[..., 1] <= STAYS) & (off[..., 2] <= STAYS)
+            stays = near | (indices == last)
             indices = np.where(stays, last, indices)
             box, shown = _changed_box(indices, last, len(palette))
         parts.append(_frame(shown, box, time, palette))
@@ -50,15 +57,21 @@ def gif_bytes(pictures: Iterable[Picture], palette: Palette, times: Sequence[int
     return b"".join(chain([_head(width, height, palette)], parts, [b";"]))
 
 
-def _nearest(picture: Picture, palette: Palette) -> Indices:
+def _differs(one: Picture, two: Picture) -> Bool[np.ndarray, "_ _"]:
+    """Mask of the pixels that differ."""
+    other = one != two
+    return other[..., 0] | other[..., 1] | other[..., 2]
+
+
+def _nearest(pixels: UInt8[np.ndarray, "pixels 3"], palette: Palette) -> UInt8[np.ndarray, " pixels"]:
     """The number of the nearest color for each pixel; without dithering, so that what rests keeps its pixels."""
     from scipy.spatial import KDTree
 
-    packed = picture.astype(np.int64) @ np.array([65536, 256, 1])
+    packed = pixels.astype(np.int32) @ np.array([65536, 256, 1], dtype=np.int32)
     values, places = np.unique(packed, return_inverse=True)
     colors = np.stack([values >> 16, (values >> 8) & 255, values & 255], axis=1)
     nearest = KDTree(palette.astype(float)).query(colors.astype(float))[1].astype(np.uint8)
-    return np.take(nearest, places).reshape(picture.shape[:2])
+    return np.take(nearest, places)
 
 
 def _changed_box(indices: Indices, last: Indices, clear: int) -> tuple[tuple[int, int, int, int], Indices]:
