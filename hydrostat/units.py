@@ -38,13 +38,14 @@ TIME = Dimension("a time", "s", "s", "2 s")
 FORCE = Dimension("a force", "N", "N", "20 N")
 SPEED = Dimension("a speed", "m/s", "mm/s", "50 mm/s")
 TORQUE = Dimension("a torque", "N*m", "N m", "0.1 N m")
+BENDING = Dimension("a bending stiffness", "N*m^2", "N mm^2", "2500 N mm^2")
 ANGLE = Dimension("an angle", "deg", "deg", "75 deg")
 
 COMMON = {
     (unit, dimension): Decimal(factor).normalize()
     for dimension, factors in {
         LENGTH: {"m": "1", "cm": "0.01", "mm": "0.001"},
-        PRESSURE: {"Pa": "1", "kPa": "1000", "MPa": "1000000"},
+        PRESSURE: {"Pa": "1", "kPa": "1000", "MPa": "1000000", "GPa": "1000000000"},
         DENSITY: {"kg/m^3": "1"},
         STIFFNESS: {"N/m": "1", "N/mm": "1000"},
         ACCELERATION: {"m/s^2": "1", "mm/s^2": "0.001"},
@@ -52,6 +53,7 @@ COMMON = {
         TIME: {"s": "1", "ms": "0.001"},
         FORCE: {"N": "1"},
         SPEED: {"m/s": "1", "mm/s": "0.001"},
+        BENDING: {"N m^2": "1", "N mm^2": "0.000001"},
         TORQUE: {"N m": "1", "N mm": "0.001"},
         ANGLE: {"deg": "1"},
     }.items()

@@ -126,7 +126,7 @@ def _direction(text: str, dim: int) -> tuple[float, ...]:
     axes = "xyz"[:dim]
     if len(text) != 2 or text[0] not in "+-" or text[1] not in axes:
         raise InputError(
-            f"--direction {text}: unknown direction. Allowed: {', '.join(sign + axis for axis in axes for sign in '+-')}."
+            f"--direction {text}: unknown axis. Allowed: {', '.join(sign + axis for axis in axes for sign in '+-')}."
         )
     return tuple((1.0 if text[0] == "+" else -1.0) * (axis == text[1]) for axis in axes)
 

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from hydrostat.mechanics.obstacle import ObstacleEnergy
     from hydrostat.mechanics.patch_volume import PATCH_SIZE, PatchVolume, grow_patches
     from hydrostat.mechanics.rigid import CarriedWarp, GuideEnergy, RigidBodyDofs, RigidEnergy
+    from hydrostat.mechanics.rod_energy import RodEnergy, rod_points
     from hydrostat.mechanics.self_friction import SelfFrictionEnergy
     from hydrostat.mechanics.stiffness import Stiffness
     from hydrostat.mechanics.tension_law import TensionLaw
@@ -58,6 +59,7 @@ __all__ = [
     "Reason",
     "RigidBodyDofs",
     "RigidEnergy",
+    "RodEnergy",
     "RoundOff",
     "SelfFrictionEnergy",
     "Stencils",
@@ -68,6 +70,7 @@ __all__ = [
     "WeightEnergy",
     "grow_patches",
     "minimize",
+    "rod_points",
 ]
 
 open_package(__name__)

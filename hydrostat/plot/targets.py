@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.patches import FancyArrowPatch
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.drawing import DARK, ERROR, LIGHT
+from hydrostat.drawing import DARK, ERROR, LIGHT, MUTED
 from hydrostat.geometry import locate
 from hydrostat.plot.pane import Pane
 from hydrostat.plot.sheet import PictureSheet, Place
@@ -34,8 +34,15 @@ def draw_crosses(sheet: PictureSheet, targets: Mapping[str, Place]) -> None:
         sheet.segments(strokes, color=DARK, linewidth=1.5, zorder=17.1)
 
 
-def draw_loads(sheet: PictureSheet, pane: Pane, robot: Robot, nodes: Nodes) -> None:
-    """An arrow along the force of each load, with newtons at its end, on a body with its nodes at `nodes` [m]."""
+def draw_loads_and_rods(sheet: PictureSheet, pane: Pane, robot: Robot, nodes: Nodes) -> None:
+    """A line along each rod, an arrow along the force of each load with newtons at its end; nodes at `nodes` [m]."""
+    for rod in robot.rods:
+        corners = np.array(rod.points)
+        shares = np.linspace(0, len(corners) - 1, 100 * (len(corners) - 1) + 1)
+        line = np.stack([np.interp(shares, np.arange(len(corners)), column) for column in corners.T], axis=1)
+        places = pane.places(locate(robot.body.mesh, line).positions(nodes))
+        for color, width, order in ((LIGHT, 3.4, 8), (MUTED, 2.0, 8.1)):
+            sheet.curve(places, color=color, linewidth=width, zorder=order)
     if not robot.loads:
         return
     places, forces = locate(robot.body.mesh, robot.load_points()).positions(nodes), robot.load_forces()

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from hydrostat.robot.risks import SEWN_DEPTH, find_risks, limit_travels
     from hydrostat.robot.risks.body_risks import LEAST_ACROSS, LOCKING
     from hydrostat.robot.robot import LARGEST_STEP, Robot
+    from hydrostat.robot.rod import Rod
     from hydrostat.robot.scaled import scaled_robot
     from hydrostat.robot.schema import Angle, Coordinates, Force, Length, Name, Number, TomlTable, Torque
     from hydrostat.robot.sketch import sketch_robot
@@ -67,6 +68,7 @@ __all__ = [
     "Relaxation",
     "Robot",
     "RobotReader",
+    "Rod",
     "Source",
     "SurfaceSketch",
     "TablesFile",

@@ -81,6 +81,7 @@ def inflated_robot(robot: Robot, face: Face | str | None = None, *, element_size
         face=None,
         obstacles=(),
         loads=tuple(map(_lift_load, robot.loads)),
+        rods=tuple(replace(rod, points=tuple(map(_raise_place, rod.points))) for rod in robot.rods),
     )
 
 

@@ -18,6 +18,7 @@ from hydrostat.robot.load import Load
 from hydrostat.robot.marker import Marker, Pin, PoseTarget
 from hydrostat.robot.read import RobotReader, read_material
 from hydrostat.robot.robot import Robot
+from hydrostat.robot.rod import Rod
 from hydrostat.robot.winch import Winch
 from hydrostat.robot.write import robot_text
 
@@ -116,8 +117,9 @@ _RECORDS = {
     "pose": PoseTarget,
     "obstacle": Obstacle,
     "load": Load,
+    "rod": Rod,
 }
-_LISTS = ("pin", "winch", "cable", "marker", "pose", "obstacle", "load")
+_LISTS = ("pin", "winch", "cable", "marker", "pose", "obstacle", "load", "rod")
 _SINGLE = ("body", "contact")
 _ORDER = ("", *_SINGLE, *_LISTS)
 _TOP = ("name", "length_unit", "gravity", "face")

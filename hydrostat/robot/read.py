@@ -20,6 +20,7 @@ from hydrostat.robot.marker import Marker, Pin, PoseTarget
 from hydrostat.robot.materials import Material, Relaxation, get_material
 from hydrostat.robot.part import BodyPart, PartShape
 from hydrostat.robot.robot import Robot
+from hydrostat.robot.rod import Rod
 from hydrostat.robot.tables_file import TablesFile, read_text
 from hydrostat.robot.winch import Winch
 
@@ -100,6 +101,7 @@ class RobotReader(TablesFile):
             "markers": self.records("marker", self._marker),
             "obstacles": self.records("obstacle", self._obstacle),
             "loads": self.records("load", self._load),
+            "rods": self.records("rod", self._rod),
         }
         poses: dict[str, PoseTarget] = {}
         for index, pose in enumerate(self.records("pose", self._pose)):
@@ -156,6 +158,10 @@ class RobotReader(TablesFile):
         at = {} if entry.at is None else {"at": self.point(entry.at)}
         force = {} if entry.force is None else {"force": tuple(entry.force)}
         return Load(name=entry.name, **at, **force, **_given_keys(entry, "marker", "mass"))
+
+    def _rod(self, entry: Any) -> Rod:
+        given = _given_keys(entry, "diameter", "young", "axial_stiffness", "bending_stiffness")
+        return Rod(name=entry.name, points=tuple(self.point(point) for point in entry.points), **given)
 
     def _marker(self, entry: Any) -> Marker:
         return Marker(name=entry.name, at=self.point(entry.at))

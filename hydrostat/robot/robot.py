@@ -23,6 +23,7 @@ from hydrostat.robot.html_repr import html_repr
 from hydrostat.robot.load import Load
 from hydrostat.robot.marker import Marker, Pin, PoseTarget
 from hydrostat.robot.materials import Material, get_material
+from hydrostat.robot.rod import Rod
 from hydrostat.robot.winch import Mount, Winch
 from hydrostat.units import plural
 
@@ -51,6 +52,7 @@ class Robot:
         contact: self-contact and obstacle contact; None: disabled, so the body passes through itself.
         obstacles: rigid objects next to the body.
         loads: forces at points of the body, and hung masses.
+        rods: elastic rods in the body.
 
     Raises:
         InputError: parts that do not fit together, such as a cable point outside the body.
@@ -69,6 +71,7 @@ class Robot:
     contact: Contact | None = None
     obstacles: tuple[Obstacle, ...] = ()
     loads: tuple[Load, ...] = ()
+    rods: tuple[Rod, ...] = ()
 
     def __post_init__(self) -> None:
         self._check_kinds()
@@ -94,7 +97,7 @@ class Robot:
         self._check_pins()
         self._check_contact()
         self._check_markers_and_poses()
-        self._check_loads()
+        self._check_loads_and_rods()
         self._check_cables()
 
     def winch(self, name: str) -> Winch:
@@ -223,6 +226,8 @@ class Robot:
             yield from ((f"cable[{index}].points[{place}]", point) for place, point in enumerate(cable.points))
         for index, marker in enumerate(self.markers):
             yield f"marker[{index}].at", marker.at
+        for index, rod in enumerate(self.rods):
+            yield from ((f"rod[{index}].points[{place}]", point) for place, point in enumerate(rod.points))
         for index, load in enumerate(self.loads):
             yield from ((f"load[{index}].at", point) for point in ((load.at,) if load.at is not None else ()))
         for index, pose in enumerate(self.poses.values()):
@@ -287,7 +292,7 @@ class Robot:
                     key = f"pose[{index}].targets.{name}"
                     raise InputError(f'{key}: unknown marker "{name}". {_choices("markers", names)}')
 
-    def _check_loads(self) -> None:
+    def _check_loads_and_rods(self) -> None:
         names = [marker.name for marker in self.markers]
         _unique("load", [load.name for load in self.loads])
         for index, load in enumerate(self.loads):
@@ -298,7 +303,8 @@ class Robot:
             if load.force is not None and len(load.force) != self.body.mesh.dim:
                 count = len(load.force)
                 raise InputError(f"load[{index}].force has {count} entries, but the body has {self.body.mesh.dim} axes")
-        self._check_inside([(f"load[{index}].at", load.at) for index, load in enumerate(self.loads) if load.at])
+        _unique("rod", [rod.name for rod in self.rods])
+        self._check_inside([(key, point) for key, point in self._points() if key.startswith(("load", "rod"))])
 
     def load_points(self) -> Points:
         """Point of the body at rest that carries each load [m], (loads, dim)."""
@@ -377,4 +383,12 @@ def _choices(kind: str, names: list[str]) -> str:
     return f"Available: {', '.join(names)}." if names else f"The robot has no {kind}."
 
 
-_PARTS = {"pins": Pin, "winches": Winch, "cables": Cable, "markers": Marker, "obstacles": Obstacle, "loads": Load}
+_PARTS = {
+    "pins": Pin,
+    "winches": Winch,
+    "cables": Cable,
+    "markers": Marker,
+    "obstacles": Obstacle,
+    "loads": Load,
+    "rods": Rod,
+}

@@ -9,7 +9,7 @@ from hydrostat.errors import InputError
 from hydrostat.robot.body import Body, Source, mesh_body, outline_body, surface_body
 from hydrostat.robot.checks import Point
 from hydrostat.robot.contact import Contact, Obstacle
-from hydrostat.robot.marker import PoseTarget
+from hydrostat.robot.marker import Pin, PoseTarget
 from hydrostat.robot.robot import Robot
 
 
@@ -25,12 +25,10 @@ def scaled_robot(robot: Robot, factor: float) -> Robot:
     least, most = 0.01, 100.0  # No robot is made smaller or larger at once than by these factors
     if isinstance(factor, bool) or not isinstance(factor, int | float) or not least <= factor <= most:
         raise InputError(f"the factor must be from {least:g} to {most:g}, not {factor!r}")
-    for obstacle in robot.obstacles:
-        if obstacle.mesh is not None:
-            raise InputError(f'obstacle "{obstacle.name}" has the size of its file; scale that in CAD')
-    for part in robot.body.parts:
-        if part.mesh is not None:
-            raise InputError(f'part "{part.name}" of the body has the size of its file; scale that in CAD')
+    for each in (*robot.obstacles, *robot.body.parts):
+        if each.mesh is not None:
+            kind = "obstacle" if isinstance(each, Obstacle) else "body.part"
+            raise InputError(f'{kind} "{each.name}" has the size of its file; scale that in CAD')
 
     def length(value: float) -> float:
         return float(f"{factor * value:.12g}")
@@ -38,11 +36,13 @@ def scaled_robot(robot: Robot, factor: float) -> Robot:
     def point(place: Point) -> Point:
         return tuple(length(value) for value in place)
 
-    def ends(box: tuple[Point, Point] | None) -> tuple[Point, Point] | None:
-        return None if box is None else (point(box[0]), point(box[1]))
-
     def maybe(value: float | None) -> float | None:
         return None if value is None else length(value)
+
+    def scale_pin(pin: Pin) -> Pin:
+        if pin.box is not None:
+            return replace(pin, box=(point(pin.box[0]), point(pin.box[1])))
+        return replace(pin, at=point(pin.at or ()), radius=length(pin.radius))
 
     def scale_obstacle(each: Obstacle) -> Obstacle:
         return replace(
@@ -53,10 +53,7 @@ def scaled_robot(robot: Robot, factor: float) -> Robot:
     return replace(
         robot,
         body=_scaled_body(robot, factor).with_parts(part.with_transform(point, factor) for part in robot.body.parts),
-        pins=tuple(
-            replace(pin, at=None if pin.at is None else point(pin.at), radius=length(pin.radius), box=ends(pin.box))
-            for pin in robot.pins
-        ),
+        pins=tuple(map(scale_pin, robot.pins)),
         winches=tuple(
             replace(
                 winch,
@@ -84,6 +81,9 @@ def scaled_robot(robot: Robot, factor: float) -> Robot:
             for name, pose in robot.poses.items()
         },
         obstacles=tuple(map(scale_obstacle, robot.obstacles)),
+        rods=tuple(
+            replace(rod, points=tuple(map(point, rod.points)), diameter=maybe(rod.diameter)) for rod in robot.rods
+        ),
         loads=tuple(replace(load, at=None if load.at is None else point(load.at)) for load in robot.loads),
         contact=None if contact is None else Contact(distance=maybe(contact.distance), friction=contact.friction),
     )

@@ -105,7 +105,7 @@ class TablesFile(ABC):
 
     def at(self, key: str, make: Callable[[], _Record], *, otherwise: str | None = None) -> _Record:
         """Call `make`; its complaint is located at the field it begins with, else at `otherwise`."""
-        from hydrostat.robot.schema import allowed_keys
+        from hydrostat.robot.schema_errors import allowed_keys
 
         try:
             return make()
@@ -130,7 +130,7 @@ class TablesFile(ABC):
     def _parse(self) -> Any:
         from pydantic import ValidationError
 
-        from hydrostat.robot.schema import first_complaint
+        from hydrostat.robot.schema_errors import first_complaint
 
         if self.empty is not None and not self.text.strip():
             self.fail("", self.empty)

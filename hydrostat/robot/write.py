@@ -22,6 +22,7 @@ from hydrostat.robot.marker import DEFAULT_STIFFNESS, Pin
 from hydrostat.robot.materials import MATERIALS, Material, Relaxation
 from hydrostat.robot.part import BodyPart
 from hydrostat.robot.robot import Robot
+from hydrostat.robot.rod import Rod
 from hydrostat.robot.unfinished import temporary_path
 from hydrostat.robot.winch import Mount
 
@@ -45,7 +46,7 @@ def save_robot(robot: Robot, folder: str | Path, *, text: str | None = None) -> 
     for name in (
         robot.name,
         *robot.poses,
-        *(part.name for part in (*robot.winches, *robot.cables, *robot.markers, *robot.loads)),
+        *(part.name for part in (*robot.winches, *robot.cables, *robot.markers, *robot.loads, *robot.rods)),
     ):
         check_name(name)
     try:
@@ -120,6 +121,7 @@ def robot_text(robot: Robot) -> str:
         "pose": map(writer.pose, robot.poses.values()),
         "obstacle": map(writer.obstacle, robot.obstacles),
         "load": map(writer.load, robot.loads),
+        "rod": map(writer.rod, robot.rods),
     }
     for key, entries in groups.items():
         tables = tomlkit.aot()
@@ -257,6 +259,19 @@ class _Writer:
         if load.mass is not None:
             entry["mass"] = units.format_quantity(load.mass, units.MASS)
         return entry
+
+    def rod(self, rod: Rod) -> dict[str, Any]:
+        entry: dict[str, Any] = {"name": rod.name, "points": self.points(rod.points)}
+        units_of = {
+            "diameter": units.LENGTH,
+            "young": units.PRESSURE,
+            "axial_stiffness": units.FORCE,
+            "bending_stiffness": units.BENDING,
+        }
+        given = {key: getattr(rod, key) for key in units_of}
+        return entry | {
+            key: units.format_quantity(value, units_of[key]) for key, value in given.items() if value is not None
+        }
 
     def _key(self, time: str, place: Point) -> Any:
         table = self._toml.inline_table()

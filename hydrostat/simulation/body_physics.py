@@ -26,13 +26,15 @@ from hydrostat.mechanics import (
     PinEnergy,
     RigidBodyDofs,
     RigidEnergy,
+    RodEnergy,
     RoundOff,
     SelfFrictionEnergy,
     Warp,
     WeightEnergy,
     grow_patches,
+    rod_points,
 )
-from hydrostat.robot import Obstacle, Robot, Volume
+from hydrostat.robot import Obstacle, Robot, Rod, Volume
 
 
 class BodyPhysics:
@@ -66,7 +68,7 @@ class BodyPhysics:
         """
         check_type(robot, Robot, "a simulation is of a Robot, such as load_robot gives")
         body = robot.body
-        self._given = body, robot.pins, robot.gravity, robot.contact, robot.obstacles, robot.loads
+        self._given = body, robot.pins, robot.gravity, robot.contact, robot.obstacles, robot.loads, robot.rods
         self.material, self.thickness = body.material, body.thickness
         mesh, thickness, (mu, lame) = body.mesh, body.thickness or 1.0, body.lame()
         self.carriages = _carriages(robot, in_time=in_time)
@@ -86,6 +88,7 @@ class BodyPhysics:
             energies.append(PatchVolume(self.rest_unknowns, mesh.elements, patches, lame=lame, **kinds))
         if robot.gravity is not None:
             energies.append(WeightEnergy(self.rest_unknowns, self._heavy[:, None] * np.array(robot.gravity)))
+        energies += [_rod_energy(robot, rod, self.rest_unknowns) for rod in robot.rods]
         if robot.loads:
             energies.append(LoadEnergy(self.rest_unknowns, self._load_forces(robot)))
         self.own_contact = None if robot.contact is None else len(energies)
@@ -109,7 +112,7 @@ class BodyPhysics:
     def fits(self, robot: Robot) -> bool:
         """Return True if this is the physics of a robot's body: same body, equal pins, gravity, contact and loads."""
         body, *others = self._given
-        given = [robot.pins, robot.gravity, robot.contact, robot.obstacles, robot.loads]
+        given = [robot.pins, robot.gravity, robot.contact, robot.obstacles, robot.loads, robot.rods]
         return robot.body is body and given == others
 
     def check(self, robot: Robot) -> None:
@@ -140,7 +143,7 @@ class BodyPhysics:
         Raises:
             InputError: no pin, so it moves before friction on the ground can hold it; or an obstacle floats.
         """
-        where, (_, _, _, _, obstacles, _) = self.rest_unknowns if start is None else start, self._given
+        where, (_, _, _, _, obstacles, *_) = self.rest_unknowns if start is None else start, self._given
         for index in () if guided else self.carriages:
             met = self.assembly.energies[self.obstacles[index]]
             if not met.push(where).any():  # type: ignore[attr-defined]
@@ -211,6 +214,7 @@ class BodyPhysics:
         scale = float((2 * mu + lame) @ body.mesh.volumes) * (body.thickness or 1.0)
         reach = max(float(np.abs(body.mesh.nodes).max()), body.mesh.size)
         springs = [pin.stiffness for pin in pins]
+        springs += [energy.stiffest for energy in self.assembly.energies if isinstance(energy, RodEnergy)]
         lengths = [carriage.length for carriage in self.carriages.values()]  # of axes, at which A A^T - I pulls
         springs += [2 * _RIGID * body.material.young * length * max(1.0, length / reach) for length in lengths]
         return scale, reach, max(springs, default=0.0), body.mesh.size
@@ -253,6 +257,12 @@ def _masses(robot: Robot) -> Float[np.ndarray, " nodes"]:
     elements = robot.body.mesh.elements
     shares = np.repeat(robot.body.element_masses / elements.shape[1], elements.shape[1])
     return np.bincount(elements.ravel(), shares, len(robot.body.mesh.nodes))
+
+
+def _rod_energy(robot: Robot, rod: Rod, rest: Nodes) -> RodEnergy:
+    mesh, (axial, bending) = robot.body.mesh, rod.stiffnesses
+    anchors = locate(mesh, rod_points(mesh, np.array(rod.points)))
+    return RodEnergy(rest, anchors, axial_stiffness=axial, bending_stiffness=bending)
 
 
 def _hung_masses(robot: Robot) -> Float[np.ndarray, " nodes"]:

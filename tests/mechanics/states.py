@@ -14,8 +14,10 @@ from hydrostat.mechanics import (
     FibreEnergy,
     NeoHookean,
     PinEnergy,
+    RodEnergy,
     TensionLaw,
     WeightEnergy,
+    rod_points,
 )
 
 SIZE = {2: (0.1, 0.05), 3: (0.1, 0.05, 0.05)}
@@ -67,6 +69,15 @@ def neo_hookean(dim: int, random: np.random.Generator) -> State:
     mesh = rough_mesh(dim, random)
     thickness = 0.03 if dim == 2 else 1.0
     energy = NeoHookean(mesh.nodes, mesh.elements, mu=11e3, lame=17e3, thickness=thickness)
+    return State(energy, deform(mesh, random), np.zeros(CONTROLS))
+
+
+def rod(dim: int, random: np.random.Generator, *, bent: bool) -> State:
+    mesh = rough_mesh(dim, random)
+    ends = random.uniform(0.15, 0.85, (3, dim)) * SIZE[dim]
+    ends[1] = 0.4 * ends[0] + 0.6 * ends[2] + (0.2 * (ends[1] - ends[0]) if bent else 0.0)
+    anchors = locate(mesh, rod_points(mesh, ends))
+    energy = RodEnergy(mesh.nodes, anchors, axial_stiffness=30.0, bending_stiffness=4e-3)
     return State(energy, deform(mesh, random), np.zeros(CONTROLS))
 
 
@@ -158,6 +169,8 @@ ENERGIES: dict[str, Callable[[int, np.random.Generator], State]] = {
     "neo-hookean": neo_hookean,
     "pins": pins,
     "weight": weight,
+    "rod": lambda dim, random: rod(dim, random, bent=False),
+    "rod that is bent at rest": lambda dim, random: rod(dim, random, bent=True),
     "fibres on edges": edge_fibres,
     "fibres in elements": element_fibres,
     "slack cable": lambda dim, random: cable(dim, random, elongation=-0.01),

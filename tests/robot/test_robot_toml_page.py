@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from hydrostat.robot import load_robot
-from hydrostat.robot.schema import RobotTable, allowed_keys
+from hydrostat.robot.schema import RobotTable
+from hydrostat.robot.schema_errors import allowed_keys
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "robot_toml.md").read_text(encoding="utf-8")

@@ -372,7 +372,7 @@ def same_physics(first: Robot, second: Robot, mode: Mode) -> bool:
         return True
     if not (same_body(first, second) and first.body == second.body):
         return False
-    if (first.pins, first.gravity, first.loads) != (second.pins, second.gravity, second.loads):
+    if any(getattr(first, name) != getattr(second, name) for name in ("pins", "gravity", "loads", "rods")):
         return False
     if mode is Mode.MUSCLES:
         return True

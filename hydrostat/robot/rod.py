@@ -1,0 +1,74 @@
+"""`Rod`: an elastic rod in a body, such as a spring steel wire or a spine."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from hydrostat.errors import InputError
+from hydrostat.robot.checks import Point, check_name, check_point, check_positive
+
+SHARPEST = 100.0
+"""Sharpest turn of a rod at rest [degrees]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rod:
+    """Elastic rod along a polyline of the body, which moves with it; it resists stretch and bending, not twist.
+
+    A round rod follows from its diameter and Young's modulus: EA = E pi d^2 / 4, EI = E pi d^4 / 64.
+
+    Attributes:
+        name: name, unique in the robot.
+        points: its corners in the body at rest [m], at least two. A rod that is bent at rest keeps its bends.
+        diameter: diameter of a round rod [m]; None with stiffnesses.
+        young: Young's modulus of a round rod [Pa]; None with stiffnesses.
+        axial_stiffness: EA [N]; None for a round rod.
+        bending_stiffness: EI [N m^2]; None for a round rod.
+
+    Raises:
+        InputError: too few points, a number out of its range, or neither diameter and young nor both stiffnesses.
+    """
+
+    name: str
+    points: tuple[Point, ...]
+    diameter: float | None = None
+    young: float | None = None
+    axial_stiffness: float | None = None
+    bending_stiffness: float | None = None
+
+    def __post_init__(self) -> None:
+        check_name(self.name)
+        if len(self.points) < 2:
+            raise InputError("points: a rod needs at least two")
+        for index, point in enumerate(self.points):
+            check_point(f"points[{index}]", point)
+            if index and point == self.points[index - 1]:
+                raise InputError(f"points[{index}] is the one before it; remove it")
+        spans = np.diff(np.array(self.points), axis=0)
+        spans /= np.linalg.norm(spans, axis=1)[:, None]
+        turns = np.degrees(np.arccos(np.clip((spans[:-1] * spans[1:]).sum(axis=1), -1, 1)))
+        if (turns > SHARPEST).any():
+            index = int(np.argmax(turns))
+            raise InputError(
+                f"points[{index + 1}]: the rod turns by {turns[index]:.0f} degrees there, at most {SHARPEST:.0f} are "
+                "allowed; round the corner by more points"
+            )
+        section = (self.diameter, self.young)
+        stiffness = (self.axial_stiffness, self.bending_stiffness)
+        if [None not in section, None not in stiffness, any(section), any(stiffness)] not in _FORMS:
+            raise InputError("give diameter and young, or axial_stiffness and bending_stiffness")
+        for key, unit in _UNITS.items():
+            if (value := getattr(self, key)) is not None:
+                check_positive(key, value, unit)
+
+    @property
+    def stiffnesses(self) -> tuple[float, float]:
+        """EA [N] and EI [N m^2]."""
+        if self.diameter is not None and self.young is not None:
+            return self.young * math.pi * self.diameter**2 / 4, self.young * math.pi * self.diameter**4 / 64
+        return self.axial_stiffness or 0.0, self.bending_stiffness or 0.0
+
+
+_FORMS = ([True, False, True, False], [False, True, False, True])
+_UNITS = {"diameter": "m", "young": "Pa", "axial_stiffness": "N", "bending_stiffness": "N m^2"}

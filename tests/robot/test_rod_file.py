@@ -1,0 +1,42 @@
+"""Rods in robot.toml. Oracle: what was written, and the line that tells each fault."""
+
+from pathlib import Path
+
+import pytest
+from robot_files import GOOD, load
+
+from hydrostat.errors import InputError
+from hydrostat.robot import load_robot, save_robot, scaled_robot
+
+WIRE = '[[rod]]\nname = "spine"\npoints = [[-20, 0], [20, 0]]\ndiameter = "0.8 mm"\nyoung = "200 GPa"\n'
+GIVEN = (
+    '[[rod]]\nname = "strip"\npoints = [[-20, 5], [20, 5]]\naxial_stiffness = "500 N"\n'
+    'bending_stiffness = "2500 N mm^2"\n'
+)
+
+
+def test_what_is_written_is_read(tmp_path: Path) -> None:
+    robot = load(tmp_path / "a", f"{GOOD}\n{WIRE}{GIVEN}")
+    assert robot.rods[1].stiffnesses == (500.0, 2.5e-3)
+    save_robot(robot, tmp_path / "b")
+    assert load_robot(tmp_path / "b") == robot
+    assert scaled_robot(robot, 2.0).rods[0].diameter == pytest.approx(1.6e-3)
+
+
+@pytest.mark.parametrize(
+    ("table", "told"),
+    [
+        (WIRE.replace("[20, 0]", "[90, 0]"), r"rod\[0\].points\[1\] = \[90, 0\] lies 60 mm outside the body"),
+        (WIRE.replace(", [20, 0]", ""), r"rod\[0\].points: a rod needs at least two"),
+        (WIRE.replace("[20, 0]", "[-20, 0]"), r"rod\[0\].points\[1\] is the one before it"),
+        (WIRE.replace("[20, 0]]", "[20, 0], [0, 1]]"), r"rod\[0\].points\[1\]: the rod turns by 177 degrees there"),
+        (WIRE.replace("0.8 mm", "0 mm"), r"rod\[0\].diameter must be finite and above 0"),
+        (WIRE.replace('young = "200 GPa"', ""), r"rod\[0\]: give diameter and young, or axial_stiffness"),
+        (GIVEN.replace("N mm^2", "N"), r"rod\[0\].bending_stiffness: .* does not measure a bending stiffness"),
+        (WIRE + WIRE, r'rod\[1\].name: there are two of the name "spine"'),
+    ],
+)
+def test_what_is_wrong_is_told_in_one_line(table: str, told: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=told) as caught:
+        load(tmp_path, f"{GOOD}\n{table}")
+    assert "\n" not in str(caught.value)

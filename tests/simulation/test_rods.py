@@ -1,0 +1,69 @@
+"""Elastic rods in a body. Oracles: the elastica (SciPy's boundary value solver), a spring of EA / L."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from builders import box_mesh, mesh_body
+from scipy.integrate import solve_bvp
+
+from hydrostat.robot import Load, Marker, Material, Pin, Robot, Rod
+from hydrostat.simulation import Simulation
+
+LENGTH, EI = 0.2, 2.5e-3
+SOFT = Material(young=1e3, poisson=0.0, density=1.0)
+MIDDLE = (0.005, 0.005)
+
+
+def cantilever(count: int, *loads: Load) -> Robot:
+    """A rod in a body without strength, clamped along its first segment."""
+    rod = Rod(name="r", points=((0.0, *MIDDLE), (LENGTH, *MIDDLE)), axial_stiffness=1e4, bending_stiffness=EI)
+    return Robot(
+        name="cantilever",
+        body=mesh_body(box_mesh((count, 2, 2), size=(LENGTH, 0.01, 0.01)), material=SOFT),
+        pins=(Pin(box=((-1e-3, -1.0, -1.0), (1.01 * LENGTH / count, 1.0, 1.0)), stiffness=1e9),),
+        rods=(rod,),
+        markers=(Marker(name="tip", at=(LENGTH, *MIDDLE)),),
+        poses={},
+        loads=loads,
+    )
+
+
+def elastica(length: float, force: float) -> np.ndarray:
+    """Tip of a clamped inextensible rod under a dead force across it [m]: EI t'' + P cos t = 0."""
+
+    def slopes(_: np.ndarray, y: np.ndarray) -> np.ndarray:
+        return np.array([y[1], -force / EI * np.cos(y[0]), np.cos(y[0]), np.sin(y[0])])
+
+    def ends(first: np.ndarray, last: np.ndarray) -> np.ndarray:
+        return np.array([first[0], last[1], first[2], first[3]])
+
+    found = solve_bvp(slopes, ends, np.linspace(0, length, 50), np.zeros((4, 50)), tol=1e-8)
+    return np.array([found.y[2, -1], -found.y[3, -1]]) * [1.0, -1.0]
+
+
+@pytest.mark.parametrize("force", [0.02, 0.2])
+def test_a_rod_bends_as_the_elastica(force: float) -> None:
+    """A clamp on a segment acts at its middle; the error falls faster than the spacing."""
+    errors = []
+    for count in (10, 20, 40):
+        pose = Simulation(cantilever(count, Load(name="p", marker="tip", force=(0.0, 0.0, -force)))).solve([])
+        free = LENGTH * (1 - 0.5 / count)
+        along, across = elastica(free, force)
+        errors.append(np.linalg.norm(pose.markers["tip"][[0, 2]] - [along + LENGTH - free, 0.005 - across]))
+    assert errors[2] < 0.005 * LENGTH
+    assert errors[1] < 0.6 * errors[0]
+
+
+def test_a_rod_is_stretched_as_a_spring() -> None:
+    pose = Simulation(cantilever(40, Load(name="p", marker="tip", force=(5.0, 0.0, 0.0)))).solve([])
+    assert pose.markers["tip"][0] - LENGTH == pytest.approx(5.0 / 1e4 * LENGTH * (1 - 1 / 40), rel=0.01)
+
+
+def test_a_rod_that_is_bent_at_rest_has_no_force() -> None:
+    robot = cantilever(10)
+    points = ((0.01, 0.002, 0.005), (0.1, 0.008, 0.006), (0.19, 0.003, 0.004))
+    bent = replace(robot, rods=(Rod(name="r", points=points, diameter=1e-3, young=2e11),))
+    pose = Simulation(bent).solve([])
+    assert pose.nodes == pytest.approx(robot.body.mesh.nodes, abs=1e-9)
+    assert bent.rods[0].stiffnesses == pytest.approx((2e11 * np.pi * 1e-6 / 4, 2e11 * np.pi * 1e-12 / 64))
