@@ -60,6 +60,10 @@ def calibrate(
     loaded = read_robot(robot)
     if not loaded.winches:
         raise InputError(f"{robot}: no winches. Add winches and cables, or run `hydrostat design`.")
+    if back := [cable.winch for cable in loaded.cables if cable.reverse]:
+        raise InputError(
+            f'{robot}: winch "{back[0]}" pulls both ways, so it is never slack. Write its zero in motors.toml.'
+        )
     chosen = _winch_indices(spools, loaded)
     file = control.EMULATED_CALIBRATION if port == control.EMULATED else control.CALIBRATION
     new = not (folder / file).exists()

@@ -76,6 +76,8 @@ class TensionGuard:
             now: clock that only runs forward [s].
         """
         model, felt, limits = self._tensions(contractions), self._constants * currents / radii, self._limits
+        ways = np.where(model < 0, -1.0, 1.0)  # reversed cables pull the other way
+        model, felt = ways * model, ways * felt
         over = felt - (limits.times * np.maximum(model, 0.0) + limits.more)
         if (worst := int(np.argmax(np.nan_to_num(over, nan=-np.inf)))) is not None and over[worst] > 0:
             return (

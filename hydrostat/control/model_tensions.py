@@ -104,7 +104,7 @@ def _samples(profile: ContractionProfile) -> list[Vector]:
 
 
 def winch_tensions(robot: Robot, tensions: Vector) -> Vector:
-    """Pull at each winch at the radius of its own spool [N]."""
+    """Pull at each winch at the radius of its own spool [N]; that of reversed cables counts negative."""
     pulls = dict.fromkeys((winch.name for winch in robot.winches), 0.0)
     for cable, ratio, tension in zip(robot.cables, robot.spool_ratios, tensions.tolist(), strict=True):
         pulls[cable.winch] += ratio * tension
@@ -118,7 +118,7 @@ def winch_pulls(robot: Robot, most: float = 0.02) -> tuple[WinchPull, ...]:
         slack = [
             cable.slack / ratio
             for cable, ratio in zip(robot.cables, robot.spool_ratios, strict=True)
-            if cable.winch == winch.name
+            if cable.winch == winch.name and ratio > 0
         ]
         taut, pose = min(slack, default=0.0), None
         places, pulls = [-1.0, taut], [0.0, 0.0]

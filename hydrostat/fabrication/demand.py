@@ -26,7 +26,8 @@ class Demand:
 
     poses: tuple[str, ...]  # solved poses, in words
     tensions: Vector  # largest of each cable [N], in cable order
-    # largest on the shaft of each winch [N m], in winch order: sum of tension times radius of the spool
+    # largest on the shaft of each winch [N m], in winch order: sum of tension times radius of the spool, less what
+    # reversed cables pull
     torques: Vector
     taken: Float[np.ndarray, "winches 2"]  # least and most cable that each winch takes in [m], (winches, 2)
     missed: tuple[str, ...] = ()  # poses that could not be solved, in words
@@ -122,5 +123,5 @@ class _PoseLoads:
 
 
 def shaft_torques(robot: Robot, tensions: Vector) -> Vector:
-    """Torque on the shaft of each winch [N m] of the tensions of all cables [N]."""
-    return spool_arms(robot) @ tensions
+    """Torque on the shaft of each winch [N m] of the tensions of all cables [N], whichever way it turns."""
+    return np.abs(spool_arms(robot) @ tensions)

@@ -25,7 +25,7 @@ class Limits:
         interval: time available for the change from the start [s]; required with a rate.
         tension: maximum cable tension [N], for every winch's cables or by the winch's name.
         torque: maximum torque of a winch [N m], for every winch or by name: the sum over its cables of spool radius
-            times tension.
+            times tension, less that of cables that are wound the other way round.
         equal: groups of winches that share one contraction.
     """
 
@@ -92,6 +92,7 @@ def bounds(simulation: Simulation, limits: Limits) -> Bounds:
     tension, torque = largest[simulation.cables.winches], limit_by_winch(robot, limits.torque, "torque", "N m")
     arms = spool_arms(robot)
     limited, turned = np.isfinite(tension), np.isfinite(torque) & arms.any(axis=1)
+    back = turned & (arms < 0).any(axis=1)  # their motors are turned both ways
     lows = np.array([low[channels == channel].max() for channel in range(count)])
     highs = np.array([high[channels == channel].min() for channel in range(count)])
     found = Bounds(
@@ -103,9 +104,9 @@ def bounds(simulation: Simulation, limits: Limits) -> Bounds:
         channels=channels,
         spread=spread,
         cables=channels[simulation.cables.winches],
-        loads=np.concatenate([np.eye(len(tension))[limited], arms[turned]]),
-        most=np.concatenate([tension[limited], torque[turned]]),
-        motors=tuple(winch.name for winch, own in zip(robot.winches, turned, strict=True) if own),
+        loads=np.concatenate([np.eye(len(tension))[limited], arms[turned], -arms[back]]),
+        most=np.concatenate([tension[limited], torque[turned], torque[back]]),
+        motors=tuple(robot.winches[number].name for number in np.append(np.flatnonzero(turned), np.flatnonzero(back))),
     )
     for channel in np.flatnonzero(found.low > found.high):
         names = ", ".join(winch.name for winch, own in zip(robot.winches, channels, strict=True) if own == channel)
@@ -114,12 +115,13 @@ def bounds(simulation: Simulation, limits: Limits) -> Bounds:
 
 
 def spool_arms(robot: Robot) -> Float[np.ndarray, "winches cables"]:
-    """Radius at which each winch pulls each cable [m]; 0 for cables of other winches."""
+    """Radius at which each winch pulls each cable [m], negative for reversed ones; 0 for cables of other winches."""
     arms = np.zeros((len(robot.winches), len(robot.cables)))
     numbers = {winch.name: number for number, winch in enumerate(robot.winches)}
-    for index, cable in enumerate(robot.cables):
+    for index, (cable, ratio) in enumerate(zip(robot.cables, robot.spool_ratios, strict=True)):
         number = numbers[cable.winch]
-        arms[number, index] = cable.spool_radius or robot.winches[number].spool_radius
+        radius = cable.spool_radius or robot.winches[number].spool_radius
+        arms[number, index] = radius if ratio > 0 else -radius
     return arms
 
 

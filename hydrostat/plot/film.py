@@ -57,7 +57,7 @@ def winch_stops(robot: Robot) -> list[Stop]:
     least_left = 0.7  # no winch is taken in so far that less than this share of its shortest cable is left
     for index, winch in enumerate(robot.winches):
         pairs = zip(robot.cables, robot.spool_ratios, strict=True)
-        lengths = [cable.length / ratio for cable, ratio in pairs if cable.winch == winch.name]
+        lengths = [cable.length / ratio for cable, ratio in pairs if cable.winch == winch.name and ratio > 0]
         taken = np.zeros(len(robot.winches))
         taken[index] = min([winch.travel / 2, *((1 - least_left) * length for length in lengths)])
         words = f"{shorten(winch.name)} {MILLIMETERS * taken[index]:.0f} mm"

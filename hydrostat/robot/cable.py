@@ -37,6 +37,8 @@ class Cable:
             between the two sides by at most a factor exp(mu * angle) (capstan).
         spool_radius: radius of the cable's own step on the shaft of its winch [m]; None: that of the winch. The cable's
             contraction is that of the winch times the ratio of both radii.
+        reverse: True if it is wound the other way round: it is taken in as its winch pays out, and paid out as the
+            winch takes in.
         name: unique in the robot; a `Robot` gives one to a cable that has none.
 
     Raises:
@@ -51,6 +53,7 @@ class Cable:
     sheathed: tuple[tuple[int, int], ...] = ()
     friction: float = 0.0
     spool_radius: float | None = None
+    reverse: bool = False
     name: str = ""
 
     def __post_init__(self) -> None:
@@ -73,6 +76,7 @@ class Cable:
         check_not_negative("slack", self.slack, "m")
         if self.spool_radius is not None:
             check_positive("spool_radius", self.spool_radius, "m")
+        check_type(self.reverse, bool, "reverse must be True or False")
         check_number("friction", self.friction, "")
         # no coefficient of friction is larger: one half turn would then hold 500 times the tension
         largest_friction = 2.0

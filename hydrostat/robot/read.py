@@ -151,7 +151,7 @@ class RobotReader(TablesFile):
         points = tuple(self.point(point) for point in entry.points)
         sheathed = {} if entry.sheathed is None else {"sheathed": tuple((start, end) for start, end in entry.sheathed)}
         friction = {} if entry.friction is None else {"friction": float(entry.friction)}
-        given = _given_keys(entry, "name", "stiffness", "smoothing", "slack", "spool_radius")
+        given = _given_keys(entry, "name", "stiffness", "smoothing", "slack", "spool_radius", "reverse")
         return Cable(winch=entry.winch, points=points, **sheathed, **friction, **given)
 
     def _load(self, entry: Any) -> Load:

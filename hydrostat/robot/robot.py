@@ -137,9 +137,15 @@ class Robot:
 
     @property
     def spool_ratios(self) -> Vector:
-        """Cable that each takes in [m] when its winch takes in 1 m, by the radii of their spools, (cables,)."""
+        """Cable that each takes in [m] when its winch takes in 1 m, by the radii of their spools, (cables,).
+
+        Negative for cables that are wound the other way round.
+        """
         radii = {winch.name: winch.spool_radius for winch in self.winches}
-        own = [(cable.spool_radius or radii[cable.winch]) / radii[cable.winch] for cable in self.cables]
+        own = [
+            (-1 if cable.reverse else 1) * (cable.spool_radius or radii[cable.winch]) / radii[cable.winch]
+            for cable in self.cables
+        ]
         return np.array(own, dtype=float)
 
     def largest_spool(self, winch: Winch) -> float:

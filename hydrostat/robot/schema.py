@@ -216,6 +216,7 @@ class CableTable(TomlTable):
     sheathed: list[Pair] | None = None
     friction: Number | None = None
     spool_radius: Length | None = None
+    reverse: bool | None = None
 
 
 class MarkerTable(TomlTable):

@@ -304,6 +304,8 @@ class _Writer:
             entry["sheathed"] = [list(pair) for pair in cable.sheathed]
         if cable.friction:
             entry["friction"] = cable.friction
+        if cable.reverse:
+            entry["reverse"] = True
         return entry
 
     def pose(self, pose: Any) -> dict[str, Any]:

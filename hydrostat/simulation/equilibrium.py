@@ -208,7 +208,7 @@ def _check_meters(robot: Robot, contractions: Vector) -> None:
         return
     bare = {winch.name: 0.0 for winch in robot.winches}
     for cable, ratio in zip(robot.cables, robot.spool_ratios, strict=True):
-        bare[cable.winch] = max(bare[cable.winch], cable.length / float(ratio))
+        bare[cable.winch] = max(bare[cable.winch], cable.length / abs(float(ratio)))
     for winch, value in zip(robot.winches, contractions, strict=True):
         if abs(value) > most * (size + bare[winch.name]):
             raise InputError(

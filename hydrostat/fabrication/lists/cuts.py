@@ -41,6 +41,7 @@ class CableCut:
     release: float  # line on the spool that can be let out beyond the rest length
     knot: float = KNOT  # for the knot at the spool
     tail: float = TAIL  # beyond the stopper
+    reverse: bool = False  # True if it is wound the other way round
 
     @property
     def length(self) -> float:
@@ -81,7 +82,8 @@ def cable_cuts(
                 outside=float(outside.get(index, 0.0)),
                 lead=float(leads.get(index, 0.0)),
                 wraps=1e3 * spare_wraps * 2 * math.pi * radius,
-                release=1e3 * float(ratio) * winch.release,
+                release=1e3 * abs(float(ratio)) * (winch.travel if cable.reverse else winch.release),
+                reverse=cable.reverse,
             )
         )
     return tuple(cuts)
@@ -137,7 +139,19 @@ def cable_table(cuts: tuple[CableCut, ...]) -> Table[CableRow]:
             "before the line goes in, from the end that gets the stopper.",
             "The stopper is set on the robot: winch at zero, line pulled straight but not hard, stopper against the "
             "cloth or skin at the last hole. Where the list has a slack, it goes so far beyond the last hole.",
+            *_reverse_notes(cuts),
         ),
+    )
+
+
+def _reverse_notes(cuts: tuple[CableCut, ...]) -> tuple[str, ...]:
+    """Return a note below the table on cables that are wound the other way round, if there are any."""
+    names = [f"C{cut.number}" for cut in cuts if cut.reverse]
+    if not names:
+        return ()
+    return (
+        f"Reversed: {', '.join(names)}. Wind them on the other way round: they pull when their winch turns back. Their "
+        "release is the travel of the winch.",
     )
 
 

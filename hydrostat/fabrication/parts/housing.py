@@ -172,6 +172,11 @@ class Housing:
         lines, apart = self.spool.grooves[groove].lines, self.options.tube + self.options.fit
         return tuple(self.height(groove) + apart * ((lines - 1) / 2 - line) for line in range(lines))
 
+    def aside(self, groove: int) -> float:
+        """Offset of the channel of a groove to the left of the way in which its cables leave [mm]."""
+        found = self.spool.grooves[groove]
+        return found.radius if found.reverse else -found.radius
+
     @property
     def lead(self) -> float:
         """Length of cable from its spool to the outer face of the box [mm]."""
@@ -256,7 +261,7 @@ class Housing:
         seat = self.seat(place)
         bore = Cylinder(self.half + 1, self.options.bore / 2).rotate(y=90)
         end = Cylinder(seat + 1, self._seat_radius).rotate(y=90).move(self.half - seat, 0, 0)
-        aside = -self.spool.grooves[place].radius
+        aside = self.aside(place)
         first, *others = self.heights(place)
         channels = (bore + end).move(0, aside, first)
         for height in others:

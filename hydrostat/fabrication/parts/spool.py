@@ -43,6 +43,7 @@ class Groove:
     width: float  # width of its floor [mm]
     layers: int = 1  # in which the cable lies
     lines: int = 1  # cables that are wound on it
+    reverse: bool = False  # True if they are wound the other way round
 
     def eye(self, cable: float) -> float:
         """Radius of the hole through which its cables, of a diameter [mm], go to their knot [mm]."""

@@ -37,7 +37,9 @@ def wound_cables(robot: Robot, winch: Winch) -> Wound:
     found: dict[object, list[int]] = {}
     for index, cable in enumerate(robot.cables):
         if cable.winch == winch.name:
-            alike = (cable.points, cable.slack, cable.spool_radius) if winch.mount is Mount.BODY else index
+            alike = (
+                (cable.points, cable.slack, cable.spool_radius, cable.reverse) if winch.mount is Mount.BODY else index
+            )
             found.setdefault(alike, []).append(index)
     return tuple(map(tuple, found.values()))
 
@@ -59,10 +61,10 @@ def spool_for(
             f"spool (minimum {least_inside:.1f} mm). Choose thinner walls or another motor"
         )
     radii, small = _radii(robot, winch, wound, options, motor)
-    lines = [len(cables) for cables in wound]
+    kinds = [(len(cables), robot.cables[cables[0]].reverse) for cables in wound]
     turns = spool_turns(1e3 * (winch.travel + winch.release), 1e3 * winch.spool_radius, options.spare_wraps)
     grooves = [
-        [_groove(radius, turns, layers, options.cable, count) for radius, count in zip(radii, lines, strict=True)]
+        [_groove(radius, turns, layers, options.cable, *kind) for radius, kind in zip(radii, kinds, strict=True)]
         for layers in range(1, _MOST_LAYERS + 1)
     ]
     sizes = [_spool(each, drive.inside, options, motor) for each in grooves]
@@ -124,11 +126,11 @@ def _spool(grooves: Sequence[Groove], inside: float, options: PartOptions, motor
     )
 
 
-def _groove(radius: float, turns: float, layers: int, cable: float, lines: int) -> Groove:
+def _groove(radius: float, turns: float, layers: int, cable: float, lines: int, reverse: bool) -> Groove:
     """The narrowest that takes so many turns of the first layer's length of each line in these layers."""
     length = lines * turns * 2 * math.pi * radius
     one_turn = capacity(cable * 2.25, radius, cable, layers)
-    return Groove(radius=radius, width=width_for(length / one_turn, cable), layers=layers, lines=lines)
+    return Groove(radius=radius, width=width_for(length / one_turn, cable), layers=layers, lines=lines, reverse=reverse)
 
 
 _SPOOL = "Stands on its wide face with the bore, no support; 0.12 mm layers, 4 walls or more."
@@ -369,11 +371,11 @@ def _azimuths(robot: Robot, wound: Wound, mount: Mount, laid: LaidUnit | None) -
 def _exits(housing: Housing, place: int, cables: tuple[int, ...]) -> Iterator[Exit]:
     angle = math.radians(housing.azimuths[place])
     cos, sin = round(math.cos(angle)), round(math.sin(angle))
-    radius, half = housing.spool.grooves[place].radius, housing.half
+    aside, half = housing.aside(place), housing.half
     for cable, height in zip(cables, housing.heights(place), strict=True):
         yield Exit(
             cable=cable,
-            point=(half * cos + radius * sin, half * sin - radius * cos, height),
+            point=(half * cos - aside * sin, half * sin + aside * cos, height),
             direction=(float(cos), float(sin), 0.0),
             lead=housing.lead,
             seat=housing.seat(place),

@@ -205,7 +205,7 @@ def skin_steps(plan: KitPlan, lists: Lists) -> tuple[AssemblyStep, ...]:
             wait="15 min",
         ),
         *winch_steps(plan),
-        *((tie_step(cables),) if cables else ()),
+        *((tie_step(plan.robot),) if cables else ()),
     )
 
 

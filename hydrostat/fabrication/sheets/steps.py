@@ -163,13 +163,15 @@ def _seat_step(robot: Robot) -> AssemblyStep:
     )
 
 
-def tie_step(cables: int) -> AssemblyStep:
+def tie_step(robot: Robot) -> AssemblyStep:
     """The step by which lines come on their spools."""
+    back = [f"C{index + 1}" for index, cable in enumerate(robot.cables) if cable.reverse]
+    ways = f"all the same way, but the other way round: {', '.join(back)}" if back else "all the same way"
     return AssemblyStep(
         "Tie the cables on",
-        5 * cables,
+        5 * len(robot.cables),
         "Lead each line through its own channel of the housing; push its tube, if it has one, into the seat. Knot it "
-        "at the spool's tie hole so that the spool mark meets the spool. Wind the spare turns on, all the same way. "
+        f"at the spool's tie hole so that the spool mark meets the spool. Wind the spare turns on, {ways}. "
         "Then calibrate.",
     )
 
@@ -202,7 +204,7 @@ def plush_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
         ),
         _sew(plan),
         *winch_steps(plan),
-        *((tie_step(cables),) if cables else ()),
+        *((tie_step(plan.robot),) if cables else ()),
         _stuff(plan),
         AssemblyStep(
             "Close and calibrate" if cables else "Close it",

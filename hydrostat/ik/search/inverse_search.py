@@ -197,7 +197,7 @@ class InverseSearch:
             return state
         pulled = (posture.elongations / cables.ratios)[places.first]
         values = state.values - np.where(hardly, pulled + places.beyond, 0.0)
-        found = self.follow(state, np.maximum(values, self.problem.bounds.low))
+        found = self.follow(state, np.clip(values, self.problem.bounds.low, self.problem.bounds.high))
         if found is not None and found.error > self.problem.reached:
             step = self.problem.step(found, self.problem.weight(found), self.problem.options.largest_step)
             found = self.follow(found, step.values)

@@ -1,5 +1,6 @@
 """`LinearModel`: first-order effect of contractions near a state, with slack cables."""
 
+from collections.abc import Collection
 from copy import copy
 from dataclasses import dataclass
 
@@ -17,28 +18,48 @@ from hydrostat.simulation import Simulation
 class Channels:
     """Slack state of the channels where a linear model begins."""
 
-    gaps: Vector  # contraction of a slack channel, without effect, until its first cable is taut [m]
+    # contraction of a slack channel, without effect, until its first cable is taut [m]; negative where that is reversed
+    gaps: Vector
     beyond: Vector  # further release of a channel until it is slack, after its tension is 0 to first order [m]
     first: np.ndarray  # that cable, by channel; for a taut channel, the cable that stays taut longest
     active: np.ndarray  # True for a channel with a cable that can become taut within the limits
+    two_way: np.ndarray  # True for a channel with cables that are wound both ways round
+    between: np.ndarray  # True for one of these that is slack: it can move either way
 
 
-def channels(cables: CableEnergy, posture: EquilibriumState, values: Vector, bounds: Bounds) -> Channels:
-    """Compute the distance of each channel from becoming taut or slack, at channel contractions `values` [m]."""
+def channels(
+    cables: CableEnergy, posture: EquilibriumState, values: Vector, bounds: Bounds, *, turned: Collection[int] = ()
+) -> Channels:
+    """Compute the distance of each channel from becoming taut or slack, at channel contractions `values` [m].
+
+    The first cable of a channel between its cables is the nearest to taut, of `turned` ones the nearest on the other
+    side.
+    """
     count = len(values)
     first = np.zeros(count, dtype=np.int64)
     gaps, beyond = np.full(count, np.inf), np.zeros(count)
     law = cables.law
     fall = posture.tensions / np.maximum(law.tangent(posture.elongations), np.finfo(float).tiny)
-    pulled = posture.elongations / cables.ratios
+    two_way, between = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
+    pulled, ways = posture.elongations / np.abs(cables.ratios), np.sign(cables.ratios)
     for channel in range(count):
         own = np.flatnonzero(bounds.cables == channel)
         if own.size:
-            first[channel] = cable = own[np.argmax(pulled[own])]
-            gaps[channel] = max(-pulled[cable], 0.0)
+            cable = own[np.argmax(pulled[own])]
+            two_way[channel] = ways[own].min() < ways[own].max()
+            between[channel] = two_way[channel] and pulled[cable] <= _EDGE * law.smoothing[cable]
+            if channel in turned:
+                others = own[ways[own] != ways[cable]]
+                cable = others[np.argmax(pulled[others])]
+            first[channel] = cable
+            gaps[channel] = ways[cable] * max(-pulled[cable], 0.0)
             left = max(posture.elongations[cable] - fall[cable], 0.0) + 0.01 * law.smoothing[cable]
             beyond[channel] = left / cables.ratios[cable]
-    return Channels(gaps, beyond, first, gaps <= bounds.high - values)
+    room = np.where(gaps < 0, values - bounds.low, bounds.high - values)
+    return Channels(gaps, beyond, first, np.abs(gaps) <= room, two_way, between)
+
+
+_EDGE = 0.1  # a channel whose tautest cable is longer by less than this share of its smoothing is still slack
 
 
 def stack_jacobians(
@@ -134,7 +155,7 @@ class LinearModel:
 
     def alike(self, other: "LinearModel") -> bool:
         """Return True if the same cables are taut in both models."""
-        return bool(((self.places.gaps > 0) == (other.places.gaps > 0)).all())
+        return bool(((self.places.gaps != 0) == (other.places.gaps != 0)).all())
 
     def slope(self, effort: Vector) -> float:
         """Steepest fall of the length of residual and effort along a channel, as far as the limits allow [m/m].
@@ -163,7 +184,7 @@ class LinearModel:
         places = self.places
         pulls, slopes = self._pulls
         slack = pulls + slopes @ step <= 1e-9 * (np.abs(slopes) @ self.range)
-        joins = self.active & ~slack & (places.gaps > 0)
+        joins = self.active & ~slack & (places.gaps != 0)
         leaves = self.active & slack & (places.gaps == 0)
         stays = self.active & ~slack & (places.gaps == 0)
         ends = self.values.copy()

@@ -2,7 +2,7 @@
 
 # Of the thesis (docs/thesis.md): M7, E18
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -168,8 +168,9 @@ class InverseProblem:
 
     def idle(self, state: InverseState) -> InverseState:
         """Move slack channels to where terms want them, or else towards rest or taut; no node moves."""
-        gaps = channels(self.simulation.cables, state.posture, state.values, self.bounds).gaps
-        slack = (gaps > 0) & np.isfinite(gaps)
+        places = channels(self.simulation.cables, state.posture, state.values, self.bounds)
+        gaps = places.gaps
+        slack = (gaps > 0) & np.isfinite(gaps) & ~places.two_way
         if not slack.any():
             return state
         edge = state.values + np.where(slack, gaps, 0.0)
@@ -195,16 +196,24 @@ class InverseProblem:
         """Compute the next step from a state: contractions of the channels [m] and the predicted decrease."""
         model = self.linear(state)
         step, promise = model.best(weight * self.worth, radius, curvature)
+        for channel in np.flatnonzero(model.places.between).tolist():
+            other = self.linear(state, turned=(channel,))
+            way, more = other.best(weight * self.worth, radius, curvature)
+            if more > promise:
+                model, step, promise = other, way, more
         return ModelStep(model.apply_step(step), promise, model)
 
-    def linear(self, state: InverseState) -> LinearModel:
-        """Return the linear model of a state: the first-order effect of the contractions."""
+    def linear(self, state: InverseState, *, turned: Collection[int] = ()) -> LinearModel:
+        """Return the linear model of a state: the first-order effect of the contractions.
+
+        Channels between cables that are wound both ways round move towards the nearest, `turned` ones to the other.
+        """
         assert state.result.stiffness is not None
-        places = channels(self.simulation.cables, state.posture, state.values, self.bounds)
+        places = channels(self.simulation.cables, state.posture, state.values, self.bounds, turned=turned)
         moves = stack_jacobians(self.simulation, state.posture, state.result.stiffness, places.first[places.active])
         matrix = self._rows(state.posture, moves)
         edge = 1e-9  # a channel this near to taut, in shares of its range, is at the edge of it
-        loose = places.gaps > edge * self.bounds.span
+        loose = np.abs(places.gaps) > edge * self.bounds.span
         if loose.any():  # a slack channel that follows a step stays where it is
             matrix[:, loose] -= self._direct(state.posture)[:, loose]
         tensions = moves.tensions @ self.bounds.spread

@@ -47,13 +47,15 @@ def _idle(robot: Robot) -> Iterator[Risk]:
     for index, winch in enumerate(robot.winches):
         if not any(cable.winch == winch.name for cable in robot.cables):
             yield Risk(_name(robot, index), 0.0, "pulls no cable")
+        elif winch.release == 0 and any(cable.reverse for cable in robot.cables if cable.winch == winch.name):
+            yield Risk(_name(robot, index), 0.0, "has a reversed cable but no release, so that it never pulls it")
 
 
 def _too_far(robot: Robot) -> Iterator[Risk]:
     """Travel or release longer than a cable is."""
     for index, winch in enumerate(robot.winches):
         pulled = [
-            (ratio, float(cable.segments[cable.bare].sum()))
+            (abs(ratio), float(cable.segments[cable.bare].sum()))
             for cable, ratio in zip(robot.cables, robot.spool_ratios, strict=True)
             if cable.winch == winch.name
         ]
@@ -182,28 +184,38 @@ def _length_inside(robot: Robot, cable: Cable) -> float:
     return length - float(cable.segments[0]) * float((robot.body.distances(way) > 0).mean())
 
 
-def _safe_travels(robot: Robot) -> dict[str, float]:
-    """Largest travel of each winch that neither uses up a cable nor squeezes the body too far [m]."""
-    found = {winch.name: winch.travel for winch in robot.winches}
+def _safe_ranges(robot: Robot) -> tuple[dict[str, float], dict[str, float]]:
+    """Largest travel and release of each winch that neither use up a cable nor squeeze the body too far [m]."""
+    travels = {winch.name: winch.travel for winch in robot.winches}
+    releases = {winch.name: winch.release for winch in robot.winches}
     for cable, ratio in zip(robot.cables, robot.spool_ratios, strict=True):
-        most = _squeezing_travel(robot, cable, float(ratio))
-        found[cable.winch] = min(found[cable.winch], most)
-    return found
+        found = releases if cable.reverse else travels
+        found[cable.winch] = min(found[cable.winch], _squeezing_travel(robot, cable, abs(float(ratio))))
+    return travels, releases
 
 
 def limit_travels(robot: Robot, kept: Collection[str] = ()) -> Robot:
     """The robot with travels that neither use up a cable nor squeeze the body too far, rounded down to a millimeter.
 
-    Winches that are kept, by name, stay as they are.
+    So are releases that pull reversed cables. Winches that are kept, by name, stay as they are.
     """
-    most = _safe_travels(robot)
+    travels, releases = _safe_ranges(robot)
     winches = [
         winch
-        if winch.name in kept or most[winch.name] >= winch.travel
-        else replace(winch, travel=max(1e-3 * int(1e3 * most[winch.name]), 1e-3))
+        if winch.name in kept
+        else replace(
+            winch,
+            travel=_round_down(winch.travel, travels[winch.name]),
+            release=_round_down(winch.release, releases[winch.name]),
+        )
         for winch in robot.winches
     ]
     return robot.with_network(winches, robot.cables)
+
+
+def _round_down(length: float, most: float) -> float:
+    """A length [m], or a millimeter or more below its maximum."""
+    return length if most >= length else max(1e-3 * int(1e3 * most), 1e-3)
 
 
 def _squeezing_travel(robot: Robot, cable: Cable, ratio: float) -> float:
@@ -219,13 +231,15 @@ def _squeezing(robot: Robot) -> Iterator[Risk]:
         return
     for index, (cable, ratio) in enumerate(zip(robot.cables, robot.spool_ratios, strict=True)):
         winch = robot.winch(cable.winch)
+        key, far = ("release", winch.release) if cable.reverse else ("travel", winch.travel)
         length = _length_inside(robot, cable)
-        squeeze = (ratio * winch.travel - cable.slack) / length
-        if ratio * winch.travel <= length and squeeze > material.largest_squeeze:
-            most = _squeezing_travel(robot, cable, ratio)
+        taken = abs(float(ratio)) * far
+        squeeze = (taken - cable.slack) / length
+        if taken <= length and squeeze > material.largest_squeeze:
+            most = _squeezing_travel(robot, cable, abs(float(ratio)))
             limit = known_up_to(material, f"{100 * material.largest_squeeze:.0f} %")
             text = (
-                f"the full travel of {mm(winch.travel)} would squeeze the body along the cable by "
-                f"{100 * squeeze:.0f} % on average; {limit}; a travel of {mm(most)} stays within"
+                f"the full {key} of {mm(far)} would squeeze the body along the cable by "
+                f"{100 * squeeze:.0f} % on average; {limit}; a {key} of {mm(most)} stays within"
             )
             yield Risk(_cable_name(robot, index), squeeze, text)

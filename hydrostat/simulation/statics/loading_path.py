@@ -41,7 +41,8 @@ class LoadingPath:
         self._rest = _PathState(begin, np.zeros(len(robot.winches)), solver.assembly)
         self._solver = solver
         wholes = [
-            (cable.winch, cable.length / ratio) for cable, ratio in zip(robot.cables, robot.spool_ratios, strict=True)
+            (cable.winch, cable.length / abs(ratio))
+            for cable, ratio in zip(robot.cables, robot.spool_ratios, strict=True)
         ]
         lengths = [
             min((whole for own, whole in wholes if own == winch.name), default=np.inf) for winch in robot.winches

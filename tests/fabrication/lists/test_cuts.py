@@ -63,6 +63,14 @@ def test_a_stepped_spool_has_its_own_wraps_and_release() -> None:
     assert cut.release == pytest.approx(15)
 
 
+def test_a_reversed_cable_lets_out_what_its_winch_takes_in() -> None:
+    cable = Cable(winch="pull", points=(START, (0.01, 0.03)), reverse=True, spool_radius=0.009)
+    robot = square(cable, spool_radius=0.006, release=0.01)
+    cuts = cable_cuts(robot, leads={}, outside={}, spare_wraps=3.0)
+    assert cuts[0].release == pytest.approx(1.5e3 * robot.winches[0].travel)
+    assert "C1" in cable_table(cuts).notes[-1]
+
+
 def test_columns_add_up_to_the_total() -> None:
     robot = square(Cable(winch="pull", points=(START, (0.01, 0.03)), slack=0.003), release=0.004)
     table = cable_table(cable_cuts(robot, leads={0: 9.0}, outside={0: 40.0}, spare_wraps=2.0))

@@ -76,14 +76,17 @@ def test_a_spool_too_high_is_found():
 
 @pytest.mark.parametrize("motor", MOTORS, ids=lambda motor: motor.key)
 @pytest.mark.parametrize("name", ["robot", "bear", "trunk"])
-def test_exits_are_tangential_in_the_face_and_turn_the_same_way(name: str, motor: Motor):
+@pytest.mark.parametrize("back", [False, True], ids=["one way", "both ways"])
+def test_exits_are_tangential_in_the_face_and_turn_as_they_are_wound(name: str, motor: Motor, back: bool):
     """Oracle: distance of a line from the axis, sign of the moment of each cable, a tube in its seat."""
-    for unit in units_of(gallery_robot(name), motor):
+    robot = gallery_robot(name)
+    cables = [replace(cable, reverse=back and index % 2 == 1) for index, cable in enumerate(robot.cables)]
+    for unit in units_of(robot.with_network(robot.winches, cables), motor):
         box = next(piece.solid for piece in unit.assembly.pieces if piece.name.startswith("housing"))
         for leaves, groove in zip(unit.exits, unit.spool.grooves, strict=True):
             (x, y, z), (u, v, w) = leaves.point, leaves.direction
             assert math.hypot(u, v, w) == pytest.approx(1.0)
-            assert x * v - y * u == pytest.approx(groove.radius)
+            assert x * v - y * u == pytest.approx(-groove.radius if cables[leaves.cable].reverse else groove.radius)
             assert max(abs(x), abs(y)) == pytest.approx(unit.housing.half)
             assert x * u + y * v == pytest.approx(leaves.lead)
             tube = Manifold.cylinder(leaves.seat + 3, 1.0, -1, 24).translate((0, 0, -leaves.seat + 0.01))
