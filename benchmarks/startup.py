@@ -5,7 +5,7 @@
     python benchmarks/startup.py --check 3.3
 
 Commands first: cold, with empty caches as after installing, and warm, when the body has been meshed. Then a first
-solve, phase by phase, cold and warm too.
+solve, phase by phase, cold and warm too. Python keeps bytecode, even where PYTHONDONTWRITEBYTECODE forbids it.
 
 The flat robot is the gallery's starfish, the one in space the hand of `hand_body.py`, of few nodes; each has its own
 folder. In commands the hand is the example `cupping_hand`.
@@ -31,6 +31,8 @@ from statistics import median
 from machine import machine  # isort: skip  (before NumPy)
 
 HYDROSTAT = [sys.executable, "-c", "from hydrostat.cli.main import main; main()"]
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
 STARFISH = str(Path(__file__).parents[1] / "examples" / "starfish")
 
 HAND, GRIPPER = (str(Path(STARFISH).parent / name) for name in ("cupping_hand", "caging_gripper"))
