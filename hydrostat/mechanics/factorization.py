@@ -22,6 +22,7 @@ from jaxtyping import Float, Int
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics import ordering, symbolic
+from hydrostat.mechanics.minimum_degree import order_by_minimum_degree
 from hydrostat.mechanics.supernodal import SupernodalAnalysis
 
 if TYPE_CHECKING:
@@ -233,22 +234,8 @@ def _cheapest_tree(
     leaf = 64  # Parts of so many nodes are ordered by minimum degree
     orders = [
         ordering.nested_dissection(starts, neighbors, coordinates, leaf, SHARES),
-        _minimum_degree(starts, neighbors),
+        order_by_minimum_degree(starts, neighbors),
     ]
     trees = [symbolic.supernodes(starts, neighbors, order, dim) for order in orders]
     best = min(trees, key=lambda tree: tree.seconds)
     return best, best.seconds
-
-
-def _minimum_degree(starts: np.ndarray, neighbors: np.ndarray) -> np.ndarray:
-    """SuperLU's multiple minimum degree (Liu 1985), by an incomplete factorization that drops nearly all it finds."""
-    from scipy.sparse import csc_array
-    from scipy.sparse.linalg import spilu
-
-    nodes = len(starts) - 1
-    degrees = np.diff(starts)
-    indices = np.concatenate([neighbors, np.arange(nodes)])
-    columns = np.concatenate([np.repeat(np.arange(nodes), degrees), np.arange(nodes)])
-    data = np.concatenate([np.full(len(neighbors), -1.0), degrees + 1.0])
-    graph = csc_array((data, (indices, columns)), shape=(nodes, nodes))
-    return np.argsort(spilu(graph, drop_tol=1e9, fill_factor=1, permc_spec="MMD_AT_PLUS_A").perm_c)

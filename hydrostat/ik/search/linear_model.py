@@ -10,6 +10,7 @@ from jaxtyping import Float
 from hydrostat.arrays import Vector
 from hydrostat.ik.limits import Bounds
 from hydrostat.ik.objectives.objective import EquilibriumState, StateJacobian, rubbing_moves, winch_to_cable_matrix
+from hydrostat.ik.search.nonnegative import solve_nonnegative, solve_upper
 from hydrostat.mechanics import CableEnergy, Stiffness
 from hydrostat.simulation import Simulation
 
@@ -173,10 +174,8 @@ class LinearModel:
         holds = 1e-9
         rows = limits[room <= holds * np.abs(limits) @ self.range[self.active]]
         if len(rows):
-            from scipy.optimize import nnls  # Imported here: not every pose is at a limit.
-
             rows = rows / np.linalg.norm(rows, axis=1)[:, None]
-            gradient = gradient + rows.T @ nnls(rows.T, -gradient)[0]
+            gradient = gradient + rows.T @ solve_nonnegative(rows.T, -gradient)
         return float(np.abs(gradient).max())
 
     def apply_step(self, step: Vector) -> Vector:
@@ -235,15 +234,13 @@ def least_squares(
     By a QR factorization it becomes the problem of the least distance, and that one of nonnegative least squares
     (Lawson and Hanson 1974, chapter 23). `matrix` must have full column rank.
     """
-    from scipy.linalg import solve_triangular  # Imported here: not every command needs it.
-
     if not matrix.shape[1]:
         return np.zeros(0)
     q, r = np.linalg.qr(matrix)
     aim = q.T @ right
-    rows = solve_triangular(r, limits.T, trans=1).T
+    rows = solve_upper(r, limits.T, transposed=True).T
     nearest = _least_distance(rows, room - rows @ aim)
-    return None if nearest is None else solve_triangular(r, aim + nearest)
+    return None if nearest is None else solve_upper(r, aim + nearest)
 
 
 def _least_distance(
@@ -258,10 +255,8 @@ def _least_distance(
     far = -room.min(initial=0.0)
     if far <= 0.0:
         return np.zeros(rows.shape[1])
-    from scipy.optimize import nnls  # Imported here: not every step meets a limit.
-
     stacked = np.vstack([-rows.T, -room / far])
-    pushes, _ = nnls(stacked, np.eye(len(stacked))[-1])
+    pushes = solve_nonnegative(stacked, np.eye(len(stacked))[-1])
     left = stacked @ pushes
     left[-1] -= 1.0
     # what is left of the nonnegative problem is 1 / (1 + |z|^2); below this no z is allowed
