@@ -1,15 +1,14 @@
 """`find_crossings`: where a deformed body passes through itself."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
 from shapely import STRtree, linestrings
 
-from hydrostat.arrays import Nodes, Points
+from hydrostat.arrays import Nodes
 from hydrostat.geometry.mesh import Mesh
-from hydrostat.lazy import load_compiled
+from hydrostat.geometry.point_tree import build_point_tree
 
 Pairs = Int[np.ndarray, "crossings 2"]
 
@@ -71,22 +70,14 @@ def _solid(mesh: Mesh, nodes: Nodes) -> Crossings:
     middles = corners.mean(axis=1)
     radius = float(np.linalg.norm(corners - middles[:, None], axis=2).max())
     reach = radius + 0.5 * float(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).max())
-    near = _tree(ends.mean(axis=1)).sparse_distance_matrix(_tree(middles), reach, output_type="ndarray")
+    near = build_point_tree(ends.mean(axis=1)).sparse_distance_matrix(
+        build_point_tree(middles), reach, output_type="ndarray"
+    )
     edge, facet = near["i"], near["j"]
     apart = ~_share(edges[edge], facets[facet])
     edge, facet = edge[apart], facet[apart]
     pierced, places = _intersect_triangles(ends[edge], corners[facet])
     return Crossings(places=places[pierced], facets=np.column_stack([owners[edge], facet])[pierced])
-
-
-def _tree(points: Points) -> Any:
-    """SciPy's k-d tree; its compiled module alone, where that is there, is loaded 0.1 s sooner."""
-    compiled = load_compiled("scipy.spatial._ckdtree")
-    if compiled is not None and hasattr(compiled, "cKDTree"):
-        return compiled.cKDTree(points, leafsize=10)
-    from scipy.spatial import KDTree
-
-    return KDTree(points)
 
 
 def _intersect_triangles(

@@ -7,6 +7,7 @@ from jaxtyping import Float, Int
 
 from hydrostat.arrays import Points
 from hydrostat.geometry.mesh import Mesh, joined_groups
+from hydrostat.geometry.point_tree import build_point_tree
 
 _REGULAR = {2: 4 / 3**0.5, 3: 6 * 2**0.5}  # (Edge of a regular simplex)^dim over its size
 
@@ -136,15 +137,13 @@ def thin_parts(thickness: Thickness, least: float) -> list[ThinPart]:
 
     Tips, corners and notches are no limbs: what is not longer than `_SLENDER` times its thickness is left out.
     """
-    from scipy.spatial import KDTree
-
     thin = np.flatnonzero(thickness.across < least)
     if not len(thin):
         return []
     middles = thickness.middles[thin]
     reach = _NEAR * float(np.median(thickness.spacing[thin]))
     neighbors = 20  # as many of them are looked at: in a mesh with fine and coarse places more would be near
-    gaps, near = KDTree(middles).query(middles, k=min(neighbors, len(thin)), distance_upper_bound=reach)
+    gaps, near = build_point_tree(middles).query(middles, k=min(neighbors, len(thin)), distance_upper_bound=reach)
     gaps, near = gaps.reshape(len(thin), -1), near.reshape(len(thin), -1)
     one, two = np.nonzero(np.isfinite(gaps))[0], near[np.isfinite(gaps)]
     labels = joined_groups(np.stack([one, two]), len(thin))
