@@ -5,6 +5,7 @@
 import dataclasses
 from collections.abc import Iterable
 from dataclasses import dataclass, fields
+from functools import cached_property
 from math import inf, isfinite
 from numbers import Integral, Real
 from typing import Any, NoReturn
@@ -13,7 +14,7 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.closed_set import make_member
-from hydrostat.design.zone import Zone
+from hydrostat.design.zone import Zone, ZoneUnion
 from hydrostat.errors import InputError
 from hydrostat.ik import Limits
 from hydrostat.robot import LARGEST_STEP, Cable, Mount, Robot, Winch
@@ -168,6 +169,11 @@ class Constraints:
         if self.torque is None:
             return self.tension
         return min(self.tension, self.torque * self.spool_ratio / self.spool_radius)
+
+    @cached_property
+    def winch_area(self) -> ZoneUnion:
+        """All zones for winches together."""
+        return ZoneUnion(self.winch_zones)
 
     def stand_outside(self, robot: Robot) -> bool:
         """True if new winches of a robot stand in the world."""

@@ -51,9 +51,8 @@ class RouteOptions:
         hops: maximum number of edges of a path that is priced.
         lead_penalty: share of the promised gain that a lead as long as the body costs.
         trials: number of paths with solved networks before one is added.
-        starts: networks that are grown side by side along priced paths; one more is grown from sketches.
-        exchanges: most cables that are taken out, one at a time, for the best to be put in their place; the last round
-            of all cables is followed by another where it gained a fifth.
+        starts: networks that are grown side by side along priced paths; more take longer and gain little.
+        exchanges: most cables that are taken out, one at a time, for the best to be put in their place.
         steps: steps of refinement after each cable.
         polish: steps of refinement of a whole network.
         simplicity: weight of a simple network: at 1 a cable must lower the error as built by 2 %, a winch by
@@ -68,7 +67,7 @@ class RouteOptions:
     hops: int = 14
     lead_penalty: float = 0.3
     trials: int = 4
-    starts: int = 2
+    starts: int = 1
     exchanges: int = 12
     steps: int = 5
     polish: int = 60

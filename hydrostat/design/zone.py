@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import isfinite
 from numbers import Real
-from typing import TypeGuard
+from typing import NamedTuple, TypeGuard
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float, Int
 
 from hydrostat.arrays import Points
 from hydrostat.design.polyline import least_along
@@ -81,23 +81,7 @@ class Zone:
 
     def _from_outline(self, points: Points) -> tuple[Float[np.ndarray, " points"], Float[np.ndarray, "points 2"]]:
         starts, ends, outward = self._sides
-        along = ends - starts
-        shares = np.einsum("psd,sd->ps", points[:, None] - starts, along) / (along**2).sum(axis=1)
-        offsets = points[:, None] - (starts + np.clip(shares, 0.0, 1.0)[..., None] * along)
-        lengths = np.linalg.norm(offsets, axis=2)
-        side = lengths.argmin(axis=1)
-        rows = np.arange(len(points))
-        signs = np.where(self._inside(points), -1.0, 1.0)
-        return signs * lengths[rows, side], _units(signs[:, None] * offsets[rows, side], outward[side])
-
-    def _inside(self, points: Points) -> np.ndarray:
-        """By how often a ray to the right crosses the outline."""
-        starts, ends, _ = self._sides
-        above = starts[:, 1] > points[:, None, 1]
-        crosses = above != (ends[:, 1] > points[:, None, 1])
-        rise = np.where(ends[:, 1] == starts[:, 1], 1.0, ends[:, 1] - starts[:, 1])
-        where = starts[:, 0] + (points[:, None, 1] - starts[:, 1]) * (ends[:, 0] - starts[:, 0]) / rise
-        return (crosses & (points[:, None, 0] < where)).sum(axis=1) % 2 == 1
+        return _Sides(starts, ends, outward, np.zeros(len(starts), dtype=np.int64)).measure(points)
 
     @cached_property
     def _sides(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -108,6 +92,63 @@ class Zone:
         along = (ends - starts) * np.sign(turned)
         normals = np.column_stack([along[:, 1], -along[:, 0]])
         return starts, ends, normals / np.linalg.norm(normals, axis=1, keepdims=True)
+
+
+class _Sides(NamedTuple):
+    """Sides of polygons: first and last points, normals outward, and number of the polygon, which rises."""
+
+    starts: Points
+    ends: Points
+    outward: Points
+    owner: Int[np.ndarray, " sides"]
+
+    def measure(self, points: Points) -> tuple[Float[np.ndarray, " points"], Float[np.ndarray, "points 2"]]:
+        """Distance of points from the nearest polygon [m], negative inside, and its gradient."""
+        along = self.ends - self.starts
+        shares = np.einsum("psd,sd->ps", points[:, None] - self.starts, along) / (along**2).sum(axis=1)
+        offsets = points[:, None] - (self.starts + np.clip(shares, 0.0, 1.0)[..., None] * along)
+        lengths = np.linalg.norm(offsets, axis=2)
+        begins = np.flatnonzero(np.append(True, self.owner[1:] != self.owner[:-1]))
+        signs = np.where(self._inside(points, begins), -1.0, 1.0)
+        nearest = (signs * np.minimum.reduceat(lengths, begins, axis=1)).argmin(axis=1)
+        side = np.where(self.owner == nearest[:, None], lengths, np.inf).argmin(axis=1)
+        rows = np.arange(len(points))
+        sign = signs[rows, nearest]
+        return sign * lengths[rows, side], _units(sign[:, None] * offsets[rows, side], self.outward[side])
+
+    def _inside(self, points: Points, begins: Int[np.ndarray, " polygons"]) -> Bool[np.ndarray, "points polygons"]:
+        """True in each polygon whose outline a ray to the right crosses an odd number of times."""
+        starts, ends = self.starts, self.ends
+        above = starts[:, 1] > points[:, None, 1]
+        crosses = above != (ends[:, 1] > points[:, None, 1])
+        rise = np.where(ends[:, 1] == starts[:, 1], 1.0, ends[:, 1] - starts[:, 1])
+        where = starts[:, 0] + (points[:, None, 1] - starts[:, 1]) * (ends[:, 0] - starts[:, 0]) / rise
+        return np.add.reduceat((crosses & (points[:, None, 0] < where)).astype(np.int64), begins, axis=1) % 2 == 1
+
+
+@dataclass(frozen=True, eq=False)
+class ZoneUnion:
+    """Several zones together."""
+
+    zones: tuple[Zone, ...]
+
+    def measure(self, points: Points) -> tuple[Float[np.ndarray, " points"], Float[np.ndarray, "points dim"]]:
+        """Distance of points from the nearest zone [m], negative inside, and unit vectors in which it grows fastest."""
+        if self._polygons is not None:
+            return self._polygons.measure(points)
+        distances, ways = zip(*(zone._measure(points) for zone in self.zones), strict=True)
+        nearest, rows = np.argmin(distances, axis=0), np.arange(len(points))
+        return np.array(distances)[nearest, rows], np.array(ways)[nearest, rows]
+
+    @cached_property
+    def _polygons(self) -> "_Sides | None":
+        """Sides of all polygons; None if a zone is none."""
+        if not all(zone.outline for zone in self.zones):
+            return None
+        parts = [zone._sides for zone in self.zones]
+        counts = [len(zone.outline) for zone in self.zones]
+        starts, ends, outward = (np.concatenate(part) for part in zip(*parts, strict=True))
+        return _Sides(starts, ends, outward, np.repeat(np.arange(len(counts)), counts))
 
 
 def _from_box(

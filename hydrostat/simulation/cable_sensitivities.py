@@ -30,13 +30,16 @@ class CableSensitivities:
     fields: Float[np.ndarray, "rows nodes dim"]
 
 
-def cable_sensitivities(simulation: Simulation, pose: Equilibrium, markers: list[int]) -> CableSensitivities:
+def cable_sensitivities(
+    simulation: Simulation, pose: Equilibrium, markers: list[int], *, tensions: bool = True
+) -> CableSensitivities:
     """Slopes of some markers and of all tensions at an equilibrium, by one adjoint solve for all rows.
 
     Args:
         simulation: simulation of the robot; cables with friction slip on or stick as for `Simulation.jacobian`.
         pose: an equilibrium of it.
         markers: numbers of the markers asked for.
+        tensions: False for rows of markers alone.
 
     Raises:
         NotConvergedError: the Hessian is singular there: the pose is about to snap.
@@ -46,13 +49,13 @@ def cable_sensitivities(simulation: Simulation, pose: Equilibrium, markers: list
     elongations = cables.elongations(nodes, pose.contractions)
     tangents, pulls = cables.law.tangent(elongations), cables.law.tension(elongations)
     columns = cables.columns(nodes)
-    rows = np.zeros((len(markers) * dim + len(tangents), nodes.size))
+    rows = np.zeros((len(markers) * dim + tensions * len(tangents), nodes.size))
     anchors = simulation.marker_anchors
     for count, marker in enumerate(markers):
         for axis in range(dim):
             rows[count * dim + axis, anchors.stencils[marker] * dim + axis] = anchors.weights[marker]
     own = np.zeros((len(rows), len(tangents)))
-    own[len(markers) * dim :] = np.eye(len(tangents))
+    own[len(markers) * dim :] = np.eye(len(tangents))[: tensions * len(tangents)]
     if simulation.friction is not None:
         found = simulation.friction_sensitivities(pose, (rows, own))
         return CableSensitivities(found.contractions, found.slack, found.ratios, found.points, found.fields)

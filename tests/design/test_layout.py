@@ -11,7 +11,7 @@ from hydrostat.design.constraints import Constraints
 from hydrostat.design.routes.begin import add_mirror_image, layout_of, reflect_points
 from hydrostat.design.routes.growth import without
 from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
-from hydrostat.robot import Mount, Winch
+from hydrostat.robot import Mount, Winch, limit_travels
 
 LOOSE = Constraints(slack=0.01, spool_ratio=2.0)
 OFF = ((0.05, 0.018), (0.09, 0.017), (0.13, 0.018))
@@ -154,3 +154,14 @@ def test_without_a_cable_its_twin_and_idle_winches_go() -> None:
     locked = without(layout(Constraints(locked_winches=("up",))), 0)
     assert locked is not None
     assert [stand.winch.name for stand in locked.sites] == ["up", "down"]
+
+
+def test_limited_travels_are_those_of_a_finished_network() -> None:
+    """Oracle: `limit_travels`, which rounds down to a millimeter."""
+    made = layout()
+    far = tuple(replace(site, winch=replace(site.winch, travel=0.2)) for site in made.sites)
+    made = replace(made, sites=far)
+    limited = made.robot(limited=True)
+    assert limit_travels(made.robot()).winches != made.robot().winches
+    for winch, safe in zip(limited.winches, limit_travels(made.robot()).winches, strict=True):
+        assert safe.travel - 1e-3 <= winch.travel <= safe.travel

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from shapely import Point, Polygon
 
-from hydrostat.design.zone import Zone
+from hydrostat.design.zone import Zone, ZoneUnion
 from hydrostat.errors import InputError
 
 L_SHAPE = ((0.0, 0.0), (0.04, 0.0), (0.04, 0.02), (0.02, 0.02), (0.02, 0.05), (0.0, 0.05))
@@ -125,3 +125,16 @@ def test_what_is_no_zone_is_told_in_one_line(case: str, unchecked: None) -> None
     with pytest.raises(InputError, match=words) as error:
         Zone(**values)
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("others", [(), (Zone(at=(0.05, 0.05), radius=0.02),)])
+def test_a_union_measures_the_nearest_zone(others: tuple[Zone, ...]) -> None:
+    """Oracle: each zone by itself."""
+    corners = ((0.0, 0.0), (0.04, 0.0), (0.05, 0.03), (0.0, 0.02))
+    zones = (Zone(outline=corners), Zone(outline=tuple((x + 0.1, 0.01 - y) for x, y in corners)), *others)
+    points = np.random.default_rng(1).uniform(-0.05, 0.2, (200, 2))
+    distances, ways = ZoneUnion(zones).measure(points)
+    alone = np.array([zone.distances(points) for zone in zones])
+    np.testing.assert_array_equal(distances, alone.min(axis=0))
+    nearest = np.array([zone.away(points) for zone in zones])[alone.argmin(axis=0), np.arange(len(points))]
+    np.testing.assert_array_equal(ways, nearest)

@@ -99,22 +99,26 @@ class Bench:
         iterations: int = 30,
         worst: float = np.inf,
         hoped: Trial | None = None,
+        kept: Sequence[int] | None = None,
+        rough: bool = False,
     ) -> Trial | None:
         """Bring a layout nearest to every pose, from a trial whose winches are its first.
 
+        If some winches are gone, `kept` are the numbers that the others have in that trial.
         Where a pose misses more than in a trial `hoped` for, it is sought from other beginnings too.
+        If it is `rough`, poses from rest are not checked by playing their contractions.
         None: no equilibrium, or an error above `worst` [m]; poses that are left when it is sure of that are not solved.
         """
         self.look()
         self.solves += 1
-        simulation = Simulation(layout.robot(), body=self.body)
+        simulation = Simulation(layout.robot(limited=True), body=self.body)
         options = IKOptions(restarts=0, min_tension=False, iterations=iterations, tolerance=1e-5, progress=1e-5)
         limits = self.constraints.limits
         found = []
         for index, target in enumerate(self.targets):
-            start = None if before is None else self._relax_start(simulation, before, index)
+            start = None if before is None else self._relax_start(simulation, before, index, kept)
             try:
-                if start is None:
+                if start is None and not rough:
                     pose = reach_from_rest(simulation, target, limits, options).pose
                 else:
                     pose = solve_ik(simulation, target, start=start, limits=limits, options=options).pose
@@ -138,7 +142,7 @@ class Bench:
         """
         self.look()
         self.solves += 1
-        simulation = Simulation(layout.robot(), body=self.body)
+        simulation = Simulation(layout.robot(limited=True), body=self.body)
         found = []
         for pulled, pose in zip(contractions, before.poses, strict=True):
             result = simulation.solver.relax(pose.nodes, pulled, iterations=15)
@@ -161,14 +165,15 @@ class Bench:
     def solve_variation(
         self, layout: Layout, near: Equilibrium, contractions: Vector, index: int
     ) -> tuple[Simulation, Nodes, CableSensitivities] | None:
-        """Solve a layout built otherwise, near a pose: nodes [m] and sensitivities; None if it has no equilibrium."""
+        """Solve a layout built otherwise, near a pose: nodes [m] and slopes of markers; None without equilibrium."""
         try:
-            simulation = Simulation(layout.robot(), body=self.body)
+            simulation = Simulation(layout.robot(limited=True), body=self.body)
             result = simulation.solver.relax(near.nodes, contractions, iterations=15)
             if not (result.converged and result.stable):
                 return None
             pose = simulation.make_pose(contractions, result)
-            return simulation, pose.nodes, cable_sensitivities(simulation, pose, self.markers[index])
+            slopes = cable_sensitivities(simulation, pose, self.markers[index], tensions=False)
+            return simulation, pose.nodes, slopes
         except (InputError, NotConvergedError):  # a hole outside the body, or about to snap
             return None
 
@@ -179,12 +184,15 @@ class Bench:
         """Error that a pose may have to be as good as in another trial, but for a share of the error of all [m]."""
         return self._pose_error(hoped.simulation, index, hoped.poses[index]) + _SHORT * hoped.error
 
-    def _relax_start(self, simulation: Simulation, before: Trial, index: int) -> Equilibrium | None:
+    def _relax_start(
+        self, simulation: Simulation, before: Trial, index: int, kept: Sequence[int] | None
+    ) -> Equilibrium | None:
         """Relax the new robot from a pose of the old; None where that finds no equilibrium."""
         pose = before.poses[index]
         pulled = np.zeros(len(simulation.robot.winches))
-        shared = min(len(pulled), len(pose.contractions))
-        pulled[:shared] = pose.contractions[:shared]
+        known = pose.contractions if kept is None else pose.contractions[list(kept)]
+        shared = min(len(pulled), len(known))
+        pulled[:shared] = known[:shared]
         result = simulation.solver.relax(pose.nodes, pulled, iterations=15)
         return simulation.make_pose(pulled, result) if result.converged and result.stable else None
 

@@ -14,13 +14,16 @@ from hydrostat.design.request import DesignRequest
 from hydrostat.design.routes.begin import layout_of
 from hydrostat.design.routes.bench import Bench, Trial
 from hydrostat.design.routes.certificate import certify
+from hydrostat.design.routes.exchange import Exchanges
 from hydrostat.design.routes.finalists import DIGITS, Finalists, kit_fits
 from hydrostat.design.routes.growth import Growth
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.refine import pushed_back
 from hydrostat.design.routes.route_graph import route_graph
+from hydrostat.design.routes.screen import screen_sketches
 from hydrostat.design.routes.sketch import sketches
+from hydrostat.design.routes.thin import remove_via_points
 from hydrostat.design.skin_region import cable_region
 from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.design.watch import Watch, unseen
@@ -157,57 +160,56 @@ class RouteSearch:
             grown = growth.grow_networks([begun], winches=self.winches, cables=self.cables)
             if not any(growth.enough(trial, self.winches) for trial in grown):
                 grown += [*self._by_force(growth, begun), *self._refine_hints(growth)]
-        grown.sort(key=lambda trial: trial.cost)
-        whole = [trial for trial in grown if len(trial.layout.sites) >= self.winches] or grown
-        self.found = [growth.resolve_from_rest(trial) for trial in whole[: _REFINED + 1]]
+        self.found = self._refine_best(growth, grown)
         if not self.found:
             raise HydrostatError(
                 "no network could be built: no cable keeps clear of the edge, of forbidden zones and of other cables; "
                 "lower the clearance, or allow sharper turns"
             )
-        self.found.sort(key=lambda trial: trial.cost)
-        for rank, trial in enumerate(self.found[:_REFINED]):
-            self.progress("Refining", rank, _REFINED)
-            self.found[rank] = growth.refine(trial)
-            self._note_network("via points moved", self.found[rank])
-        self.found.sort(key=lambda trial: trial.cost)
-        left = self.options.exchanges
-        while left > 0 and not growth.enough(best := self.found[0], self.winches):
-            self.progress("Exchanging cables", self.options.exchanges - left, self.options.exchanges)
-            better = growth.exchange_cables(best, winches=self.winches, most=left)
-            left -= len(best.layout.routes)
-            if better is best:
-                break
-            self.found.insert(0, growth.refine(better))
-            self._note_network("cables exchanged, via points moved", self.found[0])
-            self.found.sort(key=lambda trial: trial.cost)
-            if self.found[0].cost > (1 - _ANOTHER) * best.cost:
-                break
+        best = self.found[0]
+        if self.options.exchanges and not growth.enough(best, self.winches):
+            self.progress("Exchanging cables", 0, 1)
+            exchanges = Exchanges(growth, self.winches)
+            better = exchanges.prune_cables(exchanges.exchange_cables(best, self.options.exchanges))
+            if better is not best:
+                self.found.insert(0, growth.refine(better))
+                self._note_network("cables exchanged, via points moved", self.found[0])
+                self.found.sort(key=lambda trial: trial.cost)
         self.progress("Exchanging cables", 1, 1)
-        self.found[0] = self._thin_network(growth, growth.prune_cables(self.found[0]))
+        self.found[0] = self._thin_network(growth, self.found[0])
         self._note_network("holes left out", self.found[0])
 
     def _sketch_networks(self, growth: Growth, bare: Trial) -> list[Trial]:
         """Draw networks along the limbs, and grow the best of them by further cables that help."""
-        count = self.options.starts + 1
-        drawn = sketches(self.proposals, bare, winches=self.winches, cables=self.cables, count=_DRAWN * count)
-        rough: list[Trial] = []
-        for number, layout in enumerate(drawn):
-            self.progress("Drawing networks", number, len(drawn))
-            trial = self.bench.reach_poses(layout, None, iterations=_GLANCE)
-            if trial is not None:
-                rough.append(growth.refine_briefly(trial, directions=0))
-                if rough[-1].cost < (1 - _HELPS) * bare.cost and rough[-1].cost <= min(one.cost for one in rough):
-                    self._note_network("drawn along the limbs", rough[-1])
-        self.progress("Drawing networks", len(drawn), len(drawn))
-        rough.sort(key=lambda trial: trial.cost)
-        helpful: list[Trial] = []
-        for trial in map(growth.refine_briefly, rough[: _LIKELY * count]):
-            if trial.cost < (1 - _HELPS) * bare.cost:
-                helpful.append(trial)
+        count = _DRAWN * (self.options.starts + 1)
+        drawn = sketches(self.proposals, bare, winches=self.winches, cables=self.cables, count=count)
+        worse = (1 - _HELPS) * bare.cost
+
+        def note(trial: Trial) -> None:
+            self.progress("Drawing networks", min(len(self.stages), count), count)
+            if trial.cost < worse:
                 self._note_network("drawn along the limbs", trial)
-        helpful.sort(key=lambda trial: trial.cost)
-        return growth.grow_networks(helpful[:count], winches=self.winches, cables=self.cables)
+
+        screened = screen_sketches(growth, drawn, found=note, count=self.options.starts + _SPARE)
+        self.progress("Drawing networks", count, count)
+        helpful = [trial for trial in screened if trial.cost < worse]
+        width = self.options.starts
+        return growth.grow_networks(helpful[:width], winches=self.winches, cables=self.cables) + helpful[width:]
+
+    def _refine_best(self, growth: Growth, grown: list[Trial]) -> list[Trial]:
+        """Refine the best networks to the end, and the next only if it is nearly as good from rest."""
+        grown.sort(key=lambda trial: trial.cost)
+        whole = [trial for trial in grown if len(trial.layout.sites) >= self.winches] or grown
+        rested = [growth.resolve_from_rest(trial) for trial in whole[: _REFINED + 1]]
+        rested.sort(key=lambda trial: trial.cost)
+        refined: list[Trial] = []
+        for rank, trial in enumerate(rested[:_REFINED]):
+            if refined and trial.cost > _NEARLY * refined[0].cost:
+                break
+            self.progress("Refining", rank, _REFINED)
+            refined.append(growth.refine(trial))
+            self._note_network("via points moved", refined[-1])
+        return sorted([*refined, *rested[len(refined) :]], key=lambda trial: trial.cost)
 
     def _by_force(self, growth: Growth, begun: Trial) -> list[Trial]:
         """Networks grown along stronger paths, where none can be drawn."""
@@ -235,7 +237,7 @@ class RouteSearch:
     @staticmethod
     def _thin_network(growth: Growth, trial: Trial) -> Trial:
         """Leave out holes that a network does not need, and refine it once more."""
-        thinner = growth.remove_via_points(trial)
+        thinner = remove_via_points(growth, trial)
         if thinner is trial:
             return trial
         thinner = growth.refine(growth.resolve_from_rest(thinner))
@@ -307,21 +309,26 @@ class RouteSearch:
 
     def _judge_networks(self, complete: bool) -> tuple[Alternative, list[Alternative]]:
         """Judge the networks found as their user will find them, the best first."""
-        judged = self.finalists.judge_all(self.found if complete else [self.best])
+        found = self.found if complete else [self.best]
+        judged = self.finalists.judge_all(found)
+        if judged and not kit_fits(judged[0]):
+            refined = self.growth.refine if complete else self.growth.refine_briefly
+            judged += self.finalists.with_room(found[:1], refined)
         if not any(kit_fits(network) for network in judged):
-            judged += self.finalists.with_room(
-                self.found if complete else [self.best], self.growth.refine if complete else self.growth.refine_briefly
-            )
+            judged += self.finalists.with_room(found[1:], self.growth.refine_briefly)
             known = [trial.layout for trial in self.found]
             others = [pair for pair in self.passed if not any(pair[1] is layout for layout in known)]
             judged += self.finalists.first_to_fit(others, _LOOKED_AT if complete else _LOOKED_AT_LATE)
-        judged += self.finalists.judge_all(self._simpler() if complete else [])
+        judged += self.finalists.judge_all(self._simpler() if complete else [], thorough=False)
         if not judged:
             raise HydrostatError(
                 "no network that was found keeps all constraints; relax them, or ask for other numbers of cables"
             )
+        best = judged[0]
         judged.sort(key=self.finalists.cost)
         first = next((place for place, network in enumerate(judged) if kit_fits(network)), 0)
+        if first or judged[first] is not best:
+            judged[first] = self.finalists.judge(layout_of(judged[first].robot, self.constraints)) or judged[first]
         held = self._hold(judged[first]) if complete and self.constraints.built_in else None
         if held is not None:
             judged.insert(first, held)
@@ -374,15 +381,14 @@ def deadline_of(request: DesignRequest) -> float:
     return math.inf if request.seconds is None else time.monotonic() + request.seconds
 
 
-_ANOTHER = 0.2  # a round of exchanges that gains so much is followed by another
 _LOOSER = 0.02  # fewer holes may cost so much
 _WORSE = 0.05  # a simpler network is told of where those that are simpler still have so much larger errors
 _HELPS = 0.02  # a sketch that lowers the cost by less than this share is none
 _STRONG = 0.1  # what the effort of stronger paths counts
 _DRAWN = 6  # sketches that are solved for each that is grown
-_LIKELY = 2  # of them, that are refined with what differs as built
-_GLANCE = 5  # steps of inverse kinematics that tell how good a sketch is
+_SPARE = 2  # more of them than are grown are refined with what differs as built
 _WORTH = 0.1  # errors may be so much larger where motors hold poses for long
 _LOOKED_AT = 12  # networks on the way that are judged where no refined one can be built
 _LOOKED_AT_LATE = 4  # where the search was ended before
 _REFINED = 2  # networks that are refined to the end
+_NEARLY = 1.1  # the second one only if it misses less than so many times as much as the first

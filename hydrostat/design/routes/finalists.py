@@ -2,6 +2,9 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
+from weakref import WeakKeyDictionary
+
+import numpy as np
 
 from hydrostat.design.buildable import pulls, violations
 from hydrostat.design.built_error import expected_error
@@ -32,7 +35,7 @@ class Finalists:
     bench: Bench
     region: Region
 
-    def judge(self, layout: Layout) -> Alternative | None:
+    def judge(self, layout: Layout, *, restarts: int = IKOptions.restarts) -> Alternative | None:
         """A network with rounded coordinates and poses solved from rest; None if it breaks a constraint."""
         robot = self.safe_robot(layout)
         if violations(robot, self.constraints, self.region):
@@ -40,7 +43,8 @@ class Finalists:
         simulation = Simulation(robot, body=self.bench.body)
         limits = self.constraints.limits
         try:
-            reached = [reach_from_rest(simulation, pose, limits, IKOptions()) for pose in self.request.poses]
+            options = IKOptions(restarts=restarts)
+            reached = [reach_from_rest(simulation, pose, limits, options) for pose in self.request.poses]
         except NotConvergedError:
             return None
         if pulls(robot, reached, self.constraints):
@@ -74,22 +78,37 @@ class Finalists:
         )
         return replace(layout, sites=sites)
 
-    def judge_all(self, trials: Iterable[Trial | None]) -> list[Alternative]:
-        """The networks of some trials that keep all constraints."""
-        return [judged for trial in trials if trial is not None and (judged := self.judge(trial.layout)) is not None]
+    def judge_all(self, trials: Iterable[Trial | None], *, thorough: bool = True) -> list[Alternative]:
+        """The networks of some trials that keep all constraints.
+
+        If it is `thorough`, poses are sought from several beginnings, until a kit can be made of a network.
+        """
+        judged = []
+        for trial in trials:
+            network = trial and self.judge(trial.layout, restarts=IKOptions.restarts if thorough else 0)
+            if network is not None:
+                judged.append(network)
+                thorough = thorough and not kit_fits(network)
+        return judged
 
     def with_room(self, trials: Iterable[Trial | None], refined: Callable[[Trial], Trial]) -> list[Alternative]:
         """The first of some networks that a kit can be made of once its winches stand farther apart."""
         for times in _APART:
-            limits = replace(self.constraints, winch_gap=times * self.constraints.winch_gap)
             for trial in trials:
-                layout = None if trial is None else replace(trial.layout, constraints=limits)
-                pushed = layout and pushed_back(layout, self.region, 0.03 * self.robot.body.mesh.size)
+                pushed = None if trial is None else self._push_apart(trial.layout, times)
                 moved = self.bench.reach_poses(pushed, trial) if pushed else None
                 judged = None if moved is None else self.judge(refined(moved).layout)
                 if judged is not None and kit_fits(judged):
                     return [judged]
         return []
+
+    def _push_apart(self, layout: Layout, times: float) -> Layout | None:
+        """The layout with winches so many times as far apart as the nearest two, or as they must be."""
+        places = np.array([site.winch.at for site in layout.sites])
+        away = np.linalg.norm(places[:, None] - places, axis=2) + np.diag(np.full(len(places), np.inf))
+        gap = max(float(away.min(initial=np.inf)) if len(places) > 1 else 0.0, self.constraints.winch_gap)
+        limits = replace(self.constraints, winch_gap=times * gap)
+        return pushed_back(replace(layout, constraints=limits), self.region, 0.03 * self.robot.body.mesh.size)
 
     def first_to_fit(self, passed: Iterable[tuple[float, Layout]], most: int) -> list[Alternative]:
         """The best of the networks on the way, with their costs, that a kit can be made of; so many are looked at."""
@@ -101,8 +120,11 @@ class Finalists:
 
 
 def kit_fits(network: Alternative | Network) -> bool:
-    """True if the kit of a network would not be refused."""
-    return not find_refusals(network.robot, demand_of(network.robot, network.reached))
+    """True if the kit of a network would not be refused; each network is examined once."""
+    if network not in _EXAMINED:
+        _EXAMINED[network] = not find_refusals(network.robot, demand_of(network.robot, network.reached))
+    return _EXAMINED[network]
 
 
-_APART = (1.4, 1.8)  # so many times the gap of winches is asked for where their units meet
+_EXAMINED: WeakKeyDictionary[Alternative | Network, bool] = WeakKeyDictionary()
+_APART = (1.2, 1.5)  # so many times as far apart as they are stand winches whose units meet

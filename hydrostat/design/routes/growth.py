@@ -8,8 +8,8 @@ import numpy as np
 from hydrostat.design.polyline import turns
 from hydrostat.design.routes.bench import Bench, Trial
 from hydrostat.design.routes.layout import Layout
-from hydrostat.design.routes.propose import Proposals
-from hydrostat.design.routes.refine import RefineOptions, pushed_back, refine
+from hydrostat.design.routes.propose import Additions, Proposals
+from hydrostat.design.routes.refine import RefineOptions, refine
 from hydrostat.robot import Mount
 from hydrostat.simulation import Simulation
 
@@ -39,23 +39,23 @@ class Growth:
         """Add cables one by one to the first networks, the best first (beam search).
 
         Of all networks with a cable more than those that are kept the best few are refined, and the best of these kept.
-        It ends with as many cables as there may be, or when enough is reached, or cables no longer help.
+        It ends with as many cables as there may be, when enough is reached, when a cable does not help, or when no path
+        promises to.
         """
-        options = self.proposals.options
-        width = options.starts
+        width = self.proposals.options.starts
         front, found = list(begun), [trial for trial in begun if trial.layout.routes]
         idle = 0
         while front and idle < _PATIENCE:
-            first = not front[0].layout.routes
-            best = _SEEDS * width if first else _LIKELY * width
-            count = max(options.trials, best)
+            best = (_SEEDS if not front[0].layout.routes else _LIKELY) * width
             more: list[Trial] = []
             for trial in front:
                 needed = cables - len(trial.layout.routes)
                 if needed > 0:
-                    more += self._try_cables(trial, winches, needed, count=count, best=best)
-            rough = [self.refine_briefly(one, directions=0) for one in self._unlike(more, len(front) * best)]
-            front = self._unlike([self.refine_briefly(one) for one in self._unlike(rough, _LIKELY * width)], width)
+                    more += self._try_cables(trial, winches, needed, best=best)
+            rough = [self.refine_briefly(one, directions=0) for one in unlike(more, len(front) * best, self._rate)]
+            likely = unlike(rough, _LIKELY * width, self._rate)
+            likely = [one for one in likely if one.cost < _FAR * likely[0].cost]
+            front = unlike([self.refine_briefly(one) for one in likely], width, self._rate)
             for trial in front:
                 self.note(_words(trial), trial)
             least = min((trial.cost for trial in found), default=np.inf)
@@ -66,26 +66,13 @@ class Growth:
             idle = 0 if short or (front and front[0].cost < (1 - _HELPS) * least) else idle + 1
         return sorted(found, key=lambda trial: trial.cost)
 
-    def _unlike(self, trials: list[Trial], count: int) -> list[Trial]:
-        """The first few, the best first, no two of the same cost."""
-        kept: list[Trial] = []
-        for trial in sorted(trials, key=self._rate):
-            if len(kept) < count and all(abs(trial.cost - other.cost) > 1e-3 * trial.cost for other in kept):
-                kept.append(trial)
-        return kept
-
-    def with_one_more(self, trial: Trial, *, winches: int, needed: int) -> Trial | None:
-        """The best network with one cable more (two where it is mirrored); None if there is none."""
-        tried = self._try_cables(trial, winches, needed, count=self.proposals.options.trials, best=1)
-        return self.refine_briefly(tried[0]) if tried else None
-
     def refine(self, trial: Trial) -> Trial:
         """Refine a network in rounds, each of which must hold from rest on."""
         steps = self.proposals.options.polish
         best = trial if trial.from_rest else self.resolve_from_rest(trial)
         effort, round_size = 1.0, _ROUND
         done = failed = 0
-        while done < steps and failed < _FAILURES and best.cost > self._options(0).enough:
+        while done < steps and failed < _FAILURES and best.cost > self.enough_error:
             size = min(round_size, steps - done)
             options = replace(self._options(size), effort=effort * self._options(size).effort)
             found = self.resolve_from_rest(
@@ -106,111 +93,38 @@ class Growth:
         found = self.bench.reach_poses(trial.layout, None, iterations=60, worst=worst, hoped=trial)
         return replace(trial, error=np.inf) if found is None else replace(found, from_rest=True)
 
-    def exchange_cables(self, trial: Trial, *, winches: int, most: int) -> Trial:
-        """Take out up to `most` cables in turn, and put in the best where that is better."""
-        for number in range(min(len(trial.layout.routes), most)):
-            route = trial.layout.routes[number]
-            if route.kept is not None or route.twin is not None or len(trial.layout.routes) < 2:
-                continue
-            rest = without(trial.layout, number)
-            before = None if rest is None else self.bench.reach_poses(rest, None)
-            if before is None:
-                continue
-            missing = len(trial.layout.routes) - len(before.layout.routes)
-            found = self.with_one_more(before, winches=winches, needed=missing)
-            if found is None:
-                continue
-            needed = (1 - _WORTH) * trial.cost
-            found = self.resolve_from_rest(found, worst=needed)
-            if found.cost < needed:
-                trial = found
-                self.note("a cable exchanged", trial)
-        return trial
-
-    def prune_cables(self, trial: Trial) -> Trial:
-        """Remove cables that do not earn their place: without them the cost stays the same, or enough."""
-        for number in reversed(range(len(trial.layout.routes))):
-            route = trial.layout.routes[number]
-            if route.kept is not None or route.twin is not None or len(trial.layout.routes) < 2:
-                continue
-            rest = without(trial.layout, number)
-            allowed = max((1 + self._worth(trial, rest)) * trial.cost, self._options(0).enough)
-            found = None if rest is None else self.bench.reach_poses(rest, None, worst=allowed)
-            if found is not None and found.cost <= allowed:
-                trial = found
-                self.note("a cable that does nothing left out", trial)
-        return trial
-
-    def _worth(self, trial: Trial, rest: Layout | None) -> float:
-        """The share of the cost that a cable must save to be kept, more where its winch goes too."""
-        winch = rest is not None and len(rest.sites) < len(trial.layout.sites)
-        return self.proposals.options.simplicity * (_MOTOR if winch else _CABLE)
-
-    def remove_via_points(self, trial: Trial) -> Trial:
-        """Remove via points that do not earn their stitch, those first whose place matters most as built.
-
-        Each hole is sewn a little beside its mark, and each rubs: with fewer, less goes wrong.
-        """
-        kept: set[tuple[int, int]] = set()
-        while True:
-            holes = [hole for hole in self._holes(trial) if hole not in kept]
-            if not holes:
-                return trial
-            route, point = holes[0]
-            found = self._less_a_hole(trial, route, point)
-            if found is None:
-                kept.add((route, point))
-                continue
-            trial = found
-            kept = {(r, p - (r == route and p > point)) for r, p in kept}
-
-    def _holes(self, trial: Trial) -> list[tuple[int, int]]:
-        """Via points that may go: route and number of each, by their share of the variance."""
-        layout, shares = trial.layout, np.zeros(trial.layout.size)
-        for weight, columns in zip(self.bench.weights, trial.columns, strict=True):
-            places = layout.starts[-2]
-            shares[:places] += ((weight[:, None] * columns[:, :places]) ** 2).sum(axis=0)
-        found = [
-            (float(shares[layout.place_of(number, point)].sum()), number, point)
-            for number, route in enumerate(layout.routes)
-            if route.kept is None and route.twin is None
-            for point in range(max(route.lead, 0) + 1, len(route.points) - 1)
-        ]
-        twins = {route.twin for route in layout.routes}
-        return [(number, point) for _, number, point in sorted(found, reverse=True) if number not in twins]
-
-    def _less_a_hole(self, trial: Trial, number: int, point: int) -> Trial | None:
-        layout = trial.layout
-        route = layout.routes[number]
-        points = np.delete(route.points, point, axis=0)
-        if (
-            len(points) - route.lead < _FEWEST
-            or not self.proposals.graph.region.sees(points[point - 1 : point], points[point : point + 1]).all()
-        ):
-            return None
-        routes = (*layout.routes[:number], replace(route, points=points), *layout.routes[number + 1 :])
-        region = self.proposals.graph.region
-        less = pushed_back(replace(layout, routes=routes), region, _NUDGE * self.proposals.graph.size)
-        if less is None:
-            return None
-        allowed = (1 + self.proposals.options.simplicity * _HOLE) * trial.cost
-        found = self.bench.reach_poses(less, trial, iterations=_GLANCE, worst=allowed)
-        return found if found is not None and found.cost <= allowed else None
+    @property
+    def enough_error(self) -> float:
+        """Error at which nothing more is sought [m]."""
+        return self.proposals.options.enough * self.proposals.graph.size
 
     def enough(self, trial: Trial, winches: int) -> bool:
         """True if the network is good enough."""
-        enough = self.proposals.options.enough * self.proposals.graph.size
-        return len(trial.layout.sites) >= winches and trial.cost <= enough
+        return len(trial.layout.sites) >= winches and trial.cost <= self.enough_error
 
-    def _try_cables(self, trial: Trial, winches: int, needed: int, *, count: int, best: int) -> list[Trial]:
-        """Solve about `count` networks with one cable more and return the `best`; hopeless ones are cut short.
+    def _try_cables(self, trial: Trial, winches: int, needed: int, *, best: int) -> list[Trial]:
+        """Solve some networks with one cable more and return the `best`; none if no path promises enough."""
+        additions = self.price(trial, winches, needed, best=best)
+        if len(trial.layout.sites) >= winches and predict_cost(trial, additions.gain) > (1 - _HOPE) * trial.cost:
+            return []
+        return self.solve_layouts(trial, self.build(trial, additions, winches, best=best), best=best)
+
+    def price(self, trial: Trial, winches: int, needed: int, *, best: int) -> Additions:
+        """Paths for one cable more, some to spare for those that cannot be built."""
+        count = _SPARE * max(self.proposals.options.trials, best)
+        return self.proposals.price_additions(trial, winches=winches, needed=needed, count=count)
+
+    def build(self, trial: Trial, additions: Additions, winches: int, *, best: int) -> list[Layout]:
+        """Layouts along the most promising of these paths that can be built."""
+        most = max(self.proposals.options.trials, best)
+        return self.proposals.build(trial, additions, winches, most=most)
+
+    def solve_layouts(self, trial: Trial, layouts: Sequence[Layout], *, best: int) -> list[Trial]:
+        """Solve networks with one cable more than a trial and return the `best`; hopeless ones are cut short.
 
         Marker errors add up over the poses, so those of the first poses bound them from below.
         """
         kept: list[Trial] = []
-        layouts = self.proposals.grow_layouts(trial, winches=winches, needed=needed, count=count)
-        if not layouts:  # the best paths cannot be built: look at others
-            layouts = self.proposals.grow_layouts(trial, winches=winches, needed=needed, count=_FURTHER * count)
         for layout in layouts:
             worst = self._rate(kept[-1]) / self._effort_factor(layout) if len(kept) == best else np.inf
             found = self.bench.reach_poses(layout, trial, iterations=_GLANCE, worst=worst)
@@ -230,14 +144,31 @@ class Growth:
         turned = np.mean([turns(route.points).sum() for route in layout.routes])
         return 1.0 + _SHALLOW * float(shallow) + _TURNED * float(turned)
 
-    def refine_briefly(self, trial: Trial, *, directions: int = 2) -> Trial:
-        """Refine a network by a few steps."""
-        options = replace(self._options(self.proposals.options.steps), directions=directions)
+    def refine_briefly(self, trial: Trial, *, directions: int = 2, steps: int | None = None) -> Trial:
+        """Refine a network by a few steps: `steps`, or those of the options."""
+        asked = self.proposals.options.steps
+        options = replace(self._options(asked if steps is None else min(steps, asked)), directions=directions)
         return refine(self.bench, self.proposals.graph.region, trial, options)
 
     def _options(self, steps: int) -> RefineOptions:
-        enough = self.proposals.options.enough * self.proposals.graph.size
-        return RefineOptions(iterations=steps, enough=enough)
+        return RefineOptions(iterations=steps, enough=self.enough_error)
+
+
+def unlike(
+    trials: Sequence[Trial], count: int, key: Callable[[Trial], float] = lambda trial: trial.cost
+) -> list[Trial]:
+    """The first few, the best first, no two of the same cost."""
+    kept: list[Trial] = []
+    for trial in sorted(trials, key=key):
+        if len(kept) < count and all(abs(trial.cost - other.cost) > _ALIKE * trial.cost for other in kept):
+            kept.append(trial)
+    return kept
+
+
+def predict_cost(trial: Trial, gain: float) -> float:
+    """Cost of a network [m] once half its squared error is less by a gain [m^2], its spread left as it is."""
+    share = 1.0 - 2.0 * gain / max(trial.built_error**2, 1e-300)
+    return trial.cost * float(np.sqrt(max(share, 0.0)))
 
 
 def without(layout: Layout, number: int) -> Layout | None:
@@ -271,9 +202,12 @@ def _words(trial: Trial) -> str:
     return f"cable {len(layout.routes)}, pulled by {name}"
 
 
-_FURTHER = 4  # times as many paths are looked at where none of the best can be built
-_PATIENCE = 2  # so many rounds of cables that do not help end the growth
+_ALIKE = 1e-3  # costs that differ by less than this share are of the same network
+_FAR = 1.1  # networks so much worse than the best are not refined with the build tolerances
+_SPARE = 4  # times as many paths are priced as networks are solved: some cannot be built
+_PATIENCE = 1  # so many rounds of cables that do not help end the growth
 _HELPS = 0.02  # a cable that lowers the cost by less than this share does not help
+_HOPE = 0.03  # a cable is tried if prices promise to lower the cost by this share
 _LIKELY = 2  # cables that are refined for each that a network is grown from
 _SEEDS = 3  # first cables that are refined for each that a network is grown from
 _GLANCE = 5  # steps of inverse kinematics that tell which of several networks is the best
@@ -282,9 +216,3 @@ _FAILURES = 2  # rounds that do not hold from rest end the refinement
 _IDLE = 0.02  # a round that gains less ends the refinement
 _SHALLOW = 0.5  # how much more a network costs whose winches are at the edge
 _TURNED = 0.2  # how much more a network costs whose cables turn by 1 rad
-_HOLE = 0.003  # a hole without which the cost is larger by less than this share does not earn its stitch
-_FEWEST = 2  # points of the bare part of a cable
-_NUDGE = 0.005  # limits are felt within this share of the body's size where a hole was left out
-_CABLE = 0.02  # a cable whose loss costs less than this share does not earn its place
-_MOTOR = 0.04  # nor a winch whose loss does
-_WORTH = 0.01  # an exchange must gain so much

@@ -82,9 +82,11 @@ class Layout:
         """Dimensions of the body, 2 or 3."""
         return self.source.body.mesh.dim
 
-    def robot(self, *, digits: int | None = None) -> Robot:
-        """The robot with this network; coordinates rounded to so many digits of a meter."""
+    def robot(self, *, digits: int | None = None, limited: bool = False) -> Robot:
+        """The robot with this network; coordinates rounded to so many digits of a meter, or travels `limited`."""
         winches = [replace(site.winch, at=_point(site.winch.at, digits)) for site in self.sites]
+        if limited:
+            winches = [replace(winch, travel=most) for winch, most in zip(winches, self.travels, strict=True)]
         cables = []
         for route in self.routes:
             if route.kept is not None:
@@ -104,6 +106,19 @@ class Layout:
                 )
             )
         return self.source.with_network(winches, cables)
+
+    @cached_property
+    def travels(self) -> list[float]:
+        """Travel of each winch [m]; of new ones at most what squeezes the body as far as its material is known."""
+        share, most = self.source.body.material.largest_squeeze, [site.winch.travel for site in self.sites]
+        for route in self.routes:
+            site = self.sites[route.winch]
+            if site.fixed or route.kept is not None or (route.make is not None and route.make.reverse):
+                continue
+            inside = float(np.linalg.norm(np.diff(route.points[route.lead :], axis=0), axis=1).sum())
+            squeezed = ((1.0 if share is None else share) * inside + route.slack) / route.ratio
+            most[route.winch] = min(most[route.winch], max(squeezed - _MILLIMETER, _MILLIMETER))
+        return most
 
     @cached_property
     def starts(self) -> list[int]:
@@ -248,4 +263,5 @@ def _point(coordinates: Vector | tuple[float, ...], digits: int | None) -> tuple
     return tuple(value if digits is None else round(value, digits) for value in values)
 
 
+_MILLIMETER = 1e-3  # travels of a finished network are rounded down to it [m]
 _SHARED = ("starts", "chains", "free_runs", "ties")  # what does not depend on the numbers

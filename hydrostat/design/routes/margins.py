@@ -61,13 +61,9 @@ class _MarginRows:
             self._edges(spots, depths[len(inner) :], ways[len(inner) :])
 
     def _zones(self, places: Points, winches: "_Spots") -> None:
-        zones = self.constraints.winch_zones
-        if not zones:
-            return
-        away = np.array([zone.distances(places) for zone in zones])
-        nearest = away.argmin(axis=0)
-        ways = np.array([zones[zone].away(place[None])[0] for zone, place in zip(nearest, places, strict=True)])
-        self._add_spots(winches, -away.min(axis=0) - _HAIR, -ways)
+        if self.constraints.winch_zones:
+            distances, ways = self.constraints.winch_area.measure(places)
+            self._add_spots(winches, -distances - _HAIR, -ways)
 
     def _edges(self, spots: "_Spots", depths: Vector, ways: Points) -> None:
         """Points a clearance from the edge, segments half of it; both outside forbidden zones."""

@@ -20,6 +20,19 @@ from hydrostat.robot import Mount, Winch
 
 
 @dataclass(frozen=True, eq=False)
+class Additions:
+    """Paths for one more cable, the most promising first."""
+
+    paths: tuple[tuple[PricedPath, int | None], ...]  # each with the winch that pulls it, None for a new one
+    cables: int  # most cables that a layout may have
+
+    @property
+    def gain(self) -> float:
+        """Largest decrease of half the squared error that a path promises [m^2]."""
+        return max((path.gain for path, _ in self.paths), default=0.0)
+
+
+@dataclass(frozen=True, eq=False)
 class Proposals:
     """Region that new cables may use."""
 
@@ -128,10 +141,10 @@ class Proposals:
         low, high = np.minimum(start, end) - gap, np.maximum(start, end) + gap
         return ((runs.max(axis=1) >= low) & (runs.min(axis=1) <= high)).all(axis=1)
 
-    def grow_layouts(self, trial: Trial, *, winches: int, needed: int, count: int) -> list[Layout]:
-        """Add one cable in ways that can be built, the most promising first.
+    def price_additions(self, trial: Trial, *, winches: int, needed: int, count: int) -> "Additions":
+        """Find paths for one more cable, the most promising first.
 
-        `needed` cables are still to come, this one included; `count` is of layouts from new winches, and of those from
+        `needed` cables are still to come, this one included; `count` is of paths from new winches, and of those from
         winches that there are.
         """
         layout = trial.layout
@@ -150,9 +163,18 @@ class Proposals:
                 paths = self.price_paths(trial, count=-(-count // len(free)), winches=place, shared=index)
                 found += [(path, index) for path in paths]
         found.sort(key=lambda pair: -pair[0].gain)
-        layouts = [self._with(layout, path, winch) for path, winch in found]
-        most = len(layout.routes) + needed
-        return [added for added in layouts if added is not None and self._counts(added, winches, most)]
+        return Additions(tuple(found), len(layout.routes) + needed)
+
+    def build(self, trial: Trial, additions: "Additions", winches: int, *, most: int | None = None) -> list[Layout]:
+        """Layouts with one cable more along these paths, but for those that cannot be built; at most so many."""
+        layouts: list[Layout] = []
+        for path, winch in additions.paths:
+            if len(layouts) == most:
+                break
+            added = self._with(trial.layout, path, winch)
+            if added is not None and self._counts(added, winches, additions.cables):
+                layouts.append(added)
+        return layouts
 
     def _counts(self, layout: Layout, winches: int, cables: int) -> bool:
         """True if there are no more winches and cables than allowed: a mirrored cable brings another."""

@@ -139,10 +139,9 @@ class _Refinement:
             return None
         changes = step[free:].reshape(len(trial.poses), -1)
         contractions = []
+        low = [-site.winch.release for site in layout.sites]
         for pose, change in zip(trial.poses, changes, strict=True):
-            low = [-site.winch.release for site in layout.sites]
-            high = [site.winch.travel for site in layout.sites]
-            contractions.append(np.clip(pose.contractions + change, low, high))
+            contractions.append(np.clip(pose.contractions + change, low, moved.travels))
         merit, bend = beaten
         room = merit - float(((bend * turns(moved)) ** 2).sum())
         return self.bench.hold_contractions(moved, contractions, trial, worst=float(np.sqrt(max(room, 0.0))))
@@ -196,7 +195,7 @@ def linear_model(
             lefts.append(left)
         for winch, site in enumerate(layout.sites):
             for sign, left in (
-                (1.0, site.winch.travel - pose.contractions[winch]),
+                (1.0, layout.travels[winch] - pose.contractions[winch]),
                 (-1.0, pose.contractions[winch] + site.winch.release),
             ):
                 row = np.zeros((1, count))
@@ -317,6 +316,13 @@ def pushed_back(layout: Layout, region: Region, reach: float) -> Layout | None:
         layout = layout.at(layout.numbers + moved)
     limits = margins(layout, region, reach=0.0)
     return layout if not len(limits.left) or limits.left.min() >= -_CLOSE else None
+
+
+def moves_of(trial: Trial, pose: int) -> tuple[np.ndarray, np.ndarray]:
+    """Jacobians of the marker coordinates of a pose: by the numbers of the layout, and by the contractions."""
+    slopes = trial.slopes[pose]
+    markers = len(slopes.contractions) - len(trial.layout.routes)
+    return _by_numbers(trial.layout, slopes)[:markers], slopes.contractions[:markers]
 
 
 def _by_numbers(layout: Layout, slopes) -> np.ndarray:
