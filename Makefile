@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 # Benchmarks that need other simulators.
-NEED_MORE := peers
+NEED_MORE := peers real
 # Studies that need fTetWild, PyTorch and stable-baselines3, or a robot, samples or a model.
 STUDIES_NEED_MORE := tetwild floor hysteresis walk_learned push_learning learned_doubt learned_drag learned_finer learned_ik learned_speed learned_steps learned_tensions learned_thesis sample_starts spool_layers
 STUDIES := $(filter-out lab/tests/% lab/hydrostat_lab/%,$(wildcard lab/*/*.py))

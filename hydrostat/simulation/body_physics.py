@@ -57,6 +57,7 @@ class BodyPhysics:
         own_contact: index of the self-contact energy among all energies of a simulation; None if self-contact is
             disabled.
         obstacles: indices of the energies of the obstacles.
+        rods: energy of each rod.
         rest_unknowns: all unknowns at rest [m], (rows, dim): the nodes, then the rows of the moving obstacles.
     """
 
@@ -88,7 +89,8 @@ class BodyPhysics:
             energies.append(PatchVolume(self.rest_unknowns, mesh.elements, patches, lame=lame, **kinds))
         if robot.gravity is not None:
             energies.append(WeightEnergy(self.rest_unknowns, self._heavy[:, None] * np.array(robot.gravity)))
-        energies += [_rod_energy(robot, rod, self.rest_unknowns) for rod in robot.rods]
+        self.rods = [_rod_energy(robot, rod, self.rest_unknowns) for rod in robot.rods]
+        energies += self.rods
         if robot.loads:
             energies.append(LoadEnergy(self.rest_unknowns, self._load_forces(robot)))
         self.own_contact = None if robot.contact is None else len(energies)
@@ -214,7 +216,7 @@ class BodyPhysics:
         scale = float((2 * mu + lame) @ body.mesh.volumes) * (body.thickness or 1.0)
         reach = max(float(np.abs(body.mesh.nodes).max()), body.mesh.size)
         springs = [pin.stiffness for pin in pins]
-        springs += [energy.stiffest for energy in self.assembly.energies if isinstance(energy, RodEnergy)]
+        springs += [energy.stiffest for energy in self.rods]
         lengths = [carriage.length for carriage in self.carriages.values()]  # of axes, at which A A^T - I pulls
         springs += [2 * _RIGID * body.material.young * length * max(1.0, length / reach) for length in lengths]
         return scale, reach, max(springs, default=0.0), body.mesh.size
