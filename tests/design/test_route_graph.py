@@ -190,3 +190,20 @@ def _pulled(robot: Robot, graph: RouteGraph, edge: int, pose: Equilibrium, tensi
     found = simulation.solve(np.append(pose.contractions, shorter + elongation), strict=False)
     before = simulation.marker_anchors.positions(pose.nodes)
     return (simulation.marker_anchors.positions(found.nodes) - before).ravel() / found.tensions[-1]
+
+
+def test_a_zone_between_nodes_holds_a_winch() -> None:
+    """Oracle: a box and a polygon of 1 mm, far from every node: each has a place for a winch."""
+    robot, _ = made("comb")
+    region = body_region(robot.body, 0.004)
+    middle = robot.body.mesh.nodes[robot.body.mesh.elements].mean(axis=1)
+    depths = region.depths(middle)
+    deep = middle[np.argsort(-depths)[:2]]
+    one = Zone(box=tuple(tuple((deep[0] + offset).tolist()) for offset in (-5e-4, 5e-4)))
+    corners = deep[1] + 5e-4 * np.array([[-1, -1], [1, -1], [0, 1]])
+    two = Zone(outline=tuple(map(tuple, corners.tolist())))
+    constraints = Constraints(clearance=0.004, winch_clearance=0.004, winch_zones=(one, two))
+    found = route_graph(robot, region, constraints, spacing=SPACING)
+    places = found.points[found.winch_places]
+    assert one.distances(places).min() < 0
+    assert two.distances(places).min() < 0

@@ -13,7 +13,7 @@ from hydrostat.design.region import Region
 from hydrostat.design.zone import Zone
 from hydrostat.errors import InputError
 from hydrostat.geometry import Anchors, locate
-from hydrostat.robot import Mount, Robot
+from hydrostat.robot import Mount, Point, Robot
 
 Pairs = Int[np.ndarray, "_ 2"]
 
@@ -164,11 +164,22 @@ def _via_points(
 
 
 def _with_zones(nodes: Nodes, robot: Robot, constraints: Constraints) -> Nodes:
-    """The nodes, and the middles of balls that are too small to hold one but may hold a winch."""
+    """The nodes, and a point in each zone that is too small to hold one but may hold a winch."""
     if constraints.stand_outside(robot):
         return nodes
-    middles = [zone.at for zone in constraints.winch_zones if zone.at is not None and zone.distances(nodes).min() > 0]
+    middles = [_point_in(zone) for zone in constraints.winch_zones if zone.distances(nodes).min() > 0]
     return np.concatenate([nodes, np.array(middles, dtype=float).reshape(-1, nodes.shape[1])])
+
+
+def _point_in(zone: Zone) -> Point:
+    """The middle of a ball or box, or a point well inside a polygon [m]."""
+    if zone.at is not None:
+        return zone.at
+    if zone.box is not None:
+        return tuple(np.mean(zone.box, axis=0).tolist())
+    from shapely import Polygon, get_coordinates  # Imported here: only narrow rooms need it.
+
+    return tuple(get_coordinates(Polygon(zone.outline).representative_point())[0].tolist())
 
 
 def _near(points: Points, nodes: Int[np.ndarray, " points"], mesh_edges: Pairs, spacing: float) -> Pairs:
