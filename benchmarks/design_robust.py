@@ -8,7 +8,7 @@ robots are drawn (`hydrostat.design.Uncertainty`: holes, friction, stiffness, kn
 saw, and solved from rest along the straight loading path with the friction of each. `exact` are routes for a robot
 that is built just as its model, as designs were before: cables may cross, lie side by side and turn by 75 degrees.
 Further methods, not among those that are usually printed: `reach` are routes with `RouteOptions.reach` of 1, `family`
-routes that are designed for the half-way poses too.
+routes that are designed for the half-way poses too, `two_way` routes whose winches may pull both ways.
 
 Columns, errors in mm rms over markers and poses: `model`, as designed; `built`, median and 90 % of the draws;
 `corrected`, the same after one round of correction: up to five markers of each pose are measured on the built robot,
@@ -67,6 +67,8 @@ def network(method: str, robot: Robot, body: Body, poses: Sequence[PoseTarget]) 
     if method == "exact":
         constraints = replace(constraints, cable_gap=0.0, turn=75.0, built_in=False)
         uncertainty = BuildTolerances.none()
+    if method == "two_way":
+        constraints = replace(constraints, two_way=True)
     if method == "family":
         poses = [*poses, *(half_way(robot, pose) for pose in poses)]
     request = DesignRequest(

@@ -72,6 +72,9 @@ Slack = Annotated[str | None, _option("LENGTH", "Maximum cable slack.", "Constra
 SteppedSpools = Annotated[
     bool, typer.Option("--stepped-spools", help="Allow cable spools from half to twice the winch spool radius.")
 ]
+TwoWay = Annotated[
+    bool, typer.Option("--two-way", help="Let winches pull both ways, by cables wound the other way round.")
+]
 Symmetric = Annotated[str | None, typer.Option(metavar="x|y|z", help="Require mirror symmetry about this axis.")]
 LockWinch = Annotated[list[str] | None, typer.Option(metavar="NAME", help="Keep this winch of the robot. Repeatable.")]
 LockCable = Annotated[
@@ -149,6 +152,7 @@ def design(
     tension: Tension = None,
     slack: Slack = None,
     stepped_spools: SteppedSpools = False,
+    two_way: TwoWay = False,
     symmetric: Symmetric = None,
     lock_winch: LockWinch = None,
     lock_cable: LockCable = None,
@@ -196,6 +200,7 @@ def design(
             "slack": slack,
         },
         stepped=stepped_spools,
+        two_way=two_way,
         symmetric=symmetric,
         lock_winch=lock_winch or [],
         lock_cable=lock_cable or [],

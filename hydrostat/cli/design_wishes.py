@@ -34,6 +34,7 @@ class DesignArguments:
     file: Path | None = None  # of constraints; what follows comes before it
     limits: Mapping[str, str | int | None] = field(default_factory=dict)  # by the fields of `Constraints`
     stepped: bool = False
+    two_way: bool = False
     symmetric: str | None = None
     lock_winch: Sequence[str] = ()
     lock_cable: Sequence[str] = ()
@@ -87,6 +88,7 @@ def _constraints(robot: "Robot", typed: DesignArguments) -> "Constraints":
     given: dict[str, Any] = {
         **{name: _limit(name, value) for name, value in typed.limits.items()},
         "spool_ratio": STEPPED if typed.stepped else None,
+        "two_way": typed.two_way or None,
         "mirror": typed.symmetric,
         "locked_winches": tuple(dict.fromkeys(_winch(name, robot) for name in typed.lock_winch)) or None,
         "locked_cables": tuple(dict.fromkeys(_cable(name, robot) for name in typed.lock_cable)) or None,

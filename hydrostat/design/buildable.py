@@ -91,7 +91,7 @@ def _check_torques(robot: Robot, name: str, tensions: np.ndarray, constraints: C
     found = []
     for index, winch in enumerate(robot.winches):
         own = [number for number, cable in enumerate(robot.cables) if cable.winch == winch.name]
-        torque = float(winch.spool_radius * (robot.spool_ratios[own] * tensions[own]).sum())
+        torque = abs(float(winch.spool_radius * (robot.spool_ratios[own] * tensions[own]).sum()))
         if torque > _SHARE * constraints.torque:
             found.append(
                 f"{name}: winch[{index}] {winch.name}: torque too high ({torque:.4g} N m). "

@@ -105,6 +105,7 @@ class Constraints:
         spool_radius: radius of the spools [m].
         slack: maximum slack at a stopper [m].
         spool_ratio: maximum ratio of a cable's own spool to its winch's, or its inverse; 1: equal spools.
+        two_way: True if a winch may pull when it turns back too, by cables that are wound the other way round.
         leads: True if a cable may run in a sheath from its winch to where bending should begin.
         mirror: axis across which the network is symmetric: "x", "y" or "z"; None: no symmetry. The
             mirror is the plane where that coordinate is 0, the middle of what was drawn.
@@ -137,6 +138,7 @@ class Constraints:
     spool_radius: float = _limit(0.006, _LENGTH, trees=True)
     slack: float = _limit(0.0, Range(most=1.0, unit="m"))
     spool_ratio: float = _limit(1.0, Range(least=1.0, most=LARGEST_STEP))
+    two_way: bool = False
     leads: bool = _limit(True, trees=True)
     mirror: str | None = None
     locked_winches: tuple[str, ...] = ()
@@ -151,7 +153,7 @@ class Constraints:
                     _refuse(f"{field}[{place}]", zone, "a Zone, such as Zone(at=(0.0, 0.0), radius=0.01)")
         if self.mount is not None:
             make_member(self, "mount", Mount, what="constraints: mount")
-        for field in ("leads", "built_in"):
+        for field in ("leads", "built_in", "two_way"):
             if not isinstance(getattr(self, field), bool):
                 _refuse(field, getattr(self, field), "True or False")
         if self.mirror not in (None, "x", "y", "z"):
@@ -174,6 +176,11 @@ class Constraints:
     def winch_area(self) -> ZoneUnion:
         """All zones for winches together."""
         return ZoneUnion(self.winch_zones)
+
+    @property
+    def reverse_release(self) -> float:
+        """The most that a winch which pulls reversed cables may pay out [m]."""
+        return max(self.release, self.travel)
 
     def stand_outside(self, robot: Robot) -> bool:
         """True if new winches of a robot stand in the world."""

@@ -6,6 +6,8 @@ from dataclasses import asdict, dataclass, field, replace
 from enum import StrEnum
 from typing import Any, Self
 
+import numpy as np
+
 from hydrostat.closed_set import make_member
 from hydrostat.design.constraints import ROUTES_ONLY, Constraints, Range
 from hydrostat.design.muscles.activation import FibreKind
@@ -326,11 +328,12 @@ _OPTIONS: dict[str, type[RouteOptions] | type[TreeOptions]] = {
 
 def _with_own(constraints: Constraints, robot: Robot) -> Constraints:
     """Constraints that allow what the robot's own winches and stoppers have: travel, release, slack, spools."""
-    ratios = [max(ratio, 1 / ratio) for ratio in robot.spool_ratios.tolist()]
+    ratios = [max(ratio, 1 / ratio) for ratio in np.abs(robot.spool_ratios).tolist()]
     return replace(
         constraints,
         travel=max([constraints.travel, *(winch.travel for winch in robot.winches)]),
         release=max([constraints.release, *(winch.release for winch in robot.winches)]),
         slack=max([constraints.slack, *(cable.slack for cable in robot.cables)]),
         spool_ratio=max([constraints.spool_ratio, *ratios]),
+        two_way=constraints.two_way or any(cable.reverse for cable in robot.cables),
     )

@@ -118,12 +118,20 @@ class BuildTolerances:
         return np.array([self.young, self.thickness])
 
     def _knots(self, robot: Robot, chance: np.random.Generator) -> Vector:
-        """Delay of each cable behind the first taut one of its winch, as a contraction [m]."""
+        """Delay of each cable behind the first taut one of its winch, as a contraction [m].
+
+        Reversed cables are knotted where the others begin to pull; one that would be taut before is knotted there.
+        """
         knots = self.slack * chance.standard_normal(len(robot.cables))
         for winch in robot.winches:
             own = [index for index, cable in enumerate(robot.cables) if cable.winch == winch.name]
+            back = [index for index in own if robot.cables[index].reverse]
+            own = [index for index in own if index not in back] or back
             if own:
-                knots[own] -= knots[own].min()
+                first = knots[own].min()
+                knots[own] -= first
+                if back is not own:
+                    knots[back] = np.maximum(knots[back] + first, 0.0)
         return knots
 
 

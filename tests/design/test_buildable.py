@@ -285,6 +285,12 @@ CASES: dict[str, tuple[dict[str, Any], dict[str, Any], dict[str, Any], str]] = {
         {"spool_radius": 0.0039},
         "cable[0]: spool too different from its winch's (0.65 times its radius). Maximum spool_ratio",
     ),
+    "two_way": (
+        {},
+        {},
+        {"reverse": True},
+        "cable[0]: wound the other way round. Not allowed without two_way.",
+    ),
 }
 
 

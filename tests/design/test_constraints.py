@@ -39,6 +39,7 @@ BAD: dict[str, tuple[Any, ...]] = {
     "spool_radius": (0.0, -0.006, nan),
     "slack": (-0.001, nan, "1 mm"),
     "spool_ratio": (0.99, 4.1, nan, "2"),
+    "two_way": (1, None, "yes"),
     "leads": (1, None, "yes"),
     "mirror": ("w", "X", 0, "left"),
     "locked_winches": ("left", (1,), ("left", "left"), 3),

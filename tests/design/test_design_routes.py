@@ -87,6 +87,7 @@ LIMITS: dict[str, tuple[Case, dict[str, Any]]] = {
     "release": (Case(2, 3), {"release": 0.01}),
     "slack": (Case(1, 2, (UP,)), {"slack": 0.004}),
     "spool ratio": (Case(1, 2, (UP,)), {"spool_ratio": 1.5}),
+    "two ways": (Case(1, 3), {"two_way": True}),
     "no leads": (Case(2, 3), {"leads": False}),
     "cables per winch": (Case(2, 4), {"cables_per_winch": 2}),
     "mirror, one winch": (Case(1, 2, (PINCH,), plate()), {"mirror": "y"}),

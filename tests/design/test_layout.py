@@ -44,6 +44,14 @@ def test_the_robot_of_a_layout_is_the_one_it_came_from() -> None:
         assert again.cables == robot.cables
 
 
+@pytest.mark.parametrize("radius", [None, 0.009])
+def test_a_reversed_cable_stays_reversed(radius: float | None) -> None:
+    robot = strip_robot()
+    cables = (robot.cables[0], replace(robot.cables[1], reverse=True, spool_radius=radius))
+    robot = robot.with_network(robot.winches, cables)
+    assert layout_of(robot, LOOSE).robot().cables == robot.cables
+
+
 def test_numbers_there_and_back() -> None:
     start = layout()
     numbers = start.numbers + np.random.default_rng(0).uniform(0.0, 1e-3, start.size)
@@ -53,6 +61,19 @@ def test_numbers_there_and_back() -> None:
         assert np.array_equal(line.points[0], moved.sites[line.winch].winch.at)
         for point in range(len(line.points)):
             assert np.array_equal(numbers[moved.place_of(index, point)], line.points[point])
+
+
+def test_winches_pay_out_as_far_as_reversed_cables_need() -> None:
+    start = layout(Constraints(two_way=True, release=0.01))
+    turned = replace(start, routes=(replace(start.routes[0], ratio=-1.0), start.routes[1])).turn_winches()
+    assert [site.winch.release for site in turned.sites] == [turned.constraints.travel, 0.0]
+    assert [cable.reverse for cable in turned.robot().cables] == [True, False]
+    back = replace(turned, routes=start.routes).turn_winches()
+    assert back.sites[0].winch.release == 0.01
+    for ratio in (-9.0, -0.1, 0.5):  # the way of a cable is no number that is moved
+        numbers = turned.numbers.copy()
+        numbers[turned.starts[-1]] = ratio
+        assert turned.at(numbers).routes[0].ratio == pytest.approx(np.clip(ratio, -4.0, -0.25))
 
 
 def test_slack_is_never_negative() -> None:

@@ -21,6 +21,7 @@ from hydrostat.robot import Marker, PoseTarget, Robot
 from hydrostat.simulation import Simulation
 
 LOOSE = Constraints(winch_clearance=0.006, slack=0.005, spool_ratio=2.0)
+TWO_WAY = replace(LOOSE, two_way=True)
 EFFORT = 1e-4
 
 
@@ -64,11 +65,19 @@ def of_its_own() -> Layout:
     return start.at(numbers)
 
 
+def of_two_ways() -> Layout:
+    """The first winch pulls the second cable when it turns back."""
+    start = of_its_own()
+    winches = (replace(site, winch=replace(site.winch, release=0.02)) for site in start.sites)
+    second = replace(start.routes[1], winch=0, ratio=-1.3)
+    return replace(start, sites=tuple(winches), routes=(start.routes[0], second), constraints=TWO_WAY)
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("made", [of_its_own, of_a_pair])
+@pytest.mark.parametrize("made", [of_its_own, of_a_pair, of_two_ways])
 def test_the_linear_model_agrees_with_finite_differences(made, unchecked: None) -> None:
     """All free numbers and all contractions: winches, via points, slack, ratios."""
-    layout, pulled = made(), [(0.012, 0.006), (0.004, 0.015)]
+    layout, pulled = made(), [(0.012, 0.006), (-0.015 if made is of_two_ways else 0.004, 0.015)]
     bench = Bench(layout.source, poses_of(strip(), [(0.01, 0.0), (0.0, 0.01)]), layout.constraints)
     trial = trial_at(bench, layout, pulled)
     region = body_region(layout.source.body, layout.constraints.clearance)

@@ -300,8 +300,10 @@ def _wrong_lengths(parts: Parts, index: int) -> Iterator[str]:
 
 
 def _wrong_spools(parts: Parts) -> Iterator[str]:
-    most, ratios = parts.constraints.spool_ratio * (1 + _ROUNDING), parts.robot.spool_ratios
+    most, ratios = parts.constraints.spool_ratio * (1 + _ROUNDING), np.abs(parts.robot.spool_ratios)
     for index in parts.new_cables:
+        if parts.robot.cables[index].reverse and not parts.constraints.two_way:
+            yield f"cable[{index}]: wound the other way round. Not allowed without two_way. Unwind it or allow two_way."
         if not 1 / most <= ratios[index] <= most:
             yield (
                 f"cable[{index}]: spool too different from its winch's ({ratios[index]:.4g} times its radius). "

@@ -73,8 +73,10 @@ def _of_other_makes(parts: Parts) -> Iterator[str]:
             yield f'{name}: wrong mount ("{winch.mount}"). Allowed: "{limits.mount}". Change it.'
         if winch.travel > limits.travel + LENGTH:
             yield f"{name}: travel too large ({mm(winch.travel)}). Maximum: {mm(limits.travel)}. Reduce it."
-        if winch.release > limits.release + LENGTH:
-            yield f"{name}: release too large ({mm(winch.release)}). Maximum: {mm(limits.release)}. Reduce it."
+        back = any(cable.reverse for cable in parts.robot.cables if cable.winch == winch.name)
+        most = limits.reverse_release if back and limits.two_way else limits.release
+        if winch.release > most + LENGTH:
+            yield f"{name}: release too large ({mm(winch.release)}). Maximum: {mm(most)}. Reduce it."
         if abs(winch.spool_radius - limits.spool_radius) > LENGTH:
             allowed = mm(limits.spool_radius)
             yield f"{name}: wrong spool_radius ({mm(winch.spool_radius)}). Allowed: {allowed}. Change it."

@@ -98,6 +98,7 @@ def layout_of(robot: Robot, constraints: Constraints) -> Layout:
         kept = cable.name in constraints.locked_cables or lead is None
         winch = robot.winch(cable.winch)
         ratio = 1.0 if cable.spool_radius is None else cable.spool_radius / winch.spool_radius
+        ratio = -ratio if cable.reverse else ratio
         routes.append(
             CableRoute(
                 names.index(cable.winch),

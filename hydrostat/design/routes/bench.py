@@ -118,7 +118,10 @@ class Bench:
         for index, target in enumerate(self.targets):
             start = None if before is None else self._relax_start(simulation, before, index, kept)
             try:
-                if start is None and not rough:
+                if start is None and layout.two_way:
+                    begin = None if hoped is None else simulation.solve(hoped.poses[index].contractions)
+                    pose = self._reach_either_way(layout, simulation, index, options, begin)
+                elif start is None and not rough:
                     pose = reach_from_rest(simulation, target, limits, options).pose
                 else:
                     pose = solve_ik(simulation, target, start=start, limits=limits, options=options).pose
@@ -132,6 +135,22 @@ class Bench:
             if self._error(simulation, found) > worst:
                 return None
         return self._within(layout, simulation, found, worst)
+
+    def _reach_either_way(
+        self, layout: Layout, simulation: Simulation, index: int, options: IKOptions, begin: Equilibrium | None
+    ) -> Equilibrium:
+        """Pose nearest to a target, of winches that turn both ways; without a beginning each is tried either way."""
+        target, limits = self.targets[index], self.constraints.limits
+        best = reach_from_rest(simulation, target, limits, options, start=begin).pose
+        for winch in layout.two_way if begin is None else ():
+            ranges = layout.sites[winch].winch
+            turned = best.contractions.copy()
+            turned[winch] = -_TURN * ranges.release if turned[winch] > 0 else _TURN * ranges.travel
+            with suppress(NotConvergedError):
+                start = simulation.solve(turned)
+                found = reach_from_rest(simulation, target, limits, options, start=start).pose
+                best = min(best, found, key=lambda pose: self._pose_error(simulation, index, pose))
+        return best
 
     def hold_contractions(
         self, layout: Layout, contractions: Sequence[Vector], before: Trial, *, worst: float = np.inf
@@ -217,7 +236,7 @@ class Bench:
         share = float(tensions.max(initial=0.0)) / self.constraints.tension
         if self.constraints.torque is None:
             return share
-        return max(share, float((spool_arms(robot) @ tensions).max(initial=0.0)) / self.constraints.torque)
+        return max(share, float(np.abs(spool_arms(robot) @ tensions).max(initial=0.0)) / self.constraints.torque)
 
     def nearness(self, robot: Robot, slopes: Sequence[CableSensitivities]) -> float:
         """Factor of the cost of a network by its reach at some poses: (size / reach)^weight, at least 1."""
@@ -265,6 +284,7 @@ def reach_from_rest(
 
 _REPLAYS = 2  # so often is a pose sought that is also what its contractions lead to from rest
 _SAME = 1e-3  # markers nearer than this share of the body's size are at the same place
+_TURN = 0.2  # share of its range that a winch is turned the other way where a search begins again
 _STAYS = 0.1  # what a meter of a marker that a pose does not name counts beside one of a marker that it names
 _RESTARTS = 1  # from where the first search ended, as rest leads to it at once
 _NO_REACH = 0.01  # a marker that moves less than this share of the body's size is not brought anywhere

@@ -190,7 +190,11 @@ class RouteSearch:
             if trial.cost < worse:
                 self._note_network("drawn along the limbs", trial)
 
-        screened = screen_sketches(growth, drawn, found=note, count=self.options.starts + _SPARE)
+        screened: list[Trial] = []  # reversed cables gain by refinement only: they are screened by themselves
+        for back in (False, True):
+            own = [layout for layout in drawn if any(route.ratio < 0 for route in layout.routes) == back]
+            screened += screen_sketches(growth, own, found=note, count=self.options.starts + _SPARE)
+        screened.sort(key=lambda trial: trial.cost)
         self.progress("Drawing networks", count, count)
         helpful = [trial for trial in screened if trial.cost < worse]
         width = self.options.starts

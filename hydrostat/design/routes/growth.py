@@ -186,7 +186,7 @@ def without(layout: Layout, number: int) -> Layout | None:
         return None
     order = {None: None, **{old: new for new, old in enumerate(sites)}}
     rank = {None: None, **{old: new for new, old in enumerate(kept)}}
-    return replace(
+    rest = replace(
         layout,
         sites=tuple(replace(layout.sites[old], twin=order[layout.sites[old].twin]) for old in sites),
         routes=tuple(
@@ -194,6 +194,7 @@ def without(layout: Layout, number: int) -> Layout | None:
             for route in (layout.routes[old] for old in kept)
         ),
     )
+    return rest.turn_winches()
 
 
 def _words(trial: Trial) -> str:

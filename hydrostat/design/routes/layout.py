@@ -30,7 +30,7 @@ class CableRoute:
     points: Float[np.ndarray, "_ dim"]  # first = at the winch, last = stopper [m]
     lead: int = 0  # so many of its first segments run in a sheath
     slack: float = 0.0  # left by its stopper [m]
-    ratio: float = 1.0  # of its spool to that of its winch
+    ratio: float = 1.0  # of its spool to that of its winch; negative where it is wound the other way round
     make: Cable | None = None  # a cable whose stiffness, smoothing and friction it has; None: the usual ones
     kept: Cable | None = None  # a cable that stays just as it is
     twin: int | None = None  # number of the line that it mirrors; None: of no other
@@ -86,7 +86,8 @@ class Layout:
         """The robot with this network; coordinates rounded to so many digits of a meter, or travels `limited`."""
         winches = [replace(site.winch, at=_point(site.winch.at, digits)) for site in self.sites]
         if limited:
-            winches = [replace(winch, travel=most) for winch, most in zip(winches, self.travels, strict=True)]
+            ranges = zip(winches, self.travels, self.releases, strict=True)
+            winches = [replace(winch, travel=travel, release=release) for winch, travel, release in ranges]
         cables = []
         for route in self.routes:
             if route.kept is not None:
@@ -102,21 +103,47 @@ class Layout:
                     points=points,
                     sheathed=((0, route.lead),) if route.lead else (),
                     slack=slack,
-                    spool_radius=None if ratio == 1.0 else ratio * winch.spool_radius,
+                    spool_radius=None if abs(ratio) == 1.0 else abs(ratio) * winch.spool_radius,
+                    reverse=ratio < 0,
                 )
             )
         return self.source.with_network(winches, cables)
 
+    def turn_winches(self) -> "Layout":
+        """The same layout, each winch paying out as far as its reversed cables need, if it has some."""
+        back = {route.winch for route in self.routes if route.ratio < 0}
+        sites = list(self.sites)
+        for index, site in enumerate(sites):
+            least, most = (self.constraints.reverse_release, np.inf) if index in back else (0, self.constraints.release)
+            release = float(np.clip(site.winch.release, least, most))
+            if not site.fixed and release != site.winch.release:
+                sites[index] = replace(site, winch=replace(site.winch, release=release))
+        return replace(self, sites=tuple(sites))
+
+    @property
+    def two_way(self) -> list[int]:
+        """Numbers of the winches that pull cables wound both ways round."""
+        ways = {(route.winch, route.ratio > 0) for route in self.routes}
+        return [winch for winch in range(len(self.sites)) if {(winch, True), (winch, False)} <= ways]
+
     @cached_property
     def travels(self) -> list[float]:
         """Travel of each winch [m]; of new ones at most what squeezes the body as far as its material is known."""
-        share, most = self.source.body.material.largest_squeeze, [site.winch.travel for site in self.sites]
+        return self._limit_ranges([site.winch.travel for site in self.sites], 1)
+
+    @cached_property
+    def releases(self) -> list[float]:
+        """Release of each winch [m]; of new ones that pull reversed cables at most what squeezes the body so far."""
+        return self._limit_ranges([site.winch.release for site in self.sites], -1)
+
+    def _limit_ranges(self, most: list[float], way: int) -> list[float]:
+        """Return ranges of the winches, limited by cables that are wound one way, 1 or -1 [m]."""
+        share = self.source.body.material.largest_squeeze
         for route in self.routes:
-            site = self.sites[route.winch]
-            if site.fixed or route.kept is not None or (route.make is not None and route.make.reverse):
+            if self.sites[route.winch].fixed or route.kept is not None or way * route.ratio < 0:
                 continue
             inside = float(np.linalg.norm(np.diff(route.points[route.lead :], axis=0), axis=1).sum())
-            squeezed = ((1.0 if share is None else share) * inside + route.slack) / route.ratio
+            squeezed = ((1.0 if share is None else share) * inside + route.slack) / abs(route.ratio)
             most[route.winch] = min(most[route.winch], max(squeezed - _MILLIMETER, _MILLIMETER))
         return most
 
@@ -204,7 +231,7 @@ class Layout:
                     route,
                     points=np.vstack([places[route.winch], own]),
                     slack=max(float(numbers[slacks + index]), 0.0),
-                    ratio=float(np.clip(numbers[ratios + index], 1 / LARGEST_STEP, LARGEST_STEP)),
+                    ratio=_clip_ratio(float(numbers[ratios + index]), way=route.ratio),
                 )
             )
         moved = replace(self, sites=sites, routes=tuple(routes))
@@ -256,6 +283,12 @@ def _follow(full: np.ndarray, drop: np.ndarray, rows: slice, twin: slice, flip: 
     full[rows, rows] = 0.0
     full[rows, twin] = np.eye(rows.stop - rows.start) * flip
     drop[rows] = True
+
+
+def _clip_ratio(ratio: float, *, way: float) -> float:
+    """A spool ratio that can be made, of the same sign as `way`."""
+    size = float(np.clip(ratio if way > 0 else -ratio, 1 / LARGEST_STEP, LARGEST_STEP))
+    return size if way > 0 else -size
 
 
 def _point(coordinates: Vector | tuple[float, ...], digits: int | None) -> tuple[float, ...]:

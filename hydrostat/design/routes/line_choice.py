@@ -1,10 +1,11 @@
 """`LineChoice`: sets of lines that could be cables, judged on a linear body."""
 
 import math
-from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Sequence
+from copy import copy
+from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import combinations
+from itertools import combinations, product
 
 import numpy as np
 from jaxtyping import Bool
@@ -26,6 +27,7 @@ class Line:
 
     place: int  # graph point of its winch
     points: Route  # [m]
+    reverse: bool = False  # wound the other way round
 
 
 class LineChoice:
@@ -51,6 +53,25 @@ class LineChoice:
         self._squares = np.array([float(miss @ miss) for miss in missed])
         self._ridges = _EFFORT * np.sqrt(self._squares) / bench.constraints.tension_limit
         self._places = np.array([line.place for line in lines], dtype=np.int64)
+        self._reverse = np.zeros(len(lines), dtype=bool)
+        self._turned = 0  # maximum number of winches whose ways are all tried
+
+    def with_reversed(self, turned: int) -> "LineChoice":
+        """The same lines, then each once more, wound the other way round.
+
+        Of sets with more than `turned` winches that turn both ways, each winch may do both at a time in the model.
+        """
+        other = copy(self)
+        other.__dict__ = {name: value for name, value in vars(self).items() if name not in ("_meets", "_crowded_pairs")}
+        other.lines = [*self.lines, *(replace(line, reverse=True) for line in self.lines)]
+        compliance = np.eye(len(self.lines)) / Cable.stiffness
+        other.gives = np.tile(self.gives - compliance, (2, 2)) + np.eye(len(other.lines)) / Cable.stiffness
+        other.moves = [np.tile(move, 2) for move in self.moves]
+        other._grams, other._aims = np.tile(self._grams, (1, 2, 2)), np.tile(self._aims, 2)
+        other._places = np.tile(self._places, 2)
+        other._turned = turned
+        other._reverse = np.repeat([False, True], len(self.lines))
+        return other
 
     def _pull(self, line: Line) -> Vector:
         """Slope of its length by the nodes."""
@@ -72,9 +93,32 @@ class LineChoice:
     def _costs(self, sets: np.ndarray) -> Vector:
         """The same of several sets of as many lines."""
         errors = np.empty(len(sets))
-        model = (self.gives, self._grams, self._aims, self._squares, self._ridges, self._places)
-        native.line_errors(*model, np.ascontiguousarray(sets), _SLACK, errors)
+        pulled = self._places + self._reverse * len(self.proposals.graph.points)  # one number for each way of a winch
+        model = (self.gives, self._grams, self._aims, self._squares, self._ridges)
+        if self._reverse[sets].any():
+            squares = np.full((len(sets), len(self.moves)), np.inf)
+            for kept in self._one_way_sets(sets):
+                for pose in range(len(self.moves)):
+                    one = (self.gives, *(part[pose : pose + 1] for part in model[1:]), pulled)
+                    native.line_errors(*one, kept, _SLACK, errors)
+                    squares[:, pose] = np.minimum(squares[:, pose], errors**2)
+            errors = np.sqrt(squares.sum(axis=1))
+        else:
+            native.line_errors(*model, pulled, np.ascontiguousarray(sets), _SLACK, errors)
         return errors * (1.0 + _SIMPLE * sets.shape[1])
+
+    def _one_way_sets(self, sets: np.ndarray) -> Iterator[np.ndarray]:
+        """Yield the same sets, each winch turning one of its ways: lines that this leaves slack are -1, at the end."""
+        places, back = self._places[sets], self._reverse[sets]
+        both = [place for place in np.unique(places[back]) if np.any((places == place) & ~back)]
+        for ways in product((False, True), repeat=len(both)) if len(both) <= self._turned else ():
+            out = np.zeros(sets.shape, dtype=bool)
+            for place, way in zip(both, ways, strict=True):
+                out |= (places == place) & (back != way)
+            order = np.argsort(out, axis=1, kind="stable")
+            yield np.take_along_axis(np.where(out, -1, sets), order, axis=1)
+        if len(both) > self._turned:
+            yield np.ascontiguousarray(sets)
 
     def place_sets(self) -> list[tuple[int, ...]]:
         """Sets of places of winches: all of them, or many at random."""

@@ -121,8 +121,9 @@ class _MarginRows:
         slacks, ratios = self.layout.starts[-2:]
         values, most = self.layout.numbers[slacks:], self.constraints.spool_ratio
         count = ratios - slacks
-        low = np.repeat([0.0, 1 / most], count)
-        high = np.repeat([self.constraints.slack, most], count)
+        back = values[count:] < 0
+        low = np.concatenate([np.zeros(count), np.where(back, -most, 1 / most)])
+        high = np.concatenate([np.full(count, self.constraints.slack), np.where(back, -1 / most, most)])
         rows = np.zeros((2 * len(values), self.layout.size))
         rows[:, slacks:] = np.vstack([np.eye(len(values)), -np.eye(len(values))])
         return Margins(rows, np.concatenate([high - values, values - low]))

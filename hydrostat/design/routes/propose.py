@@ -23,13 +23,14 @@ from hydrostat.robot import Mount, Winch
 class Additions:
     """Paths for one more cable, the most promising first."""
 
-    paths: tuple[tuple[PricedPath, int | None], ...]  # each with the winch that pulls it, None for a new one
+    # each with the winch that pulls it, None for a new one, and True where it is wound the other way round
+    paths: tuple[tuple[PricedPath, int | None, bool], ...]
     cables: int  # most cables that a layout may have
 
     @property
     def gain(self) -> float:
         """Largest decrease of half the squared error that a path promises [m^2]."""
-        return max((path.gain for path, _ in self.paths), default=0.0)
+        return max((path.gain for path, *_ in self.paths), default=0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,13 +50,19 @@ class Proposals:
         return max(float(self.graph.region.depths(inner).max(initial=0.0)), 1e-9)
 
     def price_paths(
-        self, trial: Trial, *, count: int, winches: Sequence[int] | None = None, shared: int | None = None
+        self,
+        trial: Trial,
+        *,
+        count: int,
+        winches: Sequence[int] | None = None,
+        shared: int | None = None,
+        reverse: bool = False,
     ) -> list[PricedPath]:
         """Find the most promising paths next to the present network, at its equilibria.
 
         What the present winches can do by themselves is taken out of residual and moves, as they are free to follow.
         A cable of its own winch has a tension for each pose; one of the `shared` winch is pulled in all of them as that
-        winch is, in proportion to its contractions.
+        winch is, in proportion to its contractions, or to its payouts if it is a `reverse` one.
         """
         bench, graph = self.bench, self._free_of(trial.layout)
         moves, residuals, owners, ridges = [], [], [], []
@@ -76,11 +83,15 @@ class Proposals:
             ridges.append((self.effort * float(np.linalg.norm(residual)) / bench.constraints.tension_limit) ** 2)
         constraints, options = bench.constraints, self.options
         pulled = np.ones(len(ridges))
-        taken = np.array([0.0 if shared is None else max(float(p.contractions[shared]), 0.0) for p in trial.poses])
+        way = -1.0 if reverse else 1.0
+        taken = np.array([0.0 if shared is None else way * float(pose.contractions[shared]) for pose in trial.poses])
+        idle, taken = taken > -_STILL, np.maximum(taken, 0.0)
         follows = float(taken.max()) > _STILL
         if follows:
             pulled = taken / taken.max()
             ridges = [float((pulled**2 * ridges).sum())]
+        elif not idle.all():  # it is pulled alone where its winch does not turn the other way
+            pulled = idle.astype(float)
         rows = np.concatenate(owners)
         missed = Missed(
             residual=np.concatenate(residuals),
@@ -155,23 +166,27 @@ class Proposals:
             paths = self.price_paths(trial, count=_CHOICE * count, winches=places) if places else []
             deep = sorted(paths, key=lambda path: -path.gain * self._depth(path.winch))[:count]
             others = [path for path in paths if path not in deep][: count // 2]
-            found += [(path, None) for path in (*deep, *others)]
+            found += [(path, None, False) for path in (*deep, *others)]
         if needed > missing:
             free = [index for index in range(len(layout.sites)) if self._has_room(layout, index)]
             for index in free:
                 place = [self._near(layout.sites[index])]
-                paths = self.price_paths(trial, count=-(-count // len(free)), winches=place, shared=index)
-                found += [(path, index) for path in paths]
-        found.sort(key=lambda pair: -pair[0].gain)
+                share = -(-count // len(free))
+                found += [
+                    (path, index, back)
+                    for back in ((False, True) if layout.constraints.two_way else (False,))
+                    for path in self.price_paths(trial, count=share, winches=place, shared=index, reverse=back)
+                ]
+        found.sort(key=lambda path: -path[0].gain)
         return Additions(tuple(found), len(layout.routes) + needed)
 
     def build(self, trial: Trial, additions: "Additions", winches: int, *, most: int | None = None) -> list[Layout]:
         """Layouts with one cable more along these paths, but for those that cannot be built; at most so many."""
         layouts: list[Layout] = []
-        for path, winch in additions.paths:
+        for path, winch, back in additions.paths:
             if len(layouts) == most:
                 break
-            added = self._with(trial.layout, path, winch)
+            added = self._with(trial.layout, path, winch, reverse=back)
             if added is not None and self._counts(added, winches, additions.cables):
                 layouts.append(added)
         return layouts
@@ -209,7 +224,7 @@ class Proposals:
             places = places[away > gap]
         return [int(place) for place in places]
 
-    def _with(self, layout: Layout, path: PricedPath, winch: int | None) -> Layout | None:
+    def _with(self, layout: Layout, path: PricedPath, winch: int | None, *, reverse: bool) -> Layout | None:
         """A layout with a cable along a path, of a new winch if none is given; None if it cannot be built."""
         sites = layout.sites
         if winch is None:
@@ -218,7 +233,8 @@ class Proposals:
         route = route_along(path, self.graph, winch=winch, place=place, spacing=self.spacing)
         if route is None:
             return None
-        added = replace(layout, sites=sites, routes=(*layout.routes, route))
+        route = replace(route, ratio=-1.0) if reverse else route
+        added = replace(layout, sites=sites, routes=(*layout.routes, route)).turn_winches()
         if layout.constraints.mirror is not None:
             image = add_mirror_image(added)
             if image is None:
@@ -226,13 +242,14 @@ class Proposals:
             added = image
         return pushed_back(added, self.graph.region, _REACH * self.graph.size)
 
-    def with_line(self, layout: Layout, place: int, points: Route) -> Layout:
+    def with_line(self, layout: Layout, place: int, points: Route, *, reverse: bool = False) -> Layout:
         """A layout with a cable along given points [m], of the winch at a graph point, made if there is none."""
         at = self.graph.points[place]
         there = [number for number, site in enumerate(layout.sites) if np.linalg.norm(at - site.winch.at) < _SAME]
         winch = there[0] if there else len(layout.sites)
         sites = layout.sites if there else (*layout.sites, self._new_site(layout, place))
-        return replace(layout, sites=sites, routes=(*layout.routes, CableRoute(winch, points)))
+        route = CableRoute(winch, points, ratio=-1.0 if reverse else 1.0)
+        return replace(layout, sites=sites, routes=(*layout.routes, route)).turn_winches()
 
     def _new_site(self, layout: Layout, place: int) -> WinchSite:
         constraints = layout.constraints

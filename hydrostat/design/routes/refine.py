@@ -90,7 +90,7 @@ class _Refinement:
         over, torque = np.maximum(tensions - self.limit, 0.0), self.bench.constraints.torque
         if torque is None:
             return over
-        turned = spool_arms(trial.simulation.robot) @ tensions
+        turned = np.abs(spool_arms(trial.simulation.robot) @ tensions)
         return np.append(over, np.maximum(turned - torque, 0.0) / self.bench.constraints.spool_radius)
 
     def _step(self, trial: Trial, effort: float, bend: float) -> Trial | None:
@@ -139,7 +139,7 @@ class _Refinement:
             return None
         changes = step[free:].reshape(len(trial.poses), -1)
         contractions = []
-        low = [-site.winch.release for site in layout.sites]
+        low = [-release for release in moved.releases]
         for pose, change in zip(trial.poses, changes, strict=True):
             contractions.append(np.clip(pose.contractions + change, low, moved.travels))
         merit, bend = beaten
@@ -156,6 +156,7 @@ def _pull_limits(
     yield rises[near], limit - tensions[near]
     if torque is not None:
         arms = spool_arms(trial.simulation.robot)
+        arms = np.where(arms @ tensions < 0, -1.0, 1.0)[:, None] * arms
         turned = arms @ tensions > 0.5 * torque
         yield arms[turned] @ rises, torque - arms[turned] @ tensions
 
@@ -193,10 +194,10 @@ def linear_model(
         for row, left in _pull_limits(bench, trial, pose.tensions, own[markers:]):
             rows.append(row)
             lefts.append(left)
-        for winch, site in enumerate(layout.sites):
+        for winch in range(winches):
             for sign, left in (
                 (1.0, layout.travels[winch] - pose.contractions[winch]),
-                (-1.0, pose.contractions[winch] + site.winch.release),
+                (-1.0, pose.contractions[winch] + layout.releases[winch]),
             ):
                 row = np.zeros((1, count))
                 row[0, begin + winch] = sign

@@ -35,6 +35,14 @@ def sketches(
     if not lines:
         return []
     choice = LineChoice(proposals, bare, lines, winches, cables)
+    found = _choose(choice, bare, count)
+    if bare.layout.constraints.two_way:  # a rough model finds other beginnings than one that knows the ways of winches
+        found += [layout for turned in _TURNED for layout in _choose(choice.with_reversed(turned), bare, count // 2)]
+    return found
+
+
+def _choose(choice: LineChoice, bare: Trial, count: int) -> list[Layout]:
+    """Layouts of the best sets of lines."""
     begun = sorted((choice.fill_set([], places) for places in choice.place_sets()), key=choice.cost)
     found: dict[tuple[int, ...], float] = {}
     for chosen in begun[: _BEGUN * count]:
@@ -42,7 +50,7 @@ def sketches(
         found[tuple(sorted(better))] = choice.cost(better)
     layouts = []
     for chosen in sorted(found, key=lambda one: found[one]):
-        layout = _layout(proposals, bare.layout, [lines[index] for index in chosen])
+        layout = _layout(choice.proposals, bare.layout, [choice.lines[index] for index in chosen])
         layouts += [] if layout is None else [layout]
     return layouts[:count]
 
@@ -50,7 +58,7 @@ def sketches(
 def _layout(proposals: Proposals, layout: Layout, lines: Sequence[Line]) -> Layout | None:
     """A layout with these lines; None if they cannot be built."""
     for line in lines:
-        layout = proposals.with_line(layout, line.place, line.points)
+        layout = proposals.with_line(layout, line.place, line.points, reverse=line.reverse)
     return pushed_back(layout, proposals.graph.region, _REACH * proposals.graph.size)
 
 
@@ -157,6 +165,7 @@ def _sides(along: Route) -> list[Route]:
     return [first, -first, second, -second]
 
 
+_TURNED = (0, 3)  # winches whose ways are all tried while sets of reversed lines are chosen
 _PLACES = 24  # places where winches are thought of
 _BEGUN = 3  # sets that are gone over for each that is wanted
 _INWARD = 3.0  # how much longer an edge at the rim counts

@@ -97,6 +97,7 @@ def design_limits(page: WindowPage) -> None:
                 number_box(page, "Maximum torque", "torque"),
             ]
         shows.append(_switch(page, "Different spool radii", "stepped"))
+        shows.append(_switch(page, "Winches pull both ways", "two_way"))
     _own(page, shows)
 
     def show() -> None:
