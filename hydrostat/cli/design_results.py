@@ -156,12 +156,22 @@ def _print_filled(network: "Network") -> None:
 
 
 def print_front(network: "Network") -> None:
-    """A table of the error against the numbers of winches and cables."""
+    """Tables of the error: for each number of winches with its effort, and for each number of cables too."""
     from rich.console import Console
     from rich.table import Table
 
-    from hydrostat.design import best_errors, on_front, size_of
+    from hydrostat.design import best_by_winches, best_errors, build_effort, on_front, size_of
 
+    console, best = Console(), best_by_winches(network)
+    if len(best) > 1:
+        motors = Table(title="best network for each number of winches", title_justify="left")
+        for name in ("winches", "cables", "as-built error", "motors", "sewing", "price"):
+            motors.add_column(name, justify="right")
+        for winches, one in best.items():
+            effort = build_effort(one.robot, one.reached)
+            values = (f"{effort.motors} × {effort.motor}", f"{effort.minutes:.0f} min", f"{effort.price:.0f} USD")
+            motors.add_row(str(winches), str(len(one.robot.cables)), f"{1e3 * one.built:.2f} mm", *values)
+        console.print(motors)
     errors = best_errors(network.alternatives, network)
     table = Table(title="expected as-built error by number of winches and cables", title_justify="left")
     for name in ("winches", "cables", "rms error"):
@@ -170,7 +180,7 @@ def print_front(network: "Network") -> None:
     for size, error in errors.items():
         note = "chosen" if size == size_of(network) else "" if on_front(size, errors) else "no better than fewer"
         table.add_row(str(size[0]), str(size[1]), f"{1e3 * error:.2f} mm", note)
-    Console().print(table)
+    console.print(table)
 
 
 def _pose_row(robot: "Robot", reached: "IKResult") -> tuple[str, ...]:

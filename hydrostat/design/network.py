@@ -148,6 +148,17 @@ def best_errors(alternatives: Iterable[Alternative], chosen: Network) -> dict[Si
     return dict(sorted(found.items()))
 
 
+def best_by_winches(network: Network) -> dict[int, Alternative | Network]:
+    """The network of the least error as built for each number of winches, in order; the chosen one for its own."""
+    found: dict[int, Alternative | Network] = {}
+    for other in network.alternatives:
+        count = len(other.robot.winches)
+        if count not in found or other.built < found[count].built:
+            found[count] = other
+    found[len(network.robot.winches)] = network
+    return dict(sorted(found.items()))
+
+
 def on_front(size: Size, errors: Mapping[Size, float]) -> bool:
     """True if no network of as few winches and as few cables has an error as small."""
     winches, cables = size

@@ -8,7 +8,7 @@ import numpy as np
 from hydrostat.design.corrected_error import expected_corrected_error
 from hydrostat.design.craft import build_effort
 from hydrostat.design.filled_reach import out_of_plane
-from hydrostat.design.network import Alternative, Network, RouteTrace, TreeTrace
+from hydrostat.design.network import Alternative, Network, RouteTrace, TreeTrace, best_by_winches
 from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.ik import IKResult
 from hydrostat.robot import Robot, robot_hash
@@ -32,6 +32,7 @@ def score_card(network: Network, *, version: str) -> dict[str, Any]:
         "cables": _cables(robot),
         **_trace(network.trace),
         **_filled_results(network),
+        "by_winches": [_by_winches(one) for one in best_by_winches(network).values()],
         "alternatives": [_alternative(other) for other in network.alternatives],
         "networks_tried": network.tried,
         "cpu_seconds": network.seconds,
@@ -124,6 +125,16 @@ def _filled_results(network: Network) -> dict[str, Any]:
     }
     told = {"face": str(filled.face), "rms_error": filled.rms_error, "rms_error_with_flat_commands": filled.played}
     return {"filled": {**told, "out_of_plane": filled.out, "finalists": filled.finalists, "poses": poses}}
+
+
+def _by_winches(one: Alternative | Network) -> dict[str, Any]:
+    """Return the row of a number of winches: as-built error and effort."""
+    return {
+        "winches": len(one.robot.winches),
+        "cables": len(one.robot.cables),
+        "rms_error_as_built": one.built,
+        "craft": build_effort(one.robot, one.reached).as_values,
+    }
 
 
 def _alternative(other: Alternative) -> dict[str, Any]:

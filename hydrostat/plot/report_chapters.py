@@ -1,6 +1,6 @@
 """The stages of a design as chapters of the report, each with its pictures."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from hydrostat.design import (
     Network,
     RouteTrace,
     TreeTrace,
+    best_by_winches,
     build_effort,
     out_of_plane,
     rest_error,
@@ -287,12 +288,26 @@ def alternative_chapters(network: Network) -> list[Chapter]:
         figure = draw_front(others, network, tolerance=network.request.route_options.tolerance, width=CHART)
         note = ", a color for each number of winches"
         parts.append(grid(picture(figure, "front", "Error against minutes of sewing", note)))
+    if len(best := best_by_winches(network)) > 1:
+        words += " The table has the best network for each number of winches."
+        parts.append(_winch_table(best))
     most_alternatives = 12  # so many alternatives have a picture
     shown = [others[index] for index in evenly(len(others), most_alternatives)]
     parts.append(_pictures(network, shown))
     if len(shown) < len(others):
         parts.append(tag("p", f"{len(shown)} of {len(others)} are shown.", class_="quiet"))
     return [Chapter("Alternatives", words, parts)]
+
+
+def _winch_table(best: Mapping[int, Alternative | Network]) -> Html:
+    """Table of as-built error and effort by the number of winches."""
+    rows = []
+    for winches, one in best.items():
+        effort = build_effort(one.robot, one.reached)
+        made = (effort.motors, f"{effort.minutes:.0f}", f"{effort.price:.0f}")
+        rows.append((winches, len(one.robot.cables), millimeters(one.built), *made))
+    heads = ("winches", "cables", "error once built [mm]", "motors", "sewing [min]", "price [USD]")
+    return table(heads, rows, numbers=range(len(heads)))
 
 
 def evenly(count: int, most: int) -> list[int]:

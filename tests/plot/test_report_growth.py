@@ -7,7 +7,16 @@ import pytest
 from plot.designs import SCRIPT, grown, hostile_network, plain_network, space_network
 from plot.test_report import Page
 
-from hydrostat.design import Alternative, Certificate, DesignStage, Network, best_errors, on_front, sewing_minutes
+from hydrostat.design import (
+    Alternative,
+    Certificate,
+    DesignStage,
+    Network,
+    best_errors,
+    on_front,
+    score_card,
+    sewing_minutes,
+)
 from hydrostat.drawing import WINCHES
 from hydrostat.plot import inline_svg
 from hydrostat.plot.design_charts import draw_front, draw_growth, stage_runs
@@ -146,6 +155,18 @@ def test_the_best_of_each_size_counts_and_the_chosen_one_always() -> None:
         {(1, 1): 0.009, (1, 2): 0.008, (1, 3): 0.0085, (2, 2): 0.006, (2, 3): 0.004, (2, 4): 0.004, (3, 3): 0.005}
     )
     assert list(errors) == sorted(errors)
+
+
+def test_a_row_for_each_number_of_winches() -> None:
+    """Oracle: the least by hand; the chosen network stands for its own number, others may be better."""
+    network = replace(chosen(), alternatives=tuple(sized(*other) for other in OTHERS))
+    rows = score_card(network, version="")["by_winches"]
+    assert [row["winches"] for row in rows] == [1, 2, 3]
+    assert [row["rms_error_as_built"] for row in rows] == pytest.approx([0.008, 0.006, 0.005])
+    assert [row["cables"] for row in rows] == [2, len(network.robot.cables), 3]
+    assert all({"motors", "minutes", "price"} <= row["craft"].keys() for row in rows)
+    (chapter,) = alternative_chapters(network)
+    assert "price [USD]" in "".join(map(str, chapter.parts))
 
 
 @pytest.mark.parametrize("seed", range(5))
