@@ -35,12 +35,14 @@ def solve_pulls(
         start: a pose to begin from; the rest pose if left out.
 
     Raises:
-        InputError: an unknown winch, or a pull below 0.
+        InputError: an unknown winch, one that pulls both ways, or a pull below 0.
         NotConvergedError: no such equilibrium was found, such as beyond a snap, where a winch goes on by itself.
     """
     names = [winch.name for winch in simulation.robot.winches]
     for name, pull in pulls.items():
         simulation.robot.winch(name)
+        if any(cable.reverse for cable in simulation.robot.cables if cable.winch == name):
+            raise InputError(f'pulls.{name}: winch "{name}" pulls both ways; give its contraction instead')
         check_number(f"pulls.{name}", pull, "N")
         if pull < 0:
             raise InputError(f"pulls.{name} must be at least 0 N, not {pull:g}: a cable only pulls")

@@ -20,7 +20,8 @@ class Rod:
 
     Attributes:
         name: name, unique in the robot.
-        points: its corners in the body at rest [m], at least two. A rod that is bent at rest keeps its bends.
+        points: its corners in the body at rest [m], at least two. A rod that is bent at rest keeps how sharp its
+            bends are, not their sides.
         diameter: diameter of a round rod [m]; None with stiffnesses.
         young: Young's modulus of a round rod [Pa]; None with stiffnesses.
         axial_stiffness: EA [N]; None for a round rod.
@@ -43,6 +44,8 @@ class Rod:
             raise InputError("points: a rod needs at least two")
         for index, point in enumerate(self.points):
             check_point(f"points[{index}]", point)
+            if len(point) != len(self.points[0]):
+                raise InputError(f"points[{index}] has {len(point)} coordinates, points[0] has {len(self.points[0])}")
             if index and point == self.points[index - 1]:
                 raise InputError(f"points[{index}] is the one before it; remove it")
         spans = np.diff(np.array(self.points), axis=0)

@@ -30,6 +30,7 @@ def test_what_is_written_is_read(tmp_path: Path) -> None:
         (WIRE.replace(", [20, 0]", ""), r"rod\[0\].points: a rod needs at least two"),
         (WIRE.replace("[20, 0]", "[-20, 0]"), r"rod\[0\].points\[1\] is the one before it"),
         (WIRE.replace("[20, 0]]", "[20, 0], [0, 1]]"), r"rod\[0\].points\[1\]: the rod turns by 177 degrees there"),
+        (WIRE.replace("[20, 0]", "[20, 0, 0]"), r"rod\[0\].points\[1\] has 3 coordinates, points\[0\] has 2"),
         (WIRE.replace("0.8 mm", "0 mm"), r"rod\[0\].diameter must be finite and above 0"),
         (WIRE.replace('young = "200 GPa"', ""), r"rod\[0\]: give diameter and young, or axial_stiffness"),
         (GIVEN.replace("N mm^2", "N"), r"rod\[0\].bending_stiffness: .* does not measure a bending stiffness"),

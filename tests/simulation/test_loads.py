@@ -112,6 +112,9 @@ def test_pulls_with_friction_and_out_of_reach() -> None:
     assert found.tensions[0] == pytest.approx(2.0, rel=1e-5)
     with pytest.raises(InputError, match="must be at least 0 N, not -1"):
         solve_pulls(Simulation(robot), {name: -1.0})
+    both = robot.with_network(robot.winches, [replace(cable, reverse=True) for cable in robot.cables])
+    with pytest.raises(InputError, match="pulls both ways"):
+        solve_pulls(Simulation(both), {name: 1.0})
     with pytest.raises(InputError, match='unknown winch "no"'):
         solve_pulls(Simulation(robot), {"no": 1.0})
     with pytest.raises(NotConvergedError):
