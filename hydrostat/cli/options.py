@@ -175,12 +175,10 @@ def _contraction(text: str) -> tuple[str, float]:
     """Name and length [m] from "left=12mm"."""
     from hydrostat.units import LENGTH, parse_quantity
 
-    name, equals, length = text.partition("=")
-    if not equals:
-        raise InputError(f'--contract {text}: missing "=". Write WINCH=LENGTH, e.g. left=12mm.')
-    sign = -1.0 if length.strip().startswith("-") else 1.0
+    name, length = _split_value("--contract", text, "WINCH=LENGTH, e.g. left=12mm")
+    sign = -1.0 if length.startswith("-") else 1.0
     try:
-        return name.strip(), sign * parse_quantity(length.strip().removeprefix("-"), LENGTH)
+        return name, sign * parse_quantity(length.removeprefix("-"), LENGTH)
     except InputError as error:
         raise InputError(f"--contract {text}: {error}") from None
 
@@ -191,17 +189,16 @@ def loads(robot: "Robot", texts: Sequence[str] | None) -> "Robot":
     from hydrostat.units import FORCE, MASS, parse_quantity
 
     for number, text in enumerate(texts or [], start=1):
-        marker, equals, value = (part.strip() for part in text.partition("="))
+        name = f"given load {number}"
+        marker, value = _split_value("--load", text, "MARKER=FORCE or MARKER=MASS, e.g. tip=0,0,-1N or tip=100g")
         numbers = [each.strip().removesuffix("N").strip() for each in value.split(",")]
         try:
-            if not equals:
-                raise InputError('missing "=". Write MARKER=FORCE or MARKER=MASS, e.g. tip=0,0,-1N or tip=100g.')
-            if len(numbers) > 1:
-                force = tuple(_parse_signed(f"{each} N", FORCE) for each in numbers)
-                load = Load(name=f"given load {number}", marker=marker, force=force)
-            else:
-                load = Load(name=f"given load {number}", marker=marker, mass=parse_quantity(value, MASS))
             robot.marker(marker)
+            if len(numbers) > 1:
+                force = tuple(parse_quantity(f"{each} N", FORCE) for each in numbers)
+                load = Load(name=name, marker=marker, force=force)
+            else:
+                load = Load(name=name, marker=marker, mass=parse_quantity(value, MASS))
             robot = replace(robot, loads=(*robot.loads, load))
         except InputError as error:
             raise InputError(f"--load {text}: {error}") from None
@@ -214,10 +211,8 @@ def pulls(robot: "Robot", texts: Sequence[str] | None) -> dict[str, float]:
 
     found = {}
     for text in texts or []:
-        name, equals, force = (part.strip() for part in text.partition("="))
+        name, force = _split_value("--pull", text, "WINCH=FORCE, e.g. left=5N")
         try:
-            if not equals:
-                raise InputError('missing "=". Write WINCH=FORCE, e.g. left=5N.')
             robot.winch(name)
             found[name] = parse_quantity(force, FORCE)
         except InputError as error:
@@ -225,11 +220,12 @@ def pulls(robot: "Robot", texts: Sequence[str] | None) -> dict[str, float]:
     return found
 
 
-def _parse_signed(text: str, dimension: "Dimension") -> float:
-    """Quantity that may have a sign before it."""
-    from hydrostat.units import parse_quantity
-
-    return (-1.0 if text.startswith("-") else 1.0) * parse_quantity(text.removeprefix("-"), dimension)
+def _split_value(option: str, text: str, form: str) -> tuple[str, str]:
+    """Name and value of "NAME=VALUE" (InputError: no "=")."""
+    name, equals, value = (part.strip() for part in text.partition("="))
+    if not equals:
+        raise InputError(f'{option} {text}: missing "=". Write {form}.')
+    return name, value
 
 
 def check_contraction(robot: "Robot", name: str, value: float, *, option: str = "--contract") -> None:

@@ -14,7 +14,7 @@ from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation, cable_sensitivities
 
 MEASURED = 5
-"""Number of markers that are measured in each pose, if it has targets for so many."""
+"""Number of markers that are measured in each pose, if it has that many targets."""
 
 NOISE = 5e-4
 """Standard deviation of each measured coordinate [m]: a ruler or a photo."""

@@ -10,8 +10,6 @@ from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.geometry import Anchors, Mesh, locate
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks
 
-Rows = Float[np.ndarray, "joints rows"]
-
 
 class RodEnergy(Energy):
     """Discrete elastic rod, straight or curved at rest, without twist (Bergou et al. 2008).
@@ -19,7 +17,8 @@ class RodEnergy(Energy):
     E = sum over segments of EA/2 (l/L - 1)^2 L + sum over joints of EI / (2 D) |k - k0|^2, where l is the length of a
     segment and L that at rest, D the mean L of the segments at a joint, and |k|^2 = 4 (1 - c) / (1 + c) the square of
     its curvature times D, with c the cosine between the two segments. A joint that is bent at rest counts by the
-    difference of the magnitudes. A round rod without moments about its axis does not twist, so nothing is missing then.
+    difference of the magnitudes alone, so that its mirrored bend costs nothing. A round rod without moments about its
+    axis does not twist, so nothing is missing then.
     """
 
     convex: ClassVar[bool] = False

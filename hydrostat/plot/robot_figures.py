@@ -14,6 +14,7 @@ from hydrostat.plot.drawn_body import DrawnBody
 from hydrostat.plot.frame import Attachments
 from hydrostat.plot.hardware import DrawnRobot, draw_hardware, draw_numbers, name_winches
 from hydrostat.plot.labels import Labels, shorten
+from hydrostat.plot.loads import draw_loads, draw_rods
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import Pane
 from hydrostat.plot.sheet import MILLIMETERS, WIDTH, PictureSheet, Places, Spread
@@ -21,7 +22,6 @@ from hydrostat.plot.skin import outer_points
 from hydrostat.plot.targets import (
     draw_arrows,
     draw_crosses,
-    draw_loads_and_rods,
     draw_markers,
     draw_misses,
     rest_markers,
@@ -123,7 +123,8 @@ def _draw_parts(
     for pane, body in zip(panes, bodies, strict=True):
         drawn.append(draw_hardware(sheet, pane, body, carried, robot.body.mesh.nodes, width=width))
         draw_markers(sheet, pane.locate_points(rest), size=size)
-        draw_loads_and_rods(sheet, pane, robot, robot.body.mesh.nodes)
+        draw_rods(sheet, pane, robot, robot.body.mesh.nodes)
+        draw_loads(sheet, pane, robot, robot.body.mesh.nodes)
     return drawn[0], drawn[0].labels(sheet, np.array(list(panes[0].locate_points(rest).values())).reshape(-1, 2))
 
 
@@ -277,7 +278,8 @@ def _in_pose(
         pane.draw_ghost(sheet)
         body = pane.draw_body(sheet, pose.nodes, pale=0.35, pins=rest.shape[1] == 3)
         drawn.append(draw_hardware(sheet, pane, body, carried, pose.nodes, colors=colors, width=2.6))
-        draw_loads_and_rods(sheet, pane, robot, pose.nodes)
+        draw_rods(sheet, pane, robot, pose.nodes)
+        draw_loads(sheet, pane, robot, pose.nodes)
     points = [*pose.markers.values(), *goals]
     labels = drawn[0].labels(sheet, panes[0].places(np.array(points)) if points else np.empty((0, 2)))
     if robot.cables:

@@ -89,7 +89,7 @@ class Body:
         from hydrostat.robot.conform import conform
 
         parts = tuple(parts)
-        whole = replace(self, parts=parts)  # parts that do not fit are told before the mesh is changed
+        whole = replace(self, parts=parts)  # parts that do not fit raise before the mesh is changed
         return replace(whole, mesh=conform(self.mesh, parts)) if parts else whole
 
     @property

@@ -28,7 +28,7 @@ def test_a_robot_like_its_model_keeps_its_contractions(reached: IKResult) -> Non
 
 
 def test_what_winches_miss_is_taken_back_up_to_second_order(reached: IKResult) -> None:
-    """Winches of the built robot take in less than they are told; half of that leaves a quarter of the error."""
+    """Winches of the built robot take in less than they should; half of that leaves a quarter of the error."""
     left = []
     for missing in (np.array([1e-3, 2e-4]), np.array([5e-4, 1e-4])):
         played = SIMULATION.solve(reached.pose.contractions - missing).markers["tip"]

@@ -395,4 +395,4 @@ _WORTH = 0.1  # errors may be so much larger where motors hold poses for long
 _LOOKED_AT = 12  # networks on the way that are judged where no refined one can be built
 _LOOKED_AT_LATE = 4  # where the search was ended before
 _REFINED = 2  # networks that are refined to the end
-_NEARLY = 1.1  # the second one only if it misses less than so many times as much as the first
+_NEARLY = 1.1  # the second one only if its error is below this multiple of that of the first

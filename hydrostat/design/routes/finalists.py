@@ -103,7 +103,7 @@ class Finalists:
         return []
 
     def _push_apart(self, layout: Layout, times: float) -> Layout | None:
-        """The layout with winches so many times as far apart as the nearest two, or as they must be."""
+        """The layout with winches apart by a multiple of the distance of the nearest two, or of what they need."""
         places = np.array([site.winch.at for site in layout.sites])
         away = np.linalg.norm(places[:, None] - places, axis=2) + np.diag(np.full(len(places), np.inf))
         gap = max(float(away.min(initial=np.inf)) if len(places) > 1 else 0.0, self.constraints.winch_gap)
@@ -127,4 +127,4 @@ def kit_fits(network: Alternative | Network) -> bool:
 
 
 _EXAMINED: WeakKeyDictionary[Alternative | Network, bool] = WeakKeyDictionary()
-_APART = (1.2, 1.5)  # so many times as far apart as they are stand winches whose units meet
+_APART = (1.2, 1.5)  # multiples of their distance to which winches move whose units meet

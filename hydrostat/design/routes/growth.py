@@ -206,7 +206,7 @@ def _words(trial: Trial) -> str:
 _ALIKE = 1e-3  # costs that differ by less than this share are of the same network
 _FAR = 1.1  # networks so much worse than the best are not refined with the build tolerances
 _SPARE = 4  # times as many paths are priced as networks are solved: some cannot be built
-_PATIENCE = 1  # so many rounds of cables that do not help end the growth
+_PATIENCE = 1  # rounds of cables without gain after which the growth ends
 _HELPS = 0.02  # a cable that lowers the cost by less than this share does not help
 _HOPE = 0.03  # a cable is tried if prices promise to lower the cost by this share
 _LIKELY = 2  # cables that are refined for each that a network is grown from

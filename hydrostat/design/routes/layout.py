@@ -83,7 +83,7 @@ class Layout:
         return self.source.body.mesh.dim
 
     def robot(self, *, digits: int | None = None, limited: bool = False) -> Robot:
-        """The robot with this network; coordinates rounded to so many digits of a meter, or travels `limited`."""
+        """The robot with this network; coordinates rounded to some digits of a meter, or travels `limited`."""
         winches = [replace(site.winch, at=_point(site.winch.at, digits)) for site in self.sites]
         if limited:
             ranges = zip(winches, self.travels, self.releases, strict=True)

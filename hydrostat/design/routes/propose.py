@@ -181,7 +181,7 @@ class Proposals:
         return Additions(tuple(found), len(layout.routes) + needed)
 
     def build(self, trial: Trial, additions: "Additions", winches: int, *, most: int | None = None) -> list[Layout]:
-        """Layouts with one cable more along these paths, but for those that cannot be built; at most so many."""
+        """Layouts with one cable more along these paths, but for those that cannot be built; at most `most`."""
         layouts: list[Layout] = []
         for path, winch, back in additions.paths:
             if len(layouts) == most:

@@ -94,7 +94,7 @@ def _key(layout: Layout, hole: Hole) -> bytes:
 
 _GLANCE = 5  # steps of inverse kinematics that tell what a network without a hole misses
 _HOLE = 0.003  # a hole without which the cost is larger by less than this share does not earn its stitch
-_HOPED = 4.0  # holes that cost more than so many times that by the linear model are not tried
+_HOPED = 4.0  # holes that cost more than this multiple by the linear model are not tried
 _FAILURES = 4  # holes that had to be kept end it
 _FEWEST = 2  # points of the bare part of a cable
 _NUDGE = 0.005  # limits are felt within this share of the body's size where a hole was left out

@@ -166,7 +166,7 @@ def _seat_step(robot: Robot) -> AssemblyStep:
 def tie_step(robot: Robot) -> AssemblyStep:
     """The step by which lines come on their spools."""
     back = [f"C{index + 1}" for index, cable in enumerate(robot.cables) if cable.reverse]
-    ways = f"all the same way, but the other way round: {', '.join(back)}" if back else "all the same way"
+    ways = f"all in one direction, but the other way round: {', '.join(back)}" if back else "all in one direction"
     return AssemblyStep(
         "Tie the cables on",
         5 * len(robot.cables),
