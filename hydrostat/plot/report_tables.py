@@ -198,17 +198,19 @@ def winch_table(robot: Robot) -> Html:
 
 
 def cable_table(robot: Robot) -> Html:
-    """Length, via points and stopper of each cable; its spool's radius if that of one is not its winch's."""
+    """Length, via points and stopper of each cable; winding and spool radius where cables of a winch differ in them."""
     colors, steps = winch_colors(robot.winches), any(cable.spool_radius is not None for cable in robot.cables)
+    back = any(cable.reverse for cable in robot.cables)
     rows = [
         (str(count), [swatch(colors[cable.winch]), cable.winch], number(MILLIMETERS * cable.length, 1),
          str(len(cable.points) - 2), place(cable.points[-1]), f"{cable.stiffness / 1e3:.3g}",
-         *([number(MILLIMETERS * (cable.spool_radius or robot.winch(cable.winch).spool_radius), 1)] if steps else []))
+         *([number(MILLIMETERS * (cable.spool_radius or robot.winch(cable.winch).spool_radius), 1)] if steps else []),
+         *([("reversed" if cable.reverse else "usual")] if back else []))
         for count, cable in enumerate(robot.cables, 1)
     ]  # fmt: skip
     heads = ("cable", "winch", "length [mm]", "via points", "stopper [mm]", "stiffness [N/mm]",
-             *(["spool radius [mm]"] if steps else []))  # fmt: skip
-    return table(heads, rows, numbers=range(2, len(heads)))
+             *(["spool radius [mm]"] if steps else []), *(["winding"] if back else []))  # fmt: skip
+    return table(heads, rows, numbers=range(2, len(heads) - back))
 
 
 def place(point: object) -> str:

@@ -71,6 +71,15 @@ def test_a_film_stops_before_a_cable_is_taken_in() -> None:
     assert steps.contractions[0] == pytest.approx(plain.contractions[0] / 2.5)
 
 
+def test_the_cable_table_marks_cables_that_are_wound_the_other_way() -> None:
+    robot = stepped(None)
+    assert "winding" not in str(cable_table(robot))
+    back = robot.with_network(robot.winches, [replace(robot.cables[0], reverse=True), robot.cables[1]])
+    rows = str(cable_table(back)).split("<tr")
+    assert ["reversed" in row for row in rows[-2:]] == [True, False]
+    assert "usual" in rows[-1]
+
+
 def test_pictures_and_patterns_show_the_step() -> None:
     from shapely import box
 

@@ -110,6 +110,7 @@ class SheetFacts(TypedDict):
     cables: TableFacts | None  # to cut; None without cables
     tubes: TableFacts | None  # to cut; None without tubes
     log: list[str]  # names of the cables to calibrate
+    measured: bool  # True if hydrostat calibrate can measure where they begin to pull
     winches: list[WinchFacts]
     pieces: list[PieceFacts]
     shown: str  # name of the cable whose stitches are drawn

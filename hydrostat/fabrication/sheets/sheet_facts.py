@@ -56,6 +56,7 @@ def sheet_facts(plan: KitPlan, lists: Lists, findings: KitFindings, *, letters: 
         "bill": bill_facts(lists),
         "cables": _table(lists.cables, _CABLES),
         "log": [f"C{number}" for number in range(1, len(plan.robot.cables) + 1)],
+        "measured": not any(cable.reverse for cable in plan.robot.cables),
         "tubes": _table(lists.tubes, _TUBES),
         "winches": _winches(plan),
         "pieces": piece_facts(plan),

@@ -103,6 +103,18 @@ def test_what_a_plush_sheet_says(plush_sheet):
 
 
 @pytest.mark.slow
+def test_winches_that_pull_both_ways_are_not_sent_to_a_command_that_refuses_them(plush_sheet):
+    """Oracle: `hydrostat calibrate` refuses each robot with a reversed cable."""
+    assert "hydrostat calibrate measures" in words(plush_sheet)
+    given = plush()
+    first, *others = given.plan.robot.cables
+    robot = given.plan.robot.with_network(given.plan.robot.winches, [replace(first, reverse=True), *others])
+    text = words(assembly_sheet(*given._replace(plan=replace(given.plan, robot=robot))))
+    assert "hydrostat calibrate measures" not in text
+    assert "its zero in motors.toml" in text
+
+
+@pytest.mark.slow
 def test_a_sheet_tells_which_motor_the_firmware_is_for():
     power = power_plan({plush().plan.robot.winches[0].name: 40.0}, next(one for one in MOTORS if one.key == "n20"))
     assert "hydrostat firmware ROBOT --motor n20" in words(assembly_sheet(*plush(lists=lists(2, power=power))))
