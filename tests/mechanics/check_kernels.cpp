@@ -23,9 +23,11 @@ static void elements(int dim) {
     const int64_t terms = 19, groups = 3, corners = dim + 1, nodes = terms * corners, size = corners * dim;
     std::vector<int32_t> stencils(groups * corners * 8);
     std::vector<double> gradients(groups * corners * dim * 8), volumes(groups * 8), field(nodes * dim), step(nodes * dim);
+    std::vector<double> mu(groups * 8, 3.0), lame(groups * 8, 10.0);
     for (int64_t term = 0; term < terms; term++) {
         const int64_t group = term / 8, lane = term % 8;
         volumes[term] = 1.0 + 0.3 * random_number();
+        mu[term] += random_number(), lame[term] += random_number();
         for (int64_t corner = 0; corner < corners; corner++) {
             stencils[(group * corners + corner) * 8 + lane] = (int32_t)(term * corners + corner);
             for (int axis = 0; axis < dim; axis++)
@@ -38,7 +40,7 @@ static void elements(int dim) {
     std::vector<double> place(field);
     for (int64_t node = 0; node < nodes; node++)
         if (node % corners) place[node * dim + node % corners - 1] += 1.0;
-    const Elements all{groups, terms, dim, stencils.data(), gradients.data(), volumes.data(), 3.0, 10.0};
+    const Elements all{groups, terms, dim, stencils.data(), gradients.data(), volumes.data(), mu.data(), lame.data()};
     std::vector<double> forces(nodes * dim), bent(nodes * dim), data(terms * size * size);
     std::vector<int64_t> slots(terms * corners * corners), strides(nodes, size);
     for (int64_t term = 0; term < terms; term++)
@@ -79,7 +81,7 @@ static void factors() {
                                0, 0, size, all, second, -1, -1, 0, 0, 1, (int64_t)data.size()};
     const Fronts fronts{2, size, table, rows.data(), runs, entries.data(), diagonal.data()};
     std::vector<double> lower(all + 8), signs(size), one(second * second + 8), two(second * second + 8), spare(size * 8 + 8);
-    const int64_t negative = kernels_base.factorize(fronts, data.data(), lower.data(), signs.data(), one.data(), two.data(),
+    const int64_t negative = kernels_base.factorise(fronts, data.data(), lower.data(), signs.data(), one.data(), two.data(),
                                                     spare.data(), 1e-13);
     print("negative", {(double)negative});
     for (int sides : {1, 4, 8, 12, 16}) {
