@@ -1,10 +1,9 @@
-"""Loops of the compiled core against short programs of others: NumPy, SciPy, trimesh. Random inputs."""
+"""Loops of the compiled core against short programs of others: NumPy, SciPy, trimesh. Random inputs.
 
-import os
-import subprocess
-import sys
+These loops are compiled once, for all levels of vector instructions.
+"""
+
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -283,14 +282,3 @@ def test_turns_and_leads(seed: int) -> None:
     assert np.abs(leads[known] - expected[known]).max() < 1e-12
     later = np.flatnonzero(known & ~begins)
     assert leads[later] == pytest.approx(leads[origins[later]] + lengths[origins[later]], abs=1e-12)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("level", native.levels[:-1])
-@pytest.mark.skipif("HYDROSTAT_LEVEL" in os.environ, reason="one level was asked for")
-def test_at_lower_levels(level: str) -> None:
-    """The tests above with fewer vector instructions."""
-    environment = os.environ | {"HYDROSTAT_LEVEL": level}
-    command = [sys.executable, "-m", "pytest", "-q", "-n", "0", str(Path(__file__))]
-    ended = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
-    assert ended.returncode == 0, ended.stdout

@@ -1,4 +1,4 @@
-"""The core at every level of vector instructions that the processor has. Oracle: the other levels."""
+"""The core at each level of vector instructions of the processor. Oracles: the other levels, LAPACK, formulas."""
 
 import os
 import subprocess
@@ -14,10 +14,12 @@ from hydrostat.kernel import native
 ANSWERS = """
 import sys
 import numpy as np
+from dataclasses import replace
 from builders import box_mesh, strip_robot
 from hydrostat.kernel import native
-from hydrostat.mechanics import Assembly, NeoHookean, PinEnergy
-from hydrostat.simulation import Simulation
+from hydrostat.mechanics import Assembly, NeoHookean, NewtonOptions, PinEnergy
+from hydrostat.simulation import Simulation, cable_sensitivities, find_contacts
+from touching import fork_robot
 
 random, mesh, none, found = np.random.default_rng(0), box_mesh((5, 4, 3)), np.zeros(0), []
 held = np.arange(24)[:, None]
@@ -37,6 +39,21 @@ found.append(turned)
 simulation = Simulation(strip_robot(columns=20, rows=4))
 pose = simulation.solve({"up": 0.01})
 found += [pose.nodes, pose.tensions, simulation.jacobian(pose)]
+for dim in (2, 3):
+    fork = fork_robot(dim)
+    for friction in (0.0, 0.2):
+        cables = tuple(replace(cable, friction=friction) for cable in fork.cables)
+        simulation = Simulation(replace(fork, cables=cables), options=NewtonOptions(tolerance=1e-13))
+        pose = simulation.solve([0.012, 0.011])
+        slopes = cable_sensitivities(simulation, pose, [0])
+        assert find_contacts(simulation, pose)
+        found += [pose.nodes, pose.tensions, simulation.jacobian(pose)]
+        found += [slopes.contractions, slopes.slack, slopes.ratios, slopes.points]
+        if not friction:
+            touching = simulation.assembly.with_active_terms(pose.unknowns)
+            adjoint = simulation.adjoint(pose, pose.nodes)
+            found += [touching.hessian(pose.unknowns, pose.contractions).data, adjoint.pin_stiffness]
+            found += [np.array([each]) for each in (adjoint.young, adjoint.poisson)]
 assert native.instructions == sys.argv[2], native.instructions
 np.savez(sys.argv[1], *found)
 """
@@ -60,10 +77,21 @@ def answers(level: str, folder: Path) -> list[np.ndarray]:
 
 @pytest.mark.parametrize("level", native.levels[:-1])
 def test_levels_agree(level: str, tmp_path_factory: pytest.TempPathFactory) -> None:
-    """Elements, factors, right-hand sides, arcs, a pose and its slopes, to 1e-10 of the largest number."""
+    """Elements, factors, right-hand sides, arcs; poses with contact and friction and their slopes: to 1e-10."""
     folder = tmp_path_factory.getbasetemp()
     for one, other in zip(answers(level, folder), answers(native.levels[-1], folder), strict=True):
         assert np.abs(one - other).max() <= 1e-10 * np.abs(other).max()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("level", native.levels[:-1])
+@pytest.mark.skipif("HYDROSTAT_LEVEL" in os.environ, reason="one level was asked for")
+def test_the_tests_of_the_core_at_lower_levels(level: str) -> None:
+    """Elements, factors and threads against the oracles of these tests."""
+    file = Path(__file__).with_name("test_compiled_core.py")
+    code = f"import pytest, sys; sys.exit(pytest.main(['-q', '-n', '0', {str(file)!r}]))"
+    ended = run(level, code=code)
+    assert ended.returncode == 0, ended.stdout
 
 
 def test_an_unknown_level_is_refused_in_one_line() -> None:
