@@ -106,8 +106,9 @@ class _Loader(SourceFileLoader):
         decorate(tree.body)
         after = int(ast.get_docstring(tree, clean=False) is not None)
         after += sum(isinstance(node, ast.ImportFrom) and node.module == "__future__" for node in tree.body)
-        tree.body.insert(after, ast.Import([ast.alias("shape_checks")], lineno=1, col_offset=0))
-        return compile(ast.fix_missing_locations(tree), path, "exec", dont_inherit=True, optimize=_optimize)
+        added = ast.Import([ast.alias("shape_checks", lineno=1, col_offset=0)], lineno=1, col_offset=0)
+        tree.body.insert(after, added)
+        return compile(tree, path, "exec", dont_inherit=True, optimize=_optimize)
 
     def exec_module(self, module: ModuleType) -> None:
         place = partial(cache_from_source, optimization="shapes1")

@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+from functools import lru_cache
 
 import numpy as np
 import pytest
@@ -32,6 +33,22 @@ def body(nodes: int, dim: int, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
     return points, graph
 
 
+@lru_cache(maxsize=4)  # cases of one matrix follow each other
+def eigenvalues_of(dense: bytes, size: int) -> np.ndarray:
+    """Eigenvalues of a symmetric matrix, given by its bytes."""
+    return np.linalg.eigvalsh(np.frombuffer(dense).reshape(size, size))
+
+
+@lru_cache(maxsize=4)
+def solution_of(dense: bytes, size: int) -> np.ndarray:
+    """Dense solve with five right-hand sides at random, those of `assert_right`."""
+    return np.linalg.solve(np.frombuffer(dense).reshape(size, size), right_sides(size))
+
+
+def right_sides(size: int) -> np.ndarray:
+    return np.random.default_rng(1).standard_normal((size, 5))
+
+
 def elastic(graph: np.ndarray, dim: int, seed: int = 0) -> csc_array:
     """A symmetric matrix with a random block of `dim` for every pair of neighbors, far from definite."""
     random = np.random.default_rng(seed)
@@ -42,7 +59,7 @@ def elastic(graph: np.ndarray, dim: int, seed: int = 0) -> csc_array:
 
 def shifted(matrix: csc_array, negative: int) -> csc_array:
     """The matrix plus a multiple of 1 such that it has so many negative eigenvalues."""
-    values = np.linalg.eigvalsh(matrix.toarray())
+    values = eigenvalues_of(matrix.toarray().tobytes(), matrix.shape[0])
     if negative == 0:
         shift = values[0] - 0.05 * (values[-1] - values[0]) - 0.01
     else:
@@ -52,13 +69,12 @@ def shifted(matrix: csc_array, negative: int) -> csc_array:
 
 def assert_right(factor: Factorization, matrix: csc_array, accuracy: float) -> None:
     """Pivots count the eigenvalues below 0, and the solutions are those of a dense solve."""
-    dense = matrix.toarray()
-    eigenvalues = np.linalg.eigvalsh(dense)
+    dense, size = matrix.toarray().tobytes(), matrix.shape[0]
+    eigenvalues = eigenvalues_of(dense, size)
     assert not factor.singular
     assert factor.negative == int((eigenvalues < 0).sum())
     assert factor.definite == bool((eigenvalues > 0).all())
-    right = np.random.default_rng(1).standard_normal((len(dense), 5))
-    exact = np.linalg.solve(dense, right)
+    right, exact = right_sides(size), solution_of(dense, size)
     allowed = accuracy * np.abs(exact).max()
     assert np.abs(factor.solve(right) - exact).max() < allowed
     assert np.abs(factor.solve(right[:, 0]) - exact[:, 0]).max() < allowed
