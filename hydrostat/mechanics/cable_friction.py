@@ -144,9 +144,10 @@ class FrictionCableEnergy(Energy):
         return self._spans.bends(nodes, self.span_tensions(nodes, controls))
 
     def coupling(self, nodes: Nodes, controls: Vector) -> LowRankStiffness:
-        springs, tangents = self.law.springs(self.elongations(nodes, controls))
-        columns = self._spans.spring_columns(nodes, springs, len(tangents))
-        return LowRankStiffness(columns=columns, weights=np.diag(tangents))
+        springs, elongations, law = self.law.springs(self.elongations(nodes, controls))
+        columns = self._spans.spring_columns(nodes, springs, len(elongations))
+        weights = np.diag(law.tangent(elongations))
+        return LowRankStiffness(columns=columns, weights=weights, elongations=elongations, law=law, series=springs)
 
     def span_columns(self, nodes: Nodes) -> LowRankBasis:
         return self._spans.columns(nodes)

@@ -60,12 +60,14 @@ class LowRankStiffness:
         weights: D [N/m], positive semidefinite.
         elongations: s [m]; None if only G and D are given.
         law: force law of the springs, with D = diag(dT/ds); Newton then allows for springs that go slack within a step.
+        series: spring that each span belongs to, where springs are spans in series that may change; else None.
     """
 
     columns: LowRankBasis
     weights: RankMatrix
     elongations: Vector | None = None
     law: Law | None = None
+    series: Int[np.ndarray, " spans"] | None = None
 
 
 class ScatterMap(NamedTuple):

@@ -47,8 +47,9 @@ class Stiffness:
         return self.__dict__ | {"source": None}
 
     def with_coupling(self, coupling: LowRankStiffness) -> "Stiffness":
-        """Return this stiffness with other springs; if their law is known, G stays as it is."""
-        if coupling.law is None or coupling.weights.shape != self.weights.shape:
+        """Return this stiffness with other springs; if their law is known and they are of the same spans, G stays."""
+        same = coupling.weights.shape == self.weights.shape and np.array_equal(coupling.series, self.coupling.series)
+        if coupling.law is None or not same:
             return Stiffness(self.factors, coupling, token=self.token, source=self.source)
         other = self.with_weights(coupling.weights)
         other.coupling = coupling

@@ -1,6 +1,7 @@
-"""`TensionLaw`, `ChainLaw`: tension of a cable from its stretch, without and with friction."""
+"""`TensionLaw`, `SeriesLaw`, `ChainLaw`: tension of a cable from its stretch, without and with friction."""
 
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -67,6 +68,45 @@ class TensionLaw:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class SeriesLaw:
+    """Tension laws of springs that are several spans in series, by the sum of the elongations of the spans.
+
+    Attributes:
+        law: law of each spring.
+        offsets: elongation of the spans at which that of the law is 0 [m].
+    """
+
+    law: TensionLaw
+    offsets: Vector
+
+    def tension(self, elongation: Vector) -> Vector:
+        """Least tension of the spans in series [N]."""
+        return self.law.tension(elongation - self.offsets)
+
+    def tangent(self, elongation: Vector) -> Vector:
+        """dT/ds [N/m]."""
+        return self.law.tangent(elongation - self.offsets)
+
+    def solve_slack_complementarity(self, elongations: Vector, compliance: RankMatrix) -> Vector | None:
+        """Tensions on a linear body at rest, as in `TensionLaw`."""
+        return self.law.solve_slack_complementarity(elongations - self.offsets, compliance)
+
+
+class SpanSprings(NamedTuple):
+    """Springs that the spans of cables are in series, between points where cable sticks.
+
+    Attributes:
+        springs: spring that each span belongs to, (spans,).
+        elongations: elongation of each spring, the sum of those of its spans [m], (springs,).
+        law: tension of each spring.
+    """
+
+    springs: Int[np.ndarray, " spans"]
+    elongations: Vector
+    law: SeriesLaw
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class ChainLaw(TensionLaw):
     """Tensions of the spans of cables between which cable slips, against friction of given largest force.
 
@@ -112,15 +152,30 @@ class ChainLaw(TensionLaw):
         slips = self.slips(elongation)
         return self._join_spans(super().tangent(self._own(elongation, slips)), slips != 0)[0]
 
-    def springs(self, elongation: Vector) -> tuple[Int[np.ndarray, " spans"], Vector]:
-        """Spring that each span belongs to, -1 where it is slack, and dT/ds of each [N/m].
+    def springs(self, elongation: Vector) -> SpanSprings:
+        """Springs of the spans while cable goes on slipping where it does, slack neighbors as one.
 
-        Spans are one spring, in series, between points where cable sticks.
+        Near this state a spring has the tension and slope of its spans; far from it, those of one taut spring.
         """
         slips = self.slips(elongation)
-        group, series = self._series(super().tangent(self._own(elongation, slips)), slips != 0)
-        taut = series > 0
-        return np.where(taut, np.cumsum(taut) - 1, -1)[group], series[taut]
+        own = self._own(elongation, slips)
+        _, tensions, slopes = self._evaluate(own)
+        group, series = self._series(slopes, slips != 0)
+        slack = series[group] <= 0
+        heads = slips == 0
+        heads[1:] &= ~(slack[1:] & slack[:-1])
+        heads[self.starts[:-1]] = True
+        springs, firsts = np.cumsum(heads) - 1, np.flatnonzero(heads)
+        stiffness = 1.0 / np.bincount(springs, 1.0 / self.stiffness)
+        smoothing, whole = np.bincount(springs, self.smoothing), np.bincount(springs, own)
+        tension, slope = np.minimum.reduceat(tensions, firsts), series[group[firsts]]
+        straight = 1.0 - 1e-9  # A spring of this share of its stiffness is beyond its smoothing
+        curved = (slope > 0) & (slope < straight * stiffness)
+        safe = np.where(curved, slope, stiffness)
+        known = np.where(curved, 2.0 * tension / safe, np.where(slope > 0, tension / stiffness + smoothing, 0.0))
+        offsets = np.where(slope > 0, whole - known, np.maximum(whole, 0.0))
+        law = TensionLaw(stiffness=stiffness, smoothing=np.where(curved, stiffness * tension / safe**2, smoothing))
+        return SpanSprings(springs, whole, SeriesLaw(law=law, offsets=offsets))
 
     def compute_slip_jacobians(self, tensions: Vector, signs: Vector) -> tuple[RankMatrix, RankMatrix]:
         """dT/ds [N/m] and dT/dlimits while cable goes on slipping where it does.

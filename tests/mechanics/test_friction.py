@@ -174,6 +174,11 @@ def test_without_limits_it_is_a_cable_without_friction(dim: int) -> None:
         ours, theirs = getattr(energy, part)(nodes, controls), getattr(plain, part)(nodes, controls)
         assert np.abs(ours - theirs).max() < 1e-11 * np.abs(theirs).max()
     one, other = energy.coupling(nodes, controls), plain.coupling(nodes, controls)
+    assert one.law is not None
+    assert other.law is not None
+    for further in (-0.02, -1e-4, 1e-4, 0.02):
+        found, known = (part.law.tension(part.elongations + further) for part in (one, other))
+        assert found == pytest.approx(known, rel=1e-6, abs=1e-9)
     ours, small, theirs, diagonal = one.columns, one.weights, other.columns, other.weights
     whole = theirs @ diagonal @ theirs.T
     assert np.abs(ours @ small @ ours.T - whole).max() < 1e-11 * np.abs(whole).max()
