@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-from hydrostat.cli.materials import range_text, young_text
 from hydrostat.robot import MATERIALS
 
 PAGE = Path(__file__).with_suffix(".md")
@@ -39,8 +38,8 @@ foams. What is assumed is called so.
 def page() -> str:
     """The whole page."""
     rows = [
-        f"| {material.name} | {material.density:.0f} | {young_text(material)} | {material.poisson:.2f} "
-        f"| {range_text(material)} |"
+        f"| {material.name} | {material.density:.0f} | {material.young_text} | {material.poisson:.2f} "
+        f"| {material.range_text} |"
         for material in MATERIALS.values()
     ]
     table = "\n".join(["| name | density kg/m^3 | Young | Poisson | range |", "|---|---|---|---|---|", *rows])

@@ -31,7 +31,7 @@ from hydrostat.plot import (
     save_png,
 )
 from hydrostat.robot import gallery_folder, list_gallery, robot_hash
-from hydrostat.studio.exporting.kit_work import page_pictures
+from hydrostat.studio import page_pictures
 from hydrostat.version import __version__
 
 sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))

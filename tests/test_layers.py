@@ -5,8 +5,6 @@ import re
 import tomllib
 from pathlib import Path
 
-import pytest
-
 _TOP = Path(__file__).parents[1]
 _CONTRACTS = [
     contract
@@ -74,25 +72,6 @@ def test_no_import_is_hidden_from_the_layers() -> None:
     assert _hidden_imports("import_module(name)")
     assert _hidden_imports("from hydrostat import __version__")
     assert not _hidden_imports('from hydrostat import units\nimport_module("nicegui.elements.scene")')
-
-
-def _past_doors(path: Path, text: str) -> list[str]:
-    """Imports from a file of another room, where its door is meant: those of tests of a room may be from its files."""
-    top, *folders, _ = path.parts
-    home = folders[0] if folders and top in {"hydrostat", "tests"} else ""
-    modules = [str(node.module) for node in ast.walk(ast.parse(text)) if isinstance(node, ast.ImportFrom)]
-    split = [(module, module.split(".")) for module in modules if module.startswith("hydrostat.")]
-    rooms = {folder.parent.name for folder in (_TOP / "hydrostat").glob("*/__init__.py")} - {home, "cli"}
-    return [module for module, parts in split if len(parts) > 2 and parts[1] in rooms]
-
-
-@pytest.mark.parametrize("folder", ["hydrostat", "tests", "benchmarks", "examples", "lab"])
-def test_rooms_are_entered_by_their_doors(folder: str) -> None:
-    files = [path.relative_to(_TOP) for path in (_TOP / folder).rglob("*.py")]
-    past = {str(path): found for path in files if (found := _past_doors(path, (_TOP / path).read_text()))}
-    assert past == {}
-    assert _past_doors(Path("hydrostat/ik/solve_ik.py"), "from hydrostat.geometry.mesh import Mesh")
-    assert not _past_doors(Path("tests/geometry/test_mesh.py"), "from hydrostat.geometry.mesh import Mesh")
 
 
 def _of_the_laboratory(text: str) -> bool:

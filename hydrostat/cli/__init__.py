@@ -1,1 +1,13 @@
-"""The command line: thin commands on the library."""
+"""Command line: one thin file for each command. Programs start at `main.py`; the door holds what commands share."""
+
+from typing import TYPE_CHECKING
+
+from hydrostat.lazy import open_package
+
+if TYPE_CHECKING:
+    from hydrostat.cli.folders import OutFolder, require_folder
+    from hydrostat.cli.waiting import one_interrupt, report_progress
+
+__all__ = ["OutFolder", "one_interrupt", "report_progress", "require_folder"]
+
+open_package(__name__)

@@ -61,7 +61,6 @@ def firmware(
     Example: hydrostat firmware examples/starfish --board mega --out build/firmware
     """
     from hydrostat import control
-    from hydrostat.control import firmware_build as build
     from hydrostat.fabrication import MOTORS
 
     known = {each.key: each for each in MOTORS if each.counts}
@@ -81,7 +80,7 @@ def firmware(
         if not 0 < value < 1e6:
             raise InputError(f"--{name} {value:g}: must be above 0")
     boards = _boards(board, calibration)
-    given = build.on_boards(calibration, boards)
+    given = control.on_boards(calibration, boards)
     new = usual if counts or motor else None  # else what motors.toml says stays
     given = control.Calibration(tuple(replace(each, counts=new or each.counts or usual) for each in given.motors))
     ports = port.split(",") if port else []
@@ -89,15 +88,11 @@ def firmware(
         words = f"{plural(len(ports), 'port')} for {plural(given.boards, 'board')}"
         raise InputError(f"--flash {port}: {words}. Separate ports by commas.")
     places = [out if given.boards == 1 else out / f"board_{number}" for number in range(1, given.boards + 1)]
-    build.check_ports(ports)
+    control.check_ports(ports)
     shown = ", ".join(dict.fromkeys(f"{each.counts:g}" for each in given.motors))
     print(f"Motor: {chosen.title}{'' if motor else ' (check the kit; change with --motor)'}")
     print(f"{shown} counts per spool turn, no-load speed {turns:g} turns/min")
-    texts = [
-        build.firmware_settings(loaded, given, rpm=turns, stall=chosen.stall_current, board=number)
-        for number in range(1, given.boards + 1)
-    ]
-    images = [build.build_firmware(*each) for each in zip(texts, boards, places, strict=False)]
+    images = control.build_images(loaded, given, boards, places, rpm=turns, stall=chosen.stall_current)
     if given != calibration:
         print(f"Wrote {control.write_calibration(folder, given)}")
     for number, (kind, image) in enumerate(zip(boards, images, strict=False), 1):
@@ -143,9 +138,9 @@ def _tell(kind: str, number: int, given: "Calibration") -> None:
 
 def _flash(kind: str, image: "Path", port: str | None) -> None:
     """Write an image to the board on a port, or say how."""
-    from hydrostat.control import firmware_build as build
+    from hydrostat.control import flash, flash_command
 
-    command = build.flash_command(kind, port or "PORT", image)
+    command = flash_command(kind, port or "PORT", image)
     print(f"Wrote {image}. {'Flashing the board' if port else 'To flash a board'}: {join(command)}", flush=True)
     if port:
-        build.flash(command)
+        flash(command)

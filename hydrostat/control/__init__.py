@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     )
     from hydrostat.control.dynamixel_bus import GOAL, TICK, DynamixelBus
     from hydrostat.control.emulated_feetech import EmulatedLine
-    from hydrostat.control.emulated_servos import EmulatedChain, EmulatedServo, InjectedFaults, LiveChain
+    from hydrostat.control.emulated_servos import EmulatedChain, EmulatedServo, LiveChain
     from hydrostat.control.feetech_bus import FeetechBus
-    from hydrostat.control.firmware_build import board_kind
+    from hydrostat.control.firmware_build import board_kind, build_images, check_ports, flash, flash_command, on_boards
     from hydrostat.control.guard import TensionGuard, not_judged
     from hydrostat.control.link import Link, SimulatedLink
     from hydrostat.control.model_tensions import TensionLookup, WinchPull, tensions_along, winch_pulls, winch_tensions
@@ -49,7 +49,6 @@ __all__ = [
     "EmulatedLine",
     "EmulatedServo",
     "FeetechBus",
-    "InjectedFaults",
     "Key",
     "Link",
     "LinkLimits",
@@ -69,11 +68,16 @@ __all__ = [
     "add_cable_layers",
     "arm_motors",
     "board_kind",
+    "build_images",
     "check_port",
+    "check_ports",
     "emulated_calibration",
     "fit_spool",
+    "flash",
+    "flash_command",
     "measure_spool",
     "not_judged",
+    "on_boards",
     "open_bus",
     "open_line",
     "play",

@@ -112,6 +112,16 @@ def build_firmware(settings: str, board: str, folder: Path) -> Path:
     return image
 
 
+def build_images(
+    robot: Robot, calibration: Calibration, boards: Sequence[str], folders: Sequence[Path], *, rpm: float, stall: float
+) -> list[Path]:
+    """Compile the firmware of each board into its folder, and return the images; arguments as `firmware_settings`."""
+    texts = [
+        firmware_settings(robot, calibration, rpm=rpm, stall=stall, board=number + 1) for number in range(len(folders))
+    ]
+    return [build_firmware(*each) for each in zip(texts, boards, folders, strict=False)]
+
+
 def flash_command(board: str, port: str, image: Path) -> list[str]:
     """The command of avrdude that writes an image to a board on a port."""
     kind = board_kind(board)

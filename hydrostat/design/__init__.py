@@ -6,11 +6,11 @@ from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
     from hydrostat.design.buildable import violations
-    from hydrostat.design.built_error import BuiltErrors, built_errors, expected_error
+    from hydrostat.design.built_error import built_errors, expected_error
     from hydrostat.design.constraints import RANGES, STEPPED, Constraints, Range
     from hydrostat.design.constraints_file import cable_name, read_constraints, read_uncertainty
-    from hydrostat.design.corrected_error import corrected_errors, expected_corrected_error, spread_markers
-    from hydrostat.design.craft import Craft, SewingTimes, build_effort, front, sewing_minutes
+    from hydrostat.design.corrected_error import corrected_errors
+    from hydrostat.design.craft import Craft, build_effort, front, sewing_minutes
     from hydrostat.design.design_cables import design_cables, find_network
     from hydrostat.design.faced import assign_cable_sides
     from hydrostat.design.filled_reach import FilledReach, out_of_plane
@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
     from hydrostat.design.routes.price import PricedPath
     from hydrostat.design.routes.propose import route_along
-    from hydrostat.design.routes.quick_search import QuickSearch, RouteProposal, propose_routes
+    from hydrostat.design.routes.quick_search import QuickSearch, propose_routes
     from hydrostat.design.routes.route_graph import RouteGraph, route_graph
     from hydrostat.design.score_card import corrected_error, rest_error, score_card
     from hydrostat.design.trees.design_trees import propose_trees
@@ -66,7 +66,6 @@ __all__ = [
     "Activation",
     "Alternative",
     "BuildTolerances",
-    "BuiltErrors",
     "CableRoute",
     "Certificate",
     "Constraints",
@@ -86,10 +85,8 @@ __all__ = [
     "Region",
     "RouteGraph",
     "RouteOptions",
-    "RouteProposal",
     "RouteTrace",
     "Severity",
-    "SewingTimes",
     "TreeKnobs",
     "TreeOptions",
     "TreeTrace",
@@ -107,7 +104,6 @@ __all__ = [
     "corrected_errors",
     "design_cables",
     "edge_fibres",
-    "expected_corrected_error",
     "expected_error",
     "find_network",
     "find_no_room",
@@ -129,7 +125,6 @@ __all__ = [
     "score_card",
     "sewing_minutes",
     "size_of",
-    "spread_markers",
     "turns",
     "violations",
 ]

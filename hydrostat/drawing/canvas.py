@@ -59,9 +59,7 @@ def path(lines: Iterable[Iterable[Sequence[float] | np.ndarray]], *, digits: int
 
 Spot = tuple[float, float]  # a place on the canvas [mm]: to the right, down
 Box = tuple[float, float, float, float]  # left, top, right, bottom [mm]
-THICK, MIDDLE, THIN = 0.5, 0.32, 0.18  # widths of lines [mm]
 POINT = 25.4 / 72  # millimeters of a typographic point
-PIXELS = 10  # for each millimeter of paper, to know what is hidden: a tenth of a millimeter is less than a line
 FONT = "Libertinus Serif"  # comes with typst, so that a sheet is the same on every machine
 
 
@@ -94,6 +92,9 @@ class CanvasFrame:
 @dataclass
 class Canvas:
     """Picture that is drawn from back to front."""
+
+    THICK, MIDDLE, THIN = 0.5, 0.32, 0.18  # widths of lines [mm]
+    PIXELS = 10  # depth samples for each millimeter of paper: less than the width of a line
 
     width: float  # [mm]
     height: float  # [mm]
@@ -172,7 +173,7 @@ class Canvas:
     def balloon(self, at: Spot, words: str, *, dark: bool = False, size: float = 9.0) -> None:
         """Words in a circle, white on black if `dark`."""
         radius = balloon_radius(words, size)
-        self.disc(at, radius, grey=0.0 if dark else 1.0, edge=MIDDLE)
+        self.disc(at, radius, grey=0.0 if dark else 1.0, edge=self.MIDDLE)
         self.text(at, words, size=size, bold=True, grey=1.0 if dark else 0.0)
 
     def arrow(self, start: Spot, end: Spot, *, width: float = THICK, head: float = 2.2) -> None:
@@ -188,8 +189,8 @@ class Canvas:
         """Draw the lines and tones of solids."""
         for grey, rings in drawing.tones:
             self.fill([frame.way(ring) for ring in rings], grey=grey)
-        self.line([frame.way(way) for way in drawing.lines], width=THIN)
-        self.line([frame.way(way) for way in drawing.outlines], width=MIDDLE)
+        self.line([frame.way(way) for way in drawing.lines], width=self.THIN)
+        self.line([frame.way(way) for way in drawing.outlines], width=self.MIDDLE)
 
 
 def fit_height(box: Float[np.ndarray, "2 2"], width: float, height: float) -> float:

@@ -1,7 +1,7 @@
 """The colors of every picture: one language, safe for color-blind eyes, at home on light and on dark pages."""
 
 from collections.abc import Iterable
-from typing import Protocol, runtime_checkable
+from typing import ClassVar, Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float
@@ -53,31 +53,41 @@ def paint(
     return image
 
 
-INK = "#2b2833"
-MUTED = "#85808f"
-GRID = "#ebe8ee"
-GHOST = "#b4afbc"
-GHOST_FILL = "#f3f1f5"
-PAPER = "#ffffff"
-ERROR = "#c8243f"
+class Color:
+    """Colors of all pictures. Scales and sets are tuples."""
 
-PAGE_COLORS = {INK: "ink", MUTED: "muted", GRID: "grid", GHOST: "ghost", GHOST_FILL: "ghost-fill", PAPER: "paper"}
-"""Colors that follow the page: there they become CSS variables of these names, which dark pages change."""
+    INK = "#2b2833"
+    MUTED = "#85808f"
+    GRID = "#ebe8ee"
+    GHOST = "#b4afbc"
+    GHOST_FILL = "#f3f1f5"
+    PAPER = "#ffffff"
+    ERROR = "#c8243f"
 
-SHADE = "#7d4527"
-FELT = "#f0c29c"
-FELT_LIGHT = "#f8d9bd"
-SEAM = "#b9774b"
-STITCH = "#fff1e2"
-MESH = "#a8683e"
-DARK = "#2a2732"
-LIGHT = "#fffdfb"
+    PAGE: ClassVar = {
+        INK: "ink",
+        MUTED: "muted",
+        GRID: "grid",
+        GHOST: "ghost",
+        GHOST_FILL: "ghost-fill",
+        PAPER: "paper",
+    }
+    """Colors that follow the page: there they become CSS variables of these names, which dark pages change."""
 
-WINCHES = ("#0b5fa5", "#00795f", "#a8256f", "#5a3da6", "#7a4a12", "#1787b8", "#5f6d0c", "#8b1b34")
-"""A color for each winch, in order; all stand out on felt and carry white letters."""
+    SHADE = "#7d4527"
+    FELT = "#f0c29c"
+    FELT_LIGHT = "#f8d9bd"
+    SEAM = "#b9774b"
+    STITCH = "#fff1e2"
+    MESH = "#a8683e"
+    DARK = "#2a2732"
+    LIGHT = "#fffdfb"
 
-TENSION = ("#efa35c", "#e56a4f", "#c33c6a", "#842681", "#40156b", "#150b37")
-"""From little tension to much: as even in lightness as magma, without its ends that felt or paper would swallow."""
+    WINCHES = ("#0b5fa5", "#00795f", "#a8256f", "#5a3da6", "#7a4a12", "#1787b8", "#5f6d0c", "#8b1b34")
+    """A color for each winch, in order; all stand out on felt and carry white letters."""
+
+    TENSION = ("#efa35c", "#e56a4f", "#c33c6a", "#842681", "#40156b", "#150b37")
+    """From little tension to much: as even in lightness as magma, without its ends that felt or paper would swallow."""
 
 
 @runtime_checkable
@@ -92,14 +102,14 @@ class Named(Protocol):
 
 def winch_colors(winches: Iterable[Named]) -> dict[str, str]:
     """Color of each of a robot's winches, by name; darker ones from the ninth on, and again from the 17th."""
-    count = len(WINCHES)
-    colors = [*WINCHES, *(mix(color, INK, 0.55) for color in WINCHES)]
+    count = len(Color.WINCHES)
+    colors = [*Color.WINCHES, *(mix(color, Color.INK, 0.55) for color in Color.WINCHES)]
     return {winch.name: colors[index % (2 * count)] for index, winch in enumerate(winches)}
 
 
 def pose_colors(names: Iterable[str]) -> dict[str, str]:
     """Color of each of a robot's poses: the winch colors in reverse, as few robots have that many winches."""
-    return {name: WINCHES[-1 - index % len(WINCHES)] for index, name in enumerate(names)}
+    return {name: Color.WINCHES[-1 - index % len(Color.WINCHES)] for index, name in enumerate(names)}
 
 
 def mix(color: str, other: str, share: float) -> str:

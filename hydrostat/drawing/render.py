@@ -9,24 +9,18 @@ from hydrostat.arrays import Vector
 from hydrostat.drawing.camera import Spots
 from hydrostat.drawing.creases import smooth_normals
 from hydrostat.drawing.depth import DepthBuffer, Polyline
-from hydrostat.drawing.palette import (
-    DARK,
-    FELT,
-    FELT_LIGHT,
-    MESH,
-    PAPER,
-    SEAM,
-    SHADE,
-    STITCH,
-    channels,
-    mix,
-    paint,
-    sky_shares,
-)
+from hydrostat.drawing.palette import Color, channels, mix, paint, sky_shares
 
 FINER = 2  # samples along each side of a pixel
 CREASE = 42.0  # a sharper bend than this between two facets is drawn as an edge [degree]
-RAMP = ((0.0, SHADE), (0.30, SEAM), (0.52, mix(SEAM, FELT, 0.62)), (0.74, FELT), (0.92, FELT_LIGHT), (1.0, STITCH))
+RAMP = (
+    (0.0, Color.SHADE),
+    (0.30, Color.SEAM),
+    (0.52, mix(Color.SEAM, Color.FELT, 0.62)),
+    (0.74, Color.FELT),
+    (0.92, Color.FELT_LIGHT),
+    (1.0, Color.STITCH),
+)
 """Colors of felt from deep shade to full light."""
 
 
@@ -85,7 +79,9 @@ def render(
     sky = _smooth(sky_shares(buffer.depth / pixel, _unit(buffer.shown[..., :3]), 0.11 * size / pixel))
     sky_way = (0.0, 1.0, 0.0) if up is None else up
     look = np.array([FINER, point / fine, 0.012 * size / fine, sky_way[1], sky_way[2], FINER * (steps[0] - steps[1])])
-    inks = np.array([_shares(mix(DARK, SEAM, 0.25)), _shares(MESH), _shares(mix(SEAM, PAPER, pale))])
+    inks = np.array(
+        [_shares(mix(Color.DARK, Color.SEAM, 0.25)), _shares(Color.MESH), _shares(mix(Color.SEAM, Color.PAPER, pale))]
+    )
     shares = np.array([1.0, 0.5 * lines, 0.9])
     return Render(paint(samples.depth / fine, samples.shown, sky, look, _table(pale), inks, shares), buffer)
 
@@ -132,7 +128,7 @@ def _unit(vectors: Float[np.ndarray, "height width 3"]) -> np.ndarray:
 def _table(pale: float) -> Float[np.ndarray, "256 3"]:
     """Colors of felt from deep shade to full light."""
     stops = [stop for stop, _ in RAMP]
-    colors = np.array([_shares(mix(color, PAPER, pale)) for _, color in RAMP])
+    colors = np.array([_shares(mix(color, Color.PAPER, pale)) for _, color in RAMP])
     return np.column_stack([np.interp(np.linspace(0, 1, 256), stops, colors[:, channel]) for channel in range(3)])
 
 

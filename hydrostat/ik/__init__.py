@@ -31,14 +31,12 @@ if TYPE_CHECKING:
     from hydrostat.ik.solve_pulls import solve_pulls
     from hydrostat.ik.tracker import Tracker
     from hydrostat.ik.trajectory.keys import Keyframe
-    from hydrostat.ik.trajectory.poses import BranchJump
     from hydrostat.ik.trajectory.solve_ik_trajectory import TrajectoryOptions, solve_ik_trajectory
     from hydrostat.ik.trajectory.trajectory import KeyPose, PathKind, Trajectory
 
 __all__ = [
     "CORRECTION_DAMPING",
     "BegunRobot",
-    "BranchJump",
     "CenterOfMassTarget",
     "Effort",
     "EquilibriumState",

@@ -38,6 +38,8 @@ class ObstacleEnergy(Energy):
 
     convex: ClassVar[bool] = False
     projects_first: ClassVar[bool] = True
+    STICKS: ClassVar[float] = 10.0
+    """Stiffness of a sample along the surface per area, in units of Young's modulus / distance."""
 
     def __init__(
         self,
@@ -70,7 +72,7 @@ class ObstacleEnergy(Energy):
             rows = np.broadcast_to(carriage.rows, (len(areas), len(carriage.rows)))
             self.stencils = np.concatenate([self._corners, rows], axis=1)
         self.has_history = friction > 0
-        self._friction = friction, _STICKS * young / distance * areas
+        self._friction = friction, self.STICKS * young / distance * areas
         self.grip: ObstacleFriction | None = None
         self._seen: tuple[Nodes, Points, Vector] | None = None
 
@@ -367,6 +369,3 @@ def _samples(mesh: Mesh) -> tuple[Stencils, Float[np.ndarray, "terms corners"], 
 
 _HALF_WAY = 4.329
 """Force of the barrier at half its distance, where its factor and distance are 1: 2 phi'(1/4) x 1/2, phi' its slope."""
-
-_STICKS = 10.0
-"""Stiffness of a sample along the surface per area, in units of Young's modulus / distance."""

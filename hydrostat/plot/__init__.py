@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
-    from hydrostat.plot.activation_figures import draw_activation, draw_candidates, draw_trees
+    from hydrostat.plot.activation_figures import draw_activation
     from hydrostat.plot.animation import WIDTHS, find_ffmpeg, save_gif, save_mp4
     from hydrostat.plot.branch_figure import draw_branches
     from hydrostat.plot.calibration_page import reach, write_calibration_page
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from hydrostat.plot.live_page import LivePage
     from hydrostat.plot.motion_figures import draw_motion, draw_trajectory
     from hydrostat.plot.picture_file import drawing, inline_svg, save_png
-    from hydrostat.plot.reach_figure import draw_reach
     from hydrostat.plot.report import write_report
     from hydrostat.plot.report_chapters import REACHED, body_part, network_part, reached_part, target_chapter
     from hydrostat.plot.report_tables import Chapter, cable_table, fact, page, section, table
@@ -30,7 +29,6 @@ if TYPE_CHECKING:
         draw_pose,
         draw_reached,
         draw_rest,
-        draw_target,
         reached_title,
     )
     from hydrostat.plot.scene import save_glb
@@ -56,7 +54,6 @@ __all__ = [
     "cable_table",
     "draw_activation",
     "draw_branches",
-    "draw_candidates",
     "draw_curves",
     "draw_healing",
     "draw_motion",
@@ -64,12 +61,9 @@ __all__ = [
     "draw_portrait",
     "draw_pose",
     "draw_pull",
-    "draw_reach",
     "draw_reached",
     "draw_rest",
-    "draw_target",
     "draw_trajectory",
-    "draw_trees",
     "drawing",
     "fact",
     "film",

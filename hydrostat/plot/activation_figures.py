@@ -8,7 +8,7 @@ from jaxtyping import Float, Int
 from matplotlib.figure import Figure
 
 from hydrostat.design import Activation
-from hydrostat.drawing import LIGHT, WINCHES
+from hydrostat.drawing import Color
 from hydrostat.plot.drawn_body import DrawnBody
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
@@ -74,10 +74,10 @@ def draw_trees(robot: Robot, trees: Iterable[Spread], *, title: str | None = Non
     note = f"{plural(len(trees), 'route')} grown from the candidates"
     sheet, panes = _pale_sheet(robot, "Trees" if title is None else title, note, width, bar=title == "")
     for pane, (index, tree) in product(panes, enumerate(trees)):
-        color, route = WINCHES[index % len(WINCHES)], pane.places(np.asarray(tree))
-        sheet.curve(route, color=LIGHT, linewidth=3.6, alpha=0.9, zorder=7)
+        color, route = Color.WINCHES[index % len(Color.WINCHES)], pane.places(np.asarray(tree))
+        sheet.curve(route, color=Color.LIGHT, linewidth=3.6, alpha=0.9, zorder=7)
         sheet.curve(route, color=color, linewidth=1.8, zorder=8)
-        sheet.dots(route, 3.0, color=color, markeredgecolor=LIGHT, markeredgewidth=0.6, zorder=9)
+        sheet.dots(route, 3.0, color=color, markeredgecolor=Color.LIGHT, markeredgewidth=0.6, zorder=9)
     return sheet.figure
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Bool, UInt8
 
-from hydrostat.drawing import DARK, ERROR, INK, MUTED, PAPER, channels, winch_colors
+from hydrostat.drawing import Color, channels, winch_colors
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.plot.frame import Frame, check_frames
 from hydrostat.plot.frame_pictures import FramePictures, Picture
@@ -240,7 +240,7 @@ def _palette(robot: Robot, pictures: Sequence[Picture]) -> Palette:
     from PIL import Image
 
     scale = TensionScale(most=1.0)
-    fixed = [PAPER, INK, MUTED, DARK, ERROR, *winch_colors(robot.winches).values()]
+    fixed = [Color.PAPER, Color.INK, Color.MUTED, Color.DARK, Color.ERROR, *winch_colors(robot.winches).values()]
     fixed += [scale.color(share) for share in np.linspace(0, 1, 9)]
     told = np.array([channels(color) for color in fixed], dtype=np.uint8)
     told = np.unique(told, axis=0)

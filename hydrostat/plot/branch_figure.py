@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from hydrostat.arrays import Vector
-from hydrostat.drawing import ERROR, INK, PAPER, WINCHES, mix
+from hydrostat.drawing import Color, mix
 from hydrostat.errors import InputError
 from hydrostat.plot.chart import plain_axes
 from hydrostat.plot.labels import Labels, shorten
@@ -91,7 +91,7 @@ def _displacement(robot: Robot, pose: Equilibrium, name: str) -> float:
 
 
 def _color(index: int) -> str:
-    return WINCHES[index % len(WINCHES)]
+    return Color.WINCHES[index % len(Color.WINCHES)]
 
 
 def _draw_poses(sheet: PictureSheet, pane: Pane, poses: Sequence[Equilibrium]) -> None:
@@ -103,7 +103,7 @@ def _draw_poses(sheet: PictureSheet, pane: Pane, poses: Sequence[Equilibrium]) -
         if len(poses) > 1:
             rings = pane.outline(sheet, pose.nodes)
             color = _color(index)
-            fill = "none" if index == 0 else mix(color, PAPER, 0.75)
+            fill = "none" if index == 0 else mix(color, Color.PAPER, 0.75)
             sheet.area(rings, facecolor=fill, alpha=0.55, edgecolor="none", joinstyle="round", zorder=2.5)
             sheet.area(
                 rings, facecolor="none", edgecolor=color, linewidth=1.3, joinstyle="round", zorder=8 - 0.1 * index
@@ -148,24 +148,24 @@ def _chart(figure: Figure, index: int, rows: int, columns: int, *, last: bool) -
     axes = figure.add_axes((left / width, low / height, (wide - 0.6) / width, (ROW - EDGES) / height))
     plain_axes(axes, size=7)
     if last:
-        axes.set_xlabel("share of the contractions [%]", color=INK, fontsize=8)
+        axes.set_xlabel("share of the contractions [%]", color=Color.INK, fontsize=8)
     return axes
 
 
 def _draw_chart(axes: Axes, robot: Robot, name: str, found: Multistability, branches: Sequence[Branch]) -> None:
     """Draw the displacement of one marker along the branches [mm]."""
     title = f"{shorten(name)} moved [mm]" if name else "largest displacement [mm]"
-    axes.set_title(title, loc="left", color=INK, fontsize=8, fontweight="bold", parse_math=False)
+    axes.set_title(title, loc="left", color=Color.INK, fontsize=8, fontweight="bold", parse_math=False)
     for branch in branches:
         shares = 100 * np.array([_share(point.pose, found.contractions) for point in branch.points])
         moved = MILLIMETERS * np.array([_displacement(robot, point.pose, name) for point in branch.points])
         for part, stable in branch.runs():
-            dashes, color, order = ("-", INK, 3.0) if stable else ((0, (2.5, 1.8)), ERROR, 2.5)
+            dashes, color, order = ("-", Color.INK, 3.0) if stable else ((0, (2.5, 1.8)), Color.ERROR, 2.5)
             axes.plot(shares[part], moved[part], linewidth=1.4, linestyle=dashes, color=color, zorder=order)
         for point in branch.critical:
             marker = "o" if point.kind == "fold" else "D"
             axes.plot(
-                shares[point.index], moved[point.index], marker=marker, markersize=4.5, color=ERROR,
+                shares[point.index], moved[point.index], marker=marker, markersize=4.5, color=Color.ERROR,
                 markeredgecolor="white", markeredgewidth=0.8, zorder=4, linestyle="none",
             )  # fmt: skip
     heights = [MILLIMETERS * _displacement(robot, one.pose, name) for one in found.poses]
@@ -194,10 +194,10 @@ def _zoom(axes: Axes, begin: float, heights: Sequence[float]) -> None:
 
 def _draw_key(axes: Axes, branches: Sequence[Branch]) -> None:
     """Draw the legend of lines and marks, if there is more than one kind."""
-    dot = {"linestyle": "none", "color": ERROR, "markersize": 4.5}
+    dot = {"linestyle": "none", "color": Color.ERROR, "markersize": 4.5}
     keys = {
-        "stable": Line2D([], [], color=INK, linewidth=1.4),
-        "unstable": Line2D([], [], color=ERROR, linewidth=1.4, linestyle=(0, (2.5, 1.8))),
+        "stable": Line2D([], [], color=Color.INK, linewidth=1.4),
+        "unstable": Line2D([], [], color=Color.ERROR, linewidth=1.4, linestyle=(0, (2.5, 1.8))),
         "fold": Line2D([], [], marker="o", **dot),
         "bifurcation": Line2D([], [], marker="D", **dot),
     }
@@ -205,7 +205,7 @@ def _draw_key(axes: Axes, branches: Sequence[Branch]) -> None:
     shown |= {"stable" if stable else "unstable" for branch in branches for _, stable in branch.runs()}
     if len(shown) > 1:
         names = [name for name in keys if name in shown]
-        axes.legend([keys[name] for name in names], names, loc="best", fontsize=7, frameon=False, labelcolor=INK)
+        axes.legend([keys[name] for name in names], names, loc="best", fontsize=7, frameon=False, labelcolor=Color.INK)
 
 
 def _number_poses(axes: Axes, heights: Sequence[float]) -> None:

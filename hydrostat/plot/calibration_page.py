@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from hydrostat.arrays import Vector
 from hydrostat.control import SlackCalibration, SpoolCurve, WinchPull
-from hydrostat.drawing import MUTED, WINCHES, Html, tag
+from hydrostat.drawing import Color, Html, tag
 from hydrostat.plot.chart import new_chart
 from hydrostat.plot.report_tables import NARROW, grid, number, page, picture, table
 from hydrostat.plot.sheet import MILLIMETERS
@@ -89,8 +89,8 @@ def _draw_spool(found: SpoolCurve) -> Figure:
     """Cable beside what was thought before, by turns of the spool."""
     figure, axes = new_chart("turns of the spool", "more than thought [mm]", width=NARROW, height=2.4)
     turns = found.turned / (2 * np.pi)
-    axes.plot(turns, MILLIMETERS * (found.readings - found.before), "o", color=WINCHES[0], markersize=4)
-    axes.plot(turns, MILLIMETERS * (found.fitted_lengths - found.before), color=MUTED, linewidth=1.2)
+    axes.plot(turns, MILLIMETERS * (found.readings - found.before), "o", color=Color.WINCHES[0], markersize=4)
+    axes.plot(turns, MILLIMETERS * (found.fitted_lengths - found.before), color=Color.MUTED, linewidth=1.2)
     return figure
 
 
@@ -106,8 +106,10 @@ def _draw(found: SlackCalibration, model: WinchPull, constant: float) -> Figure:
         "cable beyond the edge [mm]", "pull [N]" if known else "current [mA]", width=NARROW, height=2.4
     )
     scale = constant / found.motor.radius if known else 1e3
-    axes.plot(MILLIMETERS * found.places, scale * (found.currents - found.floor), ".", color=WINCHES[0], markersize=4)
+    axes.plot(
+        MILLIMETERS * found.places, scale * (found.currents - found.floor), ".", color=Color.WINCHES[0], markersize=4
+    )
     if known:
         way = np.linspace(min(0.0, float(found.places.min())), reach(found), 40)
-        axes.plot(MILLIMETERS * way, model.at(model.taut + way), color=MUTED, linewidth=1.2)
+        axes.plot(MILLIMETERS * way, model.at(model.taut + way), color=Color.MUTED, linewidth=1.2)
     return figure

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from hydrostat.drawing import GRID, INK, MUTED
+from hydrostat.drawing import Color
 from hydrostat.plot.sheet import WIDTH, new_figure
 
 DASHES = ("-", "--", ":", "-.")  # lines of one color, one after the other
@@ -21,8 +21,8 @@ def new_chart(across: str, up: str, *, width: float = WIDTH, height: float = 3.0
     box = (left / width, lower / height, (width - left - right) / width, (height - lower - upper) / height)
     axes = figure.add_axes(box)
     plain_axes(axes)
-    axes.set_xlabel(across, color=INK, fontsize=8.5)
-    axes.set_ylabel(up, color=INK, fontsize=8.5)
+    axes.set_xlabel(across, color=Color.INK, fontsize=8.5)
+    axes.set_ylabel(up, color=Color.INK, fontsize=8.5)
     axes.xaxis.set_major_locator(MaxNLocator(nbins=10, integer=True, min_n_ticks=1))
     return figure, axes
 
@@ -30,11 +30,11 @@ def new_chart(across: str, up: str, *, width: float = WIDTH, height: float = 3.0
 def plain_axes(axes: Axes, *, size: float = 8) -> None:
     """Give axes the look of all charts: a pale grid, quiet numbers of a size [pt], no frame."""
     axes.set_facecolor("none")
-    axes.grid(color=GRID, linewidth=0.8)
+    axes.grid(color=Color.GRID, linewidth=0.8)
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
-    axes.spines[["left", "bottom"]].set_color(MUTED)
-    axes.tick_params(colors=MUTED, labelsize=size)
+    axes.spines[["left", "bottom"]].set_color(Color.MUTED)
+    axes.tick_params(colors=Color.MUTED, labelsize=size)
 
 
 def short_number(value: float, place: object = None) -> str:

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from hydrostat.design import Alternative, DesignStage, Network, front, sewing_minutes
-from hydrostat.drawing import ERROR, GHOST, INK, SEAM, WINCHES
+from hydrostat.drawing import Color
 from hydrostat.plot.chart import new_chart
 from hydrostat.plot.labels import HALO
 from hydrostat.plot.report_tables import millimeters
@@ -32,15 +32,15 @@ def draw_growth(
     figure, axes = new_chart("stage", "pose error [mm rms]", width=width, height=0.46 * width)
     errors = MILLIMETERS * np.array([stage.error for stage in stages])
     for run in stage_runs(stages):
-        axes.plot(np.array(run) + 1, errors[run], color=SEAM, linewidth=1.6, zorder=3)
+        axes.plot(np.array(run) + 1, errors[run], color=Color.SEAM, linewidth=1.6, zorder=3)
         if run[0]:
-            axes.axvline(run[0] + 0.5, color=GHOST, linewidth=0.9, linestyle=(0, (1, 2)), zorder=1)
+            axes.axvline(run[0] + 0.5, color=Color.GHOST, linewidth=0.9, linestyle=(0, (1, 2)), zorder=1)
     chosen = np.isin(np.arange(len(stages)), list(marked))
-    look = {"linestyle": "none", "marker": "o", "markeredgecolor": SEAM, "zorder": 4, "clip_on": False}
+    look = {"linestyle": "none", "marker": "o", "markeredgecolor": Color.SEAM, "zorder": 4, "clip_on": False}
     numbers = np.arange(1, len(stages) + 1)
     axes.plot(numbers[~chosen], errors[~chosen], markersize=3.2, color="white", markeredgewidth=0.9, **look)
-    axes.plot(numbers[chosen], errors[chosen], markersize=6.0, color=SEAM, markeredgewidth=0.0, **look)
-    levels = {"at rest": (rest, ERROR, -3), "returned": (final, INK, 3)}
+    axes.plot(numbers[chosen], errors[chosen], markersize=6.0, color=Color.SEAM, markeredgewidth=0.0, **look)
+    levels = {"at rest": (rest, Color.ERROR, -3), "returned": (final, Color.INK, 3)}
     for words, (error, color, lift) in levels.items():
         if error is not None:
             _draw_level(axes, MILLIMETERS * error, words, color, lift)
@@ -98,19 +98,19 @@ def draw_front(
     figure, axes = new_chart("minutes of sewing", "error once built [mm rms]", width=width, height=0.5 * width)
     points = [(sewing_minutes(one.robot), MILLIMETERS * one.built) for one in networks]
     best = front(points)
-    axes.plot(*np.transpose([points[index] for index in best]), color=GHOST, linewidth=1.2, zorder=2)
+    axes.plot(*np.transpose([points[index] for index in best]), color=Color.GHOST, linewidth=1.2, zorder=2)
     _draw_dots(axes, networks, points, set(best))
     if tolerance is not None:
-        axes.axhline(MILLIMETERS * tolerance, color=ERROR, linewidth=1.0, linestyle=(0, (3, 2)), zorder=2)
+        axes.axhline(MILLIMETERS * tolerance, color=Color.ERROR, linewidth=1.0, linestyle=(0, (3, 2)), zorder=2)
         axes.annotate(
             "tolerance", (0.0, MILLIMETERS * tolerance), xycoords=("axes fraction", "data"), xytext=(3, 2),
-            textcoords="offset points", fontsize=7.5, color=ERROR, ha="left", va="bottom",
+            textcoords="offset points", fontsize=7.5, color=Color.ERROR, ha="left", va="bottom",
         )  # fmt: skip
     axes.set_ylim(0.0, 1.15 * max([MILLIMETERS * (tolerance or 0.0), 1e-6, *(error for _, error in points)]))
     axes.margins(x=0.06)
     _draw_counts(axes, networks, points)
     _draw_chosen(axes, points[0])
-    axes.legend(loc="upper right", fontsize=8, frameon=False, labelcolor=INK, handlelength=1.0)
+    axes.legend(loc="upper right", fontsize=8, frameon=False, labelcolor=Color.INK, handlelength=1.0)
     return figure
 
 
@@ -121,7 +121,7 @@ def _draw_dots(axes: Axes, networks: Sequence[Alternative | Network], dots: Sequ
     """All dots; a line of the legend for each number of winches."""
     counts = [len(one.robot.winches) for one in networks]
     for number, count in enumerate(sorted(set(counts))):
-        color, name = WINCHES[number % len(WINCHES)], plural(count, "winch")
+        color, name = Color.WINCHES[number % len(Color.WINCHES)], plural(count, "winch")
         axes.plot([], [], marker="o", markersize=5.5, linestyle="none", color=color, label=name)
         for index in (index for index, other in enumerate(counts) if other == count):
             axes.plot(
@@ -140,18 +140,19 @@ def _draw_counts(axes: Axes, networks: Sequence[Alternative | Network], dots: Se
             written.append(place)
             axes.annotate(
                 str(len(one.robot.cables)), dot, xytext=(0, 4 if number else -8), textcoords="offset points",
-                fontsize=7.5, color=INK, ha="center", va="bottom" if number else "top", gid=HALO, annotation_clip=False,
+                fontsize=7.5, color=Color.INK, ha="center", va="bottom" if number else "top", gid=HALO,
+                annotation_clip=False,
             )  # fmt: skip
 
 
 def _draw_chosen(axes: Axes, place: Dot) -> None:
     """A ring around the dot of the chosen network, named where there is room."""
-    axes.plot(*place, marker="o", markersize=12, color="none", markeredgecolor=INK, markeredgewidth=1.3, zorder=5,
+    axes.plot(*place, marker="o", markersize=12, color="none", markeredgecolor=Color.INK, markeredgewidth=1.3, zorder=5,
         clip_on=False)  # fmt: skip
     low, high = axes.get_xlim()
     left = place[0] > (low + high) / 2
     axes.annotate(
         f"chosen: {millimeters(place[1] / MILLIMETERS)} mm", place, xytext=(-4 if left else 4, 11),
-        textcoords="offset points", fontsize=8.5, color=INK, weight="bold", gid=HALO, ha="right" if left else "left",
-        annotation_clip=False,
+        textcoords="offset points", fontsize=8.5, color=Color.INK, weight="bold", gid=HALO,
+        ha="right" if left else "left", annotation_clip=False,
     )  # fmt: skip

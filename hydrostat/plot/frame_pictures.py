@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import UInt8
 from matplotlib.artist import Artist
 
-from hydrostat.drawing import PAPER
+from hydrostat.drawing import Color
 from hydrostat.plot.frame import Attachments, Frame
 from hydrostat.plot.hardware import draw_hardware
 from hydrostat.plot.labels import shorten
@@ -49,7 +49,7 @@ class FramePictures:
         finer = 1.25
         pixel = fit_pixel(self._sheet, self._sheet.high - self._sheet.low, dpi=finer * self._dpi)
         self._pane = replace(pane, pixel=pixel) if isinstance(pane, SpacePane) else pane
-        self._sheet.figure.set_facecolor(PAPER)
+        self._sheet.figure.set_facecolor(Color.PAPER)
         self._sheet.figure.set_dpi(self._dpi)
         if robot.cables:
             self._scale.draw_bar(self._sheet, of="cable tension")

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from hydrostat.drawing import ERROR, INK, MUTED, WINCHES
+from hydrostat.drawing import Color
 from hydrostat.grasp import PullCase, PullOut
 from hydrostat.plot.chart import plain_axes
 from hydrostat.plot.frame import Attachments, Frame
@@ -38,25 +38,25 @@ def draw_pull(
     figure = new_figure(width, 0.45 + tall + 3.1)
     height = figure.get_figheight()
     figure.text(
-        0.1 / width, 1 - 0.22 / height, shorten(robot.name) if title is None else title, color=INK, weight="bold"
+        0.1 / width, 1 - 0.22 / height, shorten(robot.name) if title is None else title, color=Color.INK, weight="bold"
     )
     for index, (words, image) in enumerate(zip(rows, images, strict=True)):
         axes = figure.add_axes(((index + 0.03) * side / width, 3.1 / height, 0.94 * side / width, tall / height))
         axes.imshow(image, interpolation="antialiased")
         axes.set_axis_off()
-        axes.set_title(words, fontsize=8, color=INK, pad=2, parse_math=False)
+        axes.set_title(words, fontsize=8, color=Color.INK, pad=2, parse_math=False)
     axes = figure.add_axes((0.62 / width, 0.5 / height, (width - 0.82) / width, 2.4 / height))
     plain_axes(axes)
     for case in cases:
         if case.pull is not None:
             dashed = case.name == "no friction"
             (line,) = axes.plot(MILLIMETERS * case.pull.moved, case.pull.forces, linewidth=1.0)
-            line.set(color=MUTED if dashed else WINCHES[0], linestyle="--" if dashed else "-", alpha=0.4)
-    axes.plot(MILLIMETERS * pull.moved, pull.forces, color=WINCHES[0], linewidth=2.0)
-    axes.plot(MILLIMETERS * pull.moved[hardest], pull.peak, "o", color=ERROR, markersize=4)
-    axes.axhline(0.0, color=MUTED, linewidth=0.8)
-    axes.set_xlabel("way of the thing along the pull [mm]", color=INK, fontsize=8.5)
-    axes.set_ylabel("force [N]", color=INK, fontsize=8.5)
+            line.set(color=Color.MUTED if dashed else Color.WINCHES[0], linestyle="--" if dashed else "-", alpha=0.4)
+    axes.plot(MILLIMETERS * pull.moved, pull.forces, color=Color.WINCHES[0], linewidth=2.0)
+    axes.plot(MILLIMETERS * pull.moved[hardest], pull.peak, "o", color=Color.ERROR, markersize=4)
+    axes.axhline(0.0, color=Color.MUTED, linewidth=0.8)
+    axes.set_xlabel("way of the thing along the pull [mm]", color=Color.INK, fontsize=8.5)
+    axes.set_ylabel("force [N]", color=Color.INK, fontsize=8.5)
     return figure
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.drawing import DARK, FELT, LIGHT, MUTED, mix, winch_colors
+from hydrostat.drawing import Color, mix, winch_colors
 from hydrostat.plot.drawn_body import DrawnBody, DrawnCable
 from hydrostat.plot.frame import Attachments
 from hydrostat.plot.labels import Labels, shorten
@@ -58,7 +58,7 @@ def draw_hardware(
     cables, winches = [body.cable(points) for points in carried.cables(nodes)], carried.winches(nodes)
     drawn = DrawnRobot(pane, body, cables, pane.places(winches))
     for line in obstacle_lines(carried.robot):
-        sheet.curve(pane.places(line), color=MUTED, linewidth=1.2, clip_on=True)
+        sheet.curve(pane.places(line), color=Color.MUTED, linewidth=1.2, clip_on=True)
     _draw_cables(sheet, carried.robot, cables, colors=colors, width=width)
     _draw_winches(sheet, carried.robot, drawn.winches, body.fades(winches), contractions=contractions)
     return drawn
@@ -112,7 +112,7 @@ def _draw_winches(
         _draw_spool(sheet, winch, center, colors[winch.name], float(fade))
         if contractions is not None:
             turn = float(contractions[index]) / winch.spool_radius
-            _draw_hand(sheet, winch, center, turn, _fade_color(DARK, float(fade)), 20.3 if fade == 0 else 10.8)
+            _draw_hand(sheet, winch, center, turn, _fade_color(Color.DARK, float(fade)), 20.3 if fade == 0 else 10.8)
 
 
 def name_winches(labels: Labels, robot: Robot, centers: Places, notes: Sequence[str] = ()) -> None:
@@ -130,10 +130,10 @@ def draw_numbers(sheet: PictureSheet, runs: list[Places], colors: Sequence[str],
     beads = _beads(runs, 13 * sheet.scale)
     for number, (at, color) in enumerate(zip(beads, colors, strict=True), start=1):
         labels.reserve(at, 11)
-        sheet.dots(at[None], 11, color=color, markeredgecolor=LIGHT, markeredgewidth=1.0, zorder=12)
+        sheet.dots(at[None], 11, color=color, markeredgecolor=Color.LIGHT, markeredgewidth=1.0, zorder=12)
         sheet.text(
-            (at[0], at[1]), str(number), fontsize=6.5, color=LIGHT, weight="bold", ha="center", va="center_baseline",
-            zorder=13,
+            (at[0], at[1]), str(number), fontsize=6.5, color=Color.LIGHT, weight="bold", ha="center",
+            va="center_baseline", zorder=13,
         )  # fmt: skip
     return beads
 
@@ -172,12 +172,12 @@ def _along(run: Places, share: float) -> Place:
 
 def _draw_spool(sheet: PictureSheet, winch: Winch, center: Place, color: str, fade: float) -> None:
     """Flange, drum and axle; a winch outside the body sits on a square plate, a covered one beneath markers."""
-    size, light, color = spool_size(winch, sheet.scale), _fade_color(LIGHT, fade), _fade_color(color, fade)
+    size, light, color = spool_size(winch, sheet.scale), _fade_color(Color.LIGHT, fade), _fade_color(color, fade)
     order = 19.0 if fade == 0 else 9.5
     if winch.mount is Mount.WORLD:
         sheet.curve(
             center[None], linestyle="none", marker="s", markersize=1.5 * size, color=light,
-            markeredgecolor=_fade_color(DARK, fade), markeredgewidth=0.9, zorder=order,
+            markeredgecolor=_fade_color(Color.DARK, fade), markeredgewidth=0.9, zorder=order,
         )  # fmt: skip
     sheet.dots(center[None], size, color=color, markeredgecolor=light, markeredgewidth=1.0, zorder=order + 1)
     sheet.dots(center[None], 0.58 * size, color=mix(color, light, 0.75), markeredgecolor="none", zorder=order + 1.1)
@@ -194,33 +194,37 @@ def _draw_hand(sheet: PictureSheet, winch: Winch, center: Place, turn: float, co
 def _draw_sheath(sheet: PictureSheet, pipe: Places, color: str, width: float, fade: float) -> None:
     """A pale pipe around a piece of a cable, beneath all cables where the body covers it."""
     wall, order = _fade_color(color, fade), 6.0 if fade > 0 else 8.2
-    sheet.curve(pipe, color=mix(wall, LIGHT, 0.35), linewidth=width + 5.0, solid_capstyle="butt", zorder=order)
-    sheet.curve(pipe, color=mix(wall, LIGHT, 0.82), linewidth=width + 3.6, solid_capstyle="butt", zorder=order + 0.1)
+    sheet.curve(pipe, color=mix(wall, Color.LIGHT, 0.35), linewidth=width + 5.0, solid_capstyle="butt", zorder=order)
+    sheet.curve(
+        pipe, color=mix(wall, Color.LIGHT, 0.82), linewidth=width + 3.6, solid_capstyle="butt", zorder=order + 0.1
+    )
 
 
 def _draw_part(sheet: PictureSheet, part: Places, color: str, width: float, fade: float) -> None:
     """Pieces of a cable: with a pale border where they lie in front, thinner where the body covers them."""
     if fade > 0:
-        sheet.curve(part, color=_fade_color(LIGHT, 0.45 + 0.5 * fade), linewidth=0.8 * width + 1.4, zorder=6.9 - fade)
+        sheet.curve(
+            part, color=_fade_color(Color.LIGHT, 0.45 + 0.5 * fade), linewidth=0.8 * width + 1.4, zorder=6.9 - fade
+        )
         sheet.curve(part, color=_fade_color(color, fade), linewidth=0.8 * width, zorder=7 - fade)
     else:
-        sheet.curve(part, color=LIGHT, linewidth=width + 1.8, alpha=0.85, zorder=8)
+        sheet.curve(part, color=Color.LIGHT, linewidth=width + 1.8, alpha=0.85, zorder=8)
         sheet.curve(part, color=color, linewidth=width, zorder=9)
 
 
 def _draw_beads(sheet: PictureSheet, run: DrawnCable, color: str) -> None:
     fades = run.fades[1:-1]
     for fade in np.unique(fades):
-        look = {"color": _fade_color(LIGHT, fade), "markeredgecolor": _fade_color(color, fade)}
+        look = {"color": _fade_color(Color.LIGHT, fade), "markeredgecolor": _fade_color(color, fade)}
         beads = run.points[1:-1][fades == fade]
         sheet.dots(beads, 2.2 if fade else 3.0, markeredgewidth=0.6 if fade else 0.9, zorder=9.2 - 2 * fade, **look)
 
 
 def _draw_stopper(sheet: PictureSheet, run: DrawnCable, color: str, width: float) -> None:
     bar, fade = stopper_bar(run.points, sheet.scale), float(run.fades[-1])
-    sheet.curve(bar, color=_fade_color(LIGHT, fade), linewidth=width + 2.4, zorder=9.3)
+    sheet.curve(bar, color=_fade_color(Color.LIGHT, fade), linewidth=width + 2.4, zorder=9.3)
     sheet.curve(bar, color=_fade_color(color, fade), linewidth=width + 0.8, zorder=9.4)
 
 
 def _fade_color(color: str, fade: float) -> str:
-    return mix(color, FELT, fade) if fade > 0 else color
+    return mix(color, Color.FELT, fade) if fade > 0 else color

@@ -9,7 +9,7 @@ from jaxtyping import Float, Int
 from matplotlib.figure import Figure
 
 from hydrostat.arrays import Points
-from hydrostat.drawing import ERROR, INK, LIGHT, MUTED, Camera, Render, Spots, channels, render, three_quarter
+from hydrostat.drawing import Camera, Color, Render, Spots, channels, render, three_quarter
 from hydrostat.geometry import Surface, sides_of
 from hydrostat.plot.pane import fit_pixel, lay_image
 from hydrostat.plot.sheet import MILLIMETERS, TALLEST, WIDTH, PictureSheet, Place, new_sheet, round_step
@@ -45,8 +45,8 @@ def draw_healing(
     lay_image(sheet, image, layout.shifts[0])
     _draw_edges(sheet, image, spots[edges], layout.shifts[0])
     rings = _apart(rings[:, :2] + layout.shifts[0], 10 * sheet.scale)
-    sheet.dots(rings, 13, color="none", markeredgecolor=LIGHT, markeredgewidth=3.2, zorder=20)
-    sheet.dots(rings, 13, color="none", markeredgecolor=ERROR, markeredgewidth=1.6, zorder=20.1)
+    sheet.dots(rings, 13, color="none", markeredgecolor=Color.LIGHT, markeredgewidth=3.2, zorder=20)
+    sheet.dots(rings, 13, color="none", markeredgecolor=Color.ERROR, markeredgewidth=1.6, zorder=20.1)
     image = render(healed, second.triangles, pixel=_pixel(sheet, healed), up=camera.sky)
     lay_image(sheet, image, layout.shifts[1])
     _write(sheet, layout, (before, after), lines)
@@ -119,7 +119,7 @@ def _both_sides(spots: Spots, triangles: Int[np.ndarray, "triangles 3"], pixel: 
     """A surface with its outside as felt and its inside, where that is nearer, in red."""
     outside = render(spots, triangles, pixel=pixel, up=camera.sky)
     inside = render(spots, triangles[:, ::-1], pixel=pixel, up=camera.sky)
-    red = np.array(channels(ERROR)) / 255
+    red = np.array(channels(Color.ERROR)) / 255
     nearer = inside.buffer.depth > outside.buffer.depth
     tinted = inside.colors.copy()
     redness = 0.72  # how red the inside of a surface is drawn where it is seen
@@ -137,19 +137,19 @@ def _draw_edges(sheet: PictureSheet, image: Render, ends: Float[np.ndarray, "edg
     """Edges as red lines; those behind the surface are left out."""
     if len(ends):
         hidden = image.covers(ends.mean(axis=1)) > 4 * image.buffer.pixel
-        sheet.segments(ends[~hidden][..., :2] + shift, color=ERROR, linewidth=1.3, zorder=10)
+        sheet.segments(ends[~hidden][..., :2] + shift, color=Color.ERROR, linewidth=1.3, zorder=10)
 
 
 def _write(sheet: PictureSheet, layout: _PairLayout, surfaces: tuple[Surface, Surface], lines: Sequence[str]) -> None:
     for words, surface, top in zip(("as it came", "healed"), surfaces, layout.tops, strict=True):
         count = f"{len(surface.triangles):,} triangles".replace(",", "\N{NARROW NO-BREAK SPACE}")
-        sheet.text((top[0], top[1] + 11 * layout.point), words, fontsize=9, color=INK, weight="bold", ha="center")
-        sheet.text((top[0], top[1]), count, fontsize=7.5, color=MUTED, ha="center")
+        sheet.text((top[0], top[1] + 11 * layout.point), words, fontsize=9, color=Color.INK, weight="bold", ha="center")
+        sheet.text((top[0], top[1]), count, fontsize=7.5, color=Color.MUTED, ha="center")
     length = round_step(4 * 60 * layout.point)
     x, y = layout.foot[0], layout.foot[1] - 20 * layout.point
-    sheet.curve(np.array([[x, y], [x + length, y]]), color=INK, linewidth=1.6, solid_capstyle="butt", zorder=12)
+    sheet.curve(np.array([[x, y], [x + length, y]]), color=Color.INK, linewidth=1.6, solid_capstyle="butt", zorder=12)
     words = f"{length:g} mm"
-    sheet.text((x + length + 5 * layout.point, y), words, fontsize=7, color=INK, va="center", zorder=12)
+    sheet.text((x + length + 5 * layout.point, y), words, fontsize=7, color=Color.INK, va="center", zorder=12)
     for number, line in enumerate(lines):
         at = (x, y - (number + 1.1) * LINE * layout.point)
-        sheet.text(at, line, fontsize=7.5, color=INK, va="center")
+        sheet.text(at, line, fontsize=7.5, color=Color.INK, va="center")

@@ -3,7 +3,7 @@
 import numpy as np
 import shapely
 
-from hydrostat.drawing import INK, LIGHT
+from hydrostat.drawing import Color
 from hydrostat.plot.sheet import PictureSheet, Place, Places
 
 HALO = "halo"  # group name of words that need a border of paper around their letters
@@ -27,8 +27,8 @@ class Labels:
         side = float(np.sign(np.round((center - at)[0] / extent[0], 2)))
         align = {1.0: "left", -1.0: "right"}.get(side, "center")
         self._sheet.text(
-            (center[0] - side * extent[0] / 2, center[1]), words, fontsize=size, color=INK, weight=weight, ha=align,
-            va="center_baseline", gid=HALO, zorder=30,
+            (center[0] - side * extent[0] / 2, center[1]), words, fontsize=size, color=Color.INK, weight=weight,
+            ha=align, va="center_baseline", gid=HALO, zorder=30,
         )  # fmt: skip
 
     def flag(self, at: Place, words: str, color: str) -> None:
@@ -37,9 +37,9 @@ class Labels:
         center = self._find(at, extent, (12.0, 18.0, 27.0, 40.0, 60.0, 85.0), 0.0)
         self._sheet.curve(np.array([at, center]), color=color, linewidth=0.9, zorder=10)
         self._sheet.text(
-            (center[0], center[1]), words, fontsize=7, color=LIGHT, weight="bold", ha="center", va="center_baseline",
-            zorder=25, bbox={"boxstyle": "round,pad=0.32,rounding_size=0.6", "facecolor": color, "edgecolor": LIGHT,
-            "linewidth": 0.7},
+            (center[0], center[1]), words, fontsize=7, color=Color.LIGHT, weight="bold", ha="center",
+            va="center_baseline", zorder=25, bbox={"boxstyle": "round,pad=0.32,rounding_size=0.6",
+            "facecolor": color, "edgecolor": Color.LIGHT, "linewidth": 0.7},
         )  # fmt: skip
 
     def reserve(self, at: Place, size: float) -> None:

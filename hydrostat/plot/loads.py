@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.patches import FancyArrowPatch
 
 from hydrostat.arrays import Nodes
-from hydrostat.drawing import ERROR, LIGHT, MUTED
+from hydrostat.drawing import Color
 from hydrostat.geometry import locate
 from hydrostat.plot.pane import Pane
 from hydrostat.plot.sheet import PictureSheet
@@ -18,7 +18,7 @@ def draw_rods(sheet: PictureSheet, pane: Pane, robot: Robot, nodes: Nodes) -> No
         shares = np.linspace(0, len(corners) - 1, 100 * (len(corners) - 1) + 1)
         line = np.stack([np.interp(shares, np.arange(len(corners)), column) for column in corners.T], axis=1)
         places = pane.places(locate(robot.body.mesh, line).positions(nodes))
-        for color, width, order in ((LIGHT, 3.4, 8), (MUTED, 2.0, 8.1)):
+        for color, width, order in ((Color.LIGHT, 3.4, 8), (Color.MUTED, 2.0, 8.1)):
             sheet.curve(places, color=color, linewidth=width, zorder=order)
 
 
@@ -36,9 +36,9 @@ def draw_loads(sheet: PictureSheet, pane: Pane, robot: Robot, nodes: Nodes) -> N
         start, end = pane.places(np.array([at, at + length * force / size]))
         arrow = FancyArrowPatch(
             tuple(start), tuple(end), arrowstyle="-|>,head_length=5,head_width=2.5", shrinkA=0, shrinkB=0,
-            color=ERROR, linewidth=1.8, zorder=17.5, clip_on=False,
+            color=Color.ERROR, linewidth=1.8, zorder=17.5, clip_on=False,
         )  # fmt: skip
         sheet.axes.add_patch(arrow)
         beside = end + 4 * sheet.scale * (end - start) / max(float(np.linalg.norm(end - start)), 1e-300)
-        style = {"color": ERROR, "fontsize": 7, "weight": "bold", "ha": "center", "va": "center", "zorder": 18}
+        style = {"color": Color.ERROR, "fontsize": 7, "weight": "bold", "ha": "center", "va": "center", "zorder": 18}
         sheet.text((float(beside[0]), float(beside[1])), f"{size:.3g} N", **style)

@@ -5,20 +5,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.drawing import (
-    FELT,
-    FELT_LIGHT,
-    LIGHT,
-    NAMESPACE,
-    SEAM,
-    STITCH,
-    Html,
-    mix,
-    path,
-    shape,
-    tag,
-    winch_colors,
-)
+from hydrostat.drawing import NAMESPACE, Color, Html, mix, path, shape, tag, winch_colors
 from hydrostat.plot.frame import Attachments
 from hydrostat.plot.hardware import spool_size, stopper_bar
 from hydrostat.plot.sheet import MILLIMETERS, Places, frame_points
@@ -56,8 +43,10 @@ def motion_svg(robot: Robot, frames: Sequence[Nodes], *, label: str) -> Html:
     shapes = [_outline(skin.shape(nodes)) for nodes in frames]
     seams = [_outline(skin.seam(nodes)) for nodes in frames]
     parts = [
-        _moving(shapes, seconds, fill=FELT, stroke=SEAM, stroke_width="1.3"),
-        _moving(seams, seconds, fill=FELT_LIGHT, stroke=STITCH, stroke_width="1.1", stroke_dasharray="3 2.4"),
+        _moving(shapes, seconds, fill=Color.FELT, stroke=Color.SEAM, stroke_width="1.3"),
+        _moving(
+            seams, seconds, fill=Color.FELT_LIGHT, stroke=Color.STITCH, stroke_width="1.1", stroke_dasharray="3 2.4"
+        ),
         *_cables(robot, frames, seconds),
         *_winches(robot, frames, seconds),
     ]
@@ -80,7 +69,7 @@ def _cables(robot: Robot, frames: Sequence[Nodes], seconds: float) -> list[Html]
     for index, cable in enumerate(robot.cables):
         bars = [_outline([stopper_bar(MILLIMETERS * run[index], SCALE) / MILLIMETERS], closed=False) for run in runs]
         paths = [_outline([run[index]], closed=False) for run in runs]
-        for color, width in ((LIGHT, 3.2), (colors[cable.winch], 1.7)):
+        for color, width in ((Color.LIGHT, 3.2), (colors[cable.winch], 1.7)):
             look = {"fill": "none", "stroke": color, "stroke_linecap": "round"}
             lines.append(_moving(paths, seconds, stroke_width=f"{width}", **look))
             lines.append(_moving(bars, seconds, stroke_width=f"{width + 0.5}", **look))
@@ -94,7 +83,7 @@ def _winches(robot: Robot, frames: Sequence[Nodes], seconds: float) -> list[Html
         radius = spool_size(winch, SCALE) * SCALE / 2
         discs = [
             shape("circle", r=f"{radius * share:.2f}", fill=fill)
-            for share, fill in ((1.12, LIGHT), (1, color), (0.58, mix(color, LIGHT, 0.75)), (0.2, color))
+            for share, fill in ((1.12, Color.LIGHT), (1, color), (0.58, mix(color, Color.LIGHT, 0.75)), (0.2, color))
         ]
         way = [f"{place[index][0]:.2f} {-place[index][1]:.2f}" for place in places]
         move = _animation("animateTransform", "transform", way, seconds, type="translate")

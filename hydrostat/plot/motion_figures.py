@@ -8,7 +8,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from hydrostat.arrays import Vector
-from hydrostat.drawing import ERROR, GHOST, INK, MUTED, WINCHES, winch_colors
+from hydrostat.drawing import Color, winch_colors
 from hydrostat.ik import KeyPose, Trajectory
 from hydrostat.plot.chart import DASHES, plain_axes
 from hydrostat.plot.frame import Attachments
@@ -31,11 +31,11 @@ def draw_motion(robot: Robot, table: MotionTable, *, title: str | None = None, w
     upper, middle, lower = figure.subplots(3, 1, sharex=True)
     head = shorten(robot.name) if title is None else title
     if head:
-        upper.set_title(head, loc="left", color=INK, fontsize=11, fontweight="bold")
+        upper.set_title(head, loc="left", color=Color.INK, fontsize=11, fontweight="bold")
     colors = winch_colors(robot.winches)
     way = MILLIMETERS * np.linalg.norm(table.markers - table.markers[0], axis=2)
     names = [marker.name for marker in robot.markers]
-    others = cycle([color for color in WINCHES if color not in colors.values()] or WINCHES)
+    others = cycle([color for color in Color.WINCHES if color not in colors.values()] or Color.WINCHES)
     _lines(upper, table.times, way, names, [colors.get(name) or next(others) for name in names])
     upper.set_ylabel("marker moved [mm]")
     winches = [winch.name for winch in robot.winches]
@@ -44,7 +44,7 @@ def draw_motion(robot: Robot, table: MotionTable, *, title: str | None = None, w
     cables = [f"{index + 1} {cable.winch}" for index, cable in enumerate(robot.cables)]
     _lines(lower, table.times, table.tensions, cables, [colors[cable.winch] for cable in robot.cables])
     lower.set_ylabel("tension [N]")
-    lower.set_xlabel("time [s]", color=INK)
+    lower.set_xlabel("time [s]", color=Color.INK)
     lower.set_xlim(table.times[0], max(table.times[-1], table.times[0] + 1e-9))
     return figure
 
@@ -52,7 +52,7 @@ def draw_motion(robot: Robot, table: MotionTable, *, title: str | None = None, w
 def _lines(axes: Axes, times: np.ndarray, values: np.ndarray, names: list[str], colors: list[str]) -> None:
     """A line for each column; those that move most are named beside their ends, as many as there is place for."""
     plain_axes(axes)
-    axes.yaxis.label.set_color(INK)
+    axes.yaxis.label.set_color(Color.INK)
     dashes = {}
     for column, (name, color) in enumerate(zip(names, colors, strict=True)):
         count = dashes.setdefault(color, 0)
@@ -71,7 +71,7 @@ def _lines(axes: Axes, times: np.ndarray, values: np.ndarray, names: list[str], 
             bbox_to_anchor=(1.01, 0.5),
             fontsize=8,
             frameon=False,
-            labelcolor=INK,
+            labelcolor=Color.INK,
         )
 
 
@@ -100,7 +100,7 @@ def draw_trajectory(robot: Robot, trajectory: Trajectory, *, title: str | None =
         axes = figure.add_axes((left / width, (height - top - tall) / height, 0.94 * side / width, tall / height))
         axes.imshow(image, interpolation="antialiased")
         axes.set_axis_off()
-        axes.set_title(f"{shorten(name)}\n{time:.2f} s", fontsize=7.5, color=INK, pad=2, parse_math=False)
+        axes.set_title(f"{shorten(name)}\n{time:.2f} s", fontsize=7.5, color=Color.INK, pad=2, parse_math=False)
     _charts(figure, robot, trajectory, height - top - tall - 0.2)
     return figure
 
@@ -126,9 +126,9 @@ def _head(figure: Figure, title: str, trajectory: Trajectory) -> None:
     if trajectory.branch_jumps:
         used += f", snaps at {', '.join(f'{snap.time:.2f} s' for snap in trajectory.branch_jumps[:4])}"
     figure.text(
-        0.12 / width, 1 - 0.1 / height, title, fontsize=11, color=INK, weight="bold", va="top", parse_math=False
+        0.12 / width, 1 - 0.1 / height, title, fontsize=11, color=Color.INK, weight="bold", va="top", parse_math=False
     )
-    figure.text(1 - 0.12 / width, 1 - 0.13 / height, used, fontsize=8, color=MUTED, va="top", ha="right")
+    figure.text(1 - 0.12 / width, 1 - 0.13 / height, used, fontsize=8, color=Color.MUTED, va="top", ha="right")
 
 
 def _charts(figure: Figure, robot: Robot, trajectory: Trajectory, top: float) -> None:
@@ -153,7 +153,7 @@ def _charts(figure: Figure, robot: Robot, trajectory: Trajectory, top: float) ->
         for column, name in enumerate(trajectory.winches):
             axes.plot(
                 trajectory.times, MILLIMETERS * values[:, column], color=colors[name], linewidth=1.4,
-                linestyle=DASHES[column // len(WINCHES) % len(DASHES)], label=shorten(name),
+                linestyle=DASHES[column // len(Color.WINCHES) % len(DASHES)], label=shorten(name),
             )  # fmt: skip
         if limits is not None:
             _limits(axes, limits)
@@ -161,7 +161,7 @@ def _charts(figure: Figure, robot: Robot, trajectory: Trajectory, top: float) ->
             _name_keys(axes, trajectory.keyframes, trajectory.seconds)
         if row == 0 and trajectory.winches:
             axes.legend(
-                loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=7.5, frameon=False, labelcolor=INK,
+                loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=7.5, frameon=False, labelcolor=Color.INK,
                 handlelength=1.6, borderaxespad=0.0, labelspacing=0.35,
             )  # fmt: skip
     assert first is not None
@@ -171,20 +171,20 @@ def _charts(figure: Figure, robot: Robot, trajectory: Trajectory, top: float) ->
 def _chart(axes: Axes, label: str, *, last: bool) -> None:
     plain_axes(axes, size=7.5)
     axes.tick_params(labelbottom=last)
-    axes.set_ylabel(label, color=INK, fontsize=8)
+    axes.set_ylabel(label, color=Color.INK, fontsize=8)
     # Numbers far from 1 would be so wide that the label leaves the picture.
     axes.ticklabel_format(axis="y", scilimits=(-1, 4), useOffset=False)
-    axes.yaxis.get_offset_text().set(fontsize=6.5, color=MUTED)
+    axes.yaxis.get_offset_text().set(fontsize=6.5, color=Color.MUTED)
     if last:
-        axes.set_xlabel("time [s]", color=INK, fontsize=8)
+        axes.set_xlabel("time [s]", color=Color.INK, fontsize=8)
 
 
 def _events(axes: Axes, trajectory: Trajectory) -> None:
     """Keyframes and snaps."""
     for key in trajectory.keyframes:
-        axes.axvline(key.time, color=GHOST, linewidth=0.9, zorder=1)
+        axes.axvline(key.time, color=Color.GHOST, linewidth=0.9, zorder=1)
     for snap in trajectory.branch_jumps:
-        axes.axvline(snap.time, color=ERROR, linewidth=0.9, linestyle=(0, (1, 1.5)), zorder=1.5)
+        axes.axvline(snap.time, color=Color.ERROR, linewidth=0.9, linestyle=(0, (1, 1.5)), zorder=1.5)
 
 
 def _name_keys(axes: Axes, keys: tuple[KeyPose, ...], seconds: float) -> None:
@@ -194,7 +194,7 @@ def _name_keys(axes: Axes, keys: tuple[KeyPose, ...], seconds: float) -> None:
         if key.time - last > 0.09 * seconds:
             axes.annotate(
                 shorten(key.name), (key.time, 1.0), xycoords=("data", "axes fraction"), xytext=(0, 2),
-                textcoords="offset points", fontsize=6.5, color=MUTED, ha="center", va="bottom",
+                textcoords="offset points", fontsize=6.5, color=Color.MUTED, ha="center", va="bottom",
                 parse_math=False, annotation_clip=False,
             )  # fmt: skip
             last = key.time
@@ -204,8 +204,10 @@ def _limits(axes: Axes, limits: Vector) -> None:
     """Both limits, where all winches have the same one."""
     if len(limits) and np.isfinite(limits).all() and np.ptp(limits) == 0:
         for sign in (-1.0, 1.0):
-            axes.axhline(sign * MILLIMETERS * limits[0], color=ERROR, linewidth=0.9, linestyle=(0, (3, 2)), zorder=2)
+            axes.axhline(
+                sign * MILLIMETERS * limits[0], color=Color.ERROR, linewidth=0.9, linestyle=(0, (3, 2)), zorder=2
+            )
         axes.annotate(
             "limit", (1.0, MILLIMETERS * limits[0]), xycoords=("axes fraction", "data"), xytext=(-2, 2),
-            textcoords="offset points", fontsize=6.5, color=ERROR, ha="right", va="bottom",
+            textcoords="offset points", fontsize=6.5, color=Color.ERROR, ha="right", va="bottom",
         )  # fmt: skip

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.drawing import GRID, INK, MUTED, Camera, along_an_axis, three_quarter
+from hydrostat.drawing import Camera, Color, along_an_axis, three_quarter
 from hydrostat.plot.pane import FlatPane, Pane, SpacePane
 from hydrostat.plot.sheet import MILLIMETERS, TALLEST, WIDTH, PictureSheet, Place, Spread, new_sheet, round_step
 from hydrostat.plot.skin import FlatSkin
@@ -158,15 +158,15 @@ def draw_compass(sheet: PictureSheet, camera: Camera, low: Place) -> None:
     for way, name in zip(ways, "xyz", strict=True):
         if np.linalg.norm(way) > 3 * point:
             end = middle + way
-            sheet.curve(np.array([middle, end]), color=MUTED, linewidth=1.0, zorder=12)
+            sheet.curve(np.array([middle, end]), color=Color.MUTED, linewidth=1.0, zorder=12)
             letter = end + way / np.linalg.norm(way) * 5 * point
-            sheet.text((letter[0], letter[1]), name, fontsize=7, color=MUTED, ha="center", va="center", zorder=12)
+            sheet.text((letter[0], letter[1]), name, fontsize=7, color=Color.MUTED, ha="center", va="center", zorder=12)
     length = round_step(4 * 55 * point)
     left = low + np.array([24.0 + 2 * arm, 8.0]) * point
     bar = np.array([left, left + np.array([length, 0.0])])
-    sheet.curve(bar, color=INK, linewidth=1.6, solid_capstyle="butt", zorder=12)
+    sheet.curve(bar, color=Color.INK, linewidth=1.6, solid_capstyle="butt", zorder=12)
     words = left + np.array([length / 2, 4 * point])
-    sheet.text((words[0], words[1]), f"{length:g} mm", fontsize=7, color=INK, ha="center", va="bottom", zorder=12)
+    sheet.text((words[0], words[1]), f"{length:g} mm", fontsize=7, color=Color.INK, ha="center", va="bottom", zorder=12)
 
 
 def draw_rules(sheet: PictureSheet, camera: Camera, low: Place, high: Place, origin: Place) -> None:
@@ -185,15 +185,15 @@ def draw_rules(sheet: PictureSheet, camera: Camera, low: Place, high: Place, ori
             start[side] = low[side] + mark - origin[side]
             end = high + 3 * sheet.scale
             end[side] = start[side]
-            sheet.curve(np.array([start, end]), color=GRID, linewidth=0.6, zorder=1)
+            sheet.curve(np.array([start, end]), color=Color.GRID, linewidth=0.6, zorder=1)
             words = f"{sign * mark + 0.0:.10g}".replace("-", "\N{MINUS SIGN}")
             look = {"ha": "center", "va": "top"} if side == 0 else {"ha": "right", "va": "center"}
             spot = start - np.array([0.0, 2.0] if side == 0 else [2.0, 0.0]) * sheet.scale
-            sheet.text((spot[0], spot[1]), words, fontsize=6.5, color=MUTED, **look)
+            sheet.text((spot[0], spot[1]), words, fontsize=6.5, color=Color.MUTED, **look)
         name = f"{'xyz'[axis]} [mm]"
         corner = np.array([high[0], low[1] - 11 * sheet.scale]) if side == 0 else np.array([low[0], high[1]])
         corner += np.array([0.0, 0.0] if side == 0 else [-4.0, 4.0]) * sheet.scale
         sheet.text(
-            (corner[0], corner[1]), name, fontsize=6.5, color=MUTED, ha="right" if side == 0 else "center",
+            (corner[0], corner[1]), name, fontsize=6.5, color=Color.MUTED, ha="right" if side == 0 else "center",
             va="top" if side == 0 else "bottom",
         )  # fmt: skip

@@ -9,24 +9,7 @@ import shapely
 from jaxtyping import Int
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.drawing import (
-    DARK,
-    FELT,
-    FELT_LIGHT,
-    GHOST,
-    GHOST_FILL,
-    INK,
-    MESH,
-    PAPER,
-    SEAM,
-    STITCH,
-    Camera,
-    Render,
-    Spots,
-    mix,
-    render,
-    silhouette,
-)
+from hydrostat.drawing import Camera, Color, Render, Spots, mix, render, silhouette
 from hydrostat.plot.drawn_body import DrawnBody
 from hydrostat.plot.sheet import BODY, MILLIMETERS, PictureSheet, Place, Places
 from hydrostat.plot.skin import FlatSkin
@@ -103,7 +86,7 @@ class Pane(ABC):
         for line in (line for thing in things for line in rims(thing, self.robot)):
             for part, fade in body.cable(line).parts:
                 if fade == 0:
-                    sheet.curve(part, color=INK, linewidth=1.2, clip_on=True, zorder=3.3)
+                    sheet.curve(part, color=Color.INK, linewidth=1.2, clip_on=True, zorder=3.3)
         return body
 
     def locate_points(self, points: Mapping[str, Vector]) -> dict[str, Place]:
@@ -113,7 +96,7 @@ class Pane(ABC):
     def draw_ghost(self, sheet: PictureSheet) -> None:
         """Draw the rest shape, as a faint shadow."""
         rings = self.outline(sheet, self.robot.body.mesh.nodes)
-        sheet.area(rings, facecolor=GHOST_FILL, edgecolor=GHOST, linewidth=0.8, joinstyle="round", zorder=2)
+        sheet.area(rings, facecolor=Color.GHOST_FILL, edgecolor=Color.GHOST, linewidth=0.8, joinstyle="round", zorder=2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,23 +121,28 @@ class FlatPane(Pane):
         pins: bool = False,
         things: Sequence[Obstacle] = (),
     ) -> DrawnBody:
-        fill, light, seam = (mix(color, PAPER, pale) for color in (FELT, FELT_LIGHT, SEAM))
+        fill, light, seam = (mix(color, Color.PAPER, pale) for color in (Color.FELT, Color.FELT_LIGHT, Color.SEAM))
         rings, seams = self.outline(sheet, nodes), [MILLIMETERS * ring for ring in self.skin.seam(nodes)]
         sheet.area(rings, facecolor=fill, edgecolor=seam, linewidth=1.3, joinstyle="round", zorder=3)
         if seams:
             sheet.area(seams, facecolor=light, edgecolor="none", zorder=3.1)
         stitches = {"linewidth": 1.2, "linestyle": (0, (2.4, 2.0)), "dash_capstyle": "butt"}
         for ring in seams:
-            sheet.curve(np.concatenate([ring, ring[:1]]), color=STITCH, zorder=3.2, **stitches)
+            sheet.curve(np.concatenate([ring, ring[:1]]), color=Color.STITCH, zorder=3.2, **stitches)
         for part, loops in zip(self.robot.body.parts, self.robot.body.part_rings, strict=True):
-            color = mix(mix(INK, FELT, 0.6 if part.is_rigid else 0.85), PAPER, pale)
+            color = mix(mix(Color.INK, Color.FELT, 0.6 if part.is_rigid else 0.85), Color.PAPER, pale)
             borders = [MILLIMETERS * nodes[loop] for loop in loops]
-            sheet.area(borders, facecolor=color, edgecolor=mix(INK, FELT, 0.4), linewidth=0.8, zorder=3.25)
+            sheet.area(borders, facecolor=color, edgecolor=mix(Color.INK, Color.FELT, 0.4), linewidth=0.8, zorder=3.25)
         for anchors in self.robot.body.mark_anchors:
-            sheet.curve(MILLIMETERS * anchors.positions(nodes), color=mix(INK, PAPER, pale), linewidth=1.5, zorder=3.3)
+            sheet.curve(
+                MILLIMETERS * anchors.positions(nodes),
+                color=mix(Color.INK, Color.PAPER, pale),
+                linewidth=1.5,
+                zorder=3.3,
+            )
         if mesh:
             ends = MILLIMETERS * nodes[self.robot.body.mesh.edges]
-            sheet.segments(ends, color=MESH, linewidth=0.35, alpha=0.42, zorder=4)
+            sheet.segments(ends, color=Color.MESH, linewidth=0.35, alpha=0.42, zorder=4)
         if pins:
             _draw_pins(sheet, self.robot, rings)
         return self._with_rims(sheet, DrawnBody(rings), things)
@@ -199,7 +187,7 @@ class SpacePane(Pane):
             held=held.astype(float) if held.any() else None, lines=self._density(sheet) if mesh else 0.0,
             point=sheet.scale,
         )  # fmt: skip
-        rings = lay_image(sheet, image, self.shift, seam=mix(SEAM, PAPER, 0.6 * pale))
+        rings = lay_image(sheet, image, self.shift, seam=mix(Color.SEAM, Color.PAPER, 0.6 * pale))
         thickness = MILLIMETERS * float(np.ptp(body.nodes, axis=0).min())
         return self._with_rims(sheet, DrawnBody(rings, (self.camera, self.shift, image, thickness)), things)
 
@@ -220,7 +208,7 @@ def fit_pixel(sheet: PictureSheet, sides: Place, *, dpi: float = DPI) -> float:
     return max(72 / dpi * sheet.scale, float(np.sqrt(np.prod(sides) / most_pixels)))
 
 
-def lay_image(sheet: PictureSheet, image: Render, shift: Place, *, seam: str = SEAM) -> list[Places]:
+def lay_image(sheet: PictureSheet, image: Render, shift: Place, *, seam: str = Color.SEAM) -> list[Places]:
     """Put the image of a body on a sheet, moved by a shift [mm], with a line around it; returns its outline [mm]."""
     x, y = shift
     left, right, low, high = image.extent
@@ -257,6 +245,6 @@ def _hatch(sheet: PictureSheet, field: shapely.Polygon) -> None:
     strokes = [[(start, low[1]), (start + tall, high[1])] for start in starts]
     cut = shapely.get_parts(shapely.intersection(shapely.linestrings(strokes), field))
     ends = [np.array(line.coords)[[0, -1]] for line in cut if line.geom_type == "LineString" and line.length > 0]
-    sheet.segments(np.array(ends), color=DARK, linewidth=0.6, alpha=0.5, zorder=5)
+    sheet.segments(np.array(ends), color=Color.DARK, linewidth=0.6, alpha=0.5, zorder=5)
     for ring in (field.exterior, *field.interiors):
-        sheet.curve(np.array(ring.coords), color=DARK, linewidth=0.7, alpha=0.55, zorder=5)
+        sheet.curve(np.array(ring.coords), color=Color.DARK, linewidth=0.7, alpha=0.55, zorder=5)

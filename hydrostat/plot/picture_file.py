@@ -18,7 +18,7 @@ from matplotlib.image import AxesImage
 from matplotlib.patheffects import withStroke
 from matplotlib.text import Text
 
-from hydrostat.drawing import PAGE_COLORS, PAPER
+from hydrostat.drawing import Color
 from hydrostat.plot.labels import HALO
 from hydrostat.plot.sheet import BODY
 from hydrostat.robot import replace_file
@@ -28,7 +28,7 @@ def save_png(figure: Figure, path: str | Path, *, dpi: float = 200) -> Path:
     """Write a figure on white paper as PNG, whole or not at all; returns its path."""
     buffer = io.BytesIO()
     with drawing(), _text_halo(figure):
-        figure.savefig(buffer, format="png", dpi=dpi, facecolor=PAPER, metadata={"Software": None})
+        figure.savefig(buffer, format="png", dpi=dpi, facecolor=Color.PAPER, metadata={"Software": None})
     return replace_file(Path(path), buffer.getvalue())
 
 
@@ -51,7 +51,7 @@ def inline_svg(figure: Figure, *, name: str, label: str) -> str:
     text = re.sub(r"<style.*?</style>", "", text, flags=re.DOTALL)
     text = re.sub(r' (d|points|transform)="([^"]*)"', _shorter, text)
     text = re.sub(r">\s+<", "><", text).replace("<g/>", "").replace("<defs></defs>", "")
-    for color, variable in PAGE_COLORS.items():
+    for color, variable in Color.PAGE.items():
         text = text.replace(color, f"var(--{variable}, {color})")
     box = re.search(r'viewBox="[^"]*"', text)
     head = f'<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" {box[0] if box else ""}'
@@ -104,7 +104,7 @@ def _text_halo(figure: Figure) -> Iterator[None]:
     """Words with a border of paper around their letters, while a PNG is made; a page does this by its style."""
     texts = [text for text in figure.findobj(Text) if text.get_gid() == HALO]
     for text in texts:
-        text.set_path_effects([withStroke(linewidth=2.4, foreground=PAPER, alpha=0.9)])
+        text.set_path_effects([withStroke(linewidth=2.4, foreground=Color.PAPER, alpha=0.9)])
     try:
         yield
     finally:

@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 from matplotlib.figure import Figure
 
-from hydrostat.drawing import WINCHES
+from hydrostat.drawing import Color
 from hydrostat.ik import FoundReach
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
@@ -27,7 +27,7 @@ def draw_reach(
     head = shorten(robot.name) if title is None else title
     sheet, panes = open_sheet(robot, [nodes], points, title=head, subtitle="all that markers reach", width=width)
     for index, part in enumerate(reaches):
-        color = WINCHES[index % len(WINCHES)]
+        color = Color.WINCHES[index % len(Color.WINCHES)]
         for pane in panes:
             if index == 0:
                 pane.draw_body(sheet, nodes, pins=True, pale=0.35)

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.drawing import ERROR, LIGHT, winch_colors
+from hydrostat.drawing import Color, winch_colors
 from hydrostat.geometry import Outline, Ring
 from hydrostat.given import check_type
 from hydrostat.ik import IKResult, IKStatus
@@ -224,8 +224,8 @@ def _reached_note(reached: IKResult, names: list[str]) -> str:
 def _draw_wanted(sheet: PictureSheet, ring: Places) -> None:
     """A ring of the shape that is wanted [mm], dashed."""
     closed = np.concatenate([ring, ring[:1]])
-    sheet.curve(closed, color=LIGHT, linewidth=2.6, zorder=14)
-    sheet.curve(closed, color=ERROR, linewidth=1.2, linestyle=(0, (3.5, 2.0)), zorder=14.1)
+    sheet.curve(closed, color=Color.LIGHT, linewidth=2.6, zorder=14)
+    sheet.curve(closed, color=Color.ERROR, linewidth=1.2, linestyle=(0, (3.5, 2.0)), zorder=14.1)
 
 
 def draw_portrait(

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.drawing import DARK, FELT, LIGHT, Spots, channels, upright, winch_colors
+from hydrostat.drawing import Color, Spots, channels, upright, winch_colors
 from hydrostat.errors import InputError
 from hydrostat.plot.frame import Attachments, Frame, check_frames
 from hydrostat.plot.glb import Glb, GlbPart
@@ -121,7 +121,7 @@ def _body(film: _Film) -> GlbPart:
     body = film.robot.body
     solid = skin(body.mesh, film.nodes) if body.mesh.dim == 3 else slab(body.mesh, film.nodes, body.thickness or 0.0)
     opacity = 0.72  # of a body that has cables: they run inside, mostly
-    return _shape("body", solid, FELT, opacity=opacity if film.robot.cables else 1.0)
+    return _shape("body", solid, Color.FELT, opacity=opacity if film.robot.cables else 1.0)
 
 
 def _cables(film: _Film) -> GlbPart:
@@ -154,10 +154,12 @@ def _add_hardware(glb: Glb, film: _Film) -> None:
     if robot.cables:
         ends = _carry_places(film, lambda nodes: np.array([points[-1] for points in carried.cables(nodes)]))
         names = [f"stopper {number}" for number in range(1, len(robot.cables) + 1)]
-        glb.add_copies(_shape("stopper", sphere(2.2 * CABLE * size), DARK), ends, names)
+        glb.add_copies(_shape("stopper", sphere(2.2 * CABLE * size), Color.DARK), ends, names)
     if robot.markers:
         names = [f"marker {marker.name}" for marker in robot.markers]
-        glb.add_copies(_shape("marker", sphere(MARKER * size), LIGHT), _carry_places(film, carried.markers), names)
+        glb.add_copies(
+            _shape("marker", sphere(MARKER * size), Color.LIGHT), _carry_places(film, carried.markers), names
+        )
 
 
 def _carry_places(film: _Film, places: Callable[[Nodes], Points]) -> Float[np.ndarray, "_ _ 3"]:
@@ -169,7 +171,7 @@ def _add_targets(glb: Glb, robot: Robot, targets: Sequence[PoseTarget | None]) -
     """A cross at each target, there at the instants whose pose it belongs to."""
     poses = list({pose.name: pose for pose in targets if pose is not None}.values())
     if poses:
-        shape = _shape("target", cross(TARGET * robot.body.mesh.size), DARK)
+        shape = _shape("target", cross(TARGET * robot.body.mesh.size), Color.DARK)
         places = np.concatenate([_in_space(target_points(pose)) for pose in poses])
         names = [f"target {pose.name}: {marker}" for pose in poses for marker in pose.targets]
         seen = [[target == pose for pose in poses for _ in pose.targets] for target in targets]

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 
-from hydrostat.drawing import GRID, INK, MUTED
+from hydrostat.drawing import Color
 
 Place = Float[np.ndarray, " 2"]  # one place, in millimeters unless its function says otherwise
 Places = Float[np.ndarray, "_ 2"]  # places, one row each, in millimeters unless their function says otherwise
@@ -125,14 +125,14 @@ def _rule(sheet: PictureSheet) -> None:
     for axis, low, high in zip((axes.xaxis, axes.yaxis), sheet.low, sheet.high, strict=True):
         ticks = np.arange(np.ceil(low / step), np.floor(high / step) + 1) * step + 0.0  # no -0
         axis.set_ticks(ticks, [f"{tick:.10g}".replace("-", "\N{MINUS SIGN}") for tick in ticks])
-    axes.tick_params(length=0, pad=4, labelsize=7, labelcolor=MUTED)
-    axes.grid(True, color=GRID, linewidth=0.6)
+    axes.tick_params(length=0, pad=4, labelsize=7, labelcolor=Color.MUTED)
+    axes.grid(True, color=Color.GRID, linewidth=0.6)
     axes.set_axisbelow(True)
     for spine in axes.spines.values():
         spine.set_visible(False)
     axes.annotate(
-        "mm", (0, 0), xycoords="axes fraction", xytext=(-4, -4), textcoords="offset points", fontsize=7, color=MUTED,
-        ha="right", va="top",
+        "mm", (0, 0), xycoords="axes fraction", xytext=(-4, -4), textcoords="offset points", fontsize=7,
+        color=Color.MUTED, ha="right", va="top",
     )  # fmt: skip
 
 
@@ -144,7 +144,10 @@ def round_step(span: float) -> float:
 
 def _head(figure: Figure, title: str, subtitle: str) -> None:
     width, height = figure.get_size_inches()
-    for words, down, size, color, weight in ((title, 0.1, 11, INK, "bold"), (subtitle, 0.31, 8, MUTED, "normal")):
+    for words, down, size, color, weight in (
+        (title, 0.1, 11, Color.INK, "bold"),
+        (subtitle, 0.31, 8, Color.MUTED, "normal"),
+    ):
         figure.text(
             0.12 / width, 1 - down / height, words, fontsize=size, color=color, weight=weight, va="top",
             parse_math=False,

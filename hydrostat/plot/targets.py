@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.patches import FancyArrowPatch
 
 from hydrostat.arrays import Points, Vector
-from hydrostat.drawing import DARK, ERROR, LIGHT
+from hydrostat.drawing import Color
 from hydrostat.plot.pane import Pane
 from hydrostat.plot.sheet import PictureSheet, Place
 from hydrostat.robot import PoseTarget, Robot
@@ -21,7 +21,7 @@ def draw_markers(sheet: PictureSheet, places: Mapping[str, Place], *, size: floa
     """A white dot with a dark rim for each marker [mm]."""
     if places:
         points = np.array(list(places.values()))
-        sheet.dots(points, size, color=LIGHT, markeredgecolor=DARK, markeredgewidth=1.3, zorder=16)
+        sheet.dots(points, size, color=Color.LIGHT, markeredgecolor=Color.DARK, markeredgewidth=1.3, zorder=16)
 
 
 def draw_crosses(sheet: PictureSheet, targets: Mapping[str, Place]) -> None:
@@ -29,8 +29,8 @@ def draw_crosses(sheet: PictureSheet, targets: Mapping[str, Place]) -> None:
     cross = 3.2 * sheet.scale * np.array([[(-1, -1), (1, 1)], [(-1, 1), (1, -1)]])
     for target in targets.values():
         strokes = cross + target
-        sheet.segments(strokes, color=LIGHT, linewidth=3.6, zorder=17)
-        sheet.segments(strokes, color=DARK, linewidth=1.5, zorder=17.1)
+        sheet.segments(strokes, color=Color.LIGHT, linewidth=3.6, zorder=17)
+        sheet.segments(strokes, color=Color.DARK, linewidth=1.5, zorder=17.1)
 
 
 def draw_arrows(sheet: PictureSheet, places: Mapping[str, Place], targets: Mapping[str, Place]) -> None:
@@ -38,7 +38,7 @@ def draw_arrows(sheet: PictureSheet, places: Mapping[str, Place], targets: Mappi
     for name, end in targets.items():
         start = places[name]
         if np.linalg.norm(end - start) > 10 * sheet.scale:
-            for color, width, order in ((LIGHT, 3.4, 14), (DARK, 1.3, 14.1)):
+            for color, width, order in ((Color.LIGHT, 3.4, 14), (Color.DARK, 1.3, 14.1)):
                 arrow = FancyArrowPatch(
                     (start[0], start[1]), (end[0], end[1]), arrowstyle="-|>,head_length=4.2,head_width=2.1",
                     shrinkA=4, shrinkB=6, color=color, linewidth=width, capstyle="round", joinstyle="round",
@@ -50,8 +50,8 @@ def draw_arrows(sheet: PictureSheet, places: Mapping[str, Place], targets: Mappi
 def draw_errors(sheet: PictureSheet, places: Mapping[str, Place], targets: Mapping[str, Place]) -> None:
     """A thin red line from each marker [mm] to its target [mm]."""
     ends = np.array([[places[name], target] for name, target in targets.items()])
-    sheet.segments(ends, color=LIGHT, linewidth=2.6, zorder=15)
-    sheet.segments(ends, color=ERROR, linewidth=1.3, zorder=15.1)
+    sheet.segments(ends, color=Color.LIGHT, linewidth=2.6, zorder=15)
+    sheet.segments(ends, color=Color.ERROR, linewidth=1.3, zorder=15.1)
 
 
 def draw_misses(

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.colors import LinearSegmentedColormap, to_hex
 
 from hydrostat.arrays import Vector
-from hydrostat.drawing import INK, MUTED, TENSION
+from hydrostat.drawing import Color
 from hydrostat.plot.sheet import PictureSheet
 
 LEVELS = 16  # lines are drawn in so many steps of tension; the eye tells no more
@@ -50,11 +50,11 @@ class TensionScale:
         bar.imshow(np.linspace(0, 1, 128)[None], aspect="auto", cmap=_colors(), extent=(0, 1, 0, 1))
         bar.set(yticks=[])
         bar.set_xticks([0, 0.5, 1], ["0", f"{self.most / 2:.2g}", f"{self.most:.2g} N"])
-        bar.tick_params(length=0, pad=3, labelsize=7, labelcolor=MUTED)
-        bar.set_title(of, fontsize=7, color=INK, loc="left", pad=3)
+        bar.tick_params(length=0, pad=3, labelsize=7, labelcolor=Color.MUTED)
+        bar.set_title(of, fontsize=7, color=Color.INK, loc="left", pad=3)
         for spine in bar.spines.values():
-            spine.set(color=MUTED, linewidth=0.4)
+            spine.set(color=Color.MUTED, linewidth=0.4)
 
 
 def _colors() -> LinearSegmentedColormap:
-    return LinearSegmentedColormap.from_list("tension", TENSION)
+    return LinearSegmentedColormap.from_list("tension", Color.TENSION)

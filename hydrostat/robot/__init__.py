@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from hydrostat.robot.materials import MATERIALS, Material, Relaxation, get_material
     from hydrostat.robot.merge import comments, lost_comments, merged_text
     from hydrostat.robot.obstacle_lines import obstacle_lines, rims
-    from hydrostat.robot.part import BodyPart, PartShape
+    from hydrostat.robot.part import BodyPart
     from hydrostat.robot.read import FILE, GALLERY, RobotReader, gallery_folder, is_of_gallery, list_gallery, load_robot
     from hydrostat.robot.risks import SEWN_DEPTH, find_risks, limit_travels
     from hydrostat.robot.risks.body_risks import LEAST_ACROSS, LOCKING
@@ -61,7 +61,6 @@ __all__ = [
     "Number",
     "Obstacle",
     "ObstacleShape",
-    "PartShape",
     "Pin",
     "Point",
     "PoseTarget",

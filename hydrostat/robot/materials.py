@@ -102,6 +102,18 @@ class Material:
         mu = self.young / (2 * (1 + self.poisson))
         return mu, self.young * self.poisson / ((1 + self.poisson) * (1 - 2 * self.poisson))
 
+    @property
+    def young_text(self) -> str:
+        """Young's modulus to three digits, such as "30 kPa"."""
+        return f"{self.young / 1e6:.3g} MPa" if self.young >= 1e6 else f"{self.young / 1e3:.3g} kPa"
+
+    @property
+    def range_text(self) -> str:
+        """Valid range of the length, in percent: compression and extension, such as "-30 to +50 %"."""
+        squeeze = "" if self.largest_squeeze is None else f"{-100 * self.largest_squeeze:.0f}"
+        stretch = "" if self.largest_stretch is None else f"{100 * (self.largest_stretch - 1):+.0f}"
+        return f"{squeeze or '?'} to {stretch or '?'} %"
+
 
 PSI = 6894.757  # pascals in a pound per square inch: data sheets give stresses in these
 POUND_PER_CUBIC_FOOT = 16.01846  # [kg/m^3]: castable foams are named after their density in these

@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from hydrostat.studio.bell import Bell
     from hydrostat.studio.designing.run import wished_request
     from hydrostat.studio.document import Document
+    from hydrostat.studio.exporting.kit_work import page_pictures
     from hydrostat.studio.face.rooms import Rooms
     from hydrostat.studio.face.serve import serve
     from hydrostat.studio.jobs import Jobs
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
         ProposalInput,
         Proposer,
         held_of,
-        propose_network,
     )
     from hydrostat.studio.session import Session
     from hydrostat.studio.stage import Hit
@@ -45,7 +45,7 @@ __all__ = [
     "Rooms",
     "Session",
     "held_of",
-    "propose_network",
+    "page_pictures",
     "serve",
     "state_folder",
     "wished_request",

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from hydrostat.arrays import Nodes
-from hydrostat.drawing import INK, MUTED, WINCHES
+from hydrostat.drawing import Color
 from hydrostat.plot import (
     MILLIMETERS,
     WIDTH,
@@ -38,10 +38,10 @@ def draw_errors(rows: Sequence[StudyRow], *, width: float = WIDTH) -> Figure:
     panes = [figure.add_axes((left, lower, wide, tall)) for left in (0.1, 0.565)]
     methods = list(dict.fromkeys(row.method for row in rows))
     ways = list(dict.fromkeys(way_of(name) for name in methods))
-    colors = dict(zip(ways, (MUTED, *WINCHES), strict=False))
+    colors = dict(zip(ways, (Color.MUTED, *Color.WINCHES), strict=False))
     for name in methods:
         way = way_of(name)
-        color, label = colors.get(way, INK), way if name == way else None
+        color, label = colors.get(way, Color.INK), way if name == way else None
         dashes = "-" if name == way else "--" if name.endswith(STEP) else ":"
         mine = [row for row in rows if row.method == name]
         counts = sorted({row.samples for row in mine})
@@ -55,10 +55,12 @@ def draw_errors(rows: Sequence[StudyRow], *, width: float = WIDTH) -> Figure:
             axes.fill_between(across, low, high, color=color, alpha=0.15, linewidth=0)
     _logarithmic(panes[0], "samples", "mean error [mm]")
     _logarithmic(panes[1], "CPU time of sampling and learning [s]", "")
-    panes[0].plot([], [], "--", color=INK, linewidth=1.4, label="and one exact step")
-    panes[0].plot([], [], ":", color=INK, linewidth=1.4, label="and up to three")
+    panes[0].plot([], [], "--", color=Color.INK, linewidth=1.4, label="and one exact step")
+    panes[0].plot([], [], ":", color=Color.INK, linewidth=1.4, label="and up to three")
     handles, names = panes[0].get_legend_handles_labels()
-    figure.legend(handles, names, loc="lower center", ncol=5, frameon=False, fontsize=7, handlelength=3, labelcolor=INK)
+    figure.legend(
+        handles, names, loc="lower center", ncol=5, frameon=False, fontsize=7, handlelength=3, labelcolor=Color.INK
+    )
     return figure
 
 
@@ -66,16 +68,16 @@ def draw_losses(rows: Sequence[StudyRow], *, width: float = WIDTH) -> Figure:
     """Learning curves of the thesis's network, for each number of samples that it learned from."""
     figure, axes = new_chart("epoch", "mean square of the action's error", width=width)
     for number, row in enumerate(rows):
-        color, curve = WINCHES[number % len(WINCHES)], np.array(row.curve)
+        color, curve = Color.WINCHES[number % len(Color.WINCHES)], np.array(row.curve)
         axes.plot(1 + np.arange(len(curve)), curve[:, 0], "--", color=color, linewidth=1.0)
         axes.plot(1 + np.arange(len(curve)), curve[:, 1], color=color, linewidth=1.4, label=f"{row.samples} samples")
-    axes.plot([], [], "--", color=MUTED, linewidth=1.0, label="dashed: what it learned from")
-    axes.plot([], [], color=MUTED, linewidth=1.4, label="solid: what was held out")
+    axes.plot([], [], "--", color=Color.MUTED, linewidth=1.0, label="dashed: what it learned from")
+    axes.plot([], [], color=Color.MUTED, linewidth=1.4, label="solid: what was held out")
     axes.set_yscale("log")
     axes.yaxis.set_major_formatter(FuncFormatter(short_number))
     axes.yaxis.set_minor_formatter(FuncFormatter(_half))
-    axes.tick_params(axis="y", which="minor", labelsize=8, colors=MUTED)
-    axes.legend(frameon=False, fontsize=8, labelcolor=INK)
+    axes.tick_params(axis="y", which="minor", labelsize=8, colors=Color.MUTED)
+    axes.legend(frameon=False, fontsize=8, labelcolor=Color.INK)
     return figure
 
 
@@ -96,13 +98,13 @@ def draw_costs(
     for name, points in curves.items():
         across, up = zip(*sorted(points), strict=True)
         head = name.partition(",")[0]
-        color, dashes = WINCHES[heads.index(head) % len(WINCHES)], ("-", "--", ":")[seen[head] % 3]
+        color, dashes = Color.WINCHES[heads.index(head) % len(Color.WINCHES)], ("-", "--", ":")[seen[head] % 3]
         seen[head] += 1
         axes.plot(across, up, color=color, linestyle=dashes, linewidth=1.4, marker="o", markersize=5, label=name)
     _logarithmic(axes, used, missed)
     left, lower, _, tall = axes.get_position().bounds
     axes.set_position((left, lower, 0.7 - left, tall))
-    axes.legend(frameon=False, fontsize=8, labelcolor=INK, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    axes.legend(frameon=False, fontsize=8, labelcolor=Color.INK, loc="upper left", bbox_to_anchor=(1.0, 1.0))
     return figure
 
 
@@ -119,7 +121,7 @@ def draw_side_by_side(robot: Robot, columns: Mapping[str, Sequence[Nodes]], *, w
     figure = new_figure(width * len(columns), whole)
     for column, (name, poses) in enumerate(pictures.items()):
         middle = (column + 0.5) / len(columns)
-        figure.text(middle, 1 - 0.6 * head / whole, name, ha="center", va="center", color=INK, fontsize=10)
+        figure.text(middle, 1 - 0.6 * head / whole, name, ha="center", va="center", color=Color.INK, fontsize=10)
         for row, picture in enumerate(poses):
             lower = 1 - (head + tall * (row + 1)) / whole
             axes = figure.add_axes((column / len(columns), lower, 1 / len(columns), tall / whole))
@@ -138,11 +140,11 @@ def draw_calibration(
         tenths = np.array_split(np.argsort(said, kind="stable"), min(10, len(said)))
         across, up = ([MILLIMETERS * float(values[tenth].mean()) for tenth in tenths] for values in (said, found))
         ends = [min(ends[0], *across, *up), max(ends[1], *across, *up)]
-        color = WINCHES[number % len(WINCHES)]
+        color = Color.WINCHES[number % len(Color.WINCHES)]
         axes.plot(across, up, color=color, linewidth=1.4, marker="o", markersize=4, label=name)
-    axes.plot(ends, ends, "--", color=MUTED, linewidth=1.0, label="as said")
+    axes.plot(ends, ends, "--", color=Color.MUTED, linewidth=1.0, label="as said")
     _logarithmic(axes, "expected error and doubt together [mm]", "error in the simulator [mm]")
-    axes.legend(frameon=False, fontsize=8, labelcolor=INK)
+    axes.legend(frameon=False, fontsize=8, labelcolor=Color.INK)
     return figure
 
 
@@ -158,8 +160,8 @@ def _picture(robot: Robot, nodes: Nodes, frame: np.ndarray, width: float) -> np.
 def _logarithmic(axes: Axes, across: str, up: str) -> None:
     """Both axes by powers of ten, in plain numbers."""
     plain_axes(axes)
-    axes.set_xlabel(across, color=INK, fontsize=8.5)
-    axes.set_ylabel(up, color=INK, fontsize=8.5)
+    axes.set_xlabel(across, color=Color.INK, fontsize=8.5)
+    axes.set_ylabel(up, color=Color.INK, fontsize=8.5)
     axes.set_xscale("log")
     axes.set_yscale("log")
     for axis in (axes.xaxis, axes.yaxis):

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
-from hydrostat.cli.folders import OutFolder, require_folder
-from hydrostat.cli.waiting import report_progress
+from hydrostat.cli import OutFolder, report_progress, require_folder
 from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hydrostat.cli.waiting import report_progress
+from hydrostat.cli import report_progress
 from hydrostat_lab.trial_tables import drawn_runs, format_interval, judged_claims, trials_missing
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from hydrostat.cli.waiting import report_progress
+from hydrostat.cli import report_progress
 from hydrostat_lab.trial_tables import drawn_runs, format_interval, judged_claims, shared_table, trials_missing
 
 if TYPE_CHECKING:

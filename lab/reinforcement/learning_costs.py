@@ -12,7 +12,7 @@ from pathlib import Path
 from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, LogLocator, MultipleLocator, NullFormatter
 
-from hydrostat.drawing import INK, WINCHES
+from hydrostat.drawing import Color
 from hydrostat.plot import WIDTH, new_figure, plain_axes, save_png
 
 HERE = Path(__file__).parent
@@ -44,11 +44,11 @@ def _pane(axes: Axes, rows: list[dict[str, str]], across: str, up: str) -> None:
         ways.setdefault(row["way"], []).append((float(row["used"]), float(row["value"])))
     for number, (way, points) in enumerate(ways.items()):
         used, value = zip(*sorted(points), strict=True)
-        marker = "os^Dv"[number // len(WINCHES) % 5]
-        color = WINCHES[number % len(WINCHES)]
+        marker = "os^Dv"[number // len(Color.WINCHES) % 5]
+        color = Color.WINCHES[number % len(Color.WINCHES)]
         axes.plot(used, value, color=color, linewidth=1.2, marker=marker, markersize=6, label=way, clip_on=False)
-    axes.set_xlabel(across, color=INK, fontsize=8.5)
-    axes.set_ylabel(up, color=INK, fontsize=8.5)
+    axes.set_xlabel(across, color=Color.INK, fontsize=8.5)
+    axes.set_ylabel(up, color=Color.INK, fontsize=8.5)
     if rows[0]["task"] == "reach":
         axes.set_xscale("log")
         axes.set_yscale("log")
@@ -60,7 +60,12 @@ def _pane(axes: Axes, rows: list[dict[str, str]], across: str, up: str) -> None:
         axes.xaxis.set_major_locator(MultipleLocator(5000))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda used, _: f"{used:,.0f}".replace(",", "\N{THIN SPACE}")))
     axes.legend(
-        frameon=False, fontsize=8, labelcolor=INK, loc="upper left", bbox_to_anchor=(-0.05, -0.17), handlelength=1.6
+        frameon=False,
+        fontsize=8,
+        labelcolor=Color.INK,
+        loc="upper left",
+        bbox_to_anchor=(-0.05, -0.17),
+        handlelength=1.6,
     )
 
 

@@ -1,11 +1,17 @@
 """Bad input ends with code 2 and one clear line; oracle: exit code, one line, no traceback, nothing written."""
 
 from collections.abc import Callable
+from dataclasses import replace
+from functools import partialmethod
 from pathlib import Path
 
 import pytest
+from builders import strip_robot
 
+from hydrostat.cli.options import check_contraction
+from hydrostat.errors import InputError
 from hydrostat.mechanics import NewtonOptions
+from hydrostat.simulation import Simulation
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -77,7 +83,7 @@ def test_a_solve_that_does_not_converge_ends_with_code_1(
     run: Run, starfish: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Oracle: Newton allowed no iteration; what it found is still written."""
-    monkeypatch.setattr("hydrostat.simulation.simulation.NewtonOptions", lambda: NewtonOptions(iterations=0))
+    monkeypatch.setattr(Simulation, "__init__", partialmethod(Simulation.__init__, options=NewtonOptions(iterations=0)))
     code, out, _ = run("simulate", starfish, "--contract", "left=12mm", "--out", tmp_path)
     assert code == 1
     assert "iteration limit" in out
@@ -93,3 +99,13 @@ def test_a_pose_that_is_not_found_in_time_tells_what_is_in_the_way(run: Run, sta
     code, _, err = run("simulate", starfish, "--dynamic", "--within", "1s", "--out", tmp_path)
     assert code == 2
     assert "--within" in err
+
+
+def test_no_command_takes_in_all_of_a_cable() -> None:
+    """Oracle: a cable of 180 mm on a spool of its own, 2.5 times as large."""
+    robot = strip_robot()
+    winches = [replace(robot.winches[0], travel=0.3), robot.winches[1]]
+    robot = robot.with_network(winches, [replace(robot.cables[0], spool_radius=0.015), robot.cables[1]])
+    check_contraction(robot, "up", 0.0719)
+    with pytest.raises(InputError, match=r"up: 72.1 mm at spool ratio 2.5 takes in the whole cable \(180 mm\)"):
+        check_contraction(robot, "up", 0.0721)

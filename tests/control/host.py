@@ -20,7 +20,7 @@ time.sleep = lambda seconds: _sleep(seconds * SLOW)
 
 from emulation import NAMES, RADIUS  # noqa: E402
 
-from hydrostat.cli.waiting import one_interrupt  # noqa: E402
+from hydrostat.cli import one_interrupt  # noqa: E402
 from hydrostat.control import BusLink, Calibration, DynamixelBus, FeetechBus, Motors, Player, Port, WinchMotor, play  # noqa: E402
 from hydrostat.errors import HydrostatError  # noqa: E402
 from hydrostat.robot import Winch  # noqa: E402

@@ -7,13 +7,14 @@ from pathlib import Path
 
 import pytest
 
-import hydrostat.cli.design as command
-from hydrostat.cli.options import DefaultText
+import hydrostat
+from hydrostat.cli.main import app
 from hydrostat.design import Constraints
 from hydrostat.design.constraints import RANGES
 from hydrostat.design.constraints_file import ZONES, ConstraintsTable
 from hydrostat.project import Paint, Wishes, read_project_file, write_project_file
 
+COMMAND = next(each.callback for each in app.registered_commands if each.callback.__name__ == "design")  # type: ignore[union-attr]
 FIELDS = [field.name for field in fields(Constraints)]
 
 OPTIONS = {
@@ -47,7 +48,7 @@ NO_BOX = dict.fromkeys(
 
 def named_in_panels() -> set[str]:
     """Texts and keyword names in the studio's panels of a design, where its boxes name the wishes that they set."""
-    folder = Path(command.__file__).parents[1] / "studio" / "face" / "panels"
+    folder = Path(hydrostat.__file__).parent / "studio" / "face" / "panels"
     nodes = [
         node
         for file in ("design_limits.py", "design_panel.py")
@@ -62,7 +63,7 @@ def test_every_constraint_is_a_key_of_the_file() -> None:
 
 
 def test_every_constraint_is_an_option_or_has_a_reason_not_to_be() -> None:
-    options = inspect.signature(command.design).parameters
+    options = inspect.signature(COMMAND).parameters
     given = {name for name in FIELDS if OPTIONS.get(name, name) in options}
     assert given | set(NO_OPTION) == set(FIELDS)
     assert not given & set(NO_OPTION)
@@ -91,11 +92,11 @@ def test_every_number_can_be_wished_and_is_kept(name: str, tmp_path: Path) -> No
 def test_every_default_in_help_is_read_from_a_record() -> None:
     """Words in place of a default stand where a record has None."""
     told = {}
-    for name, parameter in inspect.signature(command.design).parameters.items():
+    for name, parameter in inspect.signature(COMMAND).parameters.items():
         default = getattr(parameter.annotation.__metadata__[0], "show_default", True)
         if isinstance(default, str):
             told[name] = f"{default}"
-            assert isinstance(default, DefaultText) or name in {"pose", "depth", "tolerance", "time_limit"}
+            assert type(default) is not str or name in {"pose", "depth", "tolerance", "time_limit"}
     assert told["clearance"] == f"{1e3 * Constraints.clearance:g} mm"
     assert told["tension"] == f"{Constraints.tension:g} N"
     assert told["cables_per_winch"] == str(Constraints.cables_per_winch)

@@ -7,37 +7,18 @@ from typing import Any
 import pytest
 from builders import strip_robot
 
-from hydrostat.cli.design_wishes import DesignArguments, parse_request
 from hydrostat.design import Constraints, DesignMethod, DesignRequest, FibreKind, RouteOptions, TreeOptions
 from hydrostat.design.constraints import RANGES, Range
 from hydrostat.design.request import COUNTS, ROUTE_RANGES
 from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.errors import InputError
-from hydrostat.project import Wishes
 from hydrostat.robot import PoseTarget, Robot
-from hydrostat.studio import wished_request
 
 UP = PoseTarget(name="up", targets={"tip": (0.18, 0.06)})
 
 
 def robot() -> Robot:
     return replace(strip_robot(), poses={"up": UP})
-
-
-def test_nothing_typed_and_nothing_wished_is_what_the_record_says(unchecked: None) -> None:
-    usual = DesignRequest(poses=(UP,))
-    assert parse_request(robot(), DesignArguments()) == usual
-    assert wished_request(robot(), Wishes()) == usual
-    assert (usual.winches, usual.cables, usual.options) == (2, 6, RouteOptions())
-    assert DesignRequest(poses=(UP,), method=DesignMethod.TREES).options == TreeOptions()
-
-
-def test_the_same_typed_and_wished_is_the_same_request(unchecked: None) -> None:
-    limits = {"tension": "12 N", "clearance": "4 mm", "slack": "3 mm"}
-    typed = DesignArguments(winches="auto", cables=4, tolerance="2 mm", limits=limits, stepped=True, lock_winch=("up",))
-    lengths = {"tolerance": 0.002, "clearance": 0.004, "slack": 0.003}
-    wishes = Wishes.of(winches=0, cables=4, tension=12.0, stepped=True, kept_winches=("up",), **lengths)
-    assert parse_request(robot(), typed) == wished_request(robot(), wishes)
 
 
 def test_every_number_has_its_range() -> None:

@@ -8,7 +8,7 @@ from builders import box_mesh
 from hydrostat.drawing.camera import Camera, along_an_axis, three_quarter
 from hydrostat.drawing.creases import smooth_normals
 from hydrostat.drawing.depth import DepthBuffer
-from hydrostat.drawing.palette import FELT, sky_shares
+from hydrostat.drawing.palette import Color, sky_shares
 from hydrostat.drawing.render import render, silhouette
 from hydrostat.geometry import Mesh
 from hydrostat.plot import DrawnBody
@@ -216,7 +216,7 @@ def test_light_comes_from_above_and_felt_looks_like_felt() -> None:
     assert tones["above", "top"].sum() > tones["above", "front"].sum() > tones["below", "under"].sum()
     for tone in tones.values():
         assert tone[0] > tone[1] > tone[2]
-    felt = np.array([int(FELT[start : start + 2], 16) for start in (1, 3, 5)]) / 255
+    felt = np.array([int(Color.FELT[start : start + 2], 16) for start in (1, 3, 5)]) / 255
     assert np.abs(tones["above", "front"] - felt).max() < 0.16
 
 

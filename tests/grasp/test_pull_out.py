@@ -9,6 +9,7 @@ from builders import gallery_robot, strip_robot
 
 from hydrostat.errors import InputError
 from hydrostat.grasp import PullOptions, PullOut, moved_thing, place_thing, pull_bands, pull_out, read_thing
+from hydrostat.mechanics import ObstacleEnergy
 from hydrostat.robot import Contact, Obstacle, Robot
 
 pytestmark = pytest.mark.usefixtures("unchecked")
@@ -54,7 +55,7 @@ def test_the_curve_does_not_depend_on_the_steps() -> None:
 def test_neither_springs_nor_distance_matter(
     monkeypatch: pytest.MonkeyPatch, springs: float, distance: float, within: float
 ) -> None:
-    monkeypatch.setattr("hydrostat.mechanics.obstacle._STICKS", springs)
+    monkeypatch.setattr(ObstacleEnergy, "STICKS", springs)
     other = pull_out(curler(distance=distance), PUCK, CURLED, PullOptions(direction=(1.0, 0.0), step=2e-3))
     assert other.peak == pytest.approx(pulled().peak, rel=within)
     assert np.interp(0.01, other.moved, other.forces) == pytest.approx(

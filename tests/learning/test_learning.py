@@ -9,10 +9,10 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-import typer
 from builders import strip_robot
 
 import hydrostat as hs
+from hydrostat.cli.main import app
 from hydrostat.errors import InputError
 from hydrostat.ik import IKStatus
 from hydrostat.learning import (
@@ -33,7 +33,7 @@ from hydrostat.learning.certify import exact_steps
 from hydrostat.learning.learned_model import Tier
 from hydrostat.learning.training_set import linear_map
 from hydrostat.mechanics import Reason
-from hydrostat.robot import Robot
+from hydrostat.robot import Robot, save_robot
 
 pytestmark = pytest.mark.usefixtures("unchecked")
 
@@ -259,23 +259,23 @@ def test_the_commands(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Oracle: the library called directly."""
-    from hydrostat.cli.learn import learn
-    from hydrostat.cli.pose import pose
 
-    learn(folder, tmp_path / "strip.model", count=60, members=1, steps=100)
+    def run(*words: object) -> int | None:
+        return app([*map(str, words)], standalone_mode=False)
+
+    once = ("--max-samples", 60, "--members", 1, "--steps", 100)
+    run("learn", folder, "--out", tmp_path / "strip.model", *once)
     assert "Wrote" in capsys.readouterr().out
     assert load_model(tmp_path / "strip.model").card.samples == 60
     part = learn_model(read_samples(folder).first(60), options=replace(OPTIONS, steps=1, inverse_steps=1))
     early = replace(part, card=replace(part.card, stopped=True))
     monkeypatch.setattr("hydrostat.learning.correct_model", lambda *_, **__: early)
-    with pytest.raises(typer.Exit) as ended:
-        learn(folder, tmp_path / "early.model", start=tmp_path / "strip.model")
-    assert ended.value.exit_code == 130
+    assert run("learn", folder, "--out", tmp_path / "early.model", "--fine-tune", tmp_path / "strip.model") == 130
     assert capsys.readouterr().out.endswith("interrupted: best model so far\n")
     place = tuple(read_samples(folder).markers[70, 0].tolist())
     posed = replace(robot, poses={"far": hs.PoseTarget(name="far", targets={"tip": place})})
-    monkeypatch.setattr("hydrostat.cli.pose.read_robot", lambda path: posed)
-    pose(tmp_path / "strip", tmp_path / "out", model=save_model(model, tmp_path / "good.model"))
+    good = save_model(model, tmp_path / "good.model")
+    run("pose", save_robot(posed, tmp_path / "strip"), "--out", tmp_path / "out", "--model", good)
     assert "far: model predicts rms error" in (printed := capsys.readouterr().out)
     assert "target reached" in printed
 

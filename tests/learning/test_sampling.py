@@ -17,7 +17,7 @@ import pytest
 from builders import gallery_robot, strip_robot
 
 import hydrostat as hs
-from hydrostat.cli.sample import sample
+from hydrostat.cli.main import app
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.learning import (
     SamplePlan,
@@ -352,8 +352,9 @@ def test_what_cannot_be_exported_is_told_before_sampling(tmp_path: Path, monkeyp
         ("there.zarr", "is there already"),
         ("a.parquet", "package pyarrow"),
     ):
+        command = ["sample", "gallery:starfish", "--count", "1", "--out", str(tmp_path / "out")]
         with pytest.raises(InputError, match=words):
-            sample(Path("gallery:starfish"), tmp_path / "out", count=1, jobs=1, export=tmp_path / name)
+            app([*command, "--export", str(tmp_path / name)], standalone_mode=False)
     assert not (tmp_path / "out").exists()
 
 

@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 from plot.films import flat_film, frames_of, space_film
 
-from hydrostat.drawing import ERROR
+from hydrostat.drawing import Color
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.plot import Frame, film, save_gif, save_mp4, winch_stops
 from hydrostat.plot.animation import gif_bytes
@@ -121,7 +121,7 @@ def test_sixty_frames_are_a_small_file(tmp_path: Path) -> None:
 def test_targets_are_shown_while_a_pose_is_approached_and_errors_are_red() -> None:
     robot, made = space_film()
     pictures = FramePictures(robot, made.frames, width=320)
-    red = np.array([int(ERROR[start : start + 2], 16) for start in (1, 3, 5)])
+    red = np.array([int(Color.ERROR[start : start + 2], 16) for start in (1, 3, 5)])
     counts = {}
     for frame in made.frames[:4]:
         off = np.abs(pictures.draw(frame).astype(int) - red).max(axis=2)

@@ -10,7 +10,7 @@ from matplotlib.text import Text
 from PIL import Image
 
 from hydrostat import plot
-from hydrostat.drawing import ERROR
+from hydrostat.drawing import Color
 from hydrostat.geometry import Surface
 from hydrostat.plot.healing_figure import _bad_edges, _weld
 
@@ -60,7 +60,7 @@ def test_places_are_ringed_on_the_first_view_only() -> None:
     """Oracle: the place as the picture's camera sees it lies left of the middle."""
     after = whole()
     figure = plot.draw_healing(after, after, places=np.array([[0.12, 0.02, 0.03]]))
-    rings = [line for line in figure.axes[0].lines if line.get_markeredgecolor() == ERROR]
+    rings = [line for line in figure.axes[0].lines if line.get_markeredgecolor() == Color.ERROR]
     assert len(rings) == 1
     assert np.asarray(rings[0].get_xdata())[0] < np.mean(figure.axes[0].get_xlim())
 
@@ -100,7 +100,7 @@ def test_places_close_together_have_one_ring() -> None:
     after = whole()
     places = np.array([[0.12, 0.02, 0.03], [0.1201, 0.02, 0.03], [0.02, 0.02, 0.06]])
     figure = plot.draw_healing(after, after, places=places)
-    (rings,) = (line for line in figure.axes[0].lines if line.get_markeredgecolor() == ERROR)
+    (rings,) = (line for line in figure.axes[0].lines if line.get_markeredgecolor() == Color.ERROR)
     assert len(np.asarray(rings.get_xdata())) == 2
 
 

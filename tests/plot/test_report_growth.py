@@ -17,7 +17,7 @@ from hydrostat.design import (
     score_card,
     sewing_minutes,
 )
-from hydrostat.drawing import WINCHES
+from hydrostat.drawing import Color
 from hydrostat.plot import inline_svg
 from hydrostat.plot.design_charts import draw_front, draw_growth, stage_runs
 from hydrostat.plot.report import report_text
@@ -196,8 +196,8 @@ def test_the_picture_of_the_front() -> None:
         dot = drawn[tuple(np.round((x, y), 9))]
         beaten = any(left <= x and low <= y and (left, low) != (x, y) for left, low in points)
         if points.count((x, y)) == 1:
-            assert dot.get_markeredgecolor() == WINCHES[count - 1]
-            assert dot.get_markerfacecolor() == ("white" if beaten else WINCHES[count - 1])
+            assert dot.get_markeredgecolor() == Color.WINCHES[count - 1]
+            assert dot.get_markerfacecolor() == ("white" if beaten else Color.WINCHES[count - 1])
     labels = [line.get_label() for line in axes.lines if not str(line.get_label()).startswith("_")]
     assert labels == ["1 winch", "2 winches", "3 winches"]
     (ring,) = [line for line in axes.lines if line.get_markersize() == 12]

@@ -14,7 +14,7 @@ from PIL import Image
 from plot.designs import grown, space_network, space_trace
 
 from hydrostat import plot
-from hydrostat.drawing import FELT, mix
+from hydrostat.drawing import Color, mix
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.report import report_text
 from hydrostat.plot.tension_scale import TensionScale
@@ -98,7 +98,7 @@ def test_cables_wear_the_colors_of_their_tension() -> None:
     for tension in pose.tensions:
         full = scale.color(float(tension))
         assert full in colors
-        assert any(mix(full, FELT, share / 10000) in colors for share in range(2000, 7000, 25))
+        assert any(mix(full, Color.FELT, share / 10000) in colors for share in range(2000, 7000, 25))
 
 
 @pytest.mark.slow
@@ -117,12 +117,12 @@ def test_a_wire_in_front_is_drawn_over_one_behind() -> None:
 
 def test_a_sheath_inside_the_body_does_not_hide_its_cable() -> None:
     """Oracle: the sheathed cable runs inside all the way, so all of its pipe lies beneath all of its line."""
-    from hydrostat.drawing import LIGHT
+    from hydrostat.drawing import Color
 
     robot = space_network().robot
     lines = plot.draw_network(robot).axes[0].lines
     pipes = [line.get_zorder() for line in lines if line.get_linewidth() > 5.5 and len(line.get_xdata()) == 2]  # pyright: ignore
-    cables = [line.get_zorder() for line in lines if len(line.get_xdata()) > 40 and line.get_color() != LIGHT]  # pyright: ignore
+    cables = [line.get_zorder() for line in lines if len(line.get_xdata()) > 40 and line.get_color() != Color.LIGHT]  # pyright: ignore
     assert pipes
     assert max(pipes) < min(cables)
 
@@ -153,11 +153,11 @@ def test_one_view_where_there_are_no_rules() -> None:
 @pytest.mark.slow
 def test_the_ghost_is_there_only_where_the_body_moved() -> None:
     """Oracle: the rest pose itself covers its ghost; a bent one leaves pixels of the ghost's fill."""
-    from hydrostat.drawing import GHOST_FILL
+    from hydrostat.drawing import Color
 
     network = space_network()
     robot, pose = network.robot, network.reached[0].pose
-    fill = tuple(int(GHOST_FILL[start : start + 2], 16) for start in (1, 3, 5))
+    fill = tuple(int(Color.GHOST_FILL[start : start + 2], 16) for start in (1, 3, 5))
     counts = []
     for shown in (pose, replace(pose, nodes=robot.body.mesh.nodes)):
         drawn = plot.draw_pose(robot, shown)

@@ -8,7 +8,7 @@ import pytest
 from builders import strip_robot
 from matplotlib.colors import to_hex
 
-from hydrostat.drawing import ERROR, winch_colors
+from hydrostat.drawing import Color, winch_colors
 from hydrostat.geometry import Outline
 from hydrostat.ik import CenterOfMassTarget, ShapeTarget, Trajectory, TrajectoryOptions, solve_ik, solve_ik_trajectory
 from hydrostat.plot import draw_reached, draw_trajectory, inline_svg, trajectory_frames
@@ -41,7 +41,9 @@ def test_lines_are_the_trajectory() -> None:
         for column, name in enumerate(trajectory.winches):
             assert lines[name].get_ydata() == pytest.approx(1e3 * wanted[:, column])
             assert to_hex(lines[name].get_color()) == colors[name]
-    dashed = [float(np.ravel(line.get_ydata())[0]) for line in charts[1].lines if to_hex(line.get_color()) == ERROR]
+    dashed = [
+        float(np.ravel(line.get_ydata())[0]) for line in charts[1].lines if to_hex(line.get_color()) == Color.ERROR
+    ]
     assert dashed == pytest.approx([-50.0, 50.0])
 
 
@@ -78,7 +80,7 @@ def test_a_pose_without_markers_shows_the_shape_that_is_wanted() -> None:
     reached = solve_ik(Simulation(robot), objectives=[ShapeTarget(outline=outline)])
     assert reached.target is None
     figure = draw_reached(robot, reached, outline=outline)
-    dashed = [line for line in figure.axes[0].lines if line.is_dashed() and to_hex(line.get_color()) == ERROR]
+    dashed = [line for line in figure.axes[0].lines if line.is_dashed() and to_hex(line.get_color()) == Color.ERROR]
     assert len(dashed) == 1
     ring = np.column_stack(dashed[0].get_data())
     assert ring[0] == pytest.approx(ring[-1])

@@ -5,7 +5,6 @@ from dataclasses import replace
 import pytest
 from builders import strip_robot
 
-from hydrostat.cli.options import check_contraction
 from hydrostat.errors import InputError
 from hydrostat.fabrication import Circle, winch_marks
 from hydrostat.plot import cable_table, winch_stops
@@ -56,13 +55,6 @@ def test_a_travel_that_is_longer_than_the_cable_of_a_larger_step() -> None:
         "winch[0] up: the travel of 80 mm, 200 mm at its spool, is longer than a cable that it pulls "
         "(180 mm outside sheaths)"
     ) in risks
-
-
-def test_no_command_takes_in_all_of_a_cable() -> None:
-    robot = stepped(0.015, travel=0.3)
-    check_contraction(robot, "up", 0.0719)
-    with pytest.raises(InputError, match=r"up: 72.1 mm at spool ratio 2.5 takes in the whole cable \(180 mm\)"):
-        check_contraction(robot, "up", 0.0721)
 
 
 def test_a_film_stops_before_a_cable_is_taken_in() -> None:

@@ -7,15 +7,11 @@ import numpy as np
 from jaxtyping import Float
 
 from hydrostat.drawing import (
-    MIDDLE,
-    PIXELS,
-    THICK,
-    THIN,
-    WINCHES,
     Box,
     Camera,
     Canvas,
     CanvasFrame,
+    Color,
     LineDrawing,
     Spot,
     balloon_radius,
@@ -53,7 +49,7 @@ class CableRun:
     @property
     def color(self) -> str:
         """Its color on paper: that of no cable near it in number."""
-        return WINCHES[(self.cable - 1) % len(WINCHES)]
+        return Color.WINCHES[(self.cable - 1) % len(Color.WINCHES)]
 
 
 def flat_map(robot: Robot, stitches: Sequence[CableStitches], *, width: float, height: float) -> Canvas:
@@ -68,9 +64,9 @@ def flat_map(robot: Robot, stitches: Sequence[CableStitches], *, width: float, h
     canvas = Canvas(width, height)
     frame = CanvasFrame.fit(box, (_MARGIN, _MARGIN, width - _MARGIN, height - _MARGIN))
     canvas.fill([frame.way(ring) for ring in rings], grey=0.95)
-    canvas.line([frame.way(ring) for ring in rings], width=THICK, closed=True)
+    canvas.line([frame.way(ring) for ring in rings], width=Canvas.THICK, closed=True)
     drawn = 0.45  # grey of what is drawn on the body
-    canvas.line([frame.way(mark) for mark in flat_marks(robot)], width=THIN, grey=drawn)
+    canvas.line([frame.way(mark) for mark in flat_marks(robot)], width=Canvas.THIN, grey=drawn)
     labels = LabelPlaces((0.2, 0.2, width - 0.2, height - 0.2))
     for ring in rings:
         labels.take_line(frame.way([*ring, ring[0]]), weight=3)
@@ -102,7 +98,7 @@ class SightedBody:
 
 def space_map(robot: Robot, *, width: float, height: float, views: Sequence[Camera]) -> Canvas:
     """A body in space from several places, side by side, at most so high [mm]; dashed is what lies in its far half."""
-    pixels = round(PIXELS * max(width / len(views), height))
+    pixels = round(Canvas.PIXELS * max(width / len(views), height))
     panes = [pane_of(robot, view, pixels) for view in views]
     breadths = np.array([float(np.ptp(pane.box[:, 0])) for pane in panes])
     rooms = breadths / breadths.sum() * (width - 2 * _MARGIN * len(views))
@@ -219,7 +215,7 @@ def _put_winches(canvas: Canvas, labels: LabelPlaces, stands: Mapping[str, Spot]
         radius, at = balloon_radius(letter, size), stand
         if any(np.hypot(*np.subtract(stand, other)) < 2 * radius for other in taken):
             at = labels.beside(stand, (2 * radius, 2 * radius), gap=0.8) or stand
-            canvas.line([[stand, at]], width=MIDDLE)
+            canvas.line([[stand, at]], width=Canvas.MIDDLE)
             canvas.disc(stand, 0.7, grey=0.0)
         canvas.balloon(at, letter, dark=True, size=size)
         labels.take_box(box_round(at, radius))
@@ -259,9 +255,9 @@ def _put_cable(canvas: Canvas, run: CableRun) -> None:
         if sheathed:
             canvas.line([[start, end]], width=1.25, color=run.color)
             canvas.line([[start, end]], width=0.8, grey=1.0)
-            canvas.line([[start, end]], width=THIN, dash=None if solid else (1.0, 0.7), color=run.color)
+            canvas.line([[start, end]], width=Canvas.THIN, dash=None if solid else (1.0, 0.7), color=run.color)
         else:
-            canvas.line([[start, end]], width=THICK, dash=None if solid else (1.1, 0.8), color=run.color)
+            canvas.line([[start, end]], width=Canvas.THICK, dash=None if solid else (1.1, 0.8), color=run.color)
 
 
 def _put_stopper(canvas: Canvas, run: CableRun) -> None:
@@ -325,8 +321,8 @@ def _flat_scene(robot: Robot, stitches: Sequence[CableStitches]) -> _Scene:
     places = np.concatenate([*rings, *(1e3 * np.array(cable.points) for cable in robot.cables)])
 
     def draw(canvas: Canvas, frame: CanvasFrame) -> None:
-        canvas.line([frame.way(ring) for ring in rings], width=THIN, grey=0.35, closed=True)
-        canvas.line([frame.way(mark) for mark in flat_marks(robot)], width=THIN, grey=_PALE)
+        canvas.line([frame.way(ring) for ring in rings], width=Canvas.THIN, grey=0.35, closed=True)
+        canvas.line([frame.way(mark) for mark in flat_marks(robot)], width=Canvas.THIN, grey=_PALE)
 
     box = np.array([places.min(axis=0), places.max(axis=0)])
     return _Scene(box, lambda frame: front_runs(robot, stitches, frame), draw)
@@ -339,7 +335,7 @@ def _space_scene(robot: Robot, view: Camera) -> _Scene:
         return [project_cable(robot, index, way, pane.sight, frame) for index, way in enumerate(pane.cables)]
 
     def draw(canvas: Canvas, frame: CanvasFrame) -> None:
-        canvas.line([frame.way(way) for way in pane.drawing.outlines], width=THIN, grey=0.35, closed=True)
+        canvas.line([frame.way(way) for way in pane.drawing.outlines], width=Canvas.THIN, grey=0.35, closed=True)
 
     return _Scene(pane.box, runs, draw)
 
@@ -354,7 +350,7 @@ def _put_cell(canvas: Canvas, robot: Robot, scene: _Scene, number: int, cell: Bo
     scene.draw(canvas, frame)
     for run in runs:
         if run is not own:
-            canvas.line([run.spots], width=THIN, grey=_PALE)
+            canvas.line([run.spots], width=Canvas.THIN, grey=_PALE)
     labels = LabelPlaces((left + 0.2, top + _CELL_HEAD, right - 0.2, bottom - 0.2))
     cable = robot.cables[own.cable - 1]
     put_run(canvas, labels, own, winch_marks_of(robot)[cable.winch])

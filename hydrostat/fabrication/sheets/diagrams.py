@@ -1,6 +1,6 @@
 """Diagrams: how a cable is stitched, put in and stopped, and how supply, board and motors are wired."""
 
-from hydrostat.drawing import MIDDLE, THICK, THIN, Canvas, Spot
+from hydrostat.drawing import Canvas, Spot
 from hydrostat.fabrication.lists.motors import PowerPlan
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side
 
@@ -29,11 +29,11 @@ def stitch_scheme(sewn: CableStitches, mark: str, *, width: float, height: float
         before = level[stitch.after.other] if stitch.passes else after
         way += [(x - 0.9, before), (x + 0.9, after)] if stitch.passes else [(x, after)]
         if skipped and place == len(chosen) - 2:
-            canvas.line([[*way, (x + 0.3 * step, after)]], width=THICK)
+            canvas.line([[*way, (x + 0.3 * step, after)]], width=Canvas.THICK)
             way = [(x + 0.62 * step, level[chosen[-1].after.other] if chosen[-1].passes else level[chosen[-1].after])]
             canvas.text((x + step / 2, front - 10.4), "…", size=8.5, bold=True)
     end = way[-1]
-    canvas.line([way], width=THICK)
+    canvas.line([way], width=Canvas.THICK)
     canvas.box((end[0] - 0.2, end[1] - 1.5, end[0] + 1.6, end[1] + 1.5), grey=0.0)
     for x, stitch in zip(across, chosen, strict=True):
         words = "stopper" if stitch is stitches[-1] else str(stitch.number)
@@ -67,12 +67,12 @@ def _put_sewn(canvas: Canvas, top: float, *, tubes: bool, width: float) -> None:
     """A line over the skin, first in its tube, then bare, up to its stopper."""
     line, tube_end, stopper = top - 1.9, 0.4 * width if tubes else 0.0, width - 8.0
     _put_tube(canvas, [(0, line), (tube_end, line)])
-    canvas.line([[(0, line), (stopper, line)]], width=THICK)
+    canvas.line([[(0, line), (stopper, line)]], width=Canvas.THICK)
     canvas.box((stopper, line - 1.6, stopper + 1.8, line + 1.6), grey=0.0)
     ends = [tube_end - at for at in (2.0, 4.0, 22.0, 24.0)] if tubes else []
     for x in (*ends, *(tube_end + 9.0 + 9.0 * k for k in range(int((stopper - tube_end - 10) / 9) + 1))):
         canvas.line([[(x - 0.5, top + _CLOTH + 0.7), (x - 0.5, line - 1.5), (x + 0.5, line - 1.5),
-                      (x + 0.5, top + _CLOTH + 0.7)]], width=THIN)  # fmt: skip
+                      (x + 0.5, top + _CLOTH + 0.7)]], width=Canvas.THIN)  # fmt: skip
     if tubes:
         canvas.text((tube_end / 2, line - 4.4), "tube", size=8)
     canvas.text((stopper, line - 4.4), "on the skin: a stitch at every number", size=8, anchor="end")
@@ -85,10 +85,10 @@ def _put_drawn(canvas: Canvas, top: float, *, tubes: bool, width: float) -> None
     bends: list[Spot] = [(0.46 * width, deep - 1.5), (0.62 * width, deep), (0.77 * width, deep - 2.5)]
     _put_tube(canvas, [(0, deep), (tube_end, deep)])
     end: Spot = (out, top - 1.6)
-    canvas.line([[(0, deep), (tube_end, deep), *bends, (out, top + _CLOTH), end]], width=THICK)
+    canvas.line([[(0, deep), (tube_end, deep), *bends, (out, top + _CLOTH), end]], width=Canvas.THICK)
     canvas.box((out - 1.6, top - 2.2, out + 1.6, top - 0.4), grey=0.0)
     for x, y in bends:
-        canvas.line([[(x, top - 3.0), (x, y)]], width=THIN, dash=(0.8, 0.6))
+        canvas.line([[(x, top - 3.0), (x, y)]], width=Canvas.THIN, dash=(0.8, 0.6))
         canvas.disc((x, top - 3.0), 0.6, grey=0.0)
         canvas.disc((x, y), 0.7)
     canvas.text((bends[1][0] + 1.0, top + 4.4), "depth", size=8, anchor="start")
@@ -111,7 +111,7 @@ def _put_cloth(canvas: Canvas, top: float, holes: list[float], width: float) -> 
     walls = [0.0, *(side for hole in holes for side in (hole - 1.0, hole + 1.0)), width]
     for start, end in zip(walls[::2], walls[1::2], strict=True):
         canvas.box((start, top, end, top + _CLOTH), grey=0.72)
-        canvas.line([[(start, top), (end, top)], [(end, top + _CLOTH), (start, top + _CLOTH)]], width=THIN)
+        canvas.line([[(start, top), (end, top)], [(end, top + _CLOTH), (start, top + _CLOTH)]], width=Canvas.THIN)
 
 
 def stopper_scheme(*, cloth: str, width: float, height: float) -> Canvas:
@@ -120,18 +120,18 @@ def stopper_scheme(*, cloth: str, width: float, height: float) -> Canvas:
     line, exit_at, body_end, stopper = 0.48 * height, 16.0, width - 27.0, width - 15.0
     canvas.box((exit_at, line - 5, body_end, line + 5), grey=0.93)
     canvas.box((body_end - _CLOTH, line - 7, body_end, line + 7), grey=0.72)
-    canvas.line([[(x, line - 7), (x, line + 7)] for x in (body_end - _CLOTH, body_end)], width=THIN)
+    canvas.line([[(x, line - 7), (x, line + 7)] for x in (body_end - _CLOTH, body_end)], width=Canvas.THIN)
     canvas.text(((exit_at + body_end) / 2, line + 2.6), "straight, not tight", size=8, grey=0.25)
-    canvas.line([[(7.0, line - 4.2), (12.0, line), (stopper, line)]], width=THICK)
-    canvas.line([[(stopper + 1.8, line), (width - 1.0, line)]], width=MIDDLE, dash=(1.2, 0.8))
-    canvas.disc((7.0, line), 4.2, grey=1.0, edge=MIDDLE)
+    canvas.line([[(7.0, line - 4.2), (12.0, line), (stopper, line)]], width=Canvas.THICK)
+    canvas.line([[(stopper + 1.8, line), (width - 1.0, line)]], width=Canvas.MIDDLE, dash=(1.2, 0.8))
+    canvas.disc((7.0, line), 4.2, grey=1.0, edge=Canvas.MIDDLE)
     canvas.disc((7.0, line), 1.0, grey=0.0)
-    canvas.line([[(9.3, line - 6.0), (9.3, line - 2.4)]], width=MIDDLE)
+    canvas.line([[(9.3, line - 6.0), (9.3, line - 2.4)]], width=Canvas.MIDDLE)
     canvas.text((11.0, line - 7.6), "spool mark", size=8, anchor="start")
     for left, dash in ((body_end, (0.8, 0.6)), (stopper, None)):
         box: list[Spot] = [(left, line - 2), (left + 1.8, line - 2), (left + 1.8, line + 2), (left, line + 2)]
         if dash:
-            canvas.line([box], width=THIN, dash=dash, closed=True)
+            canvas.line([box], width=Canvas.THIN, dash=dash, closed=True)
         else:
             canvas.fill([box], grey=0.0)
     canvas.text((body_end + 2.0, line - 6.2), "1 touches", size=8, anchor="start")
@@ -144,10 +144,10 @@ def stopper_scheme(*, cloth: str, width: float, height: float) -> Canvas:
 
 def _dimension(canvas: Canvas, left: float, right: float, at: float, foot: float, words: str) -> None:
     """An arrow between two places with what it measures."""
-    canvas.line([[(x, foot), (x, at + (0.8 if foot < at else -0.8))] for x in (left, right)], width=THIN)
+    canvas.line([[(x, foot), (x, at + (0.8 if foot < at else -0.8))] for x in (left, right)], width=Canvas.THIN)
     middle = (left + right) / 2
-    canvas.arrow((middle, at), (left, at), width=THIN, head=1.4)
-    canvas.arrow((middle, at), (right, at), width=THIN, head=1.4)
+    canvas.arrow((middle, at), (left, at), width=Canvas.THIN, head=1.4)
+    canvas.arrow((middle, at), (right, at), width=Canvas.THIN, head=1.4)
     beside = at + (2.4 if foot < at else -2.2)
     canvas.text((middle, beside), words, size=8, halo=False)
 
@@ -176,12 +176,12 @@ def _put_power(canvas: Canvas, plan: PowerPlan) -> None:
     """The supply at the left, its fuse and switch, and both rails."""
     _box(canvas, (0.4, 10.0, 26.0, 23.0), f"supply {plan.motor.volts:g} V", f"{plan.supply:g} A")
     end = canvas.width - 1.0
-    canvas.line([[(26.0, _RAIL), (31.0, _RAIL)], [(39.0, _RAIL), (44.0, _RAIL)]], width=THICK)
-    canvas.line([[(26.0, _GROUND), (end, _GROUND)], [(53.0, _RAIL), (end, _RAIL)]], width=THICK)
-    canvas.line([[(31.0, 12.4), (39.0, 12.4), (39.0, 15.6), (31.0, 15.6)]], width=MIDDLE, closed=True)
-    canvas.line([[(31.0, _RAIL), (39.0, _RAIL)]], width=THIN)
+    canvas.line([[(26.0, _RAIL), (31.0, _RAIL)], [(39.0, _RAIL), (44.0, _RAIL)]], width=Canvas.THICK)
+    canvas.line([[(26.0, _GROUND), (end, _GROUND)], [(53.0, _RAIL), (end, _RAIL)]], width=Canvas.THICK)
+    canvas.line([[(31.0, 12.4), (39.0, 12.4), (39.0, 15.6), (31.0, 15.6)]], width=Canvas.MIDDLE, closed=True)
+    canvas.line([[(31.0, _RAIL), (39.0, _RAIL)]], width=Canvas.THIN)
     canvas.text((35.0, 9.6), f"fuse {plan.fuse:g} A", size=8)
-    canvas.line([[(44.0, _RAIL), (52.0, 10.6)]], width=THICK)
+    canvas.line([[(44.0, _RAIL), (52.0, 10.6)]], width=Canvas.THICK)
     canvas.disc((44.0, _RAIL), 0.7, grey=0.0)
     canvas.disc((53.0, _RAIL), 0.7, grey=0.0)
     canvas.text((49.0, 7.4), "switch, in reach", size=8)
@@ -196,7 +196,7 @@ def _put_chain(canvas: Canvas, plan: PowerPlan, places: list[float], step: float
     ends = [38.0, *places]
     for one, other in zip(ends, places, strict=False):
         begin = one if one == ends[0] else one + 0.3 * step
-        canvas.line([[(begin, line), (other - 0.3 * step, line)]], width=MIDDLE)
+        canvas.line([[(begin, line), (other - 0.3 * step, line)]], width=Canvas.MIDDLE)
     for number, place in enumerate(places, start=1):
         _box(canvas, (place - 0.3 * step, top, place + 0.3 * step, top + 12.0), f"ID {number}", "")
     groups = min(plan.feeds, len(places))
@@ -218,28 +218,30 @@ def _put_drivers(canvas: Canvas, plan: PowerPlan, places: list[float], step: flo
         _box(canvas, (place - wide, top + 4.0, place + wide, top + 13.0), "motor", "encoder")
         _drop(canvas, (place - 1.5, _RAIL), (place - 1.5, top - 12.0))
         _drop(canvas, (place + 1.5, _GROUND), (place + 1.5, top - 12.0))
-        canvas.line([[(place - 1.5, top - 3.0), (place - 1.5, top + 4.0)]], width=THICK)
-        canvas.line([[(place + 1.5, top - 3.0), (place + 1.5, top + 4.0)]], width=THICK)
-        canvas.line([[(place - wide, top - 7.5), (place - wide - 1.5, top - 7.5)]], width=THIN)
-        canvas.line([[(place - wide, top + 8.5), (place - wide - 1.5, top + 8.5)]], width=THIN)
-    canvas.line([[(38.0, top + 0.5), (places[-1] - wide - 1.5, top + 0.5)]], width=THIN, dash=(1.2, 0.8))
+        canvas.line([[(place - 1.5, top - 3.0), (place - 1.5, top + 4.0)]], width=Canvas.THICK)
+        canvas.line([[(place + 1.5, top - 3.0), (place + 1.5, top + 4.0)]], width=Canvas.THICK)
+        canvas.line([[(place - wide, top - 7.5), (place - wide - 1.5, top - 7.5)]], width=Canvas.THIN)
+        canvas.line([[(place - wide, top + 8.5), (place - wide - 1.5, top + 8.5)]], width=Canvas.THIN)
+    canvas.line([[(38.0, top + 0.5), (places[-1] - wide - 1.5, top + 0.5)]], width=Canvas.THIN, dash=(1.2, 0.8))
     for place in places:
-        canvas.line([[(place - wide - 1.5, top - 7.5), (place - wide - 1.5, top + 8.5)]], width=THIN, dash=(1.2, 0.8))
+        canvas.line(
+            [[(place - wide - 1.5, top - 7.5), (place - wide - 1.5, top + 8.5)]], width=Canvas.THIN, dash=(1.2, 0.8)
+        )
 
 
 def _put_board(canvas: Canvas, name: str, top: float) -> None:
     """The board, and the computer at its plug."""
     _box(canvas, (8.0, top, 38.0, top + 12.0), name, "")
-    canvas.line([[(23.0, top + 12.0), (23.0, top + 17.0)]], width=MIDDLE)
+    canvas.line([[(23.0, top + 12.0), (23.0, top + 17.0)]], width=Canvas.MIDDLE)
     canvas.text((23.0, top + 19.5), "USB, computer", size=8)
     _drop(canvas, (28.0, 23.0), (28.0, top), dot=False)
-    canvas.line([[(28.0, 23.0), (28.0, _GROUND)]], width=MIDDLE)
+    canvas.line([[(28.0, 23.0), (28.0, _GROUND)]], width=Canvas.MIDDLE)
     canvas.disc((28.0, _GROUND), 0.5, grey=0.0)
     canvas.text((27.0, top - 3.0), "GND", size=8, anchor="end")
 
 
 def _drop(canvas: Canvas, begin: Spot, end: Spot, *, dot: bool = True) -> None:
-    canvas.line([[begin, end]], width=MIDDLE)
+    canvas.line([[begin, end]], width=Canvas.MIDDLE)
     if dot:
         canvas.disc(begin, 0.5, grey=0.0)
 
@@ -247,7 +249,7 @@ def _drop(canvas: Canvas, begin: Spot, end: Spot, *, dot: bool = True) -> None:
 def _box(canvas: Canvas, box: tuple[float, float, float, float], first: str, second: str) -> None:
     left, top, right, bottom = box
     canvas.box(box, grey=1.0)
-    canvas.line([[(left, top), (right, top), (right, bottom), (left, bottom)]], width=MIDDLE, closed=True)
+    canvas.line([[(left, top), (right, top), (right, bottom), (left, bottom)]], width=Canvas.MIDDLE, closed=True)
     middle = ((left + right) / 2, (top + bottom) / 2)
     apart = 2.0 if second else 0.0
     canvas.text((middle[0], middle[1] - apart), first, size=8.5, bold=True)

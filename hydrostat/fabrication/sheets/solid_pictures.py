@@ -9,9 +9,6 @@ from manifold3d import Manifold
 from scipy.ndimage import distance_transform_edt, gaussian_filter
 
 from hydrostat.drawing import (
-    MIDDLE,
-    PIXELS,
-    THIN,
     Box,
     Camera,
     Canvas,
@@ -48,7 +45,7 @@ def exploded_picture(
     at most so high [mm]; the view is isometric if left out.
     """
     solids = [drawn_solid(placed.solid, shift=placed.pulled) for placed in assembly.pieces]
-    drawing = line_drawing(solids, view or Camera.isometric(), pixels=round(PIXELS * max(width, height)))
+    drawing = line_drawing(solids, view or Camera.isometric(), pixels=round(Canvas.PIXELS * max(width, height)))
     side = _SIDE if numbers else 0.6
     height = fit_height(drawing.box, width - 2 * side, height - 1.2) + 1.2
     canvas = Canvas(width, height)
@@ -73,7 +70,7 @@ def _axis(canvas: Canvas, drawing: LineDrawing, frame: CanvasFrame, placed: Plac
     box = np.array(placed.solid.bounding_box(), dtype=float).reshape(2, 3)
     middle = box.mean(axis=0)
     seen = drawing.seen_of(np.linspace(middle, middle + pulled, 2))
-    canvas.line([frame.way(way) for way in seen], width=THIN, dash=(1.6, 0.8))
+    canvas.line([frame.way(way) for way in seen], width=Canvas.THIN, dash=(1.6, 0.8))
 
 
 def put_balloons(canvas: Canvas, targets: Sequence[tuple[str, Spot]], room: Box) -> None:
@@ -89,7 +86,7 @@ def put_balloons(canvas: Canvas, targets: Sequence[tuple[str, Spot]], room: Box)
         for (words, spot), radius, height in zip(column, radii, heights, strict=True):
             inward = 1.0 if side == left else -1.0
             at = (side + inward * (radius + 0.3), height)
-            canvas.line([[(at[0] + inward * radius, height), spot]], width=THIN)
+            canvas.line([[(at[0] + inward * radius, height), spot]], width=Canvas.THIN)
             canvas.disc(spot, 0.45, grey=0.0, edge=0.0)
             canvas.balloon(at, words)
 
@@ -124,17 +121,19 @@ def undercut_picture(
 ) -> Canvas:
     """The body with the pull upright, hatched where it holds in its half; seen from where most of that is in sight."""
     body = DrawnSolid(vertices=vertices, triangles=triangles, sharp=70.0)
-    drawing = line_drawing([body], _view(body, held, pull), soft=0.008, pixels=round(PIXELS * max(width, height)))
+    drawing = line_drawing(
+        [body], _view(body, held, pull), soft=0.008, pixels=round(Canvas.PIXELS * max(width, height))
+    )
     height = fit_height(drawing.box, width - 1.2, height - 9.6) + 9.6
     canvas = Canvas(width, height)
     frame = CanvasFrame.fit(drawing.box, (0.6, 9.0, width - 0.6, height - 0.6))
     canvas.drawing(drawing, frame)
     rings = drawing.rings_of(0, held)
     hatch = 0.8  # between the lines of a hatch on paper [mm]
-    canvas.line([frame.way(line) for line in _hatch(rings, hatch / frame.scale)], width=THIN)
-    canvas.line([frame.way(ring) for ring in rings], width=THIN)
+    canvas.line([frame.way(line) for line in _hatch(rings, hatch / frame.scale)], width=Canvas.THIN)
+    canvas.line([frame.way(ring) for ring in rings], width=Canvas.THIN)
     top = frame.on(((drawing.box[0, 0] + drawing.box[1, 0]) / 2, drawing.box[1, 1]))
-    canvas.arrow((top[0], top[1] - 1.2), (top[0], max(top[1] - 8.2, 0.4)), width=MIDDLE)
+    canvas.arrow((top[0], top[1] - 1.2), (top[0], max(top[1] - 8.2, 0.4)), width=Canvas.MIDDLE)
     return canvas
 
 
@@ -171,7 +170,7 @@ def portrait(robot: Robot, view: Camera | None, *, width: float, height: float) 
     canvas = Canvas(width, height)
     room = (0.6, 0.6, width - 0.6, height - 0.6)
     if view is not None:
-        drawing = line_drawing([body_solid(robot)], view, soft=0.01, pixels=round(PIXELS * max(width, height)))
+        drawing = line_drawing([body_solid(robot)], view, soft=0.01, pixels=round(Canvas.PIXELS * max(width, height)))
         canvas.drawing(drawing, CanvasFrame.fit(drawing.box, room))
         return canvas
     rings = [1e3 * ring for ring in flat_rings(robot)]
@@ -179,11 +178,11 @@ def portrait(robot: Robot, view: Camera | None, *, width: float, height: float) 
     frame = CanvasFrame.fit(box, room)
     for grey, shade in _puff_rings(rings, box, 500 * (robot.body.thickness or 0.04)):
         canvas.fill([frame.way(ring) for ring in shade], grey=grey)
-    canvas.line([frame.way(ring) for ring in rings], width=MIDDLE, closed=True)
-    canvas.line([frame.way(mark) for mark in flat_marks(robot)], width=THIN)
+    canvas.line([frame.way(ring) for ring in rings], width=Canvas.MIDDLE, closed=True)
+    canvas.line([frame.way(mark) for mark in flat_marks(robot)], width=Canvas.THIN)
     seam = shapely.Polygon(rings[0], rings[1:]).buffer(-1.1 / frame.scale)
     lines = [np.array(part.exterior.coords) for part in shapely.get_parts(seam) if not part.is_empty]
-    canvas.line([frame.way(line) for line in lines], width=THIN, dash=(0.9, 0.7), grey=0.35)
+    canvas.line([frame.way(line) for line in lines], width=Canvas.THIN, dash=(0.9, 0.7), grey=0.35)
     return canvas
 
 

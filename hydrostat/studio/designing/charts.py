@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from hydrostat.design import front
-from hydrostat.drawing import WINCHES
+from hydrostat.drawing import Color
 from hydrostat.studio.designing.design_work import Candidate
 from hydrostat.studio.designing.run import DesignRun, ProgressPoint
 from hydrostat.units import plural
@@ -128,7 +128,7 @@ def _counts(candidates: Sequence[Candidate], places: Sequence[Place], chosen: in
 
 def winch_count_color(winches: int) -> str:
     """The color of all networks with so many winches."""
-    return WINCHES[(winches - 1) % len(WINCHES)]
+    return Color.WINCHES[(winches - 1) % len(Color.WINCHES)]
 
 
 def _legend(keys: list[tuple[str, str]]) -> str:

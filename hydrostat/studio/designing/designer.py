@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from hydrostat.design import KNOB_RANGES, DesignRequest, RouteOptions
-from hydrostat.drawing import INK, pose_colors
+from hydrostat.drawing import Color, pose_colors
 from hydrostat.errors import InputError
 from hydrostat.project import Paint, Wishes, after_design, wished_poses
 from hydrostat.robot import Robot
@@ -327,14 +327,14 @@ class Designer(Stage):
         """Targets of the pose that is shown; of all that are to be reached where none is, each in its own color."""
         reach, robot = self._reach(), self._document.robot
         if reach is not None:
-            return [(reach.pose.targets, INK)]
+            return [(reach.pose.targets, Color.INK)]
         if self.painter.busy or not robot.poses:
             return []
         poses, colors = wished_poses(robot, self.wishes), pose_colors(robot.poses)
         most_rings = 12  # more targets than these at once say nothing
         if sum(len(pose.targets) for pose in poses) > most_rings:
             return []
-        return [(pose.targets, colors[pose.name] if len(poses) > 1 else INK) for pose in poses]
+        return [(pose.targets, colors[pose.name] if len(poses) > 1 else Color.INK) for pose in poses]
 
     def _on_better(self, glimpse: BestSoFar) -> None:
         """A better network was found; called in a thread of the jobs."""

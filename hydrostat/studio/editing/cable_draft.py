@@ -5,7 +5,7 @@ from typing import Self
 
 import numpy as np
 
-from hydrostat.drawing import INK, MUTED, WINCHES, winch_colors
+from hydrostat.drawing import Color, winch_colors
 from hydrostat.errors import InputError
 from hydrostat.robot import Point, Robot
 from hydrostat.studio.editing.part import Mirror
@@ -81,13 +81,13 @@ def _axis(robot: Robot, mirror: Mirror) -> Strand:
     margin = beyond * robot.body.mesh.size
     ends = (float(nodes[:, along].min()) - margin, float(nodes[:, along].max()) + margin)
     points = tuple(mirror.on_plane((end, end)) for end in ends)
-    return Strand(points=points, stroke=Stroke.PATH, color=MUTED, loose=-1)
+    return Strand(points=points, stroke=Stroke.PATH, color=Color.MUTED, loose=-1)
 
 
 def _draft(robot: Robot, draft: CableDraft) -> list[Thing]:
-    color: str = WINCHES[len(robot.winches) % len(WINCHES)]
+    color: str = Color.WINCHES[len(robot.winches) % len(Color.WINCHES)]
     if draft.winch is not None:
-        color = winch_colors(robot.winches).get(draft.winch, INK)
+        color = winch_colors(robot.winches).get(draft.winch, Color.INK)
     start, *rest = draft.points
     things: list[Thing] = []
     if rest:

@@ -5,7 +5,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from hydrostat.drawing import INK
+from hydrostat.drawing import Color
 from hydrostat.robot import Point, Robot
 from hydrostat.studio.view.things import Dot, Look, Strand, Stroke, Thing
 
@@ -58,12 +58,19 @@ class Ruler:
         """The line, and its ends."""
         label = self.words.partition(" (")[0]
         dots: list[Thing] = [
-            Dot(at=point, look=Look.VIA, color=INK, label=label if number else "", chosen=bool(number), stuck=False)
+            Dot(
+                at=point,
+                look=Look.VIA,
+                color=Color.INK,
+                label=label if number else "",
+                chosen=bool(number),
+                stuck=False,
+            )
             for number, point in enumerate(self.points)
         ]
         if len(self.points) < 2:
             return dots
-        return [Strand(points=self.points, stroke=Stroke.PATH, color=INK, loose=-1), *dots]
+        return [Strand(points=self.points, stroke=Stroke.PATH, color=Color.INK, loose=-1), *dots]
 
 
 class Tool(StrEnum):

@@ -8,7 +8,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from matplotlib.figure import Figure
 
-from hydrostat.drawing import PAPER, Html, tag
+from hydrostat.drawing import Color, Html, tag
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.ik import IKResult, solve_ik
 from hydrostat.plot import (
@@ -97,7 +97,7 @@ def _png(figure: Figure) -> bytes:
 def _svg(figure: Figure) -> bytes:
     buffer = io.BytesIO()
     with drawing():
-        figure.savefig(buffer, format="svg", facecolor=PAPER, metadata={"Date": None, "Creator": None})
+        figure.savefig(buffer, format="svg", facecolor=Color.PAPER, metadata={"Date": None, "Creator": None})
     return buffer.getvalue()
 
 

@@ -2,12 +2,12 @@
 
 from nicegui import ui
 
-from hydrostat.drawing import palette
+from hydrostat.drawing import Color
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import WindowPage, icon_button
 from hydrostat.studio.view.coloring import Coloring
 
-RAMP = palette.TENSION
+RAMP = Color.TENSION
 
 AXES = {"off": None, "x": "x", "y": "y", "z": "z"}
 

@@ -7,22 +7,22 @@ from typing import Literal
 from nicegui import ui
 from nicegui.dependencies import register_esm
 
-from hydrostat.drawing import palette
+from hydrostat.drawing import Color
 
 STATIC = Path(__file__).parent / "static"
 MODULES = STATIC / "view"
 
 COLORS = {  # what the view is painted with; ink and ghosts are lighter on a dark page
-    "felt": palette.FELT,
-    "felt_light": palette.FELT_LIGHT,
-    "seam": palette.SEAM,
-    "stitch": palette.STITCH,
-    "mesh": palette.MESH,
-    "dark": palette.DARK,
-    "light": palette.LIGHT,
-    "ink": palette.INK,
-    "ghost": palette.GHOST,
-    "tension": list(palette.TENSION),
+    "felt": Color.FELT,
+    "felt_light": Color.FELT_LIGHT,
+    "seam": Color.SEAM,
+    "stitch": Color.STITCH,
+    "mesh": Color.MESH,
+    "dark": Color.DARK,
+    "light": Color.LIGHT,
+    "ink": Color.INK,
+    "ghost": Color.GHOST,
+    "tension": list(Color.TENSION),
 }
 
 Side = Literal["front", "side", "top"]

@@ -7,7 +7,7 @@ from threading import RLock
 import numpy as np
 
 from hydrostat.closed_set import parse_choice
-from hydrostat.drawing import GHOST
+from hydrostat.drawing import Color
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
@@ -111,7 +111,7 @@ class Poser(Stage):
         robot, targets, shape = now.robot, now.targets, now.shape
         limit = self._document.work.wishes.constraints.tension
         keys = {f"marker:{self._chosen}", f"point:{self._chosen}"} if self._chosen else set()
-        found: list[Thing] = [Ghost(name="rest", nodes=robot.body.mesh.nodes, color=GHOST)]
+        found: list[Thing] = [Ghost(name="rest", nodes=robot.body.mesh.nodes, color=Color.GHOST)]
         if now.ghost is not None:
             found.append(now.ghost)
         cloud = self.reach.cloud(robot)

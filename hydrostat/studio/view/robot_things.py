@@ -10,7 +10,7 @@ import numpy as np
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.design import Diagnostic, Severity
-from hydrostat.drawing import DARK, INK, MUTED, SEAM, winch_colors
+from hydrostat.drawing import Color, winch_colors
 from hydrostat.fabrication import winch_marks_of
 from hydrostat.geometry import Mesh
 from hydrostat.robot import Cable, Mount, Pin, Point, Robot, Winch, in_words, obstacle_lines
@@ -60,7 +60,7 @@ def robot_things(
     """
     colors, marks = winch_colors(robot.winches), winch_marks_of(robot)
     things: list[Thing] = [
-        Strand(points=tuple(map(tuple, line.tolist())), stroke=Stroke.RIM, color=MUTED, loose=-1)
+        Strand(points=tuple(map(tuple, line.tolist())), stroke=Stroke.RIM, color=Color.MUTED, loose=-1)
         for line in obstacle_lines(obstacles_in_pose(robot, carried))
     ]
     things += [*_part_things(robot), *_drawing_things(robot)]
@@ -126,7 +126,7 @@ def _part_things(robot: Robot) -> list[Thing]:
     """Borders of the parts of a flat body."""
     nodes = robot.body.mesh.nodes
     return [
-        Strand(points=tuple(map(tuple, nodes[[*loop, loop[0]]].tolist())), stroke=Stroke.DRAWN, color=MUTED)
+        Strand(points=tuple(map(tuple, nodes[[*loop, loop[0]]].tolist())), stroke=Stroke.DRAWN, color=Color.MUTED)
         for loops in robot.body.part_rings
         for loop in loops
     ]
@@ -137,13 +137,17 @@ def _drawing_things(robot: Robot) -> list[Thing]:
     marks = robot.body.marks
     step = max(1, sum(map(len, marks)) // DETAIL)
     return [
-        Strand(points=tuple(map(tuple, [*line[:-1:step].tolist(), line[-1].tolist()])), stroke=Stroke.DRAWN, color=DARK)
+        Strand(
+            points=tuple(map(tuple, [*line[:-1:step].tolist(), line[-1].tolist()])),
+            stroke=Stroke.DRAWN,
+            color=Color.DARK,
+        )
         for line in marks
     ]
 
 
 def target_things(
-    targets: Mapping[str, Point], places: Mapping[str, Point], *, chosen: str = "", color: str = INK
+    targets: Mapping[str, Point], places: Mapping[str, Point], *, chosen: str = "", color: str = Color.INK
 ) -> list[Thing]:
     """Rings where markers should go [m], keys "target:tip", the chosen one selected, with lines from where they are."""
     things: list[Thing] = []
@@ -231,7 +235,7 @@ def winch_bars(robot: Robot, shape: RobotShape, limit: float) -> list[Bar]:
     ]
 
 
-TONES = {Severity.REFUSED: "#c8243f", Severity.LIMIT: "#6d6875", Severity.MIND: SEAM}  # color of each weight
+TONES = {Severity.REFUSED: "#c8243f", Severity.LIMIT: "#6d6875", Severity.MIND: Color.SEAM}  # color of each weight
 BRIEF = 64  # letters that are written beside a ring
 
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from hydrostat.drawing import ERROR
+from hydrostat.drawing import Color
 from hydrostat.geometry import find_crossings
 from hydrostat.simulation import Equilibrium, Simulation, find_contacts
 from hydrostat.studio.view.things import Dot, Look, RobotShape, Strand, Stroke, Thing
@@ -48,5 +48,5 @@ def touch_things(shape: RobotShape, size: float) -> list[Thing]:
         things.append(Strand(points=line, stroke=Stroke.RIM, color=TOUCH, loose=-1))
         things.append(Dot(at=tuple(touch.place.tolist()), look=Look.TOUCH, color=TOUCH, stuck=False))
     if shape.crossing is not None:
-        things.append(Dot(at=shape.crossing, look=Look.FLAG, color=ERROR, label=OFF, stuck=False, chosen=True))
+        things.append(Dot(at=shape.crossing, look=Look.FLAG, color=Color.ERROR, label=OFF, stuck=False, chosen=True))
     return things

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from builders import gallery_robot
 
-from hydrostat.drawing import WINCHES
+from hydrostat.drawing import Color
 from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patterns.skin import flat_skin
 from hydrostat.fabrication.patterns.stitches import cable_stitches
@@ -48,7 +48,7 @@ def test_the_map_tells_cables_apart() -> None:
     """A color for each, and the cable's name at the first and the last hole that is numbered."""
     robot, stitches = stitched("starfish")
     svg = flat_map(robot, stitches, width=112.0, height=119.0).svg
-    assert all(color in svg for color in WINCHES[: len(robot.cables)])
+    assert all(color in svg for color in Color.WINCHES[: len(robot.cables)])
     assert {f"C{number}-2" for number in range(1, 6)} <= set(words(svg))
 
 

@@ -10,7 +10,7 @@ import pytest
 from builders import strip_robot
 
 from hydrostat.design import Constraints, DesignRequest, RouteOptions, TreeOptions, design_cables
-from hydrostat.drawing import INK, pose_colors
+from hydrostat.drawing import Color, pose_colors
 from hydrostat.errors import InputError
 from hydrostat.ik import Limits, solve_ik
 from hydrostat.project import Wishes, Work
@@ -285,11 +285,11 @@ def test_targets_of_several_poses_are_told_apart(fresh: Studio) -> None:
         things = fresh.designer.things()
         return {thing.at: thing.color for thing in things if isinstance(thing, Dot) and thing.look is Look.TARGET}
 
-    assert rings() == {(0.18, 0.06): INK}
+    assert rings() == {(0.18, 0.06): Color.INK}
     fresh.designer.wish_pose("down", True)
     colors = pose_colors(["up", "down"])
     assert rings() == {(0.18, 0.06): colors["up"], (0.185, -0.05): colors["down"]}
-    assert len({*colors.values(), INK}) == 3
+    assert len({*colors.values(), Color.INK}) == 3
 
 
 @pytest.mark.slow

@@ -3,7 +3,6 @@
 import pytest
 from builders import gallery_robot
 
-from hydrostat.cli.design_wishes import DesignArguments, parse_request
 from hydrostat.design import Constraints, DesignMethod, RouteOptions, TreeOptions, Zone
 from hydrostat.errors import InputError
 from hydrostat.project import Paint, Wishes, wished_constraints, wished_poses
@@ -76,14 +75,10 @@ def test_as_few_winches_as_will_do(starfish: Robot) -> None:
         wished_request(starfish, Wishes(winches=0, improve=True))
 
 
-def test_the_knobs_of_the_thesis_are_those_of_the_command_line(starfish: Robot) -> None:
+def test_usual_knobs_are_those_of_one_tree(starfish: Robot) -> None:
     """The usual ones are those of `TreeOptions.single`; what trees do not keep is told at once."""
     asked = wished_request(starfish, Wishes(method=DesignMethod.CHANG2018))
     assert (asked.method, asked.options) == (DesignMethod.CHANG2018, TreeOptions.single())
-    knobs = {"threshold": 40, "distance": 2.5, "steps": 8, "phi": 0.3}
-    typed = DesignArguments(method="chang2018", knobs=[f"{name}={value}" for name, value in knobs.items()])
-    wished = wished_request(starfish, Wishes.of(method=DesignMethod.CHANG2018, **knobs))
-    assert wished == parse_request(starfish, typed)
     with pytest.raises(InputError, match="does not keep mirror"):
         wished_request(starfish, Wishes.of(method=DesignMethod.CHANG2018, mirror="x"))
     with pytest.raises(InputError, match="needs a number of winches and cannot improve"):

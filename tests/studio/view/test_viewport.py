@@ -4,7 +4,7 @@ from nicegui import ui
 from nicegui.client import Client
 from nicegui.dependencies import esm_modules
 
-from hydrostat.drawing import FELT, TENSION
+from hydrostat.drawing import Color
 from hydrostat.studio.face.viewport import MODULES, STATIC, Viewport
 
 
@@ -28,8 +28,8 @@ def test_props() -> None:
     with Client(ui.page("/view-of-a-test")):
         view = Viewport(stream="/stream", brush=True)
         assert view.props["stream"] == "/stream"
-        assert view.props["palette"]["felt"] == FELT
-        assert tuple(view.props["palette"]["tension"]) == TENSION
+        assert view.props["palette"]["felt"] == Color.FELT
+        assert tuple(view.props["palette"]["tension"]) == Color.TENSION
         assert view.props["brush"] is True
         assert view.props["dark"] is None
         view.set_dark(True)

@@ -2,7 +2,7 @@
 
 from nicegui import events, ui
 
-from hydrostat.drawing import ERROR, winch_colors
+from hydrostat.drawing import Color, winch_colors
 from hydrostat.fabrication import winch_marks_of
 from hydrostat.robot import Winch
 from hydrostat.studio.bell import Topic
@@ -31,7 +31,7 @@ def drive_panel(page: WindowPage) -> None:
         rest.props("flat dense no-caps").style("color: var(--accent)")
         release_focus(rest).tooltip("Release all cables (R)").mark("drive-rest")
     ui.label("Turn a knob, type a length, or drag a winch in the view down.").classes("studio-hint")
-    notes = ui.label().classes("studio-hint").style(f"color: {ERROR}; white-space: pre-line").mark("drive-notes")
+    notes = ui.label().classes("studio-hint").style(f"color: {Color.ERROR}; white-space: pre-line").mark("drive-notes")
     box = ui.column().classes("w-full").style("gap: 8px")
     cards: list[_Card] = []
 
@@ -105,7 +105,7 @@ class _Card:
         words = f"{tension:.1f} N"
         if words != self._pull.text:
             self._pull.set_text(words)
-            color = ERROR if tension > most else self._color
+            color = Color.ERROR if tension > most else self._color
             self._bar.style(f"width: {100 * min(tension / most, 1.0):.0f}%; background: {color}")
 
     def _on_typed(self, event: events.GenericEventArguments) -> None:

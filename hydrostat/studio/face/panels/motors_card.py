@@ -5,7 +5,7 @@ from math import isnan
 from nicegui import ui
 
 from hydrostat.control import EMULATED, LinkState
-from hydrostat.drawing import ERROR
+from hydrostat.drawing import Color
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import WindowPage
 
@@ -67,7 +67,7 @@ def motors_card(page: WindowPage) -> None:
         found.set_visibility(hardware.is_armed)
         words.set_text(hardware.words)
         words.set_visibility(bool(hardware.words))
-        words.style(f"color: {ERROR}" if now is LinkState.FAULT else "color: inherit")
+        words.style(f"color: {Color.ERROR}" if now is LinkState.FAULT else "color: inherit")
 
     page.on((Topic.ROBOT, Topic.DRIVE), show)
 

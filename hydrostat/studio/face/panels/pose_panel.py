@@ -2,7 +2,7 @@
 
 from nicegui import ui
 
-from hydrostat.drawing import ERROR
+from hydrostat.drawing import Color
 from hydrostat.project import fresh_name
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.elements import winch_badge
@@ -214,7 +214,7 @@ def _track() -> ui.element:
 
 
 def _fill(bar: ui.element, share: float, color: str) -> None:
-    full = ERROR if share >= FULL else f"color-mix(in oklab, {color}, white var(--lift, 0%))"
+    full = Color.ERROR if share >= FULL else f"color-mix(in oklab, {color}, white var(--lift, 0%))"
     bar.style(f"width: {100 * min(share, 1.0):.1f}%; background: {full}")
 
 

@@ -1,0 +1,41 @@
+"""Requests for a design, typed and wished for in the studio. Oracle: the record that both of them fill."""
+
+from dataclasses import replace
+
+from builders import gallery_robot, strip_robot
+
+from hydrostat.cli.design_wishes import DesignArguments, parse_request
+from hydrostat.design import DesignMethod, DesignRequest, RouteOptions, TreeOptions
+from hydrostat.project import Wishes
+from hydrostat.robot import PoseTarget, Robot
+from hydrostat.studio import wished_request
+
+UP = PoseTarget(name="up", targets={"tip": (0.18, 0.06)})
+
+
+def robot() -> Robot:
+    return replace(strip_robot(), poses={"up": UP})
+
+
+def test_nothing_typed_and_nothing_wished_is_what_the_record_says(unchecked: None) -> None:
+    usual = DesignRequest(poses=(UP,))
+    assert parse_request(robot(), DesignArguments()) == usual
+    assert wished_request(robot(), Wishes()) == usual
+    assert (usual.winches, usual.cables, usual.options) == (2, 6, RouteOptions())
+    assert DesignRequest(poses=(UP,), method=DesignMethod.TREES).options == TreeOptions()
+
+
+def test_the_same_typed_and_wished_is_the_same_request(unchecked: None) -> None:
+    limits = {"tension": "12 N", "clearance": "4 mm", "slack": "3 mm"}
+    typed = DesignArguments(winches="auto", cables=4, tolerance="2 mm", limits=limits, stepped=True, lock_winch=("up",))
+    lengths = {"tolerance": 0.002, "clearance": 0.004, "slack": 0.003}
+    wishes = Wishes.of(winches=0, cables=4, tension=12.0, stepped=True, kept_winches=("up",), **lengths)
+    assert parse_request(robot(), typed) == wished_request(robot(), wishes)
+
+
+def test_knobs_of_the_thesis_have_the_same_names_everywhere() -> None:
+    starfish = gallery_robot("starfish")
+    knobs = {"threshold": 40, "distance": 2.5, "steps": 8, "phi": 0.3}
+    typed = DesignArguments(method="chang2018", knobs=[f"{name}={value}" for name, value in knobs.items()])
+    wished = wished_request(starfish, Wishes.of(method=DesignMethod.CHANG2018, **knobs))
+    assert wished == parse_request(starfish, typed)
