@@ -106,6 +106,20 @@ def _used_names(path: Path, text: str) -> Iterator[tuple[str, str]]:
                 yield from ((alias.name, name) for name in re.findall(rf"\b{alias.asname or alias.name}\.(\w+)", text))
 
 
+@pytest.mark.parametrize("folder", _FOLDERS)
+def test_names_taken_from_doors_are_there(folder: str) -> None:
+    """Also those that a test takes from the door of its own room."""
+    taken = [(path, node) for path in _files(folder) if path != _HERE for node in _imports(_text(path))]
+    missing = [
+        f"{path}: {node.module}.{alias.name}"
+        for path, node in taken
+        if isinstance(node, ast.ImportFrom) and (room := str(node.module).removeprefix("hydrostat.")) in _ROOMS
+        for alias in node.names
+        if alias.name not in _ROOMS[room] and not (_TOP / "hydrostat" / room / f"{alias.name}.py").is_file()
+    ]
+    assert missing == []
+
+
 def test_doors_hold_no_idle_names() -> None:
     """A name is used by another room, a script or a test, is part of hs, or is code in a document for users."""
     used = {pair for path in _files(*_FOLDERS) for pair in _used_names(path, _text(path))}

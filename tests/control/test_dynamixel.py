@@ -11,9 +11,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hydrostat.control import DynamixelBus, EmulatedChain, EmulatedServo, InjectedFaults
+from hydrostat.control import DynamixelBus, EmulatedChain, EmulatedServo
 from hydrostat.control.dynamixel_bus import STATE_BYTES, TORQUE, WATCH, WATCHDOG
 from hydrostat.control.dynamixel_packets import HEADER, PING, READ, STATUS, Packet, PacketReader, crc, pack
+from hydrostat.control.emulated_servos import InjectedFaults
 from hydrostat.errors import HydrostatError
 
 sdk = pytest.importorskip("dynamixel_sdk", reason="dynamixel-sdk is not installed")

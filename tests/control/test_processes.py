@@ -13,8 +13,9 @@ import pytest
 from emulation import RADIUS
 
 import hydrostat
-from hydrostat.control import EmulatedChain, EmulatedLine, EmulatedServo, InjectedFaults
+from hydrostat.control import EmulatedChain, EmulatedLine, EmulatedServo
 from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedSts
+from hydrostat.control.emulated_servos import InjectedFaults
 
 STANDS = 0.25  # motors stand so long after the last command [s]
 HOST = Path(__file__).with_name("host.py")

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from builders import strip_robot
 
-from hydrostat.design import BuildTolerances, built_errors, corrected_errors, expected_corrected_error, spread_markers
+from hydrostat.design import BuildTolerances, built_errors, corrected_errors
+from hydrostat.design.corrected_error import expected_corrected_error, spread_markers
 from hydrostat.ik import solve_ik
 from hydrostat.robot import PoseTarget
 from hydrostat.simulation import Simulation

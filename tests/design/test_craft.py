@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hydrostat.design import SewingTimes, build_effort
-from hydrostat.design.craft import front
+from hydrostat.design import build_effort
+from hydrostat.design.craft import SewingTimes, front
 from hydrostat.fabrication import MOTORS
 from hydrostat.robot import Cable, Robot, gallery_folder, load_robot
 

@@ -1,5 +1,6 @@
 import subprocess
 import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
@@ -16,14 +17,26 @@ from hydrostat.errors import InputError
 from hydrostat.geometry import Outline, triangulate
 from hydrostat.ik import IKStatus
 from hydrostat.plot import reached_title
+from hydrostat.plot.activation_figures import draw_candidates, draw_trees
 from hydrostat.plot.motion import motion_frames, motion_svg
+from hydrostat.plot.robot_figures import draw_target
 from hydrostat.plot.skin import FlatSkin
 from hydrostat.robot import Mount, PoseTarget
 
-FIGURES = (
-    "draw_rest", "draw_target", "draw_network", "draw_pose", "draw_reached", "draw_activation", "draw_candidates",
-    "draw_trees", "draw_portrait",
-)  # fmt: skip
+FIGURES: dict[str, Callable[..., Figure]] = {
+    draw.__name__: draw
+    for draw in (
+        plot.draw_rest,
+        draw_target,
+        plot.draw_network,
+        plot.draw_pose,
+        plot.draw_reached,
+        plot.draw_activation,
+        draw_candidates,
+        draw_trees,
+        plot.draw_portrait,
+    )
+}
 
 
 def figure(kind: str) -> Figure:
@@ -42,7 +55,7 @@ def figure(kind: str) -> Figure:
         "draw_trees": (trace.trees,),
         "draw_portrait": (reached.pose.nodes,),
     }
-    return getattr(plot, kind)(robot, *arguments[kind])
+    return FIGURES[kind](robot, *arguments[kind])
 
 
 @pytest.mark.parametrize("kind", FIGURES)
