@@ -586,9 +586,129 @@ void barrier_forces(Reals<2> x, Counts<2> stencils, Array<const bool, 1> edges, 
     }
 }
 
-// Fill in d2E/dx2 of each pair [N/m], with this share of what is negative in it taken out.
-//
-// It is P - N with P and N semidefinite, in closed form: N is what the force, as it pushes, takes away across c.
+// Add to a block what the nearest points give way on both features as the corners move.
+void add_turning(const Nearest& near, int corners, int dim, const double (*y)[3], double extra, double push,
+                 double* block) {
+    int rows = corners * dim;
+    double lines[2][3] = {}, mixed[2][12] = {};
+    for (int q = 0; q < near.free; q++) {
+        for (int k = 0; k < 3; k++)
+            for (int i = 0; i < corners; i++) lines[q][k] += near.dw[q][i] * y[i][k];
+        for (int i = 0; i < corners; i++)
+            for (int k = 0; k < dim; k++)
+                mixed[q][dim * i + k] = near.w[i] * lines[q][k] + near.dw[q][i] * near.c[k];
+    }
+    double a00 = dot(lines[0], lines[0]) + extra, a11 = 1.0, a01 = 0.0;
+    if (near.free == 2) a11 = dot(lines[1], lines[1]) + extra, a01 = dot(lines[0], lines[1]);
+    push /= a00 * a11 - a01 * a01;
+    for (int i = 0; i < rows; i++)
+        for (int j = 0; j < rows; j++)
+            block[i * rows + j] += push * (a11 * mixed[0][i] * mixed[0][j] + a00 * mixed[1][i] * mixed[1][j] -
+                                           a01 * (mixed[0][i] * mixed[1][j] + mixed[1][i] * mixed[0][j]));
+}
+
+// A block of a pair acts on so many directions only: across both features and along them by w, across by the slopes dw.
+const int BASIS = 5;
+
+// Turn a symmetric matrix diagonal by Jacobi's rotations; the columns of `axes` become its eigenvectors.
+void diagonalise(double (*m)[BASIS], double (*axes)[BASIS]) {
+    for (int i = 0; i < BASIS; i++)
+        for (int j = 0; j < BASIS; j++) axes[i][j] = i == j ? 1.0 : 0.0;
+    double size = 0.0;
+    for (int i = 0; i < BASIS; i++)
+        for (int j = 0; j < BASIS; j++) size += m[i][j] * m[i][j];
+    for (int round = 0; round < 20; round++) {
+        double off = 0.0;
+        for (int i = 0; i < BASIS; i++)
+            for (int j = i + 1; j < BASIS; j++) off += m[i][j] * m[i][j];
+        if (off <= 1e-30 * size) return;
+        for (int p = 0; p < BASIS; p++)
+            for (int q = p + 1; q < BASIS; q++) {
+                if (m[p][q] == 0.0) continue;
+                double turn = (m[q][q] - m[p][p]) / (2.0 * m[p][q]);
+                double t = (turn < 0.0 ? -1.0 : 1.0) / (std::abs(turn) + std::sqrt(1.0 + turn * turn));
+                double c = 1.0 / std::sqrt(1.0 + t * t), s = c * t;
+                for (int k = 0; k < BASIS; k++) {
+                    double a = m[k][p], b = m[k][q];
+                    m[k][p] = c * a - s * b, m[k][q] = s * a + c * b;
+                }
+                for (int k = 0; k < BASIS; k++) {
+                    double a = m[p][k], b = m[q][k];
+                    m[p][k] = c * a - s * b, m[q][k] = s * a + c * b;
+                    a = axes[k][p], b = axes[k][q];
+                    axes[k][p] = c * a - s * b, axes[k][q] = s * a + c * b;
+                }
+            }
+    }
+}
+
+// The directions in which the block of a pair acts: corner i moves by tips[i][d] along lines[d], for direction d.
+struct Directions {
+    double tips[4][BASIS], lines[BASIS][3];
+
+    Directions(const Nearest& near, int corners) {
+        double frame[3][3] = {}, span[3][4] = {};
+        double length = std::sqrt(std::max(dot(near.c, near.c), 1e-300));
+        for (int k = 0; k < 3; k++) frame[0][k] = near.c[k] / length;
+        int least = 0;
+        for (int k = 1; k < 3; k++)
+            if (std::abs(frame[0][k]) < std::abs(frame[0][least])) least = k;
+        frame[1][least] = 1.0;
+        double along = dot(frame[1], frame[0]);
+        for (int k = 0; k < 3; k++) frame[1][k] -= along * frame[0][k];
+        double norm = std::sqrt(dot(frame[1], frame[1]));
+        for (int k = 0; k < 3; k++) frame[1][k] /= norm;
+        for (int k = 0; k < 3; k++)
+            frame[2][k] = frame[0][(k + 1) % 3] * frame[1][(k + 2) % 3] - frame[0][(k + 2) % 3] * frame[1][(k + 1) % 3];
+        for (int vector = 0; vector < 1 + near.free; vector++) {
+            const double* from = vector ? near.dw[vector - 1] : near.w;
+            double before = 0.0, after = 0.0;
+            for (int i = 0; i < corners; i++) span[vector][i] = from[i], before += from[i] * from[i];
+            for (int other = 0; other < vector; other++) {
+                double share = 0.0;
+                for (int i = 0; i < corners; i++) share += span[vector][i] * span[other][i];
+                for (int i = 0; i < corners; i++) span[vector][i] -= share * span[other][i];
+            }
+            for (int i = 0; i < corners; i++) after += span[vector][i] * span[vector][i];
+            double scale = after > 1e-20 * before ? 1.0 / std::sqrt(after) : 0.0;
+            for (int i = 0; i < corners; i++) span[vector][i] *= scale;
+        }
+        for (int d = 0; d < BASIS; d++) {
+            for (int k = 0; k < 3; k++) lines[d][k] = d < 3 ? frame[d][k] : frame[0][k];
+            for (int i = 0; i < 4; i++) tips[i][d] = d < 3 ? span[0][i] : span[d - 2][i];
+        }
+    }
+};
+
+// Take a share of the negative eigenvalues out of the block of a pair.
+void lift(const Nearest& near, int corners, int dim, double share, double* block) {
+    int rows = corners * dim;
+    Directions all(near, corners);
+    double columns[BASIS][12] = {}, small[BASIS][BASIS] = {}, axes[BASIS][BASIS];
+    for (int d = 0; d < BASIS; d++)
+        for (int i = 0; i < corners; i++)
+            for (int k = 0; k < dim; k++) columns[d][dim * i + k] = all.tips[i][d] * all.lines[d][k];
+    for (int d = 0; d < BASIS; d++) {
+        double image[12] = {};
+        for (int i = 0; i < rows; i++)
+            for (int j = 0; j < rows; j++) image[i] += block[i * rows + j] * columns[d][j];
+        for (int e = 0; e < BASIS; e++)
+            for (int i = 0; i < rows; i++) small[e][d] += columns[e][i] * image[i];
+    }
+    for (int d = 0; d < BASIS; d++)
+        for (int e = 0; e < d; e++) small[d][e] = small[e][d] = 0.5 * (small[d][e] + small[e][d]);
+    diagonalise(small, axes);
+    for (int d = 0; d < BASIS; d++) {
+        if (small[d][d] >= 0.0) continue;
+        double axis[12] = {};
+        for (int e = 0; e < BASIS; e++)
+            for (int i = 0; i < rows; i++) axis[i] += axes[e][d] * columns[e][i];
+        for (int i = 0; i < rows; i++)
+            for (int j = 0; j < rows; j++) block[i * rows + j] -= share * small[d][d] * axis[i] * axis[j];
+    }
+}
+
+// Fill in d2E/dx2 of each pair [N/m], with this share of its negative eigenvalues taken out.
 void barrier_hessian(Reals<2> x, Counts<2> stencils, Array<const bool, 1> edges, double soft, Reals<1> begins,
                      Reals<1> weights, double share, Array<double, 3> blocks) {
     Listed all(x, stencils, edges);
@@ -604,8 +724,7 @@ void barrier_hessian(Reals<2> x, Counts<2> stencils, Array<const bool, 1> edges,
         if (near.squared >= begins.data()[pair]) continue;
         Barrier law(near.squared, begins.data()[pair], weights.data()[pair]);
         double length = std::max(dot(near.c, near.c), 1e-300);
-        double across = 2.0 * law.slope * (1.0 - share), along = 4.0 * length * law.curve + 2.0 * law.slope;
-        if (along < 0.0) along *= 1.0 - share;
+        double across = 2.0 * law.slope, along = 4.0 * length * law.curve + 2.0 * law.slope;
         for (int i = 0; i < corners; i++)
             for (int j = 0; j < corners; j++)
                 for (int a = 0; a < dim; a++)
@@ -614,23 +733,8 @@ void barrier_hessian(Reals<2> x, Counts<2> stencils, Array<const bool, 1> edges,
                         if (a == b) one += across;
                         block[(dim * i + a) * rows + dim * j + b] = near.w[i] * near.w[j] * one;
                     }
-        if (near.free == 0) continue;
-        double lines[2][3] = {}, mixed[2][12] = {};
-        for (int q = 0; q < near.free; q++) {
-            for (int k = 0; k < 3; k++)
-                for (int i = 0; i < corners; i++) lines[q][k] += near.dw[q][i] * y[i][k];
-            for (int i = 0; i < corners; i++)
-                for (int k = 0; k < dim; k++)
-                    mixed[q][dim * i + k] = near.w[i] * lines[q][k] + near.dw[q][i] * near.c[k];
-        }
-        double extra = all.edges[pair] ? soft : 0.0;
-        double a00 = dot(lines[0], lines[0]) + extra, a11 = 1.0, a01 = 0.0;
-        if (near.free == 2) a11 = dot(lines[1], lines[1]) + extra, a01 = dot(lines[0], lines[1]);
-        double push = -2.0 * law.slope / (a00 * a11 - a01 * a01);
-        for (int i = 0; i < rows; i++)
-            for (int j = 0; j < rows; j++)
-                block[i * rows + j] += push * (a11 * mixed[0][i] * mixed[0][j] + a00 * mixed[1][i] * mixed[1][j] -
-                                               a01 * (mixed[0][i] * mixed[1][j] + mixed[1][i] * mixed[0][j]));
+        if (near.free > 0) add_turning(near, corners, dim, y, all.edges[pair] ? soft : 0.0, -2.0 * law.slope, block);
+        if (share > 0.0) lift(near, corners, dim, share, block);
     }
 }
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from functools import cached_property
+from itertools import zip_longest
 from math import isfinite
 from typing import TYPE_CHECKING
 
@@ -167,21 +168,26 @@ class Assembly:
         """Return the sum for the next increment after a state of the loading path."""
         return self.with_terms([energy.with_advanced_history(nodes, controls) for energy in self.energies])
 
-    def value(self, nodes: Nodes, controls: Vector) -> float:
-        """Total energy [J]; infinite where one of the energies is not defined."""
+    def value(self, nodes: Nodes, controls: Vector, known: Sequence[float | None] = ()) -> float:
+        """Total energy [J]; infinite where one of the energies is not defined. `known` are those already computed."""
         total = 0.0
-        for energy in self.energies:
-            total += energy.value(nodes, controls)
+        for energy, there in zip_longest(self.energies, known):
+            total += energy.value(nodes, controls) if there is None else there
             if not isfinite(total):
                 return np.inf
         return total
 
-    def value_before_contact(self, nodes: Nodes, controls: Vector) -> float:
-        """Lower bound of the energy, before a search for contact [J]; -inf where parts are near one another."""
+    def values_before_contact(self, nodes: Nodes, controls: Vector) -> tuple[float, list[float | None]]:
+        """Lower bound of the energy, before a search for contact [J], and each energy but contact.
+
+        -inf and none of them where parts are near one another.
+        """
         contact = [energy.projects_first for energy in self.energies]
         if not any(contact) or self.projects_first:
-            return -np.inf
-        return sum(energy.value(nodes, controls) for energy, it in zip(self.energies, contact, strict=True) if not it)
+            return -np.inf, []
+        pairs = zip(self.energies, contact, strict=True)
+        values = [None if it else energy.value(nodes, controls) for energy, it in pairs]
+        return sum(value for value in values if value is not None), values
 
     def gradient(self, nodes: Nodes, controls: Vector) -> Float[np.ndarray, " dofs"]:
         """dE/dx [N], (nodes x dim,)."""

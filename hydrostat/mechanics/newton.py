@@ -135,15 +135,15 @@ class _EnergyDescent:
         """Take a step as far as all energies admit it; the energy is infinite where an element is crushed."""
         nodes = self.bend(place.nodes, step) if bent else place.nodes + step.reshape(place.nodes.shape)
         least = place.assembly.least_volume(nodes)
-        lowest = place.assembly.value_before_contact(nodes, self.controls)
+        lowest, known = place.assembly.values_before_contact(nodes, self.controls)
         if least < _CRUSHED * place.least_volume or lowest > place.energy + 10 * self.noise.energy:
             return StepTrial(place.assembly, nodes, np.inf, least, 1.0)
         share = place.assembly.largest_step(place.nodes, nodes - place.nodes)
         if share < 1.0:
-            nodes = place.nodes + share * (nodes - place.nodes)
+            nodes, known = place.nodes + share * (nodes - place.nodes), []
             least = place.assembly.least_volume(nodes)
         assembly = place.assembly.with_active_terms(nodes)
-        energy = assembly.value(nodes, self.controls)
+        energy = assembly.value(nodes, self.controls, known)
         return StepTrial(assembly, nodes, energy if least >= _CRUSHED * place.least_volume else np.inf, least, share)
 
     def _advance(self, place: _Iterate, known: Stiffness | None) -> _Iterate | None:

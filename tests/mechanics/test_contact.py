@@ -9,6 +9,7 @@ from builders import box_mesh, strip_mesh
 from touching import DISTANCE, fork_robot
 
 from hydrostat.geometry import Pairs, plane_field, sphere_field
+from hydrostat.kernel import native
 from hydrostat.mechanics import (
     Assembly,
     ContactEnergy,
@@ -44,6 +45,23 @@ def test_derivatives_where_prongs_touch(dim: int) -> None:
     energy = own(dim).with_active_terms(nodes)
     assert energy.value(nodes, IDLE) > 0
     check_energy(energy, nodes, IDLE)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("share", [0.3, 1.0])
+def test_negative_eigenvalues_are_taken_out(dim: int, share: float) -> None:
+    """By those that LAPACK finds, for pairs at random: at corners, on edges and inside triangles."""
+    count, corners = 400, dim + 1
+    nodes = np.random.default_rng(dim).uniform(-1, 1, (count * corners, dim))
+    stencils, edges = np.arange(count * corners).reshape(count, corners), np.arange(count) % 2 * (dim == 3) > 0
+    law = stencils, edges, 0.01, np.full(count, 4.0), np.ones(count)
+    blocks, found = np.empty((2, count, corners * dim, corners * dim))
+    native.barrier_hessian(nodes, *law, 0.0, blocks)
+    native.barrier_hessian(nodes, *law, share, found)
+    values, axes = np.linalg.eigh(blocks)
+    assert (values[:, 0] < 0.0).mean() > 0.9
+    expected = blocks - share * (axes * np.minimum(values, 0.0)[:, None, :]) @ axes.swapaxes(1, 2)
+    assert (np.abs(found - expected).max(axis=(1, 2)) <= 1e-12 * np.abs(blocks).max(axis=(1, 2))).all()
 
 
 @pytest.mark.parametrize("dim", [2, 3])

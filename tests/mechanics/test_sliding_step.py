@@ -59,14 +59,17 @@ def test_contact_loses_its_negative_part_first() -> None:
         shares.append(shares[-1].with_larger_shares(projects_first=True))
     assert [share.early for share in shares] == sorted(share.early for share in shares)
     assert all(share.early == 1.0 for share in shares if share.late)
-    assert [share.late for share in shares if share.early < 1.0] == [0.0, 0.0, 0.0]
+    assert [share.late for share in shares if share.early < 1.0] == [0.0]
 
 
 def test_shares_fall_to_nothing() -> None:
-    share, count = Projection(1.0, 1.0, raised=True), 0
-    while share.any:
-        share, count = share.with_smaller_shares(projects_first=True), count + 1
-    assert 4 < count < 10
+    """The share of the body falls first, then all of that of contact; one that was just raised stays for a step."""
+    shares = [Projection(1.0, 1.0, raised=True)]
+    while shares[-1].any:
+        shares.append(shares[-1].with_smaller_shares(projects_first=True))
+    assert [share.late for share in shares] == [1.0, 1 / 16, 1 / 256, 0.0]
+    assert [share.early for share in shares] == [1.0, 1.0, 1.0, 0.0]
+    assert Projection(1.0, raised=True).with_smaller_shares(projects_first=True) == Projection(1.0)
 
 
 def test_without_contact_all_of_it_is_taken_first() -> None:
