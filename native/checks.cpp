@@ -58,12 +58,19 @@ void demand_children(const Fronts& fronts, Int which, const FrontRoom& room, std
 
 }  // namespace
 
-void demand_corners(const Elements& all, Int nodes) {
+static void demand_nodes(const int32_t* stencils, Int size, Int nodes) {
     const uint32_t few = (uint32_t)std::min(nodes, (Int)INT32_MAX);
-    const Int size = all.groups * (all.dim + 1) * PACK;
     uint32_t wrong = 0;
-    for (Int place = 0; place < size; place++) wrong |= outside(all.stencils[place], few);
+    for (Int place = 0; place < size; place++) wrong |= outside(stencils[place], few);
     demand(wrong >> 31 == 0, "a corner is no node");
+}
+
+void demand_corners(const Elements& all, Int nodes) {
+    demand_nodes(all.stencils, all.groups * (all.dim + 1) * PACK, nodes);
+}
+
+void demand_corners(const Quadratics& all, Int nodes) {
+    demand_nodes(all.stencils, all.groups * ((all.dim + 1) * (all.dim + 2) / 2) * PACK, nodes);
 }
 
 Int demand_strides(const Int* strides, Int nodes, Int size) {

@@ -13,6 +13,8 @@ struct FrontRoom {
 // Corners of elements are nodes.
 void demand_corners(const Elements& all, int64_t nodes);
 
+void demand_corners(const Quadratics& all, int64_t nodes);
+
 // Columns of the nodes are no longer than the matrix; returns the longest.
 int64_t demand_strides(const int64_t* strides, int64_t nodes, int64_t size);
 

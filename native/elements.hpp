@@ -159,6 +159,7 @@ template <int D> struct Negative {
     Lanes U[D][D], V[D][D], stretch[D][D], even[D][D], odd[D][D];
     bool some = false;
 
+    Negative() = default;
     INLINE Negative(const Lanes (&G)[D][D], Lanes J, Lanes log_j, Lanes mu, Lanes lame) {
         Lanes F[D][D], squares[D][D], s[D];
         for (int i = 0; i < D; i++)
@@ -229,9 +230,8 @@ template <int D> struct Negative {
 
 // Whether the blocks of a group lie within the matrix: first by the longest column, then, only where that leaves doubt,
 // each by its own. The sign bit is set where a number is negative or above the last.
-template <int D> INLINE bool is_inside(const Group<D>& group, const int64_t* slot, const Blocks& to) {
-    constexpr int C = D + 1;
-    const int many = group.count * C * C;
+template <int D, int C> INLINE bool is_inside(const int32_t* nodes, int count, const int64_t* slot, const Blocks& to) {
+    const int many = count * C * C;
     const int64_t last = to.size - (D - 1) * to.widest - D;
     Places unsure{};
     int at = 0;
@@ -243,9 +243,9 @@ template <int D> INLINE bool is_inside(const Group<D>& group, const int64_t* slo
     uint64_t left = 0;
     for (; at < many; at++) left |= (uint64_t)slot[at] | ((uint64_t)last - (uint64_t)slot[at]);
     if (!any((Bits)unsure < 0) && left >> 63 == 0) return true;
-    for (int lane = 0; lane < group.count; lane++)
+    for (int lane = 0; lane < count; lane++)
         for (int b = 0; b < C; b++) {
-            const int64_t end = to.size - (D - 1) * to.strides[group.nodes[b * PACK + lane]] - D;
+            const int64_t end = to.size - (D - 1) * to.strides[nodes[b * PACK + lane]] - D;
             for (int a = 0; a < C; a++)
                 if (slot[(lane * C + a) * C + b] < 0 || slot[(lane * C + a) * C + b] > end) return false;
         }
@@ -295,7 +295,7 @@ template <int D> bool hessian(const Elements& all, const double* displacements, 
                     }
             }
         }
-        if (!is_inside<D>(group, to.slots + element * C * C, to)) return false;
+        if (!is_inside<D, C>(group.nodes, group.count, to.slots + element * C * C, to)) return false;
         for (int lane = 0; lane < group.count; lane++) {
             const int64_t* slot = to.slots + (element + lane) * C * C;
             for (int a = 0, pair = 0; a < C; a++) {

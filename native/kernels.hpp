@@ -14,6 +14,19 @@ struct Elements {
     const double* lame;
 };
 
+// Quadratic simplices in groups of eight: stencils (groups, nodes, 8), corners first; shape gradients (groups, points,
+// nodes, dim, 8), F - I of undeformed nodes (groups, points, dim, dim, 8) and weights (groups, points, 8) at the points of
+// quadrature; moduli (3, groups, 8): mu, lambda at each point, lambda of the mean volume.
+struct Quadratics {
+    int64_t groups, terms;
+    int dim;
+    const int32_t* stencils;
+    const double* gradients;
+    const double* offsets;  // none where it is 0
+    const double* weights;
+    const double* moduli;
+};
+
 // Where the blocks of elements go in a matrix: the first number of each block, by element and its two corners; the
 // distance between two columns of each node, of all nodes the `widest`; the numbers.
 struct Blocks {
@@ -67,6 +80,10 @@ struct Kernels {
     double (*value)(const Elements&, const double* displacements);
     void (*gradient)(const Elements&, const double* displacements, double* total);
     bool (*hessian)(const Elements&, const double* displacements, double share, const Blocks&);  // false: a block lies outside
+    double (*quadratic_value)(const Quadratics&, const double* displacements);
+    double (*quadratic_least)(const Quadratics&, const double* displacements);  // J where it is squeezed most
+    void (*quadratic_gradient)(const Quadratics&, const double* displacements, double* total);
+    bool (*quadratic_hessian)(const Quadratics&, const double* displacements, double share, const Blocks&);
     void (*turn)(const Elements&, const double* nodes, const double* step, double* right);
     int64_t (*factorise)(const Fronts&, const double* data, double* lower, double* signs, double* first,
                          double* second, double* spare, double tiny);

@@ -108,6 +108,64 @@ void hessian(Reals<2> displacements, Array<const int32_t, 3> stencils, Array<con
     demand(inside, "a block lies outside the matrix");
 }
 
+// Quadratic elements as they come from Python; `offsets` is empty where it is 0.
+Quadratics pack_quadratics(const Reals<2>& field, const Array<const int32_t, 3>& stencils, const Reals<5>& gradients,
+                           const Reals<3>& weights, int64_t terms, const Reals<3>& moduli, const Reals<5>& offsets) {
+    const size_t groups = stencils.shape(0), corners = stencils.shape(1), dim = corners == 6 ? 2 : 3, points = dim + 1;
+    demand(corners == 6 || corners == 10, "elements must be quadratic simplices");
+    demand(stencils.shape(2) == 8 && gradients.shape(4) == 8 && weights.shape(2) == 8 && moduli.shape(2) == 8,
+           "groups must be of 8");
+    demand(gradients.shape(0) == groups && gradients.shape(1) == points && gradients.shape(2) == corners &&
+               gradients.shape(3) == dim && weights.shape(0) == groups && weights.shape(1) == points &&
+               moduli.shape(0) == 3 && moduli.shape(1) == groups && terms <= (int64_t)(8 * groups) &&
+               terms > 8 * ((int64_t)groups - 1), "as many groups of each");
+    demand(offsets.size() == 0 || (offsets.shape(0) == groups && offsets.shape(1) == points && offsets.shape(2) == dim &&
+                                   offsets.shape(3) == dim && offsets.shape(4) == 8), "shape of the offsets");
+    demand(field.shape(1) == dim, "dim of the nodes");
+    const Quadratics all{(int64_t)groups, terms, (int)dim, stencils.data(), gradients.data(),
+                         offsets.size() ? offsets.data() : nullptr, weights.data(), moduli.data()};
+    demand_corners(all, (int64_t)field.shape(0));
+    return all;
+}
+
+double quadratic_value(Reals<2> displacements, Array<const int32_t, 3> stencils, Reals<5> gradients, Reals<3> weights,
+                       int64_t terms, Reals<3> moduli, Reals<5> offsets) {
+    const Quadratics all = pack_quadratics(displacements, stencils, gradients, weights, terms, moduli, offsets);
+    Free free(40.0 * terms);
+    return kernels.quadratic_value(all, displacements.data());
+}
+
+double quadratic_least(Reals<2> displacements, Array<const int32_t, 3> stencils, Reals<5> gradients, Reals<3> weights,
+                       int64_t terms, Reals<3> moduli, Reals<5> offsets) {
+    const Quadratics all = pack_quadratics(displacements, stencils, gradients, weights, terms, moduli, offsets);
+    Free free(30.0 * terms);
+    return kernels.quadratic_least(all, displacements.data());
+}
+
+void quadratic_gradient(Reals<2> displacements, Array<const int32_t, 3> stencils, Reals<5> gradients, Reals<3> weights,
+                        int64_t terms, Reals<3> moduli, Reals<5> offsets, Array<double, 2> total) {
+    const Quadratics all = pack_quadratics(displacements, stencils, gradients, weights, terms, moduli, offsets);
+    demand(total.shape(0) == displacements.shape(0) && total.shape(1) == displacements.shape(1), "shape of the total");
+    Free free(80.0 * terms);
+    kernels.quadratic_gradient(all, displacements.data(), total.data());
+}
+
+void quadratic_hessian(Reals<2> displacements, Array<const int32_t, 3> stencils, Reals<5> gradients, Reals<3> weights,
+                       int64_t terms, Reals<3> moduli, Reals<5> offsets, double share, Counts<3> slots, Counts<1> strides,
+                       Array<double, 1> data) {
+    const Quadratics all = pack_quadratics(displacements, stencils, gradients, weights, terms, moduli, offsets);
+    const size_t corners = stencils.shape(1);
+    demand((int64_t)slots.shape(0) == terms && slots.shape(1) == corners && slots.shape(2) == corners &&
+               strides.shape(0) == displacements.shape(0), "shapes of displacements, slots and strides");
+    const int64_t size = (int64_t)data.shape(0), widest = demand_strides(strides.data(), (int64_t)strides.shape(0), size);
+    bool inside;
+    {
+        Free free(1500.0 * terms);
+        inside = kernels.quadratic_hessian(all, displacements.data(), share, {slots.data(), strides.data(), widest, size, data.data()});
+    }
+    demand(inside, "a block lies outside the matrix");
+}
+
 void turn(Reals<2> nodes, Reals<2> step, Array<const int32_t, 3> stencils, Array<const double, 4> gradients,
           Reals<2> volumes, int64_t terms, Array<double, 2> right) {
     Packed packed(nodes, stencils, gradients, volumes, terms);
@@ -338,6 +396,11 @@ NB_MODULE(_native, module) {
     module.def("value", &value);
     module.def("gradient", &gradient, given(), given(), given(), given(), given(), given(), filled());
     module.def("hessian", &hessian, given(), given(), given(), given(), given(), given(), given(), given(), given(), filled());
+    module.def("quadratic_value", &quadratic_value, given(), given(), given(), given(), given(), given(), given());
+    module.def("quadratic_least", &quadratic_least, given(), given(), given(), given(), given(), given(), given());
+    module.def("quadratic_gradient", &quadratic_gradient, given(), given(), given(), given(), given(), given(), given(), filled());
+    module.def("quadratic_hessian", &quadratic_hessian, given(), given(), given(), given(), given(), given(), given(), given(),
+               given(), given(), filled());
     module.def("turn", &turn, given(), given(), given(), given(), given(), given(), filled());
     module.def("factorise", &factorise, given(), given(), given(), given(), given(), given(), filled(), filled(), filled(), filled(), filled(), given());
     module.def("factorise_together", &factorise_together, given(), given(), given(), given(), given(), given(), filled(), filled(),

@@ -34,8 +34,7 @@ def check(
 
     found = read_robot(robot)
     mesh = found.body.mesh
-    kind = "triangles" if mesh.dim == 2 else "tetrahedra"
-    print(f"{found.name}: {1e3 * mesh.size:.0f} mm, {len(mesh.nodes)} nodes, {len(mesh.elements)} {kind}")
+    print(f"{found.name}: {1e3 * mesh.size:.0f} mm, {mesh.describe()}")
     for line in _body_lines(found.body):
         print(line)
     parts = {"pin": found.pins, "winch": found.winches, "cable": found.cables, "marker": found.markers}

@@ -245,11 +245,7 @@ def _print_made(made: "Robot", name: Path, lines: list[str], *, chosen: bool) ->
     from hydrostat.robot import find_risks, in_words
 
     mesh, flat = made.body.mesh, made.body.mesh.dim == 2
-    kind = "triangles" if flat else "tetrahedra"
-    print(
-        f"Created {name}: {1e3 * mesh.size:.0f} mm, {len(mesh.nodes)} nodes, {len(mesh.elements)} {kind}, "
-        f"poses: {', '.join(made.poses)}"
-    )
+    print(f"Created {name}: {1e3 * mesh.size:.0f} mm, {mesh.describe()}, poses: {', '.join(made.poses)}")
     coarse = not flat and not chosen  # fewer elements than would be exact, so that all is quick at first
     for risk in find_risks(made):
         mild = coarse and "elements across" in risk

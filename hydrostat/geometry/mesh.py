@@ -39,6 +39,9 @@ class Mesh:
 
     nodes: Nodes  # rest positions [m], (nodes, dim); kept as a read-only copy
     elements: Elements  # node indices, (elements, dim + 1); kept as a read-only copy
+    # nodes of quadratic elements: corners, then middles of edges in the order of `combinations`; each is 2^dim of
+    # `elements`, one after the other; None for a mesh of linear elements
+    quadratic: Int[np.ndarray, "quadratic _"] | None = None
 
     def __post_init__(self) -> None:
         nodes = np.array(self.nodes, dtype=float)
@@ -58,17 +61,53 @@ class Mesh:
             raise InputError(f"{bad.size} mesh elements have no positive volume, the first is number {bad[0]}")
         nodes.setflags(write=False)
         elements.setflags(write=False)
+        if self.quadratic is not None:
+            quadratic = np.array(self.quadratic, dtype=np.int64)
+            if len(quadratic) << self.dim != len(elements):
+                raise InputError(f"each quadratic element must be {2**self.dim} of the elements")
+            object.__setattr__(self, "quadratic", quadratic)
+            quadratic.setflags(write=False)
 
     @property
     def dim(self) -> int:
         """2 for triangles, 3 for tetrahedra."""
         return self.nodes.shape[1]
 
+    def to_quadratic(self) -> "Mesh":
+        """Mesh with a node in the middle of each edge; its elements are cut into 4 triangles or 8 tetrahedra."""
+        linear = self.to_linear()
+        pairs = list(combinations(range(self.dim + 1), 2))
+        count = len(linear.nodes)
+        keys = linear.edges @ [count, 1]
+        ends = [np.sort(linear.elements[:, pair], axis=1) @ [count, 1] for pair in pairs]
+        middles = count + np.stack([np.searchsorted(keys, numbers) for numbers in ends], axis=1)
+        nodes = np.concatenate([linear.nodes, linear.nodes[linear.edges].mean(axis=1)])
+        quadratic = np.concatenate([linear.elements, middles], axis=1)
+        return Mesh(nodes, _cut(nodes, quadratic), quadratic)
+
+    def to_linear(self) -> "Mesh":
+        """Mesh of linear elements of the same corners; itself if it is one."""
+        if self.quadratic is None:
+            return self
+        corners = self.quadratic[:, : self.dim + 1]
+        return Mesh(self.nodes[: int(corners.max()) + 1], corners)
+
     @cached_property
     def parts(self) -> Int[np.ndarray, " nodes"]:
         """Number of the part of the mesh that each node belongs to: elements that share a node are of one part."""
         ends = np.stack([self.elements[:, :-1].ravel(), self.elements[:, 1:].ravel()])
         return joined_groups(ends, len(self.nodes))
+
+    @property
+    def kind(self) -> str:
+        """Name of the shape of its elements."""
+        return "triangles" if self.dim == 2 else "tetrahedra"
+
+    def describe(self) -> str:
+        """Numbers of nodes and elements in words."""
+        if self.quadratic is None:
+            return f"{len(self.nodes)} nodes, {len(self.elements)} {self.kind}"
+        return f"{len(self.nodes)} nodes, {len(self.quadratic)} quadratic {self.kind}"
 
     @cached_property
     def volumes(self) -> Float[np.ndarray, " elements"]:
@@ -165,6 +204,27 @@ class Mesh:
     def edge_lengths(self) -> Float[np.ndarray, " edges"]:
         """Length of each edge at rest [m]."""
         return np.linalg.norm(np.diff(self.nodes[self.edges], axis=1)[:, 0], axis=1)
+
+
+def _cut(nodes: Nodes, quadratic: Int[np.ndarray, "quadratic _"]) -> Elements:
+    """Parts of quadratic elements: one at each corner, then what is between, in space about its shortest diagonal."""
+    if nodes.shape[1] == 2:
+        return quadratic[:, [0, 3, 4, 3, 1, 5, 4, 5, 2, 3, 5, 4]].reshape(-1, 3)
+    corners = [[0, 4, 5, 6], [4, 1, 7, 8], [5, 7, 2, 9], [6, 8, 9, 3]]
+    # middles: 4 of corners 01, 5 of 02, 6 of 03, 7 of 12, 8 of 13, 9 of 23; diagonals with the ring about each
+    inner = np.array([_about((4, 9), (5, 6, 8, 7)), _about((5, 8), (4, 7, 9, 6)), _about((6, 7), (4, 5, 9, 8))])
+    ends = nodes[quadratic[:, [[4, 9], [5, 8], [6, 7]]]]
+    shortest = np.argmin(np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=2).round(12), axis=1)
+    places = np.concatenate([np.broadcast_to(corners, (len(quadratic), 4, 4)), inner[shortest]], axis=1)
+    elements = np.take_along_axis(quadratic, places.reshape(len(quadratic), -1), axis=1).reshape(-1, 4)
+    spans = nodes[elements[:, 1:]] - nodes[elements[:, :1]]
+    turned = np.linalg.det(spans) < 0
+    elements[turned, :2] = elements[turned, 1::-1]
+    return elements
+
+
+def _about(diagonal: tuple[int, int], ring: tuple[int, ...]) -> list[tuple[int, ...]]:
+    return [(*diagonal, one, two) for one, two in zip(ring, ring[1:] + ring[:1], strict=True)]
 
 
 def smallest_angle(mesh: Mesh) -> float:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from hydrostat.mechanics.nodal_energies import LoadEnergy, PinEnergy, WeightEnergy
     from hydrostat.mechanics.obstacle import ObstacleEnergy
     from hydrostat.mechanics.patch_volume import PATCH_SIZE, PatchVolume, grow_patches
+    from hydrostat.mechanics.quadratic_solid import POINTWISE, QuadraticSolid
     from hydrostat.mechanics.rigid import CarriedWarp, GuideEnergy, RigidBodyDofs, RigidEnergy
     from hydrostat.mechanics.rod_energy import RodEnergy, rod_points
     from hydrostat.mechanics.self_friction import SelfFrictionEnergy
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "PATCH_SIZE",
+    "POINTWISE",
     "SCHEMES",
     "Analysis",
     "Assembly",
@@ -56,6 +58,7 @@ __all__ = [
     "ObstacleEnergy",
     "PatchVolume",
     "PinEnergy",
+    "QuadraticSolid",
     "Reason",
     "RigidBodyDofs",
     "RigidEnergy",

@@ -287,16 +287,16 @@ def element_groups(
 ) -> ElementGroups:
     """Elements with their shape gradients [1/m] and volumes [m^3] in groups."""
     return ElementGroups(
-        _group_terms(stencils, np.int32), _group_terms(gradients, float), _group_terms(volumes, float), len(stencils)
+        group_terms(stencils, np.int32), group_terms(gradients, float), group_terms(volumes, float), len(stencils)
     )
 
 
 def group_moduli(mu: Float[np.ndarray, " terms"], lame: Float[np.ndarray, " terms"]) -> Float[np.ndarray, "2 groups 8"]:
     """Lame's parameters of each element [Pa], grouped like the elements."""
-    return np.stack([_group_terms(mu, float), _group_terms(lame, float)])
+    return np.stack([group_terms(mu, float), group_terms(lame, float)])
 
 
-def _group_terms(array: np.ndarray, kind: type) -> np.ndarray:
+def group_terms(array: np.ndarray, kind: type) -> np.ndarray:
     """Rows of elements in groups of eight, the last one filled up with zeros."""
     filled = np.concatenate([array, np.zeros((-len(array) % 8, *array.shape[1:]))])
     groups = filled.reshape(-1, 8, *array.shape[1:])

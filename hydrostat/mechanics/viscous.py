@@ -8,9 +8,10 @@ from jaxtyping import Float
 from hydrostat.arrays import Elements, Nodes, Vector
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks
 from hydrostat.mechanics.neo_hookean import NeoHookean
+from hydrostat.mechanics.quadratic_solid import QuadraticSolid
 
 Metrics = Float[np.ndarray, "branches elements dim dim"]
-"""The metric A of each branch in each element; where a branch is relaxed it is C^-1."""
+"""Metric A of each branch in each element, or each point of quadratic ones; where a branch is relaxed it is C^-1."""
 
 Matrices = Float[np.ndarray, "elements dim dim"]
 
@@ -72,7 +73,7 @@ class MaxwellBranches:
     S = eta / (tau + h) (A_n - C^-1). That of all branches together is one `ViscousEnergy` of their mean metric.
     """
 
-    def __init__(self, nodes: Nodes, body: NeoHookean, *, viscosities: Vector, times: Vector) -> None:
+    def __init__(self, nodes: Nodes, body: NeoHookean | QuadraticSolid, *, viscosities: Vector, times: Vector) -> None:
         """Branches of viscosity eta = mu tau [Pa s] and relaxation time tau >= 0 [s] on the rest shape `nodes`."""
         self._nodes, self._body = nodes, body
         self.viscosities, self.times = viscosities, times
@@ -104,12 +105,14 @@ class MaxwellBranches:
         """Stiffness of all branches together in an implicit step [s], as a shear modulus [Pa]."""
         return float((self.viscosities / (self.times + step)).sum())
 
-    def energy(self, metrics: Metrics, step: float) -> ViscousEnergy:
+    def energy(self, metrics: Metrics, step: float) -> ViscousEnergy | QuadraticSolid:
         """Potential of an implicit step [s] from these metrics."""
         weights = self.viscosities / (self.times + step)
-        mean = np.tensordot(weights / weights.sum(), metrics, axes=1)
+        mean, modulus = np.tensordot(weights / weights.sum(), metrics, axes=1), float(weights.sum())
+        if isinstance(self._body, QuadraticSolid):
+            return self._body.with_metrics(mean, modulus)
         return ViscousEnergy(
-            self._nodes, self._body.stencils, volumes=self._body.volumes, metrics=mean, modulus=float(weights.sum())
+            self._nodes, self._body.stencils, volumes=self._body.volumes, metrics=mean, modulus=modulus
         )
 
     def relax_step(self, metrics: Metrics, nodes: Nodes, step: float) -> Metrics:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
-    from hydrostat.robot.body import Body, Source, Volume, mesh_body, outline_body, surface_body
+    from hydrostat.robot.body import Body, ElementKind, Source, Volume, mesh_body, outline_body, surface_body
     from hydrostat.robot.cable import Cable
     from hydrostat.robot.checks import Point, check_name, check_not_negative, check_number, check_positive
     from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape, closed_mesh
@@ -50,6 +50,7 @@ __all__ = [
     "Cable",
     "Contact",
     "Coordinates",
+    "ElementKind",
     "Face",
     "Force",
     "Length",

@@ -38,11 +38,21 @@ class Volume(StrEnum):
     PATCH = "patch"
 
 
+class ElementKind(StrEnum):
+    """Shape functions of the elements: linear, or quadratic with a node in the middle of each edge.
+
+    Linear elements are too stiff in bending unless many lie across a limb; two quadratic ones are enough.
+    """
+
+    LINEAR = "linear"
+    QUADRATIC = "quadratic"
+
+
 @dataclass(frozen=True, kw_only=True)
 class Body:
     """Meshed body. Two bodies are equal when they come from the same file and numbers.
 
-    A text stands for the source, the material or the volume of that name.
+    A text stands for the source, the material, the volume or the elements of that name.
 
     Raises InputError: a thickness that is missing or too much, a length out of its range, or an unknown name.
     """
@@ -54,7 +64,8 @@ class Body:
     size: float | None = None  # longest side of the bounding box [m]; None: as the file says
     element_size: float | None = None  # length of a mesh edge [m]; None for a ready mesh
     thickness: float | None = None  # thickness of a flat body [m]; None in space
-    volume: Volume = Volume.ELEMENT  # measure of volume change
+    volume: Volume = Volume.ELEMENT  # measure of volume change in linear elements
+    elements: ElementKind = ElementKind.LINEAR  # shape functions; change them by `with_elements`
     inner: Inner = Inner.HOLES  # meaning of shapes within the outer line of a drawing
     parts: tuple[BodyPart, ...] = ()  # regions of other materials, or rigid
     mesh: Mesh = field(compare=False, repr=False)  # nodes and elements
@@ -69,6 +80,11 @@ class Body:
         make_member(self, "source", Source)
         make_member(self, "volume", Volume)
         make_member(self, "inner", Inner)
+        make_member(self, "elements", ElementKind)
+        if (self.elements is ElementKind.QUADRATIC) != (self.mesh.quadratic is not None):
+            raise InputError('elements do not fit the mesh; use body.with_elements("quadratic")')
+        if self.elements is ElementKind.QUADRATIC and self.volume is Volume.PATCH:
+            raise InputError('volume = "patch" is for linear elements; quadratic ones do not lock. Remove volume')
         if self.inner is Inner.DRAWN and self.source is not Source.OUTLINE:
             raise InputError('inner = "drawn" is for bodies with an outline; remove it')
         if isinstance(self.material, str):
@@ -89,8 +105,21 @@ class Body:
         from hydrostat.robot.conform import conform
 
         parts = tuple(parts)
-        whole = replace(self, parts=parts)  # parts that do not fit raise before the mesh is changed
-        return replace(whole, mesh=conform(self.mesh, parts)) if parts else whole
+        linear = self.with_elements(ElementKind.LINEAR)
+        whole = replace(linear, parts=parts)  # parts that do not fit raise before the mesh is changed
+        made = replace(whole, mesh=conform(linear.mesh, parts)) if parts else whole
+        return made.with_elements(self.elements)
+
+    def with_elements(self, kind: "ElementKind | str") -> "Body":
+        """Return the body with linear or quadratic elements of the same corners.
+
+        Raises InputError: quadratic elements and volume = "patch", or an unknown name.
+        """
+        kind = ElementKind(kind)
+        if kind is self.elements:
+            return self
+        mesh = self.mesh.to_quadratic() if kind is ElementKind.QUADRATIC else self.mesh.to_linear()
+        return replace(self, elements=kind, mesh=mesh)
 
     @property
     def materials(self) -> tuple[Material, ...]:
@@ -103,6 +132,8 @@ class Body:
 
         Raises InputError: a part of another dimension, of a name that another has, that holds no element, or overlaps.
         """
+        if self.mesh.quadratic is not None:
+            return np.repeat(self.with_elements(ElementKind.LINEAR).element_materials, 2**self.mesh.dim)
         middles = self.mesh.nodes[self.mesh.elements].mean(axis=1)
         found = np.zeros(len(middles), dtype=np.int64)
         for index, part in enumerate(self.parts):

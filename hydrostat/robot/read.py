@@ -205,7 +205,9 @@ class RobotReader(TablesFile):
         parts = tuple(
             self.at(f"body.part[{index}]", partial(self._part, part)) for index, part in enumerate(entry.part)
         )
-        return self.at("", lambda: body.with_parts(parts)) if parts else body
+        body = self.at("", lambda: body.with_parts(parts)) if parts else body
+        kind = entry.elements
+        return body if kind is None else self.at("body.elements", lambda: body.with_elements(kind))
 
     def _part(self, entry: Any) -> BodyPart:
         if entry.rigid == (entry.material is not None):

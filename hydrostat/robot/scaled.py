@@ -10,6 +10,7 @@ from hydrostat.robot.body import Body, Source, mesh_body, outline_body, surface_
 from hydrostat.robot.checks import Point
 from hydrostat.robot.contact import Contact, Obstacle
 from hydrostat.robot.marker import Pin, PoseTarget
+from hydrostat.robot.part import BodyPart
 from hydrostat.robot.robot import Robot
 
 
@@ -52,7 +53,7 @@ def scaled_robot(robot: Robot, factor: float) -> Robot:
     contact = robot.contact
     return replace(
         robot,
-        body=_scaled_body(robot, factor).with_parts(part.with_transform(point, factor) for part in robot.body.parts),
+        body=_scaled_body(robot, factor, tuple(part.with_transform(point, factor) for part in robot.body.parts)),
         pins=tuple(map(scale_pin, robot.pins)),
         winches=tuple(
             replace(
@@ -89,8 +90,13 @@ def scaled_robot(robot: Robot, factor: float) -> Robot:
     )
 
 
-def _scaled_body(robot: Robot, factor: float) -> Body:
-    """Mesh the scaled body; if its size came from its file alone, it is now stated explicitly."""
+def _scaled_body(robot: Robot, factor: float, parts: tuple[BodyPart, ...]) -> Body:
+    """Return the scaled body with its scaled parts and the same kind of elements."""
+    return _mesh_scaled(robot, factor).with_parts(parts).with_elements(robot.body.elements)
+
+
+def _mesh_scaled(robot: Robot, factor: float) -> Body:
+    """Mesh the scaled body without its parts; if its size came from its file alone, it is now stated explicitly."""
     body = robot.body
     size = float(f"{factor * (body.size or _drawn_size(body)):.12g}")
     given = {"material": body.material, "size": size, "volume": body.volume}

@@ -18,7 +18,7 @@ from pydantic import (
 from hydrostat import units
 from hydrostat.errors import InputError
 from hydrostat.geometry import Inner
-from hydrostat.robot.body import Volume
+from hydrostat.robot.body import ElementKind, Volume
 from hydrostat.robot.checks import check_name
 from hydrostat.robot.contact import ObstacleShape
 from hydrostat.robot.face import Face
@@ -180,6 +180,7 @@ class BodyTable(TomlTable):
     thickness: Length | None = None
     material: AnyMaterial
     volume: Volume | None = None
+    elements: ElementKind | None = None
     inner: Inner | None = None
     part: list[PartTable] = []
 

@@ -12,7 +12,7 @@ from hydrostat import units
 from hydrostat.errors import InputError
 from hydrostat.geometry import Inner
 from hydrostat.given import check_type, path_of
-from hydrostat.robot.body import Body, Volume
+from hydrostat.robot.body import Body, ElementKind, Volume
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.checks import Point, check_name
 from hydrostat.robot.contact import Contact, Obstacle
@@ -163,7 +163,8 @@ class _Writer:
         lengths = {key: getattr(body, key) for key in ("size", "element_size", "thickness")}
         volume = {"volume": str(body.volume)} if body.volume is not Volume.ELEMENT else {}
         inner = {"inner": str(body.inner)} if body.inner is not Inner.HOLES else {}
-        given = {"material": self.material(body.material), **volume, **inner}
+        kind = {"elements": str(body.elements)} if body.elements is not ElementKind.LINEAR else {}
+        given = {"material": self.material(body.material), **volume, **kind, **inner}
         if body.parts:
             tables = self._toml.aot()
             for part in body.parts:

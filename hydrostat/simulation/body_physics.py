@@ -24,6 +24,7 @@ from hydrostat.mechanics import (
     ObstacleEnergy,
     PatchVolume,
     PinEnergy,
+    QuadraticSolid,
     RigidBodyDofs,
     RigidEnergy,
     RodEnergy,
@@ -44,7 +45,8 @@ class BodyPhysics:
     Statics has no time, so obstacles with a path stand still there; physics in time have them among the unknowns.
 
     Attributes:
-        elastic: elastic energy of the body; includes the resistance to volume change, unless patches measure that.
+        elastic: elastic energy of the body, of linear or quadratic elements; includes the resistance to volume change,
+            unless patches measure that.
         pins: energy of the pins, one support for each pin.
         assembly: sum of all energies of the body; they read no control.
         material: material of the body.
@@ -71,13 +73,13 @@ class BodyPhysics:
         body = robot.body
         self._given = body, robot.pins, robot.gravity, robot.contact, robot.obstacles, robot.loads, robot.rods
         self.material, self.thickness = body.material, body.thickness
-        mesh, thickness, (mu, lame) = body.mesh, body.thickness or 1.0, body.lame()
+        mesh, thickness, (_, lame) = body.mesh, body.thickness or 1.0, body.lame()
         self.carriages = _carriages(robot, in_time=in_time)
         moving = [carriage.unknowns(*_begin(robot.obstacles[index])) for index, carriage in self.carriages.items()]
         self.rest_unknowns = np.concatenate([mesh.nodes, *moving]) if moving else mesh.nodes
         patched = body.volume is Volume.PATCH
         kinds = {"thickness": thickness, "materials": body.element_materials}
-        self.elastic = NeoHookean(self.rest_unknowns, mesh.elements, mu=mu, lame=None if patched else lame, **kinds)
+        self.elastic = _elastic(robot, self.rest_unknowns, None if patched else lame)
         self.pins = _pins(robot)
         carried = [_obstacle_masses(robot.obstacles[index], carriage) for index, carriage in self.carriages.items()]
         own, hung = _masses(robot), _hung_masses(robot)
@@ -188,11 +190,13 @@ class BodyPhysics:
 
     @cached_property
     def _body_warp(self) -> Warp:
+        mesh = self._given[0].mesh
+        shape = NeoHookean(mesh.nodes, mesh.elements, mu=0.0, lame=0.0, thickness=self.thickness or 1.0)
         return Warp(
-            stencils=self.elastic.stencils,
-            shape_gradients=self.elastic.shape_gradients,
-            volumes=self.elastic.volumes,
-            rest=self._given[0].mesh.nodes,
+            stencils=shape.stencils,
+            shape_gradients=shape.shape_gradients,
+            volumes=shape.volumes,
+            rest=mesh.nodes,
             held=self.pins.stencils,
             holds=self.pins.weights,
         )
@@ -220,6 +224,18 @@ class BodyPhysics:
         lengths = [carriage.length for carriage in self.carriages.values()]  # of axes, at which A A^T - I pulls
         springs += [2 * _RIGID * body.material.young * length * max(1.0, length / reach) for length in lengths]
         return scale, reach, max(springs, default=0.0), body.mesh.size
+
+
+def _elastic(robot: Robot, rest: Nodes, lame: Vector | None) -> NeoHookean | QuadraticSolid:
+    """Elastic energy of the body; without resistance to a change of volume if `lame` is None."""
+    body = robot.body
+    mesh, (mu, _) = body.mesh, body.lame()
+    kinds = {"thickness": body.thickness or 1.0, "materials": body.element_materials}
+    if mesh.quadratic is None or lame is None:
+        return NeoHookean(rest, mesh.elements, mu=mu, lame=lame, **kinds)
+    each = slice(None, None, 2**mesh.dim)  # the first part of each quadratic element
+    kinds["materials"] = body.element_materials[each]
+    return QuadraticSolid(rest, mesh.quadratic, mu=mu[each], lame=lame[each], **kinds)
 
 
 def _contact_parameters(robot: Robot) -> dict[str, Any]:

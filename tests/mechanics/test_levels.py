@@ -17,7 +17,7 @@ import numpy as np
 from dataclasses import replace
 from builders import box_mesh, strip_robot
 from hydrostat.kernel import native
-from hydrostat.mechanics import Assembly, NeoHookean, NewtonOptions, PinEnergy
+from hydrostat.mechanics import Assembly, NeoHookean, NewtonOptions, PinEnergy, QuadraticSolid
 from hydrostat.simulation import Simulation, cable_sensitivities, find_contacts
 from touching import fork_robot
 
@@ -30,6 +30,11 @@ nodes = mesh.nodes + 0.2 * np.ptp(mesh.nodes, axis=0).min() / 4 * random.uniform
 found += [np.array([assembly.value(nodes, none)]), assembly.gradient(nodes, none)]
 for share in (0.0, 1.0):
     found.append(assembly.hessian(nodes, none, projection=share).data)
+bent = mesh.to_quadratic()
+curved = QuadraticSolid(bent.nodes, bent.quadratic, mu=3e4, lame=1e6)
+moved = bent.nodes + 0.02 * np.ptp(bent.nodes, axis=0).min() / 4 * random.uniform(-1, 1, bent.nodes.shape)
+found += [np.array([curved.value(moved, none), curved.least_volume(moved)]), curved.gradient(moved, none)]
+found += [curved.projected_hessian(moved, none, share) for share in (0.0, 1.0)]
 factors = assembly.pattern.analysis.factorize(assembly.hessian(mesh.nodes, none).data)
 for sides in (1, 4, 7, 12, 20):
     found.append(factors.solve(random.standard_normal((assembly.size, sides))))

@@ -9,7 +9,16 @@ from builders import box_mesh, mesh_body
 from robot_files import GOOD, edit, load
 
 from hydrostat.errors import InputError
-from hydrostat.robot import BodyPart, Material, inflated_robot, load_robot, merged_text, robot_text, save_robot
+from hydrostat.robot import (
+    BodyPart,
+    ElementKind,
+    Material,
+    inflated_robot,
+    load_robot,
+    merged_text,
+    robot_text,
+    save_robot,
+)
 from hydrostat.robot.scaled import scaled_robot
 
 BONE = (
@@ -33,6 +42,19 @@ def test_what_is_written_is_read(tmp_path: Path) -> None:
     again = load_robot(tmp_path / "b")
     assert again == robot
     assert (again.body.mesh.nodes == robot.body.mesh.nodes).all()
+
+
+def test_quadratic_elements_are_kept(tmp_path: Path) -> None:
+    """In files, with parts, in another size and inflated. Oracle: the robot of linear elements."""
+    text = edit(with_parts(BONE, JOINT), 'material = "p', 'elements = "quadratic"\nmaterial = "p')
+    robot, linear = load(tmp_path / "a", text), load(tmp_path / "c", with_parts(BONE, JOINT))
+    assert robot.body.with_elements("linear") == linear.body
+    assert (robot.body.element_materials == linear.body.element_materials.repeat(4)).all()
+    assert robot.body.with_parts(robot.body.parts) == robot.body
+    save_robot(robot, tmp_path / "b")
+    assert load_robot(tmp_path / "b") == robot
+    assert scaled_robot(robot, 1.5).body.mesh.quadratic is not None
+    assert inflated_robot(robot).body.elements is ElementKind.QUADRATIC
 
 
 def test_a_text_keeps_its_comments(tmp_path: Path) -> None:

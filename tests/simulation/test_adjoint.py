@@ -62,6 +62,12 @@ def heavy_patches(robot: Robot) -> Robot:
     return replace(robot, body=replace(robot.body, material=RUBBER, volume=Volume.PATCH), gravity=down)
 
 
+def quadratic(robot: Robot) -> Robot:
+    """The same of quadratic elements, by whose points and mean volume Poisson's ratio is felt."""
+    heavy = heavy_patches(robot)
+    return replace(heavy, body=replace(heavy.body, volume=Volume.ELEMENT).with_elements("quadratic"))
+
+
 def stepped(robot: Robot) -> Robot:
     """Its cables on spools of 1.5 and 0.7 times the radius of their winches."""
     radii = [
@@ -93,6 +99,8 @@ CASES = {
     "sheathed": (strip(sheathed=((1, 2),)), [0.02, 0.011]),
     "world": (strip(mount=Mount.WORLD), [0.015, 0.013]),
     "patches with weight": (heavy_patches(strip(sheathed=((0, 1),))), [0.02, 0.009]),
+    "quadratic": (quadratic(strip()), [0.02, 0.009]),
+    "quadratic in space": (quadratic(box()), [0.006, 0.008]),
     "space": (box(), [0.006, 0.008]),
     "patches in space": (heavy_patches(box()), [0.006, 0.008]),
 }

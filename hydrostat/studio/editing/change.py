@@ -150,7 +150,11 @@ def remesh(
     given = {"file": body.file, "material": body.material, "element_size": element_size, "size": body.size}
     if body.source is Source.SURFACE:
         unit = float(units.unit_factor(robot.length_unit, units.LENGTH))
-        return surface_body(body.content, unit=unit, volume=body.volume, **given).with_parts(body.parts)
+        return (
+            surface_body(body.content, unit=unit, volume=body.volume, **given)
+            .with_parts(body.parts)
+            .with_elements(body.elements)
+        )
     assert body.thickness is not None
     drawn = outline_body(body.content, thickness=body.thickness, volume=body.volume, inner=body.inner, **given)
-    return drawn.with_parts(body.parts)
+    return drawn.with_parts(body.parts).with_elements(body.elements)

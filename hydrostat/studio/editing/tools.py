@@ -28,7 +28,7 @@ def look_over(robot: Robot) -> Findings:
     return Findings(
         nodes=len(mesh.nodes),
         elements=len(mesh.elements),
-        kind="triangles" if mesh.dim == 2 else "tetrahedra",
+        kind=mesh.kind,
         mass=robot.body.mass,
         cables=len(robot.cables),
         cable_length=sum(cable.length for cable in robot.cables),

@@ -166,8 +166,7 @@ def _pictures() -> Callable[[Sketch | None], None]:
             repair.set_content(sketch.repair)
         shown = sketch
         mesh = sketch.robot.body.mesh
-        kind = "triangles" if mesh.dim == 2 else "tetrahedra"
-        words.set_text(f"{1e3 * mesh.size:.0f} mm, {len(mesh.nodes)} nodes, {len(mesh.elements)} {kind}")
+        words.set_text(f"{1e3 * mesh.size:.0f} mm, {mesh.describe()}")
         head.set_text("No repairs needed" if sketch.clean else "Repairs")
         lines.clear()
         with lines:
