@@ -4,9 +4,9 @@ VENV := .venv
 BIN := $(VENV)/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 # Benchmarks that need other simulators.
-NEED_MORE := peers real
-# Studies that need fTetWild, PyTorch and stable-baselines3, or a robot, samples or a model.
-STUDIES_NEED_MORE := tetwild floor hysteresis walk_learned push_learning learned_doubt learned_drag learned_finer learned_ik learned_speed learned_steps learned_tensions learned_thesis sample_starts spool_layers
+NEED_MORE := real
+# Studies that need other simulators, fTetWild, PyTorch and stable-baselines3, or a robot, samples or a model.
+STUDIES_NEED_MORE := peers tetwild floor hysteresis walk_learned push_learning learned_doubt learned_drag learned_finer learned_ik learned_speed learned_steps learned_tensions learned_thesis sample_starts spool_layers
 STUDIES := $(filter-out lab/tests/% lab/hydrostat_lab/%,$(wildcard lab/*/*.py))
 # Small dense matrices: more threads of the linear algebra library only wait for each other.
 export OPENBLAS_NUM_THREADS ?= 1

@@ -3,7 +3,7 @@
     python lab/ablation/ablation.py [--count 20] [--seed 0] [--robots FOLDER]
 
 All from rest. Hand and squid: random contractions up to 30 % of the shortest cable of each winch; finger 20 mm and
-trunk 10 mm on one cable (left out if their folder is not there; see sofa_robots.py).
+trunk 10 mm on one cable (left out if their folder is not there; see bodies.py).
 """
 
 import argparse
@@ -16,10 +16,9 @@ from typing import Any
 from unittest.mock import patch
 
 import numpy as np
-from hand_body import hand_robot
+from bodies import ROBOTS, hand_robot, sofa_robots
 from machine import machine
 from robustness import EXAMPLES, reaches
-from sofa_robots import ROBOTS, sofa_robots
 
 import hydrostat as hs
 from hydrostat.arrays import Vector

@@ -17,8 +17,8 @@ from ik_problem import REACHED, Problem, hidden_poses, largest_error, machine, p
 
 import numpy as np  # isort: skip
 
+from bodies import sofa_robots
 from robustness import CountingSimulation
-from sofa_robots import sofa_robots
 
 import hydrostat as hs
 from hydrostat.robot import Point, Robot, gallery_folder

@@ -28,9 +28,9 @@ from machine import machine
 
 import numpy as np  # isort: skip
 
+from bodies import ROBOTS, sofa_robots
 from scipy.linalg import cholesky, solve_triangular
 from scipy.sparse.linalg import splu
-from sofa_robots import ROBOTS, sofa_robots
 
 from hydrostat.geometry import Mesh, Outline, triangulate
 from hydrostat.mechanics import PATCH_SIZE, Assembly, Energy, NeoHookean, PatchVolume, grow_patches

@@ -33,6 +33,8 @@ def main() -> None:
     options.add_argument("names", nargs="*")
     options.add_argument("--size", action="append", help="longest side and thickness [mm], such as 200,60")
     given = options.parse_args()
+    if unknown := set(given.names) - {*SMOOTH, *SHARP}:
+        options.error(f"unknown drawing {min(unknown)!r}. Available: {', '.join([*SMOOTH, *SHARP])}.")
     print(machine())
     for pair in given.size or ["200,60", "300,90", "200,40"]:
         size, height = (1e-3 * float(part) for part in pair.split(","))

@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 
 _TOP = Path(__file__).parents[2]
-sys.path[:0] = [str(_TOP / "tests"), str(_TOP / "lab")]
+sys.path[:0] = [str(_TOP / folder) for folder in ("tests", "lab", "benchmarks", "lab/peers", "lab/peers/solvers")]
 
 from run_setup import pytest_runtest_setup, unchecked  # noqa: E402, F401, I001 - before NumPy is imported
 

@@ -1,6 +1,6 @@
 """What one step of a drag costs in the studio, without contact and with it.
 
-    python benchmarks/drag.py [NAME ...] [--steps 200]
+    python lab/proposals/drag.py [NAME ...] [--steps 200]
 
 The first marker of each robot goes round an ellipse, a quarter of the body wide, in 60 steps: the studio's mover on the
 robot's own cables makes one update for each, as while a person drags, touches and their words included. Times are CPU

@@ -1,6 +1,6 @@
 """How near inverse kinematics brings every example to each of its poses, and what it costs.
 
-python benchmarks/ik.py [--quick] [EXAMPLE ...]
+python lab/gallery_poses/example_poses.py [--quick] [EXAMPLE ...]
 """
 
 import argparse

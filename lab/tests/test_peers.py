@@ -4,11 +4,11 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import peers
 import pytest
 from held_body import HeldBody, at_rest, follow
 from laws import LAWS, Reference
 
+import peers
 from hydrostat.mechanics import Assembly, NeoHookean
 
 

@@ -1,6 +1,6 @@
 """How large the house is, and how many of its files six flows enter; prints the tables, for this tree or another.
 
-    python benchmarks/house.py [--tree PATH] [--seconds] [--no-flows]
+    python lab/house/house.py [--tree PATH] [--seconds] [--no-flows]
 
 A file is entered if a function or method that stands in it is called during the flow; importing it is not entering it.
 Loading the example, building its simulation and opening the studio come before the flow, except for the flow that
@@ -26,7 +26,7 @@ from statistics import median
 from types import FrameType
 from typing import Any
 
-HERE = Path(__file__).resolve().parents[1]
+HERE = Path(__file__).resolve().parents[2]
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 Flow = tuple[Callable[[], Any], Callable[[Any], object]]
 """What is prepared, and what is followed."""

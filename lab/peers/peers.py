@@ -1,12 +1,12 @@
 """Other programs on our bodies, in one run on one machine: error against CPU time.
 
-    python benchmarks/peers.py [--env FOLDER] [--only scikit-fem ...] [--budget 20]
+    python lab/peers/peers.py [--env FOLDER] [--only scikit-fem ...] [--budget 20]
 
 Two bodies of the gallery, held where their pins are, bend under their own weight across, once and five times. All get
 the same tetrahedra, the same held nodes, the same force on each node and Lame's parameters of the same foam. Each peer
 runs in a process of its own, on one core, from a virtual environment of its own in FOLDER (in the cache of the user
 unless told otherwise); one that cannot be had, or fails, costs a line and not the run. What is true is what plain NumPy
-and SciPy find by Newton's method, for each peer with its own material (peer_solvers/laws.py).
+and SciPy find by Newton's method, for each peer with its own material (solvers/laws.py).
 """
 
 import argparse
@@ -24,11 +24,11 @@ from machine import machine
 
 import numpy as np  # isort: skip
 
-sys.path.append(str(Path(__file__).parent / "peer_solvers"))
+sys.path.append(str(Path(__file__).parent / "solvers"))
 from held_body import HeldBody, Trail
 from laws import LAWS, Reference
 
-FOLDER = Path(__file__).parent / "peer_solvers"
+FOLDER = Path(__file__).parent / "solvers"
 
 BODIES = {"cupping_hand": (0.0, -1.0, 0.0), "fish_tail": (0.0, 1.0, 0.0)}
 """Which way each is bent."""
@@ -49,7 +49,7 @@ class Peer:
 
     Attributes:
         name: in the table.
-        file: in peer_solvers.
+        file: in solvers.
         variant: which of its methods.
         law: its material, one of LAWS.
         packages: what pip installs, with versions; none for hydrostat itself.
@@ -149,7 +149,7 @@ def run(peer: Peer, folder: Path, body: Path, budget: float, *, fresh: bool = Fa
         return None, f"cannot be installed: {reason}"
     variables = one_thread()
     if not peer.packages:
-        variables["PYTHONPATH"] = os.pathsep.join(filter(None, [str(FOLDER.parents[1]), os.environ.get("PYTHONPATH")]))
+        variables["PYTHONPATH"] = os.pathsep.join(filter(None, [str(FOLDER.parents[2]), os.environ.get("PYTHONPATH")]))
     with tempfile.TemporaryDirectory() as empty:
         result = Path(empty) / "trail.npz"
         if fresh:

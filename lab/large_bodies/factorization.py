@@ -1,6 +1,6 @@
 """How long a factorization and a solve take, of bodies of several sizes, by both back ends.
 
-    python benchmarks/factorization.py [--repeat 30] [--largest 9000]
+    python lab/large_bodies/factorization.py [--repeat 30] [--largest 9000]
 
 The matrix is a mesh's graph Laplacian with a block for every edge: it has the pattern of the Hessian of an elastic
 body, definite as at rest ("definite"), or lowered until some eigenvalues are negative ("indefinite"). CPU time, the
@@ -17,7 +17,7 @@ from machine import machine
 
 import numpy as np  # isort: skip
 
-from hand_body import hand_mesh
+from bodies import hand_mesh
 from scipy.sparse import coo_array, csc_array, diags_array, eye_array, kron
 
 from hydrostat.arrays import Elements, Nodes

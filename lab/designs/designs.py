@@ -1,6 +1,6 @@
 """What designed networks reach: routes beside trees, networks at random, one drawn by hand, and all muscles at once.
 
-    python benchmarks/design.py [--quick] [--bodies pig,squid] [--methods routes,hand] [--random 500] [--seed 0]
+    python lab/designs/designs.py [--quick] [--bodies pig,squid] [--methods routes,hand] [--random 500] [--seed 0]
                                 [--json FILE]
 
 The starfish, the six designs of the thesis with its numbers of winches and cables (N1), and two bodies in space; each
@@ -20,8 +20,8 @@ from pathlib import Path
 from typing import Any
 
 from design_bodies import BODIES, Body, body_robot, judged, rest_error, sharing_error
-from design_hand import hand_network
 from design_random import best_of
+from drawn_networks import hand_network
 from machine import machine
 
 import numpy as np  # isort: skip

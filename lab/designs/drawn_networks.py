@@ -1,6 +1,6 @@
 """Networks that were drawn by hand, with care, for the bodies of the benchmark of designs.
 
-    python benchmarks/design_hand.py [BODY ...]
+    python lab/designs/drawn_networks.py [BODY ...]
 
 Each has the counts of `BODIES` and keeps the constraints there. They were drawn on pictures of the body and its poses,
 and redrawn after seeing what each marker misses, as a good maker would: the puppy in three rounds, the starfish in

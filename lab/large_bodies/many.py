@@ -1,6 +1,6 @@
 """How many poses a second one simulation finds, by one thread and by two, and by two processes at the same time.
 
-    python benchmarks/many.py [--poses 200] [--rounds 3] [--bodies starfish,trunk,cupping_hand]
+    python lab/large_bodies/many.py [--poses 200] [--rounds 3] [--bodies starfish,trunk,cupping_hand]
 
 Contractions at random, 0 to a tenth of each cable's length, from rest, with the exact slopes of the markers. Wall
 clock, the best of several rounds: two threads of one process share Python's lock; two processes with half of the poses
