@@ -38,6 +38,16 @@ def bare() -> Robot:
     return strip().with_network((), ())
 
 
+def deep() -> Robot:
+    """So thick that two units lie one above the other: no winches are pushed apart for a kit, which takes longest."""
+    robot = strip()
+    return replace(robot, body=replace(robot.body, thickness=0.045))
+
+
+def deep_and_bare() -> Robot:
+    return deep().with_network((), ())
+
+
 def plate() -> Robot:
     """200 x 120 mm about the origin, held at its left side."""
     mesh = strip_mesh(10, 8, size=(0.2, 0.12))
@@ -73,31 +83,31 @@ LIMITS: dict[str, tuple[Case, dict[str, Any]]] = {
     "winch clearance": (Case(2, 2), {"winch_clearance": 0.016}),
     "winches as near to the edge as cables": (Case(1, 2, (UP,)), {"winch_clearance": 0.0}),
     "winch gap": (Case(2, 2), {"winch_gap": 0.09}),
-    "hole gap": (Case(2, 3), {"hole_gap": 0.015}),
-    "cable gap": (Case(2, 3), {"cable_gap": 0.009}),
+    "hole gap": (Case(2, 3, robot=deep_and_bare()), {"hole_gap": 0.015}),
+    "cable gap": (Case(2, 3, robot=deep_and_bare()), {"cable_gap": 0.009}),
     "cables that may cross": (Case(1, 2, (UP,)), {"cable_gap": 0.0}),
     "winches that are not built in": (Case(1, 2, (UP,)), {"built_in": False}),
     "turn": (Case(1, 2, (UP,)), {"turn": 20.0}),
     "bend radius": (Case(1, 2, (UP,)), {"bend_radius": 0.06}),
     "longest": (Case(1, 2, (UP,)), {"longest": 0.08}),
     "clearance": (Case(1, 2, (UP,)), {"clearance": 0.012}),
-    "tension": (Case(2, 3), {"tension": 4.0}),
-    "torque": (Case(2, 3), {"torque": 0.05, "cables_per_winch": 2}),
+    "tension": (Case(2, 3, robot=deep_and_bare()), {"tension": 4.0}),
+    "torque": (Case(2, 3, robot=deep_and_bare()), {"torque": 0.05, "cables_per_winch": 2}),
     "travel": (Case(1, 2, (UP,)), {"travel": 0.008}),
-    "release": (Case(2, 3), {"release": 0.01}),
+    "release": (Case(2, 3, robot=deep_and_bare()), {"release": 0.01}),
     "slack": (Case(1, 2, (UP,)), {"slack": 0.004}),
     "spool ratio": (Case(1, 2, (UP,)), {"spool_ratio": 1.5}),
     "two ways": (Case(1, 3), {"two_way": True}),
-    "no leads": (Case(2, 3), {"leads": False}),
-    "cables per winch": (Case(2, 4), {"cables_per_winch": 2}),
+    "no leads": (Case(2, 3, robot=deep_and_bare()), {"leads": False}),
+    "cables per winch": (Case(2, 4, robot=deep_and_bare()), {"cables_per_winch": 2}),
     "mirror, one winch": (Case(1, 2, (PINCH,), plate()), {"mirror": "y"}),
     "mirror, two winches": (Case(2, 4, (PINCH, SPREAD), plate()), {"mirror": "y", "cables_per_winch": 2}),
-    "locked winch": (Case(2, 2, robot=strip()), {"locked_winches": ("up",)}),
+    "locked winch": (Case(2, 2, robot=deep()), {"locked_winches": ("up",)}),
     "locked winch at the edge": (Case(1, 1, (UP,), near_the_edge()), {"locked_winches": ("mine",)}),
     "locked cable": (Case(2, 3, robot=strip()), {"locked_cables": ("down 1",)}),
     "locked cable alone": (Case(1, 1, robot=strip()), {"locked_cables": ("down 1",)}),
     "world": (Case(1, 2, (UP,), strip_robot(columns=10, rows=3, mount=Mount.WORLD)), {"mount": Mount.WORLD}),
-    "improved": (Case(2, 2, robot=strip(), improve=True), {}),
+    "improved": (Case(2, 2, robot=deep(), improve=True), {}),
     "improved beside a locked cable": (Case(2, 2, robot=strip(), improve=True), {"locked_cables": ("down 1",)}),
 }
 

@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 
+import numpy as np
 import shapely
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
@@ -80,19 +81,29 @@ def seam_of(body: Body) -> BaseGeometry:
 
 def ways_to_lie(box: UnitBox, seam: BaseGeometry) -> list[UnitPlace]:
     """Across the body and in its plane, turned by whole hours and slid a little: those first that are moved least."""
-    shapely.prepare(seam)
     turns = sorted(range(-180 + _STEP, 181, _STEP), key=lambda turn: (abs(turn), turn))
     slides = ((0.0, 0.0), *((sign * x, sign * y) for x, y in ((0.0, _SLIDE), (_SLIDE, 0.0)) for sign in (1.0, -1.0)))
-    return [
-        _laid_out(box, seam, turn=box.along + turn, slid=slid, across=across, flipped=flipped)
+    ways = [
+        (slid, across, flipped, box.along + turn)
         for slid in slides
         for across, flipped in ((True, False), (False, False), (False, True))
         for turn in turns
     ]
+    footprints = shapely.polygons([_corners(box, *way) for way in ways])
+    shapely.prepare(seam)
+    beyond = ~shapely.covers(seam, footprints)
+    outside = np.zeros(len(ways))
+    outside[beyond] = shapely.area(shapely.difference(footprints[beyond], seam))
+    return [
+        UnitPlace(
+            box=box, across=across, turn=turn, flipped=flipped, slid=slid, footprint=footprint, outside=float(area)
+        )
+        for (slid, across, flipped, turn), footprint, area in zip(ways, footprints, outside, strict=True)
+    ]
 
 
-def _laid_out(box: UnitBox, seam: BaseGeometry, *, turn: float, slid: Corner, across: bool, flipped: bool) -> UnitPlace:
-    """Lay a unit with its +y at a turn [degrees]: x is to the right of it, or z to the right or to the left."""
+def _corners(box: UnitBox, slid: Corner, across: bool, flipped: bool, turn: float) -> list[Corner]:
+    """Corners of a unit with its +y at a turn [degrees]: x is to the right of it, or z to the right or to the left."""
     angle = math.radians(turn)
     up = (math.cos(angle), math.sin(angle))
     right = (up[1], -up[0])
@@ -106,11 +117,7 @@ def _laid_out(box: UnitBox, seam: BaseGeometry, *, turn: float, slid: Corner, ac
     corners = ((low, box.low[1]), (high, box.low[1]), (high, box.high[1]), (low, box.high[1]))
     x = box.at[0] + slid[0] * right[0] + slid[1] * up[0]
     y = box.at[1] + slid[0] * right[1] + slid[1] * up[1]
-    footprint = Polygon([(x + u * right[0] + v * up[0], y + u * right[1] + v * up[1]) for u, v in corners])
-    outside = 0.0 if seam.covers(footprint) else float(footprint.difference(seam).area)
-    return UnitPlace(
-        box=box, across=across, turn=turn, flipped=flipped, slid=slid, footprint=footprint, outside=outside
-    )
+    return [(x + u * right[0] + v * up[0], y + u * right[1] + v * up[1]) for u, v in corners]
 
 
 def _wrap_angle(angle: float) -> float:

@@ -32,25 +32,32 @@ def relax_patch(patch: Patch, *, ease: float = LOOSE) -> Patch:
     energy = PatchEnergy(patch, ease)
     from scipy.optimize import minimize  # Imported here: only what is sewn in space needs it.
 
-    steps = 300
-    found = minimize(energy, patch.flat.ravel(), jac=True, method="L-BFGS-B", options={"maxiter": steps, "maxcor": 20})
-    flat = found.x.reshape(-1, 2)
-    return replace(patch, flat=flat) if np.isfinite(found.fun) and found.fun < _NOWHERE else patch
+    energy.turned_over = _FAR * energy(patch.flat.ravel())[0]
+    options = {"maxiter": 300, "maxcor": 20}
+    found = minimize(energy, patch.flat.ravel(), jac=True, method="L-BFGS-B", options=options)
+    return replace(patch, flat=found.x.reshape(-1, 2)) if found.fun < energy.turned_over else patch
 
 
-_NOWHERE = 1e12  # energy of images with a triangle on its back
+_FAR = 3.0
+"""Energy of an image with a triangle on its back, as a multiple of that at the start: a line search goes back from
+there by a share of its step. From 1e12 it went back to where it was, and ended."""
 
 
 class PatchEnergy:
-    """Energy that `relax_patch` minimizes, with its gradient: mean of s^3 over the cloth, and error of the rim."""
+    """Energy that `relax_patch` minimizes, with its gradient: mean of s^3 over the cloth, and error of the rim.
+
+    Attributes:
+        turned_over: energy where a triangle lies on its back.
+    """
 
     def __init__(self, patch: Patch, ease: float) -> None:
-        disc, self._ease = patch.disc, ease
-        self._triangles, self._count = disc.triangles, len(disc.vertices)
-        self._back = np.linalg.inv(_in_plane(disc.vertices[disc.triangles]))
+        disc, self._ease, self.turned_over = patch.disc, ease, np.inf
+        self._corners, self._count = np.ascontiguousarray(disc.triangles.T), len(disc.vertices)
+        back = np.linalg.inv(_in_plane(disc.vertices[disc.triangles]))
+        self._back = np.ascontiguousarray(back.transpose(1, 2, 0))
         self._weights = disc.areas / disc.areas.sum()
-        self._ends = np.column_stack([disc.rim, np.roll(disc.rim, -1)])
-        self._lengths = np.linalg.norm(np.diff(disc.vertices[self._ends], axis=1)[:, 0], axis=1)
+        self._ends = np.stack([disc.rim, np.roll(disc.rim, -1)])
+        self._lengths = np.linalg.norm(disc.vertices[self._ends[1]] - disc.vertices[self._ends[0]], axis=1)
         self._shares = self._lengths / self._lengths.sum()
 
     def __call__(self, numbers: Float[np.ndarray, " numbers"]) -> tuple[float, Float[np.ndarray, " numbers"]]:
@@ -61,33 +68,37 @@ class PatchEnergy:
         return bent + off, (slope + pull).ravel()
 
     def _cloth(self, flat: Float[np.ndarray, "vertices 2"]) -> tuple[float, Float[np.ndarray, "vertices 2"]]:
-        corners = flat[self._triangles]
-        sides = np.stack([corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]], axis=2)
-        jacobian = sides @ self._back
-        (a, b), (c, d) = jacobian[:, 0].T, jacobian[:, 1].T
-        area, square = a * d - b * c, (jacobian**2).sum(axis=(1, 2))
+        """Number by number of the matrices: twice as fast as with arrays of small matrices."""
+        (p, q), (r, s) = self._back
+        (x0, x1, x2), (y0, y1, y2) = flat[:, 0][self._corners], flat[:, 1][self._corners]
+        x1, x2, y1, y2 = x1 - x0, x2 - x0, y1 - y0, y2 - y0
+        a, b, c, d = x1 * p + x2 * r, x1 * q + x2 * s, y1 * p + y2 * r, y1 * q + y2 * s
+        area = a * d - b * c
         if area.min() <= 1e-6:
-            return _NOWHERE, np.zeros_like(flat)
+            return self.turned_over, np.zeros_like(flat)
+        square, inverse = a * a + b * b + c * c + d * d, 1 / (area * area)
         give = 0.12  # unit of the cloth's stretch
-        bent = np.maximum(square * (1 + area**-2) / 4 - 1, 0.0) / give**2
-        spared = 1 + (bent / _SPARED) ** 2
-        steep = self._weights * (3 * bent**2 * spared - 2 * bent**4 / _SPARED**2) / spared**2 / (4 * give**2)
-        turned = np.stack([np.stack([d, -c], axis=1), np.stack([-b, a], axis=1)], axis=1)
-        push = 2 * jacobian * (1 + area**-2)[:, None, None] - (2 * square / area**3)[:, None, None] * turned
-        forces = steep[:, None, None] * (push @ np.swapaxes(self._back, 1, 2))
-        each = np.stack([-forces.sum(axis=2), forces[:, :, 0], forces[:, :, 1]], axis=1)
-        return float(self._weights @ (bent**3 / spared)), self._sum_corners(self._triangles, each)
+        bent = np.maximum(square * (1 + inverse) / 4 - 1, 0.0) / give**2
+        over = bent / _SPARED
+        spared = 1 + over * over
+        steep = self._weights * bent * bent * (3 * spared - 2 * over * over) / (spared * spared) / (4 * give**2)
+        grow, turn = 2 * steep * (1 + inverse), 2 * steep * square * inverse / area
+        a, b, c, d = grow * a - turn * d, grow * b + turn * c, grow * c + turn * b, grow * d - turn * a
+        ahead, aside = (a * p + b * q, c * p + d * q), (a * r + b * s, c * r + d * s)
+        forces = [np.concatenate([-one - other, one, other]) for one, other in zip(ahead, aside, strict=True)]
+        return float(self._weights @ (bent * bent * bent / spared)), self._sum_corners(self._corners, forces)
 
     def _rim(self, flat: Float[np.ndarray, "vertices 2"]) -> tuple[float, Float[np.ndarray, "vertices 2"]]:
-        ways = flat[self._ends[:, 1]] - flat[self._ends[:, 0]]
-        lengths = np.linalg.norm(ways, axis=1)
-        off = np.log(lengths / self._lengths) / self._ease
-        pulls = (2 * self._shares * off / self._ease / lengths**2)[:, None] * ways
-        return float(self._shares @ off**2), self._sum_corners(self._ends, np.stack([-pulls, pulls], axis=1))
+        x, y = (flat[self._ends[1]] - flat[self._ends[0]]).T
+        squares = x * x + y * y
+        off = np.log(np.sqrt(squares) / self._lengths) / self._ease
+        pulls = 2 * self._shares * off / self._ease / squares
+        forces = [np.concatenate([-pulls * way, pulls * way]) for way in (x, y)]
+        return float(self._shares @ (off * off)), self._sum_corners(self._ends, forces)
 
-    def _sum_corners(self, at: np.ndarray, each: np.ndarray) -> Float[np.ndarray, "vertices 2"]:
-        """Sums over the corners at each vertex."""
-        return np.stack([np.bincount(at.ravel(), each[..., axis].ravel(), self._count) for axis in (0, 1)], axis=1)
+    def _sum_corners(self, at: np.ndarray, forces: list[np.ndarray]) -> Float[np.ndarray, "vertices 2"]:
+        """Sums over the corners at each vertex; forces along both axes, corner by corner."""
+        return np.stack([np.bincount(at.ravel(), force, self._count) for force in forces], axis=1)
 
 
 def _in_plane(corners: Float[np.ndarray, "triangles 3 3"]) -> Float[np.ndarray, "triangles 2 2"]:
