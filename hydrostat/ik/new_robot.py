@@ -1,4 +1,4 @@
-"""`new_robot`: a first robot from a file of any kind that hydrostat reads, to be edited from there."""
+"""`new_robot`: a first robot, with a first pose, from a file of any kind that hydrostat reads."""
 
 import re
 from collections.abc import Callable
@@ -10,8 +10,10 @@ from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
 from hydrostat.geometry import Inner, read_stranger
 from hydrostat.given import check_type, path_of
+from hydrostat.ik.solve_ik import solve_ik
 from hydrostat.robot import (
     GALLERY,
+    PoseTarget,
     Robot,
     SurfaceSketch,
     check_number,
@@ -22,6 +24,7 @@ from hydrostat.robot import (
     sketch_robot,
     sketch_surface,
 )
+from hydrostat.simulation import Simulation
 
 MESH_SUFFIXES = (".vtk", ".vtu", ".msh")
 CAD_SUFFIXES = (".step", ".stp", ".iges", ".igs", ".f3d", ".sldprt")
@@ -198,7 +201,6 @@ def _add_first_pose(begun: BegunRobot) -> BegunRobot:
     if len(mesh.nodes) > most_posed:
         note = f"no first pose was looked for, as {len(mesh.nodes)} nodes take long: hydrostat pose finds yours"
         return replace(begun, notes=(*begun.notes, note))
-    from hydrostat.ik.first_pose import with_first_pose  # Imported here: most new robots are not posed.
 
     return replace(begun, robot=with_first_pose(begun.robot))
 
@@ -209,3 +211,21 @@ def _robot_name(path: Path, wish: NewRobotWish) -> str:
 
 def _file_name(name: str) -> str:
     return re.sub(r"[^\w.-]", "_", name)
+
+
+_SHARES, _REACHED = (0.5, 0.25, 0.1), 0.01  # travels to try, in shares of all; how near is near, in sizes of the body
+
+
+def with_first_pose(robot: Robot) -> Robot:
+    """Robot with a pose that its one cable makes, the farthest of a few that inverse kinematics finds again."""
+    simulation = Simulation(robot)
+    simulation.solve({}, strict=False)
+    for share in _SHARES:
+        solved = simulation.solve({"pull": share * robot.winches[0].travel}, strict=False)
+        if not solved.result.converged:
+            continue
+        targets = {name: tuple(round(float(value), 4) for value in place) for name, place in solved.markers.items()}
+        pose = PoseTarget(name="bend", targets=targets)
+        if solve_ik(simulation, pose).rms_error < _REACHED * robot.body.mesh.size:
+            return replace(robot, poses={pose.name: pose})
+    return robot

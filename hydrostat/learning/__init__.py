@@ -9,9 +9,8 @@ if TYPE_CHECKING:
     from hydrostat.learning.export import check_export, export_samples
     from hydrostat.learning.learn_model import correct_model, learn_model
     from hydrostat.learning.learn_options import LearnOptions
-    from hydrostat.learning.learned_model import LearnedModel, LearnedPose
+    from hydrostat.learning.learned_model import LearnedModel, LearnedPose, load_model, save_model
     from hydrostat.learning.model_card import ModelCard
-    from hydrostat.learning.model_file import load_model, save_model
     from hydrostat.learning.perceptrons import Perceptrons
     from hydrostat.learning.portable_policy import PortablePolicy, load_policy
     from hydrostat.learning.sample_plan import (

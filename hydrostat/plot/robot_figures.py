@@ -1,20 +1,20 @@
-"""Pictures of a robot: at rest, with its network, in poses, and what its winches reach."""
+"""Pictures of a robot: at rest, with its network and loads, in poses, and targets reached."""
 
 from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.patches import FancyArrowPatch
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.drawing import Color, winch_colors
-from hydrostat.geometry import Outline, Ring
+from hydrostat.geometry import Outline, Ring, locate
 from hydrostat.given import check_type
 from hydrostat.ik import IKResult, IKStatus
 from hydrostat.plot.drawn_body import DrawnBody
 from hydrostat.plot.frame import Attachments
 from hydrostat.plot.hardware import DrawnRobot, draw_hardware, draw_numbers, name_winches
 from hydrostat.plot.labels import Labels, shorten
-from hydrostat.plot.loads import draw_loads, draw_rods
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import Pane
 from hydrostat.plot.sheet import MILLIMETERS, WIDTH, PictureSheet, Places, Spread
@@ -303,3 +303,36 @@ def _note(contraction: float) -> str:
     """A contraction [m] in millimeters, with its sign."""
     number = f"{MILLIMETERS * contraction:+.1f}".replace("-", "\N{MINUS SIGN}")
     return "0 mm" if number[1:] == "0.0" else f"{number} mm"
+
+
+def draw_rods(sheet: PictureSheet, pane: Pane, robot: Robot, nodes: Nodes) -> None:
+    """A line along each rod of a body with its nodes at `nodes` [m]."""
+    for rod in robot.rods:
+        corners = np.array(rod.points)
+        shares = np.linspace(0, len(corners) - 1, 100 * (len(corners) - 1) + 1)
+        line = np.stack([np.interp(shares, np.arange(len(corners)), column) for column in corners.T], axis=1)
+        places = pane.places(locate(robot.body.mesh, line).positions(nodes))
+        for color, width, order in ((Color.LIGHT, 3.4, 8), (Color.MUTED, 2.0, 8.1)):
+            sheet.curve(places, color=color, linewidth=width, zorder=order)
+
+
+def draw_loads(sheet: PictureSheet, pane: Pane, robot: Robot, nodes: Nodes) -> None:
+    """An arrow along the force of each load, with newtons at its end, on a body with its nodes at `nodes` [m]."""
+    if not robot.loads:
+        return
+    places, forces = locate(robot.body.mesh, robot.load_points()).positions(nodes), robot.load_forces()
+    largest = max(float(np.linalg.norm(forces, axis=1).max()), 1e-300)
+    for at, force in zip(places, forces, strict=True):
+        size = float(np.linalg.norm(force))
+        if size == 0.0:
+            continue
+        length = 1e-3 * sheet.scale * (18 + 20 * size / largest)  # [m], as points on the picture
+        start, end = pane.places(np.array([at, at + length * force / size]))
+        arrow = FancyArrowPatch(
+            tuple(start), tuple(end), arrowstyle="-|>,head_length=5,head_width=2.5", shrinkA=0, shrinkB=0,
+            color=Color.ERROR, linewidth=1.8, zorder=17.5, clip_on=False,
+        )  # fmt: skip
+        sheet.axes.add_patch(arrow)
+        beside = end + 4 * sheet.scale * (end - start) / max(float(np.linalg.norm(end - start)), 1e-300)
+        style = {"color": Color.ERROR, "fontsize": 7, "weight": "bold", "ha": "center", "va": "center", "zorder": 18}
+        sheet.text((float(beside[0]), float(beside[1])), f"{size:.3g} N", **style)

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from hydrostat.simulation.branches.branch import Branch
     from hydrostat.simulation.branches.continue_branch import continue_branch
     from hydrostat.simulation.branches.find_equilibria import Multistability, find_equilibria
-    from hydrostat.simulation.branches.friction_hysteresis import friction_hysteresis
+    from hydrostat.simulation.branches.loading_paths import friction_hysteresis
     from hydrostat.simulation.cable_sensitivities import CableSensitivities, cable_sensitivities
     from hydrostat.simulation.contraction_profile import (
         ContractionProfile,

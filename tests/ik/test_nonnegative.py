@@ -5,15 +5,15 @@ import pytest
 from scipy.linalg import solve_triangular
 from scipy.optimize import nnls
 
-from hydrostat.ik.search import nonnegative
-from hydrostat.ik.search.nonnegative import solve_nonnegative, solve_upper
+from hydrostat.ik.search import linear_model
+from hydrostat.ik.search.linear_model import solve_nonnegative, solve_upper
 
 
 @pytest.mark.parametrize("alone", [True, False], ids=["solver alone", "by SciPy"])
 @pytest.mark.parametrize(("rows", "size"), [(1, 1), (4, 9), (12, 5), (30, 30)])
 def test_nonnegative_least_squares_are_those_of_scipy(rows: int, size: int, alone: bool, monkeypatch):
     if not alone:
-        monkeypatch.setattr(nonnegative, "load_compiled", lambda name: None)
+        monkeypatch.setattr(linear_model, "load_compiled", lambda name: None)
     draw = np.random.default_rng(rows)
     for _ in range(10):
         matrix, right = draw.standard_normal((rows, size)), draw.standard_normal(rows)

@@ -1,4 +1,4 @@
-"""`serve`: the studio as a page of this machine."""
+"""`serve`: the studio as a page of this machine; `build_watch`: a page that only shows a room's robot."""
 
 import socket
 import sys
@@ -17,11 +17,16 @@ from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
 from hydrostat.errors import InputError
+from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.guard import LOOPBACK, Guard
+from hydrostat.studio.face.page import HEARTBEAT, Toasts, WindowPage
 from hydrostat.studio.face.rooms import Room, Rooms, new_key
 from hydrostat.studio.face.share import Links
-from hydrostat.studio.face.watch import build_watch
-from hydrostat.studio.face.window import build_window
+from hydrostat.studio.face.tour import STAGES
+from hydrostat.studio.face.view_bar import view_bar
+from hydrostat.studio.face.viewport import Viewport
+from hydrostat.studio.face.window import build_window, dress
+from hydrostat.studio.session import Session
 
 TITLE = "hydrostat studio"
 ROOM = "hydrostat_room"  # the cookie of a browser's own room, followed by the port
@@ -154,3 +159,32 @@ def _listener(host: str, port: int) -> socket.socket:
         words = f"--host {host} --port {port}: cannot open this address ({error.strerror}). Choose another port or host"
         raise InputError(words) from None
     return listener
+
+
+def build_watch(session: Session, stream: str) -> WindowPage:
+    """Build the page of a browser window that watches a session by the path of its stream."""
+    page = WindowPage(session, silent=True)
+    dress()
+    with ui.header().classes("studio-header"):
+        ui.label("hydrostat").classes("studio-brand")
+        name = ui.label().classes("studio-name")
+        ui.space()
+        ui.icon("visibility", size="20px").style("color: var(--muted)")
+        stage = ui.label().classes("studio-hint").props('data-testid="watching"')
+    with ui.element("div").classes("studio-body"):
+        room = ui.element("div").classes("studio-work")
+    with room, ui.element("div").classes("studio-view"):
+        page.viewport = Viewport(stream=stream).classes("studio-viewport")
+        view_bar(page, colors=False)
+        page.toasts = Toasts()
+
+    def show() -> None:
+        document = session.document
+        name.set_text(document.robot.name if document.is_open else "")
+        stage.set_text(
+            f"View only: {STAGES[session.stage].title}" if document.is_open else "View only: no robot is open"
+        )
+
+    page.on((Topic.ROBOT, Topic.STAGE), show, lasting=True)
+    ui.timer(HEARTBEAT, page.beat)
+    return page

@@ -9,7 +9,7 @@ from nicegui import events, ui
 
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.dialogs import SaveDialog
-from hydrostat.studio.face.page import HEARTBEAT, WindowPage, icon_button
+from hydrostat.studio.face.page import HEARTBEAT, Toasts, WindowPage, icon_button
 from hydrostat.studio.face.panels.design_panel import design_panel
 from hydrostat.studio.face.panels.drive_panel import drive_panel
 from hydrostat.studio.face.panels.edit_panel import edit_panel
@@ -18,7 +18,6 @@ from hydrostat.studio.face.panels.motors_card import stop_button
 from hydrostat.studio.face.panels.pose_panel import pose_panel
 from hydrostat.studio.face.panels.start_panel import start_panel
 from hydrostat.studio.face.share import Links, share_dialog
-from hydrostat.studio.face.toasts import Toasts
 from hydrostat.studio.face.tour import STAGES, Tour, help_dialog, offer_tour
 from hydrostat.studio.face.view_bar import view_bar
 from hydrostat.studio.face.viewport import Side, Viewport
