@@ -83,6 +83,8 @@ def pose(
         _print_reached(loaded, reached, title, seconds)
         _note_other_pose(simulation, reached)
         _note_crossings(loaded, reached.pose)
+        for note in reached.pose.notes:
+            print(f"  note: {note}")
         print(f"  wrote {folder}")
         stuck |= reached.status not in (IKStatus.REACHED, IKStatus.LOCAL_OPTIMUM)
     if stuck:

@@ -111,6 +111,8 @@ def simulate(
     from hydrostat.plot import draw_pose, save_png
 
     files.append(save_png(draw_pose(loaded, pose), out / "pose.png"))
+    for note in pose.notes:
+        print(f"note: {note}")
     print("Wrote " + ", ".join(str(file) for file in files))
     if not pose.result.converged:
         raise typer.Exit(1)

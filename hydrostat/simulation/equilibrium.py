@@ -12,6 +12,7 @@ from hydrostat.geometry import Mesh, find_crossings
 from hydrostat.mechanics import NewtonResult
 from hydrostat.painters import draw_record
 from hydrostat.robot import Robot, html_repr
+from hydrostat.simulation.mesh_error import WORTH_A_NOTE, estimate_stiffening
 from hydrostat.simulation.strain import node_strains, node_stresses
 from hydrostat.units import plural
 
@@ -66,6 +67,15 @@ class Equilibrium:
         return (*told, *filter(None, [str(find_crossings(self.robot.body.mesh, self.nodes))]))
 
     @property
+    def notes(self) -> tuple[str, ...]:
+        """Remarks on how exact the pose is: linear elements that are far too stiff in it; empty for most bodies."""
+        stiffening = estimate_stiffening(self.robot.body, self.nodes)
+        if stiffening < WORTH_A_NOTE:
+            return ()
+        percent = f"{100 * stiffening:.0f} %"
+        return (f'linear elements make the body at least {percent} too stiff here; take elements = "quadratic"',)
+
+    @property
     def strains(self) -> Vector:
         """Largest principal stretch at each node less 1, (nodes,); see `node_strains`."""
         return node_strains(self.robot, self.nodes)
@@ -96,7 +106,7 @@ class Equilibrium:
 
     def _repr_html_(self) -> str:
         """Summary, warnings and a picture, for a notebook."""
-        return html_repr("\n".join([repr(self), *self.warnings]), self.plot())
+        return html_repr("\n".join([repr(self), *self.warnings, *self.notes]), self.plot())
 
     @property
     def unknowns(self) -> Nodes:

@@ -58,7 +58,8 @@ def test_locking(good: Robot, poisson: float, flat: int, space: int) -> None:
             risks = find_risks(replace(robot, body=replace(robot.body, material=material, volume=volume)))
             line = (
                 f"body.material: Poisson's ratio {poisson}: linear elements lock; with 4 of them across a limb it can "
-                f'be {percent} % too stiff in bending for that alone; try volume = "patch"'
+                f'be {percent} % too stiff in bending for that alone; try elements = "quadratic" '
+                'or volume = "patch"'
             )
             assert risks == ([line] if volume is Volume.ELEMENT else [])
         below = replace(robot.body.material, poisson=0.349)
@@ -166,7 +167,20 @@ def test_thin_limb(rows: int, thick: bool) -> None:
     if thick:
         assert len(risks) == 1
         assert f"only {rows / 1.0746:.1f} elements across (50 mm thick at" in risks[0]
-        assert risks[0].endswith("50 % or more too stiff in bending; a mesh with edges of 12 mm would do")
+        assert risks[0].endswith(
+            '50 % or more too stiff in bending; a mesh with edges of 12 mm would do, as would elements = "quadratic"'
+        )
+
+
+@pytest.mark.parametrize(("columns", "across"), [(2, "0.7"), (8, None)])
+def test_thin_limb_of_quadratic_elements(columns: int, across: str | None) -> None:
+    """Oracle: a strip 50 mm high of triangles as large as regular ones of 76 or 27 mm; no word of locking."""
+    robot = replace(strip_robot(columns=columns, rows=1 if across else 2), cables=(), winches=())
+    body = replace(robot.body, material=replace(robot.body.material, poisson=0.499)).with_elements("quadratic")
+    risks = [risk for risk in find_risks(replace(robot, body=body)) if "across" in risk or "lock" in risk]
+    assert len(risks) == (across is not None)
+    if across:
+        assert f"only {across} quadratic elements across (50 mm thick at" in risks[0]
 
 
 def test_thin_limb_names_an_element_size_that_does(tmp_path: Path) -> None:

@@ -18,6 +18,7 @@ from hydrostat.geometry import Mesh, find_crossings
 from hydrostat.mechanics import Assembly, NeoHookean, QuadraticSolid
 from hydrostat.robot import Cable, ElementKind, Material, Pin, Relaxation, Robot, Volume, Winch
 from hydrostat.simulation import ContractionProfile, Simulation
+from hydrostat.simulation.mesh_error import estimate_stiffening
 
 HEIGHT, LENGTH, OFFSET, THICKNESS = 0.02, 0.16, 0.005, 0.03
 RATIOS = (0.0, 0.3, 0.45, 0.49, 0.499)
@@ -160,3 +161,17 @@ def test_elements_fit_the_mesh() -> None:
         replace(body, elements=ElementKind.QUADRATIC)
     with pytest.raises(InputError, match="for linear elements"):
         replace(body, volume=Volume.PATCH).with_elements("quadratic")
+
+
+@pytest.mark.parametrize(("dim", "poisson"), [(2, 0.3), (3, 0.3), (2, 0.49), (3, 0.49)])
+def test_the_note_of_linear_elements_is_a_lower_bound(dim: int, poisson: float) -> None:
+    """Oracle: energy of the same robot of quadratic elements; none is noted for these, nor for a stretch."""
+    robot = (strip_robot if dim == 2 else box_robot)()
+    body = replace(robot.body, material=replace(FOAM, poisson=poisson))
+    linear, quadratic = (Simulation(replace(robot, body=each)) for each in (body, body.with_elements("quadratic")))
+    pose, exact = linear.solve([0.01, 0.0]), quadratic.solve([0.01, 0.0])
+    excess = pose.energy / exact.energy - 1
+    assert 0.1 * excess < estimate_stiffening(body, pose.nodes) < 1.2 * excess
+    assert estimate_stiffening(body, body.mesh.nodes * 1.1) < 1e-9
+    assert exact.notes == ()
+    assert 'elements = "quadratic"' in "".join(pose.notes) or excess < 0.3

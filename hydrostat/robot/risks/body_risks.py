@@ -35,6 +35,9 @@ LEAST_ACROSS = {2: 2.0, 3: 3.0}
 """A limb with fewer elements across bends much too stiffly, in the plane and in space (docs/decisions/0012)."""
 
 
+LEAST_QUADRATIC = 0.8
+"""A limb with fewer quadratic elements across may bend 10 % too little or too much (docs/decisions/0044)."""
+
 GOOD_ACROSS = 4
 """Elements across a limb that are enough: 14 % too stiff in the plane, 5 to 27 % in space, by the mesh's pattern."""
 
@@ -119,25 +122,33 @@ def _unlike(body: Body) -> Iterator[str]:
 
 def _locking(body: Body) -> Iterator[str]:
     poisson = body.material.poisson
-    if poisson >= LOCKING_POISSON and body.volume is Volume.ELEMENT:
+    if poisson >= LOCKING_POISSON and body.volume is Volume.ELEMENT and body.mesh.quadratic is None:
         added = max(part for ratio, part in LOCKING[body.mesh.dim].items() if ratio <= poisson)
         yield (
             f"body.material: Poisson's ratio {poisson:g}: linear elements lock; with 4 of them across a limb it can be "
-            f'{100 * added:.0f} % too stiff in bending for that alone; try volume = "patch"'
+            f'{100 * added:.0f} % too stiff in bending for that alone; try elements = "quadratic" or volume = "patch"'
         )
 
 
 def _thin(body: Body) -> Iterator[str]:
-    dim = body.mesh.dim
-    parts = thin_parts(body.measured_thickness, LEAST_ACROSS[dim])
+    dim, quadratic = body.mesh.dim, body.mesh.quadratic is not None
+    parts = thin_parts(body.measured_thickness, 2 * LEAST_QUADRATIC if quadratic else LEAST_ACROSS[dim])
     if not parts:
         return
     thinnest = parts[0]
     others = f", and {len(parts) - 1} more such part{'s' if len(parts) > 2 else ''}" if len(parts) > 1 else ""
+    if quadratic:
+        yield (
+            f"body: a limb has only {thinnest.across / 2:.1f} quadratic elements across ({mm(thinnest.thickness)} "
+            f"thick at {place(thinnest.place)}{others}): its bending may be 10 % off or more; "
+            "take a smaller element_size"
+        )
+        return
     percent = next(text for count, text in TOO_STIFF[dim].items() if thinnest.across < count)
     size = f"{1e3 * min(part.thickness for part in parts) / GOOD_ACROSS:.2g} mm"
     yield (
         f"body: a limb has only {thinnest.across:.1f} elements across ({mm(thinnest.thickness)} thick at "
         f"{place(thinnest.place)}{others}): linear elements make it {percent} too stiff in bending; "
         + (f'element_size = "{size}" would do' if body.element_size else f"a mesh with edges of {size} would do")
+        + ', as would elements = "quadratic"'
     )
