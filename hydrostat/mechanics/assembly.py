@@ -157,11 +157,11 @@ class Assembly:
         """Return the sum with these quantities corrected; by Newton's method if the stiffness is given."""
         if stiffness is None:
             return self.with_terms([energy.with_corrected_history(nodes, controls, None) for energy in self.energies])
-        energies = []
+        energies, response = [], stiffness.with_coupling(self.coupling(nodes, controls)).solve
         for energy in self.energies:
             spans = energy.span_columns(nodes)
             compliance = None if spans is None else stiffness.compliance_to(spans)
-            energies.append(energy.with_corrected_history(nodes, controls, compliance, stiffness.solve))
+            energies.append(energy.with_corrected_history(nodes, controls, compliance, response))
         return self.with_terms(energies)
 
     def with_advanced_history(self, nodes: Nodes, controls: Vector) -> "Assembly":

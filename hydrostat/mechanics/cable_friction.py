@@ -8,8 +8,9 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from hydrostat.arrays import Nodes, Vector
+from hydrostat.kernel import native
 from hydrostat.mechanics.cable import CableEnergy, CableSegments
-from hydrostat.mechanics.capstan import CapstanChains, ViaPointTurns
+from hydrostat.mechanics.capstan import CapstanChains, ViaPointTurns, is_semidefinite
 from hydrostat.mechanics.energy import (
     Blocks,
     Compliance,
@@ -20,6 +21,7 @@ from hydrostat.mechanics.energy import (
     RankMatrix,
     Response,
 )
+from hydrostat.mechanics.krylov import solve_krylov
 from hydrostat.mechanics.tension_law import ChainLaw, TensionLaw
 
 
@@ -164,9 +166,7 @@ class FrictionCableEnergy(Energy):
 
     def capstan_limits(self, nodes: Nodes, controls: Vector) -> Vector:
         """Limits of friction at these tensions and angles: the larger tension x (1 - exp(-mu angle)) [N]."""
-        tensions = self.span_tensions(nodes, controls)
-        larger = np.maximum(tensions, np.append(0.0, tensions[:-1]))
-        return -np.expm1(-self.friction * self.angles(nodes)) * larger
+        return -np.expm1(-self.friction * self.angles(nodes)) * _larger(self.span_tensions(nodes, controls))
 
     @property
     def owners(self) -> Int[np.ndarray, " spans"]:
@@ -215,19 +215,21 @@ class FrictionCableEnergy(Energy):
             nodes: equilibrium with the limits as they are [m].
             controls: contractions [m].
             compliance: compliance of the body at these nodes.
-            response: unused.
+            response: its displacement under forces.
         """
-        del response
-        wanted = self.capstan_limits(nodes, controls)
-        if compliance is None:
-            return self.with_limits(wanted)
-        largest = max(self.largest_force(nodes, controls), np.finfo(float).tiny)  # 0 where all cables are slack
-        missed = float(np.abs(wanted - self.law.limits).max()) / largest
-        falls = missed <= _FALLS * self._missed
-        limits = None if falls and not self._solves else self._solved_limits(nodes, controls, compliance)
+        miss = self.capstan_limits(nodes, controls) - self.law.limits
+        off, limits = float(np.abs(miss).max(initial=0.0)), None
+        if compliance is None or response is None or off == 0.0:
+            return self.with_limits(self.law.limits + miss)
+        missed = off / max(self.largest_force(nodes, controls), np.finfo(float).tiny)  # 0 where all cables are slack
+        falls = missed <= (1.0 - _FALLS * self._share) * self._missed
+        step = self._newton_step(nodes, controls, response, miss) if falls and not self._solves else None
+        if step is None or np.abs(step).max() > _WILD * off:
+            limits = self._solved_limits(nodes, controls, compliance)
         solves = limits is not None
         if limits is None:
-            limits = self.law.limits + self._newton_step(nodes, controls, compliance, wanted - self.law.limits)
+            step = self._newton_step(nodes, controls, response, miss) if step is None else step
+            limits = self.law.limits + step * min(_WILD * off / float(np.abs(step).max()), 1.0)
         least_share = 1 / 16  # No correction goes less than this share of its way
         share = min(2 * self._share, 1.0) if falls or solves > self._solves else max(0.5 * self._share, least_share)
         other = self.with_limits(np.maximum(self.law.limits + share * (limits - self.law.limits), 0.0))
@@ -245,19 +247,30 @@ class FrictionCableEnergy(Energy):
             angles=self.angles(nodes),
             compliance=compliance.compliance,
             turning=self.turn_gradients(nodes).T @ compliance.moves,
-            stable=_semidefinite(compliance.compliance),
+            stable=is_semidefinite(compliance.compliance),
         )
         tensions = chains.solve_slip_complementarity()
         return None if tensions is None else chains.limits(tensions)
 
-    def _newton_step(self, nodes: Nodes, controls: Vector, compliance: Compliance, miss: Vector) -> Vector:
+    def _newton_step(self, nodes: Nodes, controls: Vector, response: Response, miss: Vector) -> Vector:
         """Newton's step of the limits while cable slips where it does."""
         elongations = self.elongations(nodes, controls)
         tensions = self.law.tension(elongations)
         by_elongation, by_limit = self.law.compute_slip_jacobians(tensions, np.sign(self.law.slips(elongations)))
-        unit = np.eye(len(tensions))
-        moved = np.linalg.solve(unit + by_elongation @ compliance.compliance, by_limit)
-        return np.linalg.solve(unit - self._limit_slopes(nodes, tensions, compliance) @ moved, miss)
+        by_tension, by_angle = self._by_tension(nodes, tensions), self._by_angle(nodes, tensions)
+        pulled, turned = self._spans.length_gradients(nodes), self._turns.blocks(nodes)
+        spans, corners, count = self._spans.cables, self._turns.stencils, len(tensions)
+
+        def changed(limits: Vector) -> Vector:
+            """Change of the capstan's limits where the limits change."""
+            drops, forces = by_limit @ limits, np.zeros_like(nodes)
+            native.add_vectors(self.stencils, pulled * drops[spans][:, None, None], forces)
+            moved = -response(forces.ravel()).reshape(nodes.shape)
+            stretched = np.bincount(spans, np.einsum("tcd,tcd->t", pulled, moved[self.stencils]), count)
+            bent = np.bincount(self._turns.points, np.einsum("stcd,stcd->t", turned, moved[corners]), count)
+            return by_tension @ (drops + by_elongation @ stretched) + by_angle * bent
+
+        return solve_krylov(changed, miss)
 
     def moves(self, nodes: Nodes, controls: Vector, compliance: Compliance) -> Float[np.ndarray, "dofs controls"]:
         """Derivative of the nodes by the controls, while all points at the capstan limit go on slipping.
@@ -300,8 +313,8 @@ class FrictionCableEnergy(Energy):
         """Tensions at an equilibrium with the slopes that they and the capstan's limits have there."""
         tensions = self.span_tensions(nodes, controls)
         by_elongation, by_limit = self._slip_compliance(nodes, controls, tensions, np.zeros(len(tensions), dtype=bool))
-        angles, larger = self.angles(nodes), np.maximum(tensions, np.append(0.0, tensions[:-1]))
-        held = np.exp(-self.friction * angles) * larger
+        angles = self.angles(nodes)
+        held = np.exp(-self.friction * angles) * _larger(tensions)
         pulls = tensions > 0
         stretches = np.where(pulls, self.law.elongation(tensions), 0.0)
         return LockedTensions(
@@ -348,12 +361,14 @@ class FrictionCableEnergy(Energy):
         slopes[span, span - (before > tensions)] = -np.expm1(-self.friction * self.angles(nodes))
         return slopes
 
+    def _by_angle(self, nodes: Nodes, tensions: Vector) -> Vector:
+        """D capstan limits / d angles at fixed tensions [N/rad]."""
+        return self.friction * np.exp(-self.friction * self.angles(nodes)) * _larger(tensions)
+
     def _limit_slopes(self, nodes: Nodes, tensions: Vector, compliance: Compliance) -> RankMatrix:
         """D capstan limits / d tensions, including the compliance of the body."""
-        before = np.append(0.0, tensions[:-1])
-        held = np.exp(-self.friction * self.angles(nodes)) * np.maximum(tensions, before)
         turned = self.turn_gradients(nodes).T @ compliance.moves
-        return self._by_tension(nodes, tensions) - (self.friction * held)[:, None] * turned
+        return self._by_tension(nodes, tensions) - self._by_angle(nodes, tensions)[:, None] * turned
 
     def _pull(self, nodes: Nodes, forces: Vector) -> Blocks:
         return self._spans.length_gradients(nodes) * forces[self._spans.cables][:, None, None]
@@ -369,13 +384,9 @@ class FrictionCableEnergy(Energy):
         return other
 
 
-def _semidefinite(matrix: RankMatrix) -> bool:
-    slight = 1e-9  # A matrix is semidefinite if it is definite with this share of its diagonal more
-    try:
-        np.linalg.cholesky(matrix + np.diag(slight * matrix.diagonal()))
-    except np.linalg.LinAlgError:
-        return False
-    return True
+def _larger(tensions: Vector) -> Vector:
+    """Larger of the tensions on both sides of the point before each span [N]."""
+    return np.maximum(tensions, np.append(0.0, tensions[:-1]))
 
 
 _JUST_TAUT = 1.0 / 16.0
@@ -383,4 +394,7 @@ _JUST_TAUT = 1.0 / 16.0
 
 
 _FALLS = 0.5
-"""A correction that leaves more than this share of what was off before it was too long."""
+"""A correction of a share of its way that takes less than this part of that share off what was off was too long."""
+
+_WILD = 30.0
+"""A Newton step that changes a limit by so many times what was off begins at a kink: no step is longer."""

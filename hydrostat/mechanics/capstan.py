@@ -37,12 +37,15 @@ class ViaPointTurns:
 
         A straight run has none: its angle has a kink there.
         """
-        slopes = self.slopes(nodes)
         columns = np.zeros((*nodes.shape, count))
-        spread = self.weights[..., None] * slopes[:, :, None, :]
+        spread = self.blocks(nodes)
         axes = np.arange(nodes.shape[1])
         np.add.at(columns, (self.stencils[..., None], axes, self.points[:, None, None]), spread)
         return columns.reshape(nodes.size, count)
+
+    def blocks(self, nodes: Nodes) -> Float[np.ndarray, "2 turns corners dim"]:
+        """Derivative of each angle by the nodes of its stencils [rad/m]."""
+        return self.weights[..., None] * self.slopes(nodes)[:, :, None, :]
 
     def slopes(self, nodes: Nodes) -> Float[np.ndarray, "2 turns dim"]:
         """Derivative of each angle by the vectors along the segments before and after it [rad/m]; as above."""
@@ -150,3 +153,13 @@ class CapstanChains:
 
     def _turn_limits(self, tensions: Vector) -> Vector:
         return np.maximum(self.angles - self.turning @ (tensions - self.tensions), 0.0)
+
+
+def is_semidefinite(matrix: RankMatrix) -> bool:
+    """Return True if a symmetric matrix is positive semidefinite."""
+    slight = 1e-9  # A matrix is semidefinite if it is definite with this share of its diagonal more
+    try:
+        np.linalg.cholesky(matrix + np.diag(slight * matrix.diagonal()))
+    except np.linalg.LinAlgError:
+        return False
+    return True

@@ -3,13 +3,17 @@
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple, Protocol, Self, runtime_checkable
+from functools import cached_property
+from typing import TYPE_CHECKING, ClassVar, NamedTuple, Protocol, Self, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float, Int
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.kernel import native
+
+if TYPE_CHECKING:
+    from hydrostat.mechanics.factorization import Factorization
 
 Stencils = Int[np.ndarray, "terms corners"]
 Blocks = Float[np.ndarray, "terms corners dim"]
@@ -35,16 +39,26 @@ class Law(Protocol):
         ...
 
 
-class Compliance(NamedTuple):
-    """Compliance of the body without coupling springs, K, to the directions of these springs.
+class Compliance:
+    """Compliance of the body without coupling springs, K, to the directions of these springs, computed when needed."""
 
-    Attributes:
-        moves: K^-1 G [m/N].
-        compliance: G^T K^-1 G [m/N].
-    """
+    def __init__(self, factors: "Factorization", columns: LowRankBasis) -> None:
+        """Take the factors of K and the directions G."""
+        self._factors, self._columns = factors, columns
 
-    moves: LowRankBasis
-    compliance: RankMatrix
+    @cached_property
+    def moves(self) -> LowRankBasis:
+        """K^-1 G [m/N]."""
+        return self._factors.expand(self._reduced)
+
+    @cached_property
+    def compliance(self) -> RankMatrix:
+        """G^T K^-1 G [m/N]."""
+        return self._factors.inner(self._reduced, self._reduced)
+
+    @cached_property
+    def _reduced(self) -> np.ndarray:
+        return self._factors.reduce(self._columns)
 
 
 Response = Callable[[LowRankBasis], LowRankBasis]

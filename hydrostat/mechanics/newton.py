@@ -159,7 +159,9 @@ class _EnergyDescent:
         self.last = None  # its memory serves for new factors
         stiffness = reused or self._definite_hessian(place)
         self.last, self.sharp = (
-            (stiffness, self.left < _NEAR and (reused is None or self.exact)) if self._is_unmodified else (None, False)
+            (stiffness, self.left < self.options.near and (reused is None or self.exact or self.options.known))
+            if self._is_unmodified
+            else (None, False)
         )
         if stiffness is None:
             return None
@@ -349,9 +351,6 @@ class _EnergyDescent:
             error=0.0 if self.options.accuracy is None else self.error if reason is Reason.CONVERGED else np.inf,
         )
 
-
-_NEAR = 1e-5
-"""With less than this share of the largest applied force left over, the factors of the last step may serve again."""
 
 _MARGIN = 1.1
 """Newton's step is the distance to equilibrium but for its square; so much more is told."""

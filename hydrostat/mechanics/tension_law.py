@@ -172,8 +172,8 @@ class ChainLaw(TensionLaw):
         straight = 1.0 - 1e-9  # A spring of this share of its stiffness is beyond its smoothing
         curved = (slope > 0) & (slope < straight * stiffness)
         safe = np.where(curved, slope, stiffness)
-        known = np.where(curved, 2.0 * tension / safe, np.where(slope > 0, tension / stiffness + smoothing, 0.0))
-        offsets = np.where(slope > 0, whole - known, np.maximum(whole, 0.0))
+        known = np.where(curved, 2.0 * tension / safe, tension / stiffness + smoothing)
+        offsets = whole - np.where(slope > 0, known, np.bincount(springs, np.minimum(own, 0.0)))
         law = TensionLaw(stiffness=stiffness, smoothing=np.where(curved, stiffness * tension / safe**2, smoothing))
         return SpanSprings(springs, whole, SeriesLaw(law=law, offsets=offsets))
 

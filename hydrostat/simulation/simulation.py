@@ -112,10 +112,11 @@ class Simulation:
         self.check_start(start)
         self.body.check_held(None if start is None else start.unknowns, guided=bool(self._more))
         solver = self.solver.with_timeout(seconds).with_accuracy(accuracy, self.robot.body.mesh.size)
+        known = self.rest_stiffness if start is None else self.stiffness_of(start)
         if self.assembly.has_history:
-            result, history = self.path.with_timeout(seconds).solve(goal, start)
+            result, history = self.path.with_timeout(seconds).solve(goal, start, known)
         else:
-            begin = None if start is None else (start.unknowns, start.contractions, self.stiffness_of(start))
+            begin = None if start is None else (start.unknowns, start.contractions, known)
             result, history = solver.solve(goal, (self.body.rest_unknowns, self.rest_stiffness), begin), np.zeros(0)
         pose = self.make_pose(goal, result, history)
         if strict and not result.converged:

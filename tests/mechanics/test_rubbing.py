@@ -89,9 +89,9 @@ class Pressed:
         body, _, rubbing = self.assembly.energies
         start = self.assembly.with_active_terms(self.nodes).with_energies([body, pins, rubbing])
 
-        def relax(assembly: Assembly, nodes: Nodes, known: Stiffness | None) -> NewtonResult:
-            noise = RoundOff(force=1e-11, energy=1e-16)
-            return minimize(assembly, nodes, IDLE, round_off=noise, options=NewtonOptions(tolerance=1e-9))
+        def relax(assembly: Assembly, nodes: Nodes, known: Stiffness | None, tolerance: float) -> NewtonResult:
+            noise, options = RoundOff(force=1e-11, energy=1e-16), NewtonOptions(tolerance=max(tolerance, 1e-9))
+            return minimize(assembly, nodes, IDLE, round_off=noise, options=options)
 
         found, result = find_history_equilibrium(start, (self.nodes, None), IDLE, relax, 1e-9)
         assert result.converged, result.reason

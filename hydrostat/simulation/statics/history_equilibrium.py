@@ -8,8 +8,9 @@ import numpy as np
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics import Assembly, NewtonResult, Reason, Stiffness
 
-Relax = Callable[[Assembly, Nodes, Stiffness | None], NewtonResult]
-"""Minimizes the sum of energies from nodes [m], with the Hessian there if it is known."""
+Relax = Callable[[Assembly, Nodes, Stiffness | None, float], NewtonResult]
+"""Minimizes the sum of energies from nodes [m], with the Hessian there if it is known, to a tolerance if that is looser
+than its own: a share of the largest applied force."""
 
 
 def find_history_equilibrium(
@@ -17,7 +18,8 @@ def find_history_equilibrium(
 ) -> tuple[Assembly, NewtonResult]:
     """Minimize and correct the quantities held fixed, such as friction limits, until both agree (E14).
 
-    Without energies that have a history this is one minimization.
+    Minimizations on the way are as sharp as the imbalance left after the next correction asks for. Without energies
+    that have a history this is one minimization.
 
     Args:
         assembly: the sum, with a first guess of what is held fixed.
@@ -36,19 +38,31 @@ def find_history_equilibrium(
     newton = 12  # Most corrections of one minimum, and how many of these by Newton's method
     # A correction counts as progress if it leaves less than this share of the least imbalance before
     falls = 0.5
+    # Tolerance of the first minimization, and of others as a share of the imbalance that a correction may leave
+    loose, sharpness = 1e-3 if assembly.has_history else 0.0, 0.1
+    before, quick, slow, least_loose, tiny = np.inf, 0.1, 0.2, 1e-9, np.finfo(float).tiny
+    # Iterations for each correction that patience allows, after which an imbalance above this share is given up
+    most, far = 20, 1e-2
     while True:
-        result = relax(assembly, nodes, stiffness)
+        result = relax(assembly, nodes, stiffness, loose)
         nodes, stiffness, iterations = result.nodes, result.stiffness, iterations + result.iterations
         assembly = assembly.with_active_terms(nodes)
-        allowed = max(tolerance * assembly.largest_force(nodes, controls), floor)
+        largest = assembly.largest_force(nodes, controls)
+        allowed = max(tolerance * largest, floor)
         missed = assembly.history_residual(nodes, controls)
-        if not result.converged or missed <= allowed:
+        if not result.converged or (missed <= allowed and not loose):
             break
+        left = min(missed / before, 1.0) if corrections else quick
+        before, loose = max(missed, tiny), sharpness * left**2 * missed / max(largest, floor, tiny)
+        loose = loose if loose > least_loose and missed > allowed else 0.0
         if missed < falls * least:
             least, last = missed, corrections
-        if corrections == min(_CORRECTIONS, last + assembly.patience):
+        hopeless = missed > far * largest and iterations > most * assembly.patience
+        if hopeless or corrections == min(_CORRECTIONS, last + assembly.patience):
             result = replace(result, reason=Reason.NO_BALANCE)
             break
+        if left > slow and stiffness is not None:  # factors of a place nearby no longer serve
+            stiffness = assembly.stiffness(nodes, controls)
         sharp = corrections < newton and stiffness is not None and not stiffness.singular
         assembly = assembly.with_corrected_history(nodes, controls, stiffness if sharp else None)
         corrections += 1

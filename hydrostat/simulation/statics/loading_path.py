@@ -22,6 +22,7 @@ class _PathState:
     contractions: Vector
     assembly: Assembly
     result: NewtonResult | None = None
+    known: Stiffness | None = None
 
     @property
     def reaches_goal(self) -> bool:
@@ -62,14 +63,17 @@ class LoadingPath:
         other._solver = solver
         return other
 
-    def solve(self, goal: Vector, start: Equilibrium | None) -> tuple[NewtonResult, Vector]:
+    def solve(
+        self, goal: Vector, start: Equilibrium | None, known: Stiffness | None = None
+    ) -> tuple[NewtonResult, Vector]:
         """Equilibrium at contractions `goal` [m], on the path from `start` or from rest, and its history variables.
 
-        If the way cannot be followed to its end, the result is where it broke off, and has not converged.
+        `known` is the Hessian at the start, if it is at hand. If the way cannot be followed to its end, the result is
+        where it broke off, and has not converged.
         """
-        state = self._rest
+        state = replace(self._rest, known=known)
         if start is not None:
-            state = _PathState(start.unknowns, start.contractions, self.with_history(start))
+            state = _PathState(start.unknowns, start.contractions, self.with_history(start), known=known)
         begin = state.contractions
         steps = max(1, ceil(float((np.abs(goal - begin) / self._increment).max(initial=0.0)) - 1e-9))
         iterations = 0
@@ -135,16 +139,20 @@ class LoadingPath:
     def _solve(self, state: _PathState, goal: Vector) -> _PathState:
         """Equilibrium at `goal` after one increment, consistent with the path-dependent quantities."""
 
-        def relax(assembly: Assembly, nodes: Nodes, known: Stiffness | None) -> NewtonResult:
-            return self._relax(assembly, nodes, goal, known)
+        def relax(assembly: Assembly, nodes: Nodes, known: Stiffness | None, tolerance: float) -> NewtonResult:
+            return self._relax(assembly, nodes, goal, known, tolerance)
 
         start = state.nodes, _stiffness(state)
         assembly, result = find_history_equilibrium(state.assembly, start, goal, relax, self._solver.round_off.force)
         after = assembly.with_advanced_history(result.nodes, goal)
         return _PathState(result.nodes, goal, after, replace(result, energy=after.value(result.nodes, goal)))
 
-    def _relax(self, assembly: Assembly, nodes: Nodes, goal: Vector, known: Stiffness | None) -> NewtonResult:
-        return replace(self._solver, assembly=assembly).relax(nodes, goal, known)
+    def _relax(
+        self, assembly: Assembly, nodes: Nodes, goal: Vector, known: Stiffness | None, tolerance: float = 0.0
+    ) -> NewtonResult:
+        return replace(self._solver, assembly=assembly).relax(
+            nodes, goal, known, tolerance=tolerance, rough=tolerance > 0
+        )
 
 
 def _late(state: _PathState) -> bool:
@@ -152,7 +160,7 @@ def _late(state: _PathState) -> bool:
 
 
 def _stiffness(state: _PathState) -> Stiffness | None:
-    return None if state.result is None else state.result.stiffness
+    return state.known if state.result is None else state.result.stiffness
 
 
 def _with_count(state: _PathState, iterations: int) -> _PathState:

@@ -98,6 +98,7 @@ class StaticSolver:
         tolerance: float | None = None,
         exact: bool = False,
         whole: bool = False,
+        rough: bool = False,
     ) -> NewtonResult:
         """Newton from some nodes on.
 
@@ -110,8 +111,11 @@ class StaticSolver:
             tolerance: tolerance, if looser than that of the options.
             exact: True if `stiffness` is that of `nodes` up to rounding, and not of positions nearby.
             whole: give up immediately, at no cost, if the prediction cannot be taken whole.
+            rough: let the Hessian of a place nearby serve as that of the result.
         """
         options = replace(self.options, whole=whole)
+        if rough:
+            options = replace(options, near=_ROUGH, known=True)
         if iterations is not None:
             options = replace(options, iterations=min(iterations, options.iterations))
         if tolerance is not None:
@@ -251,6 +255,9 @@ def _needs_fallback(result: NewtonResult) -> bool:
     """Return True if another solution method should be tried."""
     return result.reason not in (Reason.CONVERGED, Reason.TIME_LIMIT)
 
+
+_ROUGH = 1e-2
+"""Residual at which a Hessian serves as that of the result nearby, as a share of the largest applied force."""
 
 _SMALLEST_WHOLE = 0.05
 """Larger load steps are taken whole or not at all; smaller ones may begin with a step of Newton that is cut short."""

@@ -243,8 +243,9 @@ class Dynamics:
         start = guesses[int(np.argmin(values))]
         noise = self._noise(step)
 
-        def relax(assembly: Assembly, nodes: Nodes, known: Stiffness | None) -> NewtonResult:
-            return minimize(assembly, nodes, controls, round_off=noise, options=self._options, stiffness=known)
+        def relax(assembly: Assembly, nodes: Nodes, known: Stiffness | None, tolerance: float) -> NewtonResult:
+            options = replace(self._options, tolerance=max(tolerance, self._options.tolerance))
+            return minimize(assembly, nodes, controls, round_off=noise, options=options, stiffness=known)
 
         return find_history_equilibrium(assembly, (start, None), controls, relax, noise.force)
 
