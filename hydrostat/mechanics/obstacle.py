@@ -230,25 +230,27 @@ class ObstacleEnergy(Energy):
             self._locate_samples(nodes)[0],
             self.grip.with_adapted_relaxation(self.history_residual(nodes, controls)),
         )
-        slips = np.flatnonzero(grip.slipping(places))
         pushes, normals = self._pushes(nodes)
-        if response is None or not len(slips):
+        some = np.flatnonzero((pushes > 0) | (grip.limits > 0))
+        if response is None or not len(some):
             return self._gripping(grip.with_corrected_history(pushes, normals))
-        found = self.field(places[slips])
-        rises = -self._derivatives(found, self.weights[slips])[1][:, None] * found.normals  # of the pushes
-        ways = grip.only(slips).directions(places[slips])
-        by_push, by_limit = (self._columns(nodes, slips, rows) for rows in (rises, ways))
-        moves = -grip.friction * (by_push.T @ response(by_limit))
-        return self._gripping(grip.with_newton_step(pushes, normals, slips, moves))
+        found, there = self.field(places[some]), grip.only(some)
+        fresh = there.limits == 0
+        there = replace(there, share=grip.share, normals=np.where(fresh[:, None], found.normals, there.normals))
+        curves = self._derivatives(found, self.weights[some])[1]
+        slopes = self._still_slopes(some) if self.carriage is None else self._slopes(nodes, some)
+        answer, stencils = response, self.stencils[some]
 
-    def _columns(self, nodes: Nodes, some: np.ndarray, rows: Points) -> Float[np.ndarray, "dofs some"]:
-        """Slopes by all degrees of freedom of numbers with these slopes by the place of one sample each."""
-        slopes = self._slopes(nodes, some) if self.carriage is not None else self._still_slopes(some)
-        blocks = np.einsum("tk,tkri->tri", rows, slopes)
-        columns = np.zeros((*nodes.shape, len(some)))
-        for column, (stencil, block) in enumerate(zip(self.stencils[some], blocks, strict=True)):
-            columns[stencil, :, column] += block
-        return columns.reshape(nodes.size, len(some))
+        def respond(limits: Vector, turns: Points) -> tuple[Vector, Points]:
+            pulls, forces = there.force_changes(places[some], limits, turns), np.zeros_like(nodes)
+            native.add_vectors(stencils, np.einsum("tk,tkri->tri", pulls, slopes), forces)
+            moves = np.einsum("tkri,tri->tk", slopes, -answer(forces.ravel()).reshape(nodes.shape)[stencils])
+            return -curves * (found.normals * moves).sum(axis=1), np.einsum("tkl,tl->tk", found.curvatures, moves)
+
+        solved = there.with_joint_step(pushes[some], normals[some], respond)
+        limits, after = grip.limits.copy(), normals.copy()
+        limits[some], after[some] = solved.limits, solved.normals
+        return self._gripping(replace(grip, limits=limits, normals=after, trail=()))
 
     def _still_slopes(self, some: np.ndarray) -> Float[np.ndarray, "some dim rows dim"]:
         return np.einsum("tc,ki->tkci", self.shares[some], np.eye(self.shares.shape[1]))

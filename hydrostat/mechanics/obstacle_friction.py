@@ -1,11 +1,13 @@
 """`ObstacleFriction`: Coulomb friction of samples on a rigid obstacle, by anchored springs along its surface."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from hydrostat.arrays import Points, Vector
+from hydrostat.mechanics.krylov import solve_krylov
 
 Squares = Float[np.ndarray, "samples dim dim"]
 
@@ -76,14 +78,14 @@ class ObstacleFriction:
         return self._secants(lengths)[:, None] * spans
 
     def stiffness(self, places: Points) -> Squares:
-        """Second derivative of the energy [N/m]; never negative."""
+        """Second derivative of the energy [N/m], never negative; samples at their limit go on slipping."""
         spans, lengths = self.ways(places)
         secants = self._secants(lengths)
         across = np.eye(places.shape[1]) - self.normals[:, :, None] * self.normals[:, None, :]
-        slips = self.springs * lengths > self.limits
+        slips = self._at_limit(lengths)
         if places.shape[1] == 2:
             return np.where(slips, 0.0, secants)[:, None, None] * across
-        units = spans / np.where(slips, lengths, 1.0)[:, None]
+        units = spans / np.where(lengths > 0, lengths, 1.0)[:, None]
         along = np.where(slips, secants, 0.0)[:, None, None] * (units[:, :, None] * units[:, None, :])
         return secants[:, None, None] * across - along
 
@@ -98,8 +100,7 @@ class ObstacleFriction:
 
     def slipping(self, places: Points) -> Bool[np.ndarray, " samples"]:
         """Mask of the samples that are at their friction limit."""
-        hair = 1e-9  # Nearer to its limit than this share a sample slips
-        return (self.limits > 0) & (self.springs * self.ways(places)[1] >= (1.0 - hair) * self.limits)
+        return (self.limits > 0) & self._at_limit(self.ways(places)[1])
 
     def directions(self, places: Points) -> Points:
         """Unit vectors from the anchors to the samples, along the surface."""
@@ -128,11 +129,57 @@ class ObstacleFriction:
         limits[slips] = np.clip(self.limits[slips] + step, 0.0, most * np.maximum(self.limits, wanted)[slips])
         return replace(self, limits=limits, normals=normals, trail=())
 
+    def force_changes(self, places: Points, limits: Vector, normals: Points) -> Points:
+        """Change of `forces` under small changes of the limits [N] and of the normals, to first order [N]."""
+        spans, (ways, lengths) = places - self.anchors, self.ways(places)
+        along, beside = (spans * self.normals).sum(axis=1), (spans * normals).sum(axis=1)
+        turned = -beside[:, None] * self.normals - along[:, None] * normals
+        units = ways / np.where(lengths > 0, lengths, 1.0)[:, None]
+        slips = self._at_limit(lengths)
+        across = turned - (turned * units).sum(axis=1)[:, None] * units
+        sliding = self._secants(lengths)[:, None] * across + limits[:, None] * units
+        return np.where(slips[:, None], sliding, self.springs[:, None] * turned)
+
+    def with_joint_step(
+        self, pushes: Vector, normals: Points, response: Callable[[Vector, Points], tuple[Vector, Points]]
+    ) -> "ObstacleFriction":
+        """Return this state after a step of Newton's method in limits and normals together.
+
+        Args:
+            pushes: normal forces at these limits [N].
+            normals: surface normals at the samples.
+            response: changes of the normal forces [N] and of the normals where limits [N] and normals change.
+        """
+        wanted, known = self.friction * pushes, self.limits > 0
+        scale = np.maximum(self.limits, wanted)  # Turns normals into forces
+        safe, count = np.where(scale > 0, scale, 1.0)[:, None], len(wanted)
+        turns = np.where(known[:, None], normals - self.normals, 0.0)
+
+        def product(steps: Vector) -> Vector:
+            rises, bends = response(steps[:count], steps[count:].reshape(turns.shape) / safe)
+            return self.share * np.append(self.friction * rises, np.where(known[:, None], bends * scale[:, None], 0.0))
+
+        missed = np.append(wanted - self.limits, turns * scale[:, None])
+        steps = solve_krylov(product, self.share * missed)
+        most = 4.0  # No step makes a limit so many times larger than what was asked
+        turned = self.normals + steps[count:].reshape(turns.shape) / safe
+        lengths = np.linalg.norm(turned, axis=1, keepdims=True)
+        return replace(
+            self,
+            limits=np.clip(self.limits + steps[:count], 0.0, most * scale),
+            normals=np.where(known[:, None] & (lengths > 0), turned / np.where(lengths > 0, lengths, 1.0), normals),
+            trail=(),
+        )
+
     def with_adapted_relaxation(self, missed: float) -> "ObstacleFriction":
         """Return this state with its relaxation factor adapted to the error of a correction [N]."""
-        falls = 0.8  # A correction that leaves more than this share of what was off was too long
+        falls = 0.2  # A correction that takes less than this part of its share off what was off was too long
         least = 1 / 32  # No correction goes less than this share of its way
-        share = max(0.5 * self.share, least) if missed > falls * self.missed else min(2.0 * self.share, 1.0)
+        share = (
+            max(0.5 * self.share, least)
+            if missed > (1.0 - falls * self.share) * self.missed
+            else min(2.0 * self.share, 1.0)
+        )
         return replace(self, share=share, missed=missed)
 
     def drag_anchors(self, places: Points) -> "ObstacleFriction":
@@ -140,6 +187,10 @@ class ObstacleFriction:
         spans, lengths = self.ways(places)
         held = np.where(self.limits > 0, self._secants(lengths) / self.springs, 0.0)
         return replace(self, anchors=places - held[:, None] * spans, trail=())
+
+    def _at_limit(self, lengths: Vector) -> Bool[np.ndarray, " samples"]:
+        hair = 1e-9  # Nearer to its limit than this share a sample slips
+        return self.springs * lengths >= (1.0 - hair) * self.limits
 
     def _secants(self, lengths: Vector) -> Vector:
         slips = self.springs * lengths > self.limits
