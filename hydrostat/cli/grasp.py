@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from hydrostat.arrays import Points, Vector
     from hydrostat.grasp import PullCase, PullOut
     from hydrostat.robot import Obstacle, Robot
+    from hydrostat.simulation import Equilibrium, Simulation
 
 
 def grasp(
@@ -98,19 +99,29 @@ def _close_robot(robot: "Robot", name: str | None, given: dict[str, float]) -> "
     """Contractions that close the robot [m], and where its markers then are without the thing [m]."""
     import numpy as np
 
-    from hydrostat.ik import solve_ik
     from hydrostat.simulation import Simulation
 
     simulation = Simulation(robot)
     if (name is None) == (not given):
         poses = f" Poses: {', '.join(robot.poses)}." if robot.poses else ""
         raise InputError(f"--pose or --contract: give exactly one of them to close the robot.{poses}")
-    found = simulation.solve(given) if name is None else solve_ik(simulation, robot.pose(name)).pose
+    found = simulation.solve(given) if name is None else _reach_pose(simulation, name)
     targets = list(found.markers) if name is None else list(robot.pose(name).targets)
     places = np.array([found.markers[marker] for marker in targets])
     if not len(places):
         raise InputError("--at: needed, because the robot has no markers. Give the object center, e.g. --at 0,0,90.")
     return found.contractions, places
+
+
+def _reach_pose(simulation: "Simulation", name: str) -> "Equilibrium":
+    """Equilibrium that comes nearest to a pose; other beginnings are tried where it would look different."""
+    from hydrostat.ik import IKOptions, solve_ik
+
+    target, seen = simulation.robot.pose(name), 1e-3  # Error that shows, as a share of the size of the body
+    found = solve_ik(simulation, target, options=IKOptions(restarts=0))
+    if found.rms_error > seen * simulation.robot.body.mesh.size:
+        found = solve_ik(simulation, target)
+    return found.pose
 
 
 def _place_object(robot: "Robot", thing: "Obstacle", at: str | None, closed: "Points") -> "Obstacle":
