@@ -98,6 +98,9 @@ def train(
 ) -> None:
     """Train a policy by reinforcement learning.
 
+    The policy maximizes the sum of rewards of an episode. Each reward is minus the distance to the goal, in units of
+    the tolerance; with --sparse it is 0 on success and -1 otherwise.
+
     Without --model, each action is one equilibrium of the simulator. Evaluation always runs in the simulator, on unseen
     goals. The learning curve is in curve.json and curve.png, and in DIR/tensorboard if TensorBoard is installed. Needs
     the extra rl. For static poses, inverse kinematics and `hydrostat learn` are better and cheaper. Use

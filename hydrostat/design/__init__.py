@@ -7,15 +7,14 @@ from hydrostat.lazy import open_package
 if TYPE_CHECKING:
     from hydrostat.design.buildable import violations
     from hydrostat.design.built_error import built_errors, expected_error
+    from hydrostat.design.cable_sides import assign_cable_sides
     from hydrostat.design.constraints import RANGES, STEPPED, Constraints, Range
     from hydrostat.design.constraints_file import cable_name, read_constraints, read_uncertainty
     from hydrostat.design.corrected_error import corrected_errors
     from hydrostat.design.craft import Craft, build_effort, front, sewing_minutes
     from hydrostat.design.design_cables import design_cables, find_network
-    from hydrostat.design.faced import assign_cable_sides
     from hydrostat.design.filled_reach import FilledReach, out_of_plane
     from hydrostat.design.finding import Diagnostic, Severity, places_in
-    from hydrostat.design.judgement import review_robot
     from hydrostat.design.muscles.activation import Activation, FibreKind, activate, edge_fibres
     from hydrostat.design.muscles.free_posing import FreePosing
     from hydrostat.design.network import (
@@ -44,6 +43,7 @@ if TYPE_CHECKING:
         TreeKnobs,
         TreeOptions,
     )
+    from hydrostat.design.review_robot import review_robot
     from hydrostat.design.routes.finalists import kit_fits
     from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
     from hydrostat.design.routes.price import PricedPath

@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import TypedDict, Unpack
 
 from hydrostat.closed_set import parse_choice
+from hydrostat.design.cable_sides import assign_cable_sides
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.faced import assign_cable_sides
 from hydrostat.design.filled_judge import evaluate_stuffed
 from hydrostat.design.filled_reach import check_filled
 from hydrostat.design.network import Network

@@ -10,7 +10,6 @@ from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
 from hydrostat.geometry import Inner, read_stranger
 from hydrostat.given import check_type, path_of
-from hydrostat.ik.solve_ik import solve_ik
 from hydrostat.robot import (
     GALLERY,
     PoseTarget,
@@ -24,7 +23,6 @@ from hydrostat.robot import (
     sketch_robot,
     sketch_surface,
 )
-from hydrostat.simulation import Simulation
 
 MESH_SUFFIXES = (".vtk", ".vtu", ".msh")
 CAD_SUFFIXES = (".step", ".stp", ".iges", ".igs", ".f3d", ".sldprt")
@@ -201,7 +199,6 @@ def _add_first_pose(begun: BegunRobot) -> BegunRobot:
     if len(mesh.nodes) > most_posed:
         note = f"no first pose was looked for, as {len(mesh.nodes)} nodes take long: hydrostat pose finds yours"
         return replace(begun, notes=(*begun.notes, note))
-
     return replace(begun, robot=with_first_pose(begun.robot))
 
 
@@ -218,6 +215,9 @@ _SHARES, _REACHED = (0.5, 0.25, 0.1), 0.01  # travels to try, in shares of all; 
 
 def with_first_pose(robot: Robot) -> Robot:
     """Robot with a pose that its one cable makes, the farthest of a few that inverse kinematics finds again."""
+    from hydrostat.ik.solve_ik import solve_ik
+    from hydrostat.simulation import Simulation
+
     simulation = Simulation(robot)
     simulation.solve({}, strict=False)
     for share in _SHARES:

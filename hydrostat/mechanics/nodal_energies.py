@@ -1,4 +1,4 @@
-"""`WeightEnergy`, `LoadEnergy`, `PinEnergy`: energies of nodes one by one."""
+"""`WeightEnergy`, `LoadEnergy`, `PinEnergy`: gravity, loads and boundary conditions, energies of single nodes."""
 
 from collections.abc import Mapping
 from copy import copy

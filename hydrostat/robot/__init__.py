@@ -5,11 +5,12 @@ from typing import TYPE_CHECKING
 from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
+    from hydrostat.robot.atomic_files import clear_unfinished, temporary_path
     from hydrostat.robot.body import Body, ElementKind, Source, Volume, mesh_body, outline_body, surface_body
     from hydrostat.robot.cable import Cable
+    from hydrostat.robot.cable_side import Face
     from hydrostat.robot.checks import Point, check_name, check_not_negative, check_number, check_positive
     from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape, closed_mesh
-    from hydrostat.robot.face import Face
     from hydrostat.robot.gravity import DIRECTIONS, STANDARD_GRAVITY, direction_of, gravity_along
     from hydrostat.robot.html_repr import html_repr, in_words
     from hydrostat.robot.inflated import describe_cable_side, inflated_robot, sewn_robot, sewn_sides
@@ -29,7 +30,6 @@ if TYPE_CHECKING:
     from hydrostat.robot.sketch import sketch_robot
     from hydrostat.robot.sketch_space import SurfaceSketch, inflate_outline, sketch_mesh, sketch_surface
     from hydrostat.robot.tables_file import TablesFile, commented_text, read_text
-    from hydrostat.robot.unfinished import clear_unfinished, temporary_path
     from hydrostat.robot.winch import Mount, Winch
     from hydrostat.robot.write import replace_file, robot_hash, robot_text, save_robot, with_values
 

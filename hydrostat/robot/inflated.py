@@ -10,8 +10,8 @@ from hydrostat.errors import InputError
 from hydrostat.robot.body import Body, surface_body
 from hydrostat.robot.body_cache import Arrays, keep_body
 from hydrostat.robot.cable import Cable
+from hydrostat.robot.cable_side import Face
 from hydrostat.robot.checks import LONGEST_NAME, Point
-from hydrostat.robot.face import Face
 from hydrostat.robot.load import Load
 from hydrostat.robot.marker import Pin
 from hydrostat.robot.robot import Robot

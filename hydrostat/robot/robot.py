@@ -15,9 +15,9 @@ from hydrostat.given import check_type
 from hydrostat.painters import draw_record
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable, given_names, name_cables
+from hydrostat.robot.cable_side import Face
 from hydrostat.robot.checks import Point
 from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape
-from hydrostat.robot.face import Face
 from hydrostat.robot.gravity import check_gravity, gravity_along
 from hydrostat.robot.html_repr import html_repr
 from hydrostat.robot.load import Load

@@ -19,9 +19,9 @@ from hydrostat import units
 from hydrostat.errors import InputError
 from hydrostat.geometry import Inner
 from hydrostat.robot.body import ElementKind, Volume
+from hydrostat.robot.cable_side import Face
 from hydrostat.robot.checks import check_name
 from hydrostat.robot.contact import ObstacleShape
-from hydrostat.robot.face import Face
 from hydrostat.robot.gravity import DIRECTIONS
 from hydrostat.robot.materials import MOST_BRANCHES
 from hydrostat.robot.part import PartShape

@@ -12,6 +12,7 @@ from hydrostat import units
 from hydrostat.errors import InputError
 from hydrostat.geometry import Inner
 from hydrostat.given import check_type, path_of
+from hydrostat.robot.atomic_files import temporary_path
 from hydrostat.robot.body import Body, ElementKind, Volume
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.checks import Point, check_name
@@ -23,7 +24,6 @@ from hydrostat.robot.materials import MATERIALS, Material, Relaxation
 from hydrostat.robot.part import BodyPart
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.rod import Rod
-from hydrostat.robot.unfinished import temporary_path
 from hydrostat.robot.winch import Mount
 
 

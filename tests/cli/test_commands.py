@@ -51,7 +51,7 @@ def test_new_from_a_drawing_can_be_checked_and_simulated(run: Run, tmp_path: Pat
 
 @pytest.mark.slow
 def test_check_says_that_all_is_well(run: Run) -> None:
-    """A flat robot and one in space; for the others see the reviews in tests/design/test_judgement.py.
+    """A flat robot and one in space; for the others see the reviews in tests/design/test_review_robot.py.
 
     The reach of markers takes ten times as long as the rest: one robot is asked for it.
     """

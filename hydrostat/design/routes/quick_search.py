@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from hydrostat.design.buildable import violations
-from hydrostat.design.faced import assign_cable_sides
+from hydrostat.design.cable_sides import assign_cable_sides
 from hydrostat.design.region import Region
 from hydrostat.design.request import DesignRequest
 from hydrostat.design.routes.bench import Bench, Trial

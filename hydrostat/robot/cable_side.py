@@ -1,4 +1,4 @@
-"""`Face`: on which face of a flat robot its cables run once it is filled."""
+"""`Face`: side of a stuffed flat robot on which its cables run: front, back, both or the middle."""
 
 from enum import StrEnum
 

@@ -1,4 +1,4 @@
-"""`review_robot`: the one judgement of a robot that is to be built, for fabrication, studio and command line."""
+"""`review_robot`: the one review of a robot before it is built, for fabrication, studio and command line."""
 
 from collections.abc import Iterator
 

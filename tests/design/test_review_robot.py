@@ -8,7 +8,7 @@ from builders import gallery_robot, gallery_texts
 
 from hydrostat.design import Constraints, Network, RouteOptions, design_cables
 from hydrostat.design.finding import Severity
-from hydrostat.design.judgement import review_robot
+from hydrostat.design.review_robot import review_robot
 from hydrostat.fabrication import MOTORS, KitOptions, build_kit, demand_of, find_demand
 from hydrostat.robot import Robot, find_risks, robot_hash
 
