@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import shapely
@@ -30,8 +31,14 @@ def arrange_units(boxes: Sequence[UnitBox], seam: BaseGeometry, thickness: float
 
     Each in turn takes the way in which it is within the seam, shares least of the plane with the others, bulges least
     and is moved least, until none changes. Those that still meet lie one above the other, if the body is thick
-    enough for that.
+    enough for that. The last answers are kept: motor, refusals and effort of a network ask for the same.
     """
+    return _arrange_units(tuple(boxes), seam, thickness)
+
+
+@lru_cache(maxsize=128)
+def _arrange_units(boxes: tuple[UnitBox, ...], seam: BaseGeometry, thickness: float) -> tuple[LaidUnit, ...]:
+    """Lay each unit."""
     ways = [_Ways(ways_to_lie(box, seam), thickness) for box in boxes]
     total, places = _settle_units(ways)
     if total[0] > 0:
