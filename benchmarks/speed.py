@@ -86,6 +86,7 @@ ROWS = {
     "commands": Row("command", "s", GOALS, 3, 1, levels=False),
     "first": Row("first pose after installing", "s", {"starfish": "1", "hand": "1.5"}, 3, 1, levels=False),
     "environment": Row("environment of make demo", "MB", "500", 1, 1, levels=False),
+    "collection": Row("collection of the tests", "s", "15", 1, 1, levels=False),
     "mujoco": Row("hand under its weight, to 1 %", "ms", "", 1, 1, levels=False),
     "sofa_finger": Row("SOFA's finger, 5 mm steps; SOFA 16 to 96 on another machine", "ms", "10", 10, 2),
     "sofa_trunk": Row("SOFA's trunk, one cable 10 mm; SOFA 2300 on another machine", "ms", "80", 10, 2),
@@ -160,9 +161,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
     pythons = [sys.executable, *([options.against] if options.against else [])]
     columns = [(python, level) for python in pythons for level in levels_of(python) if level in options.levels]
     names = [name for name in ROWS if any(name.startswith(begin) for begin in options.only)]
-    names = [
-        name for name in names if not name.startswith("sofa_") or (options.robots / name[5:] / "case.json").exists()
+    absent = [
+        name for name in names if name.startswith("sofa_") and not (options.robots / name[5:] / "case.json").exists()
     ]
+    names = [name for name in names if name not in absent]
     told: list[str] = []
 
     def tell(line: str) -> None:
@@ -175,6 +177,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     for name in names:
         for line in lines_of(name, columns, quick=options.quick):
             tell(line)
+    if absent:
+        tell(f"\nLeft out, as their files are not in {options.robots} (--robots): {', '.join(absent)}")
     if options.tests:
         tell(f"\n`make test`: {options.tests}")
     if options.write:
@@ -321,6 +325,21 @@ def environment(_: int) -> float:
         return sum(path.lstat().st_size for path in Path(folder).rglob("*") if path.is_file()) / 1e6
 
 
+def collection(_: int) -> float:
+    """CPU time in which pytest collects all tests, once their bytecode is kept [s]."""
+    kept = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+    taken = 0.0
+    for _ in range(2):
+        began = os.times()
+        subprocess.run(
+            [sys.executable, "-m", "pytest", "--collect-only", "-q"],
+            cwd=Path(__file__).parents[1], env=kept, check=True, capture_output=True,
+        )  # fmt: skip
+        ended = os.times()
+        taken = ended.children_user + ended.children_system - began.children_user - began.children_system
+    return taken
+
+
 def mujoco(_: int) -> dict[str, float]:
     """CPU time to 1 % of the largest move of the hand under its weight [ms], by MuJoCo's flex and by hydrostat."""
     sys.path.append(str(Path(__file__).parents[1] / "lab" / "peers"))
@@ -357,6 +376,7 @@ MEASURES: dict[str, Callable[[int], Any]] = {
     "commands": commands,
     "first": first_pose,
     "environment": environment,
+    "collection": collection,
     "mujoco": mujoco,
     **{f"sofa_{name}": lambda count, name=name: median_solve(name, count) for name in ("finger", "trunk", "diamond")},
 }
