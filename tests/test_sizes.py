@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-FILE, FUNCTION, PARAMETERS = 400, 60, 8
+FILE, TEST_FILE, FUNCTION, PARAMETERS = 400, 500, 60, 8
 
 
 LARGE_FUNCTIONS = {
@@ -253,6 +253,11 @@ def texts() -> dict[str, str]:
 
 def test_files_are_short(texts: dict[str, str]) -> None:
     assert not large_files(texts)
+
+
+def test_files_of_tests_are_short() -> None:
+    texts = modules("tests") | modules("lab/tests")
+    assert [path for path, text in texts.items() if len(lines_of(text)) > TEST_FILE] == []
 
 
 def test_functions_are_short(texts: dict[str, str]) -> None:

@@ -74,11 +74,11 @@ def fabricate(
     from hydrostat.units import FORCE
 
     require_folder(out)
-    kind = parse_choice(kits.MouldKind, mould or "printed", what="--mould")
+    kind = parse_choice(kits.MoldKind, mould or "printed", what="--mould")
     options = kits.KitOptions(
         method=None if method is None else parse_choice(kits.Method, method, what="--method"),
         motor=motor,
-        mould=kits.MouldOptions(kind=kind, bed=_lengths("--bed", bed)),
+        mould=kits.MoldOptions(kind=kind, bed=_lengths("--bed", bed)),
         paper=parse_choice(kits.Paper, paper, what="--paper"),
         pattern=kits.PatternOptions(seam_allowance=_millimeters("--seam", seam)),
         parts=kits.PartOptions(

@@ -12,8 +12,8 @@ if TYPE_CHECKING:
         STUFFINGS,
         KitOptions,
         Method,
-        MouldKind,
-        MouldOptions,
+        MoldKind,
+        MoldOptions,
         Paper,
         PartOptions,
         PatternOptions,
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from hydrostat.fabrication.lists.motors import power_plan
     from hydrostat.fabrication.lists.needs import control_needs
     from hydrostat.fabrication.lists.stitching import depth_table
-    from hydrostat.fabrication.moulds.mould import make_mould
+    from hydrostat.fabrication.moulds.mould import make_mold
     from hydrostat.fabrication.moulds.pocket_room import PocketRoom, pocket_room
     from hydrostat.fabrication.parts.motor import (
         BOARDS,
@@ -63,9 +63,9 @@ __all__ = [
     "Kit",
     "KitOptions",
     "Method",
+    "MoldKind",
+    "MoldOptions",
     "Motor",
-    "MouldKind",
-    "MouldOptions",
     "Paper",
     "PartOptions",
     "PatternOptions",
@@ -88,7 +88,7 @@ __all__ = [
     "find_sewing",
     "forget_files",
     "largest_torque",
-    "make_mould",
+    "make_mold",
     "plush_pattern",
     "pocket_room",
     "power_plan",

@@ -7,11 +7,11 @@ from itertools import pairwise
 import numpy as np
 from jaxtyping import Float
 
-from hydrostat.fabrication.checks.mould_checks import mould_checks
+from hydrostat.fabrication.checks.mold_checks import mold_checks
 from hydrostat.fabrication.checks.pattern_checks import patch_checks, pattern_checks
-from hydrostat.fabrication.kit_options import STUFFINGS, KitOptions, MouldKind, PartOptions
+from hydrostat.fabrication.kit_options import STUFFINGS, KitOptions, MoldKind, PartOptions
 from hydrostat.fabrication.kit_plan import BodyWork, Cloth, FoamNeeds
-from hydrostat.fabrication.moulds.mould import make_mould
+from hydrostat.fabrication.moulds.mould import make_mold
 from hydrostat.fabrication.moulds.pocket import WinchRoom
 from hydrostat.fabrication.parts.winch_unit import WinchUnit
 from hydrostat.fabrication.patches.space_pattern import space_pattern
@@ -33,10 +33,8 @@ def foam_work(robot: Robot, options: KitOptions, units: Iterable[WinchUnit]) -> 
     pockets = {
         unit.winch: WinchRoom(low=unit.room.low, high=unit.room.high) for unit in units if unit.mount is Mount.BODY
     }
-    mould = make_mould(robot, options.mould, pockets=pockets)
-    spare = tuple(
-        part for part in mould.printed if part.name.startswith("positive") and mould.kind is MouldKind.PRINTED
-    )
+    mould = make_mold(robot, options.mould, pockets=pockets)
+    spare = tuple(part for part in mould.printed if part.name.startswith("positive") and mould.kind is MoldKind.PRINTED)
     printed = tuple(part for part in mould.printed if part not in spare)
     pieces, sides = sum(part.count for part in printed), sides_text(mould.box)
     body, held = mould.casting.body, 100 * mould.pull.share
@@ -62,7 +60,7 @@ def foam_work(robot: Robot, options: KitOptions, units: Iterable[WinchUnit]) -> 
         problems=(*mould.problems, *channel_problems(robot, options.parts)),
         warnings=(*mould.warnings, *_effort(printed)),
         notes=(*mould.notes, *_inside(robot)),
-        checks=mould_checks(robot, mould),
+        checks=mold_checks(robot, mould),
     )
 
 

@@ -137,7 +137,7 @@ def _parts_and_body(
         work = plush_work(drawn, options)
         return rigid(work.holes), work
     parts = rigid(0)
-    tell("Mould")
+    tell("Mold")
     return parts, foam_work(robot, options, parts.units)
 
 

@@ -19,7 +19,7 @@ class Corner(StrEnum):
     MITRE = "mitre"
 
 
-class MouldKind(StrEnum):
+class MoldKind(StrEnum):
     """Material that the mould is made of."""
 
     PRINTED = "printed"
@@ -133,7 +133,7 @@ class PartOptions:
 
 
 @dataclass(frozen=True, kw_only=True)
-class MouldOptions:
+class MoldOptions:
     """Choices for a mould; lengths in millimeters.
 
     Attributes:
@@ -149,7 +149,7 @@ class MouldOptions:
         InputError: a length that is not above 0 (a clearance of pockets may be 0), or a text that is no kind of mould.
     """
 
-    kind: MouldKind = MouldKind.PRINTED
+    kind: MoldKind = MoldKind.PRINTED
     wall: float = 8.0
     bed: tuple[float, float, float] = (220.0, 220.0, 250.0)
     key_clearance: float = 0.2
@@ -158,7 +158,7 @@ class MouldOptions:
     mark_depth: float = 10.0
 
     def __post_init__(self) -> None:
-        make_member(self, "kind", MouldKind)
+        make_member(self, "kind", MoldKind)
         _check_sizes(self, above_zero=("wall", "key_clearance", "mark_depth"))
         for axis, side in enumerate(self.bed):
             if not (math.isfinite(side) and side > 0):
@@ -195,7 +195,7 @@ class KitOptions:
     force: bool = False
     pattern: PatternOptions = field(default_factory=PatternOptions)
     parts: PartOptions = field(default_factory=PartOptions)
-    mould: MouldOptions = field(default_factory=MouldOptions)
+    mould: MoldOptions = field(default_factory=MoldOptions)
 
     def __post_init__(self) -> None:
         if self.method is not None:

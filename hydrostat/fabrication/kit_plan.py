@@ -8,7 +8,7 @@ from hydrostat.errors import InputError
 from hydrostat.fabrication.demand import Demand
 from hydrostat.fabrication.kit import Check
 from hydrostat.fabrication.kit_options import KitOptions, Method
-from hydrostat.fabrication.moulds.mould import Mould
+from hydrostat.fabrication.moulds.mould import Mold
 from hydrostat.fabrication.parts.rigid_parts import RigidParts
 from hydrostat.fabrication.patterns.stitches import CableStitches
 from hydrostat.fabrication.solids.assembly import PartAssembly
@@ -57,7 +57,7 @@ class BodyWork:
     gusset: bool = False  # True if strips between front and back make a plush body thick
     cloth: Cloth | None = None  # cloth of a plush robot
     foam: FoamNeeds | None = None  # foam of a foam robot
-    mould: Mould | None = None  # mold of a foam robot
+    mould: Mold | None = None  # mold of a foam robot
     summary: tuple[str, ...] = ()  # a line for each result
     problems: tuple[str, ...] = ()  # why it cannot be built well
     warnings: tuple[str, ...] = ()  # sentences on what may fail later

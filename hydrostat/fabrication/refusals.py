@@ -11,7 +11,7 @@ from hydrostat.fabrication.demand import Demand
 from hydrostat.fabrication.kit_options import KitOptions, Method
 from hydrostat.fabrication.lists.line import check_line, line_for
 from hydrostat.fabrication.moulds.pocket import WinchRoom, clashes, make_pockets
-from hydrostat.fabrication.moulds.setting import mould_setting
+from hydrostat.fabrication.moulds.setting import mold_setting
 from hydrostat.fabrication.parts.motor import MOTORS, Motor, choose_motor, largest_torque
 from hydrostat.fabrication.parts.winch_unit import unit_problems, unit_rooms
 from hydrostat.fabrication.patterns.pattern import pattern_problems
@@ -75,7 +75,7 @@ def pocket_problems(robot: Robot, options: KitOptions, motor: Motor) -> tuple[st
     rooms = unit_rooms(robot, options.parts, motor)
     if not rooms:
         return ()
-    setting = mould_setting(robot)
+    setting = mold_setting(robot)
     pockets = make_pockets(
         robot,
         setting.stance.enter(setting.solid),

@@ -11,7 +11,7 @@ from time import process_time
 
 from machine import machine
 
-from hydrostat.fabrication import MouldKind, MouldOptions, make_mould
+from hydrostat.fabrication import MoldKind, MoldOptions, make_mold
 from hydrostat.robot import Mount, gallery_folder, list_gallery, load_robot
 
 POCKET = (40.0, 20.0, 16.0)
@@ -22,14 +22,14 @@ def main() -> None:
     parser.add_argument("robots", nargs="*", metavar="ROBOT")
     parser.add_argument("--silicone", action="store_true")
     args = parser.parse_args()
-    options = MouldOptions(kind=MouldKind.SILICONE if args.silicone else MouldKind.PRINTED)
+    options = MoldOptions(kind=MoldKind.SILICONE if args.silicone else MoldKind.PRINTED)
     print(machine())
     print("robot           pull                undercut  closed mould [mm]  pieces  vents  foam [cm^3]  [g]  CPU [s]")
     for name in args.robots or list_gallery():
         robot = load_robot(gallery_folder(name))
         pockets = {winch.name: POCKET for winch in robot.winches if winch.mount is Mount.BODY}
         start = process_time()
-        mould = make_mould(robot, options, pockets=pockets)
+        mould = make_mold(robot, options, pockets=pockets)
         seconds = process_time() - start
         held = 100 * mould.pull.share
         pull = " ".join(f"{value:+.2f}" for value in mould.pull.direction)

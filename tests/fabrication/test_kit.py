@@ -19,8 +19,8 @@ from hydrostat.fabrication import (
     Kit,
     KitOptions,
     Method,
-    MouldKind,
-    MouldOptions,
+    MoldKind,
+    MoldOptions,
     Paper,
     PatternOptions,
     UnbuildableError,
@@ -139,7 +139,7 @@ def test_an_unknown_motor_is_refused():
     [
         (KitOptions, "method", "knit"),
         (KitOptions, "paper", "a3"),
-        (MouldOptions, "kind", "plaster"),
+        (MoldOptions, "kind", "plaster"),
         (PatternOptions, "corner", "cut"),
     ],
 )
@@ -151,9 +151,9 @@ def test_a_word_that_is_no_choice_is_refused_with_those_that_are(unchecked, made
 
 def test_a_choice_may_be_given_as_text(unchecked):
     """Oracle: the same options with members of the enumerations; a text alone is no member."""
-    given = KitOptions(method="foam", paper="letter", mould=MouldOptions(kind="silicone"))
+    given = KitOptions(method="foam", paper="letter", mould=MoldOptions(kind="silicone"))
     assert given.method is Method.FOAM
-    assert given == KitOptions(method=Method.FOAM, paper=Paper.LETTER, mould=MouldOptions(kind=MouldKind.SILICONE))
+    assert given == KitOptions(method=Method.FOAM, paper=Paper.LETTER, mould=MoldOptions(kind=MoldKind.SILICONE))
 
 
 @pytest.mark.slow

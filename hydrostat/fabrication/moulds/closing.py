@@ -24,7 +24,7 @@ Spot = tuple[float, float]  # a place in the parting plane [mm]
 
 
 @dataclass(frozen=True)
-class MouldBlock(Cuboid):
+class MoldBlock(Cuboid):
     """Outside of a mould [mm]."""
 
     x_cuts: tuple[float, ...] = ()  # places of cuts across x that make it fit the printer
@@ -49,7 +49,7 @@ class Closing:
     slots: Manifold  # for a flat tool, in the upper half
 
 
-def make_closing(block: MouldBlock, *, sprue: Sprue | None, vents: tuple[float, ...], clearance: float) -> Closing:
+def make_closing(block: MoldBlock, *, sprue: Sprue | None, vents: tuple[float, ...], clearance: float) -> Closing:
     """Keys at the corners with a clearance on each side [mm], bolts along the sides, slots to pry at left and right.
 
     Bolts keep off the sprue's funnel and off `vents`, the x of what leaves through the top [mm].
@@ -103,7 +103,7 @@ def _key(spot: Spot, radius: float, clearance: float) -> Manifold:
     return root + rod(np.array([*spot, 0.0]), np.array([*spot, height]), wide, taper * radius + clearance)
 
 
-def _slot(block: MouldBlock, side: int, bolts: list[float]) -> Manifold:
+def _slot(block: MoldBlock, side: int, bolts: list[float]) -> Manifold:
     """Slot for a screwdriver at a side, half way between two bolts or a bolt and a key."""
     slot = (6.0, 16.0, 2.5)
     depth, length, height = slot

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from manifold3d import Manifold
 
-from hydrostat.fabrication.moulds.closing import Closing, MouldBlock
+from hydrostat.fabrication.moulds.closing import Closing, MoldBlock
 from hydrostat.fabrication.moulds.openings import Sprue, Vent
 from hydrostat.fabrication.moulds.pocket import Pocket
 from hydrostat.fabrication.moulds.positive import Frames, Positive
@@ -34,7 +34,7 @@ def make_cavity(body: Manifold, dents: Manifold, pockets: tuple[Pocket, ...]) ->
 
 
 def make_halves(
-    block: MouldBlock,
+    block: MoldBlock,
     body: Manifold,
     dents: Manifold,
     pockets: tuple[Pocket, ...],
@@ -65,7 +65,7 @@ def make_halves(
     return Halves(upper=upper, lower=lower, cavity=cavity, poured=poured, volumes=account)
 
 
-def _voids(block: MouldBlock, cavity: Manifold, openings: dict[str, Manifold], closing: Closing) -> dict[str, float]:
+def _voids(block: MoldBlock, cavity: Manifold, openings: dict[str, Manifold], closing: Closing) -> dict[str, float]:
     """Volume that each opening removes from the plastic [mm^3], overlaps by the first, and of the gaps round keys."""
     account, taken = {}, cavity
     for name, opening in openings.items():
@@ -108,8 +108,8 @@ _UP: _Lying = (0.0, 0.0, 0.0)
 _OVER: _Lying = (180.0, 0.0, 0.0)
 
 
-def mould_prints(
-    halves: Halves, positive: Positive, frames: Frames | None, block: MouldBlock, bed: tuple[float, float, float]
+def mold_prints(
+    halves: Halves, positive: Positive, frames: Frames | None, block: MoldBlock, bed: tuple[float, float, float]
 ) -> tuple[tuple[Printed, ...], int, float]:
     """All pieces, how many dowels join those of the mould, and what cutting takes [mm^3].
 

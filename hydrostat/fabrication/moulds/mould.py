@@ -1,22 +1,22 @@
-"""`make_mould`: all that is printed and poured to cast the body of a robot, and what is said of it."""
+"""`make_mold`: all that is printed and poured to cast the body of a robot, and what is said of it."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 from manifold3d import Manifold
 
-from hydrostat.fabrication.kit_options import MouldKind, MouldOptions
+from hydrostat.fabrication.kit_options import MoldKind, MoldOptions
 from hydrostat.fabrication.moulds.casting import Casting, make_casting
-from hydrostat.fabrication.moulds.closing import RIM, MouldBlock, make_closing
-from hydrostat.fabrication.moulds.halves import Halves, make_cavity, make_halves, mould_prints
+from hydrostat.fabrication.moulds.closing import RIM, MoldBlock, make_closing
+from hydrostat.fabrication.moulds.halves import Halves, make_cavity, make_halves, mold_prints
 from hydrostat.fabrication.moulds.linked import interlock_count
 from hydrostat.fabrication.moulds.openings import Sprue, Vent, make_sprue, make_vents
 from hydrostat.fabrication.moulds.pocket import Pocket, Sides, WinchRoom, cable_dents, clashes, make_pockets
 from hydrostat.fabrication.moulds.positive import Frames, Positive, make_frames, make_positive
 from hydrostat.fabrication.moulds.pull import Pull
-from hydrostat.fabrication.moulds.setting import mould_setting
+from hydrostat.fabrication.moulds.setting import mold_setting
 from hydrostat.fabrication.moulds.split import grid
-from hydrostat.fabrication.moulds.stance import MouldOrientation
+from hydrostat.fabrication.moulds.stance import MoldOrientation
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
 from hydrostat.fabrication.solids.construct import sides_text
 from hydrostat.fabrication.solids.printed import Printed
@@ -27,12 +27,12 @@ TOP_RIM = 20.0  # height of the rim above the body [mm]: the funnel is in it
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Mould:
+class Mold:
     """A mould in two halves; lengths in millimeters."""
 
-    kind: MouldKind  # printed halves, or silicone round a printed positive
+    kind: MoldKind  # printed halves, or silicone round a printed positive
     pull: Pull  # directions in which the halves come off, in the coordinates of the robot
-    stance: MouldOrientation  # orientation in these coordinates, and the upward direction for pouring
+    stance: MoldOrientation  # orientation in these coordinates, and the upward direction for pouring
     printed: tuple[Printed, ...]  # printed parts, as they lie on the bed
     # halves and body; of a mould of silicone: positive and frames. In coordinates of the mould: x across, y upwards as
     # it stands, z along the pull, parted at z = 0.
@@ -62,18 +62,18 @@ class _Inside:
     dents: Manifold
     pockets: tuple[Pocket, ...]
     cavity: Manifold
-    block: MouldBlock
+    block: MoldBlock
     sprue: Sprue | None
     vents: tuple[Vent, ...]
 
 
-def make_mould(robot: Robot, options: MouldOptions, *, pockets: Mapping[str, Sides | WinchRoom] | None = None) -> Mould:
+def make_mold(robot: Robot, options: MoldOptions, *, pockets: Mapping[str, Sides | WinchRoom] | None = None) -> Mold:
     """The mould for a robot's body.
 
     `pockets` are what winches that sit in the body take up, by name; three sides [mm] if the shaft is in the middle.
     Raises InputError: the body is not closed, or a pocket is of a winch that is not there.
     """
-    setting = mould_setting(robot)
+    setting = mold_setting(robot)
     pull, stance = setting.pull, setting.stance
     inside = _fill_block(robot, options, setting.solid, pull, stance, pockets or {})
     closing = make_closing(
@@ -85,16 +85,16 @@ def make_mould(robot: Robot, options: MouldOptions, *, pockets: Mapping[str, Sid
     halves = make_halves(
         inside.block, inside.body, inside.dents, inside.pockets, sprue=inside.sprue, vents=inside.vents, closing=closing
     )
-    silicone = options.kind is MouldKind.SILICONE
+    silicone = options.kind is MoldKind.SILICONE
     positive = make_positive(halves.cavity, inside.sprue)
     frames = make_frames(halves.cavity, inside.sprue) if silicone else None
-    printed, dowels, lost = mould_prints(halves, positive, frames, inside.block, options.bed)
+    printed, dowels, lost = mold_prints(halves, positive, frames, inside.block, options.bed)
     fill = sum(halves.volumes[part] for part in ("cavity", "sprue", "vents"))
     casting, unlike = make_casting(robot.body.material, fill, pours=frames.pours if frames else ())
     volumes = _silicone_volumes(halves, positive, frames) if frames else halves.volumes
     links = interlock_count(halves.lower, halves.cavity), interlock_count(halves.upper, halves.cavity)
     shape = frames.inside if frames else inside.block
-    return Mould(
+    return Mold(
         kind=options.kind,
         pull=pull,
         stance=stance,
@@ -110,12 +110,12 @@ def make_mould(robot: Robot, options: MouldOptions, *, pockets: Mapping[str, Sid
         casting=casting,
         problems=(
             *unlike,
-            *mould_problems(
+            *mold_problems(
                 pull, robot.body.material, inside.sprue, inside.pockets, printed, options, halves, links=links
             ),
         ),
-        warnings=mould_warnings(options.kind, links=links),
-        notes=mould_notes(pull, robot.body.material, options.kind),
+        warnings=mold_warnings(options.kind, links=links),
+        notes=mold_notes(pull, robot.body.material, options.kind),
     )
 
 
@@ -129,10 +129,10 @@ def _silicone_volumes(halves: Halves, positive: Positive, frames: Frames) -> dic
 
 def _fill_block(
     robot: Robot,
-    options: MouldOptions,
+    options: MoldOptions,
     solid: Manifold,
     pull: Pull,
-    stance: MouldOrientation,
+    stance: MoldOrientation,
     rooms: Mapping[str, Sides | WinchRoom],
 ) -> _Inside:
     """Cavity, openings and the block round them."""
@@ -149,16 +149,16 @@ def _fill_block(
     return _Inside(body=body, dents=dents, pockets=pockets, cavity=cavity, block=block, sprue=sprue, vents=vents)
 
 
-def _block(body: Manifold, options: MouldOptions) -> MouldBlock:
+def _block(body: Manifold, options: MoldOptions) -> MoldBlock:
     """The outside: walls at the backs, a rim for keys and bolts, a higher one at the top for the funnel."""
     box = body.bounding_box()
     rim = max(options.wall, RIM)
     low = (box[0] - rim, box[1] - rim, box[2] - options.wall)
     high = (box[3] + rim, box[4] + max(options.wall, TOP_RIM), box[5] + options.wall)
-    return MouldBlock(*grid(low, high, options.bed), low=low, high=high)
+    return MoldBlock(*grid(low, high, options.bed), low=low, high=high)
 
 
-def _assembly(name: str, halves: Halves, frames: Frames | None, positive: Positive, block: MouldBlock) -> PartAssembly:
+def _assembly(name: str, halves: Halves, frames: Frames | None, positive: Positive, block: MoldBlock) -> PartAssembly:
     """Assembly of the mold, in its coordinates."""
     ahead, aback = (0.0, 0.0, 0.6 * block.size[2]), (0.0, 0.0, -0.6 * block.size[2])
     if frames is None:
@@ -184,7 +184,7 @@ TOLERATED = 0.3
 less than half its thickness as it is drawn out, and comes back; but what grips all round tears it."""
 
 
-def set_upright(stance: MouldOrientation, sprue: Sprue | None, vents: tuple[Vent, ...], kind: MouldKind) -> str:
+def set_upright(stance: MoldOrientation, sprue: Sprue | None, vents: tuple[Vent, ...], kind: MoldKind) -> str:
     """Return the sentences on how to set up the mold for pouring."""
     held = ", the end that is held at the top" if stance.held_upwards else ""
     upward = sum(vent.upward for vent in vents)
@@ -192,7 +192,7 @@ def set_upright(stance: MouldOrientation, sprue: Sprue | None, vents: tuple[Vent
     text = f"Closed, on its edge, the parting plane upright and the funnel on top{held}."
     if sprue is not None:
         text += f" The sprue is {2 * sprue.radius:g} mm across."
-    if vents and kind is MouldKind.SILICONE:
+    if vents and kind is MoldKind.SILICONE:
         return text + f" Punch {len(vents)} vents of 3 mm through the silicone at the high points."
     if upward:
         text += f" {upward} {_vents(upward)} open at the top."
@@ -205,20 +205,20 @@ def _vents(count: int) -> str:
     return "vent is" if count == 1 else "vents are"
 
 
-def mould_problems(
+def mold_problems(
     pull: Pull,
     material: Material,
     sprue: Sprue | None,
     pockets: tuple[Pocket, ...],
     printed: tuple[Printed, ...],
-    options: MouldOptions,
+    options: MoldOptions,
     halves: Halves,
     *,
     links: tuple[int, int] = (0, 0),
 ) -> tuple[str, ...]:
     """Return the problems of a mold; `links` counts holes of the body that the lower and upper half close."""
     found = [pocket.problem for pocket in pockets if pocket.problem] + clashes(pockets)
-    rigid = options.kind is MouldKind.PRINTED
+    rigid = options.kind is MoldKind.PRINTED
     if rigid and any(links):
         found.append(
             f"{_reaches(links)} and closes behind it like a link of a chain, so it cannot come off. Close "
@@ -255,10 +255,10 @@ def _reaches(links: tuple[int, int]) -> str:
     return " and ".join(parts)
 
 
-def mould_warnings(kind: MouldKind, *, links: tuple[int, int] = (0, 0)) -> tuple[str, ...]:
-    """Return the warnings for the builder; `links` as in `mould_problems`."""
+def mold_warnings(kind: MoldKind, *, links: tuple[int, int] = (0, 0)) -> tuple[str, ...]:
+    """Return the warnings for the builder; `links` as in `mold_problems`."""
     found = []
-    if kind is MouldKind.SILICONE and any(links):
+    if kind is MoldKind.SILICONE and any(links):
         found.append(
             f"{_reaches(links)} and closes behind it. Silicone yields, but a closed loop cannot be drawn out. "
             "Cut the silicone open there with a knife, and tape the cut from outside before you pour"
@@ -266,9 +266,9 @@ def mould_warnings(kind: MouldKind, *, links: tuple[int, int] = (0, 0)) -> tuple
     return tuple(found)
 
 
-def mould_notes(pull: Pull, material: Material, kind: MouldKind) -> tuple[str, ...]:
+def mold_notes(pull: Pull, material: Material, kind: MoldKind) -> tuple[str, ...]:
     """Return a note on a little undercut, which foam is squeezed past; empty if there is none."""
-    if pull.share <= (UNNOTICED if kind is MouldKind.PRINTED else TOLERATED):
+    if pull.share <= (UNNOTICED if kind is MoldKind.PRINTED else TOLERATED):
         return ()
     return (
         f"{100 * pull.share:.0f} % of the surface is undercut: {material.name or 'the body'} is squeezed past it. Use "

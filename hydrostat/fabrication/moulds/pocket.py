@@ -11,7 +11,7 @@ from manifold3d import Manifold
 from hydrostat.errors import InputError
 from hydrostat.fabrication.moulds.release import FineSurface, axes_along
 from hydrostat.fabrication.moulds.solids import join_solids, rod
-from hydrostat.fabrication.moulds.stance import MouldOrientation
+from hydrostat.fabrication.moulds.stance import MoldOrientation
 from hydrostat.fabrication.solids.body_solid import MILLIMETERS
 from hydrostat.fabrication.solids.construct import Cuboid, Sides, sides_text
 from hydrostat.geometry import Solid, Surface
@@ -61,7 +61,7 @@ class Pocket:
 
 
 def make_pockets(
-    robot: Robot, body: Manifold, stance: MouldOrientation, rooms: Mapping[str, Sides | WinchRoom], *, clearance: float
+    robot: Robot, body: Manifold, stance: MoldOrientation, rooms: Mapping[str, Sides | WinchRoom], *, clearance: float
 ) -> tuple[Pocket, ...]:
     """A pocket for each winch that sits in the body, from its place straight out along the pull.
 
@@ -249,7 +249,7 @@ def clashes(pockets: tuple[Pocket, ...]) -> list[str]:
     return found
 
 
-def cable_dents(robot: Robot, surface: FineSurface, stance: MouldOrientation, *, deepest: float) -> Manifold:
+def cable_dents(robot: Robot, surface: FineSurface, stance: MoldOrientation, *, deepest: float) -> Manifold:
     """Cones on the wall of the mould at the spot nearest to each cable point that is no deeper than `deepest` [mm]."""
     points = [_spot(point) for cable in robot.cables for point in cable.points]
     if not points:

@@ -10,10 +10,10 @@ from jaxtyping import Bool, Int
 from manifold3d import Manifold
 
 from hydrostat.arrays import Points, Vector
-from hydrostat.fabrication.kit_options import MouldOptions
+from hydrostat.fabrication.kit_options import MoldOptions
 from hydrostat.fabrication.moulds.pocket import LEAST_SKIN, LyingWinch, WinchRoom, ways_to_turn
-from hydrostat.fabrication.moulds.setting import mould_setting
-from hydrostat.fabrication.moulds.stance import MouldOrientation
+from hydrostat.fabrication.moulds.setting import mold_setting
+from hydrostat.fabrication.moulds.stance import MoldOrientation
 from hydrostat.fabrication.solids.body_solid import MILLIMETERS
 from hydrostat.fabrication.solids.construct import Cuboid
 from hydrostat.robot import Robot
@@ -26,7 +26,7 @@ class PocketRoom:
     """Body of foam as small cubes along the axes of its mold, in which boxes are counted by a table of sums."""
 
     body: Manifold  # body in the coordinates of the mold [mm]
-    stance: MouldOrientation  # axes of the mold
+    stance: MoldOrientation  # axes of the mold
     clearance: float  # room between a winch and the foam, on each side [mm]
 
     def places(self, room: Cuboid, *, scale: float = 1.0) -> tuple[Points, Vector]:
@@ -131,8 +131,8 @@ _INSIDE = 0.985  # share of the box that must be in the body: of the kit's 98 %,
 _COVERED = 0.93  # share of the foam round it that must be there: of the kit's 90 %
 
 
-def pocket_room(robot: Robot, options: MouldOptions | None = None) -> PocketRoom:
+def pocket_room(robot: Robot, options: MoldOptions | None = None) -> PocketRoom:
     """Find the room for pockets in a robot's body of foam (InputError: the body is not closed)."""
-    setting = mould_setting(robot)
-    clearance = (options or MouldOptions()).pocket_clearance
+    setting = mold_setting(robot)
+    clearance = (options or MoldOptions()).pocket_clearance
     return PocketRoom(setting.stance.enter(setting.solid), setting.stance, clearance)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from manifold3d import Manifold
 
-from hydrostat.fabrication.moulds.closing import MouldBlock
+from hydrostat.fabrication.moulds.closing import MoldBlock
 from hydrostat.fabrication.moulds.openings import Sprue
 from hydrostat.fabrication.moulds.solids import join_solids
 from hydrostat.fabrication.moulds.split import dowels_across
@@ -37,7 +37,7 @@ class Frames:
     lower: Manifold  # round the lower half
     upper: Manifold  # round the upper half
     dome: Manifold  # a key, flat side down; domes lie on the board at the corners
-    inside: MouldBlock  # block of silicone with the positive in it
+    inside: MoldBlock  # block of silicone with the positive in it
     pours: tuple[float, float]  # volumes of silicone [mm^3], below the parting plane and above it
 
 
@@ -72,7 +72,7 @@ def make_frames(cavity: Manifold, sprue: Sprue | None) -> Frames:
     whole = _with_sprue(cavity, sprue)
     low, high = (np.array(corner) for corner in np.reshape(cavity.bounding_box(), (2, 3)))
     least, largest = (tuple(corner.tolist()) for corner in (low - SILICONE_WALL, high + SILICONE_WALL))
-    inside = MouldBlock(low=least, high=largest)
+    inside = MoldBlock(low=least, high=largest)
     lower, upper = (_ring(inside, *span) for span in ((inside.low[2], 0.0), (0.0, inside.high[2])))
     silicone = inside.solid - whole
     above, below = silicone.split_by_plane((0.0, 0.0, 1.0), 0.0)
@@ -86,7 +86,7 @@ def make_frames(cavity: Manifold, sprue: Sprue | None) -> Frames:
     )
 
 
-def _ring(inside: MouldBlock, low: float, high: float) -> Manifold:
+def _ring(inside: MoldBlock, low: float, high: float) -> Manifold:
     """A wall round the silicone between two heights."""
     width, length, _ = inside.size
     frame_wall = 5.0  # thickness of a frame [mm]

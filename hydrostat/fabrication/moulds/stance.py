@@ -1,4 +1,4 @@
-"""`MouldOrientation`: rotation of a mold in the coordinates of the body, chosen so that it traps little air."""
+"""`MoldOrientation`: rotation of a mold in the coordinates of the body, chosen so that it traps little air."""
 
 from dataclasses import dataclass
 
@@ -19,7 +19,7 @@ _TOP = 0.5  # maximum depth below a high point of points that belong to it [mm]
 
 
 @dataclass(frozen=True, eq=False)
-class MouldOrientation:
+class MoldOrientation:
     """Axes of a mould; its parting plane is z = 0."""
 
     # unit vectors across, upwards when poured, and along the pull, as rows, in the body's coordinates
@@ -40,7 +40,7 @@ class MouldOrientation:
         return solid.transform(np.column_stack([self.axes.T, self.height * self.axes[2]]))
 
 
-def find_stance(pull: Pull, held: Float[np.ndarray, "held 3"]) -> MouldOrientation:
+def find_stance(pull: Pull, held: Float[np.ndarray, "held 3"]) -> MoldOrientation:
     """Find the way to stand the closed mould on an edge, parting plane upright, so that little air is caught.
 
     Sides of the box are along axes of the robot or those of the smallest box. That edge is chosen that needs the fewest
@@ -64,7 +64,7 @@ def find_stance(pull: Pull, held: Float[np.ndarray, "held 3"]) -> MouldOrientati
 
 def _rated_stance(
     pull: Pull, axes: Float[np.ndarray, "3 3"], held: Float[np.ndarray, "held 3"]
-) -> tuple[float, float, MouldOrientation]:
+) -> tuple[float, float, MoldOrientation]:
     """A way to stand, before it what speaks against it and the area of the box [mm^2]."""
     places = pull.surface.vertices @ axes.T
     width, tall, depth = np.ptp(places, axis=0)
@@ -73,10 +73,10 @@ def _rated_stance(
     held_upwards = len(held) > 0 and float(level.mean()) > at_the_top
     vents = len(high_points(pull.surface.vertices, pull.surface.triangles, axes[1], rise=SMALLEST_TRAP))
     against = vents - _HELD_UPWARDS * held_upwards + _TALL * tall / min(width, 3 * depth)
-    return float(against), float(width * tall), MouldOrientation(axes, pull.height, held_upwards)
+    return float(against), float(width * tall), MoldOrientation(axes, pull.height, held_upwards)
 
 
-def _order(stance: MouldOrientation) -> list[float]:
+def _order(stance: MoldOrientation) -> list[float]:
     """Decides between ways to stand that are equally good."""
     return (stance.axes[1].round(6) + 0.0).tolist()
 

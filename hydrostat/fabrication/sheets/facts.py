@@ -65,7 +65,7 @@ class CheckFacts(TypedDict):
     passed: bool
 
 
-class MouldFacts(TypedDict):
+class MoldFacts(TypedDict):
     """A mould and its fill."""
 
     silicone: bool  # True if it is cast itself; else it is printed
@@ -117,7 +117,7 @@ class SheetFacts(TypedDict):
     motor: str
     steps: list[list[StepFacts]]  # a list for each page
     checks: list[CheckFacts]
-    mould: MouldFacts | None
+    mould: MoldFacts | None
     power: PowerFacts | None
     other_way: list[str]  # title and text of another way to a mould; empty without a mould
     cures: list[list[str]]  # materials and times of cure

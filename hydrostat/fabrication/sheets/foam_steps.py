@@ -1,13 +1,13 @@
-"""`mould_steps`, `skin_steps`: from the files of a mould to a robot of foam.
+"""`mold_steps`, `skin_steps`: from the files of a mould to a robot of foam.
 
 Times of cure are those of R52 and N5, all others are estimates.
 """
 
-from hydrostat.fabrication.kit_options import MouldKind
+from hydrostat.fabrication.kit_options import MoldKind
 from hydrostat.fabrication.kit_plan import KitPlan
 from hydrostat.fabrication.lists.lists import Lists
 from hydrostat.fabrication.lists.stitching import PointAccess
-from hydrostat.fabrication.moulds.mould import Mould
+from hydrostat.fabrication.moulds.mould import Mold
 from hydrostat.fabrication.sheets.steps import (
     AssemblyStep,
     CableDepths,
@@ -46,36 +46,36 @@ _OPEN = (
 _OPEN_FOAM = " Squeeze the body all over to open its cells."
 
 
-def foam_expansion(mould: Mould) -> bool:
+def foam_expansion(mould: Mold) -> bool:
     """Return True if the casting material is a foam; the others are silicones."""
     return mould.casting.expansion > 1
 
 
-def other_way(mould: Mould) -> tuple[str, str]:
+def other_way(mould: Mold) -> tuple[str, str]:
     """Return the title and the text on another method to make the mold."""
-    if mould.kind is MouldKind.PRINTED:
+    if mould.kind is MoldKind.PRINTED:
         return "Or a mould of silicone", _OTHER_MOULD
     return "Or from a model, without a printed positive", _MODEL_FIRST
 
 
-def cure_times(mould: Mould | None) -> tuple[tuple[str, str], ...]:
+def cure_times(mould: Mold | None) -> tuple[tuple[str, str], ...]:
     """Cure time of each material, that of the body last."""
     if mould is None:
         return ()
     what, time = mould.casting.times[-1]
     body = (what.removesuffix(" cures"), time.partition(" (")[0])
-    return (body,) if mould.kind is MouldKind.PRINTED else (_SILICONE_CURE, *_MODEL_CURES, body)
+    return (body,) if mould.kind is MoldKind.PRINTED else (_SILICONE_CURE, *_MODEL_CURES, body)
 
 
-def body_mass(mould: Mould) -> float:
+def body_mass(mould: Mold) -> float:
     """Mass of the body alone, without sprue, vents and what is spare [g]."""
     mix = mould.casting.body
     return mix.density * mould.volumes.get("cavity", mix.volume)
 
 
-def mould_steps(plan: KitPlan, lists: Lists, mould: Mould) -> tuple[AssemblyStep, ...]:
+def mold_steps(plan: KitPlan, lists: Lists, mould: Mold) -> tuple[AssemblyStep, ...]:
     """Steps from the files of the mould to a body of foam."""
-    printed = mould.kind is MouldKind.PRINTED
+    printed = mould.kind is MoldKind.PRINTED
     mix, foams = mould.casting.body, foam_expansion(mould)
     return (
         *(_printed_first(plan) if printed else _silicone_first(plan, mould)),
@@ -127,7 +127,7 @@ def _printed_first(plan: KitPlan) -> tuple[AssemblyStep, ...]:
     )
 
 
-def _silicone_first(plan: KitPlan, mould: Mould) -> tuple[AssemblyStep, ...]:
+def _silicone_first(plan: KitPlan, mould: Mold) -> tuple[AssemblyStep, ...]:
     glue = " What is in pieces is joined with glue and dowels of 3 mm in its holes." if _in_pieces(plan) else ""
     masses = [f"{mix.mass:.0f} g" for mix in mould.casting.silicone] or ["the amount"]
     return (
@@ -181,7 +181,7 @@ def _tubes_first(depths: CableDepths) -> tuple[AssemblyStep, ...]:
     )
 
 
-def _closing(mould: Mould) -> str:
+def _closing(mould: Mold) -> str:
     if mould.bolts:
         return f"Push the keys home and close it with {plural(mould.bolts, 'bolt')} M4; no light may shine through."
     return "Push the keys home and strap it between two boards, not so hard that it bulges."

@@ -3,19 +3,19 @@
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import groupby
 
-from hydrostat.fabrication.kit_options import Method, MouldKind
+from hydrostat.fabrication.kit_options import Method, MoldKind
 from hydrostat.fabrication.kit_plan import KitFindings, KitPlan
 from hydrostat.fabrication.lists.cuts import AT_BODY
 from hydrostat.fabrication.lists.lists import Lists
 from hydrostat.fabrication.lists.table import Align, Table
-from hydrostat.fabrication.moulds.mould import Mould
+from hydrostat.fabrication.moulds.mould import Mold
 from hydrostat.fabrication.patterns.stitches import CableStitches
-from hydrostat.fabrication.sheets.facts import MouldFacts, SheetFacts, StepFacts, TableFacts, WinchFacts
+from hydrostat.fabrication.sheets.facts import MoldFacts, SheetFacts, StepFacts, TableFacts, WinchFacts
 from hydrostat.fabrication.sheets.foam_steps import (
     body_mass,
     cure_times,
     foam_expansion,
-    mould_steps,
+    mold_steps,
     other_way,
     skin_steps,
 )
@@ -85,7 +85,7 @@ def _all_steps(plan: KitPlan, lists: Lists) -> list[tuple[AssemblyStep, ...]]:
     if plan.method is Method.PLUSH:
         return [plush_steps(plan)]
     mould = plan.work.mould
-    before = [mould_steps(plan, lists, mould)] if mould is not None else []
+    before = [mold_steps(plan, lists, mould)] if mould is not None else []
     return [*before, skin_steps(plan, lists)]
 
 
@@ -155,7 +155,7 @@ def _step(step: AssemblyStep) -> StepFacts:
     return {"title": step.title, "time": step.time, "text": step.text}
 
 
-def _mould(mould: Mould | None) -> MouldFacts | None:
+def _mould(mould: Mold | None) -> MoldFacts | None:
     """Facts of a mould that are not in its steps."""
     if mould is None:
         return None
@@ -172,7 +172,7 @@ def _mould(mould: Mould | None) -> MouldFacts | None:
         *([["grows to", f"{casting.expansion:.1f} times its volume"]] if casting.expansion > 1 else []),
     ]
     return {
-        "silicone": mould.kind is MouldKind.SILICONE,
+        "silicone": mould.kind is MoldKind.SILICONE,
         "foams": foam_expansion(mould),
         "weighs": f"{body_mass(mould):.0f} g",
         "undercut": _undercut(mould.pull.share),

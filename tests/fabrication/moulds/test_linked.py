@@ -5,10 +5,10 @@ import pytest
 from manifold3d import CrossSection, Manifold
 from mould_robots import foam_robot, slab_body
 
-from hydrostat.fabrication.kit_options import MouldKind, MouldOptions
+from hydrostat.fabrication.kit_options import MoldKind, MoldOptions
 from hydrostat.fabrication.moulds import setting
 from hydrostat.fabrication.moulds.linked import interlock_count, linking_number, loops_of
-from hydrostat.fabrication.moulds.mould import TOLERATED, Mould, make_mould
+from hydrostat.fabrication.moulds.mould import TOLERATED, Mold, make_mold
 
 
 def ring(radius: float = 30.0, thick: float = 8.0, *, facets: int = 24) -> Manifold:
@@ -85,14 +85,14 @@ def test_what_is_linked_would_cut_the_body_when_it_is_lifted() -> None:
     assert interlock_count(lower.transform(pose), body.transform(pose)) == 1
 
 
-def mould_of(solid: Manifold, kind: MouldKind, monkeypatch: pytest.MonkeyPatch) -> Mould:
+def mould_of(solid: Manifold, kind: MoldKind, monkeypatch: pytest.MonkeyPatch) -> Mold:
     monkeypatch.setattr(setting, "body_solid", lambda body: solid)
-    return make_mould(foam_robot(slab_body()), MouldOptions(kind=kind))
+    return make_mold(foam_robot(slab_body()), MoldOptions(kind=kind))
 
 
 @pytest.mark.slow
 def test_mould_that_is_linked_with_the_body_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    mould = mould_of(ball_with_handles(), MouldKind.PRINTED, monkeypatch)
+    mould = mould_of(ball_with_handles(), MoldKind.PRINTED, monkeypatch)
     assert mould.pull.share < TOLERATED  # of the skin little is undercut: its area alone does not tell
     (problem,) = mould.problems
     assert "like a link of a chain" in problem
@@ -100,13 +100,13 @@ def test_mould_that_is_linked_with_the_body_is_refused(monkeypatch: pytest.Monke
 
 @pytest.mark.slow
 def test_silicone_that_is_linked_is_to_be_cut(monkeypatch: pytest.MonkeyPatch) -> None:
-    mould = mould_of(ball_with_handles(), MouldKind.SILICONE, monkeypatch)
+    mould = mould_of(ball_with_handles(), MoldKind.SILICONE, monkeypatch)
     assert mould.problems == ()
     assert any("Cut the silicone open" in warning for warning in mould.warnings)
 
 
 @pytest.mark.slow
 def test_ring_is_laid_flat(monkeypatch: pytest.MonkeyPatch) -> None:
-    mould = mould_of(ring(facets=12).rotate((70, 20, 0)), MouldKind.PRINTED, monkeypatch)
+    mould = mould_of(ring(facets=12).rotate((70, 20, 0)), MoldKind.PRINTED, monkeypatch)
     assert mould.problems == ()
     assert mould.warnings == ()

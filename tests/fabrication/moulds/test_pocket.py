@@ -2,22 +2,22 @@
 
 import numpy as np
 import pytest
+from hydrostat.fabrication.checks.mold_checks import mold_checks
 from manifold3d import Manifold
 from mould_robots import foam_robot, slab_body
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.checks.mould_checks import mould_checks
-from hydrostat.fabrication.kit_options import MouldOptions
-from hydrostat.fabrication.moulds.mould import make_mould
+from hydrostat.fabrication.kit_options import MoldOptions
+from hydrostat.fabrication.moulds.mould import make_mold
 from hydrostat.fabrication.moulds.pocket import Pocket, Sides, WinchRoom, cable_dents, clashes, make_pockets
 from hydrostat.fabrication.moulds.release import fine_surface
 from hydrostat.fabrication.moulds.solids import rod
-from hydrostat.fabrication.moulds.stance import MouldOrientation
+from hydrostat.fabrication.moulds.stance import MoldOrientation
 from hydrostat.fabrication.solids.assembly import interferences
 from hydrostat.fabrication.solids.body_solid import body_solid
 from hydrostat.robot import Robot
 
-PLAIN = MouldOrientation(np.eye(3), 0.0)
+PLAIN = MoldOrientation(np.eye(3), 0.0)
 SLAB = slab_body()
 
 
@@ -67,10 +67,10 @@ def test_pockets_that_meet_become_one_room() -> None:
     assert clashes((one, other)) == []
     assert one.upper == other.upper
     assert len((body_solid(SLAB) - one.core - other.core).decompose()) == 1
-    mould = make_mould(robot, MouldOptions(), pockets={"w0": (15.0, 15.0, 15.0), "w1": (15.0, 15.0, 15.0)})
+    mould = make_mold(robot, MoldOptions(), pockets={"w0": (15.0, 15.0, 15.0), "w1": (15.0, 15.0, 15.0)})
     assert mould.problems == ()
     assert not interferences(mould.assembly)
-    assert all(check.passed for check in mould_checks(robot, mould))
+    assert all(check.passed for check in mold_checks(robot, mould))
 
 
 def test_a_winch_has_air_on_all_sides() -> None:

@@ -11,7 +11,7 @@ from plush_robots import SQUARE, drawn_body
 
 from hydrostat.fabrication.demand import Demand
 from hydrostat.fabrication.kit import Check
-from hydrostat.fabrication.kit_options import Method, MouldKind
+from hydrostat.fabrication.kit_options import Method, MoldKind
 from hydrostat.fabrication.kit_plan import KitFindings, KitPlan
 from hydrostat.fabrication.lists.bill import BillGroup, Item, Price, bill_table
 from hydrostat.fabrication.lists.cuts import CableCut, SheathRow, cable_table
@@ -20,10 +20,10 @@ from hydrostat.fabrication.lists.lists import Lists
 from hydrostat.fabrication.lists.motors import MotorRow
 from hydrostat.fabrication.lists.table import Table
 from hydrostat.fabrication.moulds.casting import make_casting
-from hydrostat.fabrication.moulds.mould import Mould
+from hydrostat.fabrication.moulds.mould import Mold
 from hydrostat.fabrication.moulds.pull import Pull
 from hydrostat.fabrication.moulds.release import FineSurface
-from hydrostat.fabrication.moulds.stance import MouldOrientation
+from hydrostat.fabrication.moulds.stance import MoldOrientation
 from hydrostat.fabrication.parts.motor import MOTORS
 from hydrostat.fabrication.patterns.stitches import cable_stitches
 from hydrostat.fabrication.sheets.map_layout import body_solid
@@ -150,7 +150,7 @@ def foam(*, name: str = "Sam", winches: int = 2, cables: int = 2, silicone: bool
     return _given(robot, **({"method": Method.FOAM, "mould": mould(robot, silicone=silicone)} | more))
 
 
-def mould(robot: Robot, *, silicone: bool = False) -> Mould:
+def mould(robot: Robot, *, silicone: bool = False) -> Mold:
     """Two halves of a box, parted along z; what looks down along y is said to hold."""
     piece = body_solid(robot)
     one, two, three = (piece.vertices[corner] for corner in piece.triangles.T)
@@ -161,8 +161,8 @@ def mould(robot: Robot, *, silicone: bool = False) -> Mould:
         Placed(name="mould_lower", title="lower half", solid=solid_of(half), pulled=(0, 0, -40)),
         Placed(name="mould_upper", title="upper half", solid=solid_of(half.rotate(x=180).move(0, 100, 80))),
     )
-    return Mould(
-        kind=MouldKind.SILICONE if silicone else MouldKind.PRINTED,
+    return Mold(
+        kind=MoldKind.SILICONE if silicone else MoldKind.PRINTED,
         pull=Pull(
             direction=np.array([0.0, 0.0, 1.0]),
             height=0.0,
@@ -172,7 +172,7 @@ def mould(robot: Robot, *, silicone: bool = False) -> Mould:
             directions=np.eye(3),
             shares=np.zeros(3),
         ),
-        stance=MouldOrientation(np.eye(3), 0.0),
+        stance=MoldOrientation(np.eye(3), 0.0),
         printed=(),
         assembly=PartAssembly(name="mould", pieces=pieces),
         volumes={},

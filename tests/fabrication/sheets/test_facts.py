@@ -8,7 +8,7 @@ import pytest
 
 from hydrostat.fabrication.sheets.facts import (
     CheckFacts,
-    MouldFacts,
+    MoldFacts,
     PictureFacts,
     PictureName,
     PieceFacts,
@@ -29,7 +29,7 @@ RECORDS = {
     "winch": WinchFacts,
     "piece": PieceFacts,
     "check": CheckFacts,
-    "mould": MouldFacts,
+    "mould": MoldFacts,
     "power": PowerFacts,
     "drawn": PictureFacts,
 }
@@ -69,7 +69,7 @@ def test_templates_place_every_picture() -> None:
 def test_a_key_that_no_record_has_is_found() -> None:
     found = used_keys("if data.mould.foam { data.winches.map(winch => winch.marks) }")
     assert found[SheetData] == {"mould", "winches"}
-    assert found[MouldFacts] - set(MouldFacts.__annotations__) == {"foam"}
+    assert found[MoldFacts] - set(MoldFacts.__annotations__) == {"foam"}
     assert found[WinchFacts] - set(WinchFacts.__annotations__) == {"marks"}
 
 

@@ -6,7 +6,7 @@ import pytest
 from page_words import read_words
 from plush_robots import crossed
 
-from hydrostat.fabrication import Kit, KitOptions, Method, MouldKind, MouldOptions, build_kit
+from hydrostat.fabrication import Kit, KitOptions, Method, MoldKind, MoldOptions, build_kit
 
 NAMED = re.compile(r"[\w/]*\w\.(?:pdf|csv|svg|dxf|3mf|stl|json|toml|step)\b")
 FOLDER = re.compile(r"\b(?:lists|parts|pattern|mould|positive)/(?=\W|$)")
@@ -36,7 +36,7 @@ def test_files_that_are_named_are_there(which, request):
 @pytest.mark.slow
 def test_files_of_a_mould_of_silicone_are_there():
     """Oracle: the paths of the kit."""
-    options = KitOptions(method=Method.FOAM, force=True, mould=MouldOptions(kind=MouldKind.SILICONE))
+    options = KitOptions(method=Method.FOAM, force=True, mould=MoldOptions(kind=MoldKind.SILICONE))
     kit = build_kit(crossed(), options=options)
     assert "mould/plate_1.3mf" in named(kit)
     assert wrong(kit) == set()

@@ -7,7 +7,7 @@ from typing import Any
 
 from nicegui import ui
 
-from hydrostat.fabrication import MOTORS, KitOptions, Method, MouldKind, Paper
+from hydrostat.fabrication import MOTORS, KitOptions, Method, MoldKind, Paper
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.exporting.download import Download, file_name
 from hydrostat.studio.exporting.exporter import Export
@@ -189,7 +189,7 @@ METHODS = {"": "Auto", Method.PLUSH.value: "Plush", Method.FOAM.value: "Foam"}
 
 PAPERS = {Paper.A4.value: "A4", Paper.LETTER.value: "Letter"}
 
-MOULDS = {MouldKind.PRINTED.value: "Printed", MouldKind.SILICONE.value: "Silicone"}
+MOULDS = {MoldKind.PRINTED.value: "Printed", MoldKind.SILICONE.value: "Silicone"}
 
 
 def kit_choices(page: WindowPage) -> None:
@@ -228,7 +228,7 @@ def _more_choices() -> dict[str, Any]:
         with ui.element("div").classes("studio-row").style("gap: 4px"):
             for axis in "xyz":
                 given[f"bed_{axis}"] = _length(f"bed along {axis}", 10.0)
-        ui.label("Mould")
+        ui.label("Mold")
         given["mould"] = ui.toggle(MOULDS).props("dense no-caps unelevated")
         ui.label("Seam [mm]")
         given["seam"] = _length("cloth between seam and cut", 1.0)
@@ -341,7 +341,7 @@ def _options(before: KitOptions, given: dict[str, Any]) -> KitOptions:
         method=Method(given["method"]) if given["method"] else None,
         motor=given["motor"],
         paper=Paper(given["paper"]),
-        mould=replace(before.mould, kind=MouldKind(given["mould"]), bed=bed),
+        mould=replace(before.mould, kind=MoldKind(given["mould"]), bed=bed),
         pattern=replace(before.pattern, seam_allowance=float(given["seam"])),
         parts=replace(before.parts, cable=float(given["cable"]), clearance=float(given["clearance"])),
     )

@@ -3,7 +3,7 @@
 import pytest
 from desk import Desk, at_desk
 
-from hydrostat.fabrication import Method, MouldKind, Paper
+from hydrostat.fabrication import Method, MoldKind, Paper
 from hydrostat.robot import Face, Robot
 from hydrostat.studio.exporting.exporter import Export
 from hydrostat.studio.stage import StageName
@@ -23,7 +23,7 @@ def test_choices_become_the_options_of_the_kit(starfish: Robot) -> None:
         assert exporter.options == before
         assert desk.told
         assert exporter.options.paper is Paper.A4
-        assert exporter.options.mould.kind is MouldKind.PRINTED
+        assert exporter.options.mould.kind is MoldKind.PRINTED
 
     at_desk(starfish, act)
 

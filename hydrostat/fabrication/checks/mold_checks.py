@@ -3,8 +3,8 @@
 import math
 
 from hydrostat.fabrication.kit import Check
-from hydrostat.fabrication.kit_options import MouldKind
-from hydrostat.fabrication.moulds.mould import Mould
+from hydrostat.fabrication.kit_options import MoldKind
+from hydrostat.fabrication.moulds.mould import Mold
 from hydrostat.robot import Robot
 
 MESH = 0.05  # share of its volume by which the body that is cast may differ from the mesh that was simulated
@@ -13,15 +13,15 @@ _VOIDS = ("sprue", "vents", "bolts", "slots", "keys")  # openings in a printed b
 _POURS = ("silicone_lower", "silicone_upper")
 
 
-def mould_checks(robot: Robot, mould: Mould) -> tuple[Check, ...]:
+def mold_checks(robot: Robot, mould: Mold) -> tuple[Check, ...]:
     """The account of the block, the way that the foam takes, and the body against the simulated mesh."""
     return (_account(mould), _check_connected(mould), _as_simulated(robot, mould))
 
 
-def _account(mould: Mould) -> Check:
+def _account(mould: Mold) -> Check:
     """Pieces as they are printed, and all that is no piece, each measured on its own solid, against the block."""
     volumes = mould.volumes
-    if mould.kind is MouldKind.PRINTED:
+    if mould.kind is MoldKind.PRINTED:
         what = "pieces, cavity, sprue, vents, key gaps and holes of the mould add up to its block"
         parts = _pieces(mould, "mould") + _body(mould) + sum(volumes[void] for void in _VOIDS)
     else:
@@ -38,17 +38,17 @@ def _account(mould: Mould) -> Check:
     )
 
 
-def _pieces(mould: Mould, name: str) -> float:
+def _pieces(mould: Mold, name: str) -> float:
     """Volume of all that is printed under a name [mm^3]."""
     return sum(part.count * part.volume for part in mould.printed if part.name.startswith(name))
 
 
-def _body(mould: Mould) -> float:
+def _body(mould: Mold) -> float:
     """Volume of the body as it lies in the assembly [mm^3]."""
     return sum(float(piece.solid.volume()) for piece in mould.assembly.pieces if piece.name == "body")
 
 
-def _check_connected(mould: Mould) -> Check:
+def _check_connected(mould: Mold) -> Check:
     """Check that sprue, cavity and vents form one connected volume."""
     rooms = sum(room.volume() > 0 for room in mould.poured.decompose())
     sprue = mould.volumes["sprue"]
@@ -61,7 +61,7 @@ def _check_connected(mould: Mould) -> Check:
     )
 
 
-def _as_simulated(robot: Robot, mould: Mould) -> Check:
+def _as_simulated(robot: Robot, mould: Mold) -> Check:
     mesh, volume = robot.body.mesh, mould.volumes["body"]
     simulated = 1e9 * float(mesh.volumes.sum()) * (robot.body.thickness or 1.0)
     off = volume / simulated - 1
