@@ -33,7 +33,7 @@ from hydrostat.learning.certify import exact_steps
 from hydrostat.learning.learned_model import Tier
 from hydrostat.learning.training_set import linear_map
 from hydrostat.mechanics import Reason
-from hydrostat.robot import Robot, save_robot
+from hydrostat.robot import Robot
 
 pytestmark = pytest.mark.usefixtures("unchecked")
 
@@ -275,7 +275,8 @@ def test_the_commands(
     place = tuple(read_samples(folder).markers[70, 0].tolist())
     posed = replace(robot, poses={"far": hs.PoseTarget(name="far", targets={"tip": place})})
     good = save_model(model, tmp_path / "good.model")
-    run("pose", save_robot(posed, tmp_path / "strip"), "--out", tmp_path / "out", "--model", good)
+    monkeypatch.setattr("hydrostat.robot.load_robot", lambda path: posed)
+    run("pose", tmp_path, "--out", tmp_path / "out", "--model", good)
     assert "far: model predicts rms error" in (printed := capsys.readouterr().out)
     assert "target reached" in printed
 
