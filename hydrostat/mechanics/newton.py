@@ -248,8 +248,7 @@ class _EnergyDescent:
     def _search(self, place: _Iterate, step: Vector, trial: StepTrial) -> _Iterate | None:
         """Next place; None if no length of the step lowers the energy.
 
-        Near the end the energy falls by less than its own noise; then the slope along the step must fall instead.
-        `trial` is that of the whole step.
+        Near the end the energy falls by less than its noise; then the slope must fall instead. `trial` takes all of it.
         """
         slope = float(place.gradient @ step)
         length = 1.0
@@ -261,9 +260,9 @@ class _EnergyDescent:
                     straight = self._try(place, length * step, bent=False)
                     trial = min(trial, straight, key=lambda found: found.energy)
                 if trial.energy <= place.energy - 1e-4 * gain:
-                    if self.projection.any and length * trial.share == 1.0:
-                        trial = self._extrapolate(place, step, trial)
-                    return self._evaluate(*trial[:4])
+                    found = self._evaluate(*trial[:4])
+                    longer = self.projection.any and length * trial.share == 1.0
+                    return self._extrapolate(place, step, found) if longer else found
             elif trial.energy <= place.energy + 10 * self.noise.energy:
                 found = self._evaluate(*trial[:4])
                 if abs(found.gradient @ step) <= 0.9 * abs(slope):
@@ -297,15 +296,16 @@ class _EnergyDescent:
                     return step
         return -stiffness.solve(place.gradient)
 
-    def _extrapolate(self, place: _Iterate, step: Vector, trial: StepTrial) -> StepTrial:
+    def _extrapolate(self, place: _Iterate, step: Vector, found: _Iterate) -> _Iterate:
         """Double a step while the energy falls: a projected Hessian is too stiff, so its step is too short."""
-        length = 2.0
-        while True:
-            longer = self._try(place, length * step)
-            if not (longer.share == 1.0 and longer.energy < trial.energy):
-                return trial
-            trial = longer
-            length *= 2.0
+        length, before, slope = 1.0, float(place.gradient @ step), float(found.gradient @ step)
+        while 3.0 * slope < before:  # slopes need no search for contact; a parabola falls so far
+            longer = self._try(place, 2.0 * length * step)
+            if not (longer.share == 1.0 and longer.energy < found.energy):
+                break
+            found, length = self._evaluate(*longer[:4]), 2.0 * length
+            before, slope = slope, float(found.gradient @ step)
+        return found
 
     def _leave_saddle(self, place: _Iterate) -> _Iterate | None:
         """Place of lower energy along a falling mode; None at a minimum, or where none is found."""

@@ -21,13 +21,11 @@ class Stiffness:
 
     Attributes:
         definite: True if H is positive definite.
-        singular: True if K or H cannot be solved with.
         factors: factors of K.
         coupling: coupling springs as given at construction.
         columns: G.
         weights: D.
         token: identity of the assembly whose Hessian this is; the factors serve no other assembly.
-        compliance: M [m/N].
         source: the `Assembly` whose Hessian this is, if known; not sent to other processes.
     """
 
@@ -36,10 +34,7 @@ class Stiffness:
     ) -> None:
         """Take the factors of K, and G and D."""
         self.factors, self.token, self.coupling, self.source = factors, token, coupling, source
-        self.columns = columns = coupling.columns
-        if not factors.singular:
-            self._reduced = factors.reduce(columns) if columns.size else columns
-            self.compliance = factors.inner(self._reduced, self._reduced)
+        self.columns = coupling.columns
         self._weigh(coupling.weights)
 
     def __getstate__(self) -> dict[str, Any]:
@@ -58,6 +53,8 @@ class Stiffness:
 
     def with_weights(self, weights: RankMatrix) -> "Stiffness":
         """Return this stiffness with another D, at almost no cost."""
+        if not self.factors.singular:
+            _ = self.compliance  # Computed once for both
         other = copy(self)
         other._weigh(weights)
         return other
@@ -65,20 +62,48 @@ class Stiffness:
     def _weigh(self, weights: RankMatrix) -> None:
         self.weights, self._pulling = weights, bool(weights.any())
         self._inside = None
-        self.singular, self.definite = self.factors.singular, self.factors.definite
-        if self.singular or self.definite or not self._pulling:  # with K definite there are no signs to count
-            return
+        self.__dict__.pop("_signs", None)
+        self.definite = self.factors.definite
+        if self._indefinite and self.factors.negative <= len(weights):  # more of them no springs make positive
+            self.definite = not self.singular and self.factors.negative == int((self._signs < 0).sum())
+
+    @property
+    def _indefinite(self) -> bool:
+        """True if springs pull that could make up for negative eigenvalues of K."""
+        return not self.factors.singular and not self.factors.definite and self._pulling
+
+    @property
+    def singular(self) -> bool:
+        """True if K or H cannot be solved with."""
+        if not self._indefinite:
+            return self.factors.singular
+        size = np.abs(self._signs)
+        return bool(not np.isfinite(size).all() or size.min() < 1e-14 * size.max())
+
+    @cached_property
+    def _signs(self) -> Vector:
+        """Eigenvalues of I + R^T M R."""
         root, inner = self._inner()
         signs, axes = np.linalg.eigh(inner)
         with np.errstate(divide="ignore", invalid="ignore"):
             self._inside = root @ (axes * (1.0 / signs) @ axes.T) @ root.T
-        size = np.abs(signs)
-        self.singular = bool(not np.isfinite(signs).all() or size.min() < 1e-14 * size.max())
-        self.definite = not self.singular and self.factors.negative == int((signs < 0).sum())
+        return signs
+
+    @cached_property
+    def _reduced(self) -> LowRankBasis:
+        """Forward half of Z."""
+        return self.factors.reduce(self.columns) if self.columns.size else self.columns
+
+    @cached_property
+    def compliance(self) -> RankMatrix:
+        """M [m/N]."""
+        return self.factors.inner(self._reduced, self._reduced)
 
     @property
     def _correction(self) -> RankMatrix:
         """R (I + R^T M R)^-1 R^T."""
+        if self._indefinite:
+            _ = self._signs
         if self._inside is None:
             root, inner = self._inner()
             self._inside = root @ np.linalg.solve(inner, root.T)
