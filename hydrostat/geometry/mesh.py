@@ -83,7 +83,7 @@ class Mesh:
         middles = count + np.stack([np.searchsorted(keys, numbers) for numbers in ends], axis=1)
         nodes = np.concatenate([linear.nodes, linear.nodes[linear.edges].mean(axis=1)])
         quadratic = np.concatenate([linear.elements, middles], axis=1)
-        return Mesh(nodes, _cut(nodes, quadratic), quadratic)
+        return Mesh(nodes, _split_quadratic(nodes, quadratic), quadratic)
 
     def to_linear(self) -> "Mesh":
         """Mesh of linear elements of the same corners; itself if it is one."""
@@ -206,7 +206,7 @@ class Mesh:
         return np.linalg.norm(np.diff(self.nodes[self.edges], axis=1)[:, 0], axis=1)
 
 
-def _cut(nodes: Nodes, quadratic: Int[np.ndarray, "quadratic _"]) -> Elements:
+def _split_quadratic(nodes: Nodes, quadratic: Int[np.ndarray, "quadratic _"]) -> Elements:
     """Parts of quadratic elements: one at each corner, then what is between, in space about its shortest diagonal."""
     if nodes.shape[1] == 2:
         return quadratic[:, [0, 3, 4, 3, 1, 5, 4, 5, 2, 3, 5, 4]].reshape(-1, 3)

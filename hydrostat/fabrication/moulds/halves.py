@@ -9,7 +9,7 @@ from hydrostat.fabrication.moulds.openings import Sprue, Vent
 from hydrostat.fabrication.moulds.pocket import Pocket
 from hydrostat.fabrication.moulds.positive import Frames, Positive
 from hydrostat.fabrication.moulds.solids import join_solids
-from hydrostat.fabrication.moulds.split import Pieces, grid, split
+from hydrostat.fabrication.moulds.split import Pieces, grid, split_solid
 from hydrostat.fabrication.solids.printed import Printed
 
 
@@ -123,7 +123,7 @@ def mold_prints(
             ("mould_lower", "lower half", halves.lower, _UP),
             ("mould_upper", "upper half", halves.upper, _OVER),
         ):
-            pieces = split(solid, block.x_cuts, block.y_cuts)
+            pieces = split_solid(solid, block.x_cuts, block.y_cuts)
             printed += _make_pieces(name, title, pieces.solids, lying, _HALF)
             dowels += pieces.dowels
             holes += pieces.lost
@@ -151,7 +151,7 @@ def _fit_pieces(solid: Manifold, bed: tuple[float, float, float]) -> Pieces:
     if solid.is_empty():
         return Pieces(solids=(), dowels=0, lost=0.0)
     box = solid.bounding_box()
-    return split(solid, *grid(box[:3], box[3:], bed))
+    return split_solid(solid, *grid(box[:3], box[3:], bed))
 
 
 def _make_pieces(name: str, title: str, solids: tuple[Manifold, ...], lying: _Lying, note: str) -> list[Printed]:

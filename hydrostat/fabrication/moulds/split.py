@@ -1,4 +1,4 @@
-"""`split`: pieces of a solid that fit the printer, with holes for dowels where they are joined."""
+"""`split_solid`: pieces of a solid that fit the printer, with holes for dowels where they are joined."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -42,7 +42,7 @@ def grid(
     return min(ways, key=lambda way: (len(way[0]) + 1) * (len(way[1]) + 1))
 
 
-def split(solid: Manifold, x_cuts: tuple[float, ...], y_cuts: tuple[float, ...]) -> Pieces:
+def split_solid(solid: Manifold, x_cuts: tuple[float, ...], y_cuts: tuple[float, ...]) -> Pieces:
     """Cut a solid by upright planes; holes for two dowels are drilled across each joint that has room for them."""
     low, high = np.reshape(solid.bounding_box(), (2, 3))
     dowels: list[Manifold] = []

@@ -89,7 +89,7 @@ class Seat:
     unit: int  # index among the units outside
     x: float  # x of its shaft [mm]
 
-    def put(self, point: Corner) -> Corner:
+    def place_point(self, point: Corner) -> Corner:
         """A point of the unit on the base [mm]."""
         return self.x + point[0], point[1]
 
@@ -152,9 +152,9 @@ class BaseTile:
         for seat, unit in seats:
             post, passage = unit.housing.post, unit.housing.screw.passage
             cut = Polygon(unit.motor.outline).buffer(options.clearance, join_style="mitre")
-            cuts.append(tuple(seat.put((float(x), float(y))) for x, y in orient(cut).exterior.coords[:-1]))
-            holes += [Hole(seat.put((x, y)), passage / 2) for x in (-post, post) for y in (-post, post)]
-            holes.append(Hole(seat.put(holder_at(unit)), HOLDER_PASSAGE / 2))
+            cuts.append(tuple(seat.place_point((float(x), float(y))) for x, y in orient(cut).exterior.coords[:-1]))
+            holes += [Hole(seat.place_point((x, y)), passage / 2) for x in (-post, post) for y in (-post, post)]
+            holes.append(Hole(seat.place_point(holder_at(unit)), HOLDER_PASSAGE / 2))
         return BaseTile(low=low, high=high, bolts=bolts, cuts=tuple(cuts), holes=tuple(holes))
 
     @property

@@ -102,7 +102,7 @@ def _tubes(
     """
     begins = [robot.cables[cable].points[0] for unit in units for cable in unit.cables]
     spread = 1e3 * max(math.dist(one, other) for one in begins for other in begins)
-    places = {seat.unit: seat.put(holder_at(units[seat.unit]))[0] for seat in plan.seats}
+    places = {seat.unit: seat.place_point(holder_at(units[seat.unit]))[0] for seat in plan.seats}
     low, high = min(places.values()), max(places.values())
     return tuple(
         (cable, FREE + HOLDER_DEPTH + options.run + max(places[number] - low, high - places[number]) + spread)
@@ -176,7 +176,7 @@ def _assembly(
             )
             for piece in unit.assembly.pieces
         ]
-        x, y = seat.put(holder_at(unit))
+        x, y = seat.place_point(holder_at(unit))
         pieces.append(
             Placed(
                 name=f"{holder.name} ({unit.winch})",

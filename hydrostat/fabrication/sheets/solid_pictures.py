@@ -82,7 +82,7 @@ def put_balloons(canvas: Canvas, targets: Sequence[tuple[str, Spot]], room: Box)
         column = sorted(chosen, key=lambda target: target[1][1])
         radii = [balloon_radius(words) for words, _ in column]
         step = 2 * max(radii, default=0.0) + 1.0
-        heights = spread([spot[1] for _, spot in column], step, top + step / 2, bottom - step / 2)
+        heights = spread_heights([spot[1] for _, spot in column], step, top + step / 2, bottom - step / 2)
         for (words, spot), radius, height in zip(column, radii, heights, strict=True):
             inward = 1.0 if side == left else -1.0
             at = (side + inward * (radius + 0.3), height)
@@ -91,7 +91,7 @@ def put_balloons(canvas: Canvas, targets: Sequence[tuple[str, Spot]], room: Box)
             canvas.balloon(at, words)
 
 
-def spread(wished: Sequence[float], step: float, low: float, high: float) -> list[float]:
+def spread_heights(wished: Sequence[float], step: float, low: float, high: float) -> list[float]:
     """Rising numbers near those wished for, a step apart, from `low` to `high` if there is room for so many."""
     places = list(wished)
     for index in range(1, len(places)):

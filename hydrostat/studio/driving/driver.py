@@ -203,7 +203,7 @@ class Driver(Stage):
             if not commands:
                 raise InputError("this robot has no winches. Press Design to find some")
             self._machine.halt()
-            self.keyframes.put(self.player.time, commands)
+            self.keyframes.add_key(self.player.time, commands)
             self._machine.mind_keys()
         self._tell()
 

@@ -44,7 +44,7 @@ class Keyframes:
         """Select a key, or none (InputError: there is no such key)."""
         self._choose(None if index is None else self._key(index).time)
 
-    def put(self, time: float, contractions: Mapping[str, float]) -> None:
+    def add_key(self, time: float, contractions: Mapping[str, float]) -> None:
         """Add a key and select it; one that is at the same time is replaced (InputError: the time is out of range)."""
         timeline = self.timeline.with_key(Key(time=time, contractions=dict(contractions)))
         self._document.change(f"add keyframe at {time:.2f} s", timeline=timeline)

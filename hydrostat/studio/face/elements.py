@@ -73,13 +73,13 @@ class TimelineView(ui.element, component="static/timeline.js"):
     def on_word(self, name: str, action: Callable[..., Any], *wanted: str) -> None:
         """Call something with these numbers of what a person does; a word without them is not heeded."""
 
-        def heed(event: events.GenericEventArguments) -> None:
+        def handle(event: events.GenericEventArguments) -> None:
             words = event.args if isinstance(event.args, dict) else {}
             numbers = [sent_number(words.get(key)) for key in wanted]
             if None not in numbers:
                 action(*numbers)
 
-        self.on(name, heed)
+        self.on(name, handle)
 
     def _set(self, **props: Any) -> None:
         changed = {key: value for key, value in props.items() if self._props[key] != value}

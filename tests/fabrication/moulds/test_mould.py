@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 import trimesh
 from builders import gallery_robot, mesh_body, strip_mesh
-from hydrostat.fabrication.checks.mold_checks import mold_checks
 from manifold3d import Manifold
 from mould_robots import blob_body, foam_robot, slab_body
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.body_work import MANY_PIECES, foam_work
+from hydrostat.fabrication.checks.mold_checks import mold_checks
 from hydrostat.fabrication.kit_options import KitOptions, Method, MoldKind, MoldOptions
 from hydrostat.fabrication.moulds import mould as mould_module
 from hydrostat.fabrication.moulds.closing import Closing, make_closing

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from hydrostat.fabrication.checks.mold_checks import mold_checks
 from manifold3d import Manifold
 from mould_robots import foam_robot, slab_body
 
 from hydrostat.errors import InputError
+from hydrostat.fabrication.checks.mold_checks import mold_checks
 from hydrostat.fabrication.kit_options import MoldOptions
 from hydrostat.fabrication.moulds.mould import make_mold
 from hydrostat.fabrication.moulds.pocket import Pocket, Sides, WinchRoom, cable_dents, clashes, make_pockets

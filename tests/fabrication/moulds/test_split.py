@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from manifold3d import Manifold
 
-from hydrostat.fabrication.moulds.split import DOWEL, DOWEL_DEPTH, cuts, grid, split
+from hydrostat.fabrication.moulds.split import DOWEL, DOWEL_DEPTH, cuts, grid, split_solid
 
 
 def test_cuts_are_as_few_as_can_be() -> None:
@@ -19,7 +19,7 @@ def test_a_long_piece_is_turned_on_the_bed() -> None:
 
 def test_pieces_of_a_block_are_whole_and_joined_by_dowels() -> None:
     block = Manifold.cube((300, 300, 40)) - Manifold.sphere(60, 32).translate((150, 150, 40))
-    pieces = split(block, (150.0,), (150.0,))
+    pieces = split_solid(block, (150.0,), (150.0,))
     assert len(pieces.solids) == 4
     assert pieces.dowels == 8
     assert pieces.lost == pytest.approx(8 * np.pi * DOWEL**2 * 2 * DOWEL_DEPTH, rel=0.02)
@@ -32,9 +32,9 @@ def test_pieces_of_a_block_are_whole_and_joined_by_dowels() -> None:
 
 def test_thin_joints_are_butted_and_crumbs_are_left_out() -> None:
     ring = Manifold.cube((300, 100, 30)) - Manifold.cube((294, 94, 40)).translate((3, 3, -1))
-    pieces = split(ring, (150.0,), ())
+    pieces = split_solid(ring, (150.0,), ())
     assert pieces.dowels == 0
     assert len(pieces.solids) == 2
-    crumbed = split(ring + Manifold.cube((2, 0.5, 1)).translate((149.9, 50, 0)), (150.0,), ())
+    crumbed = split_solid(ring + Manifold.cube((2, 0.5, 1)).translate((149.9, 50, 0)), (150.0,), ())
     assert len(crumbed.solids) == 2
     assert crumbed.lost == pytest.approx(1.0)

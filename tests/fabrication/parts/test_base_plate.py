@@ -149,7 +149,7 @@ def test_every_tube_reaches_a_body_anywhere_in_front_of_the_base(name: str, unch
     robot = gallery_robot(name)
     base, units = base_of(name)
     seats = {units[seat.unit].winch: seat for seat in base.seats}
-    holders = {unit.winch: np.array(seats[unit.winch].put(holder_at(unit))) for unit in units}
+    holders = {unit.winch: np.array(seats[unit.winch].place_point(holder_at(unit))) for unit in units}
     assert len({float(y) for _, y in holders.values()}) == 1
     row = [float(x) for x, _ in holders.values()]
     tubes, run = dict(base.tubes), PartOptions().run

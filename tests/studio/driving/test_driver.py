@@ -376,12 +376,12 @@ def test_a_drag_that_was_never_dropped_brings_nothing_old_back(
     elif between == "undo":
         document.undo()
     elif between == "change":
-        driver.keyframes.put(1.0, {"feet": 0.01})
+        driver.keyframes.add_key(1.0, {"feet": 0.01})
     else:
         document.open(
             Work(robot=replace(starfish, name="other"), timeline=Timeline(keys=(Key(time=1.0, contractions={}),)))
         )
-        driver.keyframes.put(3.0, {"left": 0.01})
+        driver.keyframes.add_key(3.0, {"left": 0.01})
     before = driver.keyframes.timeline
     driver.move_key(1, 3.5)
     assert driver.keyframes.timeline == replace(before.move_key(1, 3.5), length=before.seconds)
