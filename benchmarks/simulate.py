@@ -3,8 +3,8 @@
     python benchmarks/simulate.py [--quick] [--robots FOLDER] [--only finger trunk ...] [--largest 20000]
     python benchmarks/simulate.py --profile hand
 
-The robots that SOFA ships are read from a folder beside this checkout (see bodies.py) and left out if it is not
-there; SOFA's times were taken on another machine (one thread at 2.1 GHz), so no ratio is given. Each row is measured in
+The robots that SOFA ships are read from a folder next to this checkout (see benchmark_bodies.py) and left out if it is
+not there; SOFA's times were taken on another machine (one thread at 2.1 GHz), so no ratio is given. Each row is measured in
 a process of its own: CPU time of one thread, after one solve that is not counted.
 """
 
@@ -157,7 +157,7 @@ CASES = {
 
 def read_robot(name: str, folder: Path) -> Any:
     """The robot of a case; a name such as "hand 3.8e-3" is a hand of that element size with one cable."""
-    from bodies import hand_robot, sofa_robots
+    from benchmark_bodies import hand_robot, sofa_robots
 
     if name.startswith("hand "):
         robot = hand_robot(float(name.split()[1]))

@@ -202,7 +202,7 @@ def median_solve(name: str, count: int, repeats: int = 3) -> float:
 
 def columns(count: int) -> dict[str, float]:
     """dx/da of the hand's ten cables at a pose [ms]: by the factors alone, and with the residual refined."""
-    from bodies import hand_robot
+    from benchmark_bodies import hand_robot
     from simulate import lengths
 
     from hydrostat import Simulation
@@ -218,7 +218,7 @@ def columns(count: int) -> dict[str, float]:
 
 def sample(count: int) -> float:
     """Samples of the hand with contact and Jacobians, a second; contractions up to full travel."""
-    from bodies import hand_robot
+    from benchmark_bodies import hand_robot
 
     from hydrostat.learning import plan_samples, sample_shard
 
@@ -246,7 +246,7 @@ def contact(name: str, count: int) -> dict[str, float]:
 
 def rod(count: int) -> dict[str, float]:
     """Median over poses of a slender rod with nine cables [ms], by friction coefficient."""
-    from bodies import rod_commands, rod_robot
+    from benchmark_bodies import rod_commands, rod_robot
 
     from hydrostat import Simulation
 

@@ -7,8 +7,8 @@
 Commands first: cold, with empty caches as after installing, and warm, when the body has been meshed. Then a first
 solve, phase by phase, cold and warm too. Python keeps bytecode, even where PYTHONDONTWRITEBYTECODE forbids it.
 
-The flat robot is the gallery's starfish, the one in space the hand of `bodies.py`, of few nodes; each has its own
-folder. In commands the hand is the example `cupping_hand`.
+The flat robot is the gallery's starfish, the one in space the hand of `benchmark_bodies.py`, of few nodes; each has its
+own folder. In commands the hand is the example `cupping_hand`.
 
 With `--together N` only this: N processes begin together on one empty cache, and each solves a robot; then N again, now
 that the body is kept. It fails unless all of them end well and give the same bytes.
@@ -86,7 +86,7 @@ def used_by_children() -> float:
 
 ROBOTS = {
     "starfish": "robot = hydrostat.robot.load_robot(hydrostat.robot.gallery_folder('starfish'))",
-    "hand": "from bodies import hand_robot\nrobot = hand_robot(17e-3)",
+    "hand": "from benchmark_bodies import hand_robot\nrobot = hand_robot(17e-3)",
 }
 """How to make a robot."""
 
@@ -177,7 +177,7 @@ def print_together(processes: int) -> None:
 
 def print_check(element_size: float, repeats: int) -> None:
     """A table of `hydrostat check` of a large body."""
-    from bodies import hand_robot
+    from benchmark_bodies import hand_robot
 
     from hydrostat.geometry import Mesh, write_vtu
     from hydrostat.robot import mesh_body, save_robot

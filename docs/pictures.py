@@ -35,7 +35,7 @@ from hydrostat.studio import page_pictures
 from hydrostat.version import __version__
 
 sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))
-from bodies import hand_robot
+from benchmark_bodies import hand_robot
 
 HERE = Path(__file__).parent / "pictures"
 PORTRAIT = 3.2

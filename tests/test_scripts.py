@@ -86,3 +86,14 @@ def test_a_broken_import_is_found() -> None:
         *("hydrostat.robot.no_such", "hydrostat.nowhere.a", "builders.nobody"),
         *("hydrostat.robot.no_file", "hydrostat.robot.read.package"),
     ]
+
+
+def test_no_script_hides_another() -> None:
+    """Folders that tests put on the path: a file of one with the name of a package of another was imported for it."""
+    names = [
+        path.stem
+        for folder in ("tests", "tests/fabrication", "benchmarks", "docs", "lab")
+        for path in (_TOP / folder).iterdir()
+        if (path.suffix == ".py" and path.stem != "conftest") or (path / "__init__.py").is_file()
+    ]
+    assert {name for name in names if names.count(name) > 1} == set()

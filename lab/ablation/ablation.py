@@ -3,7 +3,7 @@
     python lab/ablation/ablation.py [--count 20] [--seed 0] [--robots FOLDER]
 
 All from rest. Hand and squid: random contractions up to 30 % of the shortest cable of each winch; finger 20 mm and
-trunk 10 mm on one cable (left out if their folder is not there; see bodies.py).
+trunk 10 mm on one cable (left out if their folder is not there; see benchmark_bodies.py).
 """
 
 import argparse
@@ -16,7 +16,7 @@ from typing import Any
 from unittest.mock import patch
 
 import numpy as np
-from bodies import ROBOTS, hand_robot, sofa_robots
+from benchmark_bodies import ROBOTS, hand_robot, sofa_robots
 from machine import machine
 from robustness import EXAMPLES, reaches
 

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
-from bodies import ELEMENT_SIZE, hand_robot
+from benchmark_bodies import ELEMENT_SIZE, hand_robot
 from machine import machine
 
 from hydrostat.geometry import measure_thickness, thin_parts

@@ -17,7 +17,7 @@ from ik_problem import REACHED, Problem, hidden_poses, largest_error, machine, p
 
 import numpy as np  # isort: skip
 
-from bodies import sofa_robots
+from benchmark_bodies import sofa_robots
 from robustness import CountingSimulation
 
 import hydrostat as hs

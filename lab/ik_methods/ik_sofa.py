@@ -19,7 +19,7 @@ from ik_problem import largest_error, machine, places, timed
 
 import numpy as np  # isort: skip
 
-from bodies import sofa_robots
+from benchmark_bodies import sofa_robots
 
 import hydrostat as hs
 from hydrostat.ik import IKOptions, Limits

@@ -17,7 +17,7 @@ from machine import machine
 
 import numpy as np  # isort: skip
 
-from bodies import hand_mesh
+from benchmark_bodies import hand_mesh
 from scipy.sparse import coo_array, csc_array, diags_array, eye_array, kron
 
 from hydrostat.arrays import Elements, Nodes

@@ -22,7 +22,7 @@ from machine import machine
 
 import numpy as np  # isort: skip
 
-from bodies import hand_robot
+from benchmark_bodies import hand_robot
 
 from hydrostat.geometry import Mesh
 from hydrostat.mechanics import Reason

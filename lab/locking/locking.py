@@ -28,7 +28,7 @@ from machine import machine
 
 import numpy as np  # isort: skip
 
-from bodies import ROBOTS, sofa_robots
+from benchmark_bodies import ROBOTS, sofa_robots
 from scipy.linalg import cholesky, solve_triangular
 from scipy.sparse.linalg import splu
 

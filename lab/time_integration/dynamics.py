@@ -15,7 +15,7 @@ from machine import machine
 
 import numpy as np  # isort: skip
 
-from bodies import hand_robot
+from benchmark_bodies import hand_robot
 from scipy.linalg import eigh
 
 import hydrostat as hs
