@@ -177,7 +177,19 @@ def _body_lines(body: "Body") -> list[str]:
         f"{name}: {_mass_text(body.mass)}, {_volume_text(volume)}",
         *(_part_line(body, index) for index in range(len(body.parts))),
         f"thickness {1e3 * thin:.0f} to {1e3 * thick:.0f} mm ({few:.1f} to {many:.0f} elements across); {angle}",
+        *_plane_lines(body, thick),
     ]
+
+
+def _plane_lines(body: "Body", thick: float) -> list[str]:
+    """Freedom of a flat body across its plane, and the difference that it makes if the body is thinner than wide."""
+    if body.thickness is None:
+        return []
+    share = f"with {100 * body.material.poisson**2:.0f} % less force"
+    if body.plane == "stress":
+        return [f"plane stress: free to become thicker, bends {share} than in plane strain"]
+    words = "plane strain: as thick everywhere as at rest"
+    return [f'{words}; plane = "stress" would bend {share}' if body.thickness < thick else words]
 
 
 def _part_line(body: "Body", index: int) -> str:

@@ -70,6 +70,11 @@ class NeoHookean(Energy):
         self._padded[:, :, :dim] = self.shape_gradients
         self._axes = tuple(range(dim))
 
+    @property
+    def point_gradients(self) -> Float[np.ndarray, "elements corners dim"]:
+        """Gradients of the shape functions at each point of quadrature [1/m], one in each element."""
+        return self.shape_gradients
+
     def deformation_gradients(self, nodes: Nodes) -> Float[np.ndarray, "elements dim dim"]:
         """F of each element (R21)."""
         return np.swapaxes(nodes[self.stencils], 1, 2) @ self.shape_gradients

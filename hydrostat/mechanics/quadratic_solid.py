@@ -38,7 +38,7 @@ class QuadraticSolid(Energy):
         elements: QuadraticElements,
         *,
         mu: float | Vector,
-        lame: float | Vector,
+        lame: float | Vector | None,
         thickness: float = 1.0,
         materials: Int[np.ndarray, " elements"] | None = None,
         metrics: Float[np.ndarray, "points dim dim"] | None = None,
@@ -49,7 +49,7 @@ class QuadraticSolid(Energy):
             nodes: rest positions [m].
             elements: nodes of each element: corners, then middles of edges, which may lie off the straight line.
             mu: shear modulus, one number or one for each element.
-            lame: Lame's first parameter, likewise.
+            lame: Lame's first parameter, likewise; None where another energy resists a change of volume.
             thickness: thickness of a flat body [m]; leave it out in space.
             materials: index of the material of each element, counted from 0, for `parameter_work`; all of one by
                 default.
@@ -57,7 +57,8 @@ class QuadraticSolid(Energy):
         """
         count, dim = len(elements), nodes.shape[1]
         self.stencils = np.ascontiguousarray(elements)
-        self.mu, self.lame = np.broadcast_to(mu, count), np.broadcast_to(lame, count)
+        self.mu, self.lame = np.broadcast_to(mu, count), np.broadcast_to(0.0 if lame is None else lame, count)
+        self.volumetric = lame is not None
         self.materials = np.zeros(count, dtype=np.int64) if materials is None else materials
         slopes, weights = _quadrature(dim)
         spans = np.einsum("ecd,qcr->eqdr", nodes[elements], slopes)
@@ -75,6 +76,11 @@ class QuadraticSolid(Energy):
         return QuadraticSolid(
             self._rest, self.stencils, mu=modulus, lame=0.0, thickness=self._thickness, metrics=metrics
         )
+
+    @property
+    def point_gradients(self) -> Float[np.ndarray, "points corners dim"]:
+        """Gradients of the shape functions at each point of quadrature [1/m]."""
+        return self._gradients.reshape(-1, *self._gradients.shape[2:])
 
     @property
     def volumes(self) -> Float[np.ndarray, " points"]:
@@ -127,7 +133,9 @@ class QuadraticSolid(Energy):
         shear, points, mean = apart
         by_mu = shear + np.where(split, most * (points - mean), 0.0)
         by_lame = np.where(split, mean, points)
-        works = {"mu": np.bincount(self.materials, by_mu), "lame": np.bincount(self.materials, by_lame)}
+        works = {"mu": np.bincount(self.materials, by_mu)}
+        if self.volumetric:
+            works["lame"] = np.bincount(self.materials, by_lame)
         return {**works, "thickness": np.array([float(self.mu @ by_mu + self.lame @ by_lame)])}
 
     def _work(self, nodes: Nodes, field: Nodes, mu: Vector, points: Vector, mean: Vector) -> Vector:

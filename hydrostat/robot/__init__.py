@@ -6,11 +6,12 @@ from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
     from hydrostat.robot.atomic_files import clear_unfinished, temporary_path
-    from hydrostat.robot.body import Body, ElementKind, Source, Volume, mesh_body, outline_body, surface_body
+    from hydrostat.robot.body import Body, Source, mesh_body, outline_body, surface_body
     from hydrostat.robot.cable import Cable
     from hydrostat.robot.cable_side import Face
     from hydrostat.robot.checks import Point, check_name, check_not_negative, check_number, check_positive
     from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape, closed_mesh
+    from hydrostat.robot.element_kind import ElementKind, Plane, Volume
     from hydrostat.robot.gravity import DIRECTIONS, STANDARD_GRAVITY, direction_of, gravity_along
     from hydrostat.robot.html_repr import html_repr, in_words
     from hydrostat.robot.inflated import describe_cable_side, inflated_robot, sewn_robot, sewn_sides
@@ -63,6 +64,7 @@ __all__ = [
     "Obstacle",
     "ObstacleShape",
     "Pin",
+    "Plane",
     "Point",
     "PoseTarget",
     "Relaxation",

@@ -16,6 +16,7 @@ from hydrostat.errors import InputError, OutlineError, SurfaceError
 from hydrostat.geometry import Anchors, Healing, Inner, Mesh, Outline, Solid, Thickness, locate, measure_thickness
 from hydrostat.robot.body_cache import Arrays, keep_body
 from hydrostat.robot.checks import check_positive
+from hydrostat.robot.element_kind import ElementKind, Plane, Volume
 from hydrostat.robot.materials import Material, get_material
 from hydrostat.robot.part import BodyPart
 
@@ -28,31 +29,11 @@ class Source(StrEnum):
     MESH = "mesh"
 
 
-class Volume(StrEnum):
-    """Measure of volume change: in each element, or averaged over patches of elements (a kind of F-bar).
-
-    Linear elements are too stiff when the material is nearly incompressible (volumetric locking); patches help.
-    """
-
-    ELEMENT = "element"
-    PATCH = "patch"
-
-
-class ElementKind(StrEnum):
-    """Shape functions of the elements: linear, or quadratic with a node in the middle of each edge.
-
-    Linear elements are too stiff in bending unless many lie across a limb; two quadratic ones are enough.
-    """
-
-    LINEAR = "linear"
-    QUADRATIC = "quadratic"
-
-
 @dataclass(frozen=True, kw_only=True)
 class Body:
     """Meshed body. Two bodies are equal when they come from the same file and numbers.
 
-    A text stands for the source, the material, the volume or the elements of that name.
+    A text stands for the source, the material, the volume, the plane or the elements of that name.
 
     Raises InputError: a thickness that is missing or too much, a length out of its range, or an unknown name.
     """
@@ -65,6 +46,7 @@ class Body:
     element_size: float | None = None  # length of a mesh edge [m]; None for a ready mesh
     thickness: float | None = None  # thickness of a flat body [m]; None in space
     volume: Volume = Volume.ELEMENT  # measure of volume change in linear elements
+    plane: Plane = Plane.STRAIN  # freedom of a flat body across its plane
     elements: ElementKind = ElementKind.LINEAR  # shape functions; change them by `with_elements`
     inner: Inner = Inner.HOLES  # meaning of shapes within the outer line of a drawing
     parts: tuple[BodyPart, ...] = ()  # regions of other materials, or rigid
@@ -81,6 +63,11 @@ class Body:
         make_member(self, "volume", Volume)
         make_member(self, "inner", Inner)
         make_member(self, "elements", ElementKind)
+        make_member(self, "plane", Plane)
+        if self.plane is Plane.STRESS and self.mesh.dim == 3:
+            raise InputError('plane = "stress" is for flat bodies; remove it')
+        if self.plane is Plane.STRESS and self.volume is Volume.PATCH:
+            raise InputError('volume = "patch" is for plane strain; in plane stress nothing locks. Remove volume')
         if (self.elements is ElementKind.QUADRATIC) != (self.mesh.quadratic is not None):
             raise InputError('elements do not fit the mesh; use body.with_elements("quadratic")')
         if self.elements is ElementKind.QUADRATIC and self.volume is Volume.PATCH:

@@ -206,6 +206,8 @@ class RobotReader(TablesFile):
             self.at(f"body.part[{index}]", partial(self._part, part)) for index, part in enumerate(entry.part)
         )
         body = self.at("", lambda: body.with_parts(parts)) if parts else body
+        if entry.plane is not None:
+            body = self.at("body.plane", partial(replace, body, plane=entry.plane))
         kind = entry.elements
         return body if kind is None else self.at("body.elements", lambda: body.with_elements(kind))
 

@@ -92,7 +92,8 @@ def scaled_robot(robot: Robot, factor: float) -> Robot:
 
 def _scaled_body(robot: Robot, factor: float, parts: tuple[BodyPart, ...]) -> Body:
     """Return the scaled body with its scaled parts and the same kind of elements."""
-    return _mesh_scaled(robot, factor).with_parts(parts).with_elements(robot.body.elements)
+    body = replace(_mesh_scaled(robot, factor), plane=robot.body.plane)
+    return body.with_parts(parts).with_elements(robot.body.elements)
 
 
 def _mesh_scaled(robot: Robot, factor: float) -> Body:

@@ -18,10 +18,10 @@ from pydantic import (
 from hydrostat import units
 from hydrostat.errors import InputError
 from hydrostat.geometry import Inner
-from hydrostat.robot.body import ElementKind, Volume
 from hydrostat.robot.cable_side import Face
 from hydrostat.robot.checks import check_name
 from hydrostat.robot.contact import ObstacleShape
+from hydrostat.robot.element_kind import ElementKind, Plane, Volume
 from hydrostat.robot.gravity import DIRECTIONS
 from hydrostat.robot.materials import MOST_BRANCHES
 from hydrostat.robot.part import PartShape
@@ -181,6 +181,7 @@ class BodyTable(TomlTable):
     material: AnyMaterial
     volume: Volume | None = None
     elements: ElementKind | None = None
+    plane: Plane | None = None
     inner: Inner | None = None
     part: list[PartTable] = []
 

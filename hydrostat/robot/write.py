@@ -13,10 +13,11 @@ from hydrostat.errors import InputError
 from hydrostat.geometry import Inner
 from hydrostat.given import check_type, path_of
 from hydrostat.robot.atomic_files import temporary_path
-from hydrostat.robot.body import Body, ElementKind, Volume
+from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.checks import Point, check_name
 from hydrostat.robot.contact import Contact, Obstacle
+from hydrostat.robot.element_kind import ElementKind, Plane, Volume
 from hydrostat.robot.gravity import direction_of
 from hydrostat.robot.load import Load
 from hydrostat.robot.marker import DEFAULT_STIFFNESS, Pin
@@ -164,7 +165,8 @@ class _Writer:
         volume = {"volume": str(body.volume)} if body.volume is not Volume.ELEMENT else {}
         inner = {"inner": str(body.inner)} if body.inner is not Inner.HOLES else {}
         kind = {"elements": str(body.elements)} if body.elements is not ElementKind.LINEAR else {}
-        given = {"material": self.material(body.material), **volume, **kind, **inner}
+        plane = {"plane": str(body.plane)} if body.plane is not Plane.STRAIN else {}
+        given = {"material": self.material(body.material), **volume, **kind, **plane, **inner}
         if body.parts:
             tables = self._toml.aot()
             for part in body.parts:

@@ -24,6 +24,7 @@ from hydrostat.mechanics import (
     ObstacleEnergy,
     PatchVolume,
     PinEnergy,
+    PlaneStress,
     QuadraticSolid,
     RigidBodyDofs,
     RigidEnergy,
@@ -35,7 +36,7 @@ from hydrostat.mechanics import (
     grow_patches,
     rod_points,
 )
-from hydrostat.robot import Obstacle, Robot, Rod, Volume
+from hydrostat.robot import Obstacle, Plane, Robot, Rod, Volume
 
 
 class BodyPhysics:
@@ -77,9 +78,9 @@ class BodyPhysics:
         self.carriages = _carriages(robot, in_time=in_time)
         moving = [carriage.unknowns(*_begin(robot.obstacles[index])) for index, carriage in self.carriages.items()]
         self.rest_unknowns = np.concatenate([mesh.nodes, *moving]) if moving else mesh.nodes
-        patched = body.volume is Volume.PATCH
+        patched, thin = body.volume is Volume.PATCH, body.plane is Plane.STRESS
         kinds = {"thickness": thickness, "materials": body.element_materials}
-        self.elastic = _elastic(robot, self.rest_unknowns, None if patched else lame)
+        self.elastic = _elastic(robot, self.rest_unknowns, None if patched or thin else lame)
         self.pins = _pins(robot)
         carried = [_obstacle_masses(robot.obstacles[index], carriage) for index, carriage in self.carriages.items()]
         own, hung = _masses(robot), _hung_masses(robot)
@@ -89,6 +90,8 @@ class BodyPhysics:
         if patched:
             patches = grow_patches(mesh.elements, PATCH_SIZE[mesh.dim], body.element_materials)
             energies.append(PatchVolume(self.rest_unknowns, mesh.elements, patches, lame=lame, **kinds))
+        if thin:
+            energies.append(_plane_stress(self.elastic, self.rest_unknowns, lame))
         if robot.gravity is not None:
             energies.append(WeightEnergy(self.rest_unknowns, self._heavy[:, None] * np.array(robot.gravity)))
         self.rods = [_rod_energy(robot, rod, self.rest_unknowns) for rod in robot.rods]
@@ -231,11 +234,23 @@ def _elastic(robot: Robot, rest: Nodes, lame: Vector | None) -> NeoHookean | Qua
     body = robot.body
     mesh, (mu, _) = body.mesh, body.lame()
     kinds = {"thickness": body.thickness or 1.0, "materials": body.element_materials}
-    if mesh.quadratic is None or lame is None:
+    if mesh.quadratic is None:
         return NeoHookean(rest, mesh.elements, mu=mu, lame=lame, **kinds)
     each = slice(None, None, 2**mesh.dim)  # the first part of each quadratic element
     kinds["materials"] = body.element_materials[each]
-    return QuadraticSolid(rest, mesh.quadratic, mu=mu[each], lame=lame[each], **kinds)
+    squeeze = None if lame is None else lame[each]
+    return QuadraticSolid(rest, mesh.quadratic, mu=mu[each], lame=squeeze, **kinds)
+
+
+def _plane_stress(elastic: NeoHookean | QuadraticSolid, rest: Nodes, lame: Vector) -> PlaneStress:
+    """Resistance of a flat body to a change of area, at each point of quadrature of its elements."""
+    points = len(elastic.volumes) // len(elastic.stencils)
+    parts = len(lame) // len(elastic.stencils)  # of an element in the mesh
+    stencils, mu, squeeze, materials = (
+        np.repeat(each, points, axis=0) for each in (elastic.stencils, elastic.mu, lame[::parts], elastic.materials)
+    )
+    given = {"mu": mu, "lame": squeeze, "materials": materials}
+    return PlaneStress(rest, stencils, gradients=elastic.point_gradients, volumes=elastic.volumes, **given)
 
 
 def _contact_parameters(robot: Robot) -> dict[str, Any]:

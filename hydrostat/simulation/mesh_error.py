@@ -10,7 +10,7 @@ from jaxtyping import Float, Int
 
 from hydrostat.arrays import Nodes
 from hydrostat.geometry import Mesh
-from hydrostat.robot import Body, Volume
+from hydrostat.robot import Body, Plane, Volume
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -40,6 +40,8 @@ def estimate_stiffening(body: Body, nodes: Nodes) -> float:
     strains = 0.5 * (np.swapaxes(slopes, 1, 2) @ slopes - np.eye(mesh.dim))
     squeezes = np.trace(strains, axis1=1, axis2=2)
     (mu, lame), volumes = body.lame(), mesh.volumes
+    if body.plane is Plane.STRESS:
+        lame = 2 * mu * lame / (2 * mu + lame)
     stored = float(volumes @ (mu * (strains**2).sum(axis=(1, 2)) + 0.5 * lame * squeezes**2))
     fields = _fields(mesh, body.element_materials.tobytes())
     wrong = float(mu @ fields.misfit(strains.reshape(len(strains), -1), volumes).sum(axis=1))

@@ -9,7 +9,8 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.geometry import Mesh
-from hydrostat.robot import Robot
+from hydrostat.mechanics import thickening
+from hydrostat.robot import Body, Plane, Robot
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -22,7 +23,7 @@ def node_strains(robot: Robot, nodes: Nodes) -> Vector:
     has the stretch 1 across the plane, so nothing is below 0 there.
     """
     grid = _operators(robot.body.mesh)
-    shape = _Stretch(grid, nodes)
+    shape = _Stretch(grid, nodes, robot.body)
     return grid.average @ (np.sqrt(shape.largest()) - 1.0)
 
 
@@ -33,7 +34,7 @@ def node_stresses(robot: Robot, nodes: Nodes) -> Vector:
     mu/J sqrt(3/2) |dev B|.
     """
     grid = _operators(robot.body.mesh)
-    shape = _Stretch(grid, nodes)
+    shape = _Stretch(grid, nodes, robot.body)
     mu, _ = robot.body.lame()
     return grid.average @ (mu * np.sqrt(1.5 * shape.deviation) / shape.volume)
 
@@ -67,7 +68,7 @@ def _operators(mesh: Mesh) -> _NodeOperators:
 
 
 class _Stretch:
-    """C = F^T F of all elements, by its invariants; in the plane with the stretch 1 across it.
+    """C = F^T F of all elements, by its invariants; in plane strain with the stretch 1 across the plane.
 
     Attributes:
         mean: a third of the trace of C.
@@ -75,11 +76,13 @@ class _Stretch:
         volume: volume ratio J.
     """
 
-    def __init__(self, grid: _NodeOperators, nodes: Nodes) -> None:
+    def __init__(self, grid: _NodeOperators, nodes: Nodes, body: Body) -> None:
         slopes = (grid.slopes @ nodes).reshape(-1, grid.dim, grid.dim)
         rows = [slopes[:, axis] for axis in range(grid.dim)]
         stretch = np.zeros((3, 3, len(slopes)))
         stretch[2, 2] = 1.0
+        if body.plane is Plane.STRESS:
+            stretch[2, 2] += thickening(np.linalg.det(slopes) - 1.0, *body.lame())
         for i in range(grid.dim):
             for j in range(i, grid.dim):
                 stretch[i, j] = stretch[j, i] = np.einsum("ek,ek->e", rows[i], rows[j])

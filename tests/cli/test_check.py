@@ -78,13 +78,15 @@ def test_flat_body(check: Check, tmp_path: Path) -> None:
     few = float(lines[2].removeprefix("thickness 40 to 60 mm (").split(" to ")[0])
     assert few == pytest.approx(40 / 12, rel=0.15)
     assert "smallest angle" in lines[2]
-    assert lines[3] == "1 pin, 0 winches, 0 cables, 0 markers, poses: none"
+    words = 'plane strain: as thick everywhere as at rest; plane = "stress" would bend with 9 % less force'
+    assert lines[3] == words
+    assert lines[4] == "1 pin, 0 winches, 0 cables, 0 markers, poses: none"
     told = re.fullmatch(
-        r"warning: body: no room for the motor .* at least (\d+) mm long and (\d+) mm thick\. .*", lines[4]
+        r"warning: body: no room for the motor .* at least (\d+) mm long and (\d+) mm thick\. .*", lines[5]
     )
     assert told is not None
     assert 25 / 1.25 <= float(told[2]) < 1.05 * 25 / 1.25 + 1
-    assert lines[5:] == [NO_CABLES.replace("0 warnings", "1 warning")]
+    assert lines[6:] == [NO_CABLES.replace("0 warnings", "1 warning")]
 
 
 def test_body_in_space(check: Check, tmp_path: Path) -> None:

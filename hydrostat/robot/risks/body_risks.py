@@ -18,7 +18,8 @@ from hydrostat.geometry import (
     thin_parts,
 )
 from hydrostat.kernel import native
-from hydrostat.robot.body import Body, Volume
+from hydrostat.robot.body import Body
+from hydrostat.robot.element_kind import Plane, Volume
 from hydrostat.robot.risks.words import mm, place
 from hydrostat.robot.robot import Robot
 
@@ -122,6 +123,8 @@ def _unlike(body: Body) -> Iterator[str]:
 
 def _locking(body: Body) -> Iterator[str]:
     poisson = body.material.poisson
+    if body.plane is Plane.STRESS:
+        return
     if poisson >= LOCKING_POISSON and body.volume is Volume.ELEMENT and body.mesh.quadratic is None:
         added = max(part for ratio, part in LOCKING[body.mesh.dim].items() if ratio <= poisson)
         yield (

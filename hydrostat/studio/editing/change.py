@@ -157,4 +157,4 @@ def remesh(
         )
     assert body.thickness is not None
     drawn = outline_body(body.content, thickness=body.thickness, volume=body.volume, inner=body.inner, **given)
-    return drawn.with_parts(body.parts).with_elements(body.elements)
+    return replace(drawn.with_parts(body.parts), plane=body.plane).with_elements(body.elements)

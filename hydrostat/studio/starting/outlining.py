@@ -112,7 +112,7 @@ def reshape_outline(work: Work, drawing: bytes, corner: tuple[float, float]) -> 
         return tuple(float(value) for value in np.round(np.array(point) - middle, 9))
 
     body, lost = _with_regions(body, [part.with_transform(move) for part in old.parts])
-    body = body.with_elements(old.elements)
+    body = replace(body, plane=old.plane).with_elements(old.elements)
     robot, dropped = _within_body(_move_parts(work.robot, move), work.robot, body)
     return Reshaped(work=_matching(work, robot, move), dropped=(*lost, *dropped))
 
