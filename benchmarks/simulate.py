@@ -4,8 +4,8 @@
     python benchmarks/simulate.py --profile hand
 
 The robots that SOFA ships are read from a folder next to this checkout (see benchmark_bodies.py) and left out if it is
-not there; SOFA's times were taken on another machine (one thread at 2.1 GHz), so no ratio is given. Each row is measured in
-a process of its own: CPU time of one thread, after one solve that is not counted.
+not there; SOFA's times were taken on another machine (one thread at 2.1 GHz), so no ratio is given. Each row is
+measured in a process of its own: CPU time of one thread, after one solve that is not counted.
 """
 
 import argparse
