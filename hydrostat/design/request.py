@@ -53,7 +53,7 @@ class RouteOptions:
         hops: maximum number of edges of a path that is priced.
         lead_penalty: share of the promised gain that a lead as long as the body costs.
         trials: number of paths with solved networks before one is added.
-        starts: networks that are grown side by side along priced paths; more take longer and gain little.
+        starts: patience of the growth: more sketches are refined, and more cables may fail in a row before it ends.
         exchanges: most cables that are taken out, one at a time, for the best to be put in their place.
         steps: steps of refinement after each cable.
         polish: steps of refinement of a whole network.

@@ -63,8 +63,8 @@ def test_the_best_candidates_are_those_of_all_solved_to_the_end(unchecked: None)
     growth = Growth(Proposals(bench, graph, RouteOptions(hops=4, trials=6, steps=0), 0.05), lambda *_: None)
     start = growth.evaluate(Layout(robot, LIMITS, (), ()))
     assert start is not None
-    (best,) = growth._try_cables(start, 1, 2, best=1)
     layouts = growth.build(start, growth.price(start, 1, 2, best=6), 1, best=6)
+    (best,) = growth.solve_layouts(start, layouts, best=1)
     every = [bench.reach_poses(layout, start, iterations=5) for layout in layouts]
     ratings = sorted(growth._rate(trial) for trial in every if trial is not None)
     assert len(ratings) > 3

@@ -59,6 +59,7 @@ def test_growth_stops_at_the_count(cables: int, unchecked: None) -> None:
     networks = growth.grow_networks([start], winches=1, cables=cables)
     assert {len(grown.layout.sites) for grown in networks} == {1}
     assert sorted({len(grown.layout.routes) for grown in networks}) == list(range(1, cables + 1))
-    assert noted == list(range(1, cables + 1))
+    assert list(dict.fromkeys(noted)) == list(range(1, cables + 1))  # each size, first met in this order
+    assert len(networks) < len(noted) <= len(networks) + 3  # the best three are refined once more
     assert [grown.cost for grown in networks] == sorted(grown.cost for grown in networks)
     assert np.isfinite(growth.resolve_from_rest(networks[0]).error)

@@ -161,6 +161,25 @@ def test_near_the_best_of_all_paths() -> None:
     assert np.mean(ratios) > 0.995
 
 
+@pytest.mark.parametrize("still", [False, True])
+def test_many_rows_that_move_in_few_patterns_give_nearly_the_gain_of_all(still: bool) -> None:
+    """Forty rows of a field of six waves, a hundredth of noise, and a row by which still edges move without end."""
+    for seed in range(3):
+        graph = cloud_graph(24, seed)
+        case = made_case(graph, seed, poses=1, rows=40, most=20.0)
+        noise = np.random.default_rng(seed).normal(size=case["moves"].shape)
+        case["moves"] = case["moves"] + 1e-3 * np.abs(case["moves"]).mean() * noise
+        if still:
+            barred = np.arange(len(case["moves"])) % 5 == 0
+            case["moves"][:, -1] = 1e5 * np.abs(case["moves"]).max() * barred
+            case["residual"][-1] = 0.0
+        paths = all_paths(graph, 2, 75.0)
+        gains = decreases(sums_along(graph, paths, case["moves"]), case)
+        found = priced(graph, case, PathLimits(hops=2, turn=75.0))
+        assert found[0].gain == pytest.approx(gains.max(), rel=1e-2)
+        assert gains[paths.index(found[0].nodes)] > 0.99 * gains.max()
+
+
 def test_what_a_priced_path_says_of_itself() -> None:
     graph = cloud_graph(40, 1)
     case = made_case(graph, 1, poses=3, most=1.0)

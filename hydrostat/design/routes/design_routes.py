@@ -48,10 +48,9 @@ def design_routes(
     """Cables added where the adjoint of the pose error prices them best, and moved to where it is least.
 
     At the equilibria of all poses the adjoint field prices every run between two via points; a dynamic program finds
-    the paths along which one more cable lowers the error most. The best few are solved, the best of these is kept, and
-    all via points are moved downhill; so it goes on (column generation). Several networks are grown side
-    by side, others from sketches along the limbs (`sketches`); the best are refined, and the best one's cables
-    exchanged one by one where another path does better.
+    the paths along which one more cable lowers the error most. Networks begin from sketches along the limbs
+    (`sketches`); the one that promises most gets a cable, all via points are moved downhill, and so on (column
+    generation). The best are refined, and the best one's cables exchanged one by one where another path does better.
 
     `hints` finds robots with networks of the same body, which are refined beside those that are grown. Interrupted
     (KeyboardInterrupt), it returns the best network so far.
@@ -197,8 +196,7 @@ class RouteSearch:
         screened.sort(key=lambda trial: trial.cost)
         self.progress("Drawing networks", count, count)
         helpful = [trial for trial in screened if trial.cost < worse]
-        width = self.options.starts
-        return growth.grow_networks(helpful[:width], winches=self.winches, cables=self.cables) + helpful[width:]
+        return growth.grow_networks(helpful, winches=self.winches, cables=self.cables)
 
     def _refine_best(self, growth: Growth, grown: list[Trial]) -> list[Trial]:
         """Refine the best networks to the end, and the next only if it is nearly as good from rest."""
@@ -389,8 +387,8 @@ _LOOSER = 0.02  # fewer holes may cost so much
 _WORSE = 0.05  # a simpler network is told of where those that are simpler still have so much larger errors
 _HELPS = 0.02  # a sketch that lowers the cost by less than this share is none
 _STRONG = 0.1  # what the effort of stronger paths counts
-_DRAWN = 6  # sketches that are solved for each that is grown
-_SPARE = 2  # more of them than are grown are refined with what differs as built
+_DRAWN = 9  # sketches that are solved for each network that is grown, and for one more
+_SPARE = 8  # more of them than are grown get further cables priced
 _WORTH = 0.1  # errors may be so much larger where motors hold poses for long
 _LOOKED_AT = 12  # networks on the way that are judged where no refined one can be built
 _LOOKED_AT_LATE = 4  # where the search was ended before

@@ -16,6 +16,15 @@ from hydrostat.simulation import Simulation
 Note = Callable[[str, Trial], None]  # receives the change, and the network after it
 
 
+@dataclass(frozen=True, eq=False)
+class _Promise:
+    """A network, what may be added to it, and its cost then to first order [m]."""
+
+    trial: Trial
+    additions: Additions
+    cost: float
+
+
 @dataclass(eq=False)
 class Growth:
     """Grows, refines and exchanges."""
@@ -36,35 +45,62 @@ class Growth:
         return self.bench.trial(layout, simulation, [simulation.rest] * len(self.bench.targets))
 
     def grow_networks(self, begun: Sequence[Trial], *, winches: int, cables: int) -> list[Trial]:
-        """Add cables one by one to the first networks, the best first (beam search).
+        """Add cables one by one, each time to the network whose prices promise the least cost (best-first search).
 
-        Of all networks with a cable more than those that are kept the best few are refined, and the best of these kept.
-        It ends with as many cables as there may be, when enough is reached, when a cable does not help, or when no path
-        promises to.
+        Networks are refined without the slopes of the build tolerances on the way, the best few with them at the end.
+        It ends when enough is reached, when no price promises to help, or after some cables in a row that do not.
         """
-        width = self.proposals.options.starts
-        front, found = list(begun), [trial for trial in begun if trial.layout.routes]
-        idle = 0
-        while front and idle < _PATIENCE:
-            best = (_SEEDS if not front[0].layout.routes else _LIKELY) * width
-            more: list[Trial] = []
-            for trial in front:
-                needed = cables - len(trial.layout.routes)
-                if needed > 0:
-                    more += self._try_cables(trial, winches, needed, best=best)
-            rough = [self.refine_briefly(one, directions=0) for one in unlike(more, len(front) * best, self._rate)]
-            likely = unlike(rough, _LIKELY * width, self._rate)
-            likely = [one for one in likely if one.cost < _FAR * likely[0].cost]
-            front = unlike([self.refine_briefly(one) for one in likely], width, self._rate)
-            for trial in front:
-                self.note(_words(trial), trial)
-            least = min((trial.cost for trial in found), default=np.inf)
-            found += front
-            if any(self.enough(trial, winches) for trial in front):
+        grown = [trial for trial in begun if trial.layout.routes]
+        waiting = [one for trial in begun if (one := self._price_next(trial, winches, cables))]
+        idle, patience = 0, _PATIENCE * self.proposals.options.starts
+        while waiting and idle < patience:
+            least = self._least(grown, winches)
+            if least <= self.enough_error:
                 break
-            short = front and len(front[0].layout.sites) < winches
-            idle = 0 if short or (front and front[0].cost < (1 - _HELPS) * least) else idle + 1
-        return sorted(found, key=lambda trial: trial.cost)
+            waiting.sort(key=lambda one: one.cost)
+            best = waiting.pop(0)
+            if best.cost > (1 - _HOPE) * least:
+                break
+            more = self._add_cable(best, winches)
+            grown += more
+            waiting += [one for trial in more if (one := self._price_next(trial, winches, cables))]
+            idle = 0 if self._least(more, winches) < (1 - _HELPS) * least or least == np.inf else idle + 1
+        return self._refine_grown(grown, winches)
+
+    def _price_next(self, trial: Trial, winches: int, cables: int) -> "_Promise | None":
+        """The promise of one more cable; None where there is no room or no path."""
+        needed = cables - len(trial.layout.routes)
+        if needed <= 0:
+            return None
+        additions = self.price(trial, winches, needed, best=1)
+        return _Promise(trial, additions, predict_cost(trial, additions.gain)) if additions.paths else None
+
+    def _add_cable(self, promise: "_Promise", winches: int) -> list[Trial]:
+        """Networks with one cable more, roughly refined, noted where they are better than before."""
+        trial = promise.trial
+        best = _LIKELY if trial.layout.routes else _SEEDS
+        layouts = self.build(trial, promise.additions, winches, best=best)
+        solved = self.solve_layouts(trial, layouts, best=best)
+        rough = unlike([self.refine_briefly(one, directions=0, steps=_FIRST) for one in solved], best, self._rate)
+        kept = rough[: 1 if trial.layout.routes else _SEEDS]
+        more = [self.refine_briefly(one, directions=0, steps=_SECOND) for one in kept]
+        for one in more:
+            self.note(_words(one), one)
+        return more
+
+    def _refine_grown(self, grown: Sequence[Trial], winches: int) -> list[Trial]:
+        """The networks, the best few refined with the build tolerances, the best first."""
+        whole = [trial for trial in grown if len(trial.layout.sites) >= winches] or grown
+        likely = unlike(whole, _FINAL)
+        refined = [self.refine_briefly(trial) for trial in likely if trial.cost < _FAR * likely[0].cost]
+        for trial in refined:
+            self.note(_words(trial), trial)
+        return sorted([*refined, *(trial for trial in grown if trial not in likely[: len(refined)])], key=_cost)
+
+    @staticmethod
+    def _least(trials: Sequence[Trial], winches: int) -> float:
+        """The least cost of networks with all their winches [m]; infinite if there are none."""
+        return min((trial.cost for trial in trials if len(trial.layout.sites) >= winches), default=np.inf)
 
     def refine(self, trial: Trial) -> Trial:
         """Refine a network in rounds, each of which must hold from rest on."""
@@ -101,13 +137,6 @@ class Growth:
     def enough(self, trial: Trial, winches: int) -> bool:
         """True if the network is good enough."""
         return len(trial.layout.sites) >= winches and trial.cost <= self.enough_error
-
-    def _try_cables(self, trial: Trial, winches: int, needed: int, *, best: int) -> list[Trial]:
-        """Solve some networks with one cable more and return the `best`; none if no path promises enough."""
-        additions = self.price(trial, winches, needed, best=best)
-        if len(trial.layout.sites) >= winches and predict_cost(trial, additions.gain) > (1 - _HOPE) * trial.cost:
-            return []
-        return self.solve_layouts(trial, self.build(trial, additions, winches, best=best), best=best)
 
     def price(self, trial: Trial, winches: int, needed: int, *, best: int) -> Additions:
         """Paths for one cable more, some to spare for those that cannot be built."""
@@ -157,12 +186,17 @@ class Growth:
 def unlike(
     trials: Sequence[Trial], count: int, key: Callable[[Trial], float] = lambda trial: trial.cost
 ) -> list[Trial]:
-    """The first few, the best first, no two of the same cost."""
+    """The first few, the best first, no two of the same cost and spread."""
     kept: list[Trial] = []
     for trial in sorted(trials, key=key):
-        if len(kept) < count and all(abs(trial.cost - other.cost) > _ALIKE * trial.cost for other in kept):
+        if len(kept) < count and not any(_are_alike(trial, other) for other in kept):
             kept.append(trial)
     return kept
+
+
+def _are_alike(one: Trial, other: Trial) -> bool:
+    costs, spreads = abs(one.cost - other.cost), abs(one.spread - other.spread)
+    return max(costs, spreads) <= _ALIKE * one.cost
 
 
 def predict_cost(trial: Trial, gain: float) -> float:
@@ -197,20 +231,27 @@ def without(layout: Layout, number: int) -> Layout | None:
     return rest.turn_winches()
 
 
+def _cost(trial: Trial) -> float:
+    return trial.cost
+
+
 def _words(trial: Trial) -> str:
     layout = trial.layout
     name = layout.sites[layout.routes[-1].winch].winch.name
     return f"cable {len(layout.routes)}, pulled by {name}"
 
 
-_ALIKE = 1e-3  # costs that differ by less than this share are of the same network
-_FAR = 1.1  # networks so much worse than the best are not refined with the build tolerances
+_ALIKE = 1e-3  # costs and spreads that differ by less than this share of the cost are of the same network
+_FAR = 1.15  # networks so much worse than the best are not refined with the build tolerances
 _SPARE = 4  # times as many paths are priced as networks are solved: some cannot be built
-_PATIENCE = 1  # rounds of cables without gain after which the growth ends
+_PATIENCE = 3  # cables in a row without gain after which the growth ends
+_FIRST = 2  # steps of refinement of each cable that is tried
+_SECOND = 3  # more steps of the best of them
 _HELPS = 0.02  # a cable that lowers the cost by less than this share does not help
 _HOPE = 0.03  # a cable is tried if prices promise to lower the cost by this share
-_LIKELY = 2  # cables that are refined for each that a network is grown from
-_SEEDS = 3  # first cables that are refined for each that a network is grown from
+_FINAL = 3  # networks that are refined with the build tolerances at the end
+_LIKELY = 2  # cables that are refined before one is added
+_SEEDS = 3  # first cables that are tried
 _GLANCE = 5  # steps of inverse kinematics that tell which of several networks is the best
 _ROUND = 8  # steps of refinement before the poses are found from rest again
 _FAILURES = 2  # rounds that do not hold from rest end the refinement

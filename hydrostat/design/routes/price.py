@@ -90,6 +90,8 @@ def price_paths(
 
 _ALIKE = 0.7  # two paths that share more than this part of their edges are variants of one
 _SOME = 4  # at most one path in so many, and at least two, stand in one region of winches while there are others
+_LOST = 1e-4  # share of the squared moves of all edges, across the residual, that may be left out
+_CAPPED = 10.0  # multiple of the median move of an edge that counts at most
 _LANES = 4  # numbers that a vector register holds
 
 
@@ -139,8 +141,9 @@ class _PathSearch:
         self.hops, self.slots = limits.hops, slots
         self.turns, self.before = _turns(graph, limits.turn)
         poses = len(missed.ridge)
-        self.moves = _by_pose(missed.moves, missed.pose_of_row, poses)
-        self.residual = _by_pose(missed.residual[None], missed.pose_of_row, poses)
+        moves, residual, pose_of_row = _compress_rows(missed)
+        self.moves = _by_pose(moves, pose_of_row, poses)
+        self.residual = _by_pose(residual[None], pose_of_row, poses)
         self.plain, self.pulls = missed.moves, np.empty((len(missed.moves), poses))
         self.squares = np.empty_like(self.pulls)
         native.edge_products(self.moves, self.residual, self.pulls, self.squares)
@@ -239,6 +242,32 @@ def _pick(
             usable[index] = False
             near += np.linalg.norm(stands - stands[index], axis=1) < reach
     return sorted(picked.items())
+
+
+def _compress_rows(missed: Missed) -> tuple[MarkerJacobian, Vector, Int[np.ndarray, " rows"]]:
+    """Moves, residual and poses of fewer rows with nearly the same r.J and |J|: bodies move in few patterns.
+
+    The rows of a pose are turned such that the first one is along the residual, whose products stay exact. Of the
+    others the principal components are kept. Edges that move far more than others, as in still zones, count as ten.
+    """
+    moves, residuals, owners = [], [], []
+    for pose in range(len(missed.ridge)):
+        rows = missed.pose_of_row == pose
+        own, residual = missed.moves[:, rows], missed.residual[rows]
+        size = float(np.linalg.norm(residual))
+        along = residual / size if size > 0 else residual
+        pulls = own @ along
+        rest = own - pulls[:, None] * along
+        norms = np.linalg.norm(own, axis=1)
+        capped = np.minimum(1.0, _CAPPED * np.median(norms) / np.maximum(norms, 1e-300))[:, None] * rest
+        powers, axes = np.linalg.eigh(capped.T @ capped)
+        kept = axes[:, np.cumsum(powers) > _LOST * float(powers.sum())]
+        if kept.shape[1] + 1 < own.shape[1]:
+            own, residual = np.column_stack([pulls, rest @ kept]), np.append(size, np.zeros(kept.shape[1]))
+        moves.append(own)
+        residuals.append(residual)
+        owners.append(np.full(len(residual), pose))
+    return np.hstack(moves), np.concatenate(residuals), np.concatenate(owners)
 
 
 def _by_pose(

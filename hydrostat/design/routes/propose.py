@@ -57,14 +57,16 @@ class Proposals:
         winches: Sequence[int] | None = None,
         shared: int | None = None,
         reverse: bool = False,
+        free: RouteGraph | None = None,
     ) -> list[PricedPath]:
         """Find the most promising paths next to the present network, at its equilibria.
 
         What the present winches can do by themselves is taken out of residual and moves, as they are free to follow.
         A cable of its own winch has a tension for each pose; one of the `shared` winch is pulled in all of them as that
-        winch is, in proportion to its contractions, or to its payouts if it is a `reverse` one.
+        winch is, in proportion to its contractions, or to its payouts if it is a `reverse` one. `free` is the graph
+        without runs that meet cables, if it is known.
         """
-        bench, graph = self.bench, self._free_of(trial.layout)
+        bench, graph = self.bench, self._free_of(trial.layout) if free is None else free
         moves, residuals, owners, ridges = [], [], [], []
         for index, pose in enumerate(trial.poses):
             slopes = trial.slopes[index]
@@ -72,9 +74,9 @@ class Proposals:
             fields = np.moveaxis(slopes.fields[:rows], 0, 2)
             own = bench.weights[index] * graph.edge_moves(pose.nodes, fields)
             residual = bench.residual(trial.simulation, index, pose.nodes)
-            free = _span(bench.weights[index][:, None] * slopes.contractions[:rows])
-            moves.append(own - (own @ free) @ free.T)
-            residuals.append(residual - free @ (free.T @ residual))
+            known = _span(bench.weights[index][:, None] * slopes.contractions[:rows])
+            moves.append(own - (own @ known) @ known.T)
+            residuals.append(residual - known @ (known.T @ residual))
             owners.append(np.full(rows, index))
             if graph.still.any():
                 moves.append(_NEVER * np.abs(moves[-1]).max(initial=1e-12) * graph.still[:, None])
@@ -159,23 +161,25 @@ class Proposals:
         winches that there are.
         """
         layout = trial.layout
-        missing = winches - len(layout.sites)
+        missing, free = winches - len(layout.sites), self._free_of(layout)
         found = []
         if missing > 0:
             places = self._vacant(layout, alone=missing == 1)
-            paths = self.price_paths(trial, count=_CHOICE * count, winches=places) if places else []
+            paths = self.price_paths(trial, count=_CHOICE * count, winches=places, free=free) if places else []
             deep = sorted(paths, key=lambda path: -path.gain * self._depth(path.winch))[:count]
             others = [path for path in paths if path not in deep][: count // 2]
             found += [(path, None, False) for path in (*deep, *others)]
         if needed > missing:
-            free = [index for index in range(len(layout.sites)) if self._has_room(layout, index)]
-            for index in free:
+            roomy = [index for index in range(len(layout.sites)) if self._has_room(layout, index)]
+            for index in roomy:
                 place = [self._near(layout.sites[index])]
-                share = -(-count // len(free))
+                share = -(-count // len(roomy))
                 found += [
                     (path, index, back)
                     for back in ((False, True) if layout.constraints.two_way else (False,))
-                    for path in self.price_paths(trial, count=share, winches=place, shared=index, reverse=back)
+                    for path in self.price_paths(
+                        trial, count=share, winches=place, shared=index, reverse=back, free=free
+                    )
                 ]
         found.sort(key=lambda path: -path[0].gain)
         return Additions(tuple(found), len(layout.routes) + needed)

@@ -10,7 +10,7 @@ from hydrostat.design.routes.layout import Layout
 def screen_sketches(
     growth: Growth, drawn: Sequence[Layout], *, found: Callable[[Trial], None] = lambda _: None, count: int
 ) -> list[Trial]:
-    """Refine sketches by a few steps, the best third by some more, and the best `count` with the build tolerances.
+    """Refine sketches by a few steps, the best ones by some more, and return the best `count` of them.
 
     Sketches come in the order of the linear model. Those that are left are not solved after several in a row were no
     better than the best by a few percent. `found` receives each network that is solved.
@@ -28,17 +28,16 @@ def screen_sketches(
         least = min(least, trial.cost)
         if idle >= _PATIENCE:
             break
-    better = [growth.refine_briefly(trial, directions=0, steps=_SECOND) for trial in unlike(rough, _KEPT)]
-    best = []
-    for trial in unlike(better, count):
-        best.append(growth.refine_briefly(trial))
-        found(best[-1])
-    return sorted(best, key=lambda trial: trial.cost)
+    kept = unlike(rough, count)
+    better = [growth.refine_briefly(trial, directions=0, steps=_SECOND) for trial in kept[:_KEPT]]
+    for trial in better:
+        found(trial)
+    return [*better, *kept[_KEPT:]]
 
 
 _GLANCE = 5  # steps of inverse kinematics before a sketch is refined
 _FIRST = 3  # steps of refinement of each
-_SECOND = 2  # more steps of the better ones
-_KEPT = 5  # sketches that get them
+_SECOND = 2  # more steps of the best ones
+_KEPT = 4  # sketches that get them
 _PATIENCE = 6  # sketches in a row that are no better end the screening
 _BETTER = 0.02  # a sketch that lowers the cost by less than this share is no better

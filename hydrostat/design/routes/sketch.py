@@ -49,7 +49,15 @@ def _choose(choice: LineChoice, bare: Trial, count: int) -> list[Layout]:
         better = choice.exchange_lines(chosen)
         found[tuple(sorted(better))] = choice.cost(better)
     layouts = []
-    for chosen in sorted(found, key=lambda one: found[one]):
+    seen: dict[tuple[int, ...], int] = {}
+
+    def rank(chosen: tuple[int, ...]) -> float:
+        places = tuple(sorted({choice.lines[index].place for index in chosen}))
+        seen[places] = seen.get(places, 0) + 1
+        return found[chosen] * (1.0 + _AGAIN * (seen[places] - 1))
+
+    ranks = {chosen: rank(chosen) for chosen in sorted(found, key=lambda one: found[one])}
+    for chosen in sorted(ranks, key=lambda one: ranks[one]):
         layout = _layout(choice.proposals, bare.layout, [choice.lines[index] for index in chosen])
         layouts += [] if layout is None else [layout]
     return layouts[:count]
@@ -167,7 +175,8 @@ def _sides(along: Route) -> list[Route]:
 
 _TURNED = (0, 3)  # winches whose ways are all tried while sets of reversed lines are chosen
 _PLACES = 24  # places where winches are thought of
-_BEGUN = 3  # sets that are gone over for each that is wanted
+_BEGUN = 5  # sets that are gone over for each that is wanted
+_AGAIN = 0.2  # share by which each further set of lines from the same winch places counts as worse
 _INWARD = 3.0  # how much longer an edge at the rim counts
 _STILL = 100.0  # how much longer one in a still zone
 _ROUNDS = 6  # of smoothing
