@@ -43,7 +43,7 @@ class Projection:
         if projects_first and self.early < 1.0 and not self.late:
             return Projection(1.0, raised=True)
         if projects_first:
-            return Projection(1.0, min(16 * self.late, 1.0) or _LEAST, raised=True)
+            return Projection(1.0, 1.0 if self.late else 1 / 8, raised=True)
         return Projection(0.0, min(16 * self.late, 1.0) or 1.0)
 
 
