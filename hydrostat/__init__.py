@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from hydrostat.design import BuildTolerances, Constraints, Network, RouteOptions, TreeOptions, Zone, design_cables
     from hydrostat.errors import HydrostatError, InputError, NotConvergedError
     from hydrostat.fabrication import Kit, KitOptions, PatternOptions, UnbuildableError, build_kit, write_kit
+    from hydrostat.identification import Measurements, identify, read_measurements
     from hydrostat.ik import (
         CenterOfMassTarget,
         Effort,
@@ -108,6 +109,7 @@ __all__ = [
     "Marker",
     "MarkerTarget",
     "Material",
+    "Measurements",
     "Motion",
     "Multistability",
     "Network",
@@ -147,11 +149,13 @@ __all__ = [
     "find_equilibria",
     "friction_hysteresis",
     "get_material",
+    "identify",
     "list_gallery",
     "load_robot",
     "load_target_outline",
     "marker_compliance",
     "new_robot",
+    "read_measurements",
     "save_robot",
     "solve_ik",
     "solve_ik_trajectory",

@@ -19,6 +19,7 @@ from hydrostat.cli.drive import drive
 from hydrostat.cli.fabricate import fabricate
 from hydrostat.cli.firmware import firmware
 from hydrostat.cli.grasp import grasp
+from hydrostat.cli.identify import identify
 from hydrostat.cli.learn import learn
 from hydrostat.cli.materials import materials
 from hydrostat.cli.mimic import mimic
@@ -80,6 +81,7 @@ for command in (
     animate,
     design,
     fabricate,
+    identify,
     grasp,
     sample,
     learn,

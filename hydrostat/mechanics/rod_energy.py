@@ -42,6 +42,7 @@ class RodEnergy(Energy):
         shares[0, 0] = 1.0
         shares[-1, 1] = 0.0 if count == 2 else 1.0
         self._axial = shares * axial_stiffness
+        self._whole = axial_stiffness, bending_stiffness
         self._bending = np.full(len(joints), 0.0 if count == 2 else bending_stiffness) / self._lengths.mean(axis=1)
         self._bent = np.sqrt(_curvature(_cosine(spans))[0])
         self.stiffest = axial_stiffness / float(self._lengths.min())
@@ -69,6 +70,19 @@ class RodEnergy(Energy):
         joints, _, size = self._weights.shape
         found = np.einsum("jsa,jtb,jsdte->jadbe", self._weights, self._weights, blocks, optimize=True)
         return found.reshape(joints, size * nodes.shape[1], size * nodes.shape[1])
+
+    def stiffness_work(self, nodes: Nodes, field: Nodes) -> tuple[float, float]:
+        """d(dE/dx . field) / dEA and / dEI."""
+        spans, moves = self._spans(nodes), self._spans(field)
+        lengths = np.linalg.norm(spans, axis=2)
+        units = spans / lengths[:, :, None]
+        along = (moves * units).sum(axis=2)
+        cosine = _cosine(spans)
+        across = units[:, ::-1] - cosine[:, None, None] * units
+        turns = ((moves * across).sum(axis=2) / lengths).sum(axis=1)  # change of the cosine
+        stretch = (self._axial * (lengths / self._lengths - 1.0) * along).sum()
+        axial, bending = self._whole
+        return float(stretch) / axial, float(self._bend(cosine)[1] @ turns) / bending
 
     def _bend(self, cosine: Vector) -> tuple[Vector, Vector, Vector]:
         """Energy of each joint [J], and its first and second derivative by the cosine."""

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from hydrostat.plot.frame_pictures import FramePictures, Picture
     from hydrostat.plot.grasp_figure import draw_pull, pull_frames
     from hydrostat.plot.healing_figure import draw_healing
+    from hydrostat.plot.identified_figure import draw_identified
     from hydrostat.plot.learning_curves import draw_curves
     from hydrostat.plot.live_page import LivePage
     from hydrostat.plot.motion_figures import draw_motion, draw_trajectory
@@ -56,6 +57,7 @@ __all__ = [
     "draw_branches",
     "draw_curves",
     "draw_healing",
+    "draw_identified",
     "draw_motion",
     "draw_network",
     "draw_portrait",

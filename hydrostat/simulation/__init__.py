@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from hydrostat.simulation.contraction_profile import (
         ContractionProfile,
         ProfileTable,
+        csv_text,
         profile_text,
         read_profile,
         write_profile,
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from hydrostat.simulation.marker_compliance import marker_compliance
     from hydrostat.simulation.motion_file import MotionTable, write_motion, write_pose
     from hydrostat.simulation.obstacle_frames import obstacle_forces, obstacles_in_pose, with_obstacles, with_replaced
+    from hydrostat.simulation.sensitivities.adjoint import Sensitivity
     from hydrostat.simulation.simulation import Simulation
     from hydrostat.simulation.static_obstacles import require_static_obstacles, rests_at_first, without_contact_friction
     from hydrostat.simulation.statics.batch_result import BatchResult
@@ -52,6 +54,7 @@ __all__ = [
     "MotionTable",
     "Multistability",
     "ProfileTable",
+    "Sensitivity",
     "Simulation",
     "StaticSolver",
     "StepOptions",
@@ -59,6 +62,7 @@ __all__ = [
     "check_pose",
     "continue_branch",
     "contraction_values",
+    "csv_text",
     "describe_contacts",
     "filled_motion",
     "find_contacts",

@@ -132,6 +132,13 @@ class BodyPhysics:
             raise InputError("these body physics are of another body, pins, gravity, contact or loads; make new ones")
 
     @property
+    def heavy_masses(self) -> Float[np.ndarray, " rows"]:
+        """Masses that gravity pulls at, hung ones too [kg]."""
+        heavy = self._heavy
+        heavy[: len(self._hung)] += self._hung
+        return heavy
+
+    @property
     def _heavy(self) -> Float[np.ndarray, " rows"]:
         """Masses that gravity pulls at: not the axes of obstacles, which are at their middle, nor loads."""
         heavy = self.inertias.copy()

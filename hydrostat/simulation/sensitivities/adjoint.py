@@ -69,6 +69,9 @@ class Sensitivity:
         part_density: derivative by the density of each part [m^3/kg], (parts,).
         thickness: derivative by the thickness of a flat body [1/m]; None in space.
         loads: derivative by the force of each load along each axis [1/N], (loads, dim).
+        gravity: derivative by each component of gravity [s^2/m], (dim,), with hung masses.
+        rod_axial: derivative by EA of each rod [1/N], (rods,).
+        rod_bending: derivative by EI of each rod [1/(N m^2)], (rods,).
     """
 
     contractions: Vector
@@ -85,6 +88,9 @@ class Sensitivity:
     part_density: Vector
     thickness: float | None
     loads: Points
+    gravity: Vector
+    rod_axial: Vector
+    rod_bending: Vector
 
 
 def sensitivity(
@@ -179,6 +185,7 @@ def by_body(body: BodyPhysics, pose: Equilibrium, field: Nodes) -> dict[str, Any
     density = _density_slopes(pose.robot, field)
     rigid = np.array([False, *(part.is_rigid for part in pose.robot.body.parts)])
     stiffness = np.array([material.young for material in materials]) / body.material.young  # what rigid parts keep
+    rods = np.array([rod.stiffness_work(pose.nodes, field) for rod in body.rods]).reshape(-1, 2)
     return {
         "young": float(young[0] + stiffness[rigid] @ young[rigid]),
         "poisson": float(poisson[0]),
@@ -189,6 +196,9 @@ def by_body(body: BodyPhysics, pose: Equilibrium, field: Nodes) -> dict[str, Any
         "thickness": None if body.thickness is None else -float(works["thickness"][0]) / body.thickness,
         "loads": locate(pose.robot.body.mesh, pose.robot.load_points()).positions(field[: len(pose.nodes)]),
         "pin_stiffness": -works["support_stiffness"],
+        "gravity": body.heavy_masses @ field,
+        "rod_axial": -rods[:, 0],
+        "rod_bending": -rods[:, 1],
     }
 
 

@@ -1,0 +1,141 @@
+"""`hydrostat identify`."""
+
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from hydrostat.cli.folders import OutFolder, RobotFolder, folder_of, require_folder
+from hydrostat.cli.waiting import patiently, read_robot
+from hydrostat.errors import InputError
+from hydrostat.units import plural
+
+if TYPE_CHECKING:
+    from hydrostat.identification import IdentifiedRobot, Measurements
+
+
+def identify(
+    robot: RobotFolder,
+    measurements: Annotated[
+        Path, typer.Argument(metavar="TABLE.csv", help="Columns left_mm for each winch, tip_x_mm ... for each marker.")
+    ],
+    out: OutFolder,
+    fit: Annotated[
+        str | None,
+        typer.Option(
+            "--fit", metavar="NAMES", help="Parameters to fit, with commas.", show_default="all that are common"
+        ),
+    ] = None,
+) -> None:
+    """Fit a robot's parameters to measured marker positions.
+
+    Parameters: young, poisson, density, stiffness (of cables), zero and gain (of winches), friction, pins, gravity,
+    rods, frame (of the measurement). Writes the fitted robot, parameters.csv with 95 % intervals and identified.png.
+    Every fifth of ten or more rows is also predicted by a fit that did not see it.
+
+    Example: hydrostat identify my_starfish measured.csv --out build/fitted
+    """
+    from hydrostat.identification import identify as identify_robot
+    from hydrostat.identification import read_measurements
+
+    require_folder(out)
+    if out.resolve() == folder_of(robot).resolve():
+        raise InputError(f"--out {out}: is the folder of the robot. Name another one.")
+    names = None if fit is None else tuple(name.strip() for name in fit.split(",") if name.strip())
+    if names == ():
+        raise InputError('--fit "": name at least one parameter')
+    loaded = read_robot(robot)
+    table = read_measurements(measurements, loaded)
+    began = time.process_time()
+    with patiently("fitting, with equilibria of all rows at each step ..."):
+        found = identify_robot(loaded, table, fit=names, progress=_progress(len(table.commands)))
+    _write(robot, table, found, out)
+    _print_values(found)
+    _print_errors(found, table, time.process_time() - began)
+    print(f"Wrote {out}. Next: hydrostat simulate {out}")
+
+
+def _progress(rows: int) -> "_Lines | None":
+    """Lines for people where a fit takes long."""
+    return _Lines() if rows * 20 > SHORT else None
+
+
+SHORT = 200
+"""Equilibria, or rows times steps, that are over before a person wonders."""
+
+
+class _Lines:
+    """Prints a line at most every two seconds."""
+
+    def __init__(self) -> None:
+        self._last = time.monotonic()
+
+    def __call__(self, line: str) -> None:
+        often = 2.0
+        if time.monotonic() - self._last > often:
+            print(f"  {line}", flush=True)
+            self._last = time.monotonic()
+
+
+def _write(path: Path, table: "Measurements", found: "IdentifiedRobot", out: Path) -> None:
+    from hydrostat.cli.options import load_matplotlib
+    from hydrostat.robot import merged_text, read_text, replace_file, save_robot
+    from hydrostat.simulation import csv_text
+
+    load_matplotlib()
+    from hydrostat.plot import draw_identified, save_png
+
+    figure = draw_identified(table, found)
+    text = merged_text(read_text(folder_of(path) / "robot.toml"), found.robot)
+    save_robot(found.robot, out, text=text)
+    rows = [
+        [name, parameter.unit, f"{parameter.start:.6g}", f"{value:.6g}", f"{low:.6g}", f"{high:.6g}", f"{share:.3f}"]
+        for parameter, (name, value), (low, high), share in zip(
+            found.fitted.model.parameters,
+            found.fitted.values.items(),
+            found.fitted.intervals.values(),
+            found.fitted.shown.values(),
+            strict=True,
+        )
+    ]
+    head = ["parameter", "unit", "assumed", "fitted", "low_95", "high_95", "shown"]
+    replace_file(out / "parameters.csv", csv_text(head, rows))
+    save_png(figure, out / "identified.png")
+
+
+def _print_values(found: "IdentifiedRobot") -> None:
+    """Print what the measurements show, then what they do not."""
+    fitted = found.fitted
+    for parameter in fitted.model.parameters:
+        if parameter.name not in found.unknown:
+            low, high = fitted.intervals[parameter.name]
+            unit = f" {parameter.unit}" if parameter.unit else ""
+            value = fitted.values[parameter.name]
+            print(
+                f"  {parameter.name}: {value:.4g}{unit} (95 %: {low:.4g} to {high:.4g}; assumed {parameter.start:.4g})"
+            )
+    if found.unknown:
+        print(f"note: these measurements do not show {', '.join(found.unknown)}; they stay near what was assumed.")
+    lost = [name for name in found.unsaved if not name.startswith("frame.")]
+    if lost:
+        print(
+            f"note: robot.toml cannot hold {', '.join(lost)}: the cables are tight at rest. "
+            "Pay out these winches first, or add the zero to each contraction."
+        )
+
+
+def _print_errors(found: "IdentifiedRobot", table: "Measurements", seconds: float) -> None:
+    from hydrostat.identification import rms
+
+    seen = plural(len(table.commands), "row")
+    missing = f", {plural(found.fitted.failed, 'row')} without equilibrium" if found.fitted.failed else ""
+    print(
+        f"{seen}: rms error {1e3 * rms(found.before):.2f} mm as assumed, {1e3 * rms(found.after):.2f} mm fitted "
+        f"({seconds:.1f} s{missing})"
+    )
+    if len(found.held_out):
+        print(
+            f"held out ({plural(len(found.held_out), 'row')}): {1e3 * rms(found.held_out_before):.2f} mm as assumed, "
+            f"{1e3 * rms(found.held_out_after):.2f} mm by a fit that did not see them"
+        )

@@ -1,0 +1,30 @@
+"""Identification: parameters of a robot from measurements of it."""
+
+from typing import TYPE_CHECKING
+
+from hydrostat.lazy import open_package
+
+if TYPE_CHECKING:
+    from hydrostat.identification.fit import FittedModel, fit_model
+    from hydrostat.identification.identified_robot import IdentifiedRobot, identify, rms, start_of
+    from hydrostat.identification.kinds import KINDS, named_model
+    from hydrostat.identification.measurements import Measurements
+    from hydrostat.identification.model import IdentificationModel, Parameter
+    from hydrostat.identification.read import read_measurements
+
+__all__ = [
+    "KINDS",
+    "FittedModel",
+    "IdentificationModel",
+    "IdentifiedRobot",
+    "Measurements",
+    "Parameter",
+    "fit_model",
+    "identify",
+    "named_model",
+    "read_measurements",
+    "rms",
+    "start_of",
+]
+
+open_package(__name__)

@@ -1,0 +1,201 @@
+"""`fit_model`: parameters of a robot from measured places of its markers, by Gauss-Newton steps with exact slopes."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, cast
+
+import numpy as np
+from jaxtyping import Float
+from scipy.optimize import least_squares
+
+from hydrostat.arrays import Vector
+from hydrostat.errors import InputError
+from hydrostat.identification.measurements import Measurements
+from hydrostat.identification.model import IdentificationModel
+from hydrostat.identification.residuals import Predictor
+from hydrostat.robot import Robot
+
+MISSING = 5.0
+"""Residual of a coordinate without an equilibrium, in standard deviations of the noise."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FittedModel:
+    """Parameters of a robot found from measurements.
+
+    Attributes:
+        model: robot and measurement as functions of the values.
+        values: values by name.
+        numbers: the same as coordinates of the fit: spreads from the start.
+        covariance: of `numbers`; 1 on the diagonal where the measurements tell nothing.
+        noise: standard deviation of a measured coordinate about the model [m], from the residuals.
+        error: root mean square distance between predicted and measured markers of the fitted rows [m].
+        failed: fitted rows without an equilibrium.
+        iterations: evaluations of the model.
+        message: reason why the fit stopped.
+    """
+
+    model: IdentificationModel
+    values: dict[str, float]
+    numbers: Vector
+    covariance: Float[np.ndarray, "parameters parameters"]
+    noise: float
+    error: float
+    failed: int
+    iterations: int
+    message: str
+
+    @property
+    def intervals(self) -> dict[str, tuple[float, float]]:
+        """Intervals that hold each value with a probability of 95 %, if the model is right."""
+        half = 1.96 * np.sqrt(np.diag(self.covariance))
+        return {
+            parameter.name: (parameter.from_fitted(number - width), parameter.from_fitted(number + width))
+            for parameter, number, width in zip(self.model.parameters, self.numbers, half, strict=True)
+        }
+
+    @property
+    def shown(self) -> dict[str, float]:
+        """Share of each guess's uncertainty that the measurements took away: 0 where they tell nothing, 1 for all."""
+        kept = np.sqrt(np.diag(self.covariance))
+        return {parameter.name: 1.0 - float(one) for parameter, one in zip(self.model.parameters, kept, strict=True)}
+
+    def predict(self, commands: np.ndarray, markers: tuple[str, ...]) -> Float[np.ndarray, "rows markers dim"]:
+        """Places of markers [m] in the frame of the measurement; NaN without an equilibrium."""
+        dim = self.model.robot(self.values).body.mesh.dim
+        nowhere = np.full((len(commands), len(markers), dim), np.nan)
+        asked = Measurements(commands=commands, markers=markers, places=nowhere)
+        return Predictor(self.model, asked).predict(self.numbers, slopes=False).places
+
+
+def fit_model(
+    model: IdentificationModel,
+    measurements: Measurements,
+    *,
+    noise: float | None = None,
+    evaluations: int = 30,
+    progress: Callable[[str], None] | None = None,
+) -> FittedModel:
+    """Most probable values of the parameters: least squares over measured places and guesses.
+
+    Bounded Gauss-Newton steps in a trust region (SciPy, `trf`) with a loss that grows linearly beyond three standard
+    deviations, so that swapped or misread markers count little. The noise is that of the residuals, estimated twice.
+
+    Args:
+        model: robot and measurement.
+        measurements: rows of commands and places.
+        noise: standard deviation of a measured coordinate about the model [m]; estimated if left out.
+        evaluations: most evaluations of the model.
+        progress: receives a line after each evaluation.
+
+    Raises:
+        InputError: measurements that do not fit the robot, or fewer measured coordinates than one.
+    """
+    robot = model.robot(model.start)
+    _check(robot, measurements)
+    fit = _Fit(model, measurements, noise or 0.02 * robot.body.mesh.size, progress)
+    numbers = np.zeros(len(model.parameters))
+    limits = np.array([parameter.limits for parameter in model.parameters]).reshape(-1, 2).T
+    rounds = (evaluations // 2, evaluations - evaluations // 2) if noise is None else (evaluations,)
+    message, slopes = "", cast("Any", fit.slopes)
+    for count in rounds:
+        solved = least_squares(
+            fit.residuals,
+            numbers,
+            jac=slopes,
+            bounds=(limits[0], limits[1]),
+            loss="soft_l1",
+            f_scale=3.0,
+            max_nfev=max(count, 2),
+            ftol=1e-4,
+            xtol=1e-4,
+        )
+        numbers, message = solved.x, solved.message
+        fit.residuals(numbers)
+        if noise is None:
+            fit.noise = max(1.4826 * float(np.median(np.abs(fit.errors))), 1e-6 * robot.body.mesh.size)
+            fit.forget()
+    jacobian = fit.slopes(numbers)
+    errors = fit.distances
+    return FittedModel(
+        model=model,
+        values=model.values(numbers),
+        numbers=numbers,
+        covariance=np.linalg.inv(jacobian.T @ jacobian),
+        noise=fit.noise,
+        error=float(np.sqrt((errors**2).mean())) if len(errors) else np.nan,
+        failed=fit.failed,
+        iterations=fit.count,
+        message=message,
+    )
+
+
+class _Fit:
+    """Residuals and their slopes for `least_squares`, in standard deviations."""
+
+    def __init__(
+        self,
+        model: IdentificationModel,
+        measurements: Measurements,
+        noise: float,
+        progress: Callable[[str], None] | None,
+    ) -> None:
+        self.noise, self.measurements, self._progress = noise, measurements, progress
+        self._predictor = Predictor(model, measurements)
+        self._measured = np.isfinite(measurements.places)
+        self._asked: np.ndarray | None = None
+        self.count = self.failed = 0
+
+    def residuals(self, numbers: Vector) -> Vector:
+        """Residuals of all measured coordinates, then of the guesses."""
+        self._ask(numbers)
+        return np.concatenate([self._errors / self.noise, numbers])
+
+    def slopes(self, numbers: Vector) -> np.ndarray:
+        """Their Jacobian."""
+        self._ask(numbers)
+        return np.concatenate([self._jacobian / self.noise, np.eye(len(numbers))])
+
+    @property
+    def errors(self) -> Vector:
+        """Predicted less measured coordinates of rows with an equilibrium [m]."""
+        return self._errors[self._solved]
+
+    @property
+    def distances(self) -> Vector:
+        """Distances of predicted from measured markers [m]."""
+        return self._distances[np.isfinite(self._distances)]
+
+    def forget(self) -> None:
+        """Count the next evaluation anew."""
+        self._asked = None
+
+    def _ask(self, numbers: Vector) -> None:
+        if self._asked is not None and (self._asked == numbers).all():
+            return
+        found = self._predictor.predict(numbers, slopes=True)
+        assert found.jacobian is not None
+        offsets = found.places - self.measurements.places
+        self._solved = np.isfinite(offsets)[self._measured]
+        self._errors = np.where(self._solved, offsets[self._measured], MISSING * self.noise)
+        self._jacobian = found.jacobian[self._measured]
+        self._distances = np.linalg.norm(offsets, axis=2).ravel()
+        self.failed, self.count = int((~found.found).sum()), self.count + 1
+        self._asked = numbers.copy()
+        if self._progress:
+            error = 1e3 * float(np.sqrt((self.distances**2).mean())) if len(self.distances) else np.nan
+            self._progress(f"evaluation {self.count}: {error:.2f} mm off (RMS)")
+
+
+def _check(robot: Robot, measurements: Measurements) -> None:
+    winches, dim = len(robot.winches), robot.body.mesh.dim
+    if measurements.commands.shape[1] != winches:
+        raise InputError(f"commands have {measurements.commands.shape[1]} columns, but the robot has {winches} winches")
+    if measurements.places.shape[2] != dim:
+        raise InputError(f"places have {measurements.places.shape[2]} coordinates, but the body has {dim} axes")
+    known = [marker.name for marker in robot.markers]
+    for name in measurements.markers:
+        if name not in known:
+            raise InputError(f'no marker "{name}"; the robot has {", ".join(known) or "none"}')
+    if not np.isfinite(measurements.places).any():
+        raise InputError("no place of a marker was measured")

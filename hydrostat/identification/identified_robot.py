@@ -1,0 +1,150 @@
+"""`identify`: fitted model of a built robot from measured places of its markers."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.errors import InputError
+from hydrostat.identification.fit import FittedModel, fit_model
+from hydrostat.identification.kinds import named_model
+from hydrostat.identification.measurements import Measurements
+from hydrostat.identification.model import IdentificationModel
+from hydrostat.robot import Robot
+
+MM = 1e-3
+UNKNOWN = 0.3
+"""Share of the uncertainty of a guess that measurements must take away to be said to show a parameter."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class IdentifiedRobot:
+    """A robot with parameters that were found from measurements.
+
+    Attributes:
+        fitted: values, intervals, and what the measurements show.
+        robot: robot with these values; zeros of winches are in the slack of their cables, gains in the spool radii.
+        unsaved: parameters that a robot cannot hold: pretension, and the frame of the measurement.
+        before: distance of each predicted from each measured marker before the fit [m], (rows, markers).
+        after: the same after the fit.
+        held_out: rows that a second fit did not see; empty with fewer than ten rows.
+        held_out_before: distances in these rows before the fit [m].
+        held_out_after: the same, by the fit that did not see them.
+    """
+
+    fitted: FittedModel
+    robot: Robot
+    unsaved: tuple[str, ...]
+    before: np.ndarray
+    after: np.ndarray
+    held_out: np.ndarray
+    held_out_before: np.ndarray
+    held_out_after: np.ndarray
+
+    @property
+    def unknown(self) -> tuple[str, ...]:
+        """Parameters that the measurements do not show; they stay near where they began."""
+        return tuple(name for name, share in self.fitted.shown.items() if share < UNKNOWN)
+
+
+def identify(
+    robot: Robot,
+    measurements: Measurements,
+    *,
+    fit: tuple[str, ...] | None = None,
+    progress: Callable[[str], None] | None = None,
+) -> IdentifiedRobot:
+    """Parameters of a built robot from measurements (Gauss-Newton, exact sensitivities, guesses as a normal prior).
+
+    Args:
+        robot: robot as it is assumed to be built.
+        measurements: rows of contractions and places of markers.
+        fit: kinds of parameters, see `KINDS`; those that are fitted by default if left out.
+        progress: receives a line after each evaluation.
+
+    Raises:
+        InputError: an unknown kind, or measurements that do not fit the robot.
+    """
+    model = named_model(robot, fit)
+    count = len(measurements.commands)
+    held_out = np.arange(2, count, 5) if count >= 10 else np.zeros(0, dtype=int)
+    nothing = np.zeros((0, len(measurements.markers)))
+    held_before, held_after = nothing, nothing
+    if len(held_out):
+        kept = np.setdiff1d(np.arange(count), held_out)
+        asked = measurements.rows(held_out)
+        part = fit_model(
+            model,
+            measurements.rows(kept),
+            progress=progress and (lambda line: progress(f"without held-out rows, {line}")),
+        )
+        held_before, held_after = _distances(start_of(model), asked), _distances(part, asked)
+    fitted = fit_model(model, measurements, progress=progress)
+    changed, unsaved = _robot(model, fitted, robot)
+    return IdentifiedRobot(
+        fitted=fitted,
+        robot=changed,
+        unsaved=unsaved,
+        before=_distances(start_of(model), measurements),
+        after=_distances(fitted, measurements),
+        held_out=held_out,
+        held_out_before=held_before,
+        held_out_after=held_after,
+    )
+
+
+def start_of(model: IdentificationModel) -> FittedModel:
+    """Model before any fit."""
+    count = len(model.parameters)
+    return FittedModel(
+        model=model,
+        values=model.start,
+        numbers=np.zeros(count),
+        covariance=np.eye(count),
+        noise=np.nan,
+        error=np.nan,
+        failed=0,
+        iterations=0,
+        message="not fitted",
+    )
+
+
+def _distances(fitted: FittedModel, measurements: Measurements) -> np.ndarray:
+    found = fitted.predict(measurements.commands, measurements.markers)
+    return np.linalg.norm(found - measurements.places, axis=2)
+
+
+def _robot(model: IdentificationModel, fitted: FittedModel, assumed: Robot) -> tuple[Robot, tuple[str, ...]]:
+    """Robot with the fitted values, and names of what it cannot hold."""
+    values = {name: _rounded(value) for name, value in fitted.values.items()}
+    robot = model.robot(values)
+    unsaved = [name for name in values if name.startswith("frame.")]
+    winches = tuple(
+        replace(winch, spool_radius=_rounded(winch.spool_radius * values.get(f"{winch.name}.gain", 1.0)))
+        for winch in robot.winches
+    )
+    cables = []
+    for cable, ratio in zip(robot.cables, assumed.spool_ratios, strict=True):
+        gain = values.get(f"{cable.winch}.gain", 1.0)
+        zero = MM * values.get(f"{cable.winch}.zero", 0.0) * gain
+        slack = cable.slack - float(ratio) * zero
+        if slack < 0:
+            unsaved.append(f"{cable.winch}.zero")
+        radius = None if cable.spool_radius is None else _rounded(cable.spool_radius * gain)
+        cables.append(replace(cable, slack=_rounded(max(slack, 0.0)), spool_radius=radius))
+    try:
+        return robot.with_network(winches, cables), tuple(dict.fromkeys(unsaved))
+    except InputError as error:
+        raise InputError(f"the fitted robot cannot be built: {error}") from None
+
+
+def _rounded(value: float) -> float:
+    """Value with the digits that a measurement can have."""
+    return float(f"{value:.6g}")
+
+
+def rms(distances: Vector) -> float:
+    """Root mean square of the known distances; NaN if there are none."""
+    known = distances[np.isfinite(distances)]
+    return float(np.sqrt((known**2).mean())) if len(known) else float("nan")

@@ -1,0 +1,262 @@
+"""`KINDS`: parameters of a robot and of its measurement that can be fitted by name."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import reduce
+
+import numpy as np
+
+from hydrostat.errors import InputError
+from hydrostat.identification.model import IdentificationModel, Parameter, Values
+from hydrostat.robot import Robot
+
+MM = 1e-3
+NARROW = 1e-6
+"""Distance that a fitted Poisson's ratio keeps from its limits."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Kind:
+    """A group of parameters with one name.
+
+    Attributes:
+        about: text for help.
+        parameters: parameters of a robot; none where it has nothing of the kind.
+        robot: robot with some values in place of its own; None for parameters of the measurement alone.
+        contractions: contractions [m] with some values, as in `IdentificationModel`.
+        places: places [m] in the frame of the measurement, as in `IdentificationModel`.
+        default: fitted without being named.
+    """
+
+    about: str
+    parameters: Callable[[Robot], list[Parameter]]
+    robot: Callable[[Robot, Values], Robot] | None = None
+    contractions: Callable[[Robot, Values, np.ndarray], np.ndarray] | None = None
+    places: Callable[[Robot, Values, np.ndarray], np.ndarray] | None = None
+    default: bool = False
+
+
+def named_model(robot: Robot, kinds: tuple[str, ...] | None = None) -> IdentificationModel:
+    """Model with the parameters of some kinds.
+
+    Args:
+        robot: robot as it is assumed to be built.
+        kinds: names in `KINDS`; those that are fitted by default if left out.
+
+    Raises:
+        InputError: an unknown kind, or one that this robot has nothing of.
+    """
+    names = tuple(name for name, kind in KINDS.items() if kind.default) if kinds is None else kinds
+    found = {name: _parameters(robot, name) for name in names}
+    if kinds is not None and (empty := [name for name in names if not found[name]]):
+        raise InputError(f'parameter "{empty[0]}": this robot has nothing of the kind; leave it out')
+    used = [KINDS[name] for name in names if found[name]]
+    pulls = [kind.contractions for kind in used if kind.contractions is not None]
+    moves = [kind.places for kind in used if kind.places is not None]
+    return IdentificationModel(
+        parameters=tuple(parameter for name in names for parameter in found[name]),
+        robot=lambda values: reduce(lambda one, kind: kind.robot(one, values) if kind.robot else one, used, robot),
+        contractions=lambda values, commands: reduce(lambda one, pull: pull(robot, values, one), pulls, commands),
+        places=lambda values, at: reduce(lambda one, move: move(robot, values, one), moves, at),
+    )
+
+
+def _parameters(robot: Robot, name: str) -> list[Parameter]:
+    if name not in KINDS:
+        raise InputError(f'unknown parameter "{name}". Available: {", ".join(KINDS)}.')
+    return KINDS[name].parameters(robot)
+
+
+def _material(robot: Robot, key: str, spread: float, limits: tuple[float, float], unit: str) -> list[Parameter]:
+    """A parameter for the body's material and one for that of each part."""
+    low, high = limits
+    owners = [("body", robot.body.material)]
+    owners += [(part.name, part.material) for part in robot.body.parts if part.material is not None]
+    return [
+        Parameter(
+            name=f"{owner}.{key}",
+            start=getattr(material, key),
+            spread=spread,
+            unit=unit,
+            log=key != "poisson",
+            low=low,
+            high=high,
+        )
+        for owner, material in owners
+    ]
+
+
+def _with_material(key: str) -> Callable[[Robot, Values], Robot]:
+    def change(robot: Robot, values: Values) -> Robot:
+        parts = tuple(
+            part
+            if part.material is None
+            else replace(part, material=replace(part.material, **{key: values[f"{part.name}.{key}"]}))
+            for part in robot.body.parts
+        )
+        material = replace(robot.body.material, **{key: values[f"body.{key}"]})
+        return replace(robot, body=replace(robot.body, material=material, parts=parts))
+
+    return change
+
+
+def _each_cable(robot: Robot, key: str) -> list[Parameter]:
+    return [
+        Parameter(name=f"{cable.name}.{key}", start=getattr(cable, key), spread=0.7, log=True, unit="N/m")
+        for cable in robot.cables
+    ]
+
+
+def _with_stiffness(robot: Robot, values: Values) -> Robot:
+    cables = [replace(cable, stiffness=values[f"{cable.name}.stiffness"]) for cable in robot.cables]
+    return robot.with_network(robot.winches, cables)
+
+
+def _friction(robot: Robot) -> list[Parameter]:
+    if not robot.cables:
+        return []
+    start = max(float(np.mean([cable.friction for cable in robot.cables])), 0.1)
+    return [Parameter(name="friction", start=start, spread=0.7, log=True, high=2.0)]
+
+
+def _with_friction(robot: Robot, values: Values) -> Robot:
+    cables = [replace(cable, friction=values["friction"]) for cable in robot.cables]
+    return robot.with_network(robot.winches, cables)
+
+
+def _pins(robot: Robot) -> list[Parameter]:
+    return [
+        Parameter(name=f"pin {number}.stiffness", start=pin.stiffness, spread=1.5, log=True, unit="N/m")
+        for number, pin in enumerate(robot.pins, start=1)
+    ]
+
+
+def _with_pins(robot: Robot, values: Values) -> Robot:
+    pins = (replace(pin, stiffness=values[f"pin {number}.stiffness"]) for number, pin in enumerate(robot.pins, start=1))
+    return replace(robot, pins=tuple(pins))
+
+
+def _gravity(robot: Robot) -> list[Parameter]:
+    if robot.gravity is None:
+        return []
+    strength = float(np.linalg.norm(robot.gravity))
+    return [
+        Parameter(name=f"gravity.{axis}", start=component, spread=0.05 * strength, unit="m/s^2")
+        for axis, component in zip("xyz", robot.gravity, strict=False)
+    ]
+
+
+def _with_gravity(robot: Robot, values: Values) -> Robot:
+    axes = "xyz"[: robot.body.mesh.dim]
+    return replace(robot, gravity=tuple(values[f"gravity.{axis}"] for axis in axes))
+
+
+def _rods(robot: Robot) -> list[Parameter]:
+    return [
+        Parameter(name=f"{rod.name}.bending", start=rod.stiffnesses[1], spread=0.7, log=True, unit="N m^2")
+        for rod in robot.rods
+    ]
+
+
+def _with_rods(robot: Robot, values: Values) -> Robot:
+    rods = (
+        replace(
+            rod,
+            diameter=None,
+            young=None,
+            axial_stiffness=rod.stiffnesses[0],
+            bending_stiffness=values[f"{rod.name}.bending"],
+        )
+        for rod in robot.rods
+    )
+    return replace(robot, rods=tuple(rods))
+
+
+def _offsets(robot: Robot) -> list[Parameter]:
+    spread = 0.01 * robot.body.mesh.size / MM
+    return [Parameter(name=f"{winch.name}.zero", start=0.0, spread=spread, unit="mm") for winch in robot.winches]
+
+
+def _shifted(robot: Robot, values: Values, commands: np.ndarray) -> np.ndarray:
+    return commands + MM * np.array([values[f"{winch.name}.zero"] for winch in robot.winches])
+
+
+def _gains(robot: Robot) -> list[Parameter]:
+    return [Parameter(name=f"{winch.name}.gain", start=1.0, spread=0.05, log=True) for winch in robot.winches]
+
+
+def _scaled(robot: Robot, values: Values, commands: np.ndarray) -> np.ndarray:
+    return commands * np.array([values[f"{winch.name}.gain"] for winch in robot.winches])
+
+
+def _frame(robot: Robot) -> list[Parameter]:
+    axes = "xyz"[: robot.body.mesh.dim]
+    shift = 0.02 * robot.body.mesh.size / MM
+    shifts = [Parameter(name=f"frame.{axis}", start=0.0, spread=shift, unit="mm") for axis in axes]
+    about = "z" if len(axes) == 2 else axes
+    return [*shifts, *(Parameter(name=f"frame.about {axis}", start=0.0, spread=3.0, unit="degrees") for axis in about)]
+
+
+def _framed(robot: Robot, values: Values, places: np.ndarray) -> np.ndarray:
+    axes = "xyz"[: robot.body.mesh.dim]
+    middle = robot.body.mesh.nodes.mean(axis=0)
+    turn = np.eye(3)
+    for axis in "xyz":
+        angle = np.radians(values.get(f"frame.about {axis}", 0.0))
+        one, two = ("xyz".index(axis) + 1) % 3, ("xyz".index(axis) + 2) % 3
+        step = np.eye(3)
+        step[[one, one, two, two], [one, two, one, two]] = np.cos(angle), -np.sin(angle), np.sin(angle), np.cos(angle)
+        turn = step @ turn
+    turn = turn[: len(axes), : len(axes)]
+    return (places - middle) @ turn.T + middle + MM * np.array([values[f"frame.{axis}"] for axis in axes])
+
+
+KINDS: dict[str, Kind] = {
+    "young": Kind(
+        about="Young's modulus of the body and of each part",
+        parameters=lambda robot: _material(robot, "young", 0.7, (1.0, 1e13), "Pa"),
+        robot=_with_material("young"),
+        default=True,
+    ),
+    "poisson": Kind(
+        about="Poisson's ratio of the body and of each part",
+        parameters=lambda robot: _material(robot, "poisson", 0.1, (NARROW, 0.5 - NARROW), ""),
+        robot=_with_material("poisson"),
+    ),
+    "density": Kind(
+        about="density of the body and of each soft part",
+        parameters=lambda robot: (
+            [] if robot.gravity is None else _material(robot, "density", 0.3, (1e-3, 1e5), "kg/m^3")
+        ),
+        robot=_with_material("density"),
+    ),
+    "stiffness": Kind(
+        about="stiffness of each cable",
+        parameters=lambda robot: _each_cable(robot, "stiffness"),
+        robot=_with_stiffness,
+        default=True,
+    ),
+    "zero": Kind(
+        about="zero of each winch: slack or pretension of its cables",
+        parameters=_offsets,
+        contractions=_shifted,
+        default=True,
+    ),
+    "gain": Kind(
+        about="gain of each winch: radius of its spool over the assumed one",
+        parameters=_gains,
+        contractions=_scaled,
+        default=True,
+    ),
+    "friction": Kind(about="friction coefficient of all cables", parameters=_friction, robot=_with_friction),
+    "pins": Kind(about="stiffness of each pin", parameters=_pins, robot=_with_pins),
+    "gravity": Kind(about="direction and strength of gravity", parameters=_gravity, robot=_with_gravity),
+    "rods": Kind(about="bending stiffness of each rod", parameters=_rods, robot=_with_rods, default=True),
+    "frame": Kind(
+        about="place and direction of the frame of the measurement",
+        parameters=_frame,
+        places=_framed,
+        default=True,
+    ),
+}
+"""Kinds of parameters by name, in the order in which they change a robot."""

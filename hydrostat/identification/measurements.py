@@ -1,0 +1,43 @@
+"""`Measurements`: commands of the winches and the places of markers that were measured."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from hydrostat.errors import InputError
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Measurements:
+    """Rows of measurements of a built robot.
+
+    Attributes:
+        commands: contraction asked of each winch [m], (rows, winches).
+        markers: names of the measured markers.
+        places: measured places [m], (rows, markers, dim), in any fixed frame; NaN where a marker was not seen.
+
+    Raises:
+        InputError: arrays that do not fit one another, or numbers that are not finite.
+    """
+
+    commands: Float[np.ndarray, "rows winches"]
+    markers: tuple[str, ...]
+    places: Float[np.ndarray, "rows markers dim"]
+
+    def __post_init__(self) -> None:
+        if self.commands.ndim != 2 or not np.isfinite(self.commands).all():
+            raise InputError("commands must be finite contractions [m], a row for each pose, a column for each winch")
+        if self.places.ndim != 3 or self.places.shape[:2] != (len(self.commands), len(self.markers)):
+            raise InputError(
+                f"places must have the shape (rows, markers, axes), here ({len(self.commands)}, {len(self.markers)}, "
+                f"...), not {self.places.shape}"
+            )
+
+    def is_measured(self, row: int) -> Bool[np.ndarray, " markers"]:
+        """Markers that were seen in a row."""
+        return np.isfinite(self.places[row]).all(axis=1)
+
+    def rows(self, chosen: np.ndarray) -> "Measurements":
+        """Some of the rows, by index or mask."""
+        return Measurements(commands=self.commands[chosen], markers=self.markers, places=self.places[chosen])

@@ -1,0 +1,104 @@
+"""`read_measurements`: contractions and measured places of markers from a table."""
+
+import csv
+import math
+from collections.abc import Sequence
+from io import StringIO
+from pathlib import Path
+
+import numpy as np
+
+from hydrostat.errors import InputError
+from hydrostat.geometry import read_stranger
+from hydrostat.identification.measurements import Measurements
+from hydrostat.robot import Robot
+
+MM = 1e-3
+LARGEST = 20_000_000
+"""Bytes that a table may have."""
+
+
+def read_measurements(file: str | Path, robot: Robot) -> Measurements:
+    """Measurements from a CSV file: `left_mm` for each winch, `tip_x_mm`, `tip_y_mm` (and `tip_z_mm`) for each marker.
+
+    A winch without a column does not contract; an empty cell of a marker says that it was not seen. A column `time_s`
+    or `pose` is skipped.
+
+    Raises:
+        InputError: a file that cannot be read, or a column or number that does not fit; the text names file and line.
+    """
+    path = Path(file)
+    try:
+        rows = list(csv.reader(StringIO(read_stranger(path, most=LARGEST).decode("utf-8-sig"), newline="")))
+    except (UnicodeDecodeError, csv.Error):
+        raise InputError(f"{path}: cannot be read as a table; save it as CSV in UTF-8") from None
+    if len(rows) < 2:
+        raise InputError(f"{path}: has no row of numbers below the names of its columns")
+    columns = _Columns([cell.strip() for cell in rows[0]], robot, f"{path}, line 1")
+    commands, places = [], []
+    for line, row in enumerate(rows[1:], start=2):
+        if any(cell.strip() for cell in row):
+            command, place = columns.read(row, f"{path}, line {line}")
+            commands.append(command)
+            places.append(place)
+    return Measurements(commands=np.array(commands), markers=columns.markers, places=np.array(places))
+
+
+class _Columns:
+    """Meaning of the columns of a table."""
+
+    def __init__(self, head: Sequence[str], robot: Robot, where: str) -> None:
+        winches = [winch.name for winch in robot.winches]
+        self._axes = "xyz"[: robot.body.mesh.dim]
+        places = {f"{marker.name}_{axis}_mm": (marker.name, axis) for marker in robot.markers for axis in self._axes}
+        self._head = head
+        self._winches: dict[int, int] = {}
+        self._places: dict[int, tuple[str, str]] = {}
+        for column, name in enumerate(head):
+            bare = name.removesuffix("_mm")
+            if name in places:
+                self._places[column] = places[name]
+            elif bare in winches:
+                self._winches[column] = winches.index(bare)
+            elif name not in _SKIPPED:
+                allowed = ", ".join([f"{winch}_mm" for winch in winches] + list(places))
+                raise InputError(f'{where}: unknown column "{name}". Available: {allowed}.')
+            if name not in _SKIPPED and head.index(name) != column:
+                raise InputError(f'{where}: column "{name}" occurs twice')
+        self.markers = tuple(dict.fromkeys(marker for marker, _ in self._places.values()))
+        self._count = len(winches)
+        for marker in self.markers:
+            for axis in self._axes:
+                if (marker, axis) not in self._places.values():
+                    raise InputError(f'{where}: add a column "{marker}_{axis}_mm"; each marker needs all its axes')
+        if not self.markers:
+            raise InputError(f"{where}: no column of a marker. Available: {', '.join(places)}.")
+
+    def read(self, row: Sequence[str], where: str) -> tuple[np.ndarray, np.ndarray]:
+        """Commands [m] and places [m] of one row."""
+        if len(row) != len(self._head):
+            raise InputError(f"{where}: {len(row)} cells, but there are {len(self._head)} columns")
+        command = np.zeros(self._count)
+        for column, winch in self._winches.items():
+            command[winch] = MM * self._number(row, column, where)
+        places = np.full((len(self.markers), len(self._axes)), np.nan)
+        for column, (marker, axis) in self._places.items():
+            if row[column].strip():
+                place = self.markers.index(marker), self._axes.index(axis)
+                places[place] = MM * self._number(row, column, where)
+        return command, places
+
+    def _number(self, row: Sequence[str], column: int, where: str) -> float:
+        try:
+            number = float(row[column])
+        except ValueError:
+            number = math.nan
+        if not math.isfinite(number):
+            raise InputError(
+                f'{where}, column {self._head[column]}: "{row[column].strip()[:30]}" is no number. '
+                "Write millimeters, or nothing for a marker that was not seen."
+            )
+        return number
+
+
+_SKIPPED = ("time_s", "pose", "row")

@@ -1,0 +1,170 @@
+"""`Residuals`: predicted less measured places of markers, with exact slopes by the parameters."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from hydrostat.arrays import Vector
+from hydrostat.errors import InputError, NotConvergedError
+from hydrostat.geometry import Anchors, locate
+from hydrostat.identification.measurements import Measurements
+from hydrostat.identification.model import IdentificationModel, Values
+from hydrostat.identification.robot_numbers import flat_slopes, robot_numbers
+from hydrostat.robot import Robot
+from hydrostat.simulation import Equilibrium, Simulation
+
+STEP = 1e-5
+"""Change of a coordinate of the fit for differences, in spreads."""
+
+
+@dataclass(frozen=True, eq=False)
+class Prediction:
+    """Predicted places of the markers of all rows.
+
+    Attributes:
+        places: in the frame of the measurement [m], (rows, markers, dim); NaN where no equilibrium was found.
+        jacobian: slopes by the coordinates of the fit, (rows, markers, dim, parameters); None if not requested.
+    """
+
+    places: Float[np.ndarray, "rows markers dim"]
+    jacobian: Float[np.ndarray, "rows markers dim parameters"] | None
+
+    @property
+    def found(self) -> Bool[np.ndarray, " rows"]:
+        """Rows with an equilibrium."""
+        return np.array([bool(np.isfinite(row).all()) for row in self.places])
+
+
+class Predictor:
+    """Predicts markers for values of the parameters; begins each row at its last equilibrium."""
+
+    def __init__(self, model: IdentificationModel, measurements: Measurements) -> None:
+        """Predictor of the rows of some measurements, which need not have measured places."""
+        self.model, self.measurements = model, measurements
+        self._poses: list[Equilibrium | None] = [None] * len(measurements.commands)
+
+    def predict(self, numbers: Vector, *, slopes: bool) -> Prediction:
+        """Places at coordinates of the fit, with their Jacobian if requested.
+
+        Raises:
+            InputError: values that no robot can have, or a parameter that changes what has no known slope.
+        """
+        values = self.model.values(numbers)
+        simulation = Simulation(self.model.robot(values))
+        contractions = self.model.contractions(values, self.measurements.commands)
+        rows, markers = len(contractions), self.measurements.markers
+        anchors = _anchors(simulation.robot, markers)
+        places = np.full((rows, len(markers), simulation.robot.body.mesh.dim), np.nan)
+        jacobian = np.zeros((*places.shape, len(numbers))) if slopes else None
+        changes = [_Change.of(self, numbers, index, simulation.robot) for index in range(len(numbers) if slopes else 0)]
+        for row, contraction in enumerate(contractions):
+            pose = self._poses[row] = self._solve(simulation, contraction, self._poses[row])
+            if pose is None:
+                continue
+            at = anchors.positions(pose.nodes)
+            places[row] = self.model.places(values, at)
+            if jacobian is not None:
+                try:
+                    jacobian[row] = self._slopes(simulation, pose, (values, at, anchors), changes, row)
+                except NotConvergedError:
+                    places[row], self._poses[row] = np.nan, None
+        return Prediction(places, jacobian)
+
+    def _solve(self, simulation: Simulation, contractions: Vector, last: Equilibrium | None) -> Equilibrium | None:
+        if last is not None and not simulation.assembly.has_history:
+            pose = simulation.solve(
+                contractions, start=simulation.make_pose(last.contractions, last.result), strict=False
+            )
+            if pose.result.converged:
+                return pose
+        pose = simulation.solve(contractions, strict=False)
+        return pose if pose.result.converged else None
+
+    def _slopes(
+        self,
+        simulation: Simulation,
+        pose: Equilibrium,
+        here: tuple[Values, np.ndarray, Anchors],
+        changes: list["_Change"],
+        row: int,
+    ) -> np.ndarray:
+        """Slopes of the places of one row, (markers, dim, parameters)."""
+        values, at, anchors = here
+        count, dim = at.shape
+        found = np.zeros((count, dim, len(changes)))
+        step = 1e-6 * simulation.robot.body.mesh.size
+        turns = np.stack(  # (dim, markers, dim): slopes of the places by each coordinate of the robot's frame
+            [
+                (self.model.places(values, at + step * axis) - self.model.places(values, at - step * axis)) / (2 * step)
+                for axis in np.eye(dim)
+            ]
+        )
+        measured = self.measurements.is_measured(row)
+        for marker in range(count):
+            if not measured[marker]:
+                continue
+            by_axis = []
+            for axis in range(dim):
+                nodes = np.zeros_like(pose.nodes)
+                np.add.at(nodes[:, axis], anchors.stencils[marker], anchors.weights[marker])
+                slopes = simulation.adjoint(pose, nodes)
+                flat = flat_slopes(slopes)
+                by_axis.append([change.through(flat, slopes.contractions, row) for change in changes])
+            found[marker] = turns[:, marker].T @ np.array(by_axis)
+        for index, change in enumerate(changes):
+            found[:, :, index] += change.direct(pose)
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class _Change:
+    """Small change of one coordinate of the fit: what it changes, without the equilibrium."""
+
+    model: IdentificationModel
+    values: tuple[Values, Values]
+    anchors: tuple[Anchors, Anchors]
+    numbers: dict[str, Vector]
+    contractions: Float[np.ndarray, "rows winches"]
+
+    @classmethod
+    def of(cls, predictor: Predictor, numbers: Vector, index: int, robot: Robot) -> "_Change":
+        model, measured = predictor.model, predictor.measurements
+        unit = np.eye(len(numbers))[index] * STEP
+        values = model.values(numbers - unit), model.values(numbers + unit)
+        less, more = (model.robot(each) for each in values)
+        before, after = (robot_numbers(each, robot.gravity) for each in (less, more))
+        if any(before[name].shape != after[name].shape for name in before):
+            raise InputError(f"{model.parameters[index].name}: it changes how many cables, points or parts a robot has")
+        pulls = [model.contractions(each, measured.commands) for each in values]
+        return cls(
+            model=model,
+            values=values,
+            anchors=(_anchors(less, measured.markers), _anchors(more, measured.markers)),
+            numbers={
+                name: (after[name] - before[name]) / (2 * STEP)
+                for name in before
+                if not np.array_equal(after[name], before[name])
+            },
+            contractions=(pulls[1] - pulls[0]) / (2 * STEP),
+        )
+
+    def through(self, slopes: dict[str, Vector], contractions: Vector, row: int) -> float:
+        """Slope of one coordinate through the equilibrium."""
+        return float(self.contractions[row] @ contractions) + sum(
+            float(change @ slopes[name]) for name, change in self.numbers.items()
+        )
+
+    def direct(self, pose: Equilibrium) -> np.ndarray:
+        """Slopes of the places with the nodes held."""
+        less, more = (
+            self.model.places(values, anchors.positions(pose.nodes))
+            for values, anchors in zip(self.values, self.anchors, strict=True)
+        )
+        return (more - less) / (2 * STEP)
+
+
+def _anchors(robot: Robot, names: tuple[str, ...]) -> Anchors:
+    mesh = robot.body.mesh
+    known = {marker.name: marker.at for marker in robot.markers}
+    return locate(mesh, np.array([known[name] for name in names]).reshape(-1, mesh.dim))

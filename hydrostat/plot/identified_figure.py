@@ -1,0 +1,45 @@
+"""`draw_identified`: measured markers beside those of the assumed and of the fitted robot."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from hydrostat.drawing import INK, WINCHES
+from hydrostat.identification import IdentifiedRobot, Measurements, rms, start_of
+from hydrostat.plot.chart import plain_axes
+
+MM = 1e3
+FITTED, ASSUMED = WINCHES[0], "#b9b4c0"
+
+
+def draw_identified(measurements: Measurements, found: IdentifiedRobot) -> Figure:
+    """Measured and predicted places of all markers along two axes, with a line from each to its measurement [mm]."""
+    seen = measurements.places
+    before, after = (
+        fitted.predict(measurements.commands, measurements.markers)
+        for fitted in (start_of(found.fitted.model), found.fitted)
+    )
+    dim = seen.shape[2]
+    views = [(0, 1)] if dim == 2 else [(0, 2), (0, 1)]
+    figure = Figure(figsize=(4.6 * len(views), 4.6), dpi=130, layout="constrained")
+    for index, view in enumerate(views):
+        axes = figure.add_subplot(1, len(views), index + 1)
+        _draw_view(axes, [MM * places[..., view].reshape(-1, 2) for places in (seen, before, after)])
+        axes.set(xlabel=f"{'xyz'[view[0]]} [mm]", ylabel=f"{'xyz'[view[1]]} [mm]", aspect="equal")
+        axes.margins(0.08)
+    figure.axes[0].legend(frameon=False, fontsize=8, loc="best")
+    figure.suptitle(
+        f"rms error {MM * rms(found.before):.2f} mm as assumed, {MM * rms(found.after):.2f} mm fitted", fontsize=10
+    )
+    return figure
+
+
+def _draw_view(axes: Axes, places: list[np.ndarray]) -> None:
+    seen, before, after = places
+    plain_axes(axes, size=8)
+    for predicted, color in ((before, ASSUMED), (after, FITTED)):
+        for start, end in zip(seen, predicted, strict=True):
+            axes.plot(*np.array([start, end]).T, color=color, linewidth=0.8, zorder=1)
+    axes.scatter(*before.T, s=12, color=ASSUMED, label="as assumed", zorder=2)
+    axes.scatter(*after.T, s=12, color=FITTED, label="fitted", zorder=3)
+    axes.scatter(*seen.T, s=14, facecolors="none", edgecolors=INK, linewidths=0.9, label="measured", zorder=4)

@@ -1,0 +1,173 @@
+"""Parameters from measurements. Oracles: central differences, and robots whose parameters are known."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from builders import box_mesh, mesh_body, strip_mesh
+
+from hydrostat.errors import InputError
+from hydrostat.identification import (
+    KINDS,
+    Measurements,
+    fit_model,
+    identify,
+    named_model,
+    read_measurements,
+)
+from hydrostat.identification.residuals import Predictor
+from hydrostat.robot import Cable, Load, Marker, Mount, Pin, Robot, Rod, Winch, save_robot
+
+UPPER = ((0.0083, 0.0137), (0.0587, 0.0161), (0.1129, 0.0147), (0.1833, 0.0143))
+LOWER = ((0.0087, -0.0143), (0.0921, -0.0157), (0.1827, -0.0139))
+
+
+def strip() -> Robot:
+    """A flat strip with a cable on each side of its middle, a hung mass and weight."""
+    return Robot(
+        name="strip",
+        body=mesh_body(strip_mesh(8, 2)),
+        pins=(Pin(box=((-0.001, -1.0), (0.001, 1.0)), stiffness=3e3),),
+        gravity=(0.0, -9.81),
+        winches=(Winch(name="up", at=UPPER[0]), Winch(name="down", at=LOWER[0])),
+        cables=(Cable(winch="up", points=UPPER, slack=0.001), Cable(winch="down", points=LOWER, slack=0.001)),
+        markers=(Marker(name="tip", at=(0.2, 0.0)), Marker(name="middle", at=(0.1, 0.0))),
+        loads=(Load(name="nut", marker="tip", mass=0.005),),
+        poses={},
+    )
+
+
+def box() -> Robot:
+    """A box in space with a rod and a cable whose winch stands in the world."""
+    points = ((-0.02, 0.013, 0.037), (0.0523, 0.0117, 0.0313), (0.1031, 0.0107, 0.0289))
+    return Robot(
+        name="box",
+        body=mesh_body(box_mesh((4, 2, 2), size=(0.12, 0.04, 0.04))),
+        pins=(Pin(box=((-0.001, -1.0, -1.0), (0.001, 1.0, 1.0))),),
+        winches=(Winch(name="one", at=points[0], mount=Mount.WORLD),),
+        cables=(Cable(winch="one", points=points, slack=0.001),),
+        markers=(Marker(name="tip", at=(0.12, 0.02, 0.02)),),
+        rods=(
+            Rod(
+                name="wire",
+                points=((0.0, 0.021, 0.019), (0.12, 0.021, 0.019)),
+                axial_stiffness=50.0,
+                bending_stiffness=2e-3,
+            ),
+        ),
+        poses={},
+    )
+
+
+def measured(robot: Robot, commands: np.ndarray) -> Measurements:
+    """Rows without places."""
+    names = tuple(marker.name for marker in robot.markers)
+    places = np.zeros((len(commands), len(names), robot.body.mesh.dim))
+    return Measurements(commands=commands, markers=names, places=places)
+
+
+@pytest.mark.parametrize(
+    ("robot", "kinds"),
+    [
+        (strip(), ("young", "poisson", "density", "stiffness", "zero", "gain", "pins", "gravity", "frame")),
+        (box(), ("young", "stiffness", "zero", "gain", "rods", "frame")),
+    ],
+    ids=["flat", "space"],
+)
+def test_slopes_are_those_of_central_differences(robot: Robot, kinds: tuple[str, ...], unchecked: None) -> None:
+    model = named_model(robot, kinds)
+    rows = np.full((1, len(robot.winches)), 0.009) * np.linspace(1.0, 0.3, len(robot.winches))
+    predictor = Predictor(model, measured(robot, rows))
+    numbers = 0.3 * np.random.default_rng(1).standard_normal(len(model.parameters))
+    slopes = predictor.predict(numbers, slopes=True).jacobian
+    assert slopes is not None
+    for index, parameter in enumerate(model.parameters):
+        step = 1e-3 * np.eye(len(numbers))[index]
+        less, more = (predictor.predict(numbers + sign * step, slopes=False).places for sign in (-1, 1))
+        found = (more - less) / 2e-3
+        scale = max(np.abs(found).max(), 1e-6)
+        assert np.abs(slopes[..., index] - found).max() < 2e-4 * scale, parameter.name
+
+
+def test_hidden_parameters_of_a_heavy_strip_are_found() -> None:
+    robot, rng = strip(), np.random.default_rng(2)
+    model = named_model(robot, ("young", "zero", "gain", "frame"))
+    truth = model.start | {"body.young": 1.4 * model.start["body.young"], "up.zero": 0.6, "down.gain": 1.04}
+    truth |= {"frame.x": 2.0, "frame.about z": 1.5}
+    hidden = np.array([parameter.to_fitted(truth[parameter.name]) for parameter in model.parameters])
+    rows = rng.uniform(0.001, 0.012, (12, 2))
+    asked = measured(robot, rows)
+    noise = 1e-4
+    seen = Predictor(model, asked).predict(hidden, slopes=False).places + noise * rng.standard_normal((12, 2, 2))
+    seen[3, 0] = np.nan
+    found = fit_model(model, replace(asked, places=seen))
+    assert found.failed == 0
+    assert found.noise == pytest.approx(noise, rel=0.4)
+    inside = [low <= truth[name] <= high for name, (low, high) in found.intervals.items()]
+    assert sum(inside) >= len(inside) - 1
+    assert found.values["body.young"] == pytest.approx(truth["body.young"], rel=0.1)
+    assert found.shown["body.young"] > 0.5
+
+
+def test_what_measurements_do_not_show_is_said() -> None:
+    """Pulled by displacements and without weight, a shape does not show the body's modulus."""
+    robot = replace(strip(), gravity=None, loads=())
+    model = named_model(robot, ("young", "gain"))
+    rows = np.random.default_rng(3).uniform(0.002, 0.01, (10, 2))
+    asked = measured(robot, rows)
+    seen = Predictor(model, asked).predict(np.full(3, 0.2), slopes=False).places
+    seen += 2e-4 * np.random.default_rng(4).standard_normal(seen.shape)
+    found = identify(robot, replace(asked, places=seen), fit=("young", "gain", "pins"))
+    assert "pin 1.stiffness" in found.unknown
+    assert "up.gain" not in found.unknown
+    assert found.robot.winch("up").spool_radius != robot.winch("up").spool_radius
+    assert len(found.held_out) == 2
+
+
+def test_a_table_is_read_and_refused_by_line(tmp_path: Path) -> None:
+    robot = strip()
+    file = tmp_path / "seen.csv"
+    file.write_text("pose,up_mm,tip_x_mm,tip_y_mm\na,3.5,198,-4\nb,2,,\n")
+    found = read_measurements(file, robot)
+    assert found.commands.tolist() == [[0.0035, 0.0], [0.002, 0.0]]
+    assert found.markers == ("tip",)
+    assert np.isnan(found.places[1]).all()
+    for text, words in (
+        ("up_mm\n3\n", "no column of a marker"),
+        ("side_mm,tip_x_mm,tip_y_mm\n1,2,3\n", 'unknown column "side_mm"'),
+        ("up_mm,tip_x_mm\n1,2\n", 'add a column "tip_y_mm"'),
+        ("up_mm,up_mm,tip_x_mm,tip_y_mm\n1,1,2,3\n", "occurs twice"),
+        ("up_mm,tip_x_mm,tip_y_mm\nfar,2,3\n", 'line 2, column up_mm: "far" is no number'),
+        ("up_mm,tip_x_mm,tip_y_mm\n1,2\n", "line 2: 2 cells"),
+        ("up_mm,tip_x_mm,tip_y_mm\n", "no row of numbers"),
+    ):
+        file.write_text(text)
+        with pytest.raises(InputError) as caught:
+            read_measurements(file, robot)
+        assert words in str(caught.value)
+
+
+def test_unknown_kinds_are_refused() -> None:
+    with pytest.raises(InputError, match='unknown parameter "yuong"'):
+        named_model(strip(), ("yuong",))
+    with pytest.raises(InputError, match="has nothing of the kind"):
+        named_model(strip(), ("rods",))
+    assert [name for name, kind in KINDS.items() if kind.default] == [
+        "young",
+        "stiffness",
+        "zero",
+        "gain",
+        "rods",
+        "frame",
+    ]
+
+
+def test_the_fitted_robot_can_be_saved(tmp_path: Path) -> None:
+    robot = strip()
+    asked = measured(robot, np.array([[0.004, 0.0], [0.0, 0.006], [0.008, 0.002]]))
+    seen = Predictor(named_model(robot, ("gain",)), asked).predict(np.array([0.5, -0.5]), slopes=False).places
+    found = identify(robot, replace(asked, places=seen), fit=("gain", "zero"))
+    assert found.held_out.size == 0
+    save_robot(found.robot, tmp_path / "fitted")
+    assert found.after.max() < 0.3 * found.before.max()
