@@ -1,237 +1,44 @@
-"""Real robots: errors of hydrostat against published measurements of a robot that others built.
+"""Real robots: errors of hydrostat against published measurements of robots that others built.
 
-    python benchmarks/real.py FOLDER [--samples 90] [--plot FILE.png]
+    python benchmarks/real.py FOLDER [--only opencr|trunk] [--samples 90] [--plot FOLDER]
 
-FOLDER holds opencr_v4/robot.json, train.csv and val.csv: a tendon continuum robot of three segments with nine tendons
-(Continuum Robotics Laboratory, opencr-mujoco, MIT). The model is fitted to some rows of train.csv by Gauss-Newton steps
-with exact adjoint sensitivities, and judged on val.csv, which it never saw. Errors are distances of the tip in the
-frame of the measurement [mm]; a row whose equilibrium is not found counts as the mean of train. Beside it stands a
-quadratic regression on all rows of train.csv, and predictions of the authors if FOLDER has them.
+FOLDER holds opencr_v4/ (a tendon continuum robot of three segments with nine tendons; Continuum Robotics Laboratory,
+opencr-mujoco) and trunk_payload/ (a vacuum-hose trunk of six motors with hung masses; Stanford ASL, trunk-stack), both
+MIT. Parameters are identified from some rows (`hydrostat.identification`) and judged on rows that the fit never saw:
+val.csv of the first robot, every third block of the second. Errors are distances in the frame of the measurement [mm];
+a row whose equilibrium is not found counts as the mean of the fitted rows' places.
 """
 
 import argparse
 import csv
 import json
 import time
-from dataclasses import dataclass, replace
-from functools import cached_property
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from machine import machine
-from scipy.optimize import least_squares
+from real_robots import MM, opencr, trunk
 
-from hydrostat.geometry import Mesh
-from hydrostat.robot import Body, BodyPart, Cable, Marker, Material, Mount, Pin, Robot, Rod, Source, Winch
-from hydrostat.simulation import Equilibrium, Simulation
+from hydrostat.identification import FittedModel, IdentificationModel, Measurements, fit_model
 
-MM = 1e-3
-DISKS = 10  # of a segment
-SHIFT = 10.0  # slack of every tendon at zero [mm]: measured pulls are from -10 mm on
-DISK = 2.0  # thickness of a disk [mm]
-BENDING = 1e-3  # EI of the rod in the middle [N m^2]; stiffness of tendons and solid are fitted beside it
-AXIAL = 2e4  # EA of the rod [N]
-SIDE = 11.0  # of the square section of the body that carries disks and tendons [mm]
+HEAD = "| {} | mean | median | RMSE | 90 % | rows, parameters, CPU |\n|---|---|---|---|---|---|"
+SKIPPED = 0.5  # head of a block of the trunk that is not scored [s]
+LOADS = (0, 100)  # hung masses of the trunk [g]
 
 
-def read(file: Path) -> tuple[np.ndarray, np.ndarray]:
-    """Pulls of the tendons and places of the tip [mm]."""
+def numbers(file: Path) -> tuple[list[str], np.ndarray]:
+    """Names and values of the columns that hold numbers."""
     with file.open(encoding="utf-8") as lines:
         rows = list(csv.reader(lines))
-    numbers = np.array([[float(value) for value in [row[0], *row[2:]]] for row in rows[1:]])
-    return numbers[:, 1:10], numbers[:, 10:13]
+    kept = [index for index, name in enumerate(rows[0]) if name != "run"]
+    values = np.array([[float(row[index]) for index in kept] for row in rows[1:]])
+    return [rows[0][index] for index in kept], values
 
 
-def read_tips(file: Path) -> np.ndarray:
-    """Places of the tip in the last three columns [mm]."""
-    return np.loadtxt(file, delimiter=",", skiprows=1, usecols=(-3, -2, -1))
-
-
-@dataclass(frozen=True)
-class Spine:
-    """Tendon robot as a body: rigid disks on an elastic rod."""
-
-    lengths: tuple[float, ...]  # of the segments [mm]
-
-    @cached_property
-    def disks(self) -> np.ndarray:
-        """Lower and upper side of each disk [mm], (disks, 2); the upper side of the last of a segment is its end."""
-        ends = np.cumsum([0.0, *self.lengths])
-        tops = np.concatenate([np.linspace(a, b, DISKS + 1)[1:] for a, b in pairwise(ends)])
-        return np.stack([tops - DISK, tops], axis=1)
-
-    @cached_property
-    def body(self) -> Body:
-        """Body with its disks; a solid between them resists twist, which the rod does not."""
-        planes = np.concatenate([[0.0], self.disks.ravel()])
-        parts = tuple(
-            BodyPart(
-                name=f"disk {index + 1}", shape="box", at=(-1.0, -1.0, MM * low), to=(1.0, 1.0, MM * high), density=1e3
-            )
-            for index, (low, high) in enumerate(self.disks)
-        )
-        material = Material(young=1e6, poisson=0.0, density=10.0)
-        mesh = layered_mesh(planes)
-        return Body(source=Source.MESH, file="spine.vtk", content=b"", material=material, mesh=mesh, parts=parts)
-
-    def robot(self, given: "Parameters") -> Robot:
-        """Robot with these parameters."""
-        middles, count = self.disks.mean(axis=1), DISKS
-        winches, cables = [], []
-        for segment in range(3):
-            for tendon in range(3):
-                angle = given.angles[segment] + 2 * np.pi / 3 * tendon
-                place = given.radii[segment] * np.array([np.cos(angle), np.sin(angle)])
-                heights = np.concatenate([[-5.0], middles[: count * (segment + 1)]])
-                points = tuple((MM * place[0], MM * place[1], MM * height) for height in heights.tolist())
-                name = f"s{segment + 1}t{tendon + 1}"
-                winches.append(Winch(name=name, at=points[0], mount=Mount.WORLD, travel=0.1, release=0.1))
-                cables.append(
-                    Cable(
-                        winch=name,
-                        points=points,
-                        stiffness=1e3 * given.stiffness,
-                        slack=MM * (SHIFT + given.slack[segment]),
-                        smoothing=5e-5,
-                    )
-                )
-        top = MM * float(self.disks[-1, 1])
-        return Robot(
-            name="spine",
-            body=replace(self.body, material=replace(self.body.material, young=given.young)),
-            pins=(Pin(box=((-1.0, -1.0, -1e-4), (1.0, 1.0, 1e-4)), stiffness=1e6),),
-            rods=(
-                Rod(
-                    name="backbone",
-                    points=((0.0, 0.0, 0.0), (0.0, 0.0, top)),
-                    axial_stiffness=AXIAL,
-                    bending_stiffness=BENDING,
-                ),
-            ),
-            winches=tuple(winches),
-            cables=tuple(cables),
-            markers=(Marker(name="tip", at=(0.0, 0.0, top)),),
-            poses={},
-        )
-
-
-def layered_mesh(planes: np.ndarray) -> Mesh:
-    """Tetrahedra of a square prism about the z axis, two cells across, with nodes on planes [mm]."""
-    across = np.array([-0.5, 0.0, 0.5]) * SIDE
-    nodes = np.array([(x, y, z) for z in planes for y in across for x in across])
-    number = np.arange(len(nodes)).reshape(len(planes), 3, 3)
-    elements = []
-    corners = ((0, 0, 0), (0, 0, 1), (0, 1, 0), (0, 1, 1), (1, 0, 0), (1, 0, 1), (1, 1, 0), (1, 1, 1))
-    for k, j, i in np.ndindex(len(planes) - 1, 2, 2):
-        cube = [int(number[k + dk, j + dj, i + di]) for dk, dj, di in corners]
-        for a, b in ((1, 3), (3, 2), (2, 6), (6, 4), (4, 5), (5, 1)):
-            elements.append([cube[0], cube[a], cube[b], cube[7]])
-    tetrahedra = np.array(elements)
-    spans = nodes[tetrahedra[:, 1:]] - nodes[tetrahedra[:, :1]]
-    turned = np.linalg.det(spans) < 0
-    tetrahedra[turned, 1:3] = tetrahedra[turned, 2:0:-1]
-    return Mesh(MM * nodes, tetrahedra)
-
-
-@dataclass(frozen=True)
-class Parameters:
-    """Parameters of the fit."""
-
-    angles: np.ndarray  # of the first tendon of each segment [rad]
-    radii: np.ndarray  # of the circle of the tendons of each segment [mm]
-    slack: np.ndarray  # of the tendons of each segment at rest [mm]; below 0: pretension
-    stiffness: float  # of the tendons [N/mm]
-    young: float  # of the solid between the disks [Pa]
-    base: np.ndarray  # place of the base [mm]
-    tilt: np.ndarray  # of the base about x and y [rad]
-
-    @classmethod
-    def of(cls, numbers: np.ndarray) -> "Parameters":
-        """Parameters from one vector."""
-        return cls(
-            numbers[:3], numbers[3:6], numbers[6:9], *np.exp(numbers[9:11]).tolist(), numbers[11:14], numbers[14:]
-        )
-
-    def turn(self) -> np.ndarray:
-        """Rotation of the base."""
-        (a, b), one = self.tilt, np.eye(3)
-        x = np.array([one[0], [0, np.cos(a), -np.sin(a)], [0, np.sin(a), np.cos(a)]])
-        y = np.array([[np.cos(b), 0, np.sin(b)], one[1], [-np.sin(b), 0, np.cos(b)]])
-        return x @ y
-
-
-class Fit:
-    """Residuals of some rows and their slopes, with poses kept from step to step."""
-
-    def __init__(self, spine: Spine, pulls: np.ndarray, tips: np.ndarray) -> None:
-        """Rows of measured pulls and tips [mm]."""
-        self.spine, self.pulls, self.tips = spine, pulls, tips
-        self.poses: list[Equilibrium | None] = [None] * len(pulls)
-        self.asked: np.ndarray | None = None
-        self.failed = 0
-
-    def residuals(self, numbers: np.ndarray) -> np.ndarray:
-        """Predicted less measured tips [mm]."""
-        self._ask(numbers)
-        return (self.found - self.tips).ravel()
-
-    def slopes(self, numbers: np.ndarray) -> np.ndarray:
-        """Derivatives of the residuals."""
-        self._ask(numbers)
-        return self.jacobian.reshape(-1, len(numbers))
-
-    def _ask(self, numbers: np.ndarray) -> None:
-        if self.asked is not None and (self.asked == numbers).all():
-            return
-        given = Parameters.of(numbers)
-        simulation = Simulation(self.spine.robot(given))
-        turn, h = given.turn(), 1e-6
-        turns = [(Parameters.of(numbers + h * row).turn() - turn) / h for row in np.eye(len(numbers))[14:]]
-        self.found, self.jacobian = np.empty_like(self.tips), np.zeros((*self.tips.shape, len(numbers)))
-        self.failed = 0
-        for row, pull in enumerate(self.pulls):
-            pose = simulation.solve(MM * (SHIFT + pull), start=self._start(simulation, row), strict=False)
-            if not pose.result.converged:
-                pose = simulation.solve(MM * (SHIFT + pull), strict=False)
-            self.failed += not pose.result.converged
-            self.poses[row] = pose if pose.result.converged else None
-            tip = pose.markers["tip"] / MM
-            self.found[row] = given.base + turn @ tip
-            self.jacobian[row, :, 11:14] = np.eye(3)
-            self.jacobian[row, :, 14:] = np.stack([part @ tip for part in turns], axis=1)
-            if pose.result.converged:
-                self.jacobian[row, :, :11] = turn @ self._by_robot(simulation, pose, given)
-        self.asked = numbers.copy()
-
-    def _start(self, simulation: Simulation, row: int) -> Equilibrium | None:
-        pose = self.poses[row]
-        return None if pose is None else simulation.make_pose(pose.contractions, pose.result)
-
-    def _by_robot(self, simulation: Simulation, pose: Equilibrium, given: Parameters) -> np.ndarray:
-        """Derivatives of the tip [mm] by angles, radii [mm], slack [mm], logarithms of stiffness and modulus."""
-        anchors = simulation.marker_anchors
-        found = np.zeros((3, 11))
-        for axis in range(3):
-            nodes = np.zeros_like(pose.nodes)
-            np.add.at(nodes[:, axis], anchors.stencils[0], anchors.weights[0])
-            slopes = simulation.adjoint(pose, nodes)
-            found[axis, 10] = slopes.young * given.young / MM
-            for index, cable in enumerate(simulation.robot.cables):
-                segment, places = index // 3, np.array(cable.points)
-                around = np.stack([-places[:, 1], places[:, 0], 0 * places[:, 2]], axis=1)
-                found[axis, segment] += float((slopes.routes[index] * around).sum()) / MM
-                outward = np.array([*places[0, :2], 0.0]) / np.linalg.norm(places[0, :2])
-                found[axis, 3 + segment] += float(slopes.routes[index].sum(axis=0) @ outward)
-                found[axis, 6 + segment] += slopes.slack[index]
-                found[axis, 9] += slopes.cable_stiffness[index] * 1e3 * given.stiffness / MM
-        return found
-
-
-def quadratic(pulls: np.ndarray, tips: np.ndarray, asked: np.ndarray) -> np.ndarray:
-    """Ridge regression by all products of two pulls."""
-    middle, spread, ridge = pulls.mean(axis=0), pulls.std(axis=0), 1e-4
+def ridge(pulls: np.ndarray, places: np.ndarray, asked: np.ndarray) -> np.ndarray:
+    """Ridge regression by all products of two inputs."""
+    middle, spread = pulls.mean(axis=0), pulls.std(axis=0)
 
     def features(rows: np.ndarray) -> np.ndarray:
         full = np.column_stack([np.ones(len(rows)), (rows - middle) / spread])
@@ -241,13 +48,13 @@ def quadratic(pulls: np.ndarray, tips: np.ndarray, asked: np.ndarray) -> np.ndar
     known = features(pulls)
     scale = np.sqrt((known**2).mean(axis=0))
     known = known / scale
-    normal = known.T @ known + ridge * len(known) * np.eye(known.shape[1])
-    return features(asked) / scale @ np.linalg.solve(normal, known.T @ tips)
+    normal = known.T @ known + 1e-4 * len(known) * np.eye(known.shape[1])
+    return features(asked) / scale @ np.linalg.solve(normal, known.T @ places)
 
 
-def line(what: str, found: np.ndarray, tips: np.ndarray, more: str = "") -> str:
+def line(what: str, found: np.ndarray, places: np.ndarray, more: str = "") -> str:
     """Row of the table."""
-    errors = np.linalg.norm(found - tips, axis=1)
+    errors = np.linalg.norm(found - places, axis=1)
     root = float(np.sqrt((errors**2).mean()))
     return (
         f"| {what} | {errors.mean():.2f} | {np.median(errors):.2f} | **{root:.2f}** | {np.percentile(errors, 90):.2f} |"
@@ -255,66 +62,160 @@ def line(what: str, found: np.ndarray, tips: np.ndarray, more: str = "") -> str:
     )
 
 
-def main() -> None:
-    """Fit and print the table."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("--samples", type=int, default=90, help="rows of train.csv that the model is fitted to")
-    parser.add_argument("--plot", type=Path, metavar="FILE.png", help="measured and predicted tips")
-    options = parser.parse_args()
-    folder = options.folder / "opencr_v4"
-    facts: dict[str, Any] = json.loads((folder / "robot.json").read_text(encoding="utf-8"))
-    spine = Spine(tuple(facts["segment_lengths_mm"]))
-    (pulls, tips), (asked, held_out) = read(folder / "train.csv"), read(folder / "val.csv")
-    chosen = np.sort(np.random.default_rng(0).choice(len(pulls), options.samples, replace=False))
+def identified(model: IdentificationModel, measured: Measurements) -> tuple[FittedModel, str]:
+    """Fit, and its rows, parameters and time."""
     began = time.process_time()
-    fit = Fit(spine, pulls[chosen], tips[chosen])
-    angles = facts["tendon_angles"]["segment_offset_rad_authors_fit_2026_03"]
-    circle = [facts["tendon_circle_radius_mm"]] * 3
-    begin = np.array([*angles, *circle, -0.3, -0.3, -0.3, np.log(200.0), np.log(5e5), 0.0, 0.0, 0.0, 0.0, 0.0])
-    solved = least_squares(fit.residuals, begin, jac=fit.slopes, x_scale="jac", max_nfev=20)
+    fitted = fit_model(model, measured, progress=lambda text: print(f"  {text}", end="\r", flush=True))
     seconds = time.process_time() - began
-    judged = Fit(spine, asked, held_out)
-    judged.residuals(solved.x)
-    found = judged.found
-    for row, pose in enumerate(judged.poses):
-        if pose is None:
-            found[row] = tips.mean(axis=0)
-    given = Parameters.of(solved.x)
-    print(f"{machine()}\n")
-    print("| OpenCR v4, val.csv, tip [mm] | mean | median | RMSE | 90 % | rows, parameters, CPU |")
-    print("|---|---|---|---|---|---|")
-    print(line("quadratic", quadratic(pulls, tips, asked), held_out, f"{len(pulls)}, 165"))
+    return fitted, f"{len(measured.commands)}, {len(model.parameters)}, {seconds:.0f} s"
+
+
+def judged(fitted: FittedModel, asked: Measurements, known: Measurements, marker: int) -> tuple[np.ndarray, int]:
+    """Predicted places of one marker [mm], and how many rows had no equilibrium."""
+    found = fitted.predict(asked)[:, marker]
+    missing = ~np.isfinite(found).all(axis=1)
+    found[missing] = known.places[:, marker].mean(axis=0)
+    return found / MM, int(missing.sum())
+
+
+def run_opencr(folder: Path, samples: int, pictures: Path | None) -> None:
+    """OpenCR v4: fitted on train.csv, judged on val.csv."""
+    facts: dict[str, Any] = json.loads((folder / "robot.json").read_text(encoding="utf-8"))
+    model = opencr(
+        facts["segment_lengths_mm"],
+        facts["tendon_angles"]["segment_offset_rad_authors_fit_2026_03"],
+        facts["tendon_circle_radius_mm"],
+    )
+    train, val = (numbers(folder / f"{name}.csv")[1] for name in ("train", "val"))
+    known, asked = (
+        Measurements(commands=MM * rows[:, 1:10], markers=("tip",), places=MM * rows[:, None, 10:13])
+        for rows in (train, val)
+    )
+    chosen = np.sort(np.random.default_rng(0).choice(len(train), samples, replace=False))
+    fitted, cost = identified(model, known.rows(chosen))
+    found, missing = judged(fitted, asked, known, 0)
+    print(HEAD.format("OpenCR v4, val.csv, tip [mm]"))
+    print(line("quadratic", ridge(train[:, 1:10], train[:, 10:13], val[:, 1:10]), val[:, 10:13], f"{len(train)}, 165"))
     authors = folder / "val_authors_mujoco.csv"
     if authors.exists():
-        print(line("MuJoCo model of the authors", read_tips(authors), held_out, "calibrated on another day"))
-    print(line("hydrostat, on the fitted rows", fit.found, fit.tips, f"{options.samples}, 16, {seconds:.0f} s"))
-    print(line("hydrostat", found, held_out, f"{options.samples}, 16; {judged.failed} not converged"))
-    print(
-        f"\ntendons {given.stiffness:.0f} N/mm on circles of {given.radii.round(2)} mm, slack {given.slack.round(2)} mm"
+        tips = numbers(authors)[1][:, -3:]
+        print(line("MuJoCo model of the authors", tips, val[:, 10:13], "calibrated on another day"))
+    print(line("hydrostat", found, val[:, 10:13], f"{cost}; {missing} not converged"))
+    print_parameters(fitted)
+    if pictures:
+        plot(pictures / "opencr.png", val[:, 10:13], found, ("x", "z"))
+
+
+def run_trunk(folder: Path, samples: int, pictures: Path | None) -> None:
+    """Trunk: fitted on two thirds of the blocks of all loads, and on those without a load; judged on the others."""
+    facts: dict[str, Any] = json.loads((folder / "robot.json").read_text(encoding="utf-8"))
+    base = np.array(facts["base_about_mm"])
+    disks = np.array(facts["disks_near_zero_angles_mm"]).reshape(3, 3)
+    lengths = np.diff(np.concatenate([[0.0], -disks[:, 1]])).tolist()
+    x, y, z = base.tolist()
+    model = trunk(lengths, (x, -z, y))
+    rows = {load: trunk_rows(numbers(folder / f"load_{load:03d}g.csv")) for load in LOADS}
+    tests = {load: np.isin(one[0], np.unique(one[0])[::3]) for load, one in rows.items()}
+    rng = np.random.default_rng(0)
+    known = {load: trunk_measured(rows[load], load, ~tests[load]) for load in LOADS}
+    asked = {load: trunk_measured(rows[load], load, tests[load]) for load in LOADS}
+    mixed = joined(
+        [one.rows(np.sort(rng.choice(len(one.commands), samples // 2, replace=False))) for one in known.values()]
     )
-    print(f"solid of {given.young / 1e6:.2f} MPa beside a rod of EI {BENDING:g} N m^2")
-    print(f"base {np.round(given.base, 2)} mm, tilt {np.round(np.degrees(given.tilt), 2)} degrees; {solved.message}")
-    if options.plot:
-        plot(options.plot, held_out, found)
+    print(HEAD.format("Trunk, every third block, disk 3 [mm]"))
+    for load in LOADS:
+        places = asked[load].places[:, 2] / MM
+        every = joined(list(known.values()))
+        inputs = [np.column_stack([one.commands[:, ::2] / MM, one.hung[:, 2]]) for one in (every, asked[load])]
+        more = f"{len(every.commands)}, 108"
+        print(line(f"quadratic, {load} g", ridge(inputs[0], every.places[:, 2] / MM, inputs[1]), places, more))
+    fitted, cost = identified(model, mixed)
+    for load in LOADS:
+        found, missing = judged(fitted, asked[load], mixed, 2)
+        places = asked[load].places[:, 2] / MM
+        print(line(f"hydrostat, {load} g", found, places, f"{cost}; {missing} not converged"))
+        if pictures:
+            plot(pictures / f"trunk_{load}.png", places, found, ("x", "z"))
+    print_parameters(fitted)
 
 
-def plot(file: Path, tips: np.ndarray, found: np.ndarray) -> None:
-    """Draw measured and predicted tips from the side and from above [mm]."""
+def trunk_rows(table: tuple[list[str], np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Blocks, motor angles [degrees] and places of the disks [mm] with z up, of the rows that are scored."""
+    names, values = table
+    column = {name: index for index, name in enumerate(names)}
+    scored = (values[:, column["t_s"]] >= SKIPPED) & (values[:, column["bad"]] == 0)
+    values = values[scored]
+    motors = values[:, [column[f"motor{number}_deg"] for number in range(1, 7)]]
+    disks = values[:, [column[f"d{disk}_{axis}_mm"] for disk in (1, 2, 3) for axis in "xzy"]].reshape(-1, 3, 3)
+    return values[:, column["block"]], motors, disks * np.array([1.0, -1.0, 1.0])
+
+
+def trunk_measured(rows: tuple[np.ndarray, np.ndarray, np.ndarray], load: int, chosen: np.ndarray) -> Measurements:
+    """Measurements of some rows; both winches of a motor have its angle as their command."""
+    _, motors, disks = (part[chosen] for part in rows)
+    masses = np.zeros((len(motors), 3))
+    masses[:, 2] = 1e-3 * load
+    names = ("disk 1", "disk 2", "disk 3")
+    return Measurements(commands=np.repeat(motors, 2, axis=1), markers=names, places=MM * disks, masses=masses)
+
+
+def joined(parts: list[Measurements]) -> Measurements:
+    """All rows of some measurements."""
+    return Measurements(
+        commands=np.concatenate([part.commands for part in parts]),
+        markers=parts[0].markers,
+        places=np.concatenate([part.places for part in parts]),
+        masses=np.concatenate([part.hung for part in parts]),
+    )
+
+
+def print_parameters(fitted: FittedModel) -> None:
+    """Print values with 95 % intervals."""
+    texts = [
+        f"{parameter.name} {fitted.values[parameter.name]:.3g} ({low:.3g} to {high:.3g})"
+        for parameter, (low, high) in zip(fitted.model.parameters, fitted.intervals.values(), strict=True)
+    ]
+    print(f"\nfitted to {1e3 * fitted.error:.2f} mm RMSE; {fitted.message}\n{'; '.join(texts)}\n")
+
+
+def plot(file: Path, places: np.ndarray, found: np.ndarray, side: tuple[str, str]) -> None:
+    """Draw measured and predicted places from the side and from above [mm]."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(9, 4.2), dpi=130, layout="constrained")
-    for axes, (one, two) in zip(figure.subplots(1, 2), (("x", "z"), ("x", "y")), strict=True):
+    for axes, (one, two) in zip(figure.subplots(1, 2), (side, ("x", "y")), strict=True):
         first, second = "xyz".index(one), "xyz".index(two)
-        for measured, predicted in zip(tips, found, strict=True):
+        for measured, predicted in zip(places, found, strict=True):
             ends = np.array([measured, predicted])
             axes.plot(ends[:, first], ends[:, second], color="#c8243f", linewidth=0.6, zorder=1)
-        axes.scatter(tips[:, first], tips[:, second], s=9, color="#2b2833", label="measured", zorder=2)
+        axes.scatter(places[:, first], places[:, second], s=9, color="#2b2833", label="measured", zorder=2)
         axes.scatter(found[:, first], found[:, second], s=9, color="#2a7fb8", label="hydrostat", zorder=3)
         axes.set(xlabel=f"{one} [mm]", ylabel=f"{two} [mm]", aspect="equal")
         axes.grid(color="#ebe8ee")
     figure.axes[0].legend(frameon=False)
+    file.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(file)
+
+
+RUNS = {"opencr": (run_opencr, "opencr_v4"), "trunk": (run_trunk, "trunk_payload")}
+
+
+def main() -> None:
+    """Fit and print the tables."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--only", choices=sorted(RUNS), help="one of the robots")
+    parser.add_argument("--samples", type=int, default=90, help="rows that a model is fitted to")
+    parser.add_argument("--plot", type=Path, metavar="FOLDER", help="pictures of measured and predicted places")
+    options = parser.parse_args()
+    print(f"{machine()}\n")
+    for name, (run, place) in RUNS.items():
+        if options.only not in (None, name):
+            continue
+        if (folder := options.folder / place).is_dir():
+            run(folder, options.samples, options.plot)
+        else:
+            print(f"{name}: no folder {folder}, left out")
 
 
 if __name__ == "__main__":

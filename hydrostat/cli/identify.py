@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 def identify(
     robot: RobotFolder,
     measurements: Annotated[
-        Path, typer.Argument(metavar="TABLE.csv", help="Columns left_mm for each winch, tip_x_mm ... for each marker.")
+        Path,
+        typer.Argument(metavar="TABLE.csv", help="Columns left_mm per winch, tip_x_mm ... per marker, tip_load_g."),
     ],
     out: OutFolder,
     fit: Annotated[

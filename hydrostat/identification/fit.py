@@ -12,11 +12,14 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.identification.measurements import Measurements
 from hydrostat.identification.model import IdentificationModel
-from hydrostat.identification.residuals import Predictor
+from hydrostat.identification.residuals import Prediction, Predictor
 from hydrostat.robot import Robot
 
 MISSING = 5.0
 """Residual of a coordinate without an equilibrium, in standard deviations of the noise."""
+
+IMPOSSIBLE = 1e4
+"""Residual of every coordinate where the values make no robot: a step there is taken back."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -60,12 +63,9 @@ class FittedModel:
         kept = np.sqrt(np.diag(self.covariance))
         return {parameter.name: 1.0 - float(one) for parameter, one in zip(self.model.parameters, kept, strict=True)}
 
-    def predict(self, commands: np.ndarray, markers: tuple[str, ...]) -> Float[np.ndarray, "rows markers dim"]:
-        """Places of markers [m] in the frame of the measurement; NaN without an equilibrium."""
-        dim = self.model.robot(self.values).body.mesh.dim
-        nowhere = np.full((len(commands), len(markers), dim), np.nan)
-        asked = Measurements(commands=commands, markers=markers, places=nowhere)
-        return Predictor(self.model, asked).predict(self.numbers, slopes=False).places
+    def predict(self, measurements: Measurements) -> Float[np.ndarray, "rows markers dim"]:
+        """Places of the markers [m] in the frame of the measurement, which is not used; NaN without an equilibrium."""
+        return Predictor(self.model, measurements).predict(self.numbers, slopes=False).places
 
 
 def fit_model(
@@ -173,11 +173,11 @@ class _Fit:
     def _ask(self, numbers: Vector) -> None:
         if self._asked is not None and (self._asked == numbers).all():
             return
-        found = self._predictor.predict(numbers, slopes=True)
+        found, missing = self._predict(numbers)
         assert found.jacobian is not None
         offsets = found.places - self.measurements.places
         self._solved = np.isfinite(offsets)[self._measured]
-        self._errors = np.where(self._solved, offsets[self._measured], MISSING * self.noise)
+        self._errors = np.where(self._solved, offsets[self._measured], missing * self.noise)
         self._jacobian = found.jacobian[self._measured]
         self._distances = np.linalg.norm(offsets, axis=2).ravel()
         self.failed, self.count = int((~found.found).sum()), self.count + 1
@@ -185,6 +185,16 @@ class _Fit:
         if self._progress:
             error = 1e3 * float(np.sqrt((self.distances**2).mean())) if len(self.distances) else np.nan
             self._progress(f"evaluation {self.count}: {error:.2f} mm off (RMS)")
+
+    def _predict(self, numbers: Vector) -> tuple[Prediction, float]:
+        """Prediction, and the residual of what it lacks; values that no robot can have are far off after the first."""
+        try:
+            return self._predictor.predict(numbers, slopes=True), MISSING
+        except InputError:
+            if not self.count:
+                raise
+        shape = self.measurements.places.shape
+        return Prediction(np.full(shape, np.nan), np.zeros((*shape, len(numbers)))), IMPOSSIBLE
 
 
 def _check(robot: Robot, measurements: Measurements) -> None:

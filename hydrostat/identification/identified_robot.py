@@ -111,7 +111,7 @@ def start_of(model: IdentificationModel) -> FittedModel:
 
 
 def _distances(fitted: FittedModel, measurements: Measurements) -> np.ndarray:
-    found = fitted.predict(measurements.commands, measurements.markers)
+    found = fitted.predict(measurements)
     return np.linalg.norm(found - measurements.places, axis=2)
 
 

@@ -1,6 +1,6 @@
 """`Measurements`: commands of the winches and the places of markers that were measured."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -16,6 +16,7 @@ class Measurements:
         commands: contraction asked of each winch [m], (rows, winches).
         markers: names of the measured markers.
         places: measured places [m], (rows, markers, dim), in any fixed frame; NaN where a marker was not seen.
+        masses: mass hung at each marker [kg], (rows, markers); none if left out.
 
     Raises:
         InputError: arrays that do not fit one another, or numbers that are not finite.
@@ -24,6 +25,7 @@ class Measurements:
     commands: Float[np.ndarray, "rows winches"]
     markers: tuple[str, ...]
     places: Float[np.ndarray, "rows markers dim"]
+    masses: Float[np.ndarray, "rows markers"] | None = None
 
     def __post_init__(self) -> None:
         if self.commands.ndim != 2 or not np.isfinite(self.commands).all():
@@ -34,10 +36,20 @@ class Measurements:
                 f"...), not {self.places.shape}"
             )
 
+        masses = self.masses
+        if masses is not None and not (masses.shape == self.places.shape[:2] and (masses >= 0).all()):
+            raise InputError("masses must be 0 or more [kg], a row for each pose, a column for each marker")
+
+    @property
+    def hung(self) -> Float[np.ndarray, "rows markers"]:
+        """Mass hung at each marker [kg]."""
+        return np.zeros(self.places.shape[:2]) if self.masses is None else self.masses
+
     def is_measured(self, row: int) -> Bool[np.ndarray, " markers"]:
         """Markers that were seen in a row."""
         return np.isfinite(self.places[row]).all(axis=1)
 
     def rows(self, chosen: np.ndarray) -> "Measurements":
         """Some of the rows, by index or mask."""
-        return Measurements(commands=self.commands[chosen], markers=self.markers, places=self.places[chosen])
+        masses = None if self.masses is None else self.masses[chosen]
+        return replace(self, commands=self.commands[chosen], places=self.places[chosen], masses=masses)

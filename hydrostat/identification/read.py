@@ -19,10 +19,11 @@ LARGEST = 20_000_000
 
 
 def read_measurements(file: str | Path, robot: Robot) -> Measurements:
-    """Measurements from a CSV file: `left_mm` for each winch, `tip_x_mm`, `tip_y_mm` (and `tip_z_mm`) for each marker.
+    """Measurements from a CSV file.
 
-    A winch without a column does not contract; an empty cell of a marker says that it was not seen. A column `time_s`
-    or `pose` is skipped.
+    Columns: `left_mm`, the contraction of winch `left`; `tip_x_mm`, `tip_y_mm` (and `tip_z_mm`), the place of marker
+    `tip`; `tip_load_g`, a mass that hung there. A winch without a column does not contract. An empty cell of a marker
+    says that it was not seen. Columns `time_s`, `pose` and `row` are skipped.
 
     Raises:
         InputError: a file that cannot be read, or a column or number that does not fit; the text names file and line.
@@ -35,13 +36,19 @@ def read_measurements(file: str | Path, robot: Robot) -> Measurements:
     if len(rows) < 2:
         raise InputError(f"{path}: has no row of numbers below the names of its columns")
     columns = _Columns([cell.strip() for cell in rows[0]], robot, f"{path}, line 1")
-    commands, places = [], []
+    commands, places, masses = [], [], []
     for line, row in enumerate(rows[1:], start=2):
         if any(cell.strip() for cell in row):
-            command, place = columns.read(row, f"{path}, line {line}")
+            command, place, mass = columns.read(row, f"{path}, line {line}")
+            masses.append(mass)
             commands.append(command)
             places.append(place)
-    return Measurements(commands=np.array(commands), markers=columns.markers, places=np.array(places))
+    return Measurements(
+        commands=np.array(commands),
+        markers=columns.markers,
+        places=np.array(places),
+        masses=np.array(masses) if np.any(masses) else None,
+    )
 
 
 class _Columns:
@@ -54,14 +61,18 @@ class _Columns:
         self._head = head
         self._winches: dict[int, int] = {}
         self._places: dict[int, tuple[str, str]] = {}
+        self._loads: dict[int, str] = {}
+        loads = {f"{marker.name}_load_g": marker.name for marker in robot.markers}
         for column, name in enumerate(head):
             bare = name.removesuffix("_mm")
             if name in places:
                 self._places[column] = places[name]
+            elif name in loads:
+                self._loads[column] = loads[name]
             elif bare in winches:
                 self._winches[column] = winches.index(bare)
             elif name not in _SKIPPED:
-                allowed = ", ".join([f"{winch}_mm" for winch in winches] + list(places))
+                allowed = ", ".join([f"{winch}_mm" for winch in winches] + list(places) + list(loads))
                 raise InputError(f'{where}: unknown column "{name}". Available: {allowed}.')
             if name not in _SKIPPED and head.index(name) != column:
                 raise InputError(f'{where}: column "{name}" occurs twice')
@@ -71,11 +82,13 @@ class _Columns:
             for axis in self._axes:
                 if (marker, axis) not in self._places.values():
                     raise InputError(f'{where}: add a column "{marker}_{axis}_mm"; each marker needs all its axes')
+        if unmeasured := [marker for marker in self._loads.values() if marker not in self.markers]:
+            raise InputError(f"{where}: {unmeasured[0]}_load_g needs the columns {unmeasured[0]}_x_mm ... as well")
         if not self.markers:
             raise InputError(f"{where}: no column of a marker. Available: {', '.join(places)}.")
 
-    def read(self, row: Sequence[str], where: str) -> tuple[np.ndarray, np.ndarray]:
-        """Commands [m] and places [m] of one row."""
+    def read(self, row: Sequence[str], where: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Commands [m], places [m] and hung masses [kg] of one row."""
         if len(row) != len(self._head):
             raise InputError(f"{where}: {len(row)} cells, but there are {len(self._head)} columns")
         command = np.zeros(self._count)
@@ -86,7 +99,10 @@ class _Columns:
             if row[column].strip():
                 place = self.markers.index(marker), self._axes.index(axis)
                 places[place] = MM * self._number(row, column, where)
-        return command, places
+        masses = np.zeros(len(self.markers))
+        for column, marker in self._loads.items():
+            masses[self.markers.index(marker)] = 1e-3 * self._number(row, column, where)
+        return command, places, masses
 
     def _number(self, row: Sequence[str], column: int, where: str) -> float:
         try:
@@ -96,7 +112,7 @@ class _Columns:
         if not math.isfinite(number):
             raise InputError(
                 f'{where}, column {self._head[column]}: "{row[column].strip()[:30]}" is no number. '
-                "Write millimeters, or nothing for a marker that was not seen."
+                "Write a number, or nothing for a marker that was not seen."
             )
         return number
 

@@ -1,6 +1,6 @@
 """`Residuals`: predicted less measured places of markers, with exact slopes by the parameters."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -11,7 +11,7 @@ from hydrostat.geometry import Anchors, locate
 from hydrostat.identification.measurements import Measurements
 from hydrostat.identification.model import IdentificationModel, Values
 from hydrostat.identification.robot_numbers import flat_slopes, robot_numbers
-from hydrostat.robot import Robot
+from hydrostat.robot import Load, Robot
 from hydrostat.simulation import Equilibrium, Simulation
 
 STEP = 1e-5
@@ -51,14 +51,17 @@ class Predictor:
             InputError: values that no robot can have, or a parameter that changes what has no known slope.
         """
         values = self.model.values(numbers)
-        simulation = Simulation(self.model.robot(values))
+        robot = self.model.robot(values)
         contractions = self.model.contractions(values, self.measurements.commands)
         rows, markers = len(contractions), self.measurements.markers
-        anchors = _anchors(simulation.robot, markers)
-        places = np.full((rows, len(markers), simulation.robot.body.mesh.dim), np.nan)
+        anchors = _anchors(robot, markers)
+        places = np.full((rows, len(markers), robot.body.mesh.dim), np.nan)
         jacobian = np.zeros((*places.shape, len(numbers))) if slopes else None
-        changes = [_Change.of(self, numbers, index, simulation.robot) for index in range(len(numbers) if slopes else 0)]
-        for row, contraction in enumerate(contractions):
+        changes = [_Change.of(self, numbers, index, robot) for index in range(len(numbers) if slopes else 0)]
+        loaded, loads = np.unique(self.measurements.hung, axis=0, return_inverse=True)
+        simulations = [Simulation(_with_masses(robot, markers, masses)) for masses in loaded]
+        for row, (contraction, load) in enumerate(zip(contractions, loads.ravel(), strict=True)):
+            simulation = simulations[load]
             pose = self._poses[row] = self._solve(simulation, contraction, self._poses[row])
             if pose is None:
                 continue
@@ -152,7 +155,7 @@ class _Change:
     def through(self, slopes: dict[str, Vector], contractions: Vector, row: int) -> float:
         """Slope of one coordinate through the equilibrium."""
         return float(self.contractions[row] @ contractions) + sum(
-            float(change @ slopes[name]) for name, change in self.numbers.items()
+            float(change @ slopes[name][: len(change)]) for name, change in self.numbers.items()
         )
 
     def direct(self, pose: Equilibrium) -> np.ndarray:
@@ -162,6 +165,16 @@ class _Change:
             for values, anchors in zip(self.values, self.anchors, strict=True)
         )
         return (more - less) / (2 * STEP)
+
+
+def _with_masses(robot: Robot, markers: tuple[str, ...], masses: Vector) -> Robot:
+    """Robot with masses hung at markers, after its own loads."""
+    hung = [
+        Load(name=f"measured {name}", marker=name, mass=float(mass))
+        for name, mass in zip(markers, masses, strict=True)
+        if mass > 0
+    ]
+    return replace(robot, loads=(*robot.loads, *hung)) if hung else robot
 
 
 def _anchors(robot: Robot, names: tuple[str, ...]) -> Anchors:

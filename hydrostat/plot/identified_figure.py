@@ -15,10 +15,7 @@ FITTED, ASSUMED = WINCHES[0], "#b9b4c0"
 def draw_identified(measurements: Measurements, found: IdentifiedRobot) -> Figure:
     """Measured and predicted places of all markers along two axes, with a line from each to its measurement [mm]."""
     seen = measurements.places
-    before, after = (
-        fitted.predict(measurements.commands, measurements.markers)
-        for fitted in (start_of(found.fitted.model), found.fitted)
-    )
+    before, after = (fitted.predict(measurements) for fitted in (start_of(found.fitted.model), found.fitted))
     dim = seen.shape[2]
     views = [(0, 1)] if dim == 2 else [(0, 2), (0, 1)]
     figure = Figure(figsize=(4.6 * len(views), 4.6), dpi=130, layout="constrained")

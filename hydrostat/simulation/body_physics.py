@@ -36,7 +36,7 @@ from hydrostat.mechanics import (
     grow_patches,
     rod_points,
 )
-from hydrostat.robot import Obstacle, Plane, Robot, Rod, Volume
+from hydrostat.robot import Body, Obstacle, Plane, Robot, Rod, Volume
 
 
 class BodyPhysics:
@@ -231,9 +231,20 @@ class BodyPhysics:
         reach = max(float(np.abs(body.mesh.nodes).max()), body.mesh.size)
         springs = [pin.stiffness for pin in pins]
         springs += [energy.stiffest for energy in self.rods]
+        rigid = np.isin(body.element_materials, [i for i, part in enumerate(body.parts, start=1) if part.is_rigid])
+        springs += _spring_rates(body, rigid).tolist()
         lengths = [carriage.length for carriage in self.carriages.values()]  # of axes, at which A A^T - I pulls
         springs += [2 * _RIGID * body.material.young * length * max(1.0, length / reach) for length in lengths]
         return scale, reach, max(springs, default=0.0), body.mesh.size
+
+
+def _spring_rates(body: Body, chosen: np.ndarray) -> Vector:
+    """Five times the largest stiffness of some elements at a corner [N/m]: as many meet there."""
+    mesh, (mu, lame) = body.mesh, body.lame()
+    corners = mesh.nodes[mesh.elements[chosen]]
+    inverse = np.linalg.inv(corners[:, 1:] - corners[:, :1])
+    steepest = (inverse**2).sum(axis=1).max(axis=1, initial=0.0)  # square of the largest slope of a shape function
+    return 5 * (2 * mu + lame)[chosen] * mesh.volumes[chosen] * (body.thickness or 1.0) * steepest
 
 
 def _elastic(robot: Robot, rest: Nodes, lame: Vector | None) -> NeoHookean | QuadraticSolid:

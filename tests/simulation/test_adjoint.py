@@ -12,7 +12,7 @@ from builders import FOAM, box_mesh, mesh_body, strip_mesh
 from hydrostat.errors import InputError
 from hydrostat.geometry import Outline, locate
 from hydrostat.mechanics import NewtonOptions
-from hydrostat.robot import BodyPart, Cable, Marker, Material, Mount, Pin, Robot, Volume, Winch
+from hydrostat.robot import BodyPart, Cable, Load, Marker, Material, Mount, Pin, Robot, Rod, Volume, Winch
 from hydrostat.simulation import Simulation
 from hydrostat.simulation.route_points import route_points
 from hydrostat.simulation.sensitivities.adjoint import Sensitivity, sensitivity
@@ -380,3 +380,28 @@ def test_the_page_on_derivatives_is_true(monkeypatch: pytest.MonkeyPatch) -> Non
     exec(bridged, names)
     assert names["contractions"].grad.numpy() == pytest.approx(expected, rel=1e-6)
     assert names["routes"][1].grad.numpy() == pytest.approx(names["slopes"].routes[1], rel=1e-5, abs=1e-9)
+
+
+def test_by_gravity_and_stiffness_of_rods(unchecked: None) -> None:
+    heavy = heavy_patches(box())
+    wire = Rod(
+        name="wire", points=((0.0, 0.021, 0.019), (0.12, 0.021, 0.019)), axial_stiffness=50.0, bending_stiffness=2e-3
+    )
+    loss = Loss(
+        replace(heavy, rods=(wire,), loads=(Load(name="nut", marker="tip", mass=0.004),)), np.array([0.006, 0.002])
+    )
+    slopes, robot = loss.slopes(), loss.robot
+    for axis in range(3):
+        step = 0.02 * np.eye(3)[axis]
+        found = loss.difference(
+            lambda h, step=step: replace(robot, gravity=tuple((np.array(robot.gravity) + h * step).tolist())), 1.0
+        )
+        assert slopes.gravity[axis] * 0.02 == pytest.approx(found, rel=1e-4)
+    for key, slope, step in (
+        ("axial_stiffness", slopes.rod_axial, 0.5),
+        ("bending_stiffness", slopes.rod_bending, 2e-5),
+    ):
+        found = loss.difference(
+            lambda h, key=key: replace(robot, rods=(replace(wire, **{key: getattr(wire, key) + h}),)), step
+        )
+        assert slope[0] == pytest.approx(found, rel=1e-4)

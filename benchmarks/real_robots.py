@@ -1,0 +1,229 @@
+"""Robots that others built, as models with parameters to identify; see `real.py`."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+from itertools import pairwise
+
+import numpy as np
+
+from hydrostat.geometry import Mesh
+from hydrostat.identification import IdentificationModel, Parameter
+from hydrostat.robot import Body, BodyPart, Cable, Marker, Material, Mount, Pin, Robot, Rod, Source, Winch
+
+MM = 1e-3
+SHIFT = 20.0  # slack of every tendon at zero [mm], as a cable's slack is not below 0
+
+
+def prism(planes: np.ndarray, side: float) -> Mesh:
+    """Tetrahedra of a square prism about the z axis, two cells across, with nodes on planes [mm]."""
+    across = np.array([-0.5, 0.0, 0.5]) * side
+    nodes = np.array([(x, y, z) for z in planes for y in across for x in across])
+    number = np.arange(len(nodes)).reshape(len(planes), 3, 3)
+    elements = []
+    corners = ((0, 0, 0), (0, 0, 1), (0, 1, 0), (0, 1, 1), (1, 0, 0), (1, 0, 1), (1, 1, 0), (1, 1, 1))
+    for k, j, i in np.ndindex(len(planes) - 1, 2, 2):
+        cube = [int(number[k + dk, j + dj, i + di]) for dk, dj, di in corners]
+        for a, b in ((1, 3), (3, 2), (2, 6), (6, 4), (4, 5), (5, 1)):
+            elements.append([cube[0], cube[a], cube[b], cube[7]])
+    tetrahedra = np.array(elements)
+    spans = nodes[tetrahedra[:, 1:]] - nodes[tetrahedra[:, :1]]
+    turned = np.linalg.det(spans) < 0
+    tetrahedra[turned, 1:3] = tetrahedra[turned, 2:0:-1]
+    return Mesh(MM * nodes, tetrahedra)
+
+
+def disk_body(mesh: Mesh, disks: np.ndarray) -> Callable[[float, float], Body]:
+    """Body with rigid disks between pairs of heights [mm], of a given Young's modulus [Pa] and density [kg/m^3]."""
+    parts = tuple(
+        BodyPart(name=f"disk {index}", shape="box", at=(-1.0, -1.0, MM * low), to=(1.0, 1.0, MM * high), density=1e3)
+        for index, (low, high) in enumerate(disks.tolist(), start=1)
+    )
+    material = Material(young=1e5, poisson=0.0, density=500.0)
+    body = Body(source=Source.MESH, file="disks.vtk", content=b"", material=material, mesh=mesh, parts=parts)
+    return cache(lambda young, density: replace(body, material=replace(material, young=young, density=density)))
+
+
+def turned(values: dict[str, float], places: np.ndarray) -> np.ndarray:
+    """Places in the frame of the measurement: tilted about x and y, moved by the place of the base."""
+    a, b = values["tilt x"], values["tilt y"]
+    about_x = np.array([[1.0, 0.0, 0.0], [0.0, np.cos(a), -np.sin(a)], [0.0, np.sin(a), np.cos(a)]])
+    about_y = np.array([[np.cos(b), 0.0, np.sin(b)], [0.0, 1.0, 0.0], [-np.sin(b), 0.0, np.cos(b)]])
+    return places @ (about_x @ about_y).T + MM * np.array([values[f"base {axis}"] for axis in "xyz"])
+
+
+def frame_parameters(base: tuple[float, float, float], spread: float) -> list[Parameter]:
+    """Place of the base [mm] and tilt of the robot [rad]."""
+    moved = [
+        Parameter(name=f"base {axis}", start=at, spread=spread, unit="mm") for axis, at in zip("xyz", base, strict=True)
+    ]
+    return [*moved, *(Parameter(name=f"tilt {axis}", start=0.0, spread=0.05, unit="rad") for axis in "xy")]
+
+
+def opencr(lengths: list[float], angles: list[float], radius: float) -> IdentificationModel:
+    """OpenCR v4: disks on an elastic rod, nine tendons; from the lengths of its segments and its circle [mm, rad]."""
+    count, thickness, beyond = 10, 2.0, 12.0  # disks of a segment, a disk, room for the marker beyond the last one
+    ends = np.cumsum([0.0, *lengths])
+    tops = np.concatenate([np.linspace(a, b, count + 1)[1:] for a, b in pairwise(ends)])
+    disks = np.stack([tops - thickness, tops], axis=1)
+    middles, top = disks.mean(axis=1), float(tops[-1])
+    disks[-1, 1] += beyond
+    body = disk_body(prism(np.concatenate([[0.0], disks.ravel()]), 11.0), disks)
+    tendons = [(segment, tendon) for segment in range(3) for tendon in range(3)]
+    parameters = [
+        Parameter(name="young", start=4e5, spread=1.0, unit="Pa", log=True),
+        Parameter(name="bending", start=1.5e-3, spread=0.5, unit="N m^2", log=True),
+        Parameter(name="marker", start=4.0, spread=4.0, unit="mm", low=0.0, high=beyond),
+        *(Parameter(name=f"gravity {axis}", start=0.0, spread=5.0, unit="m/s^2") for axis in "xyz"),
+        *frame_parameters((0.0, 0.0, 0.0), 3.0),
+    ]
+    for segment, angle in enumerate(angles):
+        parameters += [
+            Parameter(name=f"angle {segment}", start=angle, spread=0.3, unit="rad"),
+            Parameter(name=f"radius {segment}", start=radius, spread=0.4, unit="mm"),
+            Parameter(name=f"zero {segment}", start=0.3, spread=0.5, unit="mm"),
+            Parameter(name=f"stiffness {segment}", start=3.0, spread=0.7, unit="N/mm", log=True),
+        ]
+    for segment, tendon in tendons:
+        parameters += [
+            Parameter(name=f"angle {segment}{tendon}", start=0.0, spread=0.05, unit="rad"),
+            Parameter(name=f"zero {segment}{tendon}", start=0.0, spread=0.3, unit="mm"),
+        ]
+
+    def robot(values: dict[str, float]) -> Robot:
+        cables = []
+        for segment, tendon in tendons:
+            angle = values[f"angle {segment}"] + 2 * np.pi / 3 * tendon + values[f"angle {segment}{tendon}"]
+            heights = np.array([-5.0, *middles[: count * (segment + 1)]])
+            cables.append((polar(values[f"radius {segment}"], angle, heights), values[f"stiffness {segment}"]))
+        return tendon_robot(
+            body(values["young"], 1e3),
+            cables,
+            gravity=tuple(values[f"gravity {axis}"] for axis in "xyz"),
+            rods=[rod("backbone", 0.0, top, axial=2e4, bending=values["bending"])],
+            markers={"tip": top + values["marker"]},
+        )
+
+    def contractions(values: dict[str, float], commands: np.ndarray) -> np.ndarray:
+        zeros = [values[f"zero {segment}"] + values[f"zero {segment}{tendon}"] for segment, tendon in tendons]
+        return commands + MM * (SHIFT + np.array(zeros))
+
+    return IdentificationModel(parameters=tuple(parameters), robot=robot, contractions=contractions, places=turned)
+
+
+TRUNK_SEGMENTS = (1, 2, 0, 2, 0, 1)
+"""Segment at whose end the tendons of each motor end, by which disks a linear regression of `train` lets it move."""
+
+TRUNK_ANGLES = (0.83, 1.86, 3.02, -2.84, -1.93, -0.72)
+"""Direction in which each motor pulls the tip [rad], by the same regression."""
+
+
+def trunk(lengths: list[float], base: tuple[float, float, float]) -> IdentificationModel:
+    """Trunk of six motors with antagonistic tendons on three disks; its places have z up, its commands are degrees."""
+    thickness, layers, radius = 4.0, 5, 15.0  # of a disk; of elements in a segment; circle of the tendons
+    ends = np.cumsum([0.0, *lengths])
+    disks = np.stack([ends[1:] - thickness, ends[1:]], axis=1)
+    between = [np.linspace(a, b - thickness, layers + 1)[1:] for a, b in pairwise(ends)]
+    planes = np.concatenate([[0.0], *(np.append(part, end) for part, end in zip(between, ends[1:], strict=True))])
+    mesh = prism(planes, 44.0)
+    hanging = Mesh(mesh.nodes * np.array([1.0, -1.0, -1.0]), mesh.elements)
+    body = disk_body(hanging, -disks[:, ::-1])
+    middles = -disks.mean(axis=1)
+    parameters = [
+        Parameter(name="young", start=1e5, spread=1.5, unit="Pa", log=True),
+        Parameter(name="density", start=400.0, spread=0.7, unit="kg/m^3", log=True),
+        Parameter(name="bending", start=0.02, spread=1.5, unit="N m^2", log=True),
+        Parameter(name="axial", start=3000.0, spread=0.7, unit="N", log=True),
+        Parameter(name="stiffness", start=2.0, spread=0.7, unit="N/mm", log=True),
+        Parameter(name="pretension", start=1.0, spread=1.0, unit="mm"),
+        *frame_parameters(base, 8.0),
+        *(Parameter(name=f"bending {segment}", start=1.0, spread=0.5, log=True) for segment in range(3)),
+    ]
+    for motor, angle in enumerate(TRUNK_ANGLES):
+        parameters += [
+            Parameter(name=f"angle {motor}", start=angle, spread=0.3, unit="rad"),
+            Parameter(name=f"pull {motor}", start=0.2, spread=0.5, unit="mm/degree", log=True),
+            Parameter(name=f"zero {motor}", start=0.0, spread=10.0, unit="degrees"),
+        ]
+        for side in (0, 1):
+            parameters += [
+                Parameter(name=f"angle {motor}{side}", start=0.0, spread=0.1, unit="rad"),
+                Parameter(name=f"zero {motor}{side}", start=0.0, spread=2.0, unit="mm"),
+                Parameter(name=f"radius {motor}{side}", start=radius, spread=1.5, unit="mm"),
+            ]
+
+    def robot(values: dict[str, float]) -> Robot:
+        cables = []
+        for motor, segment in enumerate(TRUNK_SEGMENTS):
+            for side in (0, 1):
+                angle = values[f"angle {motor}"] + values[f"angle {motor}{side}"] + np.pi * side
+                heights = np.array([8.0, *middles[: segment + 1]])
+                cables.append((polar(values[f"radius {motor}{side}"], angle, heights), values["stiffness"]))
+        rods = [
+            rod(
+                f"hose {segment}",
+                -max(start - thickness, 0.0),
+                -end,
+                axial=values["axial"],
+                bending=values["bending"] * values[f"bending {segment}"],
+            )
+            for segment, (start, end) in enumerate(pairwise(ends))
+        ]
+        return tendon_robot(
+            body(values["young"], values["density"]),
+            cables,
+            gravity=(0.0, 0.0, -9.81),
+            rods=rods,
+            markers={f"disk {number}": height for number, height in enumerate(middles.tolist(), start=1)},
+        )
+
+    def contractions(values: dict[str, float], commands: np.ndarray) -> np.ndarray:
+        pulls = []
+        for motor in range(6):
+            for side in (0, 1):
+                turn = (1 - 2 * side) * (commands[:, 2 * motor] + values[f"zero {motor}"])
+                zero = SHIFT + values["pretension"] + values[f"zero {motor}{side}"]
+                pulls.append(MM * (zero + values[f"pull {motor}"] * turn))
+        return np.stack(pulls, axis=1)
+
+    return IdentificationModel(parameters=tuple(parameters), robot=robot, contractions=contractions, places=turned)
+
+
+def polar(radius: float, angle: float, heights: np.ndarray) -> tuple[tuple[float, float, float], ...]:
+    """Points of a straight tendon [m], from a radius, a direction and heights [mm, rad]."""
+    x, y = MM * radius * np.cos(angle), MM * radius * np.sin(angle)
+    return tuple((float(x), float(y), MM * height) for height in heights.tolist())
+
+
+def rod(name: str, start: float, end: float, *, axial: float, bending: float) -> Rod:
+    """Rod on the axis between two heights [mm]."""
+    points = ((0.0, 0.0, MM * start), (0.0, 0.0, MM * end))
+    return Rod(name=name, points=points, axial_stiffness=axial, bending_stiffness=bending)
+
+
+def tendon_robot(
+    body: Body,
+    cables: list[tuple[tuple[tuple[float, float, float], ...], float]],
+    *,
+    gravity: tuple[float, ...],
+    rods: list[Rod],
+    markers: dict[str, float],
+) -> Robot:
+    """Robot held at height 0, with a winch for each cable (points [m], stiffness [N/mm]), markers at heights [mm]."""
+    return Robot(
+        name="real",
+        body=body,
+        pins=(Pin(box=((-1.0, -1.0, -1e-4), (1.0, 1.0, 1e-4)), stiffness=1e6),),
+        gravity=gravity,
+        rods=tuple(rods),
+        winches=tuple(
+            Winch(name=f"w{number}", at=points[0], mount=Mount.WORLD, travel=0.3, release=0.3)
+            for number, (points, _) in enumerate(cables)
+        ),
+        cables=tuple(
+            Cable(winch=f"w{number}", points=points, stiffness=1e3 * stiffness, slack=MM * SHIFT, smoothing=5e-5)
+            for number, (points, stiffness) in enumerate(cables)
+        ),
+        markers=tuple(Marker(name=name, at=(0.0, 0.0, MM * height)) for name, height in markers.items()),
+        poses={},
+    )
