@@ -7,7 +7,7 @@ from hydrostat.lazy import open_package
 if TYPE_CHECKING:
     from hydrostat.identification.fit import FittedModel, fit_model
     from hydrostat.identification.identified_robot import IdentifiedRobot, identify, rms, start_of
-    from hydrostat.identification.kinds import KINDS, named_model
+    from hydrostat.identification.kinds import KINDS
     from hydrostat.identification.measurements import Measurements
     from hydrostat.identification.model import IdentificationModel, Parameter
     from hydrostat.identification.read import read_measurements
@@ -21,7 +21,6 @@ __all__ = [
     "Parameter",
     "fit_model",
     "identify",
-    "named_model",
     "read_measurements",
     "rms",
     "start_of",

@@ -12,7 +12,7 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.identification.measurements import Measurements
 from hydrostat.identification.model import IdentificationModel
-from hydrostat.identification.residuals import Prediction, Predictor
+from hydrostat.identification.residuals import MarkerPrediction, MarkerPredictor
 from hydrostat.robot import Robot
 
 MISSING = 5.0
@@ -30,7 +30,7 @@ class FittedModel:
         model: robot and measurement as functions of the values.
         values: values by name.
         numbers: the same as coordinates of the fit: spreads from the start.
-        covariance: of `numbers`; 1 on the diagonal where the measurements tell nothing.
+        covariance: covariance of `numbers`; 1 on the diagonal where the measurements tell nothing.
         noise: standard deviation of a measured coordinate about the model [m], from the residuals.
         error: root mean square distance between predicted and measured markers of the fitted rows [m].
         failed: fitted rows without an equilibrium.
@@ -65,7 +65,7 @@ class FittedModel:
 
     def predict(self, measurements: Measurements) -> Float[np.ndarray, "rows markers dim"]:
         """Places of the markers [m] in the frame of the measurement, which is not used; NaN without an equilibrium."""
-        return Predictor(self.model, measurements).predict(self.numbers, slopes=False).places
+        return MarkerPredictor(self.model, measurements).predict(self.numbers, slopes=False).places
 
 
 def fit_model(
@@ -141,7 +141,7 @@ class _Fit:
         progress: Callable[[str], None] | None,
     ) -> None:
         self.noise, self.measurements, self._progress = noise, measurements, progress
-        self._predictor = Predictor(model, measurements)
+        self._predictor = MarkerPredictor(model, measurements)
         self._measured = np.isfinite(measurements.places)
         self._asked: np.ndarray | None = None
         self.count = self.failed = 0
@@ -186,15 +186,15 @@ class _Fit:
             error = 1e3 * float(np.sqrt((self.distances**2).mean())) if len(self.distances) else np.nan
             self._progress(f"evaluation {self.count}: {error:.2f} mm off (RMS)")
 
-    def _predict(self, numbers: Vector) -> tuple[Prediction, float]:
-        """Prediction, and the residual of what it lacks; values that no robot can have are far off after the first."""
+    def _predict(self, numbers: Vector) -> tuple[MarkerPrediction, float]:
+        """MarkerPrediction, and the residual of what it lacks; values that no robot can have are far off after the first."""
         try:
             return self._predictor.predict(numbers, slopes=True), MISSING
         except InputError:
             if not self.count:
                 raise
         shape = self.measurements.places.shape
-        return Prediction(np.full(shape, np.nan), np.zeros((*shape, len(numbers)))), IMPOSSIBLE
+        return MarkerPrediction(np.full(shape, np.nan), np.zeros((*shape, len(numbers)))), IMPOSSIBLE
 
 
 def _check(robot: Robot, measurements: Measurements) -> None:

@@ -117,11 +117,11 @@ def _distances(fitted: FittedModel, measurements: Measurements) -> np.ndarray:
 
 def _robot(model: IdentificationModel, fitted: FittedModel, assumed: Robot) -> tuple[Robot, tuple[str, ...]]:
     """Robot with the fitted values, and names of what it cannot hold."""
-    values = {name: _rounded(value) for name, value in fitted.values.items()}
+    values = {name: _round_number(value) for name, value in fitted.values.items()}
     robot = model.robot(values)
     unsaved = [name for name in values if name.startswith("frame.")]
     winches = tuple(
-        replace(winch, spool_radius=_rounded(winch.spool_radius * values.get(f"{winch.name}.gain", 1.0)))
+        replace(winch, spool_radius=_round_number(winch.spool_radius * values.get(f"{winch.name}.gain", 1.0)))
         for winch in robot.winches
     )
     cables = []
@@ -131,15 +131,15 @@ def _robot(model: IdentificationModel, fitted: FittedModel, assumed: Robot) -> t
         slack = cable.slack - float(ratio) * zero
         if slack < 0:
             unsaved.append(f"{cable.winch}.zero")
-        radius = None if cable.spool_radius is None else _rounded(cable.spool_radius * gain)
-        cables.append(replace(cable, slack=_rounded(max(slack, 0.0)), spool_radius=radius))
+        radius = None if cable.spool_radius is None else _round_number(cable.spool_radius * gain)
+        cables.append(replace(cable, slack=_round_number(max(slack, 0.0)), spool_radius=radius))
     try:
         return robot.with_network(winches, cables), tuple(dict.fromkeys(unsaved))
     except InputError as error:
         raise InputError(f"the fitted robot cannot be built: {error}") from None
 
 
-def _rounded(value: float) -> float:
+def _round_number(value: float) -> float:
     """Value with the digits that a measurement can have."""
     return float(f"{value:.6g}")
 

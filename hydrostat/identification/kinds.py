@@ -16,7 +16,7 @@ NARROW = 1e-6
 
 
 @dataclass(frozen=True, kw_only=True)
-class Kind:
+class ParameterKind:
     """A group of parameters with one name.
 
     Attributes:
@@ -177,7 +177,7 @@ def _offsets(robot: Robot) -> list[Parameter]:
     return [Parameter(name=f"{winch.name}.zero", start=0.0, spread=spread, unit="mm") for winch in robot.winches]
 
 
-def _shifted(robot: Robot, values: Values, commands: np.ndarray) -> np.ndarray:
+def _add_zeros(robot: Robot, values: Values, commands: np.ndarray) -> np.ndarray:
     return commands + MM * np.array([values[f"{winch.name}.zero"] for winch in robot.winches])
 
 
@@ -185,7 +185,7 @@ def _gains(robot: Robot) -> list[Parameter]:
     return [Parameter(name=f"{winch.name}.gain", start=1.0, spread=0.05, log=True) for winch in robot.winches]
 
 
-def _scaled(robot: Robot, values: Values, commands: np.ndarray) -> np.ndarray:
+def _apply_gains(robot: Robot, values: Values, commands: np.ndarray) -> np.ndarray:
     return commands * np.array([values[f"{winch.name}.gain"] for winch in robot.winches])
 
 
@@ -197,7 +197,7 @@ def _frame(robot: Robot) -> list[Parameter]:
     return [*shifts, *(Parameter(name=f"frame.about {axis}", start=0.0, spread=3.0, unit="degrees") for axis in about)]
 
 
-def _framed(robot: Robot, values: Values, places: np.ndarray) -> np.ndarray:
+def _move_to_frame(robot: Robot, values: Values, places: np.ndarray) -> np.ndarray:
     axes = "xyz"[: robot.body.mesh.dim]
     middle = robot.body.mesh.nodes.mean(axis=0)
     turn = np.eye(3)
@@ -211,51 +211,51 @@ def _framed(robot: Robot, values: Values, places: np.ndarray) -> np.ndarray:
     return (places - middle) @ turn.T + middle + MM * np.array([values[f"frame.{axis}"] for axis in axes])
 
 
-KINDS: dict[str, Kind] = {
-    "young": Kind(
+KINDS: dict[str, ParameterKind] = {
+    "young": ParameterKind(
         about="Young's modulus of the body and of each part",
         parameters=lambda robot: _material(robot, "young", 0.7, (1.0, 1e13), "Pa"),
         robot=_with_material("young"),
         default=True,
     ),
-    "poisson": Kind(
+    "poisson": ParameterKind(
         about="Poisson's ratio of the body and of each part",
         parameters=lambda robot: _material(robot, "poisson", 0.1, (NARROW, 0.5 - NARROW), ""),
         robot=_with_material("poisson"),
     ),
-    "density": Kind(
+    "density": ParameterKind(
         about="density of the body and of each soft part",
         parameters=lambda robot: (
             [] if robot.gravity is None else _material(robot, "density", 0.3, (1e-3, 1e5), "kg/m^3")
         ),
         robot=_with_material("density"),
     ),
-    "stiffness": Kind(
+    "stiffness": ParameterKind(
         about="stiffness of each cable",
         parameters=lambda robot: _each_cable(robot, "stiffness"),
         robot=_with_stiffness,
         default=True,
     ),
-    "zero": Kind(
+    "zero": ParameterKind(
         about="zero of each winch: slack or pretension of its cables",
         parameters=_offsets,
-        contractions=_shifted,
+        contractions=_add_zeros,
         default=True,
     ),
-    "gain": Kind(
+    "gain": ParameterKind(
         about="gain of each winch: radius of its spool over the assumed one",
         parameters=_gains,
-        contractions=_scaled,
+        contractions=_apply_gains,
         default=True,
     ),
-    "friction": Kind(about="friction coefficient of all cables", parameters=_friction, robot=_with_friction),
-    "pins": Kind(about="stiffness of each pin", parameters=_pins, robot=_with_pins),
-    "gravity": Kind(about="direction and strength of gravity", parameters=_gravity, robot=_with_gravity),
-    "rods": Kind(about="bending stiffness of each rod", parameters=_rods, robot=_with_rods, default=True),
-    "frame": Kind(
+    "friction": ParameterKind(about="friction coefficient of all cables", parameters=_friction, robot=_with_friction),
+    "pins": ParameterKind(about="stiffness of each pin", parameters=_pins, robot=_with_pins),
+    "gravity": ParameterKind(about="direction and strength of gravity", parameters=_gravity, robot=_with_gravity),
+    "rods": ParameterKind(about="bending stiffness of each rod", parameters=_rods, robot=_with_rods, default=True),
+    "frame": ParameterKind(
         about="place and direction of the frame of the measurement",
         parameters=_frame,
-        places=_framed,
+        places=_move_to_frame,
         default=True,
     ),
 }

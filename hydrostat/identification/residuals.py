@@ -19,7 +19,7 @@ STEP = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
-class Prediction:
+class MarkerPrediction:
     """Predicted places of the markers of all rows.
 
     Attributes:
@@ -36,15 +36,15 @@ class Prediction:
         return np.array([bool(np.isfinite(row).all()) for row in self.places])
 
 
-class Predictor:
+class MarkerPredictor:
     """Predicts markers for values of the parameters; begins each row at its last equilibrium."""
 
     def __init__(self, model: IdentificationModel, measurements: Measurements) -> None:
-        """Predictor of the rows of some measurements, which need not have measured places."""
+        """MarkerPredictor of the rows of some measurements, which need not have measured places."""
         self.model, self.measurements = model, measurements
         self._poses: list[Equilibrium | None] = [None] * len(measurements.commands)
 
-    def predict(self, numbers: Vector, *, slopes: bool) -> Prediction:
+    def predict(self, numbers: Vector, *, slopes: bool) -> MarkerPrediction:
         """Places at coordinates of the fit, with their Jacobian if requested.
 
         Raises:
@@ -72,7 +72,7 @@ class Predictor:
                     jacobian[row] = self._slopes(simulation, pose, (values, at, anchors), changes, row)
                 except NotConvergedError:
                     places[row], self._poses[row] = np.nan, None
-        return Prediction(places, jacobian)
+        return MarkerPrediction(places, jacobian)
 
     def _solve(self, simulation: Simulation, contractions: Vector, last: Equilibrium | None) -> Equilibrium | None:
         if last is not None and not simulation.assembly.has_history:
@@ -131,7 +131,7 @@ class _Change:
     contractions: Float[np.ndarray, "rows winches"]
 
     @classmethod
-    def of(cls, predictor: Predictor, numbers: Vector, index: int, robot: Robot) -> "_Change":
+    def of(cls, predictor: MarkerPredictor, numbers: Vector, index: int, robot: Robot) -> "_Change":
         model, measured = predictor.model, predictor.measurements
         unit = np.eye(len(numbers))[index] * STEP
         values = model.values(numbers - unit), model.values(numbers + unit)

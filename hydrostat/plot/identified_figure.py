@@ -4,12 +4,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from hydrostat.drawing import INK, WINCHES
+from hydrostat.drawing import Color
 from hydrostat.identification import IdentifiedRobot, Measurements, rms, start_of
 from hydrostat.plot.chart import plain_axes
 
 MM = 1e3
-FITTED, ASSUMED = WINCHES[0], "#b9b4c0"
+FITTED, ASSUMED = Color.WINCHES[0], "#b9b4c0"
 
 
 def draw_identified(measurements: Measurements, found: IdentifiedRobot) -> Figure:
@@ -39,4 +39,4 @@ def _draw_view(axes: Axes, places: list[np.ndarray]) -> None:
             axes.plot(*np.array([start, end]).T, color=color, linewidth=0.8, zorder=1)
     axes.scatter(*before.T, s=12, color=ASSUMED, label="as assumed", zorder=2)
     axes.scatter(*after.T, s=12, color=FITTED, label="fitted", zorder=3)
-    axes.scatter(*seen.T, s=14, facecolors="none", edgecolors=INK, linewidths=0.9, label="measured", zorder=4)
+    axes.scatter(*seen.T, s=14, facecolors="none", edgecolors=Color.INK, linewidths=0.9, label="measured", zorder=4)

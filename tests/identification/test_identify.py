@@ -13,10 +13,10 @@ from hydrostat.identification import (
     Measurements,
     fit_model,
     identify,
-    named_model,
     read_measurements,
 )
-from hydrostat.identification.residuals import Predictor
+from hydrostat.identification.kinds import named_model
+from hydrostat.identification.residuals import MarkerPredictor
 from hydrostat.robot import Cable, Load, Marker, Mount, Pin, Robot, Rod, Winch, save_robot
 
 UPPER = ((0.0083, 0.0137), (0.0587, 0.0161), (0.1129, 0.0147), (0.1833, 0.0143))
@@ -78,7 +78,7 @@ def measured(robot: Robot, commands: np.ndarray) -> Measurements:
 def test_slopes_are_those_of_central_differences(robot: Robot, kinds: tuple[str, ...], unchecked: None) -> None:
     model = named_model(robot, kinds)
     rows = np.full((1, len(robot.winches)), 0.009) * np.linspace(1.0, 0.3, len(robot.winches))
-    predictor = Predictor(model, measured(robot, rows))
+    predictor = MarkerPredictor(model, measured(robot, rows))
     numbers = 0.3 * np.random.default_rng(1).standard_normal(len(model.parameters))
     slopes = predictor.predict(numbers, slopes=True).jacobian
     assert slopes is not None
@@ -99,7 +99,7 @@ def test_hidden_parameters_of_a_heavy_strip_are_found() -> None:
     rows = rng.uniform(0.001, 0.012, (12, 2))
     asked = measured(robot, rows)
     noise = 1e-4
-    seen = Predictor(model, asked).predict(hidden, slopes=False).places + noise * rng.standard_normal((12, 2, 2))
+    seen = MarkerPredictor(model, asked).predict(hidden, slopes=False).places + noise * rng.standard_normal((12, 2, 2))
     seen[3, 0] = np.nan
     found = fit_model(model, replace(asked, places=seen))
     assert found.failed == 0
@@ -116,7 +116,7 @@ def test_what_measurements_do_not_show_is_said() -> None:
     model = named_model(robot, ("young", "gain"))
     rows = np.random.default_rng(3).uniform(0.002, 0.01, (10, 2))
     asked = measured(robot, rows)
-    seen = Predictor(model, asked).predict(np.full(3, 0.2), slopes=False).places
+    seen = MarkerPredictor(model, asked).predict(np.full(3, 0.2), slopes=False).places
     seen += 2e-4 * np.random.default_rng(4).standard_normal(seen.shape)
     found = identify(robot, replace(asked, places=seen), fit=("young", "gain", "pins"))
     assert "pin 1.stiffness" in found.unknown
@@ -166,7 +166,7 @@ def test_unknown_kinds_are_refused() -> None:
 def test_the_fitted_robot_can_be_saved(tmp_path: Path) -> None:
     robot = strip()
     asked = measured(robot, np.array([[0.004, 0.0], [0.0, 0.006], [0.008, 0.002]]))
-    seen = Predictor(named_model(robot, ("gain",)), asked).predict(np.array([0.5, -0.5]), slopes=False).places
+    seen = MarkerPredictor(named_model(robot, ("gain",)), asked).predict(np.array([0.5, -0.5]), slopes=False).places
     found = identify(robot, replace(asked, places=seen), fit=("gain", "zero"))
     assert found.held_out.size == 0
     save_robot(found.robot, tmp_path / "fitted")
