@@ -187,7 +187,7 @@ class _Fit:
             self._progress(f"evaluation {self.count}: {error:.2f} mm off (RMS)")
 
     def _predict(self, numbers: Vector) -> tuple[MarkerPrediction, float]:
-        """MarkerPrediction, and the residual of what it lacks; values that no robot can have are far off after the first."""
+        """Prediction, and the residual of what it lacks; values that no robot can have are far off after the first."""
         try:
             return self._predictor.predict(numbers, slopes=True), MISSING
         except InputError:
