@@ -40,7 +40,7 @@ class MarkerPredictor:
     """Predicts markers for values of the parameters; begins each row at its last equilibrium."""
 
     def __init__(self, model: IdentificationModel, measurements: Measurements) -> None:
-        """MarkerPredictor of the rows of some measurements, which need not have measured places."""
+        """Predictor of the rows of some measurements, which need not have measured places."""
         self.model, self.measurements = model, measurements
         self._poses: list[Equilibrium | None] = [None] * len(measurements.commands)
 
