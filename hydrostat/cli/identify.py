@@ -118,6 +118,8 @@ def _print_values(found: "IdentifiedRobot") -> None:
             )
     if found.unknown:
         print(f"note: these measurements do not show {', '.join(found.unknown)}; they stay near what was assumed.")
+    if pairs := [f"{one} and {other}" for one, other in fitted.inseparable]:
+        print(f"note: these measurements hardly tell apart {', '.join(pairs)}: only their combination is known.")
     lost = [name for name in found.unsaved if not name.startswith("frame.")]
     if lost:
         print(

@@ -18,6 +18,9 @@ from hydrostat.robot import Robot
 MISSING = 5.0
 """Residual of a coordinate without an equilibrium, in standard deviations of the noise."""
 
+INSEPARABLE = 0.9
+"""Correlation of two parameters above which their values are hardly told apart."""
+
 IMPOSSIBLE = 1e4
 """Residual of every coordinate where the values make no robot: a step there is taken back."""
 
@@ -62,6 +65,17 @@ class FittedModel:
         """Share of each guess's uncertainty that the measurements took away: 0 where they tell nothing, 1 for all."""
         kept = np.sqrt(np.diag(self.covariance))
         return {parameter.name: 1.0 - float(one) for parameter, one in zip(self.model.parameters, kept, strict=True)}
+
+    @property
+    def inseparable(self) -> list[tuple[str, str]]:
+        """Pairs whose values the measurements hardly tell apart: a change of one makes up for a change of the other."""
+        spread = np.sqrt(np.diag(self.covariance))
+        correlation = self.covariance / np.outer(spread, spread)
+        names = [parameter.name for parameter in self.model.parameters]
+        return [
+            (names[one], names[other])
+            for one, other in np.argwhere(np.abs(np.triu(correlation, 1)) > INSEPARABLE).tolist()
+        ]
 
     def predict(self, measurements: Measurements) -> Float[np.ndarray, "rows markers dim"]:
         """Places of the markers [m] in the frame of the measurement, which is not used; NaN without an equilibrium."""

@@ -125,6 +125,21 @@ def test_what_measurements_do_not_show_is_said() -> None:
     assert len(found.held_out) == 2
 
 
+def test_a_hung_mass_tells_modulus_and_density_apart() -> None:
+    """The sag of a body is that of density over modulus: with nothing hung on it, both may grow together."""
+    robot = replace(strip(), loads=())
+    asked = measured(robot, np.random.default_rng(3).uniform(0.002, 0.01, (6, 2)))
+    model = named_model(robot, ("young", "density"))
+    seen = MarkerPredictor(model, asked).predict(np.array([0.3, -0.2]), slopes=False).places
+    free = fit_model(model, replace(asked, places=seen), noise=3e-5)
+    assert free.inseparable == [("body.young", "body.density")]
+    hung = replace(asked, masses=np.array([[0.0, 0.0], [0.02, 0.0]] * 3))
+    seen = MarkerPredictor(model, hung).predict(np.array([0.3, -0.2]), slopes=False).places
+    found = fit_model(model, replace(hung, places=seen), noise=3e-5)
+    assert found.inseparable == []
+    assert found.values["body.young"] == pytest.approx(model.values(np.array([0.3, -0.2]))["body.young"], rel=0.01)
+
+
 def test_a_table_is_read_and_refused_by_line(tmp_path: Path) -> None:
     robot = strip()
     file = tmp_path / "seen.csv"
