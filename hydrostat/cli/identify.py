@@ -119,12 +119,11 @@ def _print_values(found: "IdentifiedRobot") -> None:
     if found.unknown:
         print(f"note: these measurements do not show {', '.join(found.unknown)}; they stay near what was assumed.")
     if pairs := [f"{one} and {other}" for one, other in fitted.inseparable]:
-        print(f"note: these measurements hardly tell apart {', '.join(pairs)}: only their combination is known.")
-    lost = [name for name in found.unsaved if not name.startswith("frame.")]
-    if lost:
+        print(f"note: these measurements hardly tell apart {', '.join(pairs)}: each can make up for the other.")
+    for winch, length in found.pretension.items():
         print(
-            f"note: robot.toml cannot hold {', '.join(lost)}: the cables are tight at rest. "
-            "Pay out these winches first, or add the zero to each contraction."
+            f"note: the cables of {winch} are tight at rest, which robot.toml cannot hold. "
+            f"Add {1e3 * length:.2f} mm to its contractions."
         )
 
 

@@ -6,7 +6,7 @@ from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
     from hydrostat.identification.fit import FittedModel, fit_model
-    from hydrostat.identification.identified_robot import IdentifiedRobot, identify, rms, start_of
+    from hydrostat.identification.identified_robot import IdentifiedRobot, identify, rms
     from hydrostat.identification.kinds import KINDS
     from hydrostat.identification.measurements import Measurements
     from hydrostat.identification.model import IdentificationModel, Parameter
@@ -23,7 +23,6 @@ __all__ = [
     "identify",
     "read_measurements",
     "rms",
-    "start_of",
 ]
 
 open_package(__name__)

@@ -18,6 +18,12 @@ from hydrostat.robot import Robot
 MISSING = 5.0
 """Residual of a coordinate without an equilibrium, in standard deviations of the noise."""
 
+ROUNDS = 6
+"""Most estimates of the noise, each followed by a fit with it."""
+
+SETTLED = 0.1
+"""Relative change of the noise below which it is not estimated again."""
+
 INSEPARABLE = 0.9
 """Correlation of two parameters above which their values are hardly told apart."""
 
@@ -93,7 +99,7 @@ def fit_model(
     """Most probable values of the parameters: least squares over measured places and guesses.
 
     Bounded Gauss-Newton steps in a trust region (SciPy, `trf`) with a loss that grows linearly beyond three standard
-    deviations, so that swapped or misread markers count little. The noise is that of the residuals, estimated twice.
+    deviations, so that swapped or misread markers count little. The noise is that of the residuals, estimated until it settles.
 
     Args:
         model: robot and measurement.
@@ -110,9 +116,8 @@ def fit_model(
     fit = _Fit(model, measurements, noise or 0.02 * robot.body.mesh.size, progress)
     numbers = np.zeros(len(model.parameters))
     limits = np.array([parameter.limits for parameter in model.parameters]).reshape(-1, 2).T
-    rounds = (evaluations // 2, evaluations - evaluations // 2) if noise is None else (evaluations,)
     message, slopes = "", cast("Any", fit.slopes)
-    for count in rounds:
+    for _ in range(ROUNDS):
         solved = least_squares(
             fit.residuals,
             numbers,
@@ -120,15 +125,14 @@ def fit_model(
             bounds=(limits[0], limits[1]),
             loss="soft_l1",
             f_scale=3.0,
-            max_nfev=max(count, 2),
+            max_nfev=max(evaluations - fit.count, 2),
             ftol=1e-4,
             xtol=1e-4,
         )
         numbers, message = solved.x, solved.message
         fit.residuals(numbers)
-        if noise is None:
-            fit.noise = max(1.4826 * float(np.median(np.abs(fit.errors))), 1e-6 * robot.body.mesh.size)
-            fit.forget()
+        if noise is not None or fit.count >= evaluations or not fit.estimate_noise(1e-6 * robot.body.mesh.size):
+            break
     jacobian = fit.slopes(numbers)
     errors = fit.distances
     return FittedModel(
@@ -158,6 +162,7 @@ class _Fit:
         self._predictor = MarkerPredictor(model, measurements)
         self._measured = np.isfinite(measurements.places)
         self._asked: np.ndarray | None = None
+        self._last = np.zeros(int(self._measured.sum()))  # last known residual of each coordinate [m]
         self.count = self.failed = 0
 
     def residuals(self, numbers: Vector) -> Vector:
@@ -180,9 +185,13 @@ class _Fit:
         """Distances of predicted from measured markers [m]."""
         return self._distances[np.isfinite(self._distances)]
 
-    def forget(self) -> None:
-        """Count the next evaluation anew."""
-        self._asked = None
+    def estimate_noise(self, least: float) -> bool:
+        """Take the noise from the median residual, at least `least` [m]; False if it was about that already."""
+        noise = max(1.4826 * float(np.median(np.abs(self.errors))), least) if len(self.errors) else self.noise
+        if abs(noise / self.noise - 1) < SETTLED:
+            return False
+        self.noise, self._asked = noise, None
+        return True
 
     def _ask(self, numbers: Vector) -> None:
         if self._asked is not None and (self._asked == numbers).all():
@@ -191,7 +200,8 @@ class _Fit:
         assert found.jacobian is not None
         offsets = found.places - self.measurements.places
         self._solved = np.isfinite(offsets)[self._measured]
-        self._errors = np.where(self._solved, offsets[self._measured], missing * self.noise)
+        self._errors = np.where(self._solved, offsets[self._measured], np.maximum(missing * self.noise, self._last))
+        self._last = np.where(self._solved, np.abs(self._errors), self._last)
         self._jacobian = found.jacobian[self._measured]
         self._distances = np.linalg.norm(offsets, axis=2).ravel()
         self.failed, self.count = int((~found.found).sum()), self.count + 1

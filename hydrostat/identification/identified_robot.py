@@ -25,7 +25,8 @@ class IdentifiedRobot:
     Attributes:
         fitted: values, intervals, and what the measurements show.
         robot: robot with these values; zeros of winches are in the slack of their cables, gains in the spool radii.
-        unsaved: parameters that a robot cannot hold: pretension, and the frame of the measurement.
+        assumed: the robot as it was assumed, as a model without parameters.
+        pretension: contraction [m] to add to that of a winch whose cables are tight at rest, which a robot cannot hold.
         before: distance of each predicted from each measured marker before the fit [m], (rows, markers).
         after: the same after the fit.
         held_out: rows that a second fit did not see; empty with fewer than ten rows.
@@ -35,7 +36,8 @@ class IdentifiedRobot:
 
     fitted: FittedModel
     robot: Robot
-    unsaved: tuple[str, ...]
+    assumed: FittedModel
+    pretension: dict[str, float]
     before: np.ndarray
     after: np.ndarray
     held_out: np.ndarray
@@ -66,7 +68,7 @@ def identify(
     Raises:
         InputError: an unknown kind, or measurements that do not fit the robot.
     """
-    model = named_model(robot, fit)
+    model, assumed = named_model(robot, fit), start_of(named_model(robot, ()))
     count = len(measurements.commands)
     held_out = np.arange(2, count, 5) if count >= 10 else np.zeros(0, dtype=int)
     nothing = np.zeros((0, len(measurements.markers)))
@@ -79,14 +81,15 @@ def identify(
             measurements.rows(kept),
             progress=progress and (lambda line: progress(f"without held-out rows, {line}")),
         )
-        held_before, held_after = _distances(start_of(model), asked), _distances(part, asked)
+        held_before, held_after = _distances(assumed, asked), _distances(part, asked)
     fitted = fit_model(model, measurements, progress=progress)
-    changed, unsaved = _robot(model, fitted, robot)
+    changed, pretension = _robot(model, fitted, robot)
     return IdentifiedRobot(
         fitted=fitted,
         robot=changed,
-        unsaved=unsaved,
-        before=_distances(start_of(model), measurements),
+        assumed=assumed,
+        pretension=pretension,
+        before=_distances(assumed, measurements),
         after=_distances(fitted, measurements),
         held_out=held_out,
         held_out_before=held_before,
@@ -115,26 +118,30 @@ def _distances(fitted: FittedModel, measurements: Measurements) -> np.ndarray:
     return np.linalg.norm(found - measurements.places, axis=2)
 
 
-def _robot(model: IdentificationModel, fitted: FittedModel, assumed: Robot) -> tuple[Robot, tuple[str, ...]]:
-    """Robot with the fitted values, and names of what it cannot hold."""
+def _robot(model: IdentificationModel, fitted: FittedModel, assumed: Robot) -> tuple[Robot, dict[str, float]]:
+    """Robot with the fitted values, and the contraction [m] to add for winches whose pretension it cannot hold."""
     values = {name: _round_number(value) for name, value in fitted.values.items()}
     robot = model.robot(values)
-    unsaved = [name for name in values if name.startswith("frame.")]
+    gains = {winch.name: values.get(f"{winch.name}.gain", 1.0) for winch in robot.winches}
+    zeros = {name: MM * values.get(f"{name}.zero", 0.0) * gain for name, gain in gains.items()}
+    slack = [
+        cable.slack - float(ratio) * zeros[cable.winch]
+        for cable, ratio in zip(robot.cables, assumed.spool_ratios, strict=True)
+    ]
+    tight = {cable.winch for cable, rest in zip(robot.cables, slack, strict=True) if rest < 0}
     winches = tuple(
-        replace(winch, spool_radius=_round_number(winch.spool_radius * values.get(f"{winch.name}.gain", 1.0)))
-        for winch in robot.winches
+        replace(winch, spool_radius=_round_number(winch.spool_radius * gains[winch.name])) for winch in robot.winches
     )
-    cables = []
-    for cable, ratio in zip(robot.cables, assumed.spool_ratios, strict=True):
-        gain = values.get(f"{cable.winch}.gain", 1.0)
-        zero = MM * values.get(f"{cable.winch}.zero", 0.0) * gain
-        slack = cable.slack - float(ratio) * zero
-        if slack < 0:
-            unsaved.append(f"{cable.winch}.zero")
-        radius = None if cable.spool_radius is None else _round_number(cable.spool_radius * gain)
-        cables.append(replace(cable, slack=_round_number(max(slack, 0.0)), spool_radius=radius))
+    cables = tuple(
+        replace(
+            cable,
+            slack=cable.slack if cable.winch in tight else _round_number(rest),
+            spool_radius=None if cable.spool_radius is None else _round_number(cable.spool_radius * gains[cable.winch]),
+        )
+        for cable, rest in zip(robot.cables, slack, strict=True)
+    )
     try:
-        return robot.with_network(winches, cables), tuple(dict.fromkeys(unsaved))
+        return robot.with_network(winches, cables), {name: zeros[name] for name in gains if name in tight}
     except InputError as error:
         raise InputError(f"the fitted robot cannot be built: {error}") from None
 

@@ -12,7 +12,7 @@ from hydrostat.robot import Robot
 
 MM = 1e-3
 NARROW = 1e-6
-"""Distance that a fitted Poisson's ratio keeps from its limits."""
+"""Distance that a fitted Poisson's ratio keeps from 0.5."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,8 +46,13 @@ def named_model(robot: Robot, kinds: tuple[str, ...] | None = None) -> Identific
     Raises:
         InputError: an unknown kind, or one that this robot has nothing of.
     """
-    names = tuple(name for name, kind in KINDS.items() if kind.default) if kinds is None else kinds
-    found = {name: _parameters(robot, name) for name in names}
+    if unknown := [name for name in kinds or () if name not in KINDS]:
+        raise InputError(f'unknown parameter "{unknown[0]}". Available: {", ".join(KINDS)}.')
+    names = tuple(name for name, kind in KINDS.items() if (kind.default if kinds is None else name in kinds))
+    found = {name: KINDS[name].parameters(robot) for name in names}
+    all_names = [parameter.name for parameters in found.values() for parameter in parameters]
+    if twice := [name for name in all_names if all_names.count(name) > 1]:
+        raise InputError(f'two parameters are named "{twice[0]}"; rename the part, winch or cable')
     if kinds is not None and (empty := [name for name in names if not found[name]]):
         raise InputError(f'parameter "{empty[0]}": this robot has nothing of the kind; leave it out')
     used = [KINDS[name] for name in names if found[name]]
@@ -59,12 +64,6 @@ def named_model(robot: Robot, kinds: tuple[str, ...] | None = None) -> Identific
         contractions=lambda values, commands: reduce(lambda one, pull: pull(robot, values, one), pulls, commands),
         places=lambda values, at: reduce(lambda one, move: move(robot, values, one), moves, at),
     )
-
-
-def _parameters(robot: Robot, name: str) -> list[Parameter]:
-    if name not in KINDS:
-        raise InputError(f'unknown parameter "{name}". Available: {", ".join(KINDS)}.')
-    return KINDS[name].parameters(robot)
 
 
 def _material(robot: Robot, key: str, spread: float, limits: tuple[float, float], unit: str) -> list[Parameter]:
@@ -220,7 +219,7 @@ KINDS: dict[str, ParameterKind] = {
     ),
     "poisson": ParameterKind(
         about="Poisson's ratio of the body and of each part",
-        parameters=lambda robot: _material(robot, "poisson", 0.1, (NARROW, 0.5 - NARROW), ""),
+        parameters=lambda robot: _material(robot, "poisson", 0.1, (0.0, 0.5 - NARROW), ""),
         robot=_with_material("poisson"),
     ),
     "density": ParameterKind(

@@ -46,8 +46,8 @@ class Measurements:
         return np.zeros(self.places.shape[:2]) if self.masses is None else self.masses
 
     def is_measured(self, row: int) -> Bool[np.ndarray, " markers"]:
-        """Markers that were seen in a row."""
-        return np.isfinite(self.places[row]).all(axis=1)
+        """Markers of which a coordinate is known in a row."""
+        return np.isfinite(self.places[row]).any(axis=1)
 
     def rows(self, chosen: np.ndarray) -> "Measurements":
         """Some of the rows, by index or mask."""

@@ -43,6 +43,8 @@ def read_measurements(file: str | Path, robot: Robot) -> Measurements:
             masses.append(mass)
             commands.append(command)
             places.append(place)
+    if not commands:
+        raise InputError(f"{path}: has no row of numbers below the names of its columns")
     return Measurements(
         commands=np.array(commands),
         markers=columns.markers,
@@ -74,8 +76,7 @@ class _Columns:
             elif name not in _SKIPPED:
                 allowed = ", ".join([f"{winch}_mm" for winch in winches] + list(places) + list(loads))
                 raise InputError(f'{where}: unknown column "{name}". Available: {allowed}.')
-            if name not in _SKIPPED and head.index(name) != column:
-                raise InputError(f'{where}: column "{name}" occurs twice')
+        self._check_once(where)
         self.markers = tuple(dict.fromkeys(marker for marker, _ in self._places.values()))
         self._count = len(winches)
         for marker in self.markers:
@@ -86,6 +87,15 @@ class _Columns:
             raise InputError(f"{where}: {unmeasured[0]}_load_g needs the columns {unmeasured[0]}_x_mm ... as well")
         if not self.markers:
             raise InputError(f"{where}: no column of a marker. Available: {', '.join(places)}.")
+
+    def _check_once(self, where: str) -> None:
+        seen: set[object] = set()
+        for meaning in (self._winches, self._places, self._loads):
+            for column, one in meaning.items():
+                key = (id(meaning), one)
+                if key in seen:
+                    raise InputError(f'{where}: "{self._head[column]}" has two columns')
+                seen.add(key)
 
     def read(self, row: Sequence[str], where: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Commands [m], places [m] and hung masses [kg] of one row."""
@@ -101,7 +111,10 @@ class _Columns:
                 places[place] = MM * self._number(row, column, where)
         masses = np.zeros(len(self.markers))
         for column, marker in self._loads.items():
-            masses[self.markers.index(marker)] = 1e-3 * self._number(row, column, where)
+            mass = self._number(row, column, where)
+            if mass < 0:
+                raise InputError(f"{where}, column {self._head[column]}: a mass is 0 g or more, not {mass:g}")
+            masses[self.markers.index(marker)] = 1e-3 * mass
         return command, places, masses
 
     def _number(self, row: Sequence[str], column: int, where: str) -> float:
@@ -112,7 +125,7 @@ class _Columns:
         if not math.isfinite(number):
             raise InputError(
                 f'{where}, column {self._head[column]}: "{row[column].strip()[:30]}" is no number. '
-                "Write a number, or nothing for a marker that was not seen."
+                f"Write a number{' or nothing, if the marker was not seen' if column in self._places else ''}."
             )
         return number
 

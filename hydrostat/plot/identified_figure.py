@@ -1,11 +1,11 @@
-"""`draw_identified`: measured markers beside those of the assumed and of the fitted robot."""
+"""`draw_identified`: measured markers and those of the assumed and the fitted robot."""
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from hydrostat.drawing import Color
-from hydrostat.identification import IdentifiedRobot, Measurements, rms, start_of
+from hydrostat.identification import IdentifiedRobot, Measurements, rms
 from hydrostat.plot.chart import plain_axes
 
 MM = 1e3
@@ -15,7 +15,7 @@ FITTED, ASSUMED = Color.WINCHES[0], "#b9b4c0"
 def draw_identified(measurements: Measurements, found: IdentifiedRobot) -> Figure:
     """Measured and predicted places of all markers along two axes, with a line from each to its measurement [mm]."""
     seen = measurements.places
-    before, after = (fitted.predict(measurements) for fitted in (start_of(found.fitted.model), found.fitted))
+    before, after = (fitted.predict(measurements) for fitted in (found.assumed, found.fitted))
     dim = seen.shape[2]
     views = [(0, 1)] if dim == 2 else [(0, 2), (0, 1)]
     figure = Figure(figsize=(4.6 * len(views), 4.6), dpi=130, layout="constrained")

@@ -17,7 +17,8 @@ from hydrostat.identification import (
 )
 from hydrostat.identification.kinds import named_model
 from hydrostat.identification.residuals import MarkerPredictor
-from hydrostat.robot import Cable, Load, Marker, Mount, Pin, Robot, Rod, Winch, save_robot
+from hydrostat.robot import Cable, Load, Marker, Mount, Pin, Robot, Rod, Winch
+from hydrostat.simulation import Simulation
 
 UPPER = ((0.0083, 0.0137), (0.0587, 0.0161), (0.1129, 0.0147), (0.1833, 0.0143))
 LOWER = ((0.0087, -0.0143), (0.0921, -0.0157), (0.1827, -0.0139))
@@ -152,7 +153,7 @@ def test_a_table_is_read_and_refused_by_line(tmp_path: Path) -> None:
         ("up_mm\n3\n", "no column of a marker"),
         ("side_mm,tip_x_mm,tip_y_mm\n1,2,3\n", 'unknown column "side_mm"'),
         ("up_mm,tip_x_mm\n1,2\n", 'add a column "tip_y_mm"'),
-        ("up_mm,up_mm,tip_x_mm,tip_y_mm\n1,1,2,3\n", "occurs twice"),
+        ("up_mm,up,tip_x_mm,tip_y_mm\n1,1,2,3\n", "two columns"),
         ("up_mm,tip_x_mm,tip_y_mm\nfar,2,3\n", 'line 2, column up_mm: "far" is no number'),
         ("up_mm,tip_x_mm,tip_y_mm\n1,2\n", "line 2: 2 cells"),
         ("up_mm,tip_x_mm,tip_y_mm\n", "no row of numbers"),
@@ -178,11 +179,42 @@ def test_unknown_kinds_are_refused() -> None:
     ]
 
 
-def test_the_fitted_robot_can_be_saved(tmp_path: Path) -> None:
+def test_the_fitted_robot_predicts_what_was_measured() -> None:
+    """Zeros are in its slack and gains in its spools: asked for the true contraction, it is where it was seen."""
     robot = strip()
-    asked = measured(robot, np.array([[0.004, 0.0], [0.0, 0.006], [0.008, 0.002]]))
-    seen = MarkerPredictor(named_model(robot, ("gain",)), asked).predict(np.array([0.5, -0.5]), slopes=False).places
+    asked = measured(robot, np.array([[0.004, 0.0], [0.0, 0.006], [0.008, 0.002], [0.006, 0.004]]))
+    hidden = np.array([-0.3, -0.2, 0.5, -0.5])
+    model = named_model(robot, ("gain", "zero"))
+    assert [parameter.name for parameter in model.parameters] == ["up.zero", "down.zero", "up.gain", "down.gain"]
+    seen = MarkerPredictor(model, asked).predict(hidden, slopes=False).places
     found = identify(robot, replace(asked, places=seen), fit=("gain", "zero"))
     assert found.held_out.size == 0
-    save_robot(found.robot, tmp_path / "fitted")
-    assert found.after.max() < 0.3 * found.before.max()
+    gains = np.array([found.fitted.values[f"{winch.name}.gain"] for winch in robot.winches])
+    simulation = Simulation(found.robot)
+    for command, places in zip(asked.commands, seen, strict=True):
+        more = np.array([found.pretension.get(winch.name, 0.0) for winch in robot.winches])
+        pose = simulation.solve(gains * command + more)
+        assert np.abs([pose.markers[name] for name in asked.markers] - places).max() < 2e-5
+
+
+def test_zeros_that_are_pretension_are_told_as_lengths() -> None:
+    robot = strip()
+    asked = measured(robot, np.array([[0.004, 0.001], [0.001, 0.006], [0.008, 0.002], [0.006, 0.004]]))
+    truth = {"up.zero": 1.8, "down.zero": 0.0, "up.gain": 1.02, "down.gain": 1.0}
+    model = named_model(robot, ("zero", "gain"))
+    hidden = np.array([parameter.to_fitted(truth[parameter.name]) for parameter in model.parameters])
+    seen = MarkerPredictor(model, asked).predict(hidden, slopes=False).places
+    found = identify(robot, replace(asked, places=seen), fit=("zero", "gain"))
+    assert found.pretension == {"up": pytest.approx(1.8e-3 * 1.02, rel=0.02)}
+    assert found.robot.cables[0].slack == robot.cables[0].slack
+    assert found.fitted.error < 1e-5
+
+
+def test_one_known_coordinate_of_a_marker_counts() -> None:
+    robot = strip()
+    asked = measured(robot, np.array([[0.004, 0.001], [0.001, 0.006], [0.008, 0.002]]))
+    model = named_model(robot, ("gain",))
+    seen = MarkerPredictor(model, asked).predict(np.array([0.4, -0.3]), slopes=False).places
+    seen[:, :, 0] = np.nan
+    found = fit_model(model, replace(asked, places=seen))
+    assert found.numbers == pytest.approx([0.4, -0.3], abs=0.02)
