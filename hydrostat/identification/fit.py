@@ -99,7 +99,8 @@ def fit_model(
     """Most probable values of the parameters: least squares over measured places and guesses.
 
     Bounded Gauss-Newton steps in a trust region (SciPy, `trf`) with a loss that grows linearly beyond three standard
-    deviations, so that swapped or misread markers count little. The noise is that of the residuals, estimated until it settles.
+    deviations, so that swapped or misread markers count little. The noise is that of the residuals,
+    estimated until it settles.
 
     Args:
         model: robot and measurement.
