@@ -4,6 +4,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
+import numpy as np
 import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, folder_of, require_folder
@@ -13,6 +14,7 @@ from hydrostat.units import plural
 
 if TYPE_CHECKING:
     from hydrostat.identification import IdentifiedRobot, Measurements
+    from hydrostat.robot import Robot
 
 
 def identify(
@@ -54,7 +56,8 @@ def identify(
     _write(robot, table, found, out)
     _print_values(found)
     _print_errors(found, table, time.process_time() - began)
-    print(f"Wrote {out}. Next: hydrostat simulate {out}")
+    _warn(loaded, table, found)
+    print(f"Wrote {out}. Next: hydrostat check {out}")
 
 
 def _progress(rows: int) -> "_Lines | None":
@@ -125,6 +128,41 @@ def _print_values(found: "IdentifiedRobot") -> None:
             f"note: the cables of {winch} are tight at rest, which robot.toml cannot hold. "
             f"Add {1e3 * length:.2f} mm to its contractions."
         )
+
+
+def _warn(robot: "Robot", table: "Measurements", found: "IdentifiedRobot") -> None:
+    """Print what in the table is likely to be wrong."""
+    from hydrostat.identification import rms
+
+    for column, winch in enumerate(robot.winches):
+        pulls = table.commands[:, column]
+        if not pulls.any():
+            print(f"warning: {winch.name} is never contracted in the table. Add its column, or fit without it.")
+        beyond = np.flatnonzero((pulls > winch.travel) | (pulls < -winch.release))
+        if len(beyond):
+            print(
+                f"warning: {winch.name} contracts by {1e3 * pulls[beyond[0]]:.0f} mm in row {beyond[0] + 1}, beyond "
+                f"its travel of {1e3 * winch.travel:.0f} mm. Columns are in mm."
+            )
+    size, error = robot.body.mesh.size, rms(found.after)
+    if error > BAD * size:
+        print(
+            f"warning: the fit is {100 * error / size:.0f} % of the body off. Check units (mm), the frame's axes, and "
+            "which marker is which."
+        )
+    far = np.argwhere(found.after > max(OUTLIER * rms(found.after), 0.01 * size))
+    for row, marker in far[:5].tolist():
+        print(
+            f"warning: row {row + 1}: {table.markers[marker]} is {1e3 * found.after[row, marker]:.1f} mm off, much "
+            "more than others. Measure it again, or empty its cells."
+        )
+
+
+BAD = 0.05
+"""RMS error of a fit, as a share of the body's size, from which on something else than its parameters is wrong."""
+
+OUTLIER = 3.0
+"""Distance of a marker, over the RMS of all, that is told."""
 
 
 def _print_errors(found: "IdentifiedRobot", table: "Measurements", seconds: float) -> None:

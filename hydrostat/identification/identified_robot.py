@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.identification.fit import FittedModel, fit_model
 from hydrostat.identification.kinds import named_model
@@ -151,7 +150,7 @@ def _round_number(value: float) -> float:
     return float(f"{value:.6g}")
 
 
-def rms(distances: Vector) -> float:
+def rms(distances: np.ndarray) -> float:
     """Root mean square of the known distances; NaN if there are none."""
     known = distances[np.isfinite(distances)]
     return float(np.sqrt((known**2).mean())) if len(known) else float("nan")

@@ -75,7 +75,8 @@ class _Columns:
                 self._winches[column] = winches.index(bare)
             elif name not in _SKIPPED:
                 allowed = ", ".join([f"{winch}_mm" for winch in winches] + list(places) + list(loads))
-                raise InputError(f'{where}: unknown column "{name}". Available: {allowed}.')
+                mark = " Separate columns by commas." if ";" in name or "\t" in name else ""
+                raise InputError(f'{where}: unknown column "{name[:60]}". Available: {allowed}.{mark}')
         self._check_once(where)
         self.markers = tuple(dict.fromkeys(marker for marker, _ in self._places.values()))
         self._count = len(winches)

@@ -65,7 +65,7 @@ class BodyPart:
         if isinstance(self.material, str):
             object.__setattr__(self, "material", get_material(self.material))
         if self.is_rigid and self.density is None:
-            raise InputError("a rigid part needs its density, for example density = 1240 kg/m^3 for PLA")
+            raise InputError('a rigid part needs its density, for example density = "1240 kg/m^3" for PLA')
         if not self.is_rigid and self.density is not None:
             raise InputError("density is for rigid parts, a material has its own; remove it")
         if self.density is not None:

@@ -18,11 +18,14 @@ if TYPE_CHECKING:
 WORTH_A_NOTE = 0.1
 """Least excess of stiffness that a pose has a note of."""
 
+UNSTRAINED = 1e-3
+"""Largest strain of a pose near rest, where tight cables at their ends alone would be judged."""
+
 Tensors = Float[np.ndarray, "elements dim dim"]
 
 
 def estimate_stiffening(body: Body, nodes: Nodes) -> float:
-    """Estimate by how much linear elements are at least too stiff in a pose, as a share; 0 for quadratic elements.
+    """Estimate by how much linear elements are at least too stiff in a pose, as a share; 0 near rest, or if quadratic.
 
     Strain is constant in a linear element. The estimate compares it with the linear field that fits the strain of all
     elements around (Zienkiewicz and Zhu 1987): the energy of the difference over the energy of the body. For gallery
@@ -38,6 +41,8 @@ def estimate_stiffening(body: Body, nodes: Nodes) -> float:
     spans, now = (np.swapaxes(x[mesh.elements[:, 1:]] - x[mesh.elements[:, :1]], 1, 2) for x in (mesh.nodes, nodes))
     slopes = now @ np.linalg.inv(spans)
     strains = 0.5 * (np.swapaxes(slopes, 1, 2) @ slopes - np.eye(mesh.dim))
+    if np.abs(strains).max() < UNSTRAINED:
+        return 0.0
     squeezes = np.trace(strains, axis1=1, axis2=2)
     (mu, lame), volumes = body.lame(), mesh.volumes
     if body.plane is Plane.STRESS:

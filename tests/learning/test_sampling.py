@@ -74,14 +74,15 @@ def test_slopes_of_tensions(friction: float, tmp_path: Path) -> None:
     robot = replace(robot, cables=tuple(replace(cable, friction=friction) for cable in robot.cables))
     samples, simulation = read_samples(sample_robot(plan_samples(robot, 3), tmp_path).path), hs.Simulation(robot)
     assert samples.tension_slopes is not None
+    size = 1e-6 if friction else 1e-7  # of the difference [m]
     for contractions, slopes in zip(samples.contractions, samples.tension_slopes, strict=True):
         start = simulation.solve(contractions)
         for way in [contractions] if friction else np.eye(2):
-            step = 1e-7 * way / np.linalg.norm(way)
+            step = size * way / np.linalg.norm(way)
             above = simulation.solve(contractions + step, start=start).tensions
             below = start.tensions if friction else simulation.solve(contractions - step, start=start).tensions
-            found = (above - below) / (1e-7 if friction else 2e-7)
-            assert slopes @ step / 1e-7 == pytest.approx(found, rel=1e-3, abs=1e-3 * np.abs(slopes).max())
+            found = (above - below) / (size if friction else 2 * size)
+            assert slopes @ step / size == pytest.approx(found, rel=1e-3, abs=1e-3 * np.abs(slopes).max())
 
 
 def test_samples_of_an_earlier_version_are_read_but_not_gone_on_with(plan: SamplePlan, tmp_path: Path) -> None:

@@ -15,6 +15,7 @@ from plot.designs import grown, space_network, space_trace
 
 from hydrostat import plot
 from hydrostat.drawing import Color, mix
+from hydrostat.plot import activation_figures, robot_figures
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.report import report_text
 from hydrostat.plot.tension_scale import TensionScale
@@ -43,7 +44,8 @@ def figure(kind: str) -> Figure:
         "draw_trees": (trace.trees,),
         "draw_portrait": (reached.pose.nodes,),
     }
-    return getattr(plot, kind)(network.robot, *arguments.get(kind, ()))
+    room = next(room for room in (plot, robot_figures, activation_figures) if hasattr(room, kind))
+    return getattr(room, kind)(network.robot, *arguments.get(kind, ()))
 
 
 @pytest.mark.parametrize("kind", FIGURES)

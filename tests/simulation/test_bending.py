@@ -173,5 +173,7 @@ def test_the_note_of_linear_elements_is_a_lower_bound(dim: int, poisson: float) 
     excess = pose.energy / exact.energy - 1
     assert 0.1 * excess < estimate_stiffening(body, pose.nodes) < 1.2 * excess
     assert estimate_stiffening(body, body.mesh.nodes * 1.1) < 1e-9
+    noise = 1e-9 * np.random.default_rng(0).standard_normal(body.mesh.nodes.shape)
+    assert estimate_stiffening(body, body.mesh.nodes + noise) == 0.0  # rounding has no excess
     assert exact.notes == ()
     assert 'elements = "quadratic"' in "".join(pose.notes) or excess < 0.3

@@ -1,0 +1,40 @@
+"""`hydrostat identify`. Oracle: measurements that a robot with other spools would give."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from hydrostat.robot import gallery_folder, load_robot
+from hydrostat.simulation import Simulation
+
+Run = Callable[..., tuple[int, str, str]]
+
+
+def test_spools_are_found_and_doubtful_rows_named(run: Run, tmp_path: Path) -> None:
+    robot = load_robot(gallery_folder("starfish"))
+    simulation, names = Simulation(robot), [marker.name for marker in robot.markers]
+    gains = np.array([1.04, 1.0, 0.97])
+    lines = [
+        ",".join([*(f"{winch.name}_mm" for winch in robot.winches), *(f"{n}_{a}_mm" for n in names for a in "xy")])
+    ]
+    commands = np.array([[12.0, 20.0, 15.0], [20.0, 5.0, 30.0], [8.0, 14.0, 9.0], [25.0, 22.0, 20.0]])
+    for command in commands:
+        pose = simulation.solve(1e-3 * gains * command)
+        places = 1e3 * np.array([pose.markers[name] for name in names])
+        lines.append(",".join(f"{value:.4f}" for value in [*command, *places.ravel()]))
+    table = tmp_path / "seen.csv"
+    table.write_text("\n".join(lines) + "\n")
+    out = tmp_path / "fitted"
+    code, text, _ = run("identify", "gallery:starfish", table, "--fit", "gain", "--out", out)
+    assert code == 0
+    assert "warning" not in text
+    fitted = load_robot(out)
+    found = [one.spool_radius / old.spool_radius for one, old in zip(fitted.winches, robot.winches, strict=True)]
+    assert np.abs(np.array(found) - gains).max() < 1e-4
+    assert {"parameters.csv", "identified.png", "robot.toml"} <= {file.name for file in out.iterdir()}
+    assert "# A plush starfish" in (out / "robot.toml").read_text()
+    table.write_text("\n".join([*lines[:-1], "400" + lines[-1][lines[-1].index(",") :]]) + "\n")
+    code, text, _ = run("identify", "gallery:starfish", table, "--fit", "gain", "--out", out)
+    assert code == 0
+    assert "contracts by 400 mm in row 4, beyond its travel of 60 mm" in text
