@@ -4,7 +4,6 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import numpy as np
 import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, folder_of, require_folder
@@ -132,6 +131,8 @@ def _print_values(found: "IdentifiedRobot") -> None:
 
 def _warn(robot: "Robot", table: "Measurements", found: "IdentifiedRobot") -> None:
     """Print what in the table is likely to be wrong."""
+    import numpy as np
+
     from hydrostat.identification import rms
 
     for column, winch in enumerate(robot.winches):
