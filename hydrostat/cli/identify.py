@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, folder_of, require_folder
-from hydrostat.cli.waiting import patiently, read_robot
+from hydrostat.cli.waiting import read_robot
 from hydrostat.errors import InputError
 from hydrostat.units import plural
 
@@ -50,22 +50,12 @@ def identify(
     loaded = read_robot(robot)
     table = read_measurements(measurements, loaded)
     began = time.process_time()
-    with patiently("fitting, with equilibria of all rows at each step ..."):
-        found = identify_robot(loaded, table, fit=names, progress=_progress(len(table.commands)))
+    found = identify_robot(loaded, table, fit=names, progress=_Lines())
     _write(robot, table, found, out)
     _print_values(found)
     _print_errors(found, table, time.process_time() - began)
     _warn(loaded, table, found)
     print(f"Wrote {out}. Next: hydrostat check {out}")
-
-
-def _progress(rows: int) -> "_Lines | None":
-    """Lines for people where a fit takes long."""
-    return _Lines() if rows * 20 > SHORT else None
-
-
-SHORT = 200
-"""Equilibria, or rows times steps, that are over before a person wonders."""
 
 
 class _Lines:
@@ -138,7 +128,9 @@ def _warn(robot: "Robot", table: "Measurements", found: "IdentifiedRobot") -> No
     for column, winch in enumerate(robot.winches):
         pulls = table.commands[:, column]
         if not pulls.any():
-            print(f"warning: {winch.name} is never contracted in the table. Add its column, or fit without it.")
+            print(
+                f"warning: {winch.name} is never contracted in the table, so its zero and gain are unknown. Add its column."
+            )
         beyond = np.flatnonzero((pulls > winch.travel) | (pulls < -winch.release))
         if len(beyond):
             print(
@@ -163,7 +155,7 @@ BAD = 0.05
 """RMS error of a fit, as a share of the body's size, from which on something else than its parameters is wrong."""
 
 OUTLIER = 3.0
-"""Distance of a marker, over the RMS of all, that is told."""
+"""Distance of a marker, over the RMS of all, from which on its row is named."""
 
 
 def _print_errors(found: "IdentifiedRobot", table: "Measurements", seconds: float) -> None:

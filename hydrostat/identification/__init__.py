@@ -6,9 +6,9 @@ from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
     from hydrostat.identification.fit import FittedModel, fit_model
-    from hydrostat.identification.identified_robot import IdentifiedRobot, identify, rms
+    from hydrostat.identification.identified_robot import IdentifiedRobot, identify
     from hydrostat.identification.kinds import KINDS
-    from hydrostat.identification.measurements import Measurements
+    from hydrostat.identification.measurements import Measurements, rms
     from hydrostat.identification.model import IdentificationModel, Parameter
     from hydrostat.identification.read import read_measurements
 

@@ -10,9 +10,9 @@ from scipy.optimize import least_squares
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
-from hydrostat.identification.measurements import Measurements
+from hydrostat.identification.marker_predictor import MarkerPrediction, MarkerPredictor
+from hydrostat.identification.measurements import Measurements, rms
 from hydrostat.identification.model import IdentificationModel
-from hydrostat.identification.residuals import MarkerPrediction, MarkerPredictor
 from hydrostat.robot import Robot
 
 MISSING = 5.0
@@ -135,14 +135,13 @@ def fit_model(
         if noise is not None or fit.count >= evaluations or not fit.estimate_noise(1e-6 * robot.body.mesh.size):
             break
     jacobian = fit.slopes(numbers)
-    errors = fit.distances
     return FittedModel(
         model=model,
         values=model.values(numbers),
         numbers=numbers,
         covariance=np.linalg.inv(jacobian.T @ jacobian),
         noise=fit.noise,
-        error=float(np.sqrt((errors**2).mean())) if len(errors) else np.nan,
+        error=rms(fit.distances),
         failed=fit.failed,
         iterations=fit.count,
         message=message,
@@ -183,8 +182,8 @@ class _Fit:
 
     @property
     def distances(self) -> Vector:
-        """Distances of predicted from measured markers [m]."""
-        return self._distances[np.isfinite(self._distances)]
+        """Distances of predicted from measured markers [m]; NaN for those that are not known."""
+        return self._distances
 
     def estimate_noise(self, least: float) -> bool:
         """Take the noise from the median residual, at least `least` [m]; False if it was about that already."""
@@ -208,8 +207,7 @@ class _Fit:
         self.failed, self.count = int((~found.found).sum()), self.count + 1
         self._asked = numbers.copy()
         if self._progress:
-            error = 1e3 * float(np.sqrt((self.distances**2).mean())) if len(self.distances) else np.nan
-            self._progress(f"evaluation {self.count}: {error:.2f} mm off (RMS)")
+            self._progress(f"evaluation {self.count}: {1e3 * rms(self.distances):.2f} mm off (RMS)")
 
     def _predict(self, numbers: Vector) -> tuple[MarkerPrediction, float]:
         """Prediction, and the residual of what it lacks; values that no robot can have are far off after the first."""

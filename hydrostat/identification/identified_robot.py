@@ -148,9 +148,3 @@ def _robot(model: IdentificationModel, fitted: FittedModel, assumed: Robot) -> t
 def _round_number(value: float) -> float:
     """Value with the digits that a measurement can have."""
     return float(f"{value:.6g}")
-
-
-def rms(distances: np.ndarray) -> float:
-    """Root mean square of the known distances; NaN if there are none."""
-    known = distances[np.isfinite(distances)]
-    return float(np.sqrt((known**2).mean())) if len(known) else float("nan")

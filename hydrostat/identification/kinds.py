@@ -20,7 +20,6 @@ class ParameterKind:
     """A group of parameters with one name.
 
     Attributes:
-        about: text for help.
         parameters: parameters of a robot; none where it has nothing of the kind.
         robot: robot with some values in place of its own; None for parameters of the measurement alone.
         contractions: contractions [m] with some values, as in `IdentificationModel`.
@@ -28,7 +27,6 @@ class ParameterKind:
         default: fitted without being named.
     """
 
-    about: str
     parameters: Callable[[Robot], list[Parameter]]
     robot: Callable[[Robot, Values], Robot] | None = None
     contractions: Callable[[Robot, Values, np.ndarray], np.ndarray] | None = None
@@ -212,47 +210,40 @@ def _move_to_frame(robot: Robot, values: Values, places: np.ndarray) -> np.ndarr
 
 KINDS: dict[str, ParameterKind] = {
     "young": ParameterKind(
-        about="Young's modulus of the body and of each part",
         parameters=lambda robot: _material(robot, "young", 0.7, (1.0, 1e13), "Pa"),
         robot=_with_material("young"),
         default=True,
     ),
     "poisson": ParameterKind(
-        about="Poisson's ratio of the body and of each part",
         parameters=lambda robot: _material(robot, "poisson", 0.1, (0.0, 0.5 - NARROW), ""),
         robot=_with_material("poisson"),
     ),
     "density": ParameterKind(
-        about="density of the body and of each soft part",
         parameters=lambda robot: (
             [] if robot.gravity is None else _material(robot, "density", 0.3, (1e-3, 1e5), "kg/m^3")
         ),
         robot=_with_material("density"),
     ),
     "stiffness": ParameterKind(
-        about="stiffness of each cable",
         parameters=lambda robot: _each_cable(robot, "stiffness"),
         robot=_with_stiffness,
         default=True,
     ),
     "zero": ParameterKind(
-        about="zero of each winch: slack or pretension of its cables",
         parameters=_offsets,
         contractions=_add_zeros,
         default=True,
     ),
     "gain": ParameterKind(
-        about="gain of each winch: radius of its spool over the assumed one",
         parameters=_gains,
         contractions=_apply_gains,
         default=True,
     ),
-    "friction": ParameterKind(about="friction coefficient of all cables", parameters=_friction, robot=_with_friction),
-    "pins": ParameterKind(about="stiffness of each pin", parameters=_pins, robot=_with_pins),
-    "gravity": ParameterKind(about="direction and strength of gravity", parameters=_gravity, robot=_with_gravity),
-    "rods": ParameterKind(about="bending stiffness of each rod", parameters=_rods, robot=_with_rods, default=True),
+    "friction": ParameterKind(parameters=_friction, robot=_with_friction),
+    "pins": ParameterKind(parameters=_pins, robot=_with_pins),
+    "gravity": ParameterKind(parameters=_gravity, robot=_with_gravity),
+    "rods": ParameterKind(parameters=_rods, robot=_with_rods, default=True),
     "frame": ParameterKind(
-        about="place and direction of the frame of the measurement",
         parameters=_frame,
         places=_move_to_frame,
         default=True,

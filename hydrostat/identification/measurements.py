@@ -53,3 +53,9 @@ class Measurements:
         """Some of the rows, by index or mask."""
         masses = None if self.masses is None else self.masses[chosen]
         return replace(self, commands=self.commands[chosen], places=self.places[chosen], masses=masses)
+
+
+def rms(distances: np.ndarray) -> float:
+    """Root mean square of the known distances; NaN if there are none."""
+    known = distances[np.isfinite(distances)]
+    return float(np.sqrt((known**2).mean())) if len(known) else float("nan")

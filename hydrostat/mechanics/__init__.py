@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from hydrostat.mechanics.nodal_energies import LoadEnergy, PinEnergy, WeightEnergy
     from hydrostat.mechanics.obstacle import ObstacleEnergy
     from hydrostat.mechanics.patch_volume import PATCH_SIZE, PatchVolume, grow_patches
-    from hydrostat.mechanics.plane_stress import PlaneStress, thickening
+    from hydrostat.mechanics.plane_stress import PlaneStress, solve_thickening
     from hydrostat.mechanics.quadratic_solid import POINTWISE, QuadraticSolid
     from hydrostat.mechanics.rigid import CarriedWarp, GuideEnergy, RigidBodyDofs, RigidEnergy
     from hydrostat.mechanics.rod_energy import RodEnergy, rod_points
@@ -76,7 +76,7 @@ __all__ = [
     "grow_patches",
     "minimize",
     "rod_points",
-    "thickening",
+    "solve_thickening",
 ]
 
 open_package(__name__)

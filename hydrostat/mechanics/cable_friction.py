@@ -261,7 +261,7 @@ class FrictionCableEnergy(Energy):
         pulled, turned = self._spans.length_gradients(nodes), self._turns.blocks(nodes)
         spans, corners, count = self._spans.cables, self._turns.stencils, len(tensions)
 
-        def changed(limits: Vector) -> Vector:
+        def change_limits(limits: Vector) -> Vector:
             """Change of the capstan's limits where the limits change."""
             drops, forces = by_limit @ limits, np.zeros_like(nodes)
             native.add_vectors(self.stencils, pulled * drops[spans][:, None, None], forces)
@@ -270,7 +270,7 @@ class FrictionCableEnergy(Energy):
             bent = np.bincount(self._turns.points, np.einsum("stcd,stcd->t", turned, moved[corners]), count)
             return by_tension @ (drops + by_elongation @ stretched) + by_angle * bent
 
-        return solve_krylov(changed, miss)
+        return solve_krylov(change_limits, miss)
 
     def moves(self, nodes: Nodes, controls: Vector, compliance: Compliance) -> Float[np.ndarray, "dofs controls"]:
         """Derivative of the nodes by the controls, while all points at the capstan limit go on slipping.
@@ -397,4 +397,4 @@ _FALLS = 0.5
 """A correction of a share of its way that takes less than this part of that share off what was off was too long."""
 
 _WILD = 30.0
-"""A Newton step that changes a limit by so many times what was off begins at a kink: no step is longer."""
+"""A Newton step that changes a limit by this many times its error begins at a kink: no step is longer."""

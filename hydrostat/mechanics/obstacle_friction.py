@@ -125,7 +125,7 @@ class ObstacleFriction:
         wanted = self.friction * pushes
         limits = self.limits + self.share * (wanted - self.limits)
         step = np.linalg.solve(np.eye(len(slips)) - self.share * moves, self.share * (wanted - self.limits)[slips])
-        most = 4.0  # No step makes a limit so many times larger than what was asked
+        most = 4.0  # Largest ratio of a limit after a step to that before it or asked for
         limits[slips] = np.clip(self.limits[slips] + step, 0.0, most * np.maximum(self.limits, wanted)[slips])
         return replace(self, limits=limits, normals=normals, trail=())
 
@@ -161,7 +161,7 @@ class ObstacleFriction:
 
         missed = np.append(wanted - self.limits, turns * scale[:, None])
         steps = solve_krylov(product, self.share * missed)
-        most = 4.0  # No step makes a limit so many times larger than what was asked
+        most = 4.0  # Largest ratio of a limit after a step to that before it or asked for
         turned = self.normals + steps[count:].reshape(turns.shape) / safe
         lengths = np.linalg.norm(turned, axis=1, keepdims=True)
         return replace(

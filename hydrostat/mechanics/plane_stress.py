@@ -93,7 +93,7 @@ class PlaneStress(Energy):
         turned = np.empty_like(slopes)  # cofactors of F
         turned[:, 0, 0], turned[:, 0, 1] = 1.0 + slopes[:, 1, 1], -slopes[:, 1, 0]
         turned[:, 1, 0], turned[:, 1, 1] = -slopes[:, 0, 1], 1.0 + slopes[:, 0, 0]
-        widened = thickening(change, self.mu, self.lame)
+        widened = solve_thickening(change, self.mu, self.lame)
         return _State(change, widened, -self.mu * widened, np.einsum("tij,tcj->tci", turned, self.gradients))
 
 
@@ -113,7 +113,7 @@ class _State(NamedTuple):
     slopes: Blocks
 
 
-def thickening(change: Vector, mu: Vector, lame: Vector) -> Vector:
+def solve_thickening(change: Vector, mu: Vector, lame: Vector) -> Vector:
     """Return s^2 - 1 without stress across the plane, at a change of area J - 1; by Newton's method from below."""
     log = np.log1p(np.maximum(change, -1.0 + 1e-12))
     found = np.where(log > 0, np.expm1(-2 * log), 0.0)  # left of the root of a concave function

@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.geometry import Mesh
-from hydrostat.mechanics import thickening
+from hydrostat.mechanics import solve_thickening
 from hydrostat.robot import Body, Plane, Robot
 
 if TYPE_CHECKING:
@@ -82,7 +82,7 @@ class _Stretch:
         stretch = np.zeros((3, 3, len(slopes)))
         stretch[2, 2] = 1.0
         if body.plane is Plane.STRESS:
-            stretch[2, 2] += thickening(np.linalg.det(slopes) - 1.0, *body.lame())
+            stretch[2, 2] += solve_thickening(np.linalg.det(slopes) - 1.0, *body.lame())
         for i in range(grid.dim):
             for j in range(i, grid.dim):
                 stretch[i, j] = stretch[j, i] = np.einsum("ek,ek->e", rows[i], rows[j])

@@ -16,7 +16,7 @@ from hydrostat.identification import (
     read_measurements,
 )
 from hydrostat.identification.kinds import named_model
-from hydrostat.identification.residuals import MarkerPredictor
+from hydrostat.identification.marker_predictor import MarkerPredictor
 from hydrostat.robot import Cable, Load, Marker, Mount, Pin, Robot, Rod, Winch
 from hydrostat.simulation import Simulation
 

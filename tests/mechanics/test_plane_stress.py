@@ -9,7 +9,7 @@ from builders import FOAM, box_mesh, gallery_robot, mesh_body, strip_mesh, strip
 from scipy.optimize import minimize_scalar
 
 from hydrostat.errors import InputError
-from hydrostat.mechanics import Assembly, NeoHookean, PlaneStress, thickening
+from hydrostat.mechanics import Assembly, NeoHookean, PlaneStress, solve_thickening
 from hydrostat.robot import Plane, Robot, Volume, find_risks, load_robot, save_robot
 from hydrostat.simulation import BodyPhysics, Simulation, node_stresses
 from hydrostat.testing import check_energy
@@ -55,7 +55,7 @@ def test_a_sheet_is_a_plate_that_chose_its_thickness(kind: str, stretches: tuple
     nodes = robot.body.mesh.nodes
     assert energies(robot).value(nodes * stretches, NONE) == pytest.approx(least.fun, rel=1e-8)
     area = np.array([np.prod(stretches) - 1])
-    assert np.sqrt(1 + thickening(area, np.array([mu]), np.array([lame])))[0] == pytest.approx(least.x, rel=1e-4)
+    assert np.sqrt(1 + solve_thickening(area, np.array([mu]), np.array([lame])))[0] == pytest.approx(least.x, rel=1e-4)
 
 
 def test_stress_of_a_sheet_that_is_pulled() -> None:

@@ -164,7 +164,7 @@ _STEP = 0.1
 
 
 def friction_hysteresis(simulation: Simulation, pose: Equilibrium, *, overshoot: float = 0.1) -> dict[str, float]:
-    """Distance of each marker between a pose and the one that the same contractions leave when come to from above [m].
+    """Distance of each marker between a pose and that at the same contractions, reached by paying out [m].
 
     From the pose all winches take in a share more, and let it out again. Empty where no physics remember the way.
 

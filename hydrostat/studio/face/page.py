@@ -153,7 +153,7 @@ class Toasts:
         for toast, other, words in list(self._shown):
             if words == text or (tone is not Tone.BAD and other is not Tone.BAD):
                 self._drop(toast)
-        most = 2  # so many notes are seen at once
+        most = 2  # Notes that are shown at once
         while len(self._shown) >= most:
             self._drop(self._shown[0][0])
         with self.room:

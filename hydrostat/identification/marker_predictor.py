@@ -1,4 +1,4 @@
-"""`Residuals`: predicted less measured places of markers, with exact slopes by the parameters."""
+"""`MarkerPredictor`: places of markers for values of the parameters, with exact slopes."""
 
 from dataclasses import dataclass, replace
 
@@ -48,7 +48,7 @@ class MarkerPredictor:
         """Places at coordinates of the fit, with their Jacobian if requested.
 
         Raises:
-            InputError: values that no robot can have, or a parameter that changes what has no known slope.
+            InputError: values that no robot can have, or that change how many cables, points or parts it has.
         """
         values = self.model.values(numbers)
         robot = self.model.robot(values)
