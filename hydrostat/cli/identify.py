@@ -128,9 +128,7 @@ def _warn(robot: "Robot", table: "Measurements", found: "IdentifiedRobot") -> No
     for column, winch in enumerate(robot.winches):
         pulls = table.commands[:, column]
         if not pulls.any():
-            print(
-                f"warning: {winch.name} is never contracted in the table, so its zero and gain are unknown. Add its column."
-            )
+            print(f"warning: {winch.name} never contracts in the table: its zero and gain are unknown. Add its column.")
         beyond = np.flatnonzero((pulls > winch.travel) | (pulls < -winch.release))
         if len(beyond):
             print(
