@@ -68,7 +68,7 @@ NEVER += " hydrostat.learning hydrostat.training hydrostat.studio "
     [
         (
             "simulate R --contract left=12mm --out pose",
-            "scipy.optimize scipy.spatial hydrostat.ik.solve_ik hydrostat.design",
+            "scipy.optimize scipy.spatial scipy.sparse hydrostat.ik.solve_ik hydrostat.design",
         ),
         ("pose R --pose wave --out pose", "scipy.interpolate hydrostat.design"),
         ("new other --from gallery:starfish", "scipy.optimize hydrostat.design hydrostat.simulation.simulation"),

@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
-from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -11,9 +10,6 @@ from jaxtyping import Float, Int
 from hydrostat.arrays import Nodes
 from hydrostat.geometry import Mesh
 from hydrostat.robot import Body, Plane, Volume
-
-if TYPE_CHECKING:
-    from scipy.sparse import csr_array
 
 WORTH_A_NOTE = 0.1
 """Least excess of stiffness that a pose has a note of."""
@@ -57,40 +53,52 @@ def estimate_stiffening(body: Body, nodes: Nodes) -> float:
 
 @dataclass(frozen=True, eq=False)
 class _LinearFields:
-    """Linear fields that fit values of elements and of those around, as matrices from values to the field in each.
+    """Linear fields that fit values of elements and of those around: weighted sums over pairs of near elements.
 
     Attributes:
-        middle: value in the middle of the element.
-        slopes: slope along each axis.
+        row: element of each pair whose field it is; in order.
+        column: element of each pair whose value it takes.
+        weights: weight in the value in the middle of the element, then in the slope along each axis [1/m].
         moments: integral of the products of two coordinates from the middle [m^2 x volume].
     """
 
-    middle: "csr_array"
-    slopes: "list[csr_array]"
+    row: Int[np.ndarray, " pairs"]
+    column: Int[np.ndarray, " pairs"]
+    weights: Float[np.ndarray, "terms pairs"]
     moments: Tensors
 
     def misfit(
         self, values: Float[np.ndarray, "elements columns"], volumes: Float[np.ndarray, " elements"]
     ) -> Float[np.ndarray, "elements columns"]:
         """Integral over each element of the square of the field less the value of the element."""
-        found = volumes[:, None] * (values - self.middle @ values) ** 2
-        steep = [slope @ values for slope in self.slopes]
+        begins = np.searchsorted(self.row, np.arange(len(values)))
+        near = values[self.column]
+        middle, *steep = (np.add.reduceat(weight[:, None] * near, begins) for weight in self.weights)
+        found = volumes[:, None] * (values - middle) ** 2
         for one, other in product(range(len(steep)), repeat=2):
             found += self.moments[:, one, other, None] * steep[one] * steep[other]
         return found
 
 
+def _near_pairs(elements: Int[np.ndarray, "elements corners"]) -> tuple[np.ndarray, np.ndarray]:
+    """Pairs of elements that share a node, each with itself too, in order of the first."""
+    count, corners = elements.shape
+    order = np.argsort(elements, axis=None, kind="stable")
+    around, size = order // corners, np.bincount(elements.ravel())  # elements at each node, one node after the other
+    begin, size = np.repeat(np.cumsum(size) - size, size), np.repeat(size, size)
+    steps = np.arange(size.sum()) - np.repeat(np.cumsum(size) - size, size)
+    pairs = np.sort(np.repeat(around, size) * count + around[np.repeat(begin, size) + steps])
+    return np.divmod(pairs[np.append(True, np.diff(pairs) > 0)], count)
+
+
 @lru_cache(maxsize=2)
 def _fields(mesh: Mesh, materials: bytes) -> _LinearFields:
     """Fit by least squares, weighted by volumes, to elements of one material that share a node."""
-    from scipy.sparse import csr_array
-
     count, corners = mesh.elements.shape
     kinds: Int[np.ndarray, " elements"] = np.frombuffer(materials, dtype=np.int64)
-    entries = np.ones(mesh.elements.size), (np.repeat(np.arange(count), corners), mesh.elements.ravel())
-    touching = csr_array(entries, shape=(count, len(mesh.nodes)))
-    near = (touching @ touching.T).tocoo()
-    row, column = (part[kinds[near.row] == kinds[near.col]] for part in (near.row, near.col))
+    row, column = _near_pairs(mesh.elements)
+    alike = kinds[row] == kinds[column]
+    row, column = row[alike], column[alike]
     middles = mesh.nodes[mesh.elements].mean(axis=1)
     away = middles[column] - middles[row]
     size = np.sqrt(np.bincount(row, (away**2).sum(axis=1), count) / np.bincount(row, minlength=count))
@@ -103,10 +111,7 @@ def _fields(mesh: Mesh, materials: bytes) -> _LinearFields:
     scale = np.trace(products, axis1=1, axis2=2)
     products += 1e-6 * scale[:, None, None] * np.eye(corners)  # elements with few neighbors
     fits = np.einsum("pab,pb->pa", np.linalg.inv(products)[row], basis * weights[:, None])
-    middle, *slopes = (
-        csr_array((fits[:, place] / (size[row] if place else 1.0), (row, column)), shape=(count, count))
-        for place in range(corners)
-    )
+    fits[:, 1:] /= size[row, None]
     spread = mesh.nodes[mesh.elements] - middles[:, None]
     moments = np.einsum("eci,ecj->eij", spread, spread) * (mesh.volumes / (corners * (corners + 1)))[:, None, None]
-    return _LinearFields(middle, slopes, moments)
+    return _LinearFields(row, column, fits.T, moments)
