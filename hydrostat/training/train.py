@@ -2,8 +2,6 @@
 
 import json
 import math
-import pickle
-import shutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
@@ -19,6 +17,7 @@ from hydrostat.errors import HydrostatError, InputError
 from hydrostat.progress import Progress, no_progress
 from hydrostat.robot import replace_file
 from hydrostat.simulation import ContractionProfile
+from hydrostat.training.checkpoint import damage_named, drop_others, restore_checkpoint, save_checkpoint
 from hydrostat.training.goal_env import GoalEnv
 from hydrostat.version import install_command
 
@@ -187,7 +186,9 @@ def train(
         raise InputError(f"processes must be 1 to {options.together}, the episodes side by side, not {processes}")
     curve, listener = begun_curve(out, options, resume=resume), listener or Listener()
     with _copies(env, options, processes) as copies:
-        learner = _resume_model(copies, options, _checkpoint(curve, out)) if resume else _learner(env, copies, options)
+        learner = _learner(env, copies, options)
+        if resume:
+            restore_checkpoint(learner, _checkpoint(curve, out))
         out.mkdir(parents=True, exist_ok=True)
         learner.tensorboard_log = str(out / "tensorboard") if find_spec("tensorboard") else None
         while learner.num_timesteps < options.steps:
@@ -221,7 +222,7 @@ def begun_curve(out: Path, options: TrainOptions, *, resume: bool) -> list[Curve
         return []
     if not (out / "curve.json").exists():
         raise InputError(f"{out}: no checkpoint to resume from. Start without --resume.")
-    with _read_whole(out / "curve.json"):
+    with damage_named(out / "curve.json"):
         kept = json.loads((out / "curve.json").read_text())
         curve = [CurvePoint(**each) for each in kept["curve"]]
         made = dict(kept["options"])
@@ -315,49 +316,9 @@ def _checkpoint(curve: list[CurvePoint], out: Path) -> Path:
 
 
 def _keep(model: Any, options: TrainOptions, curve: list[CurvePoint], out: Path) -> None:
-    """Write all that the next step depends on, then the curve that ends there, and drop the checkpoint before."""
-    import torch
-
+    """Write a checkpoint, then the curve that ends there, and drop the checkpoint before."""
     folder = _checkpoint(curve, out)
-    folder.mkdir(exist_ok=True)
-    model.save(folder / "model.zip")
-    model.save_replay_buffer(folder / "experience.pkl")
-    state = {
-        "numpy": np.random.get_state(legacy=False),  # noqa: NPY002
-        "torch": torch.get_rng_state(),
-        "actions": model.action_space.np_random.bit_generator.state,
-        "copies": model.env.get_state(),
-    }
-    replace_file(folder / "state.pkl", pickle.dumps(state))
+    save_checkpoint(model, folder)
     told = {"options": asdict(options), "curve": [asdict(each) for each in curve]}
     replace_file(out / "curve.json", (json.dumps(told, indent=1) + "\n").encode())
-    for old in out.glob("checkpoint-*"):
-        if old != folder:
-            shutil.rmtree(old)
-
-
-@contextmanager
-def _read_whole(path: Path) -> Iterator[None]:
-    """Tell that what is read within is damaged, whatever the loaders of others say of it (InputError: it is)."""
-    try:
-        yield
-    except Exception:  # noqa: BLE001 pickles and archives that were cut short raise what they like
-        raise InputError(f"{path}: is missing or damaged; begin again, without --resume") from None
-
-
-def _resume_model(copies: Any, options: TrainOptions, folder: Path) -> Any:
-    """The model of a checkpoint of one's own, with everything as it was then (InputError: it is damaged)."""
-    import torch
-    from stable_baselines3.common.vec_env import VecMonitor
-
-    torch.set_num_threads(1)
-    made = _algorithm(options.method)
-    with _read_whole(folder):
-        model = made.load(folder / "model.zip", env=VecMonitor(copies), device="cpu")
-        model.load_replay_buffer(folder / "experience.pkl", truncate_last_traj=False)
-        state = pickle.loads((folder / "state.pkl").read_bytes())
-        np.random.set_state(state["numpy"])  # noqa: NPY002
-        torch.set_rng_state(state["torch"])
-        model.action_space.np_random.bit_generator.state = state["actions"]
-    copies.go_on(state["copies"])
-    return model
+    drop_others(folder)

@@ -1,6 +1,7 @@
 """`World`: what an environment asks where markers go: the simulator, a network, or both in turn."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -39,7 +40,7 @@ class World(ABC):
         """State of the progress: equilibria, and the rest that the next episode depends on."""
         return (self.equilibria,)
 
-    def go_on(self, kept: tuple[int, ...]) -> None:
+    def go_on(self, kept: Sequence[int]) -> None:
         """Go on where a world was that has been kept."""
         (self.equilibria,) = kept
 
@@ -104,7 +105,7 @@ class MixedWorld(World):
         """Equilibria, and which episode it is."""
         return (self.equilibria, self._episode)
 
-    def go_on(self, kept: tuple[int, ...]) -> None:
+    def go_on(self, kept: Sequence[int]) -> None:
         """Go on with the episode after."""
         self._worlds[1].equilibria, self._episode = kept
 

@@ -1,8 +1,9 @@
 """Environments in which robots reach. Oracles: the simulator, sums by hand, the checkers of those who use them."""
 
 import json
+import pickle
 from copy import deepcopy
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -287,9 +288,44 @@ def test_what_does_not_fit_a_checkpoint_is_told(goals: Goals, tmp_path: Path) ->
     whole = json.dumps({"options": asdict(TrainOptions()), "curve": [asdict(point)]})
     (tmp_path / "curve.json").write_text(whole)
     (tmp_path / "checkpoint-4").mkdir()
-    (tmp_path / "checkpoint-4" / "model.zip").write_bytes(b"PK half of it")
+    (tmp_path / "checkpoint-4" / "weights.pt").write_bytes(b"PK half of it")
     with pytest.raises(InputError, match=r"checkpoint-4: is missing or damaged; begin again"):
         train(straight(), goals, TrainOptions(), tmp_path, resume=True)
+
+
+class Forged:
+    """What writes a file where it is unpickled."""
+
+    def __init__(self, path: Path) -> None:
+        """The file."""
+        self.path = path
+
+    def __reduce__(self) -> tuple:
+        return Path.touch, (self.path,)
+
+
+@QUIET
+def test_a_checkpoint_of_a_stranger_runs_no_code(goals: Goals, tmp_path: Path) -> None:
+    torch = pytest.importorskip("torch", reason="PyTorch is not installed")
+    pytest.importorskip("stable_baselines3", reason="stable-baselines3 is not installed")
+    options = TrainOptions(steps=8, layers=(4,), batch=4)
+    train(straight(), goals[:1], options, tmp_path)
+    (folder,) = tmp_path.glob("checkpoint-*")
+    forged, ran = Forged(tmp_path / "ran"), tmp_path / "ran"
+    for name in ("weights.pt", "experience.npz", "state.json", "state.pkl"):
+        before = (folder / name).read_bytes() if name != "state.pkl" else b""
+        if name == "weights.pt":
+            torch.save(forged, folder / name)
+        elif name == "experience.npz":
+            np.savez(folder / name, ep_start=np.array([forged], dtype=object))
+        else:
+            (folder / name).write_bytes(pickle.dumps(forged))
+        with pytest.raises(InputError, match=r"damaged; begin again|could run code and is not read"):
+            train(straight(), goals[:1], replace(options, steps=16), tmp_path, resume=True)
+        assert not ran.exists()
+        (folder / name).write_bytes(before)
+    pickle.loads(pickle.dumps(forged))
+    assert ran.exists()  # it would have
 
 
 @QUIET
