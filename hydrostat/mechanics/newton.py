@@ -238,7 +238,8 @@ class _EnergyDescent:
                 return stiffness
             if shares.whole:
                 break
-            self.projection = shares.with_larger_shares(projects_first=first)
+            negative = stiffness.factors.negative
+            self.projection = shares.with_larger_shares(projects_first=first, negative=negative)
         for shift in _SHIFTS:
             stiffness = place.assembly.stiffness(place.nodes, self.controls, projection=1.0, shift=shift)
             if stiffness.definite:

@@ -38,14 +38,19 @@ class Projection:
             return Projection(float(projects_first), self.late / 16)
         return Projection(self.early if self.raised and projects_first else 0.0)
 
-    def with_larger_shares(self, *, projects_first: bool) -> "Projection":
-        """Return larger shares, where these did not suffice."""
+    def with_larger_shares(self, *, projects_first: bool, negative: int = 0) -> "Projection":
+        """Return larger shares, where these left so many negative eigenvalues."""
+        if projects_first and negative >= _MANY and not self.late:
+            return Projection(1.0, 1.0, raised=True)
         if projects_first and self.early < 1.0 and not self.late:
             return Projection(1.0, raised=True)
         if projects_first:
             return Projection(1.0, 1.0 if self.late else 1 / 8, raised=True)
         return Projection(0.0, min(16 * self.late, 1.0) or 1.0)
 
+
+_MANY = 7
+"""From this number of negative eigenvalues on, contact's share alone or 1/8 of the others' seldom suffice."""
 
 _LEAST = 1 / 32
 """Below this share of what is negative, the full Hessian is tried."""
