@@ -113,9 +113,7 @@ def _touches(simulation: Simulation, pose: Equilibrium) -> bool:
     slot = simulation.body.own_contact
     if slot is None:
         return False
-    return bool(
-        simulation.assembly.with_active_terms(pose.nodes).energies[slot].gradient(pose.nodes, pose.contractions).any()
-    )
+    return bool(simulation.assembly_at(pose).energies[slot].gradient(pose.nodes, pose.contractions).any())
 
 
 def _crosses(simulation: Simulation, pose: Equilibrium) -> bool:

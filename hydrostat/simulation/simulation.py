@@ -187,8 +187,7 @@ class Simulation:
         """
         check_pose(pose, self.robot.body.mesh.nodes.shape, len(self.robot.winches), what="the pose")
         if not self.assembly.has_history:
-            active = self.assembly.with_active_terms(pose.unknowns)
-            right = -active.control_derivative(pose.unknowns, pose.contractions).toarray()
+            right = -self.assembly_at(pose).control_derivative(pose.unknowns, pose.contractions).toarray()
             return self.response(pose, right).reshape(*self.assembly.shape, -1)[: len(pose.nodes)]
         cables, stiffness = self._rubbing(pose)
         compliance = stiffness.compliance_to(cables.span_columns(pose.nodes))
@@ -245,10 +244,7 @@ class Simulation:
         """
         if self.assembly.has_history:
             raise InputError("with friction a pose gives way to forces as it goes on or back; ask for its adjoint")
-        stiffness = self._regular(pose)
-        return response(
-            self.assembly.with_active_terms(pose.unknowns), stiffness, (pose.unknowns, pose.contractions), forces
-        )
+        return response(self.assembly_at(pose), self._regular(pose), (pose.unknowns, pose.contractions), forces)
 
     def motion_at_rest(self, pose: Equilibrium | None = None, *, velocities: Nodes | None = None) -> Motion:
         """Return a motion that starts in a pose, by default the rest pose, with relaxed viscous branches.
@@ -339,13 +335,17 @@ class Simulation:
         """Factorized Hessian at a pose; after a solve it may be that of the start of its last step."""
         if self.assembly.has_history:
             return self.path.with_history(pose).stiffness(pose.unknowns, pose.contractions)
-        active = self.assembly.with_active_terms(pose.unknowns)
-        return self.stiffness_of(pose) or active.stiffness(pose.unknowns, pose.contractions)
+        return self.stiffness_of(pose) or self.assembly_at(pose).stiffness(pose.unknowns, pose.contractions)
 
     def _regular(self, pose: Equilibrium) -> Stiffness:
         if (stiffness := self.stiffness(pose)).singular:
             raise NotConvergedError("no derivative: the Hessian is singular, the pose is about to snap", pose.result)
         return stiffness
+
+    def assembly_at(self, pose: Equilibrium) -> Assembly:
+        """Sum of the energies that are active at a pose; contact is searched for only if the pose keeps no Hessian."""
+        known = self.stiffness_of(pose)
+        return self.assembly.continuing(None if known is None else known.source).with_active_terms(pose.unknowns)
 
     def stiffness_of(self, pose: Equilibrium) -> Stiffness | None:
         """Hessian kept with a pose of this simulation; None if it has none, or its nodes were moved."""

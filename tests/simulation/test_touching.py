@@ -9,7 +9,7 @@ from builders import gallery_robot
 from touching import DISTANCE, fork_robot
 
 from hydrostat.errors import InputError
-from hydrostat.geometry import find_crossings
+from hydrostat.geometry import BoundaryTree, find_crossings
 from hydrostat.ik import solve_ik
 from hydrostat.mechanics import Assembly, ContactEnergy, NewtonOptions
 from hydrostat.robot import Contact, Obstacle, PoseTarget, Robot
@@ -97,6 +97,15 @@ def test_slopes_through_contact(dim: int) -> None:
         assert np.abs(slopes[:, :, number] - wanted).max() < 1e-6 * np.abs(wanted).max()
     found = simulation.adjoint(pose, weights).contractions
     np.testing.assert_allclose(found, np.einsum("nd,ndw->w", weights, slopes), rtol=1e-8)
+
+
+def test_slopes_of_a_solved_pose_need_no_search(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Oracle: the Jacobian of the same pose without its factors, which searches for pairs again."""
+    simulation = Simulation(fork_robot(3))
+    pose = simulation.solve(PULLED)
+    wanted = simulation.jacobian(pose.without_factors())
+    monkeypatch.delattr(BoundaryTree, "sweep")
+    np.testing.assert_allclose(simulation.jacobian(pose), wanted, atol=1e-9 * np.abs(wanted).max())
 
 
 @pytest.mark.parametrize("dim", [2, 3])
