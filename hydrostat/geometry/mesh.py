@@ -178,17 +178,32 @@ class Mesh:
         return self._outer_facets[1]
 
     @cached_property
+    def element_groups(self) -> Int[np.ndarray, " elements"]:
+        """Group of each element; elements of one group are joined through facets, not only at nodes."""
+        _, order, again = self._ordered_facets
+        joins = np.stack([order[:-1][again], order[1:][again]])
+        return joined_groups(joins % max(len(self.elements), 1), len(self.elements))
+
+    @cached_property
     def _outer_facets(self) -> tuple[np.ndarray, np.ndarray]:
-        """Boundary facets and their elements: leaving out an odd corner turns the rest over."""
+        """Boundary facets and their elements."""
+        facets, order, again = self._ordered_facets
+        outer = np.sort(order[~(np.append(again, False) | np.append(False, again))[: len(order)]])
+        return facets[outer], outer % max(len(self.elements), 1)
+
+    @cached_property
+    def _ordered_facets(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Facets of all elements, an order that puts equal ones together, and a mask of those that equal the next.
+
+        Leaving out an odd corner turns the rest over.
+        """
         corners = range(self.dim + 1)
         facets = np.concatenate([np.delete(self.elements, corner, axis=1) for corner in corners])
         odd = np.repeat([corner % 2 == 1 for corner in corners], len(self.elements))
         facets[odd, :2] = facets[odd, 1::-1]
         risen = np.sort(facets, axis=1)
         order = np.lexsort((risen[:, 1], risen[:, 0] * len(self.nodes) + risen[:, -1]))
-        again = (risen[order[1:]] == risen[order[:-1]]).all(axis=1)
-        outer = np.sort(order[~(np.append(again, False) | np.append(False, again))[: len(order)]])
-        return facets[outer], outer % max(len(self.elements), 1)
+        return facets, order, (risen[order[1:]] == risen[order[:-1]]).all(axis=1)
 
     @cached_property
     def boundary_nodes(self) -> Int[np.ndarray, " nodes"]:

@@ -19,6 +19,7 @@ from hydrostat.robot.checks import check_positive
 from hydrostat.robot.element_kind import ElementKind, Plane, Volume
 from hydrostat.robot.materials import Material, get_material
 from hydrostat.robot.part import BodyPart
+from hydrostat.robot.part_elements import find_part_elements
 
 
 class Source(StrEnum):
@@ -87,7 +88,7 @@ class Body:
     def with_parts(self, parts: Iterable[BodyPart]) -> "Body":
         """Return the body with these parts in place of its own, its mesh fitted to their borders.
 
-        Raises InputError: parts that do not fit, see `element_materials`.
+        Raises InputError: parts that do not fit, see `find_part_elements`.
         """
         from hydrostat.robot.conform import conform
 
@@ -115,33 +116,10 @@ class Body:
 
     @cached_property
     def element_materials(self) -> Int[np.ndarray, " elements"]:
-        """Index in `materials` of each element.
-
-        Raises InputError: a part of another dimension, of a name that another has, that holds no element, or overlaps.
-        """
+        """Index in `materials` of each element (InputError: parts that do not fit, see `find_part_elements`)."""
         if self.mesh.quadratic is not None:
             return np.repeat(self.with_elements(ElementKind.LINEAR).element_materials, 2**self.mesh.dim)
-        middles = self.mesh.nodes[self.mesh.elements].mean(axis=1)
-        found = np.zeros(len(middles), dtype=np.int64)
-        for index, part in enumerate(self.parts):
-            where = f"body.part[{index}]"
-            if part.name in [other.name for other in self.parts[:index]]:
-                raise InputError(f'{where}.name: there are two of the name "{part.name}"; names must be unique')
-            if part.dim > self.mesh.dim:
-                raise InputError(f"{where}: has {part.dim} coordinates, but the body has {self.mesh.dim}")
-            held = part.holds(middles)
-            if not held.any():
-                raise InputError(
-                    f'{where}: "{part.name}" holds no element: it lies outside the body or is thinner than an element; '
-                    "move it, enlarge it, or take a smaller element_size"
-                )
-            shared = held & (found > 0)
-            if shared.any():
-                other = self.parts[found[shared][0] - 1].name
-                raise InputError(
-                    f'{where}: "{part.name}" overlaps "{other}" in {int(shared.sum())} elements; move one of them'
-                )
-            found[held] = index + 1
+        found = find_part_elements(self.mesh, self.parts)
         found.setflags(write=False)
         return found
 

@@ -134,6 +134,19 @@ class BodyPart:
         distances = np.linalg.norm(places - points, axis=1)
         return np.where(inside, -distances, distances), places
 
+    def grid(self, count: int) -> Points:
+        """Points of a regular grid of about `count` over the box about the region, also outside it [m]."""
+        if self.mesh is not None:
+            corners = self.mesh.surface.vertices + np.array(self.at)
+        else:
+            corners = np.array([point for point in (self.at, self.to, *self.points) if point is not None])
+        far = self.radius or 0.0
+        low, high = corners.min(axis=0) - far, corners.max(axis=0) + far
+        steps = round(count ** (1 / self.dim)) | 1
+        low, high = low + 1e-9 * (high - low), high - 1e-9 * (high - low)  # or rounding puts its sides outside
+        lines = [np.linspace(*ends, steps) for ends in zip(low, high, strict=True)]
+        return np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, self.dim)
+
     def with_transform(self, move: Callable[[Point], Point], scale: float = 1.0) -> "BodyPart":
         """Return the same part with every point moved, and its radius scaled; a mesh is only shifted."""
         return replace(

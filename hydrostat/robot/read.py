@@ -203,7 +203,8 @@ class RobotReader(TablesFile):
             otherwise=f"body.{source}",
         )
         parts = tuple(
-            self.at(f"body.part[{index}]", partial(self._part, part)) for index, part in enumerate(entry.part)
+            self.at(where := f"body.part[{index}]", partial(self._part, where, part))
+            for index, part in enumerate(entry.part)
         )
         body = self.at("", lambda: body.with_parts(parts)) if parts else body
         if entry.plane is not None:
@@ -211,7 +212,7 @@ class RobotReader(TablesFile):
         kind = entry.elements
         return body if kind is None else self.at("body.elements", lambda: body.with_elements(kind))
 
-    def _part(self, entry: Any) -> BodyPart:
+    def _part(self, where: str, entry: Any) -> BodyPart:
         if entry.rigid == (entry.material is not None):
             raise InputError("give either material or rigid = true")
         if (entry.file is not None) != (entry.shape is PartShape.MESH):
@@ -220,10 +221,10 @@ class RobotReader(TablesFile):
         if entry.radius is not None:
             given["radius"] = units.scale_up(entry.radius, self.unit, units.LENGTH)
         if entry.file is not None:
-            given["mesh"] = self._closed_mesh("body.part.file", entry.file)
+            given["mesh"] = self._closed_mesh(f"{where}.file", entry.file)
             given.setdefault("at", (0.0, 0.0, 0.0))
         if entry.material is not None:
-            given["material"] = read_material(entry.material)
+            given["material"] = self.at(f"{where}.material", lambda: read_material(entry.material))
         points = tuple(self.point(point) for point in entry.points)
         return BodyPart(name=entry.name, shape=entry.shape, points=points, **given, **_given_keys(entry, "density"))
 

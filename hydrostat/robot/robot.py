@@ -23,7 +23,7 @@ from hydrostat.robot.html_repr import html_repr
 from hydrostat.robot.load import Load
 from hydrostat.robot.marker import Marker, Pin, PoseTarget
 from hydrostat.robot.materials import Material, get_material
-from hydrostat.robot.rod import Rod
+from hydrostat.robot.rod import Rod, check_rods_inside
 from hydrostat.robot.winch import Mount, Winch
 from hydrostat.units import plural
 
@@ -182,9 +182,9 @@ class Robot:
     def __repr__(self) -> str:
         """Return a one-line summary."""
         mesh = self.body.mesh
-        parts = [plural(len(self.winches), "winch"), plural(len(self.cables), "cable")]
+        parts = f"{plural(len(self.winches), 'winch')}, {plural(len(self.cables), 'cable')}"
         return (
-            f"<Robot {self.name!r}: {1e3 * mesh.size:.0f} mm, {plural(len(mesh.nodes), 'node')}, {', '.join(parts)}, "
+            f"<Robot {self.name!r}: {1e3 * mesh.size:.0f} mm, {plural(len(mesh.nodes), 'node')}, {parts}, "
             f"markers: {', '.join(marker.name for marker in self.markers) or 'none'}, "
             f"poses: {', '.join(self.poses) or 'none'}>"
         )
@@ -306,11 +306,11 @@ class Robot:
                 raise InputError(f'load[{index}].marker: unknown marker "{load.marker}". {_choices("markers", names)}')
             if load.mass is not None and self.gravity is None:
                 raise InputError(f'load[{index}].mass weighs nothing without gravity; add gravity = "-y", or a force')
-            if load.force is not None and len(load.force) != self.body.mesh.dim:
-                count = len(load.force)
+            if load.force is not None and (count := len(load.force)) != self.body.mesh.dim:
                 raise InputError(f"load[{index}].force has {count} entries, but the body has {self.body.mesh.dim} axes")
         _unique("rod", [rod.name for rod in self.rods])
         self._check_inside([(key, point) for key, point in self._points() if key.startswith(("load", "rod"))])
+        check_rods_inside(self.rods, self.body, self._text)
 
     def load_points(self) -> Points:
         """Point of the body at rest that carries each load [m], (loads, dim)."""

@@ -1,11 +1,14 @@
 """`Rod`: an elastic rod in a body, such as a spring steel wire or a spine."""
 
 import math
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
+from hydrostat.arrays import Points
 from hydrostat.errors import InputError
+from hydrostat.robot.body import Body
 from hydrostat.robot.checks import Point, check_name, check_point, check_positive
 
 SHARPEST = 100.0
@@ -66,11 +69,41 @@ class Rod:
                 check_positive(key, value, unit)
 
     @property
+    def length(self) -> float:
+        """Length at rest [m]."""
+        return float(np.linalg.norm(np.diff(np.array(self.points), axis=0), axis=1).sum())
+
+    @property
     def stiffnesses(self) -> tuple[float, float]:
         """EA [N] and EI [N m^2]."""
         if self.diameter is not None and self.young is not None:
             return self.young * math.pi * self.diameter**2 / 4, self.young * math.pi * self.diameter**4 / 64
         return self.axial_stiffness or 0.0, self.bending_stiffness or 0.0
+
+
+def sample_rod(rod: Rod, count: int = 200) -> Points:
+    """Places along a rod at rest, its points among them, about `count` in all [m]."""
+    points = np.array(rod.points, dtype=float)
+    spans = np.diff(points, axis=0)
+    lengths = np.linalg.norm(spans, axis=1)
+    places = [points[:1]]
+    for start, span, length in zip(points[:-1], spans, lengths, strict=True):
+        steps = max(round(count * length / lengths.sum()), 1)
+        places.append(start + np.linspace(0, 1, steps + 1)[1:, None] * span)
+    return np.concatenate(places)
+
+
+def check_rods_inside(rods: Iterable[Rod], body: Body, text: Callable[[Point | float], str]) -> None:
+    """Reject rods of which a straight piece lies outside the body (InputError); `text` words points and lengths."""
+    for index, rod in enumerate(rods):
+        places = sample_rod(rod)
+        gaps = body.distances(places)
+        if gaps.max() > 1e-3 * body.mesh.size:
+            where = text(tuple(places[int(np.argmax(gaps))].tolist()))
+            raise InputError(
+                f"rod[{index}].points: the rod leaves the body by {text(float(gaps.max()))} at {where}; "
+                "lead it round by more points"
+            )
 
 
 _FORMS = ([True, False, True, False], [False, True, False, True])

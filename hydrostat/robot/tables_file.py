@@ -167,7 +167,7 @@ def read_text(file: Path) -> str:
 
 
 _HEADER = re.compile(r"\s*\[\[?\s*([A-Za-z_][\w.]*)\s*\]")
-_KEY = re.compile(r"(\w+)(?:\[(\d+)\])?(?:\.(\w+))?(?:\[\d+\])*(?:\.(\w+))?(?:\[(\d+)\])?")
+_STEP = re.compile(r"(\w+)(?:\[(\d+)\])?(?:\[\d+\])*(?:\.|(?=\W|$))")
 
 
 def find_line(text: str, key: str) -> int | None:
@@ -175,29 +175,36 @@ def find_line(text: str, key: str) -> int | None:
 
     A key that is missing from its table stands at the table's header.
     """
-    match = _KEY.match(key)
-    if not match:
+    steps = _key_steps(key)
+    if not steps:
         return None
-    table, index, entry, inner = match[1], int(match[2] or 0), match[3], match[4]
     lines = text.split("\n")
     headers = [(number, found[1]) for number, line in enumerate(lines) if (found := _HEADER.match(line))]
-    starts = [number for number, name in headers if name == table]
-    if len(starts) <= index:
-        top = range(headers[0][0] if headers else len(lines))
-        return _find(lines, top, rf"{table}\s*\.\s*{entry}") or _find(lines, top, table)
-    start = starts[index]
-    later = (number for number, name in headers if number > start and not name.startswith(f"{table}."))
-    block = range(start + 1, next(later, len(lines)))
-    inside = [(number, name) for number, name in headers if number in block]
-    own = range(start + 1, inside[0][0] if inside else block.stop)
-    deep = [number for number, name in inside if name == f"{table}.{entry}.{inner}"]
-    if deep:
-        return deep[min(int(match[5] or 0), len(deep) - 1)] + 1
-    line = _find(lines, own, rf"{entry}(?:\s*\.\s*{inner})?") if entry else None
-    for number, name in inside:
-        if line is None and name == f"{table}.{entry}":
-            line = _find(lines, range(number + 1, block.stop), str(inner)) or number + 1
-    return line or start + 1
+    block, name, depth, single = range(-1, len(lines)), "", 0, True
+    for number, (step, index) in enumerate(steps):
+        name = f"{name}.{step}".removeprefix(".")
+        starts = [line for line, other in headers if other == name and (line in block or single)]
+        if number == 0 and len(starts) <= index:
+            break
+        if starts:
+            start, depth = starts[min(index, len(starts) - 1)], number + 1
+            later = (line for line, other in headers if line > start and not other.startswith(f"{name}."))
+            block, single = range(start, next(later, len(lines))), single and len(starts) == 1
+    own = range(block.start + 1, next((number for number, _ in headers if number in block[1:]), block.stop))
+    names = [re.escape(step) for step, _ in steps[depth:]]
+    for count in range(len(names), 0, -1):
+        if line := _find(lines, own, r"\s*\.\s*".join(names[:count])):
+            return line
+    return block.start + 1 or None
+
+
+def _key_steps(key: str) -> list[tuple[str, int]]:
+    """Names and indices of a key, its first 6 at most."""
+    steps, place = [], 0
+    while len(steps) < 6 and (found := _STEP.match(key, place)):
+        steps.append((found[1], int(found[2] or 0)))
+        place = found.end()
+    return steps
 
 
 def _find(lines: list[str], places: range, key: str) -> int | None:

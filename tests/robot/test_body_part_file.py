@@ -1,5 +1,6 @@
 """Parts of a body in robot.toml. Oracle: what was written, areas of circles, and the line that tells each fault."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from hydrostat.robot import (
     BodyPart,
     ElementKind,
     Material,
+    find_risks,
     inflated_robot,
     load_robot,
     merged_text,
@@ -25,6 +27,12 @@ BONE = (
     '[[body.part]]\nname = "bone"\nshape = "box"\nat = [0, -30]\nto = [20, 30]\nrigid = true\ndensity = "1.2 g/cm^3"\n'
 )
 JOINT = '[[body.part]]\nname = "joint"\nshape = "sphere"\nat = [-12, 0]\nradius = 8\nmaterial = "ecoflex 00-30"\n'
+RIGID = 'rigid = true\ndensity = "1.2 g/cm^3"\n'
+FAR = (
+    '[[body.part]]\nname = "plate"\nshape = "polygon"\n'
+    f"points = [[-25, 10], [-15, 10], [-15, 30], [15, 30], [15, 10], [25, 10], [25, 40], [-25, 40]]\n{RIGID}"
+)
+THIN = f'[[body.part]]\nname = "wire"\nshape = "capsule"\nat = [-20, -10]\nto = [20, 10]\nradius = 1.3\n{RIGID}'
 
 
 def with_parts(*tables: str) -> str:
@@ -112,7 +120,9 @@ def test_a_robot_keeps_its_parts_when_scaled_and_blown_up(tmp_path: Path) -> Non
         (edit(JOINT, "radius = 8\n", ""), "a sphere needs a radius"),
         (edit(JOINT, '"sphere"', '"cone"'), r'body.part\[0\].shape: "cone" is not known'),
         (edit(JOINT, '"sphere"', '"mesh"'), 'shape = "mesh" needs a file'),
-        (edit(JOINT, '"ecoflex 00-30"', '"cheese"'), 'body.part.0.: unknown material "cheese"'),
+        (edit(JOINT, '"ecoflex 00-30"', '"cheese"'), 'body.part.0..material: unknown material "cheese"'),
+        (FAR, r'rigid "plate" is in 2 pieces, [\d.]+ mm apart, at .* as it leaves the body between them'),
+        (THIN, r'rigid "wire" is in \d+ pieces of the mesh, at .* too thin for its elements'),
         (
             '[[body.part]]\nname = "x"\nshape = "polygon"\npoints = [[0, 0], [9, 9], [9, 0], [0, 9]]\nrigid = true\n'
             'density = "1 g/cm^3"\n',
@@ -126,6 +136,21 @@ def test_what_is_wrong_is_told_in_one_line(table: str, told: str, tmp_path: Path
         load(tmp_path, with_parts(table))
     assert "\n" not in str(caught.value)
     assert "robot.toml" in str(caught.value)
+
+
+def test_a_part_that_reaches_out_is_told(tmp_path: Path) -> None:
+    """A box that reaches 20 mm out of a body 40 mm high is half outside; a soft one is a region, so it may."""
+    out = edit(BONE, "to = [20, 30]", "to = [20, 40]")
+    (line,) = find_risks(load(tmp_path / "a", with_parts(edit(out, "[0, -30]", "[0, 0]"))))
+    assert line == (
+        'body.part[0] "bone": reaches 20 mm out of the body at [0, 40] mm; the 49 % outside have neither stiffness nor '
+        "mass. Draw it to the edge, or enlarge the body"
+    )
+    soft = edit(edit(out, 'rigid = true\ndensity = "1.2 g/cm^3"', 'material = "ecoflex 00-30"'), "[0, -30]", "[0, 0]")
+    assert find_risks(load(tmp_path / "b", with_parts(soft))) == []
+    coarse = edit(with_parts(edit(JOINT, "radius = 8", "radius = 4")), 'element_size = "4 mm"', 'element_size = "9 mm"')
+    (line,) = find_risks(load(tmp_path / "c", coarse))[-1:]
+    assert re.fullmatch(r'body.part\[0\] "joint": [+-]\d+ % in volume in the mesh; take a smaller element_size', line)
 
 
 def test_a_record_checks_itself() -> None:

@@ -3,10 +3,10 @@
 from pathlib import Path
 
 import pytest
-from robot_files import GOOD, load
+from robot_files import GOOD, RECTANGLE, load
 
 from hydrostat.errors import InputError
-from hydrostat.robot import load_robot, save_robot, scaled_robot
+from hydrostat.robot import find_risks, load_robot, save_robot, scaled_robot
 
 WIRE = '[[rod]]\nname = "spine"\npoints = [[-20, 0], [20, 0]]\ndiameter = "0.8 mm"\nyoung = "200 GPa"\n'
 GIVEN = (
@@ -41,3 +41,18 @@ def test_what_is_wrong_is_told_in_one_line(table: str, told: str, tmp_path: Path
     with pytest.raises(InputError, match=told) as caught:
         load(tmp_path, f"{GOOD}\n{table}")
     assert "\n" not in str(caught.value)
+
+
+def test_a_rod_that_leaves_or_sticks_out_is_told(tmp_path: Path) -> None:
+    """In a drawing with a notch 20 mm deep, and thicker than the body of 20 mm or 1 mm too near its edge."""
+    notched = RECTANGLE.replace('<rect width="60" height="40"/>', '<path d="M0 0H60V40H40V20H20V40H0Z"/>')
+    over = WIRE.replace("[[-20, 0], [20, 0]]", "[[-20, -10], [20, -10]]")
+    with pytest.raises(InputError, match=r"rod\[0\].points: the rod leaves the body by 10 mm at \[0, -10\]; lead it"):
+        load(tmp_path / "a", f"{GOOD.replace('[20, -10]', '[-11, -6]')}\n{over}", svg=notched)
+    thick = load(tmp_path / "b", f"{GOOD}\n{WIRE.replace('0.8', '22')}")
+    near = load(tmp_path / "c", f"{GOOD}\n{WIRE.replace(', 0]', ', 18]').replace('0.8', '6')}")
+    found = [line for robot in (thick, near) for line in find_risks(robot) if line.startswith("rod")]
+    assert [line.partition(" at ")[0] for line in found] == [
+        "rod[0] spine: 22 mm thick, it sticks 1 mm out of the body",
+        "rod[0] spine: 6 mm thick, it sticks 1 mm out of the body",
+    ]

@@ -28,6 +28,13 @@ winch.name = 1
 [[cable.winch.top]] # 23
 top = 1
 [[cable.winch.top]] # 25
+[[body.part]]       # 26
+name = "bone"
+[[body.part]]       # 28
+name = "joint"
+radius = 3          # 30
+  [body.part.material]
+  young = "1 kPa"   # 32
 """
 
 
@@ -41,6 +48,10 @@ top = 1
         ("body.outline", 4),
         ("body.mesh", 5),
         ("body.thickness", 3),
+        ("body.part[0]", 26),
+        ("body.part[1].radius", 30),
+        ("body.part[1].at[1]", 28),
+        ("body.part[1].material.young", 32),
         ("pin[0].at", 7),
         ("pin[0].radius", 6),
         ("pin[1].radius", 9),
@@ -56,7 +67,7 @@ top = 1
         ("cable[0].winch[0].name", 20),
         ("cable[1].winch.name", 22),
         ("cable[1].winch.top", 23),
-        ("cable[1].winch.top[0].top", 23),
+        ("cable[1].winch.top[0].top", 24),
         ("cable[1].winch.top[1].top", 25),
         ("cable[1].winch.top[2].top", 25),
         ("", None),

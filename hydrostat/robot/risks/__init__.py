@@ -2,6 +2,7 @@
 
 from hydrostat.robot.risks.body_risks import body_risks
 from hydrostat.robot.risks.network_risks import SEWN_DEPTH, cable_risks, limit_travels, winch_risks
+from hydrostat.robot.risks.part_risks import part_risks
 from hydrostat.robot.risks.pose_risks import marker_risks, pin_risks, pose_risks
 from hydrostat.robot.robot import Robot
 
@@ -10,5 +11,5 @@ __all__ = ["SEWN_DEPTH", "find_risks", "limit_travels"]
 
 def find_risks(robot: Robot) -> list[str]:
     """Find risks without a simulation: one line for each kind of risk and part; empty if there are none."""
-    kinds = (body_risks, pin_risks, winch_risks, cable_risks, marker_risks, pose_risks)
+    kinds = (body_risks, part_risks, pin_risks, winch_risks, cable_risks, marker_risks, pose_risks)
     return [line for kind in kinds for line in kind(robot)]

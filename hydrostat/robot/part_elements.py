@@ -1,0 +1,71 @@
+"""`find_part_elements`: elements of a mesh that belong to the parts of a body."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from hydrostat.errors import InputError
+from hydrostat.geometry import Mesh, locate
+from hydrostat.robot.part import BodyPart
+
+
+def find_part_elements(mesh: Mesh, parts: Sequence[BodyPart]) -> Int[np.ndarray, " elements"]:
+    """Number of the part of each element of a linear mesh, from 1; 0 for the body itself.
+
+    Raises InputError: a part of another dimension, of a name that another has, that holds no element, overlaps, or is
+    rigid but in several pieces.
+    """
+    middles = mesh.nodes[mesh.elements].mean(axis=1)
+    found = np.zeros(len(middles), dtype=np.int64)
+    for index, part in enumerate(parts):
+        where = f"body.part[{index}]"
+        if part.name in [other.name for other in parts[:index]]:
+            raise InputError(f'{where}.name: there are two of the name "{part.name}"; names must be unique')
+        if part.dim > mesh.dim:
+            raise InputError(f"{where}: has {part.dim} coordinates, but the body has {mesh.dim}")
+        held = part.holds(middles)
+        if not held.any():
+            raise InputError(
+                f'{where}: "{part.name}" holds no element: it lies outside the body or is thinner than an element; '
+                "move it, enlarge it, or take a smaller element_size"
+            )
+        shared = held & (found > 0)
+        if shared.any():
+            other = parts[found[shared][0] - 1].name
+            raise InputError(
+                f'{where}: "{part.name}" overlaps "{other}" in {int(shared.sum())} elements; move one of them'
+            )
+        if part.is_rigid and (pieces := _pieces(mesh, part, held)):
+            raise InputError(f'{where}: rigid "{part.name}" {pieces}')
+        found[held] = index + 1
+    return found
+
+
+def _pieces(mesh: Mesh, part: BodyPart, held: np.ndarray) -> str:
+    """Complaint of elements that are not joined through facets, which could move apart or turn; empty if they are."""
+    elements = mesh.elements[held]
+    groups = Mesh(mesh.nodes, elements).element_groups
+    count = int(groups.max()) + 1
+    if count == 1:
+        return ""
+    nodes = [np.unique(elements[groups == group]) for group in range(count)]
+    nodes.sort(key=len, reverse=True)
+    told = " and ".join(_place(mesh.nodes[one].mean(axis=0)) for one in nodes[:2])
+    grid = part.grid(1000)
+    outside = 0.0 if part.dim < mesh.dim else float((~locate(mesh, grid[part.holds(grid)]).inside).mean())
+    if outside < 0.05:
+        return (
+            f"is in {count} pieces of the mesh, at {told}: it is too thin for its elements. Enlarge it or take a "
+            "smaller element_size"
+        )
+    apart = np.linalg.norm(mesh.nodes[nodes[0]][:, None] - mesh.nodes[nodes[1]], axis=2).min()
+    return (
+        f"is in {count} pieces, {1e3 * apart:.3g} mm apart, at {told}, as it leaves the body between them: they would "
+        "move apart. Keep it inside the body or make it several parts"
+    )
+
+
+def _place(point: Float[np.ndarray, " dim"]) -> str:
+    """Place [m] in millimeters."""
+    return "[" + ", ".join(f"{1e3 * value:.0f}" for value in point + 0.0) + "] mm"
