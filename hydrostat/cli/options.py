@@ -4,6 +4,7 @@ import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
+from string import ascii_letters
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -186,23 +187,56 @@ def _contraction(text: str) -> tuple[str, float]:
 def loads(robot: "Robot", texts: Sequence[str] | None) -> "Robot":
     """Robot with more loads at its markers, from texts such as "tip=0,0,-1N" or "tip=100g" (InputError: it is none)."""
     from hydrostat.robot import Load
-    from hydrostat.units import FORCE, MASS, parse_quantity
 
     for number, text in enumerate(texts or [], start=1):
-        name = f"given load {number}"
-        marker, value = _split_value("--load", text, "MARKER=FORCE or MARKER=MASS, e.g. tip=0,0,-1N or tip=100g")
-        numbers = [each.strip().removesuffix("N").strip() for each in value.split(",")]
+        right = f"{','.join('0' * (robot.body.mesh.dim - 1))},-1N"
+        marker, value = _split_value("--load", text, f"MARKER=FORCE or MARKER=MASS, e.g. tip={right} or tip=100g")
+        form = f"Write one force for each axis, e.g. {marker}={right}, or a mass, e.g. {marker}=100g"
+        numbers = [each.strip() for each in value.split(",")]
         try:
             robot.marker(marker)
             if len(numbers) > 1:
-                force = tuple(parse_quantity(f"{each} N", FORCE) for each in numbers)
-                load = Load(name=name, marker=marker, force=force)
+                given = {"force": _forces(numbers, robot.body.mesh.dim, form)}
             else:
-                load = Load(name=name, marker=marker, mass=parse_quantity(value, MASS))
+                given = {"mass": _hung_mass(value, form)}
+            load = Load(name=f"given load {number}", marker=marker, **given)
             robot = replace(robot, loads=(*robot.loads, load))
         except InputError as error:
-            raise InputError(f"--load {text}: {error}") from None
+            raise InputError(f"--load {text}: {str(error).removeprefix(f'load[{len(robot.loads)}].')}") from None
     return robot
+
+
+def _forces(numbers: Sequence[str], dim: int, form: str) -> tuple[float, ...]:
+    """Force along each axis [N]; the unit of the last number counts for those without one."""
+    from hydrostat.units import FORCE, parse_quantity
+
+    if len(numbers) != dim:
+        raise InputError(f"{len(numbers)} values for a body with {dim} axes. {form}.")
+    unit = numbers[-1][len(numbers[-1].rstrip(ascii_letters)) :]
+    if not unit:
+        raise InputError(f"missing unit. {form}.")
+    bare = [each if each[-1:].isalpha() else f"{each} {unit}" for each in numbers]
+    try:
+        return tuple(parse_quantity(each, FORCE) for each in bare)
+    except InputError as error:
+        raise InputError(f"{str(error).partition(';')[0]}. {form}.") from None
+
+
+def _hung_mass(value: str, form: str) -> float:
+    """Mass [kg] (InputError: a single force, or no mass)."""
+    from hydrostat.units import FORCE, MASS, parse_quantity
+
+    try:
+        mass = parse_quantity(value, MASS)
+    except InputError as error:
+        try:
+            parse_quantity(value, FORCE)
+        except InputError:
+            raise InputError(f"{str(error).partition(';')[0]}. {form}.") from None
+        raise InputError(f"a single force has no direction. {form}.") from None
+    if mass <= 0:
+        raise InputError(f"a mass must be above 0. {form}.")
+    return mass
 
 
 def pulls(robot: "Robot", texts: Sequence[str] | None) -> dict[str, float]:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from builders import strip_robot
 
-from hydrostat.cli.options import check_contraction
+from hydrostat.cli.options import check_contraction, loads
 from hydrostat.errors import InputError
 from hydrostat.mechanics import NewtonOptions
 from hydrostat.simulation import Simulation
@@ -109,3 +109,28 @@ def test_no_command_takes_in_all_of_a_cable() -> None:
     check_contraction(robot, "up", 0.0719)
     with pytest.raises(InputError, match=r"up: 72.1 mm at spool ratio 2.5 takes in the whole cable \(180 mm\)"):
         check_contraction(robot, "up", 0.0721)
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("tip=-0.3N", "a single force has no direction"),
+        ("tip=0,-0.3", "missing unit"),
+        ("tip=0N,-0.3", "missing unit"),
+        ("tip=0,0,-1N", "3 values for a body with 2 axes"),
+        ("tip=0,-1g", '"g" does not measure a force'),
+        ("tip=,-1N", '" N" is not a force'),
+        ("tip=5", '"5" has no unit'),
+        ("tip=-5g", "a mass must be above 0"),
+    ],
+)
+def test_a_load_that_is_none_is_told_with_its_right_form(text: str, told: str) -> None:
+    right = "Write one force for each axis, e.g. tip=0,-1N, or a mass, e.g. tip=100g."
+    with pytest.raises(InputError) as caught:
+        loads(strip_robot(), [text])
+    assert str(caught.value) == f"--load {text}: {told}. {right}"
+
+
+def test_loads_are_read_in_their_units() -> None:
+    robot = loads(strip_robot(), ["tip=0,-300mN", "tip=1e-1,0N", "tip=1 N,-200 mN"])
+    assert [load.force for load in robot.loads] == [(0.0, -0.3), (0.1, 0.0), (1.0, -0.2)]
