@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 from itertools import product
-from math import ceil, log2
 
 import numpy as np
 import shapely
@@ -12,6 +11,7 @@ from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation, without_contact_friction
+from hydrostat.sobol import draw_sobol
 
 
 def reach_extent(moves: Float[np.ndarray, "rows winches"], spans: Vector, *, dim: int, floor: float) -> float:
@@ -138,10 +138,7 @@ def _tiles(winches: int, count: int) -> tuple[Float[np.ndarray, "poses winches"]
     # then each stands for what is so near on either side, as a share of the range: rather too little
     near = 0.1
     if winches > tiled:
-        from scipy.stats import qmc
-
-        drawn = qmc.Sobol(winches, rng=SEED).random_base2(max(ceil(log2(count)), 1))[:count]
-        return drawn, near
+        return draw_sobol(winches, count, np.random.default_rng(SEED)), near
     steps = max(round(count ** (1.0 / winches)), 1)
     middles = (np.arange(steps) + 0.5) / steps
     return np.array(list(product(middles, repeat=winches))), 0.5 / steps

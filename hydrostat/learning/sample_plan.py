@@ -14,6 +14,7 @@ from hydrostat.errors import InputError
 from hydrostat.learning.known_contact import contact_facts
 from hydrostat.robot import Contact, Robot, robot_hash
 from hydrostat.simulation import Simulation
+from hydrostat.sobol import draw_sobol
 
 Rows = Float[np.ndarray, "samples winches"]
 Points = Float[np.ndarray, "samples dimensions"]
@@ -163,14 +164,9 @@ class SamplePlan:
 
     def _points(self, place: int, first: int, count: int) -> Float[np.ndarray, "samples dims"]:
         """Some scrambled Sobol points of one of the draws."""
-        from scipy.stats.qmc import Sobol  # a fifth of the start of the studio's workers, which draw no samples
-
         size = dimensions(self.draws[place], self.pairs, len(self.robot.winches))
         random = np.random.Generator(np.random.PCG64(np.random.SeedSequence([self.seed, place])))
-        points = Sobol(size, scramble=True, rng=random)
-        if first:
-            points.fast_forward(first)
-        return points.random(1 << (count - 1).bit_length())[:count]  # powers of 2, as Sobol points are balanced then
+        return draw_sobol(size, count, random, first=first)
 
     def facts(self) -> dict[str, object]:
         """Facts that determine every byte, for the manifest."""

@@ -1,7 +1,6 @@
 """`MarkerReach`: all that a marker can reach, as a cloud that grows while it is found."""
 
 from dataclasses import dataclass
-from math import ceil, log2
 
 import numpy as np
 
@@ -9,6 +8,7 @@ from hydrostat.arrays import Points, Vector
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Point, Robot
 from hydrostat.simulation import Simulation
+from hydrostat.sobol import draw_sobol
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs, Report
@@ -49,12 +49,10 @@ def sweep(report: Report, robot: Robot, marker: str, tension: float, count: int 
 
 def spread_contractions(robot: Robot, count: int) -> list[Vector]:
     """Return contractions of all winches [m] by Sobol's sequence, ordered so that successive solves are short."""
-    from scipy.stats import qmc  # a quarter of a second, not to be spent before the studio opens
-
     low = np.array([-winch.release for winch in robot.winches])
     high = np.array([winch.travel for winch in robot.winches])
     seed = 8
-    drawn = qmc.Sobol(len(robot.winches), rng=seed).random_base2(max(ceil(log2(count)), 1))[:count]
+    drawn = draw_sobol(len(robot.winches), count, np.random.default_rng(seed))
     left = list(range(count))
     order, here = [], np.clip(-low / (high - low), 0.0, 1.0)
     while left:
