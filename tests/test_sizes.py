@@ -32,6 +32,7 @@ MANY_PARAMETERS = {
     "hydrostat/cli/new.py:new": "a parameter is an option of the command line",
     "hydrostat/cli/pose.py:pose": "a parameter is an option of the command line",
     "hydrostat/cli/grasp.py:grasp": "a parameter is an option of the command line",
+    "hydrostat/cli/measure.py:measure": "a parameter is an option of the command line",
     "lab/hydrostat_lab/reproduce.py:reproduce": "a parameter is an option of the command line",
     "hydrostat/cli/sample.py:sample": "a parameter is an option of the command line",
     "hydrostat/cli/train.py:train": "a parameter is an option of the command line",

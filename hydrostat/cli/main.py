@@ -14,6 +14,7 @@ from hydrostat.cli.animate import animate
 from hydrostat.cli.branches import branches
 from hydrostat.cli.calibrate import calibrate
 from hydrostat.cli.check import check
+from hydrostat.cli.compare import compare
 from hydrostat.cli.design import design
 from hydrostat.cli.drive import drive
 from hydrostat.cli.fabricate import fabricate
@@ -22,6 +23,7 @@ from hydrostat.cli.grasp import grasp
 from hydrostat.cli.identify import identify
 from hydrostat.cli.learn import learn
 from hydrostat.cli.materials import materials
+from hydrostat.cli.measure import measure
 from hydrostat.cli.mimic import mimic
 from hydrostat.cli.new import new
 from hydrostat.cli.play import play
@@ -81,6 +83,8 @@ for command in (
     animate,
     design,
     fabricate,
+    measure,
+    compare,
     identify,
     grasp,
     sample,

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from hydrostat.fabrication.patterns.shape import Circle, PatternPart
     from hydrostat.fabrication.refusals import find_motor, find_refusals
     from hydrostat.fabrication.sheets.solid_pictures import drawn_solid
+    from hydrostat.fabrication.sheets.tiles import PAPERS
     from hydrostat.fabrication.solids.construct import Box, Cuboid, Cylinder, sides_text, solid_of
     from hydrostat.fabrication.solids.printed import Printed
     from hydrostat.fabrication.winch_marks import winch_marks_of
@@ -50,6 +51,7 @@ __all__ = [
     "BOARDS",
     "GIVES",
     "MOTORS",
+    "PAPERS",
     "PRICES",
     "STUFFINGS",
     "TOUCHES",

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from hydrostat.plot.learning_curves import draw_curves
     from hydrostat.plot.live_page import LivePage
     from hydrostat.plot.motion_figures import draw_motion, draw_trajectory
+    from hydrostat.plot.photo_overlay import draw_photo_overlay
     from hydrostat.plot.picture_file import drawing, inline_svg, save_png
     from hydrostat.plot.report import write_report
     from hydrostat.plot.report_chapters import REACHED, body_part, network_part, reached_part, target_chapter
@@ -60,6 +61,7 @@ __all__ = [
     "draw_identified",
     "draw_motion",
     "draw_network",
+    "draw_photo_overlay",
     "draw_portrait",
     "draw_pose",
     "draw_pull",

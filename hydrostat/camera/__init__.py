@@ -1,0 +1,24 @@
+"""Camera: places of a robot's markers from photographs, and the tags to print for them."""
+
+from typing import TYPE_CHECKING
+
+from hydrostat.lazy import open_package
+
+if TYPE_CHECKING:
+    from hydrostat.camera.measure_photos import PhotoMeasurements, PhotoOptions, measure_photos
+    from hydrostat.camera.photo import Photo, read_colors, read_photos
+    from hydrostat.camera.print_tags import tags_pdf
+    from hydrostat.camera.table_text import table_text
+
+__all__ = [
+    "Photo",
+    "PhotoMeasurements",
+    "PhotoOptions",
+    "measure_photos",
+    "read_colors",
+    "read_photos",
+    "table_text",
+    "tags_pdf",
+]
+
+open_package(__name__)

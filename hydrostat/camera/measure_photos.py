@@ -1,0 +1,385 @@
+"""`measure_photos`: places of a robot's markers from photographs."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from statistics import median
+
+import numpy as np
+from jaxtyping import Float
+
+from hydrostat.camera.calibrate_camera import CameraCalibration, calibrate_camera
+from hydrostat.camera.find_tags import Corners, find_tags, load_opencv
+from hydrostat.camera.lens import Lens, View
+from hydrostat.camera.locate_tags import align_places, locate_in_space, locate_on_plane, pairs_of
+from hydrostat.camera.photo import Photo, read_pixels
+from hydrostat.camera.tags import MARKER_SIDE, marker_tags, sheet_of
+from hydrostat.errors import InputError
+from hydrostat.identification import Measurements
+from hydrostat.robot import Load, Robot, check_not_negative, check_positive
+from hydrostat.simulation import Equilibrium, Simulation
+from hydrostat.units import plural
+
+LEAST = 4
+"""Tags of the board that a photograph must show."""
+
+MISPLACED = 0.35
+"""Share of the corners of a sheet that may be elsewhere than its others say: tags that the robot half covers."""
+
+BENT = 0.3e-3
+"""Error of the board's corners [m] from which on it is bent."""
+
+MISSIZED = 0.015
+"""Share by which tags of markers may look larger or smaller than they are."""
+
+SHIFTED = 0.05
+"""Shift of the frame in one photograph, as a share of the body's size, from which on the board has moved."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class PhotoOptions:
+    """Numbers that photographs do not show.
+
+    Attributes:
+        side: side of the black square of the markers' tags [m].
+        height: height of these tags above the board [m], for flat robots; the thickness of the body if left out.
+    """
+
+    side: float = MARKER_SIDE
+    height: float | None = None
+
+    def __post_init__(self) -> None:
+        check_positive("side", self.side, "m")
+        if self.height is not None:
+            check_not_negative("height", self.height, "m")
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredPhoto:
+    """Markers in one photograph.
+
+    Attributes:
+        photo: the photograph.
+        view: frame of the board in it.
+        corners: corners of the tag of each marker in sight [pixels].
+        places: places of these markers in the frame of the robot [m].
+        pose: simulated pose; None where no equilibrium was found.
+    """
+
+    photo: Photo
+    view: View
+    corners: dict[str, Corners]
+    places: dict[str, np.ndarray]
+    pose: Equilibrium | None
+
+    @property
+    def errors(self) -> dict[str, float]:
+        """Distance of each measured marker from the simulated one [m]."""
+        if self.pose is None:
+            return {}
+        return {name: float(np.linalg.norm(at - self.pose.markers[name])) for name, at in self.places.items()}
+
+
+@dataclass(frozen=True, eq=False)
+class PhotoMeasurements:
+    """Measured photographs.
+
+    Attributes:
+        measurements: a row for each photograph; in space one for each pose.
+        rows: photographs of each row, by index.
+        photos: the photographs.
+        lens: the camera.
+        height: height of the tags above the board [m]; 0 in space.
+        turn: rotation from the frame of the board to that of the robot, (dim, dim).
+        shift: place of the board's origin in the frame of the robot [m].
+        error: root mean square distance of the board's corners [pixels].
+        scale: size of a pixel on the board [m].
+        warnings: texts of what is likely to be wrong.
+    """
+
+    measurements: Measurements
+    rows: list[list[int]]
+    photos: list[MeasuredPhoto]
+    lens: Lens
+    height: float
+    turn: Float[np.ndarray, "dim dim"]
+    shift: Float[np.ndarray, " dim"]
+    error: float
+    scale: float
+    warnings: list[str]
+
+    def project(self, index: int, points: Float[np.ndarray, "points dim"]) -> Float[np.ndarray, "points 2"]:
+        """Pixels of points of the robot's frame [m] in a photograph."""
+        board = (points - self.shift) @ self.turn
+        if board.shape[1] == 2:
+            board = np.column_stack([board, np.full(len(board), self.height)])
+        return self.lens.project(self.photos[index].view.to_camera(board))
+
+
+def measure_photos(robot: Robot, photos: Sequence[Photo], options: PhotoOptions | None = None) -> PhotoMeasurements:
+    """Measure the places of markers in photographs of a robot on its board.
+
+    Places are in the frame of the robot: the board's frame, moved as a whole to where simulated markers are closest.
+
+    Args:
+        robot: robot as it is assumed to be built.
+        photos: photographs of one camera with its zoom fixed; the board does not move.
+        options: numbers that photographs do not show.
+
+    Raises:
+        InputError: a file that is no picture, no board or no marker in sight, tags that are there twice or belong to
+            another robot, a mirrored photograph, or a board that moved.
+        HydrostatError: OpenCV is not installed.
+    """
+    load_opencv()
+    options = options or PhotoOptions()
+    names = marker_tags(robot)
+    tags, size, focal = _read(photos)
+    markers = [_markers_in(found, names, photo.name) for found, photo in zip(tags, photos, strict=True)]
+    calibration = calibrate_camera(tags, size, focal=focal)
+    _check_sheets(photos, calibration)
+    flat = robot.body.mesh.dim == 2
+    height = (options.height if options.height is not None else robot.body.thickness or 0.0) if flat else 0.0
+    rows = [[index] for index in range(len(photos))] if flat else _same_poses(photos)
+    scale = median(_scale(calibration, index, height) for index in range(len(photos)))
+    warnings = _missing(photos, markers, names)
+    warnings += _doubt_board(photos, calibration, scale)
+    if flat:
+        found, sides = _on_plane(markers, calibration, height)
+        warnings += _doubt_sizes(sides, options.side, height, calibration)
+    else:
+        found = _in_space(markers, rows, calibration, options.side)
+    poses = _simulate(robot, [photos[row[0]] for row in rows])
+    turn, shift = _align(robot, found, poses)
+    warnings += _doubt_frame(robot, [photos[row[0]] for row in rows], found, poses, (turn, shift))
+    places = [{name: turn @ at + shift for name, at in each.items()} for each in found]
+    row_of = {index: row for row, members in enumerate(rows) for index in members}
+    measured = [
+        MeasuredPhoto(photo, calibration.views[index], markers[index], places[row_of[index]], poses[row_of[index]])
+        for index, photo in enumerate(photos)
+    ]
+    return PhotoMeasurements(
+        measurements=_table(robot, [photos[row[0]] for row in rows], places),
+        rows=rows,
+        photos=measured,
+        lens=calibration.lens,
+        height=height,
+        turn=turn,
+        shift=shift,
+        error=float(np.sqrt(np.mean(np.square(calibration.errors)))),
+        scale=scale,
+        warnings=warnings,
+    )
+
+
+def _read(photos: Sequence[Photo]) -> tuple[list[dict[int, Corners]], tuple[int, int], float | None]:
+    """Tags in each photograph, the size of all [pixels], and the focal length if all say it [pixels]."""
+    tags, focals = [], []
+    size = None
+    for photo in photos:
+        pixels, focal = read_pixels(photo.file)
+        own = (pixels.shape[1], pixels.shape[0])
+        if size is not None and own != size:
+            raise InputError(
+                f"{photo.name}: {own[0]} x {own[1]} pixels, but {photos[0].name} has {size[0]} x {size[1]}. Use one "
+                "camera in one position, and do not crop."
+            )
+        size = own
+        found = find_tags(pixels, photo.name)
+        on_board = sum(sheet_of(number) is not None for number in found)
+        if on_board < LEAST:
+            raise InputError(
+                f"{photo.name}: {plural(on_board, 'tag')} of the board in sight. Show at least {LEAST} whole tags, in "
+                "focus."
+            )
+        tags.append(found)
+        focals.append(focal)
+    if size is None:
+        raise InputError("no photographs. Name at least one file.")
+    known = [focal for focal in focals if focal]
+    return tags, size, float(np.mean(known)) if len(known) == len(photos) and np.ptp(known) < 1 else None
+
+
+def _markers_in(tags: Mapping[int, Corners], names: Mapping[str, int], where: str) -> dict[str, Corners]:
+    """Corners of the tags of markers (InputError: there are none)."""
+    found = {name: tags[number] for name, number in names.items() if number in tags}
+    others = [number for number in tags if sheet_of(number) is None and number not in names.values()]
+    if found:
+        return found
+    if others:
+        raise InputError(
+            f"{where}: tag {others[0]} is of another robot (these are {min(names.values())} to "
+            f"{max(names.values())}). Print tags for this one."
+        )
+    raise InputError(f"{where}: no tag of a marker in sight. Stick them where the sheet of tags says.")
+
+
+def _missing(photos: Sequence[Photo], markers: Sequence[Mapping[str, Corners]], names: Mapping[str, int]) -> list[str]:
+    never = [name for name in names if not any(name in found for found in markers)]
+    texts = [f"{name}: its tag is in no photograph. The table leaves it out." for name in never]
+    for photo, found in zip(photos, markers, strict=True):
+        if gone := [name for name in names if name not in found and name not in never]:
+            texts.append(f"{photo.name}: no tag of {', '.join(gone)}. Their cells stay empty.")
+    return texts
+
+
+def _check_sheets(photos: Sequence[Photo], calibration: CameraCalibration) -> None:
+    for (photo, sheet), share in calibration.wrong.items():
+        if share > MISPLACED:
+            raise InputError(
+                f"{photos[photo].name}: sheet {sheet + 1} of the board is bent or has moved ({100 * share:.0f} % of "
+                "its corners are elsewhere). Glue sheets to a flat plate."
+            )
+
+
+def _doubt_board(photos: Sequence[Photo], calibration: CameraCalibration, scale: float) -> list[str]:
+    return [
+        f"{photo.name}: the board is off by {1e3 * error * scale:.2f} mm ({error:.2f} pixels). It is bent or "
+        "printed in different sizes."
+        for photo, error in zip(photos, calibration.errors, strict=True)
+        if error * scale > BENT and error > COARSE
+    ]
+
+
+COARSE = 0.5
+"""Error of corners that sharp photographs do not have [pixels]."""
+
+
+def _scale(calibration: CameraCalibration, index: int, height: float) -> float:
+    """Size of a pixel in the middle of a photograph [m]."""
+    lens, view = calibration.lens, calibration.views[index]
+    eye = -view.rotation.T @ view.translation
+    middle = view.meet_plane(np.array([[0.0, 0.0, 1.0]]), height)[0]
+    return float(np.linalg.norm(middle - eye)) / lens.focal
+
+
+Found = list[dict[str, np.ndarray]]
+"""Places of markers in the frame of the board, of each row."""
+
+
+def _on_plane(
+    markers: Sequence[Mapping[str, Corners]], calibration: CameraCalibration, height: float
+) -> tuple[Found, list[float]]:
+    found, sides = [], []
+    for seen, view in zip(markers, calibration.views, strict=True):
+        both = {name: locate_on_plane(corners, calibration.lens, view, height) for name, corners in seen.items()}
+        found.append({name: place[:2] for name, (place, _) in both.items()})
+        sides += [side for _, side in both.values()]
+    return found, sides
+
+
+def _in_space(
+    markers: Sequence[Mapping[str, Corners]], rows: list[list[int]], calibration: CameraCalibration, side: float
+) -> Found:
+    found = []
+    for row in rows:
+        names = dict.fromkeys(name for index in row for name in markers[index])
+        found.append(
+            {
+                name: locate_in_space(
+                    [(markers[index][name], calibration.views[index]) for index in row if name in markers[index]],
+                    calibration.lens,
+                    side,
+                )[0]
+                for name in names
+            }
+        )
+    return found
+
+
+def _doubt_sizes(sides: list[float], side: float, height: float, calibration: CameraCalibration) -> list[str]:
+    """Warn if tags look larger or smaller than they are: their height or their print is another."""
+    share = median(sides) / side
+    if abs(share - 1) < MISSIZED:
+        return []
+    away = median(float(-(view.rotation.T @ view.translation)[2]) for view in calibration.views)
+    likely = away - (away - height) / share
+    other = f", or they lie {1e3 * likely:.0f} mm high" if likely >= 0 else ""
+    return [
+        f"tags of markers measure {1e3 * median(sides):.2f} mm at a height of {1e3 * height:.1f} mm, not "
+        f"{1e3 * side:.2f} mm. Check --height and --tag{other}."
+    ]
+
+
+def _same_poses(photos: Sequence[Photo]) -> list[list[int]]:
+    """Photographs of each pose."""
+    rows: dict[object, list[int]] = {}
+    for index, photo in enumerate(photos):
+        rows.setdefault(photo.pose, []).append(index)
+    return list(rows.values())
+
+
+def _simulate(robot: Robot, photos: Sequence[Photo]) -> list[Equilibrium | None]:
+    """Simulated pose of each row; None without an equilibrium."""
+    simulations: dict[object, Simulation] = {}
+    solved: dict[object, Equilibrium | None] = {}
+    for photo in photos:
+        masses = tuple(sorted((name, mass) for name, mass in photo.masses.items() if mass > 0))
+        if masses not in simulations:
+            loads = [Load(name=f"measured {name}", marker=name, mass=mass) for name, mass in masses]
+            simulations[masses] = Simulation(replace(robot, loads=(*robot.loads, *loads)) if loads else robot)
+        if photo.pose not in solved:
+            pose = simulations[masses].solve(dict(photo.contractions), strict=False)
+            solved[photo.pose] = pose if pose.result.converged else None
+    return [solved[photo.pose] for photo in photos]
+
+
+def _align(robot: Robot, found: Found, poses: Sequence[Equilibrium | None]) -> tuple[np.ndarray, np.ndarray]:
+    """Rotation and shift from the frame of the board to that of the robot.
+
+    Raises:
+        InputError: too few markers, or markers that are a mirror image of the robot's.
+    """
+    dim = robot.body.mesh.dim
+    pairs = [pairs_of(each, pose.markers) for each, pose in zip(found, poses, strict=True) if pose is not None]
+    pairs = [pair for pair in pairs if len(pair[0])]
+    if not pairs:
+        raise InputError("the simulated robot reaches no equilibrium at these contractions. Check them.")
+    places, targets = (np.concatenate(each) for each in zip(*pairs, strict=True))
+    if np.linalg.matrix_rank(places - places.mean(axis=0), tol=0.01 * robot.body.mesh.size) < dim - 1:
+        raise InputError(f"all markers are at one place. Measure at least {dim} markers that are apart.")
+    turn, shift = align_places(places, targets)
+    straight, mirrored = (
+        float(np.sqrt(((places @ a.T + b - targets) ** 2).sum(axis=1).mean()))
+        for a, b in ((turn, shift), align_places(places, targets, mirror=True))
+    )
+    if mirrored < 0.5 * straight and straight > SHIFTED * robot.body.mesh.size:
+        raise InputError(
+            "the markers are a mirror image of the robot's. Turn the robot over, or swap the tags of left and right."
+        )
+    return turn, shift
+
+
+def _doubt_frame(
+    robot: Robot,
+    photos: Sequence[Photo],
+    found: Found,
+    poses: Sequence[Equilibrium | None],
+    frame: tuple[np.ndarray, np.ndarray],
+) -> list[str]:
+    """Warn of photographs that fit the robot much better with a frame of their own."""
+    texts = []
+    turn, shift = frame
+    for photo, each, pose in zip(photos, found, poses, strict=True):
+        if pose is None:
+            texts.append(f"{photo.name}: the simulated robot reaches no equilibrium at these contractions.")
+            continue
+        places, targets = pairs_of(each, pose.markers)
+        if len(photos) < 3 or len(places) <= robot.body.mesh.dim:
+            continue
+        own_turn, own_shift = align_places(places, targets)
+        common = np.sqrt(((places @ turn.T + shift - targets) ** 2).sum(axis=1).mean())
+        own = np.sqrt(((places @ own_turn.T + own_shift - targets) ** 2).sum(axis=1).mean())
+        if common > max(SHIFTED * robot.body.mesh.size, 4 * own):
+            texts.append(f"{photo.name}: board or robot moved by about {1e3 * common:.0f} mm since other photographs.")
+    return texts
+
+
+def _table(robot: Robot, photos: Sequence[Photo], places: Found) -> Measurements:
+    names = tuple(marker.name for marker in robot.markers if any(marker.name in each for each in places))
+    nowhere = np.full(robot.body.mesh.dim, np.nan)
+    return Measurements(
+        commands=np.array([[photo.contractions.get(w.name, 0.0) for w in robot.winches] for photo in photos]),
+        markers=names,
+        places=np.array([[each.get(name, nowhere) for name in names] for each in places]),
+        masses=np.array([[photo.masses.get(name, 0.0) for name in names] for photo in photos]),
+    )

@@ -1,0 +1,186 @@
+"""`Photo`: a photograph with the contractions and hung masses of its pose; reading them from names and tables."""
+
+import csv
+import re
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from io import StringIO
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from jaxtyping import UInt8
+
+from hydrostat.camera.find_tags import Gray
+from hydrostat.errors import InputError
+from hydrostat.geometry import read_stranger
+from hydrostat.robot import Robot
+from hydrostat.units import LENGTH, MASS, parse_quantity
+
+if TYPE_CHECKING:
+    from PIL import Image
+
+FULL_FRAME = 43.27
+"""Diagonal of the film that focal lengths in photographs are converted to [mm]."""
+
+LARGEST = 100_000_000
+"""Pixels that a photograph may have."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Photo:
+    """A photograph of a pose.
+
+    Attributes:
+        file: its file.
+        contractions: contraction of winches [m]; others do not contract.
+        masses: masses hung at markers [kg].
+    """
+
+    file: Path
+    contractions: Mapping[str, float]
+    masses: Mapping[str, float]
+
+    @property
+    def name(self) -> str:
+        """Name of the file."""
+        return self.file.name
+
+    @property
+    def pose(self) -> tuple[tuple[str, float], ...]:
+        """Contractions and masses, which photographs of one pose share."""
+        both = [*((name, value) for name, value in self.contractions.items() if value), *self.masses.items()]
+        return tuple(sorted(both))
+
+
+def read_photos(files: Sequence[Path], robot: Robot, table: Path | None = None) -> list[Photo]:
+    """Photographs with contractions from their names, such as "left=12mm,right=0mm.jpg", or from a table.
+
+    A name may also hold hung masses, such as "tip=100g", and end in a number in brackets, such as " (2)", for more
+    photographs of one pose.
+
+    Raises:
+        InputError: a photograph without contractions, an unknown winch or marker, or a file that is named twice.
+    """
+    if not files:
+        raise InputError("no photographs. Name at least one file.")
+    names = [file.name for file in files]
+    if twice := [name for name in names if names.count(name) > 1]:
+        raise InputError(f"{twice[0]}: two photographs have this name. Rename one.")
+    if table is not None:
+        return _with_table(files, robot, table)
+    return [_with_name(file, robot) for file in files]
+
+
+def _with_name(file: Path, robot: Robot) -> Photo:
+    words = re.sub(r"\s*\(\d+\)$", "", file.stem).strip()
+    if words == "rest":
+        return Photo(file=file, contractions={}, masses={})
+    contractions, masses = {}, {}
+    for part in words.split(","):
+        name, equals, value = (each.strip() for each in part.partition("="))
+        if not equals:
+            raise InputError(
+                f"{file.name}: the name holds no contractions. Rename it like {_example(robot)}, rest.jpg, or give "
+                "--table."
+            )
+        _sort(f"{file.name}", name, value, robot, contractions, masses)
+    return Photo(file=file, contractions=contractions, masses=masses)
+
+
+def _example(robot: Robot) -> str:
+    return ",".join(f"{winch.name}=12mm" for winch in robot.winches[:2]) + ".jpg"
+
+
+def _sort(
+    where: str, name: str, value: str, robot: Robot, contractions: dict[str, float], masses: dict[str, float]
+) -> None:
+    """Put a length to the contractions, a mass to the masses."""
+    winches, markers = [winch.name for winch in robot.winches], [marker.name for marker in robot.markers]
+    try:
+        if name in winches and not (name in markers and value.endswith("g")):
+            sign = -1.0 if value.startswith("-") else 1.0
+            contractions[name] = sign * parse_quantity(value.removeprefix("-"), LENGTH)
+        elif name in markers:
+            masses[name] = parse_quantity(value, MASS)
+        else:
+            allowed = ", ".join(winches + [f"{marker} (a mass)" for marker in markers])
+            raise InputError(f'unknown winch "{name[:60]}". Available: {allowed}.')
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
+
+
+def _with_table(files: Sequence[Path], robot: Robot, table: Path) -> list[Photo]:
+    """Photographs with the rows of a table: columns photo, left_mm per winch, tip_load_g per marker."""
+    try:
+        rows = list(csv.reader(StringIO(read_stranger(table, most=10_000_000).decode("utf-8-sig"), newline="")))
+    except (UnicodeDecodeError, csv.Error):
+        raise InputError(f"{table}: cannot be read as a table; save it as CSV in UTF-8") from None
+    head = [cell.strip() for cell in rows[0]] if rows else []
+    if "photo" not in head:
+        raise InputError(f'{table}: no column "photo". Write photo, then {robot.winches[0].name}_mm and so on.')
+    found: dict[str, Photo] = {}
+    for line, row in enumerate(rows[1:], start=2):
+        if not any(cell.strip() for cell in row):
+            continue
+        where = f"{table}, line {line}"
+        if len(row) != len(head):
+            raise InputError(f"{where}: {len(row)} cells, but there are {len(head)} columns")
+        name = row[head.index("photo")].strip()
+        if name in found:
+            raise InputError(f"{where}: {name} has two rows. Keep one.")
+        contractions: dict[str, float] = {}
+        masses: dict[str, float] = {}
+        for column, cell in zip(head, row, strict=True):
+            if column == "photo" or not cell.strip():
+                continue
+            for end, unit in (("_load_g", "g"), ("_mm", "mm")):
+                if column.endswith(end):
+                    _sort(where, column.removesuffix(end), f"{cell.strip()} {unit}", robot, contractions, masses)
+                    break
+            else:
+                raise InputError(f'{where}: unknown column "{column[:60]}". Write WINCH_mm or MARKER_load_g.')
+        found[name] = Photo(file=Path(name), contractions=contractions, masses=masses)
+    if missing := [file.name for file in files if file.name not in found]:
+        raise InputError(f"{missing[0]}: no row in {table}. Add one with its contractions.")
+    return [
+        Photo(file=file, contractions=found[file.name].contractions, masses=found[file.name].masses) for file in files
+    ]
+
+
+def read_pixels(file: Path) -> tuple[Gray, float | None]:
+    """Brightness of the pixels of a photograph, as its sensor lies, and its focal length [pixels] if the file says it.
+
+    Raises:
+        InputError: a file that is no picture.
+    """
+    with _open(file) as picture:
+        focal = picture.getexif().get_ifd(0x8769).get(0xA405)  # of film of 35 mm with the same view
+        diagonal = float(np.hypot(*picture.size))
+        pixels = np.asarray(picture.convert("L"))
+    return pixels, float(focal) / FULL_FRAME * diagonal if focal else None
+
+
+def read_colors(file: Path) -> UInt8[np.ndarray, "height width 3"]:
+    """Colors of the pixels of a photograph, as its sensor lies (InputError: it is no picture)."""
+    with _open(file) as picture:
+        return np.asarray(picture.convert("RGB"))
+
+
+def _open(file: Path) -> "Image.Image":
+    from PIL import Image, UnidentifiedImageError  # Imported here: --print needs no picture.
+
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            picture = Image.open(file)
+            if picture.size[0] * picture.size[1] > LARGEST:
+                raise InputError(f"{file}: more than {LARGEST // 1_000_000} megapixels. Save it smaller.")
+            picture.load()
+    except FileNotFoundError:
+        raise InputError(f"{file}: no such file") from None
+    except (UnidentifiedImageError, Image.DecompressionBombError, OSError, SyntaxError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else "not a picture that can be read"
+        raise InputError(f"{file}: {reason}. Save it as JPEG or PNG.") from None
+    return picture

@@ -1,0 +1,155 @@
+"""`tags_pdf`: pages to print: the sheets of the board, and a tag for each marker."""
+
+import json
+import math
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from hydrostat.camera.tags import (
+    CELLS,
+    MARKER_SIDE,
+    ON_SHEET,
+    SHEETS,
+    SIDE,
+    board_corners,
+    marker_tags,
+    tag_cells,
+)
+from hydrostat.errors import InputError
+from hydrostat.fabrication import PAPERS, Paper
+from hydrostat.robot import Robot
+
+MM = 1e3
+MARGIN = 12.0
+"""White edge of a page [mm]."""
+
+GAP, NAME = 5.0, 4.0
+"""Distance of labels, and height of the name on each [mm]."""
+
+SMALLEST, LARGEST_SIDE = 4e-3, 80e-3
+"""Sides that a marker's tag may have [m]."""
+
+STEPS = (
+    "Print all pages at 100 % (actual size). Measure the bar of 100 mm on each page.",
+    "Glue the sheets of the board to a flat plate, such as glass or a shelf board. Leave their white rims.",
+    "Cut out the tags along the gray lines. Keep the white rim around the black square.",
+    "Stick each tag with its center on the marker of its name, face to the camera.",
+)
+
+
+def tags_pdf(robot: Robot, paper: Paper = Paper.A4, side: float = MARKER_SIDE) -> bytes:
+    """Sheets of the board and tags of the markers, in true size.
+
+    Args:
+        robot: robot to measure.
+        paper: paper of the printer.
+        side: side of the black square of a marker's tag [m].
+
+    Raises:
+        InputError: a side that is too small or too large.
+    """
+    import typst  # Imported here: a measurement sets no page.
+
+    return typst.compile(tags_source(robot, paper, side).encode(), format="pdf", ignore_system_fonts=True)
+
+
+def tags_source(robot: Robot, paper: Paper, side: float) -> str:
+    """Pages as typst reads them."""
+    if not SMALLEST <= side <= LARGEST_SIDE:
+        raise InputError(f"--tag {MM * side:g} mm: must be {MM * SMALLEST:g} to {MM * LARGEST_SIDE:g} mm")
+    width, height = PAPERS[paper]
+    sheets = count_sheets(robot)
+    pages = [_board_page(robot, sheet, sheets, (width, height)) for sheet in range(sheets)]
+    pages += _marker_pages(robot, side, (width, height))
+    head = [
+        f"#set document(title: {json.dumps(f'{robot.name} - tags')}, date: none)",
+        f"#set page(width: {width}mm, height: {height}mm, margin: 0mm)",
+        '#set text(font: "Libertinus Serif", size: 10pt, lang: "en")',
+        "#let at(x, y, body) = place(top + left, dx: x * 1mm, dy: y * 1mm, body)",
+    ]
+    return "\n".join([*head, "\n#pagebreak()\n".join(pages)])
+
+
+def count_sheets(robot: Robot) -> int:
+    """Sheets of the board that stay in sight around a robot: one beside a small one, up to four around a large one."""
+    size = robot.body.mesh.size
+    return 1 if size < 0.12 or robot.body.mesh.dim == 3 else 2 if size < 0.25 else SHEETS
+
+
+def _board_page(robot: Robot, sheet: int, sheets: int, paper: tuple[float, float]) -> str:
+    width, height = paper
+    middle = np.array([width / 2, height / 2])
+    paths = []
+    for index in range(ON_SHEET):
+        corner = middle + MM * board_corners(sheet * ON_SHEET + index)[0] * [1, -1]
+        paths.append(_tag_path(sheet * ON_SHEET + index, (float(corner[0]), float(corner[1])), MM * SIDE))
+    title = f"{robot.name}: board, sheet {sheet + 1} of {sheets}"
+    return "\n".join(
+        [_picture(paths, paper), f"#at({MARGIN}, 7, text(size: 10pt)[#{json.dumps(title)}])", *_bar(width, height)]
+    )
+
+
+def _bar(width: float, height: float) -> list[str]:
+    """A bar of 100 mm in the foot of a page."""
+    left, y = (width - 100) / 2, height - 9
+    ticks = [f"#at({left + 10 * i}, {y - 1.5}, line(end: (0mm, 3mm), stroke: 0.2mm))" for i in range(11)]
+    label = "100 mm. Measure it: prints that are scaled give wrong places."
+    return [
+        f"#at({left}, {y}, line(end: (100mm, 0mm), stroke: 0.2mm))",
+        *ticks,
+        f"#at({left}, {y + 2.2}, text(size: 7pt)[#{json.dumps(label)}])",
+    ]
+
+
+def _marker_pages(robot: Robot, side: float, paper: tuple[float, float]) -> Iterator[str]:
+    """Pages with the tags of all markers, the steps on the first."""
+    tags = list(marker_tags(robot).items())
+    places = {marker.name: marker.at for marker in robot.markers}
+    label = MM * side * (CELLS + 2) / CELLS
+    step_x, step_y = max(label, 24.0) + GAP, label + NAME + GAP + 4.0
+    top = MARGIN + 38.0
+    columns = max(1, math.floor((paper[0] - 2 * MARGIN + GAP) / step_x))
+    rows = max(1, math.floor((paper[1] - top - MARGIN - 6 + GAP) / step_y))
+    for start in range(0, len(tags), columns * rows):
+        paths, lines = [], []
+        for index, (name, number) in enumerate(tags[start : start + columns * rows]):
+            row, column = divmod(index, columns)
+            x, y = MARGIN + column * step_x, top + row * step_y
+            cell = MM * side / CELLS
+            paths.append(_tag_path(number, (x + cell, y + cell), MM * side))
+            frame = f"rect(width: {label}mm, height: {label + NAME}mm, stroke: 0.1mm + luma(150))"
+            at = ", ".join(f"{MM * value:.0f}" for value in places[name])
+            lines += [
+                f"#at({x}, {y}, {frame})",
+                f"#at({x}, {y + label - 0.6}, box(width: {label}mm, height: {NAME}mm, clip: true, align(center + "
+                f"horizon, text(size: 8pt)[#{json.dumps(name)}])))",
+                f"#at({x}, {y + label + NAME + 1}, text(size: 6.5pt, fill: luma(90))[at #{json.dumps(at)} mm])",
+            ]
+        title = f"{robot.name}: tags of markers, {MM * side:g} mm"
+        steps = "".join(f"+ #{json.dumps(step)}\n" for step in STEPS)
+        lines += [
+            f'#at({MARGIN}, {MARGIN - 2}, text(size: 14pt, weight: "bold")[#{json.dumps(title)}])',
+            f"#at({MARGIN}, {MARGIN + 7}, box(width: {paper[0] - 2 * MARGIN}mm)[\n{steps}])",
+            *_bar(*paper),
+        ]
+        yield "\n".join([_picture(paths, paper), *lines])
+
+
+def _tag_path(number: int, corner: tuple[float, float], side: float) -> str:
+    """Black of a tag as a path of SVG, its white cells as holes; corner: upper left [mm]."""
+    cell = side / CELLS
+    x, y = corner
+    holes = [_square(x + cell * column, y + cell * row, cell) for row, column in np.argwhere(tag_cells(number))]
+    return _square(x, y, side) + "".join(holes)
+
+
+def _square(x: float, y: float, side: float) -> str:
+    return f"M{x:.5f} {y:.5f}h{side:.5f}v{side:.5f}h{-side:.5f}z"
+
+
+def _picture(paths: Iterable[str], paper: tuple[float, float]) -> str:
+    width, height = paper
+    shapes = "".join(f'<path d="{path}" fill="black" fill-rule="evenodd"/>' for path in paths)
+    svg = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}">{shapes}</svg>'
+    return f'#at(0, 0, image(bytes({json.dumps(svg)}), format: "svg", width: {width}mm, height: {height}mm))'

@@ -1,0 +1,48 @@
+"""`hydrostat compare`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
+from hydrostat.cli.measure import TagHeight, TagSide, draw_photos, photo_options, print_photos
+from hydrostat.cli.options import AddedLoads, Contract, contractions, loads
+from hydrostat.cli.waiting import read_robot
+
+
+def compare(
+    robot: RobotFolder,
+    photo: Annotated[Path, typer.Argument(metavar="PHOTO", help="Photograph of the robot on its board.")],
+    out: OutFolder,
+    contract: Contract = None,
+    load: AddedLoads = None,
+    rest: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="PHOTO",
+            help="Photograph without contraction, to place the board.",
+            show_default="place the board by the pose itself",
+        ),
+    ] = None,
+    tag: TagSide = "15mm",
+    height: TagHeight = None,
+) -> None:
+    """Compare a photograph with the simulated pose.
+
+    Prints the distance of each marker from the simulated one, and writes the photograph with the simulated outline and
+    markers drawn in. Print tags and board by `hydrostat measure --print`. With --rest, errors of a whole-body shift
+    or turn count too.
+
+    Example: hydrostat compare my_starfish photo.jpg --contract left=12mm --out build/compared
+    """
+    from hydrostat.camera import Photo, measure_photos
+
+    require_folder(out)
+    loaded = loads(read_robot(robot), load)
+    photos = [Photo(file=photo, contractions=contractions(loaded, contract), masses={})]
+    if rest is not None:
+        photos.append(Photo(file=rest, contractions={}, masses={}))
+    found = measure_photos(loaded, photos, photo_options(tag, height))
+    print_photos(found)
+    draw_photos(found, out)

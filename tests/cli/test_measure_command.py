@@ -1,0 +1,40 @@
+"""`hydrostat measure` and `compare` without photographs. Oracle: the files, and what is missing."""
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from pypdf import PdfReader
+
+Run = Callable[..., tuple[int, str, str]]
+
+
+@pytest.mark.slow
+def test_tags_are_printed_with_their_names(run: Run, tmp_path: Path, starfish: Path) -> None:
+    file = tmp_path / "tags.pdf"
+    assert run("measure", starfish, "--print", file, "--paper", "letter")[0] == 0
+    pages = PdfReader(file).pages
+    assert len(pages) == 5
+    assert [float(side) for side in pages[0].mediabox[2:]] == pytest.approx([612, 792], abs=0.5)
+    words = pages[-1].extract_text()
+    assert all(name in words for name in ("top", "left_foot", "right_foot"))
+    code, _, err = run("measure", starfish, "--print", file, "--tag", "2mm")
+    assert (code, "must be 4 to 80 mm" in err) == (2, True)
+
+
+def test_a_missing_extra_is_named(run: Run, tmp_path: Path, starfish: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "cv2", None)
+    for command, *more in (("measure", "--out", tmp_path / "a.csv"), ("compare", "--out", tmp_path / "a")):
+        code, _, err = run(command, starfish, tmp_path / "rest.jpg", *more)
+        assert code == 1
+        assert err.startswith("hydrostat: error: photographs need OpenCV")
+        assert "[photos]" in err
+        assert err.count("\n") == 1
+
+
+def test_measure_says_what_it_needs(run: Run, tmp_path: Path, starfish: Path) -> None:
+    code, _, err = run("measure", starfish)
+    assert (code, "give --out TABLE.csv" in err) == (2, True)
+    code, _, err = run("measure", starfish, "--out", tmp_path / "a.csv")
+    assert (code, "no photographs" in err) == (2, True)
