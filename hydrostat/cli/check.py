@@ -10,7 +10,7 @@ from hydrostat.errors import InputError
 from hydrostat.units import plural
 
 if TYPE_CHECKING:
-    from hydrostat.robot import Body, Robot
+    from hydrostat.robot import Body, Robot, Rod
 
 
 def check(
@@ -37,6 +37,8 @@ def check(
     print(f"{found.name}: {1e3 * mesh.size:.0f} mm, {mesh.describe()}")
     for line in _body_lines(found.body):
         print(line)
+    for rod in found.rods:
+        print(_rod_line(rod))
     parts = {"pin": found.pins, "winch": found.winches, "cable": found.cables, "marker": found.markers}
     counts = ", ".join(plural(len(entries), noun) for noun, entries in parts.items())
     print(f"{counts}, poses: {', '.join(found.poses) or 'none'}")
@@ -165,7 +167,8 @@ def _body_lines(body: "Body") -> list[str]:
     from hydrostat.geometry import dihedral_angles, smallest_angle
 
     mesh, material = body.mesh, body.material
-    volume = float(mesh.volumes.sum()) * (body.thickness or 1.0)
+    own = body.element_materials == 0
+    volume = float(mesh.volumes[own].sum()) * (body.thickness or 1.0)
     thickness = body.measured_thickness
     (thin, few), (thick, many) = thickness.part(0.05), thickness.part(0.95)
     if mesh.dim == 2:
@@ -174,8 +177,9 @@ def _body_lines(body: "Body") -> list[str]:
         angle = f"smallest angle between faces {dihedral_angles(mesh.nodes, mesh.elements).min():.2g}°"
     name = material.name or "custom material"
     return [
-        f"{name}: {_mass_text(body.mass)}, {_volume_text(volume)}",
+        f"{name}: {_mass_text(float(body.element_masses[own].sum()))}, {_volume_text(volume)}",
         *(_part_line(body, index) for index in range(len(body.parts))),
+        *([f"body with its parts: {_mass_text(body.mass)}"] if body.parts else []),
         f"thickness {1e3 * thin:.0f} to {1e3 * thick:.0f} mm ({few:.1f} to {many:.0f} elements across); {angle}",
         *_plane_lines(body, thick),
     ]
@@ -196,7 +200,18 @@ def _part_line(body: "Body", index: int) -> str:
     """Material, mass and number of elements of a part."""
     part, own = body.parts[index], body.element_materials == index + 1
     name = "rigid" if part.material is None else part.material.name or "custom material"
-    return f"part {part.name}: {name}, {_mass_text(float(body.element_masses[own].sum()))}, {own.sum()} elements"
+    volume = float(body.mesh.volumes[own].sum()) * (body.thickness or 1.0)
+    mass = _mass_text(float(body.element_masses[own].sum()))
+    return f"part {part.name}: {name}, {mass}, {_volume_text(volume)}, {own.sum()} elements"
+
+
+def _rod_line(rod: "Rod") -> str:
+    """Length, diameter and stiffnesses of a rod."""
+    axial, bending = rod.stiffnesses
+    thick = "" if rod.diameter is None else f", {1e3 * rod.diameter:.3g} mm thick"
+    stretch = f"{axial:.3g} N" if axial < 1000 else f"{1e-3 * axial:.4g} kN"
+    bend = f"{1e6 * bending:.3g} N mm²" if bending < 1e-3 else f"{1e6 * bending:.0f} N mm²"
+    return f"rod {rod.name}: {1e3 * rod.length:.0f} mm long{thick}, EA {stretch}, EI {bend}"
 
 
 def _mass_text(mass: float) -> str:

@@ -195,11 +195,10 @@ def loads(robot: "Robot", texts: Sequence[str] | None) -> "Robot":
         numbers = [each.strip() for each in value.split(",")]
         try:
             robot.marker(marker)
-            if len(numbers) > 1:
-                given = {"force": _forces(numbers, robot.body.mesh.dim, form)}
-            else:
-                given = {"mass": _hung_mass(value, form)}
-            load = Load(name=f"given load {number}", marker=marker, **given)
+            single = len(numbers) == 1
+            force = None if single else _forces(numbers, robot.body.mesh.dim, form)
+            mass = _hung_mass(value, form) if single else None
+            load = Load(name=f"given load {number}", marker=marker, force=force, mass=mass)
             robot = replace(robot, loads=(*robot.loads, load))
         except InputError as error:
             raise InputError(f"--load {text}: {str(error).removeprefix(f'load[{len(robot.loads)}].')}") from None

@@ -21,7 +21,7 @@ from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.fabrication.solids.step import require_cad, step_bytes
 from hydrostat.given import check_type, path_of
 from hydrostat.progress import Progress
-from hydrostat.robot import Body, Face, Robot, describe_cable_side, sewn_robot
+from hydrostat.robot import Face, Robot, describe_cable_side, sewn_robot
 from hydrostat.units import plural
 
 
@@ -161,17 +161,17 @@ def _findings(plan: KitPlan, lists: Lists) -> KitFindings:
     return KitFindings(
         checks=checks,
         problems=tuple(dict.fromkeys((*known, *made, *large, *failed))),
-        warnings=(*_part_warnings(plan.robot.body), *work.warnings, *rigid.warnings, *lists.warnings),
+        warnings=(*_part_warnings(plan), *work.warnings, *rigid.warnings, *lists.warnings),
         notes=(*work.notes, *rigid.notes, *plan.demand.far),
     )
 
 
-def _part_warnings(body: Body) -> tuple[str, ...]:
-    """Warn of parts, which no pattern or mold of the kit has."""
-    if not body.parts:
+def _part_warnings(plan: KitPlan) -> tuple[str, ...]:
+    """Warn of parts, which no file of the kit makes."""
+    if not plan.drawn.body.parts:
         return ()
-    names = ", ".join(f'"{part.name}"' for part in body.parts)
-    return (f"body.part: the kit makes the body of one material; make and place {names} yourself",)
+    names = ", ".join(f"{insert.mark} {insert.name}" for insert in plan.inserts)
+    return (f"the kit has no files for {names}: make them to the sizes of lists/inserts.csv",)
 
 
 def _files(plan: KitPlan, lists: Lists, findings: KitFindings) -> dict[str, bytes]:
@@ -218,6 +218,13 @@ def _cable_summary(plan: KitPlan) -> tuple[str, ...]:
     return (f"Cables: {len(plan.robot.cables)}, {words}",)
 
 
+def _insert_summary(plan: KitPlan) -> tuple[str, ...]:
+    """Return one line on parts and rods; empty without them."""
+    kinds = [insert.kind.value for insert in plan.inserts]
+    counts = ", ".join(plural(kinds.count(kind), kind) for kind in dict.fromkeys(kinds))
+    return (f"In the body: {counts} (lists/inserts.csv)",) if kinds else ()
+
+
 def _summary(plan: KitPlan, lists: Lists) -> tuple[str, ...]:
     """Return the summary of a kit, one line for each of its contents."""
     count = sum(part.count for part in plan.printed)
@@ -226,6 +233,7 @@ def _summary(plan: KitPlan, lists: Lists) -> tuple[str, ...]:
     return (
         *plan.work.summary,
         f"Winches: {len(plan.rigid.units)} x {plan.rigid.motor.title}" if plan.rigid.units else "Winches: none",
+        *_insert_summary(plan),
         f"To print: {plural(count, 'piece')}, about {mass:.0f} g",
         f"Material used: about {used:.0f} USD; to buy (full packs): {packs:.0f} USD",
     )

@@ -6,6 +6,7 @@ from functools import cached_property
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.demand import Demand
+from hydrostat.fabrication.inserts import Insert, find_inserts
 from hydrostat.fabrication.kit import Check
 from hydrostat.fabrication.kit_options import KitOptions, Method
 from hydrostat.fabrication.moulds.mould import Mold
@@ -105,6 +106,11 @@ class KitPlan:
         Assumed: a third of their volume is plastic, the rest the air of the infill, and 15 cm^3 are laid an hour.
         """
         return sum(part.count * part.volume for part in self.printed) / 3 / 15e3
+
+    @cached_property
+    def inserts(self) -> tuple[Insert, ...]:
+        """Parts and rods that are put into the body."""
+        return find_inserts(self.drawn)
 
     @property
     def num_motors(self) -> int:

@@ -8,6 +8,7 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.fabrication.body_work import channel_problems, stuffing_problems
 from hydrostat.fabrication.demand import Demand
+from hydrostat.fabrication.inserts import rod_problems
 from hydrostat.fabrication.kit_options import KitOptions, Method
 from hydrostat.fabrication.lists.line import check_line, line_for
 from hydrostat.fabrication.moulds.pocket import WinchRoom, clashes, make_pockets
@@ -30,7 +31,7 @@ def find_refusals(robot: Robot, demand: Demand | None = None, *, options: KitOpt
     options = options or KitOptions()
     sewn = sewn_robot(robot) if options.method_for(robot.body) is Method.PLUSH else robot
     motor = find_motor(robot, () if demand is None else demand.torques, options)
-    found = [*_fit(robot, options, motor)[0], *_of_body(robot, options)]
+    found = [*_fit(robot, options, motor)[0], *_of_body(robot, options), *rod_problems(robot)]
     if demand is not None:
         found += check_line(sewn, _share_tensions(demand.tensions, sewn), line_for(options.parts.cable)).problems
     return tuple(found)

@@ -102,6 +102,9 @@ PRICES = MappingProxyType(
         "bolts": Price(amount=0.25),
         "rod": Price(amount=1.0, unit="m", pack=0.3),
         "skin": Price(amount=8.0),
+        "wire": Price(amount=2.0, unit="m"),
+        "soft part": Price(amount=40.0, unit="kg", pack=0.1),
+        "stiff part": Price(amount=20.0, unit="kg", pack=0.1),
     }
 )
 """By key; none is younger than its month says, and those without a source are guesses: ask your shop."""

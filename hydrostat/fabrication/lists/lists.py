@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from hydrostat.fabrication.inserts import insert_title
 from hydrostat.fabrication.kit import Check
 from hydrostat.fabrication.kit_options import Method
 from hydrostat.fabrication.kit_plan import KitPlan
@@ -16,6 +17,7 @@ from hydrostat.fabrication.lists.cuts import (
     sheath_cuts,
     sheath_table,
 )
+from hydrostat.fabrication.lists.insert_table import InsertRow, insert_table
 from hydrostat.fabrication.lists.line import LineRow, check_line, line_for
 from hydrostat.fabrication.lists.motors import (
     MotorRow,
@@ -51,6 +53,7 @@ class Lists:
     strength: Table[LineRow]  # strength of the line
     motors: Table[MotorRow]  # and what the winches ask of them
     power: PowerPlan | None  # power supply of the motors; None without motors
+    inserts: Table[InsertRow] | None = None  # parts and rods in the body; None without any
     problems: tuple[str, ...] = ()  # why the robot cannot be built well
     warnings: tuple[str, ...] = ()  # warnings for the builder
     checks: tuple[Check, ...] = ()  # comparisons of the lists with the simulation
@@ -58,7 +61,7 @@ class Lists:
     @property
     def tables(self) -> tuple[Table, ...]:
         """All of them, in the order in which they are used."""
-        found = (self.bill, self.cables, self.tubes, self.stitching, self.strength, self.motors)
+        found = (self.bill, self.cables, self.tubes, self.stitching, self.inserts, self.strength, self.motors)
         return (*(table for table in found if table is not None), *([self.power.table] if self.power else []))
 
     @property
@@ -88,6 +91,7 @@ def make_lists(plan: KitPlan) -> Lists:
         strength=strength.table,
         motors=motor_table(sizings, demand, rigid.motor),
         power=power,
+        inserts=insert_table(plan.inserts, insert_title(plan.inserts)) if plan.inserts else None,
         problems=strength.problems,
         warnings=(
             *(f"pose not solved, its loads are missing from the lists: {missed}" for missed in demand.missed),

@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 
+from hydrostat.fabrication.inserts import Insert, InsertKind, filling_volume
 from hydrostat.fabrication.kit_plan import Cloth, FoamNeeds, KitPlan
 from hydrostat.fabrication.lists.bill import NO_SOURCE, PRICES, BillGroup, Item, Price
 from hydrostat.fabrication.lists.cuts import CableCut, SheathCut
@@ -29,6 +30,7 @@ def all_needs(
     if plan.work.foam is not None:
         items += _foam(plan, plan.work.foam)
     items += [
+        *(_insert_item(insert) for insert in plan.inserts),
         *_cables(plan, line, cuts, tubes),
         *_winches(plan),
         *control_needs(power),
@@ -38,9 +40,9 @@ def all_needs(
 
 
 def filling_mass(plan: KitPlan) -> float:
-    """Mass of what the body is made of: its volume at rest times the density of its material [g]."""
+    """Mass of the filling: volume of the body at rest without its parts times the density of its material [g]."""
     body = plan.robot.body
-    return 1e3 * body.mass
+    return 1e-6 * body.material.density * filling_volume(body)
 
 
 def _item(
@@ -87,6 +89,17 @@ def _foam(plan: KitPlan, foam: FoamNeeds) -> list[Item]:
         _item(BillGroup.BODY, "spray glue", "3M Super 77, between foam and skin", 1.0, "glue"),
         _NEEDLES,
     ]
+
+
+def _insert_item(insert: Insert) -> Item:
+    """A part or rod of the body; a rod by its length, a part by its mass."""
+    name = f"{'rod' if insert.kind is InsertKind.ROD else 'part'} {insert.mark} {insert.name}"
+    words = f"{insert.material}, {insert.size}"
+    if insert.kind is InsertKind.ROD:
+        return _item(BillGroup.BODY, name, words, 1e-3 * (insert.length or 0.0), "wire", insert.mass)
+    kilograms = 1e-3 * (insert.mass or 0.0)
+    price = "stiff part" if insert.kind is InsertKind.RIGID else "soft part"
+    return _item(BillGroup.BODY, name, words, kilograms, price, insert.mass)
 
 
 def _cables(plan: KitPlan, line: FishingLine, cuts: tuple[CableCut, ...], tubes: tuple[SheathCut, ...]) -> list[Item]:

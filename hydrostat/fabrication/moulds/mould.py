@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from manifold3d import Manifold
 
+from hydrostat.fabrication.inserts import displaced_volume
 from hydrostat.fabrication.kit_options import MoldKind, MoldOptions
 from hydrostat.fabrication.moulds.casting import Casting, make_casting
 from hydrostat.fabrication.moulds.closing import RIM, MoldBlock, make_closing
@@ -90,7 +91,9 @@ def make_mold(robot: Robot, options: MoldOptions, *, pockets: Mapping[str, Sides
     frames = make_frames(halves.cavity, inside.sprue) if silicone else None
     printed, dowels, lost = mold_prints(halves, positive, frames, inside.block, options.bed)
     fill = sum(halves.volumes[part] for part in ("cavity", "sprue", "vents"))
-    casting, unlike = make_casting(robot.body.material, fill, pours=frames.pours if frames else ())
+    casting, unlike = make_casting(
+        robot.body.material, fill - displaced_volume(robot.body), pours=frames.pours if frames else ()
+    )
     volumes = _silicone_volumes(halves, positive, frames) if frames else halves.volumes
     links = interlock_count(halves.lower, halves.cavity), interlock_count(halves.upper, halves.cavity)
     shape = frames.inside if frames else inside.block

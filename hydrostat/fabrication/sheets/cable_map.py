@@ -19,6 +19,7 @@ from hydrostat.drawing import (
     line_drawing,
     text_size,
 )
+from hydrostat.fabrication.inserts import InsertKind, find_inserts
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side
 from hydrostat.fabrication.sheets.map_layout import (
     LabelPlaces,
@@ -70,6 +71,7 @@ def flat_map(robot: Robot, stitches: Sequence[CableStitches], *, width: float, h
     labels = LabelPlaces((0.2, 0.2, width - 0.2, height - 0.2))
     for ring in rings:
         labels.take_line(frame.way([*ring, ring[0]]), weight=3)
+    _put_inserts(canvas, labels, robot, lambda places: frame.way(places[:, :2]))
     runs = front_runs(robot, stitches, frame)
     _put_runs(canvas, labels, runs, {mark: frame.on(1e3 * np.array(at)) for mark, at in _stands(robot).items()})
     return canvas
@@ -89,6 +91,7 @@ def front_runs(robot: Robot, stitches: Sequence[CableStitches], frame: CanvasFra
 class SightedBody:
     """A body in space and all that belongs to it, as they are seen."""
 
+    camera: Camera
     drawing: LineDrawing
     sight: Visibility
     cables: list[Float[np.ndarray, "_ 3"]]
@@ -121,7 +124,7 @@ def pane_of(robot: Robot, camera: Camera, pixels: int) -> SightedBody:
     winches = [camera.see(1e3 * np.array([winch.at]))[0] for winch in robot.winches]
     places = np.concatenate([drawing.box, *(way[:, :2] for way in cables)])
     box = np.array([places.min(axis=0), places.max(axis=0)])
-    return SightedBody(drawing, Visibility.of(body, camera), cables, winches, box)
+    return SightedBody(camera, drawing, Visibility.of(body, camera), cables, winches, box)
 
 
 def _put_pane(canvas: Canvas, robot: Robot, pane: SightedBody, room: Box) -> None:
@@ -131,6 +134,8 @@ def _put_pane(canvas: Canvas, robot: Robot, pane: SightedBody, room: Box) -> Non
     labels = LabelPlaces((left + 0.2, top + 0.2, right - 0.2, bottom - 0.2))
     for way in pane.drawing.outlines:
         labels.take_line(frame.way(way), weight=3)
+    camera = pane.camera
+    _put_inserts(canvas, labels, robot, lambda places: frame.way(camera.see(places)[:, :2]))
     runs = [project_cable(robot, index, way, pane.sight, frame) for index, way in enumerate(pane.cables)]
     stands = {mark: frame.on(stand) for mark, stand in zip(_stands(robot), pane.winches, strict=True)}
     _put_runs(canvas, labels, runs, stands)
@@ -204,6 +209,28 @@ def put_run(canvas: Canvas, labels: LabelPlaces, run: CableRun, mark: str) -> No
     for place, hole in enumerate(run.holes[:-1]):
         if hole and place:
             _put_number(canvas, labels, run, place, led=True, words=str(place + 1))
+
+
+def _put_inserts(
+    canvas: Canvas, labels: LabelPlaces, robot: Robot, project: Callable[[Float[np.ndarray, "_ _"]], list[Spot]]
+) -> None:
+    """Parts as grey areas of a flat body, rods as thick grey lines, with their marks where they fit."""
+    for rings in robot.body.part_rings:
+        ways = [project(1e3 * robot.body.mesh.nodes[ring]) for ring in rings]
+        if ways:
+            canvas.fill(ways, grey=0.8)
+            canvas.line(ways, width=Canvas.THIN, closed=True, grey=0.4)
+    inserts = find_inserts(robot)
+    ways = [project(np.array(insert.places)) for insert in inserts]
+    for insert, way in zip(inserts, ways, strict=True):
+        if insert.kind is InsertKind.ROD:
+            canvas.line([way], width=1.0, grey=0.55)
+            labels.take_line(way)
+    for insert, way in zip(inserts, ways, strict=True):
+        spot = np.mean(way[:2], axis=0)
+        middle = labels.beside((float(spot[0]), float(spot[1])), text_size(insert.mark, 8.0), gap=0.3)
+        if middle is not None:
+            canvas.text(middle, insert.mark, size=8.0, bold=True, halo=True, grey=0.25)
 
 
 def _put_winches(canvas: Canvas, labels: LabelPlaces, stands: Mapping[str, Spot]) -> None:

@@ -101,6 +101,7 @@ class SheetFacts(TypedDict):
     method: str
     title: str  # name of the robot
     pairs: int  # number of cables that have a twin on the other panel
+    inserts: bool  # True if parts or rods are put in
     flat: bool  # True for a flat body
     kind: str  # kind of robot, in words
     facts: list[str]  # size, number of parts, time and cost, a line each

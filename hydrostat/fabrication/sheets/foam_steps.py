@@ -3,6 +3,7 @@
 Times of cure are those of R52 and N5, all others are estimates.
 """
 
+from hydrostat.fabrication.inserts import displaced_volume
 from hydrostat.fabrication.kit_options import MoldKind
 from hydrostat.fabrication.kit_plan import KitPlan
 from hydrostat.fabrication.lists.lists import Lists
@@ -12,6 +13,7 @@ from hydrostat.fabrication.sheets.steps import (
     AssemblyStep,
     CableDepths,
     cables_text,
+    insert_steps,
     minutes_text,
     tie_step,
     winch_steps,
@@ -67,10 +69,11 @@ def cure_times(mould: Mold | None) -> tuple[tuple[str, str], ...]:
     return (body,) if mould.kind is MoldKind.PRINTED else (_SILICONE_CURE, *_MODEL_CURES, body)
 
 
-def body_mass(mould: Mold) -> float:
-    """Mass of the body alone, without sprue, vents and what is spare [g]."""
+def body_mass(plan: KitPlan, mould: Mold) -> float:
+    """Mass of the body with its parts and rods, without sprue, vents and what is spare [g]."""
     mix = mould.casting.body
-    return mix.density * mould.volumes.get("cavity", mix.volume)
+    poured = mould.volumes.get("cavity", mix.volume) - displaced_volume(plan.robot.body)
+    return mix.density * poured + sum(insert.mass or 0.0 for insert in plan.inserts)
 
 
 def mold_steps(plan: KitPlan, lists: Lists, mould: Mold) -> tuple[AssemblyStep, ...]:
@@ -86,6 +89,7 @@ def mold_steps(plan: KitPlan, lists: Lists, mould: Mold) -> tuple[AssemblyStep, 
             wait="10 min",
         ),
         *_tubes_first(CableDepths.of(lists.stitching, len(plan.robot.cables))),
+        *insert_steps(plan),
         AssemblyStep("Close it", 10, f"{_closing(mould)} {mould.stands}"),
         AssemblyStep(
             "Weigh and stir",

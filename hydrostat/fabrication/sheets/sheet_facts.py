@@ -48,6 +48,7 @@ def sheet_facts(plan: KitPlan, lists: Lists, findings: KitFindings, *, letters: 
         "method": plan.method.value,
         "title": shorten_text(plan.robot.name, _NAME),
         "pairs": plan.pairs,
+        "inserts": bool(plan.inserts),
         "flat": plan.robot.body.mesh.dim == 2,
         "kind": "Plush robot" if plush else "Foam robot",
         "facts": _about(plan, lists, steps),
@@ -67,7 +68,7 @@ def sheet_facts(plan: KitPlan, lists: Lists, findings: KitFindings, *, letters: 
             {"what": check.what, "measured": check.measured, "allowed": check.allowed, "passed": check.passed}
             for check in findings.checks
         ],
-        "mould": _mould(mould),
+        "mould": _mould(plan, mould),
         "power": power_facts(lists.power, plan.robot),
         "other_way": list(other_way(mould)) if mould else [],
         "cures": [list(cure) for cure in cure_times(mould)],
@@ -155,7 +156,7 @@ def _step(step: AssemblyStep) -> StepFacts:
     return {"title": step.title, "time": step.time, "text": step.text}
 
 
-def _mould(mould: Mold | None) -> MoldFacts | None:
+def _mould(plan: KitPlan, mould: Mold | None) -> MoldFacts | None:
     """Facts of a mould that are not in its steps."""
     if mould is None:
         return None
@@ -174,7 +175,7 @@ def _mould(mould: Mold | None) -> MoldFacts | None:
     return {
         "silicone": mould.kind is MoldKind.SILICONE,
         "foams": foam_expansion(mould),
-        "weighs": f"{body_mass(mould):.0f} g",
+        "weighs": f"{body_mass(plan, mould):.0f} g",
         "undercut": _undercut(mould.pull.share),
         "amounts": amounts,
         "ratio": sentence(body.ratio),

@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from hydrostat.fabrication.inserts import InsertKind, insert_title
 from hydrostat.fabrication.kit_options import Method
 from hydrostat.fabrication.kit_plan import KitPlan
 from hydrostat.fabrication.lists.stitching import SKIN, DepthRow, PointAccess, Stitching
@@ -205,6 +206,7 @@ def plush_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
         _sew(plan),
         *winch_steps(plan),
         *((tie_step(plan.robot),) if cables else ()),
+        *insert_steps(plan),
         _stuff(plan),
         AssemblyStep(
             "Close and calibrate" if cables else "Close it",
@@ -214,6 +216,24 @@ def plush_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
             + held_text(plan.robot),
         ),
     )
+
+
+def insert_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
+    """Step that puts parts and rods into the body; none without them."""
+    inserts = plan.inserts
+    if not inserts:
+        return ()
+    shown = 4  # parts and rods that are named; the list has all
+    named = "; ".join(insert.words for insert in inserts[:shown]) + ("; ..." if len(inserts) > shown else "")
+    rods = [insert for insert in inserts if insert.kind is InsertKind.ROD]
+    sharp = " Sharp: round the ends of each rod and cap them." if rods else ""
+    if plan.method is Method.PLUSH:
+        channel = " Push each rod into a channel or tube that is sewn to the cloth along its line." if rods else ""
+        tied = " Tie each part to the cloth in front and back." if len(rods) < len(inserts) else ""
+        held = f"Set them where the map has them (lists/inserts.csv).{tied}{channel}"
+    else:
+        held = "Hold them at their places (lists/inserts.csv) with pins or line through the wall, clear of the tubes."
+    return (AssemblyStep(insert_title(inserts), 15 * len(inserts), f"Make {named}. {held}{sharp}"),)
 
 
 def _pair_sentence(plan: KitPlan) -> str:
