@@ -14,6 +14,7 @@ import typer
 from hydrostat.cli.bounded import run_bounded
 from hydrostat.cli.check import FINDINGS, print_sewing
 from hydrostat.cli.options import parse_optional, positive
+from hydrostat.cli.remedies import body_refusals
 from hydrostat.cli.waiting import patiently
 from hydrostat.errors import InputError
 from hydrostat.units import plural
@@ -254,6 +255,9 @@ def _print_made(made: "Robot", name: Path, lines: list[str], *, chosen: bool) ->
         print(line)
     for reason in print_sewing(made.body):
         print(f"{FINDINGS['mind']}: {reason}")
+    if not made.cables:
+        for reason in body_refusals(made):
+            print(f"warning: no kit can be made of this body: {in_words(reason)}")
     scaled = made.body.size is not None
     origin = (
         "from the center of the drawing" if flat else "in the scaled body" if scaled else "as in the file of the body"

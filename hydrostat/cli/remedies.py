@@ -15,7 +15,10 @@ _SILICONE = "mould of silicone"  # in reasons that a mold of silicone does not h
 
 
 def kit_remedy(robot: "Robot", folder: Path, out: Path, *, options: "KitOptions", reasons: Iterable[str]) -> str:
-    """Command that makes a rejected kit buildable: another motor, a mold of silicone, or a new design."""
+    """Command that makes a rejected kit buildable: another motor, a mold of silicone, a seam, or a new design.
+
+    It is `hydrostat check` if no kit can be made of the body itself.
+    """
     from hydrostat.fabrication import MOTORS, Method, find_refusals
 
     place, kit = quote(str(folder)), quote(str(out))
@@ -26,6 +29,12 @@ def kit_remedy(robot: "Robot", folder: Path, out: Path, *, options: "KitOptions"
     for motor in MOTORS if known and known >= set(told) else ():
         if not find_refusals(robot, options=replace(options, motor=motor.key)):
             return f"hydrostat fabricate {place} --motor {motor.key} --out {kit}"
+    if told and set(body_refusals(robot)) >= set(told):
+        for seam in (6, 5, 4, 3):
+            narrow = replace(options, pattern=replace(options.pattern, seam_allowance=float(seam)))
+            if seam < options.pattern.seam_allowance and not find_refusals(robot, options=narrow):
+                return f"hydrostat fabricate {place} --seam {seam}mm --out {kit}"
+        return f"hydrostat check {place}"
     winches, cables = max(len(robot.winches), 1), max(len(robot.cables), 1)
     return f"hydrostat design {place} --winches {winches} --cables {cables} --out {quote(f'{out}_design')}"
 

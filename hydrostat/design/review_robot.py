@@ -22,16 +22,19 @@ def review_robot(
     """Collect the diagnostics of a robot before it is built, the gravest first, each sentence with its places.
 
     - What a kit is refused for (`find_refusals`): with the demand of its poses all that is known before it is made.
+      Without cables it is a warning, as a body may be for simulation alone.
     - Limits of designs that its network does not keep, where constraints are given; one sentence for each kind, with
       the places of all. Travel, release and numbers of cables are limits of the search alone.
     - Risks (`find_risks`).
 
     Raises InputError: an unknown motor, or a demand of another robot.
     """
-    refused = find_refusals(robot, demand, options=options) if robot.cables else ()
+    refused = find_refusals(robot, demand, options=options)
+    weight = Severity.REFUSED if robot.cables else Severity.MIND
+    before = "" if robot.cables else "no kit can be made of this body: "
     limits = _limits(robot, constraints) if constraints is not None and robot.cables else ()
     return (
-        *(Diagnostic(text=text, weight=Severity.REFUSED, places=places_in(text, robot)) for text in refused),
+        *(Diagnostic(text=before + text, weight=weight, places=places_in(text, robot)) for text in refused),
         *limits,
         *(Diagnostic(text=text, weight=Severity.MIND, places=places_in(text, robot)) for text in find_risks(robot)),
     )

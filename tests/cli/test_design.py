@@ -14,6 +14,7 @@ import pytest
 from plot.designs import plain_network
 
 import hydrostat as hs
+from hydrostat.cli.remedies import body_refusals, kit_remedy
 from hydrostat.design import (
     Alternative,
     Constraints,
@@ -24,7 +25,7 @@ from hydrostat.design import (
     TreeOptions,
     Zone,
 )
-from hydrostat.fabrication import write_files
+from hydrostat.fabrication import PatternOptions, write_files
 from hydrostat.robot import Marker, PoseTarget, robot_hash, save_robot
 
 Run = Callable[..., tuple[int, str, str]]
@@ -170,6 +171,14 @@ def test_a_body_without_a_kit_is_reported_before_the_search(
     assert code == 1
     assert "warning: no kit can be made of this body: hole 1 of the outline" in err
     assert f"Try: hydrostat check {tmp_path / 'holed'}" in told
+    told = run("check", tmp_path / "holed")[1]
+    assert "warning: no kit can be made of this body: hole 1 of the outline" in told
+    assert 'set inner = "drawn" in [body]' in told
+    reasons = body_refusals(posed)
+    for seam, tried in ((8.0, "check holed"), (1.5, "design holed --winches 1 --cables 1 --out kit_design")):
+        options = hs.KitOptions(pattern=PatternOptions(seam_allowance=seam))
+        asked = reasons if seam > 2 else ("another",)
+        assert kit_remedy(posed, Path("holed"), Path("kit"), options=options, reasons=asked) == f"hydrostat {tried}"
 
 
 @pytest.mark.slow

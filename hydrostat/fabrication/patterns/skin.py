@@ -40,7 +40,8 @@ def skin_of(seam: Polygon, options: PatternOptions) -> Skin:
         if hole.is_empty:
             problems.append(
                 f"hole {index + 1} of the outline, at {_at(Polygon(ring))}, is too narrow for a seam allowance "
-                f"of {options.seam_allowance:g} mm. Choose a smaller allowance or a wider hole"
+                f"of {options.seam_allowance:g} mm. Choose a smaller allowance or a wider hole, or set "
+                'inner = "drawn" in [body] if it is drawn on the body, such as an eye'
             )
         else:
             holes.append(hole.exterior)
