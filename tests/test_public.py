@@ -59,7 +59,7 @@ def test_import_stays_light(statement: str) -> None:
 
 
 NEVER = "torch ray ezdxf svgelements meshio pint nicegui joblib typst jax scipy.stats scipy.interpolate scipy.ndimage"
-NEVER += " hydrostat.learning hydrostat.training hydrostat.studio "
+NEVER += " hydrostat.learning hydrostat.training hydrostat.studio jaxtyping asyncio unittest.mock pstats "
 """Modules that no command of everyday loads."""
 
 
@@ -68,10 +68,13 @@ NEVER += " hydrostat.learning hydrostat.training hydrostat.studio "
     [
         (
             "simulate R --contract left=12mm --out pose",
-            "scipy.optimize scipy.spatial scipy.sparse hydrostat.ik.solve_ik hydrostat.design",
+            "scipy.optimize scipy.spatial scipy.sparse scipy.linalg hydrostat.ik.solve_ik hydrostat.design",
         ),
-        ("pose R --pose wave --out pose", "scipy.interpolate hydrostat.design"),
-        ("new other --from gallery:starfish", "scipy.optimize hydrostat.design hydrostat.simulation.simulation"),
+        ("pose R --pose wave --out pose", "scipy.interpolate scipy.linalg urllib.request hydrostat.design"),
+        (
+            "new other --from gallery:starfish",
+            "urllib.request scipy.optimize hydrostat.design hydrostat.simulation.simulation",
+        ),
         ("check R", "scipy.optimize matplotlib"),
     ],
 )

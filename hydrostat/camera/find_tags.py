@@ -3,8 +3,8 @@
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float, UInt8
 
+from hydrostat.arrays import Float, UInt8
 from hydrostat.camera.tags import CELLS
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.version import install_command

@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+
+from hydrostat.arrays import Float
 
 Pixels = Float[np.ndarray, "points 2"]
 Space = Float[np.ndarray, "points 3"]

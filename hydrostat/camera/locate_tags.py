@@ -3,10 +3,10 @@
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from jaxtyping import Float
 from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
 
+from hydrostat.arrays import Float
 from hydrostat.camera.find_tags import Corners, load_opencv
 from hydrostat.camera.lens import Lens, View
 from hydrostat.camera.tags import BOX

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 from statistics import median
 
 import numpy as np
-from jaxtyping import Float
 
+from hydrostat.arrays import Float
 from hydrostat.camera.calibrate_camera import CameraCalibration, calibrate_camera
 from hydrostat.camera.find_tags import Corners, find_tags, load_opencv
 from hydrostat.camera.lens import Lens, View

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from jaxtyping import UInt8
 
+from hydrostat.arrays import UInt8
 from hydrostat.camera.find_tags import Gray
 from hydrostat.errors import InputError
 from hydrostat.geometry import read_stranger

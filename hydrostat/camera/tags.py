@@ -5,8 +5,8 @@ from functools import cache
 from importlib.resources import files
 
 import numpy as np
-from jaxtyping import Bool, Float
 
+from hydrostat.arrays import Bool, Float
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 

@@ -113,6 +113,7 @@ def main() -> None:
     gc.set_threshold(50_000, *gc.get_threshold()[1:])  # looking for garbage is a tenth of a short command
     logging.getLogger("matplotlib").setLevel(logging.ERROR)  # such as that a home cannot be written to
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the dense matrices are small: threads only wait
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # it would look for them in all installed packages
     try:
         _run()
     except InputError as error:

@@ -22,22 +22,25 @@ if TYPE_CHECKING:
 def load_matplotlib() -> None:
     """Load matplotlib without writing the texts of its setters, which takes a third of the time.
 
-    Classes describe the keywords of their `set` for `help()` as they are made; no command shows that.
+    Classes describe the keywords of their `set`, and functions those of their artists, for `help()` as they are made;
+    no command shows that.
     """
     if "matplotlib.artist" in sys.modules:
         return
-    from matplotlib.artist import Artist
+    from matplotlib import artist
 
     name = "_update_set_signature_and_docstring"
-    describe = vars(Artist).get(name)
+    describe, kwdoc = vars(artist.Artist).get(name), artist.kwdoc
     if describe is None:  # another version, which does otherwise
         return
-    setattr(Artist, name, classmethod(lambda _: None))
+    setattr(artist.Artist, name, classmethod(lambda _: None))
+    artist.kwdoc = lambda _: ""
     try:
         with suppress(ImportError):
             import matplotlib.figure  # noqa: F401
     finally:
-        setattr(Artist, name, describe)
+        setattr(artist.Artist, name, describe)
+        artist.kwdoc = kwdoc
 
 
 Contract = Annotated[

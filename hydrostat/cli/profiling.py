@@ -1,10 +1,12 @@
 """Time of each part of the work, for `--profile`."""
 
-import cProfile
-import pstats
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pstats import Stats
 
 FILES = {
     "elements": "neo_hookean patch_volume energy",
@@ -36,6 +38,9 @@ def print_profile(wanted: bool, work: str) -> Iterator[None]:
     if not wanted:
         yield
         return
+    import cProfile
+    import pstats
+
     watch = cProfile.Profile()
     watch.enable()
     try:
@@ -45,7 +50,7 @@ def print_profile(wanted: bool, work: str) -> Iterator[None]:
         _report(work, pstats.Stats(watch))
 
 
-def _report(work: str, stats: pstats.Stats) -> None:
+def _report(work: str, stats: "Stats") -> None:
     """Time by part: the own time of its functions, and of the library functions that work for it."""
     entries = stats.stats  # pyright: ignore[reportAttributeAccessIssue]
     known: dict[Place, dict[str, float]] = {}

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Int
 
+from hydrostat.arrays import Int
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.filled_reach import FilledReach
 from hydrostat.design.muscles.activation import Activation

@@ -3,9 +3,8 @@
 from collections.abc import Callable
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Points, Vector
+from hydrostat.arrays import Float, Points, Vector
 
 Route = Float[np.ndarray, "_ dim"]  # points that a cable runs through [m]
 

@@ -5,12 +5,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from jaxtyping import Bool, Float
 from shapely import Polygon, contains, linestrings, points, polygonize, prepare
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import nearest_points
 
-from hydrostat.arrays import Points, Vector
+from hydrostat.arrays import Bool, Float, Points, Vector
 from hydrostat.design.polyline import Route, least_along
 from hydrostat.errors import InputError
 from hydrostat.geometry import Nearest, Shell, outline_shell

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float
 
+from hydrostat.arrays import Bool, Float
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.polyline import Route, least_along
 from hydrostat.design.region import Band, Region, SpaceRegion, body_region, body_shell

@@ -1,9 +1,8 @@
 """`spread_columns`: first-order second moments, how far each manufacturing tolerance takes the markers of a pose."""
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Float, Vector
 from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.simulation import CableSensitivities, Equilibrium, Simulation
 

@@ -7,9 +7,8 @@ from numbers import Real
 from typing import NamedTuple, TypeGuard
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
 
-from hydrostat.arrays import Points
+from hydrostat.arrays import Bool, Float, Int, Points
 from hydrostat.design.polyline import least_along
 from hydrostat.errors import InputError
 from hydrostat.robot import Point

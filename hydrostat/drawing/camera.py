@@ -4,7 +4,8 @@ from dataclasses import dataclass, field
 from typing import Self
 
 import numpy as np
-from jaxtyping import Float
+
+from hydrostat.arrays import Float
 
 Spots = Float[np.ndarray, "_ 3"]  # points in space, or as a camera sees them: to the right, up and towards the eye
 TURN = 58.0

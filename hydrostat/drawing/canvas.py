@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from typing import Self
 
 import numpy as np
-from jaxtyping import Float
 
+from hydrostat.arrays import Float
 from hydrostat.drawing.line_drawing import LineDrawing
 
 NAMESPACE = "http://www.w3.org/2000/svg"

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
-from jaxtyping import Float, Int
 
+from hydrostat.arrays import Float, Int
 from hydrostat.geometry import sides_of
 from hydrostat.kernel import native
 

@@ -6,8 +6,8 @@ from typing import Self
 
 import numpy as np
 import shapely
-from jaxtyping import Float, Int
 
+from hydrostat.arrays import Float, Int
 from hydrostat.kernel import native
 
 Polyline = Float[np.ndarray, "_ 2"]  # a line on a picture: to the right, up [mm]

@@ -6,8 +6,8 @@ from functools import cached_property
 
 import numpy as np
 import shapely
-from jaxtyping import Bool, Float, Int
 
+from hydrostat.arrays import Bool, Float, Int
 from hydrostat.drawing.camera import Camera
 from hydrostat.drawing.creases import Facets, Segments
 from hydrostat.drawing.depth import DepthBuffer, Polyline

@@ -4,9 +4,8 @@ from collections.abc import Iterable
 from typing import ClassVar, Protocol, runtime_checkable
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Float, Vector
 from hydrostat.kernel import native
 
 Pixels = Float[np.ndarray, "rows columns"]

@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float, Int
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Float, Int, Vector
 from hydrostat.drawing.camera import Spots
 from hydrostat.drawing.creases import smooth_normals
 from hydrostat.drawing.depth import DepthBuffer, Polyline

@@ -5,8 +5,8 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from jaxtyping import Float
 
+from hydrostat.arrays import Float
 from hydrostat.fabrication.checks.mold_checks import mold_checks
 from hydrostat.fabrication.checks.pattern_checks import patch_checks, pattern_checks
 from hydrostat.fabrication.kit_options import STUFFINGS, KitOptions, MoldKind, PartOptions

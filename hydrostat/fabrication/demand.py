@@ -4,9 +4,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Float, Vector
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.ik import IKOptions, IKResult, Limits, solve_ik, spool_arms
 from hydrostat.robot import PoseTarget, Robot, Winch

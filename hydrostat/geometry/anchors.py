@@ -6,9 +6,8 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
 
-from hydrostat.arrays import Nodes, Points
+from hydrostat.arrays import Bool, Float, Int, Nodes, Points
 from hydrostat.errors import InputError
 from hydrostat.geometry.mesh import Mesh
 

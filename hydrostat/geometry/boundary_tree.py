@@ -6,9 +6,8 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float, Int
 
-from hydrostat.arrays import Nodes, Vector
+from hydrostat.arrays import Float, Int, Nodes, Vector
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.kernel import native
 

@@ -3,9 +3,8 @@
 from collections.abc import Callable
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
 
-from hydrostat.arrays import Points, Vector
+from hydrostat.arrays import Bool, Float, Int, Points, Vector
 from hydrostat.errors import SurfaceError
 from hydrostat.geometry.surface import Surface
 

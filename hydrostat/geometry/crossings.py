@@ -3,10 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
 from shapely import STRtree, linestrings
 
-from hydrostat.arrays import Nodes
+from hydrostat.arrays import Bool, Float, Int, Nodes
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.point_tree import build_point_tree
 

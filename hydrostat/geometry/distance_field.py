@@ -6,9 +6,8 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Points, Vector
+from hydrostat.arrays import Float, Points, Vector
 
 
 class Distances(NamedTuple):

@@ -1,12 +1,11 @@
 """A flat-and-thick plush as a body in space: its outline blown up."""
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
 from scipy.sparse import coo_array
 from scipy.sparse.linalg import spsolve
 from shapely import maximum_inscribed_circle
 
-from hydrostat.arrays import Elements, Nodes, Vector
+from hydrostat.arrays import Bool, Elements, Float, Int, Nodes, Vector
 from hydrostat.errors import InputError, OutlineError
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.outline import Outline

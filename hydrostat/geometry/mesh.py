@@ -5,9 +5,8 @@ from functools import cached_property, reduce
 from itertools import combinations, product
 
 import numpy as np
-from jaxtyping import Float, Int
 
-from hydrostat.arrays import Elements, Nodes, Points
+from hydrostat.arrays import Elements, Float, Int, Nodes, Points
 from hydrostat.errors import InputError
 
 

@@ -5,11 +5,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from jaxtyping import Float
 from shapely import Polygon, is_ccw
 from shapely.validation import explain_validity
 
-from hydrostat.arrays import Points, Vector
+from hydrostat.arrays import Float, Points, Vector
 from hydrostat.errors import OutlineError
 
 Ring = Float[np.ndarray, "_ 2"]  # corners of a closed polygon [m], first point not repeated

@@ -5,9 +5,8 @@ from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float, Int
 
-from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.arrays import Float, Int, Nodes, Points, Vector
 from hydrostat.geometry.distance_field import DistanceField, Distances, box_field
 from hydrostat.geometry.outline import Outline
 

@@ -5,9 +5,8 @@ from functools import cached_property
 from typing import Any, Self
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
 
-from hydrostat.arrays import Points, Vector
+from hydrostat.arrays import Bool, Float, Int, Points, Vector
 from hydrostat.errors import SurfaceError
 
 

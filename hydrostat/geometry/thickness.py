@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float, Int
 
-from hydrostat.arrays import Points
+from hydrostat.arrays import Float, Int, Points
 from hydrostat.geometry.mesh import Mesh, joined_groups
 from hydrostat.geometry.point_tree import build_point_tree
 

@@ -5,10 +5,9 @@ from dataclasses import dataclass
 from typing import Any, cast
 
 import numpy as np
-from jaxtyping import Float
 from scipy.optimize import least_squares
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Float, Vector
 from hydrostat.errors import InputError
 from hydrostat.identification.marker_predictor import MarkerPrediction, MarkerPredictor
 from hydrostat.identification.measurements import Measurements, rms

@@ -3,9 +3,8 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Bool, Float
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Bool, Float, Vector
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.geometry import Anchors, locate
 from hydrostat.identification.measurements import Measurements

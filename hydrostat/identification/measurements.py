@@ -3,8 +3,8 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Bool, Float
 
+from hydrostat.arrays import Bool, Float
 from hydrostat.errors import InputError
 
 

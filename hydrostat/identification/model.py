@@ -4,9 +4,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Points
+from hydrostat.arrays import Float, Points
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 

@@ -5,9 +5,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Float, Vector
 from hydrostat.errors import InputError
 from hydrostat.ik.ik_result import IKResult
 from hydrostat.ik.search.linear_model import LinearModel

@@ -5,9 +5,8 @@ from itertools import product
 
 import numpy as np
 import shapely
-from jaxtyping import Float
 
-from hydrostat.arrays import Points, Vector
+from hydrostat.arrays import Float, Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation, without_contact_friction

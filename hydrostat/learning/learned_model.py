@@ -9,9 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Float, Vector
 from hydrostat.errors import InputError
 from hydrostat.ik import IKStatus, Targets, named_targets
 from hydrostat.learning.known_contact import check_contact

@@ -7,9 +7,8 @@ from itertools import pairwise
 from typing import Self
 
 import numpy as np
-from jaxtyping import Float, Int
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Float, Int, Vector
 from hydrostat.kernel import native
 
 

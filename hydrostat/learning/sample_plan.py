@@ -7,9 +7,8 @@ from enum import StrEnum
 from math import ceil, isfinite
 
 import numpy as np
-from jaxtyping import Float, Int
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Float, Int, Vector
 from hydrostat.errors import InputError
 from hydrostat.learning.known_contact import contact_facts
 from hydrostat.robot import Contact, Robot, robot_hash

@@ -13,9 +13,8 @@ from tokenize import TokenError
 from typing import Any
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Bool, Float, Int, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry import read_stranger
 from hydrostat.given import path_of

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from jaxtyping import Float
 
+from hydrostat.arrays import Float
 from hydrostat.errors import InputError
 from hydrostat.learning.learn_options import LearnOptions
 from hydrostat.learning.learned_model import span_of

@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Float, Vector
 from hydrostat.errors import InputError
 from hydrostat.learning.learned_model import LearnedModel, span_of
 from hydrostat.learning.samples import Samples

@@ -7,9 +7,8 @@ from math import isfinite
 from typing import TYPE_CHECKING
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Nodes, Vector
+from hydrostat.arrays import Float, Nodes, Vector
 from hydrostat.errors import InputError
 from hydrostat.mechanics.energy import Energy, Gaps, LowRankStiffness, ScatterMap
 from hydrostat.mechanics.sparsity import SparsityPattern

@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float, Int
 
-from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.arrays import Float, Int, Nodes, Points, Vector
 from hydrostat.kernel import native
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, LowRankStiffness, ScatterMap, Stencils
 from hydrostat.mechanics.tension_law import TensionLaw

@@ -5,9 +5,8 @@ from dataclasses import replace
 from typing import ClassVar, NamedTuple
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
 
-from hydrostat.arrays import Nodes, Vector
+from hydrostat.arrays import Bool, Float, Int, Nodes, Vector
 from hydrostat.kernel import native
 from hydrostat.mechanics.cable import CableEnergy, CableSegments
 from hydrostat.mechanics.capstan import CapstanChains, ViaPointTurns, is_semidefinite

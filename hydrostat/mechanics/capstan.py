@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float, Int
 
-from hydrostat.arrays import Nodes, Vector
+from hydrostat.arrays import Float, Int, Nodes, Vector
 from hydrostat.kernel import native
 from hydrostat.mechanics.energy import RankMatrix
 from hydrostat.mechanics.tension_law import ChainLaw, TensionLaw

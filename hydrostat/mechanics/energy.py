@@ -7,9 +7,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, NamedTuple, Protocol, Self, runtime_checkable
 
 import numpy as np
-from jaxtyping import Float, Int
 
-from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.arrays import Float, Int, Nodes, Points, Vector
 from hydrostat.kernel import native
 
 if TYPE_CHECKING:

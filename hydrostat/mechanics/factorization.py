@@ -18,9 +18,8 @@ SuperLU does the same from outside: slower, and independent. Figures: docs/decis
 from typing import TYPE_CHECKING, Literal, Protocol, runtime_checkable
 
 import numpy as np
-from jaxtyping import Float, Int
 
-from hydrostat.arrays import Nodes, Vector
+from hydrostat.arrays import Float, Int, Nodes, Vector
 from hydrostat.mechanics import ordering, symbolic
 from hydrostat.mechanics.minimum_degree import order_by_minimum_degree
 from hydrostat.mechanics.supernodal import SupernodalAnalysis

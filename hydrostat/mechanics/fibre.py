@@ -1,9 +1,8 @@
 """`FibreEnergy`: muscle fibres, each pulling its two ends together with a commanded tension."""
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.arrays import Float, Nodes, Points, Vector
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, Stencils
 
 

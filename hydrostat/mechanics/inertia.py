@@ -5,9 +5,8 @@ from math import sqrt
 from types import MappingProxyType
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Nodes, Vector
+from hydrostat.arrays import Float, Nodes, Vector
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks
 
 

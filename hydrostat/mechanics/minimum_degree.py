@@ -1,8 +1,8 @@
 """`order_by_minimum_degree`: SuperLU's order of elimination, without the import of all of SciPy's sparse algebra."""
 
 import numpy as np
-from jaxtyping import Int
 
+from hydrostat.arrays import Int
 from hydrostat.lazy import load_compiled
 
 

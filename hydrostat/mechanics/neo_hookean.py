@@ -5,9 +5,8 @@ from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
-from jaxtyping import Float, Int
 
-from hydrostat.arrays import Elements, Nodes, Vector
+from hydrostat.arrays import Elements, Float, Int, Nodes, Vector
 from hydrostat.kernel import native
 from hydrostat.mechanics.energy import (
     Blocks,

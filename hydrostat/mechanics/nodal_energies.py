@@ -4,9 +4,8 @@ from collections.abc import Mapping
 from copy import copy
 
 import numpy as np
-from jaxtyping import Float, Int
 
-from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.arrays import Float, Int, Nodes, Points, Vector
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, Stencils
 
 

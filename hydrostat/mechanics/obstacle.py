@@ -5,9 +5,8 @@ from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.arrays import Float, Nodes, Points, Vector
 from hydrostat.geometry import DistanceField, Distances, Mesh, facet_areas, lengths_of
 from hydrostat.kernel import native
 from hydrostat.mechanics.energy import (

@@ -4,9 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
 
-from hydrostat.arrays import Points, Vector
+from hydrostat.arrays import Bool, Float, Int, Points, Vector
 from hydrostat.mechanics.krylov import solve_krylov
 
 Squares = Float[np.ndarray, "samples dim dim"]

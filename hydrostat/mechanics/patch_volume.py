@@ -6,9 +6,8 @@ from itertools import combinations, pairwise
 from typing import ClassVar
 
 import numpy as np
-from jaxtyping import Float, Int
 
-from hydrostat.arrays import Elements, Nodes, Vector
+from hydrostat.arrays import Elements, Float, Int, Nodes, Vector
 from hydrostat.kernel import native
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks
 from hydrostat.mechanics.neo_hookean import NeoHookean

@@ -4,9 +4,8 @@ from collections.abc import Mapping
 from typing import ClassVar, NamedTuple
 
 import numpy as np
-from jaxtyping import Float, Int
 
-from hydrostat.arrays import Nodes, Vector
+from hydrostat.arrays import Float, Int, Nodes, Vector
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, Stencils
 
 

@@ -6,9 +6,8 @@ from itertools import combinations
 from typing import ClassVar
 
 import numpy as np
-from jaxtyping import Float, Int
 
-from hydrostat.arrays import Nodes, Vector
+from hydrostat.arrays import Float, Int, Nodes, Vector
 from hydrostat.kernel import native
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, ScatterMap, group_terms
 

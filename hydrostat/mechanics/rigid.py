@@ -4,9 +4,8 @@ from copy import copy
 from typing import ClassVar, NamedTuple
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.arrays import Float, Nodes, Points, Vector
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks
 from hydrostat.mechanics.warp import Bend
 

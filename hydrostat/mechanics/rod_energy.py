@@ -4,9 +4,8 @@ from itertools import pairwise
 from typing import ClassVar
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.arrays import Float, Nodes, Points, Vector
 from hydrostat.geometry import Anchors, Mesh, locate
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks
 

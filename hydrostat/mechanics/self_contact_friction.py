@@ -5,9 +5,8 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
 
-from hydrostat.arrays import Nodes, Vector
+from hydrostat.arrays import Bool, Float, Int, Nodes, Vector
 from hydrostat.geometry import Mesh, Pairs
 from hydrostat.mechanics.energy import Stencils
 from hydrostat.mechanics.obstacle_friction import ObstacleFriction

@@ -4,9 +4,8 @@ from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
-from jaxtyping import Float, Int
 
-from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.arrays import Float, Int, Nodes, Points, Vector
 from hydrostat.geometry import Mesh, Pairs
 from hydrostat.mechanics.contact import ContactEnergy
 from hydrostat.mechanics.energy import Blocks, Compliance, ContactForces, Energy, Gaps, HessianBlocks, Response

@@ -4,9 +4,8 @@ from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
-from jaxtyping import Int
 
-from hydrostat.arrays import Nodes
+from hydrostat.arrays import Int, Nodes
 from hydrostat.mechanics.energy import Stencils
 from hydrostat.mechanics.factorization import FACTORIZATIONS, Analysis
 

@@ -5,9 +5,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Float, Vector
 from hydrostat.mechanics.energy import Compliance, Law, LowRankBasis, LowRankStiffness, RankMatrix
 from hydrostat.mechanics.factorization import Factorization
 

@@ -4,9 +4,8 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Bool, Float, Int, Vector
 from hydrostat.kernel import native
 from hydrostat.mechanics.energy import RankMatrix
 

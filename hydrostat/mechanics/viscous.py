@@ -3,9 +3,8 @@
 from typing import ClassVar
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Elements, Nodes, Vector
+from hydrostat.arrays import Elements, Float, Nodes, Vector
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks
 from hydrostat.mechanics.neo_hookean import NeoHookean
 from hydrostat.mechanics.quadratic_solid import QuadraticSolid

@@ -3,9 +3,8 @@
 from collections.abc import Callable
 
 import numpy as np
-from jaxtyping import Float, Int
 
-from hydrostat.arrays import Nodes
+from hydrostat.arrays import Float, Int, Nodes
 from hydrostat.kernel import native
 from hydrostat.mechanics.energy import Stencils, element_groups
 from hydrostat.mechanics.factorization import Analysis

@@ -4,9 +4,9 @@ from collections.abc import Iterable
 from itertools import product
 
 import numpy as np
-from jaxtyping import Float, Int
 from matplotlib.figure import Figure
 
+from hydrostat.arrays import Float, Int
 from hydrostat.design import Activation
 from hydrostat.drawing import Color
 from hydrostat.plot.drawn_body import DrawnBody

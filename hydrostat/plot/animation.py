@@ -8,8 +8,8 @@ from itertools import chain, pairwise
 from pathlib import Path
 
 import numpy as np
-from jaxtyping import Bool, UInt8
 
+from hydrostat.arrays import Bool, UInt8
 from hydrostat.drawing import Color, channels, winch_colors
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.plot.frame import Frame, check_frames

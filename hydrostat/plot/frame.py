@@ -6,9 +6,8 @@ from functools import cached_property
 from typing import Self
 
 import numpy as np
-from jaxtyping import Bool
 
-from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.arrays import Bool, Nodes, Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry import Anchors, locate
 from hydrostat.plot.sheet import Spread

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from jaxtyping import UInt8
 from matplotlib.artist import Artist
 
+from hydrostat.arrays import UInt8
 from hydrostat.drawing import Color
 from hydrostat.plot.frame import Attachments, Frame
 from hydrostat.plot.hardware import draw_hardware

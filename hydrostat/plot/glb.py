@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+
+from hydrostat.arrays import Bool, Float, Int
 
 FLOAT, UNSIGNED = 5126, 5125  # kinds of numbers in glTF: 32 bits each
 VERTICES, INDICES = 34962, 34963  # what an array is used for

@@ -5,10 +5,9 @@ from dataclasses import dataclass, replace
 from textwrap import wrap
 
 import numpy as np
-from jaxtyping import Float, Int
 from matplotlib.figure import Figure
 
-from hydrostat.arrays import Points
+from hydrostat.arrays import Float, Int, Points
 from hydrostat.drawing import Camera, Color, Render, Spots, channels, render, three_quarter
 from hydrostat.geometry import Surface, sides_of
 from hydrostat.plot.pane import fit_pixel, lay_image

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from jaxtyping import Int
 
-from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.arrays import Int, Nodes, Points, Vector
 from hydrostat.drawing import Camera, Color, Render, Spots, mix, render, silhouette
 from hydrostat.plot.drawn_body import DrawnBody
 from hydrostat.plot.sheet import BODY, MILLIMETERS, PictureSheet, Place, Places

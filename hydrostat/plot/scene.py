@@ -6,9 +6,8 @@ from pathlib import Path
 from typing import Self
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.arrays import Float, Nodes, Points, Vector
 from hydrostat.drawing import Color, Spots, channels, upright, winch_colors
 from hydrostat.errors import InputError
 from hydrostat.plot.frame import Attachments, Frame, check_frames

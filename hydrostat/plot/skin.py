@@ -74,7 +74,7 @@ def _rings(shape: Polygon | MultiPolygon, length: float) -> list[Places]:
             if ring.length > 0:
                 count = max(12, round(ring_points * ring.length / length))
                 places = np.arange(count) / count * ring.length
-                rings.append(np.array([ring.interpolate(place).coords[0] for place in places]))
+                rings.append(shapely.get_coordinates(shapely.line_interpolate_point(ring, places)))
     return rings
 
 
@@ -86,11 +86,13 @@ def _stick(mesh: Mesh, points: Places) -> Anchors:
     """
     corners = mesh.nodes[mesh.elements]
     inverse = np.linalg.inv(np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2))
-    local = np.einsum("eij,pej->pei", inverse, points[:, None] - corners[None, :, 0])
-    weights = np.concatenate([1.0 - local.sum(axis=2, keepdims=True), local], axis=2)
-    best = weights.min(axis=2).argmax(axis=1)
+    x, y = points.T[:, :, None] - corners[:, 0].T[:, None]
+    second, third = (inverse[:, row, 0] * x + inverse[:, row, 1] * y for row in (0, 1))
+    first = 1.0 - (second + third)
+    best = np.minimum(first, np.minimum(second, third)).argmax(axis=1)
     rows = np.arange(len(points))
-    return Anchors(mesh.elements[best], weights[rows, best], np.zeros(len(points)))
+    weights = np.column_stack([weight[rows, best] for weight in (first, second, third)])
+    return Anchors(mesh.elements[best], weights, np.zeros(len(points)))
 
 
 def _soften(ring: Places) -> Places:

@@ -3,8 +3,8 @@
 from itertools import pairwise
 
 import numpy as np
-from jaxtyping import Float, Int
 
+from hydrostat.arrays import Float, Int
 from hydrostat.drawing import CREASE, smooth_normals
 from hydrostat.geometry import Mesh
 

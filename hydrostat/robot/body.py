@@ -8,9 +8,8 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-from jaxtyping import Float, Int
 
-from hydrostat.arrays import Points
+from hydrostat.arrays import Float, Int, Points
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError, OutlineError, SurfaceError
 from hydrostat.geometry import Anchors, Healing, Inner, Mesh, Outline, Solid, Thickness, locate, measure_thickness

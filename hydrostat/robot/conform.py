@@ -3,9 +3,8 @@
 from collections.abc import Sequence
 
 import numpy as np
-from jaxtyping import Float, Int
 
-from hydrostat.arrays import Nodes
+from hydrostat.arrays import Float, Int, Nodes
 from hydrostat.geometry import Mesh
 from hydrostat.robot.part import BodyPart
 

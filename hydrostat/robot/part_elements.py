@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 import numpy as np
-from jaxtyping import Float, Int
 
+from hydrostat.arrays import Float, Int
 from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh, locate
 from hydrostat.robot.part import BodyPart

@@ -5,9 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path, PurePath
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
 
-from hydrostat.arrays import Points, Vector
+from hydrostat.arrays import Bool, Float, Int, Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry import Healing, Mesh, Outline, Solid, Surface, clearance, heal, locate, size_for
 from hydrostat.robot.body import Body, Source, mesh_body

@@ -9,9 +9,8 @@ from collections.abc import Callable, Sequence
 from functools import reduce
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Points, Vector
+from hydrostat.arrays import Float, Points, Vector
 from hydrostat.errors import InputError
 
 Field = Callable[[Points], Vector]  # about how far each point, (points, 3) [m], is outside [m]; negative inside

@@ -17,8 +17,8 @@ from itertools import pairwise
 from types import MappingProxyType
 
 import numpy as np
-from jaxtyping import Float
 
+from hydrostat.arrays import Float
 from hydrostat.shapes.field import Field, Place, chain, half_space, intersection, turn_about, union
 from hydrostat.shapes.limb import Limb, Shape, limb
 

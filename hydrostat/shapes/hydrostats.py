@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 import numpy as np
-from jaxtyping import Float
 
+from hydrostat.arrays import Float
 from hydrostat.shapes.field import Field, half_space, intersection, round_cone, union
 from hydrostat.shapes.limb import Limb, Shape, limb
 

@@ -6,9 +6,8 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-from jaxtyping import Float, Int
 
-from hydrostat.arrays import Points, Vector
+from hydrostat.arrays import Float, Int, Points, Vector
 from hydrostat.geometry import Surface, contour
 from hydrostat.shapes.field import Field, Place, ellipsoidal
 

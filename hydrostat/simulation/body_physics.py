@@ -4,9 +4,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.arrays import Float, Nodes, Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry import locate
 from hydrostat.given import check_type

@@ -3,8 +3,8 @@
 from typing import Any
 
 import numpy as np
-from jaxtyping import Int
 
+from hydrostat.arrays import Int
 from hydrostat.mechanics import CableEnergy, CableSegments, FrictionCableEnergy, TensionLaw, ViaPointTurns
 from hydrostat.robot import Robot
 from hydrostat.simulation.route_points import RoutePoints

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
 
+from hydrostat.arrays import Float
 from hydrostat.simulation.equilibrium import Equilibrium
 from hydrostat.simulation.sensitivities.adjoint import by_routes
 from hydrostat.simulation.simulation import Simulation

@@ -9,9 +9,8 @@ from pathlib import Path
 from typing import Self
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Float, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry import read_stranger
 from hydrostat.robot import Robot, replace_file

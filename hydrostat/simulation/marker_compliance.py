@@ -1,8 +1,8 @@
 """`marker_compliance`: displacement of markers under small forces at a pose."""
 
 import numpy as np
-from jaxtyping import Float
 
+from hydrostat.arrays import Float
 from hydrostat.simulation.equilibrium import Equilibrium
 from hydrostat.simulation.simulation import Simulation
 

@@ -5,9 +5,8 @@ from functools import lru_cache
 from itertools import product
 
 import numpy as np
-from jaxtyping import Float, Int
 
-from hydrostat.arrays import Nodes
+from hydrostat.arrays import Float, Int, Nodes
 from hydrostat.geometry import Mesh
 from hydrostat.robot import Body, Plane, Volume
 

@@ -10,9 +10,8 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Float, Vector
 from hydrostat.errors import NotConvergedError
 from hydrostat.geometry import write_vtu
 from hydrostat.robot import Robot, replace_file, robot_hash

@@ -6,9 +6,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Points, Vector
+from hydrostat.arrays import Float, Points, Vector
 from hydrostat.mechanics import Energy
 from hydrostat.robot import Obstacle, Robot
 from hydrostat.simulation.equilibrium import Equilibrium

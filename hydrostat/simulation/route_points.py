@@ -4,9 +4,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
 
-from hydrostat.arrays import Nodes, Points
+from hydrostat.arrays import Bool, Float, Int, Nodes, Points
 from hydrostat.geometry import Anchors, Mesh, locate
 from hydrostat.robot import Mount, Robot
 

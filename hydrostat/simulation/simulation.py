@@ -7,9 +7,8 @@ from copy import copy
 from functools import cached_property, partial
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Nodes, Vector
+from hydrostat.arrays import Float, Nodes, Vector
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.geometry import Anchors, locate
 from hydrostat.given import check_type

@@ -5,9 +5,8 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Nodes, Vector
+from hydrostat.arrays import Float, Nodes, Vector
 from hydrostat.geometry import Mesh
 from hydrostat.mechanics import solve_thickening
 from hydrostat.robot import Body, Plane, Robot

@@ -4,9 +4,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Float, Vector
 from hydrostat.ik import EquilibriumState, Objective, Residual, state_at, state_jacobian_at
 from hydrostat.simulation import Contractions, Equilibrium, Simulation
 from hydrostat.testing.differences import ConformanceError, central_differences, steps

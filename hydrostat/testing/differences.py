@@ -3,7 +3,8 @@
 from collections.abc import Callable, Iterator
 
 import numpy as np
-from jaxtyping import Float
+
+from hydrostat.arrays import Float
 
 
 class ConformanceError(AssertionError):

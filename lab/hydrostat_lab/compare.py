@@ -5,8 +5,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from jaxtyping import Float
 
+from hydrostat.arrays import Float
 from hydrostat.errors import InputError
 from hydrostat.learning import LearnedModel, LearnOptions, Samples, exact_steps, learn_model
 from hydrostat.robot import Point

@@ -3,13 +3,12 @@
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from jaxtyping import Float
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from hydrostat.arrays import Nodes
+from hydrostat.arrays import Float, Nodes
 from hydrostat.drawing import Color
 from hydrostat.plot import (
     MILLIMETERS,

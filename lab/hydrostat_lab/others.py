@@ -3,10 +3,9 @@
 from collections.abc import Callable, Mapping
 
 import numpy as np
-from jaxtyping import Float
 from scipy.optimize import lsq_linear
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Float, Vector
 from hydrostat.learning import Samples, linear_map
 from hydrostat_lab.thesis_network import Answers, Goals
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from jaxtyping import Float
 
+from hydrostat.arrays import Float
 from hydrostat.errors import InputError
 from hydrostat.learning import Samples, SamplingScheme, contractions, shared_numbers
 from hydrostat.version import install_command

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
 
+from hydrostat.arrays import Bool, Float, Int
 from hydrostat.design.checks.parts import ANGLE, LENGTH, Parts, mm, place
 from hydrostat.design.polyline import least_along, nearest_shares
 from hydrostat.design.zone import Zone

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from jaxtyping import Float
 
+from hydrostat.arrays import Float
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.region import Region
 from hydrostat.robot import Cable, Mount, Robot, Winch

@@ -5,9 +5,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from jaxtyping import Float, Int
 
-from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.arrays import Float, Int, Nodes, Points, Vector
 from hydrostat.geometry import Anchors, Mesh, locate
 from hydrostat.mechanics import FibreEnergy, NewtonOptions, NewtonResult, minimize
 from hydrostat.robot import PoseTarget, Robot

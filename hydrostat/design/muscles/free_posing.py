@@ -3,10 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
 from scipy.sparse import csc_array
 
-from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.arrays import Float, Nodes, Points, Vector
 from hydrostat.design.muscles.activation import Fibres, edge_fibres, least_effort, place_slopes
 from hydrostat.geometry import Anchors
 from hydrostat.mechanics import NewtonOptions, NewtonResult, minimize

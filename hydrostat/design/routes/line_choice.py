@@ -8,11 +8,10 @@ from functools import cached_property
 from itertools import combinations, product
 
 import numpy as np
-from jaxtyping import Bool
 from scipy.sparse import csc_array, hstack
 from scipy.spatial import KDTree
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Bool, Vector
 from hydrostat.design.polyline import Route, resample
 from hydrostat.design.routes.bench import Trial
 from hydrostat.design.routes.propose import Proposals

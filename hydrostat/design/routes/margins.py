@@ -3,9 +3,8 @@
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float, Int
 
-from hydrostat.arrays import Points, Vector
+from hydrostat.arrays import Float, Int, Points, Vector
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.region import Region
 from hydrostat.design.routes.layout import Layout

@@ -4,9 +4,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Float, Vector
 from hydrostat.design.region import Region
 from hydrostat.design.routes.bench import Bench, Trial
 from hydrostat.design.routes.layout import Layout

@@ -5,9 +5,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
 
-from hydrostat.arrays import Nodes, Points
+from hydrostat.arrays import Bool, Float, Int, Nodes, Points
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.region import Region
 from hydrostat.design.zone import Zone

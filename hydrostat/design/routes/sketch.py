@@ -3,11 +3,10 @@
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from jaxtyping import Int
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
-from hydrostat.arrays import Points, Vector
+from hydrostat.arrays import Int, Points, Vector
 from hydrostat.design.polyline import Route, resample
 from hydrostat.design.region import MARGIN, Region
 from hydrostat.design.routes.bench import Trial

@@ -4,9 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Bool, Float, Int, Vector
 from hydrostat.design.polyline import Route, resample
 from hydrostat.design.region import Region
 

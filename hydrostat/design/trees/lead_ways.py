@@ -3,11 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
-from hydrostat.arrays import Points, Vector
+from hydrostat.arrays import Bool, Float, Int, Points, Vector
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.polyline import Route
 from hydrostat.design.region import Region

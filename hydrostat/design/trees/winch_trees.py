@@ -3,10 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
 from numpy.lib.stride_tricks import sliding_window_view
 
-from hydrostat.arrays import Nodes
+from hydrostat.arrays import Bool, Float, Int, Nodes
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.polyline import Route, length
 from hydrostat.design.request import TreeOptions

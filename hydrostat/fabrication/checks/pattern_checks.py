@@ -6,8 +6,8 @@ from functools import cached_property
 from xml.etree import ElementTree
 
 import numpy as np
-from jaxtyping import Float
 
+from hydrostat.arrays import Float
 from hydrostat.errors import InputError
 from hydrostat.fabrication.kit import Check
 from hydrostat.fabrication.kit_options import PatternOptions

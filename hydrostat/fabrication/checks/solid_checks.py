@@ -3,9 +3,9 @@
 from collections.abc import Iterable
 
 import numpy as np
-from jaxtyping import Float, Int
 from manifold3d import Error
 
+from hydrostat.arrays import Float, Int
 from hydrostat.fabrication.kit import Check
 from hydrostat.fabrication.parts.winch_unit import WinchUnit
 from hydrostat.fabrication.solids.assembly import LEAST, PartAssembly, interferences

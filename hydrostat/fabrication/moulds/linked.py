@@ -8,9 +8,9 @@ of the body by Gauss's linking number.
 from collections import deque
 
 import numpy as np
-from jaxtyping import Float, Int
 from manifold3d import Manifold
 
+from hydrostat.arrays import Float, Int
 from hydrostat.fabrication.solids.printed import root_of, triangles_of
 
 _IN = 1e-6  # depth of a solid's loop under its surface [mm], so that loops of two touching solids do not meet

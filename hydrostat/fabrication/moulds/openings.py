@@ -6,10 +6,9 @@ In the coordinates of the mould: x across, y upwards as it stands when poured, z
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
 from manifold3d import Manifold
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Float, Vector
 from hydrostat.fabrication.moulds.solids import rod
 from hydrostat.fabrication.moulds.stance import SMALLEST_TRAP, high_points
 from hydrostat.fabrication.solids.printed import triangles_of

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from itertools import permutations, product
 
 import numpy as np
-from jaxtyping import Float
 from manifold3d import Manifold
 
+from hydrostat.arrays import Float
 from hydrostat.errors import InputError
 from hydrostat.fabrication.moulds.release import FineSurface, axes_along
 from hydrostat.fabrication.moulds.solids import join_solids, rod

@@ -6,10 +6,9 @@ from functools import cached_property
 
 import numpy as np
 import shapely
-from jaxtyping import Bool, Int
 from manifold3d import Manifold
 
-from hydrostat.arrays import Points, Vector
+from hydrostat.arrays import Bool, Int, Points, Vector
 from hydrostat.fabrication.kit_options import MoldOptions
 from hydrostat.fabrication.moulds.pocket import LEAST_SKIN, LyingWinch, WinchRoom, ways_to_turn
 from hydrostat.fabrication.moulds.setting import mold_setting

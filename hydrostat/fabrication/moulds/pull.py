@@ -5,10 +5,9 @@ from functools import lru_cache
 from itertools import combinations
 
 import numpy as np
-from jaxtyping import Bool, Float
 from manifold3d import Manifold
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Bool, Float, Vector
 from hydrostat.fabrication.moulds.release import FineSurface, Release, axes_along, fine_surface, release
 
 _DEPTH = 0.05

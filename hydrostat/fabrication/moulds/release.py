@@ -8,10 +8,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from jaxtyping import Bool, Float
 from manifold3d import Manifold
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Bool, Float, Vector
 from hydrostat.fabrication.solids.printed import TriangleMesh, triangles_of
 from hydrostat.kernel import native
 

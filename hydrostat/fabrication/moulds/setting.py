@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from jaxtyping import Float
 from manifold3d import Manifold
 
+from hydrostat.arrays import Float
 from hydrostat.fabrication.moulds.pull import Pull, find_pull
 from hydrostat.fabrication.moulds.stance import MoldOrientation, find_stance
 from hydrostat.fabrication.solids.body_solid import MILLIMETERS, body_solid

@@ -3,9 +3,9 @@
 from collections.abc import Iterable
 
 import numpy as np
-from jaxtyping import Float
 from manifold3d import Manifold
 
+from hydrostat.arrays import Float
 from hydrostat.fabrication.solids.construct import segments
 
 _TURNS = {

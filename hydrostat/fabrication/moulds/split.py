@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from jaxtyping import Float
 from manifold3d import CrossSection, JoinType, Manifold
 
+from hydrostat.arrays import Float
 from hydrostat.fabrication.moulds.solids import join_solids, rod
 
 DOWEL = 1.6  # radius of a hole for a dowel, a piece of a 3 mm skewer or rod [mm]

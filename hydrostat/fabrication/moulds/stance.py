@@ -3,11 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float, Int
 from manifold3d import Manifold
 from shapely import MultiPoint
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Float, Int, Vector
 from hydrostat.fabrication.moulds.pull import Pull
 from hydrostat.fabrication.moulds.release import axes_along
 from hydrostat.fabrication.solids.printed import TriangleMesh, root_of

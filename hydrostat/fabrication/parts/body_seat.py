@@ -10,12 +10,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
 from manifold3d import Manifold
 from shapely.geometry import LineString, Point, Polygon, box
 from shapely.geometry.polygon import orient
 from shapely.ops import unary_union
 
+from hydrostat.arrays import Float
 from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.base_plan import POST, post
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed

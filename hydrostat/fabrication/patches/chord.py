@@ -5,12 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from jaxtyping import Bool, Float, Int
 from scipy.sparse import csc_array
 from scipy.sparse.linalg import splu
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import split
 
+from hydrostat.arrays import Bool, Float, Int
 from hydrostat.fabrication.patches.flatten import distortion
 from hydrostat.fabrication.patches.patch import Disc, Patch
 from hydrostat.fabrication.patches.skin_mesh import SkinMesh, cut_at_zero

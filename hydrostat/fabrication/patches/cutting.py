@@ -4,10 +4,10 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
-from jaxtyping import Float, Int
 from scipy.sparse import csc_array, diags_array
 from scipy.sparse.linalg import splu
 
+from hydrostat.arrays import Float, Int
 from hydrostat.fabrication.patches.chord import NARROWEST, best_chord, cut_chord, is_narrow
 from hydrostat.fabrication.patches.flatten import distortion, flatten
 from hydrostat.fabrication.patches.patch import Patch, disc_of

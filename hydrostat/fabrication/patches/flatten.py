@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
 from scipy.sparse import csc_array, csr_array
 from scipy.sparse.linalg import splu
 
+from hydrostat.arrays import Float
 from hydrostat.fabrication.patches.patch import Disc, Patch
 
 

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from jaxtyping import Float, Int
 from shapely import Polygon
 
+from hydrostat.arrays import Float, Int
 from hydrostat.fabrication.patches.skin_mesh import SkinMesh
 from hydrostat.fabrication.solids.printed import TriangleMesh, number_groups
 

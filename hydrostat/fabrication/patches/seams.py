@@ -5,8 +5,8 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-from jaxtyping import Float, Int
 
+from hydrostat.arrays import Float, Int
 from hydrostat.fabrication.patches.patch import Patch
 from hydrostat.fabrication.patches.skin_mesh import SkinMesh
 from hydrostat.fabrication.patterns.shape import Place

@@ -6,8 +6,8 @@ from itertools import combinations, pairwise
 
 import numpy as np
 import shapely
-from jaxtyping import Float, Int
 
+from hydrostat.arrays import Float, Int
 from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patches.patch import Patch
 from hydrostat.fabrication.patches.seams import Seam

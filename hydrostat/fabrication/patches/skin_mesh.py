@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
 
+from hydrostat.arrays import Bool, Float, Int
 from hydrostat.errors import InputError
 from hydrostat.fabrication.solids.printed import TriangleMesh, number_groups
 from hydrostat.geometry import Surface

@@ -7,11 +7,11 @@ from itertools import pairwise
 
 import numpy as np
 import shapely
-from jaxtyping import Float
 from shapely import LineString, Polygon
 from shapely.affinity import translate
 from shapely.geometry.polygon import orient
 
+from hydrostat.arrays import Float
 from hydrostat.errors import InputError
 from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patches.cutting import cut_skin, patch_notes, patch_problems, patch_warnings, thin_direction

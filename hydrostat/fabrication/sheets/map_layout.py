@@ -7,8 +7,8 @@ from typing import Self
 
 import numpy as np
 import shapely
-from jaxtyping import Bool, Float
 
+from hydrostat.arrays import Bool, Float
 from hydrostat.drawing import Box, Camera, DepthBuffer, DrawnSolid, Spot
 from hydrostat.robot import Robot
 

@@ -4,10 +4,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 import shapely
-from jaxtyping import Bool, Float, Int
 from manifold3d import Manifold
 from scipy.ndimage import distance_transform_edt, gaussian_filter
 
+from hydrostat.arrays import Bool, Float, Int
 from hydrostat.drawing import (
     Box,
     Camera,

@@ -1,9 +1,9 @@
 """`body_solid`: the body of a robot as a solid, in millimeters."""
 
 import numpy as np
-from jaxtyping import Float, Int
 from manifold3d import CrossSection, Error, Manifold, Mesh64
 
+from hydrostat.arrays import Float, Int
 from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh
 from hydrostat.robot import Body

@@ -4,12 +4,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
 from manifold3d import Manifold
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Bool, Float, Int, Vector
 from hydrostat.fabrication.solids.construct import Construction, solid_of
 
 _STEP = 2e-5  # minimum distance of vertices that would otherwise coincide [mm]

@@ -5,8 +5,8 @@ import warnings
 from typing import TYPE_CHECKING
 
 import numpy as np
-from jaxtyping import Float
 
+from hydrostat.arrays import Float
 from hydrostat.errors import OutlineError
 from hydrostat.geometry.files.drawn_lines import Inner, drawn_picture
 from hydrostat.geometry.files.rings import Drawing, Page, one_line, outline_on_page, page_about

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from io import BytesIO
 
 import numpy as np
-from jaxtyping import Int
 
+from hydrostat.arrays import Int
 from hydrostat.errors import SurfaceError
 from hydrostat.geometry.files.soup import MOST_TRIANGLES, Soup, check_count, check_text, fans
 from hydrostat.geometry.surface import Surface

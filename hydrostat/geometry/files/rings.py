@@ -5,9 +5,9 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float, Int
 from shapely import Polygon
 
+from hydrostat.arrays import Float, Int
 from hydrostat.errors import OutlineError
 from hydrostat.geometry.mesh import joined_groups
 from hydrostat.geometry.outline import Outline, Ring, fault

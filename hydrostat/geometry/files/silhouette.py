@@ -3,11 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
 from scipy.ndimage import distance_transform_edt, find_objects, gaussian_filter, gaussian_filter1d, label
 from shapely import Polygon, get_coordinates
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Bool, Float, Int, Vector
 from hydrostat.errors import OutlineError
 from hydrostat.geometry.outline import Curve, Ring
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from io import BytesIO
 
 import numpy as np
-from jaxtyping import Float, Int
 
+from hydrostat.arrays import Float, Int
 from hydrostat.errors import SurfaceError
 
 MOST_BYTES = 120_000_000  # a surface file larger than this, or that unpacks to more, is refused

@@ -7,7 +7,6 @@ import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from xml.parsers import expat
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
@@ -23,6 +22,9 @@ _KINDS = {
     "UInt64": "u8", "Float32": "f4", "Float64": "f8",
 }  # fmt: skip
 _NAMES = {code: name for name, code in _KINDS.items()}
+_ESCAPES = str.maketrans(
+    {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
+)  # xml.sax.saxutils would load the client of the web
 _APPENDED = re.compile(rb"<AppendedData([^>]{0,1000})>\s*_")
 
 
@@ -231,4 +233,5 @@ def _data_array(name: str, values: np.ndarray) -> str:
     blocks = [zlib.compress(content[start : start + block]) for start in range(0, len(content), block)]
     head = np.array([len(blocks), block, len(content) % block, *map(len, blocks)], dtype="<u4").tobytes()
     text = base64.b64encode(head) + base64.b64encode(b"".join(blocks))
-    return f'<DataArray type="{kind}" Name={quoteattr(name)}{width} format="binary">{text.decode()}</DataArray>'
+    head = f'type="{kind}" Name="{name.translate(_ESCAPES)}"{width} format="binary"'
+    return f"<DataArray {head}>{text.decode()}</DataArray>"

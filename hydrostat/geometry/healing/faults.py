@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
 
+from hydrostat.arrays import Bool, Float, Int
 from hydrostat.errors import SurfaceError
 from hydrostat.geometry.healing.healing import Piece
 from hydrostat.geometry.healing.mend import Holes, Welded, sides_of

@@ -1,8 +1,8 @@
 """`heal`: one closed body from a faulty surface, as from scans, CAD or damaged files, with a report of repairs."""
 
 import numpy as np
-from jaxtyping import Bool, Int
 
+from hydrostat.arrays import Bool, Int
 from hydrostat.errors import SurfaceError
 from hydrostat.geometry.healing.faults import MOST_PAIRS, crossing_pairs, describe_faults, pieces_of, sliver_count
 from hydrostat.geometry.healing.healing import Healing, Piece

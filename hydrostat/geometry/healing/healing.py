@@ -5,9 +5,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
 
 import numpy as np
-from jaxtyping import Int
 
-from hydrostat.arrays import Points
+from hydrostat.arrays import Int, Points
 from hydrostat.geometry.surface import Surface
 from hydrostat.units import plural
 

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
 
+from hydrostat.arrays import Bool, Float, Int
 from hydrostat.errors import SurfaceError
 from hydrostat.geometry.mesh import joined_groups
 from hydrostat.geometry.surface import Surface

@@ -4,9 +4,8 @@ from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Bool, Float, Int, Vector
 from hydrostat.geometry.healing.mend import Sides, sides_of
 from hydrostat.geometry.surface import Surface
 

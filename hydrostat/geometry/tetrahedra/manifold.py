@@ -1,9 +1,8 @@
 """`manifold`: tetrahedra whose boundary is a proper surface: every edge of it between two facets, one fan a node."""
 
 import numpy as np
-from jaxtyping import Int
 
-from hydrostat.arrays import Elements, Nodes, Points
+from hydrostat.arrays import Elements, Int, Nodes, Points
 from hydrostat.geometry.mesh import Mesh, joined_groups
 from hydrostat.geometry.tetrahedra.stuffing import Numbers, signed_volumes
 

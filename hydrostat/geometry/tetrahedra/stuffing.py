@@ -9,9 +9,8 @@ from collections.abc import Callable
 from itertools import combinations
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
 
-from hydrostat.arrays import Elements, Nodes, Points, Vector
+from hydrostat.arrays import Bool, Elements, Float, Int, Nodes, Points, Vector
 from hydrostat.geometry.surface import Solid
 
 

@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
 
-from hydrostat.arrays import Elements, Nodes, Points, Vector
+from hydrostat.arrays import Bool, Elements, Float, Int, Nodes, Points, Vector
 from hydrostat.errors import InputError, SurfaceError
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.surface import Solid, Surface, covering_points

@@ -4,10 +4,9 @@ from bisect import bisect
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
 from shapely import Polygon, STRtree, contains_xy, linestrings
 
-from hydrostat.arrays import Points, Vector
+from hydrostat.arrays import Float, Points, Vector
 from hydrostat.errors import OutlineError
 from hydrostat.geometry.outline import Curve, Outline, Stations
 from hydrostat.geometry.triangles.draft import Division, Draft

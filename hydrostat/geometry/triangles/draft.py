@@ -4,10 +4,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
 from shapely import Polygon, contains_xy
 
-from hydrostat.arrays import Elements, Points
+from hydrostat.arrays import Bool, Elements, Float, Int, Points
 from hydrostat.geometry.outline import Curve
 
 Edges = Int[np.ndarray, "_ 2"]  # pairs of point indices

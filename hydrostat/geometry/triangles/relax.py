@@ -3,10 +3,9 @@
 from collections.abc import Iterator
 
 import numpy as np
-from jaxtyping import Bool
 from shapely import contains_xy
 
-from hydrostat.arrays import Elements, Points, Vector
+from hydrostat.arrays import Bool, Elements, Points, Vector
 from hydrostat.geometry.mesh import angles
 from hydrostat.geometry.triangles.divide import Spacing
 from hydrostat.geometry.triangles.draft import Division, Draft, doubled_areas

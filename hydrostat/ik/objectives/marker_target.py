@@ -5,9 +5,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from jaxtyping import Bool, Float
 
-from hydrostat.arrays import Points, Vector
+from hydrostat.arrays import Bool, Float, Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry import Anchors, locate
 from hydrostat.ik.objectives.objective import (

@@ -6,9 +6,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
 
-from hydrostat.arrays import Nodes, Vector
+from hydrostat.arrays import Bool, Float, Int, Nodes, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh
 from hydrostat.mechanics import FrictionCableEnergy, Stiffness

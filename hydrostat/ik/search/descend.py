@@ -1,9 +1,8 @@
 """`descend`, `least_effort`: from a state to an optimum of an inverse problem, by trust-region steps."""
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Float, Vector
 from hydrostat.ik.ik_result import IKStatus
 from hydrostat.ik.search.inverse_search import EXCESS, Descent, InverseSearch, StepRules, ends, try_step
 from hydrostat.ik.search.linear_model import LinearModel

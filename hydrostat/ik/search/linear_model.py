@@ -8,9 +8,8 @@ from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Float, Vector
 from hydrostat.ik.limits import Bounds
 from hydrostat.ik.objectives.objective import EquilibriumState, StateJacobian, rubbing_moves, winch_to_cable_matrix
 from hydrostat.lazy import load_compiled

@@ -6,9 +6,8 @@ from enum import StrEnum
 from itertools import pairwise
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Float, Vector
 from hydrostat.ik.ik_result import IKResult
 from hydrostat.ik.trajectory.poses import BranchJump
 from hydrostat.ik.trajectory.timed_path import MotionLimits, Samples

@@ -5,9 +5,8 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Points
+from hydrostat.arrays import Float, Points
 from hydrostat.geometry import clearance, locate, spacings
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable

@@ -3,9 +3,8 @@
 from collections.abc import Iterator
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Points
+from hydrostat.arrays import Float, Points
 from hydrostat.geometry import Mesh, locate, spacings
 from hydrostat.robot.risks.words import Risk, known_up_to, mm, told_together
 from hydrostat.robot.robot import Robot

@@ -5,9 +5,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.arrays import Float, Nodes, Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry import locate
 from hydrostat.mechanics import Assembly, CableEnergy, Stiffness

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
 
+from hydrostat.arrays import Float
 from hydrostat.mechanics import FrictionCableEnergy, Stiffness
 from hydrostat.robot import Robot
 from hydrostat.simulation.body_physics import BodyPhysics

@@ -7,9 +7,8 @@ from itertools import count
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Bool, Float
 
-from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.arrays import Bool, Float, Nodes, Points, Vector
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.geometry import Anchors
 from hydrostat.mechanics import Reason

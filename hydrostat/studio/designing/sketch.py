@@ -3,9 +3,8 @@
 from functools import cached_property
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.arrays import Float, Nodes, Points, Vector
 from hydrostat.drawing import winch_colors
 from hydrostat.robot import Body, Robot
 

@@ -8,9 +8,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float
 
-from hydrostat.arrays import Nodes, Points, Vector
+from hydrostat.arrays import Float, Nodes, Points, Vector
 from hydrostat.geometry import Anchors, locate
 from hydrostat.robot import Robot
 from hydrostat.studio.view.things import Area, Cloud, Dot, Ghost, RobotShape, Strand, Thing
