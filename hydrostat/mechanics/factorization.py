@@ -228,13 +228,12 @@ def _cheapest_tree(
         tree, (_, found, uses) = symbolic.supernodes(starts, neighbors, known[0].order, dim), known
         if uses * (tree.seconds - found) <= ORDERING * len(tree.order):
             return tree, found
-    distances = ordering.graph_coordinates(starts, neighbors, DISTANCES)
-    coordinates = distances if points is None else np.hstack([points, distances])
-    leaf = 64  # Parts of so many nodes are ordered by minimum degree
-    orders = [
-        ordering.nested_dissection(starts, neighbors, coordinates, leaf, SHARES),
-        order_by_minimum_degree(starts, neighbors),
-    ]
+    orders = [order_by_minimum_degree(starts, neighbors)]
+    if known is None or known[2] >= FACTORIZATIONS:  # else it takes longer than it saves
+        distances = ordering.graph_coordinates(starts, neighbors, DISTANCES)
+        coordinates = distances if points is None else np.hstack([points, distances])
+        leaf = 64  # Parts of so many nodes are ordered by minimum degree
+        orders.insert(0, ordering.nested_dissection(starts, neighbors, coordinates, leaf, SHARES))
     trees = [symbolic.supernodes(starts, neighbors, order, dim) for order in orders]
     best = min(trees, key=lambda tree: tree.seconds)
     return best, best.seconds
