@@ -213,9 +213,13 @@ def design(
     request = parse_request(source, typed)
     for reason in body_refusals(source):
         print(f"warning: no kit can be made of this body: {in_words(reason)}", file=sys.stderr, flush=True)
-    network, made = _search(source, request, out, kit=kit)
-    printed = print_poses(network, time.perf_counter() - began)
-    _tell_count(network, request)
+    with one_interrupt(STOPPING, signals=_ENDING, interrupt=True) as pass_over:
+        network = _search(source, request)
+        pass_over()
+        printed = print_poses(network, time.perf_counter() - began)
+        _tell_count(network, request)
+        sys.stdout.flush()
+        made = _write(network, out, kit=kit)
     if made is not None:
         print_kit(made, printed=printed)
     fits = kit_fits(network) and not (made is not None and made.problems)
@@ -230,25 +234,32 @@ def design(
         raise typer.Exit(1)
 
 
-def _search(source: "Robot", request: "DesignRequest", out: Path, *, kit: bool) -> "tuple[Network, Kit | None]":
-    """Search, and write what is found, with its kit if wanted."""
+def _search(source: "Robot", request: "DesignRequest") -> "Network":
+    """Find the network; exit where it is interrupted before the first one."""
     from hydrostat.design import find_network
-    from hydrostat.fabrication import forget_files
 
-    with progress_bar() as progress, one_interrupt(STOPPING, signals=_ENDING, interrupt=True) as pass_over:
+    with progress_bar() as progress:
         try:
-            network = find_network(source, request, progress=progress, watch=_tell_better())
+            return find_network(source, request, progress=progress, watch=_tell_better())
         except KeyboardInterrupt:
             print("hydrostat: interrupted before the first network; no files written", file=sys.stderr)
             raise typer.Exit(130) from None
-        pass_over()
+
+
+def _write(network: "Network", out: Path, *, kit: bool) -> "Kit | None":
+    """Write the results, with the kit if wanted, and print the seconds that this took."""
+    from hydrostat.fabrication import forget_files
+
+    began = time.perf_counter()
+    with progress_bar() as progress:
         progress("Writing results", 0, 1)
         with result_folder(out, stale=STALE) as folder:
             write_results(network, folder)
         forget_files(out / "kit")
         made = write_kit(network, out / "kit") if kit else None
         progress("Writing results", 1, 1)
-    return network, made
+    print(f"results written in {time.perf_counter() - began:.1f} s", file=sys.stderr, flush=True)
+    return made
 
 
 def _tell_better() -> "Callable[[DesignStage], None]":

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Self
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import shapely
@@ -11,7 +11,7 @@ from shapely import MultiPolygon, Polygon
 
 from hydrostat.arrays import Nodes
 from hydrostat.errors import InputError
-from hydrostat.geometry import Anchors, Mesh
+from hydrostat.geometry import Anchors, Mesh, Outline
 from hydrostat.plot.sheet import Places, Spread
 from hydrostat.robot import Body
 
@@ -25,10 +25,18 @@ class FlatSkin:
     stitches: tuple[slice, ...]  # the rings of the seam, a little inside
 
     @classmethod
-    def of(cls, body: Body) -> Self:
+    def of(cls, body: Body) -> "FlatSkin":
         """The skin of a flat body: its drawing where there is one, else its mesh's boundary (InputError: in space)."""
         if body.mesh.dim != 2:
             raise InputError("only a flat body has a skin of rings; this one is in space")
+        if (known := _SKINS.get(body.mesh)) is not None and known[0] is body.outline:
+            return known[1]
+        skin = cls._make(body)
+        _SKINS[body.mesh] = body.outline, skin
+        return skin
+
+    @classmethod
+    def _make(cls, body: Body) -> "FlatSkin":
         shape = _shape(body)
         inset = shape.buffer(-0.016 * body.mesh.size, join_style="round")
         edges, seams = _rings(shape, shape.length), _rings(inset, shape.length)
@@ -100,3 +108,7 @@ def _soften(ring: Places) -> Places:
     before, after = np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0)
     smooth = 0.25 * before + 0.5 * ring + 0.25 * after
     return 0.5 * ring + 0.5 * smooth
+
+
+_SKINS: WeakKeyDictionary[Mesh, tuple[Outline | None, FlatSkin]] = WeakKeyDictionary()
+"""The skin of each mesh with its outline: a report draws the same body twenty times."""
