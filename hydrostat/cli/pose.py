@@ -10,6 +10,7 @@ import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
 from hydrostat.cli.learned import learned_start, read_model
+from hydrostat.cli.limits import print_exceeded
 from hydrostat.cli.options import EqualWinches, MostTension, MostTorque, parse_optional, pose_limits
 from hydrostat.cli.waiting import read_robot, search_told
 from hydrostat.errors import InputError
@@ -83,6 +84,7 @@ def pose(
         _print_reached(loaded, reached, title, seconds)
         _note_other_pose(simulation, reached)
         _note_crossings(loaded, reached.pose)
+        print_exceeded(reached.pose, "  ")
         for note in reached.pose.notes:
             print(f"  note: {note}")
         print(f"  wrote {folder}")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
+from hydrostat.cli.limits import print_exceeded
 from hydrostat.cli.options import (
     AddedLoads,
     Contract,
@@ -136,11 +137,11 @@ def _contractions_of(pose: "Equilibrium", names: Iterable[str]) -> list[float]:
 
 
 def _print_places(found: "Equilibrium | Motion", robot: "Robot") -> None:
-    """Print where each marker is [mm], and how hard each cable pulls [N], with its winch."""
+    """Print where each marker is [mm], and how hard each cable pulls [N], with its name."""
     for name, place in found.markers.items():
         print(f"{name:<16} {', '.join(f'{1e3 * value:z8.2f}' for value in place)} mm")
     for index, tension in enumerate(found.tensions):
-        print(f"cable {index + 1:<10} {tension:8.3f} N  {robot.cables[index].winch}")
+        print(f"cable {index + 1:<10} {tension:8.3f} N  {robot.cables[index].name}")
 
 
 def _print_notes(simulation: "Simulation", pose: "Equilibrium") -> None:
@@ -152,6 +153,7 @@ def _print_notes(simulation: "Simulation", pose: "Equilibrium") -> None:
             print(f"not converged: {obstacle}")
     if words := str(find_crossings(simulation.robot.body.mesh, pose.nodes)):
         print(f"warning: {words}")
+    print_exceeded(pose)
     if pose.result.buckled:
         print("note: buckled: a mirror-image pose is equally likely")
     if pose.result.converged and not pose.result.stable:

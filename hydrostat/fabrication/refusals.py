@@ -37,6 +37,14 @@ def find_refusals(robot: Robot, demand: Demand | None = None, *, options: KitOpt
     return tuple(found)
 
 
+def find_weak_lines(robot: Robot, tensions: Vector) -> tuple[str, ...]:
+    """Return a line for each cable whose line breaks at such tensions [N], for the line of a kit."""
+    sewn = sewn_robot(robot) if KitOptions().method_for(robot.body) is Method.PLUSH else robot
+    line = line_for(KitOptions().parts.cable)
+    problems = check_line(sewn, _share_tensions(tensions, sewn), line).problems
+    return problems[: len(tensions)]
+
+
 def find_motor(robot: Robot, torques: Iterable[float], options: KitOptions) -> Motor:
     """Choose the motor of a kit for the torques of its poses [N m] (InputError: an unknown key).
 

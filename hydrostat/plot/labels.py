@@ -1,5 +1,7 @@
 """`Labels`: words beside points, where they cover least."""
 
+from collections.abc import Iterable
+
 import numpy as np
 import shapely
 
@@ -20,14 +22,27 @@ class Labels:
         self._avoid = avoid
         self._taken: list[np.ndarray] = [np.array(box) for box in sheet.kept]
 
-    def place(self, at: Place, words: str, *, size: float = 8, weight: str = "normal", outside: float = 0.8) -> None:
+    def avoid(self, lines: Iterable[Places]) -> None:
+        """Keep labels off points of lines, such as arrows."""
+        self._avoid = np.concatenate([self._avoid, *lines])
+
+    def place(
+        self,
+        at: Place,
+        words: str,
+        *,
+        size: float = 8,
+        weight: str = "normal",
+        outside: float = 0.8,
+        color: str = Color.INK,
+    ) -> None:
         """Write words beside a point; `outside` is how much it matters that they lie off the body."""
         extent = np.array([0.6 * len(words) + 0.3, 1.25]) * size * self._sheet.scale
         center = self._find(at, extent, (7.0, 10.0, 16.0, 25.0), outside)
         side = float(np.sign(np.round((center - at)[0] / extent[0], 2)))
         align = {1.0: "left", -1.0: "right"}.get(side, "center")
         self._sheet.text(
-            (center[0] - side * extent[0] / 2, center[1]), words, fontsize=size, color=Color.INK, weight=weight,
+            (center[0] - side * extent[0] / 2, center[1]), words, fontsize=size, color=color, weight=weight,
             ha=align, va="center_baseline", gid=HALO, zorder=30,
         )  # fmt: skip
 

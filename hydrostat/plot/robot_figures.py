@@ -17,7 +17,7 @@ from hydrostat.plot.hardware import DrawnRobot, draw_hardware, draw_numbers, nam
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import Pane
-from hydrostat.plot.sheet import MILLIMETERS, WIDTH, PictureSheet, Places, Spread
+from hydrostat.plot.sheet import MILLIMETERS, WIDTH, PictureSheet, Place, Places, Spread
 from hydrostat.plot.skin import outer_points
 from hydrostat.plot.targets import (
     draw_arrows,
@@ -104,7 +104,7 @@ def _at_rest(
     nodes = robot.body.mesh.nodes
     extra = [] if also is None else [also]
     fixed = np.array([winch.at for winch in robot.winches], dtype=float).reshape(-1, nodes.shape[1])
-    points = [*Attachments(robot).cables(nodes), fixed, *extra]
+    points = [*Attachments(robot).cables(nodes), fixed, load_reach(robot, nodes), *extra]
     sheet, panes = open_sheet(robot, [nodes], points, title=title, subtitle=subtitle, width=width)
     return sheet, panes, [pane.draw_body(sheet, nodes, mesh=mesh, pins=True) for pane in panes]
 
@@ -119,13 +119,16 @@ def _draw_parts(
     size: float = 6.0,
 ) -> tuple[DrawnRobot, Labels]:
     """Cables of a width, winches and markers of a size [pt] at rest; what the first pane shows, and labels for it."""
-    carried, rest, drawn = Attachments(robot), rest_markers(robot), []
+    carried, rest, drawn, arrows = Attachments(robot), rest_markers(robot), [], []
     for pane, body in zip(panes, bodies, strict=True):
         drawn.append(draw_hardware(sheet, pane, body, carried, robot.body.mesh.nodes, width=width))
         draw_markers(sheet, pane.locate_points(rest), size=size)
         draw_rods(sheet, pane, robot, robot.body.mesh.nodes)
-        draw_loads(sheet, pane, robot, robot.body.mesh.nodes)
-    return drawn[0], drawn[0].labels(sheet, np.array(list(panes[0].locate_points(rest).values())).reshape(-1, 2))
+        arrows.append(draw_loads(sheet, pane, robot, robot.body.mesh.nodes))
+    labels = drawn[0].labels(sheet, np.array(list(panes[0].locate_points(rest).values())).reshape(-1, 2))
+    labels.avoid([np.linspace(*ends, 12) for ends in arrows[0].values()])
+    name_loads(labels, robot, arrows[0])
+    return drawn[0], labels
 
 
 SMALL = 2.7  # width of such a picture [inch]
@@ -265,7 +268,7 @@ def _in_pose(
     sheet, panes = open_sheet(
         robot,
         [pose.nodes, rest],
-        [*carried.cables(pose.nodes), goals, *rings],
+        [*carried.cables(pose.nodes), goals, *rings, load_reach(robot, pose.nodes)],
         title=title,
         subtitle=subtitle,
         width=width,
@@ -273,15 +276,17 @@ def _in_pose(
     )
     scale = TensionScale.of(pose.tensions)
     colors = [scale.color(float(tension)) for tension in pose.tensions]
-    drawn = []
+    drawn, arrows = [], []
     for pane in panes:
         pane.draw_ghost(sheet)
         body = pane.draw_body(sheet, pose.nodes, pale=0.35, pins=rest.shape[1] == 3)
         drawn.append(draw_hardware(sheet, pane, body, carried, pose.nodes, colors=colors, width=2.6))
         draw_rods(sheet, pane, robot, pose.nodes)
-        draw_loads(sheet, pane, robot, pose.nodes)
+        arrows.append(draw_loads(sheet, pane, robot, pose.nodes))
     points = [*pose.markers.values(), *goals]
     labels = drawn[0].labels(sheet, panes[0].places(np.array(points)) if points else np.empty((0, 2)))
+    labels.avoid([np.linspace(*ends, 12) for ends in arrows[0].values()])
+    name_loads(labels, robot, arrows[0])
     if robot.cables:
         scale.draw_bar(sheet, of="cable tension")
         beads = draw_numbers(sheet, drawn[0].runs, colors, labels)
@@ -294,9 +299,12 @@ def _in_pose(
 
 def _rests(pose: Equilibrium) -> str:
     """Equilibrium state of a pose, in words."""
+    robot = pose.robot
+    causes = [*(["contractions"] if robot.winches or not robot.loads else []), *(["loads"] if robot.loads else [])]
+    under = f"under the given {' and '.join(causes)}"
     if not pose.result.converged:
-        return f"not at rest under the given contractions: {pose.result.reason}"
-    return "at rest under the given contractions" + ("" if pose.result.stable else ", on a saddle")
+        return f"not at rest {under}: {pose.result.reason}"
+    return f"at rest {under}" + ("" if pose.result.stable else ", on a saddle")
 
 
 def _note(contraction: float) -> str:
@@ -316,13 +324,25 @@ def draw_rods(sheet: PictureSheet, pane: Pane, robot: Robot, nodes: Nodes) -> No
             sheet.curve(places, color=color, linewidth=width, zorder=order)
 
 
-def draw_loads(sheet: PictureSheet, pane: Pane, robot: Robot, nodes: Nodes) -> None:
-    """An arrow along the force of each load, with newtons at its end, on a body with its nodes at `nodes` [m]."""
+def load_reach(robot: Robot, nodes: Nodes) -> Spread:
+    """Points behind the arrows of loads, which a picture must hold [m], (loads, dim)."""
     if not robot.loads:
-        return
+        return nodes[:0]
+    forces = robot.load_forces()
+    sizes = np.linalg.norm(forces, axis=1, keepdims=True)
+    along = forces / np.maximum(sizes, 1e-300)
+    reach = 0.15  # share of the body's size that an arrow and its label take
+    return locate(robot.body.mesh, robot.load_points()).positions(nodes) + reach * robot.body.mesh.size * along
+
+
+def draw_loads(sheet: PictureSheet, pane: Pane, robot: Robot, nodes: Nodes) -> dict[str, tuple[Place, Place]]:
+    """Draw an arrow along the force of each load on a body with its nodes at `nodes` [m]; return its ends by name."""
+    drawn: dict[str, tuple[Place, Place]] = {}
+    if not robot.loads:
+        return drawn
     places, forces = locate(robot.body.mesh, robot.load_points()).positions(nodes), robot.load_forces()
     largest = max(float(np.linalg.norm(forces, axis=1).max()), 1e-300)
-    for at, force in zip(places, forces, strict=True):
+    for load, at, force in zip(robot.loads, places, forces, strict=True):
         size = float(np.linalg.norm(force))
         if size == 0.0:
             continue
@@ -333,6 +353,12 @@ def draw_loads(sheet: PictureSheet, pane: Pane, robot: Robot, nodes: Nodes) -> N
             color=Color.ERROR, linewidth=1.8, zorder=17.5, clip_on=False,
         )  # fmt: skip
         sheet.axes.add_patch(arrow)
-        beside = end + 4 * sheet.scale * (end - start) / max(float(np.linalg.norm(end - start)), 1e-300)
-        style = {"color": Color.ERROR, "fontsize": 7, "weight": "bold", "ha": "center", "va": "center", "zorder": 18}
-        sheet.text((float(beside[0]), float(beside[1])), f"{size:.3g} N", **style)
+        drawn[load.name] = (start, end)
+    return drawn
+
+
+def name_loads(labels: Labels, robot: Robot, arrows: Mapping[str, tuple[Place, Place]]) -> None:
+    """Write newtons next to the head of each arrow."""
+    sizes = dict(zip((load.name for load in robot.loads), np.linalg.norm(robot.load_forces(), axis=1), strict=True))
+    for name, (_, end) in arrows.items():
+        labels.place(end, f"{sizes[name]:.3g} N", size=7, weight="bold", outside=0.1, color=Color.ERROR)

@@ -49,11 +49,16 @@ class TensionScale:
         bar = figure.add_axes(((width - 1.75) / width, 1 - 0.40 / height, 1.4 / width, 0.07 / height))
         bar.imshow(np.linspace(0, 1, 128)[None], aspect="auto", cmap=_colors(), extent=(0, 1, 0, 1))
         bar.set(yticks=[])
-        bar.set_xticks([0, 0.5, 1], ["0", f"{self.most / 2:.2g}", f"{self.most:.2g} N"])
+        bar.set_xticks([0, 0.5, 1], ["0", _two_digits(self.most / 2), f"{_two_digits(self.most)} N"])
         bar.tick_params(length=0, pad=3, labelsize=7, labelcolor=Color.MUTED)
         bar.set_title(of, fontsize=7, color=Color.INK, loc="left", pad=3)
         for spine in bar.spines.values():
             spine.set(color=Color.MUTED, linewidth=0.4)
+
+
+def _two_digits(value: float) -> str:
+    """Number to two digits, without an exponent where it is large."""
+    return f"{value:.2g}" if value < 99.5 else f"{float(f'{value:.2g}'):.0f}"
 
 
 def _colors() -> LinearSegmentedColormap:

@@ -13,7 +13,7 @@ from hydrostat.mechanics import NewtonResult
 from hydrostat.painters import draw_record
 from hydrostat.robot import Robot, html_repr
 from hydrostat.simulation.mesh_error import WORTH_A_NOTE, estimate_stiffening
-from hydrostat.simulation.strain import node_strains, node_stresses
+from hydrostat.simulation.strain import find_overstrain, node_strains, node_stresses
 from hydrostat.units import plural
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ class Equilibrium:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings as texts: winches beyond travel or release, self-intersection of the body.
+        """Warnings as texts: winches beyond travel or release, self-intersection, strain beyond the material.
 
         Also a missing equilibrium, a saddle, or buckling on the way there. Empty if there is nothing to report.
         """
@@ -64,7 +64,13 @@ class Equilibrium:
             told.append("buckled: a mirror-image pose is equally likely")
         if self.result.converged and not self.result.stable:
             told.append("unstable equilibrium (saddle point)")
-        return (*told, *filter(None, [str(find_crossings(self.robot.body.mesh, self.nodes))]))
+        told.append(str(find_crossings(self.robot.body.mesh, self.nodes)))
+        return (*filter(None, told), *([self.overstrain] if self.overstrain else []))
+
+    @property
+    def overstrain(self) -> str:
+        """Warning of elements outside the known range of their material; empty if there are hardly any."""
+        return find_overstrain(self.robot, self.nodes) if self.result.converged else ""
 
     @property
     def notes(self) -> tuple[str, ...]:

@@ -38,6 +38,33 @@ def node_stresses(robot: Robot, nodes: Nodes) -> Vector:
     return grid.average @ (mu * np.sqrt(1.5 * shape.deviation) / shape.volume)
 
 
+MANY = 0.02
+"""Share of the body that must leave the range of its material to be worth a warning: single elements at points do."""
+
+
+def find_overstrain(robot: Robot, nodes: Nodes) -> str:
+    """Warn of elements outside the range of stretch in which their material is known; empty if hardly any is."""
+    body, grid = robot.body, _operators(robot.body.mesh)
+    shape = _Stretch(grid, nodes, body)
+    longest, shortest = np.sqrt(shape.largest()), np.sqrt(np.maximum(shape.smallest(), 0.0))
+    ranges = [(one.largest_stretch or np.inf, 1 - (one.largest_squeeze or np.inf)) for one in body.materials]
+    most, least = np.array(ranges)[body.element_materials].T
+    beyond = np.maximum(longest / most, (1 - shortest) / np.maximum(1 - least, 1e-9))
+    outside, volumes = beyond > 1, body.mesh.volumes
+    share = float(volumes[outside].sum() / volumes.sum())
+    if share < MANY:
+        return ""
+    worst = int(np.argmax(beyond))
+    material = body.materials[body.element_materials[worst]]
+    name, at = material.name or "the material", body.mesh.nodes[body.mesh.elements[worst]].mean(axis=0)
+    place = ", ".join(f"{1e3 * value + 0.0:.0f}" for value in at)
+    return (
+        f"{100 * share:.0f} % of the body is strained beyond the known range of {name} "
+        f"({-100 * (material.largest_squeeze or 1):.0f} to {100 * ((material.largest_stretch or np.inf) - 1):+.0f} %), "
+        f"worst {100 * (shortest[worst] - 1):.0f} and {100 * (longest[worst] - 1):+.0f} % near [{place}] mm at rest"
+    )
+
+
 @dataclass(frozen=True, eq=False)
 class _NodeOperators:
     """Operators of a mesh that do not depend on the pose."""
@@ -93,11 +120,19 @@ class _Stretch:
         self.volume = np.sqrt(np.maximum(_determinant(stretch, self.mean), 1e-300))
 
     def largest(self) -> Float[np.ndarray, " elements"]:
-        """Largest eigenvalue of C, in closed form (Smith 1961)."""
+        """Largest eigenvalue of C."""
+        return self._eigenvalue(0.0)
+
+    def smallest(self) -> Float[np.ndarray, " elements"]:
+        """Smallest eigenvalue of C."""
+        return self._eigenvalue(2.0 * np.pi / 3.0)
+
+    def _eigenvalue(self, turn: float) -> Float[np.ndarray, " elements"]:
+        """Eigenvalue of C by its angle, in closed form (Smith 1961)."""
         spread = np.sqrt(self.deviation / 6.0)
         cube = np.maximum(spread**3, 1e-300)
         turned = np.clip(0.5 * _determinant(self._off, 0.0 * self.mean) / cube, -1.0, 1.0)
-        return self.mean + 2.0 * spread * np.cos(np.arccos(turned) / 3.0)
+        return self.mean + 2.0 * spread * np.cos(np.arccos(turned) / 3.0 + turn)
 
 
 def _determinant(off: Float[np.ndarray, "3 3 elements"], shift: Vector) -> Vector:

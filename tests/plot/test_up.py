@@ -5,13 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from builders import box_mesh, box_robot
+from matplotlib.text import Text
 from scipy.spatial.transform import Rotation
 
 from hydrostat import plot
 from hydrostat.drawing import Camera, along_an_axis, three_quarter, upright
 from hydrostat.geometry import Mesh
 from hydrostat.plot.open_sheet import open_sheet, way_up
-from hydrostat.robot import PoseTarget, Robot
+from hydrostat.robot import Load, PoseTarget, Robot
 
 WAYS = ([0.0, 0, 1], [0, 1, 0], [1, 0, 0], [0, 0, -1], [0, -1, 0], [-1, 0, 0], [0.3, -0.5, 0.8], [1e-9, 0, -1])
 
@@ -123,13 +124,20 @@ def test_what_a_picture_says_of_a_pose() -> None:
 
     robot = box_robot()
     pose = Simulation(robot).solve(np.array([0.005, 0.0]))
+    loaded = replace(robot, loads=(Load(name="push", marker=robot.markers[0].name, force=(0.0, 0.0, -2.5)),))
     failed = replace(pose, result=replace(pose.result, reason=Reason.ITERATION_LIMIT))
     for drawn, words in (
         (plot.draw_pose(robot, pose, width=3.2), "at rest under the given contractions"),
         (plot.draw_pose(robot, failed, width=3.2), "not at rest under the given contractions: iteration limit reached"),
         (plot.draw_pose(robot, pose, note="after 2 s of motion", width=3.2), "after 2 s of motion"),
+        (
+            plot.draw_pose(loaded, replace(pose, robot=loaded), width=3.2),
+            "at rest under the given contractions and loads",
+        ),
+        (plot.draw_pose(loaded, replace(pose, robot=loaded), width=3.2), "2.5 N"),
+        (plot.draw_pose(robot, replace(pose, tensions=np.array([123.4, 0.0])), width=3.2), "120 N"),
     ):
-        assert words in {text.get_text() for text in drawn.texts}
+        assert words in {text.get_text() for text in drawn.findobj(Text)}
 
 
 def test_targets_of_poses_decide_where_the_eye_is() -> None:

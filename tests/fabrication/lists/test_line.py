@@ -1,11 +1,15 @@
 """Strength of lines against tensions."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from small_inputs import square
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.lists.line import KNOT, LINES, SAFETY, FishingLine, check_line, line_for
+from hydrostat.fabrication.refusals import find_weak_lines
+from hydrostat.robot import Face
 
 TEN = FishingLine(name="ten", diameter=0.3, pounds=10 / 4.448222)
 """A line that breaks at 10 N."""
@@ -19,6 +23,14 @@ def test_strength_of_a_line() -> None:
 def test_thicker_lines_are_stronger() -> None:
     assert list(LINES) == sorted(LINES, key=lambda line: line.diameter)
     assert list(LINES) == sorted(LINES, key=lambda line: line.strength)
+
+
+def test_a_pose_names_the_cables_that_break() -> None:
+    """Oracle: half of 80 lb at the knot, 178 N; pairs share a pull."""
+    (told,) = find_weak_lines(square(), np.array([200.0]))
+    assert "pulls 200.0 N, but PE 6, 80 lb breaks at its knot at 178 N" in told
+    assert find_weak_lines(square(), np.array([170.0])) == ()
+    assert find_weak_lines(replace(square(), face=Face.PAIRS), np.array([200.0])) == ()
 
 
 def test_no_line_is_stronger_than_its_fibres() -> None:
