@@ -1,5 +1,7 @@
 """Exceptions: every error that a user can cause is a `HydrostatError`."""
 
+from typing import Any
+
 
 class HydrostatError(Exception):
     """Base of all errors of hydrostat. Its text is one line: place, problem, allowed values, fix."""
@@ -11,6 +13,18 @@ class InputError(HydrostatError):
 
 class OutlineError(InputError):
     """Outline that cannot be a body: it is open, crosses itself, is empty or too thin."""
+
+
+class SeveralPartsError(OutlineError):
+    """Drawing of several closed shapes, none of which is surely the body.
+
+    Attributes:
+        parts: corners of each by its number, (corners, 2) [m].
+    """
+
+    def __init__(self, message: str, parts: dict[int, Any] | None = None) -> None:
+        super().__init__(message)
+        self.parts = parts or {}
 
 
 class SurfaceError(InputError):

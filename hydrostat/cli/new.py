@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from shlex import quote
 from shutil import rmtree
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -16,7 +16,7 @@ from hydrostat.cli.check import FINDINGS, print_sewing
 from hydrostat.cli.options import parse_optional, positive
 from hydrostat.cli.remedies import body_refusals
 from hydrostat.cli.waiting import patiently
-from hydrostat.errors import InputError
+from hydrostat.errors import InputError, SeveralPartsError
 from hydrostat.units import plural
 
 if TYPE_CHECKING:
@@ -53,6 +53,10 @@ def new(
         str | None,
         typer.Option(help="Closed shapes inside a drawing: holes, or drawn for features on the body (eyes, a mouth)."),
     ] = None,
+    part: Annotated[
+        int | None,
+        typer.Option(metavar="N", help="Closed shape of a drawing that is the body; 1 has the largest area."),
+    ] = None,
     within: Annotated[
         str | None, typer.Option(metavar="TIME", help="Time limit for reading, healing and meshing the file.")
     ] = None,
@@ -80,11 +84,14 @@ def new(
         inflate=_length("inflate", inflate),
         material=material,
         inner=_inner(inner),
+        drawing_part=part,
     )
     seconds = parse_optional("--within", within, TIME) or SECONDS + SECONDS_A_NODE * (nodes or 0)
     with _made_whole(name) as folder:
         try:
             lines = _begin(source, folder, wish, seconds)
+        except SeveralPartsError as error:
+            raise InputError(f"{error}. See {_draw_parts(error.parts, name)}") from None
         except InputError as error:
             raise _of_option(error) from None
         with patiently("reading the robot back and drawing it ..."):
@@ -96,10 +103,20 @@ def new(
     _print_made(made, name, told, chosen=bool(nodes or element_size))
 
 
+def _draw_parts(parts: Any, name: Path) -> Path:
+    """Picture of the parts of a drawing with their numbers, beside the folder that was not made."""
+    from hydrostat.plot import draw_parts, save_png
+
+    path = name.with_name(f"{name.name}_parts.png")
+    save_png(draw_parts(parts), path)
+    return path
+
+
 def _of_option(error: InputError) -> InputError:
     """The same complaint, of a wish as it is written on the command line."""
     key, colon, rest = str(error).partition(": ")
-    wish = colon and key in ("size", "element_size", "nodes", "thickness", "inflate", "material", "inner")
+    key = {"drawing_part": "part"}.get(key, key)
+    wish = colon and key in ("part", "size", "element_size", "nodes", "thickness", "inflate", "material", "inner")
     return InputError(f"--{key.replace('_', '-')}: {rest}") if wish else error
 
 
@@ -203,7 +220,9 @@ def _asked_about_holes(source: str, wish: "NewRobotWish", seconds: float) -> "Ne
         return wish
 
     def count() -> int:
-        drawn = read_drawing(read_stranger(path), name=path.name, size=wish.size, inner=Inner.DRAWN)
+        drawn = read_drawing(
+            read_stranger(path), name=path.name, size=wish.size, inner=Inner.DRAWN, part=wish.drawing_part
+        )
         return sum(bool((line[0] == line[-1]).all()) for line in drawn.marks)
 
     shapes = run_bounded(count, file=source, words="reading the drawing ...", seconds=seconds)
@@ -218,7 +237,15 @@ def _from_gallery(source: str, folder: Path, wish: "NewRobotWish") -> list[str]:
     """Copy a robot under its new name, if asked with other elements."""
     from hydrostat.robot import GALLERY, gallery_folder, load_robot, replace_file, with_values
 
-    wish.refuse("not available for gallery robots. Edit robot.toml", "size", "thickness", "inflate", "material")
+    wish.refuse(
+        "not available for gallery robots. Edit robot.toml",
+        "size",
+        "thickness",
+        "inflate",
+        "material",
+        "inner",
+        "drawing_part",
+    )
     shelf = gallery_folder(source.removeprefix(GALLERY))
     files = {file.name: file.read_bytes() for file in sorted(shelf.iterdir()) if file.is_file()}
     wanted = wish.element_size if wish.nodes is None else load_robot(shelf).body.element_size_for(wish.nodes)

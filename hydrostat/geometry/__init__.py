@@ -19,7 +19,7 @@ if TYPE_CHECKING:
         plane_field,
         sphere_field,
     )
-    from hydrostat.geometry.files.drawn_lines import Inner
+    from hydrostat.geometry.files.drawing_body import Inner
     from hydrostat.geometry.files.mesh_file import read_mesh
     from hydrostat.geometry.files.outline_file import OUTLINE_SUFFIXES, read_drawing, read_outline
     from hydrostat.geometry.files.ply_file import write_ply

@@ -40,6 +40,7 @@ class NewRobotWish:
     inflate: float | None = None  # inflate a drawing to a 3D body of this thickness
     material: str | None = None  # name in the material table
     inner: Inner | str | None = None  # shapes in a drawn body: holes, or lines drawn on it
+    drawing_part: int | None = None  # number of the closed shape of a drawing that is the body, the largest area is 1
 
     def __post_init__(self) -> None:
         longest = 20.0  # nothing of a robot is longer [m]
@@ -50,6 +51,7 @@ class NewRobotWish:
                 if value > longest:
                     raise InputError(f"{key} must be at most {longest:g} m, not {value:g}; in meters: 200 mm is 0.2")
         check_type(self.nodes, (int, type(None)), "nodes must be a whole number")
+        check_type(self.drawing_part, (int, type(None)), "drawing_part must be a whole number")
         check_type(self.material, (str, type(None)), "material must be a name of the table")
         if self.nodes is not None and self.element_size is not None:
             raise InputError("nodes and element_size: give one of them")
@@ -81,6 +83,7 @@ class _Wished(TypedDict, total=False):
     inflate: float
     material: str
     inner: Inner | str
+    drawing_part: int
 
 
 def new_robot(source: str | Path, **wished: Unpack[_Wished]) -> Robot:
@@ -89,8 +92,8 @@ def new_robot(source: str | Path, **wished: Unpack[_Wished]) -> Robot:
     Args:
         source: a drawing (SVG, DXF, PNG, JPG), a scan or CAD model (STL, OBJ, PLY, OFF, 3MF), a ready mesh (VTK, VTU,
             MSH), or "gallery:NAME".
-        wished: `name`, `size`, `element_size`, `nodes`, `thickness`, `inflate`, `material` and `inner` ("holes" or
-            "drawn"); lengths in meters.
+        wished: `name`, `size`, `element_size`, `nodes`, `thickness`, `inflate`, `material`, `inner` ("holes" or
+            "drawn") and `drawing_part`; lengths in meters.
 
     Raises:
         InputError: a file that is no body, or wishes that do not fit it.
@@ -146,16 +149,15 @@ def _of_drawing(path: Path, wish: NewRobotWish) -> BegunRobot:
 
     content, file = read_stranger(path), _file_name(path.name)
     inner = parse_choice(Inner, wish.inner or Inner.HOLES, what="inner")
-    drawing = read_drawing(content, name=file, size=wish.size, inner=inner)
+    reading = {"size": wish.size, "inner": inner}
+    drawing = read_drawing(content, name=file, part=wish.drawing_part, **reading)
     notes = tuple(f"drawing: {note}" for note in drawing.notes)
     material = wish.material or "polyester fibre"
     if wish.inflate is None:
-        sizes = {"size": wish.size, "element_size": wish.element_size, "thickness": wish.thickness}
-        name = _robot_name(path, wish)
-        return BegunRobot(
-            sketch_robot(content, file=file, name=name, material=material, nodes=wish.nodes, inner=inner, **sizes),
-            notes,
-        )
+        sizes = {"element_size": wish.element_size, "nodes": wish.nodes, "thickness": wish.thickness}
+        named = {"file": file, "name": _robot_name(path, wish), "material": material}
+        robot = sketch_robot(content, drawing_part=wish.drawing_part, **named, **reading, **sizes)
+        return BegunRobot(robot, notes)
     wish.refuse("an inflated body is as thick as is asked by inflate", "thickness")
     begun = _of_bytes(
         inflate_outline(drawing.outline, wish.inflate), path.with_suffix(".ply"), wish, material, size=None
@@ -164,7 +166,7 @@ def _of_drawing(path: Path, wish: NewRobotWish) -> BegunRobot:
 
 
 def _of_surface(path: Path, wish: NewRobotWish) -> BegunRobot:
-    wish.refuse("is only for drawings", "thickness", "inflate", "inner")
+    wish.refuse("is only for drawings", "thickness", "inflate", "inner", "drawing_part")
     return _of_bytes(read_stranger(path), path, wish, wish.material or "flexfoam-it x", size=wish.size)
 
 
@@ -184,7 +186,7 @@ def _of_bytes(content: bytes, path: Path, wish: NewRobotWish, material: str, *, 
 
 def _of_mesh(path: Path, wish: NewRobotWish) -> BegunRobot:
     wish.refuse("a ready mesh has its own elements", "element_size", "nodes")
-    wish.refuse("is only for drawings", "thickness", "inflate", "inner")
+    wish.refuse("is only for drawings", "thickness", "inflate", "inner", "drawing_part")
     material = wish.material or "flexfoam-it x"
     robot = sketch_mesh(path, name=_robot_name(path, wish), size=wish.size, material=material)
     return BegunRobot(robot)

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from hydrostat.plot.learning_curves import draw_curves
     from hydrostat.plot.live_page import LivePage
     from hydrostat.plot.motion_figures import draw_motion, draw_trajectory
+    from hydrostat.plot.parts_figure import draw_parts
     from hydrostat.plot.photo_overlay import draw_photo_overlay
     from hydrostat.plot.picture_file import drawing, inline_svg, save_png
     from hydrostat.plot.report import write_report
@@ -61,6 +62,7 @@ __all__ = [
     "draw_identified",
     "draw_motion",
     "draw_network",
+    "draw_parts",
     "draw_photo_overlay",
     "draw_portrait",
     "draw_pose",

@@ -49,6 +49,7 @@ class Body:
     plane: Plane = Plane.STRAIN  # freedom of a flat body across its plane
     elements: ElementKind = ElementKind.LINEAR  # shape functions; change them by `with_elements`
     inner: Inner = Inner.HOLES  # meaning of shapes within the outer line of a drawing
+    drawing_part: int | None = None  # number of the closed shape of a drawing that is the body; None: chosen
     parts: tuple[BodyPart, ...] = ()  # regions of other materials, or rigid
     mesh: Mesh = field(compare=False, repr=False)  # nodes and elements
     outline: Outline | None = field(default=None, compare=False, repr=False)  # outline of a flat drawn body
@@ -74,6 +75,8 @@ class Body:
             raise InputError('volume = "patch" is for linear elements; quadratic ones do not lock. Remove volume')
         if self.inner is Inner.DRAWN and self.source is not Source.OUTLINE:
             raise InputError('inner = "drawn" is for bodies with an outline; remove it')
+        if self.drawing_part is not None and self.source is not Source.OUTLINE:
+            raise InputError("drawing_part is for bodies with an outline; remove it")
         if isinstance(self.material, str):
             object.__setattr__(self, "material", get_material(self.material))
         if self.mesh.dim == 2 and self.thickness is None:
@@ -239,6 +242,7 @@ def outline_body(
     size: float | None = None,
     volume: Volume = Volume.ELEMENT,
     inner: Inner = Inner.HOLES,
+    drawing_part: int | None = None,
 ) -> Body:
     """Body from a drawing or picture, by its name (InputError: no closed outline, or a number is out of range)."""
     _check_lengths(size=size, element_size=element_size)
@@ -247,13 +251,13 @@ def outline_body(
     def make() -> Arrays:
         from hydrostat.geometry import read_drawing, triangulate
 
-        drawing = read_drawing(content, name=file, size=size, inner=inner)
+        drawing = read_drawing(content, name=file, size=size, inner=inner, part=drawing_part)
         with _blaming_the_element_size():
             mesh = triangulate(drawing.outline, element_size)
         rings, marks = drawing.outline.rings, drawing.marks
         return _mesh_arrays(mesh) | _number("ring", rings) | _number("mark", marks)
 
-    kept = keep_body(("outline", Path(file).suffix, size, str(inner), element_size), content, make)
+    kept = keep_body(("outline", Path(file).suffix, size, str(inner), drawing_part, element_size), content, make)
     exterior, *holes = _numbered_arrays("ring", kept)
     return Body(
         source=Source.OUTLINE,
@@ -265,6 +269,7 @@ def outline_body(
         thickness=thickness,
         volume=volume,
         inner=inner,
+        drawing_part=drawing_part,
         mesh=Mesh(kept["nodes"], kept["elements"]),
         outline=Outline(exterior, tuple(holes)),
         marks=_numbered_arrays("mark", kept),

@@ -175,8 +175,9 @@ class RobotReader(TablesFile):
         if len(sources) != 1:
             self.fail("body", "give one of outline (a drawing), surface (a scan or CAD model) or mesh (a ready mesh)")
         source = sources[0]
-        if entry.inner is not None and source is not Source.OUTLINE:
-            self.fail("body.inner", "is for bodies with an outline; remove it")
+        for key in ("inner", "drawing_part"):
+            if getattr(entry, key) is not None and source is not Source.OUTLINE:
+                self.fail(f"body.{key}", "is for bodies with an outline; remove it")
         file = self._file(f"body.{source}", getattr(entry, source))
         material = self.at("body.material", lambda: read_material(entry.material))
         unit = units.scale_up(Decimal(1), self.unit, units.LENGTH)
@@ -198,7 +199,7 @@ class RobotReader(TablesFile):
                 material=material,
                 size=entry.size,
                 thickness=entry.thickness,
-                **_given_keys(entry, "volume", *(("inner",) if source is Source.OUTLINE else ())),
+                **_given_keys(entry, "volume", *(("inner", "drawing_part") if source is Source.OUTLINE else ())),
             ),
             otherwise=f"body.{source}",
         )

@@ -110,6 +110,7 @@ def _mesh_scaled(robot: Robot, factor: float) -> Body:
             element_size=element_size,
             thickness=thickness or 0.0,
             inner=body.inner,
+            drawing_part=body.drawing_part,
             **given,
         )
     unit = float(units.unit_factor(robot.length_unit, units.LENGTH))

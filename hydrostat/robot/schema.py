@@ -183,6 +183,7 @@ class BodyTable(TomlTable):
     elements: ElementKind | None = None
     plane: Plane | None = None
     inner: Inner | None = None
+    drawing_part: Annotated[int, Field(ge=1)] | None = None
     part: list[PartTable] = []
 
 

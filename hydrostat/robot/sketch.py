@@ -39,6 +39,7 @@ def sketch_robot(
     nodes: int | None = None,
     material: str = "polyester fibre",
     inner: Inner = Inner.HOLES,
+    drawing_part: int | None = None,
 ) -> Robot:
     """Robot from the bytes of a drawing (SVG, DXF, PNG, JPG), with sensible numbers where none are given.
 
@@ -56,6 +57,7 @@ def sketch_robot(
             size.
         material: a name from the table.
         inner: meaning of shapes in the body: holes, or lines drawn on it.
+        drawing_part: number of the closed shape that is the body, the largest area is 1; None: chosen.
 
     Raises:
         InputError: the drawing is no body.
@@ -63,9 +65,10 @@ def sketch_robot(
     from shapely import Point as ShapelyPoint
     from shapely import maximum_inscribed_circle
 
-    outline = read_outline(content, name=file, size=size, inner=inner)
+    outline = read_outline(content, name=file, size=size, inner=inner, part=drawing_part)
     length, asked = element_size or _element_size(outline, nodes), bool(element_size or nodes)
-    make = partial(outline_body, content, file=file, material=get_material(material), size=size, inner=inner)
+    reading = {"size": size, "inner": inner, "drawing_part": drawing_part}
+    make = partial(outline_body, content, file=file, material=get_material(material), **reading)
     body = make(element_size=length, thickness=thickness or _round(outline.size / 7))
     most_nodes = 2000  # A sketch gets no more nodes than this for the sake of its thin limbs
     while not asked and (finer := finer_size(body, most_nodes)) is not None:

@@ -164,9 +164,10 @@ class _Writer:
         lengths = {key: getattr(body, key) for key in ("size", "element_size", "thickness")}
         volume = {"volume": str(body.volume)} if body.volume is not Volume.ELEMENT else {}
         inner = {"inner": str(body.inner)} if body.inner is not Inner.HOLES else {}
+        part = {"drawing_part": body.drawing_part} if body.drawing_part is not None else {}
         kind = {"elements": str(body.elements)} if body.elements is not ElementKind.LINEAR else {}
         plane = {"plane": str(body.plane)} if body.plane is not Plane.STRAIN else {}
-        given = {"material": self.material(body.material), **volume, **kind, **plane, **inner}
+        given = {"material": self.material(body.material), **volume, **kind, **plane, **inner, **part}
         if body.parts:
             tables = self._toml.aot()
             for part in body.parts:

@@ -8,7 +8,7 @@ import shapely
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication import PatternPart, plush_pattern
-from hydrostat.geometry.files.drawn_lines import Inner
+from hydrostat.geometry.files.drawing_body import Inner
 from hydrostat.geometry.files.outline_file import read_drawing
 from hydrostat.ik import new_robot
 from hydrostat.robot import load_robot, save_robot, scaled_robot
@@ -18,7 +18,7 @@ BODY = '<ellipse cx="100" cy="50" rx="90" ry="40"/>'
 EYE = '<circle cx="40" cy="40" r="6" fill="black"/>'
 PUPIL = '<circle cx="40" cy="40" r="2"/>'
 MOUTH = '<path d="M20,60 Q40,70 60,62" fill="none" stroke="black"/>'
-TOUCHING = '<circle cx="188" cy="50" r="8"/>'
+TOUCHING = '<circle cx="188" cy="50" r="8" fill="none" stroke="black"/>'
 
 
 def drawing(*parts: str) -> bytes:
@@ -48,8 +48,8 @@ def test_drawn_it_is_kept_and_no_hole() -> None:
     assert lengths[-1] < 2 * np.pi * 8  # what crosses the edge is cut there
     body = found.outline.polygon.buffer(1e-9)
     assert all(body.covers(shapely.LineString(line)) for line in found.marks)
-    with pytest.raises(InputError, match="lies outside the body"):
-        read_drawing(drawing(BODY, '<circle cx="195" cy="5" r="3"/>'), name="a.svg", inner=Inner.DRAWN)
+    beside = read_drawing(drawing(BODY, '<circle cx="195" cy="5" r="3"/>'), name="a.svg", inner=Inner.DRAWN)
+    assert beside.notes == ("left out 1 closed shape beside the body, the largest at (198, 5)",)
 
 
 def test_it_is_kept_in_the_file_and_printed_on_the_front(tmp_path: Path) -> None:

@@ -15,7 +15,10 @@ from hydrostat.robot import load_robot
 @pytest.mark.parametrize(
     ("shapes", "fragment"),
     [
-        ('<path d="M0,0 h60 v40 h-30"/>', "body.svg: the outline is open between (0, 0) and (30, 40)"),
+        (
+            '<path fill="none" stroke="red" d="M0,0 h60 v9 h-30"/>',
+            "body.svg: the outline is open between (0, 0) and (30, 9)",
+        ),
         ('<path d="M0,0 L60,40 V0 L0,40 Z"/>', "body.svg: the outline crosses itself at (30, 20)"),
         ("", "body.svg: no closed shape"),
     ],

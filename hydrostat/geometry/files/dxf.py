@@ -14,15 +14,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hydrostat.errors import OutlineError
-from hydrostat.geometry.files.drawn_lines import Inner, drawing_of
+from hydrostat.geometry.files.drawing_body import Inner, drawing_of
+from hydrostat.geometry.files.drawn_line import DrawnLine, Sheet
+from hydrostat.geometry.files.drawn_shapes import sorted_shapes
 from hydrostat.geometry.files.rings import (
     CHORD_ERROR,
     MOST_POINTS,
     Drawing,
     Page,
-    checked_lines,
-    closed_rings,
-    join_lines,
     one_line,
     page_about,
     without_repeats,
@@ -36,6 +35,7 @@ if TYPE_CHECKING:
 MOST_ENTITIES = 20_000  # a drawing with more entities, counting what its blocks repeat, is refused
 
 _FARTHEST = 1e100
+_FRAME_VERTEX = 16  # flag of a vertex that controls a fitted curve and lies beside it
 _METERS = {
     1: 0.0254, 2: 0.3048, 3: 1609.344, 4: 1e-3, 5: 1e-2, 6: 1.0, 7: 1e3, 8: 25.4e-9, 9: 25.4e-6, 10: 0.9144,
     13: 1e-6, 14: 0.1,
@@ -44,14 +44,17 @@ _LINES = {"LWPOLYLINE", "POLYLINE", "CIRCLE", "ELLIPSE", "SPLINE", "LINE", "ARC"
 _BROKEN = (ValueError, TypeError, AttributeError, LookupError, ArithmeticError, RecursionError, AssertionError)
 
 
-def read_dxf(content: bytes, name: str, size: float | None, page: Page | None, inner: Inner) -> Drawing:
+def read_dxf(
+    content: bytes, name: str, size: float | None, page: Page | None, inner: Inner, part: int | None = None
+) -> Drawing:
     """Read the outline of a body from a DXF drawing in text form, with notes on omissions.
 
-    The largest closed line is the body, those inside it are holes. Polylines, circles, ellipses, splines, lines and
-    arcs are read, also in blocks; lines and arcs whose ends meet are joined. All else (text, dimensions, hatches), what
-    is hidden, and open lines smaller than the body are ignored. Heights (z) play no part. Curves become chords. Without
-    `size` or `page` the file must name its unit ($INSUNITS); see `read_outline`. Raises OutlineError: the file is no
-    DXF, or no body can be made of it; the message says where, in the drawing's units.
+    The largest closed line that is no frame, or that of number `part`, is the body, those inside it are holes.
+    Polylines, circles, ellipses, splines, lines and arcs are read, also in blocks, of the model space, or of a layout
+    where that is empty; lines and arcs whose ends meet are joined. All else (text, dimensions, hatches), the hidden,
+    and open lines smaller than the body are ignored. Heights (z) play no part. Curves become chords. Without `size` or
+    `page` the file must name its unit ($INSUNITS); see `read_outline`. Raises OutlineError: the file is no DXF, or no
+    body can be made of it; the message says where, in the drawing's units.
     """
     document, mended = _open(content, name)
     unit = _unit(document)
@@ -60,34 +63,70 @@ def read_dxf(content: bytes, name: str, size: float | None, page: Page | None, i
         page.check(kind, name)
     elif size is None and unit is None:
         raise OutlineError(f"{name}: the drawing has no unit ($INSUNITS): give its size")
-    layout = _ModelSpace(document, name)
+    space = _Space(document, name)
     with _listening(), np.errstate(all="ignore"), warnings.catch_warnings(action="ignore"):
-        lines = list(checked_lines(layout.lines(), name))
-    chains = join_lines([line for line, closed in lines if not closed], name)
-    found = closed_rings([pair for pair in lines if pair[1]] + chains, name)
+        lines = space.lines()
     side = unit or 1.0
-    notes = (*mended, *layout.notes())
-    return drawing_of(found, name, inner, lambda body: page or page_about(body, kind, (side, side), size), notes)
+    sheet = Sheet(unit=1e3 * unit if unit else None, texts=tuple(space.texts))
+    shapes = sorted_shapes(lines, sheet, name)
+    notes = (*mended, *space.notes())
+
+    def page_of(body: Ring) -> Page:
+        return page or page_about(body, kind, (side, side), size)
+
+    return drawing_of(shapes, name, inner, page_of, part=part, notes=notes)
 
 
 def _open(content: bytes, name: str) -> tuple["Document", tuple[str, ...]]:
     """Open the document; return it with a note on repairs by the reader."""
     if content.startswith(b"AutoCAD Binary DXF"):
         raise OutlineError(f"{name}: a binary DXF, which is not read: save it as DXF in text form (ASCII)")
-    if not re.search(rb"\bEOF\s*\Z", content):
+    content = content.rstrip(b"\x1a\x00 \t\r\n")  # a Ctrl-Z ends a file of DOS
+    if not re.search(rb"\bEOF\Z", content):
         raise OutlineError(f"{name}: not a whole DXF drawing, it does not end with EOF: export it again")
     from ezdxf import recover
     from ezdxf.lldxf.const import DXFError
 
     try:
         with _listening() as said:
-            document, auditor = recover.read(io.BytesIO(content))
+            document, auditor = recover.read(io.BytesIO(_with_markers(content)))
     except (DXFError, OSError, *_BROKEN) as error:
         raise OutlineError(f"{name}: cannot be read as DXF ({one_line(error)}): export the drawing again") from error
     if auditor.errors:
         raise OutlineError(f"{name}: the file is damaged ({one_line(auditor.errors[0].message)}): export it again")
     mended = [one_line(text) for text in (*said, *(fix.message for fix in auditor.fixes))]
     return document, (f"mended {plural(len(mended), 'fault')} of the file: {mended[0]}",) if mended else ()
+
+
+_MARKERS = {b"LWPOLYLINE": b"AcDbPolyline", b"SPLINE": b"AcDbSpline", b"ELLIPSE": b"AcDbEllipse"}
+_COMMON = {5, 6, 8, 48, 60, 62, 102, 330, 360, 370}  # group codes of every entity, before those of its own kind
+
+
+def _with_markers(content: bytes) -> bytes:
+    """The file, with the subclass markers of entities that some programs leave out and the reader asks for."""
+    if all(content.count(b"\n" + kind) <= content.count(marker) for kind, marker in _MARKERS.items()):
+        return content
+    lines = content.splitlines()
+    made: list[bytes] = []
+    wanted: bytes | None = None  # marker of the entity that is read, until its own codes begin
+    for code, value in zip(lines[::2], lines[1::2], strict=False):
+        if code.strip() == b"0":
+            wanted = _MARKERS.get(value.strip())
+            made += [code, value, *([b"100", b"AcDbEntity"] if wanted else [])]
+            continue
+        if wanted and code.strip() == b"100":
+            if value.strip() == b"AcDbEntity":
+                continue
+            wanted = None
+        elif wanted and not (code.strip().isdigit() and int(code) in _COMMON):
+            made += [b"100", wanted]
+            wanted = None
+        made += [code, value]
+    text = b"\n".join([*made, *lines[len(lines) // 2 * 2 :], b""])
+    newer = rb"\1AC1015"  # older versions have no such entities, so that the reader looks for no markers
+    if b"$ACADVER" in text:
+        return re.sub(rb"(\$ACADVER\s+1\s+)AC10(?:0\d|12|14)", newer, text)
+    return b"0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1015\n0\nENDSEC\n" + text
 
 
 @contextmanager
@@ -113,29 +152,38 @@ def _unit(document: "Document") -> float | None:
 
 
 @dataclass
-class _ModelSpace:
-    """Reader of the model space of a document; counts omitted entities."""
+class _Space:
+    """Reader of the model space of a document, or of a layout where that has no lines; counts omitted entities."""
 
     document: "Document"
     name: str
     budget: int = MOST_ENTITIES
+    points: int = 0
     ignored: Counter[str] = field(default_factory=Counter)
+    texts: list[tuple[float, float]] = field(default_factory=list)  # places of texts
+    layout: str = ""  # name of the layout that was read in place of the model space
 
-    def lines(self) -> Iterator[tuple[Ring, bool]]:
-        """Yield every visible line as points in the drawing's units, and whether it is closed."""
+    def lines(self) -> list[DrawnLine]:
+        """Every visible line, in the drawing's units."""
         from ezdxf.lldxf.const import DXFError
 
         try:
-            yield from self._lines_of(self.document.modelspace(), 0)
+            found = list(self._lines_of(self.document.modelspace(), 0, ""))
+            for layout in () if found else self.document.layout_names_in_taborder():
+                if layout != "Model" and (found := list(self._lines_of(self.document.layout(layout), 0, ""))):
+                    self.layout = layout
+                    break
         except (DXFError, *_BROKEN) as error:
             raise OutlineError(f"{self.name}: cannot be read as DXF ({one_line(error)}): export it again") from error
+        return found
 
     def notes(self) -> tuple[str, ...]:
-        """Notes on omitted entities."""
+        """Notes on the layout and on omitted entities."""
+        read = (f"read from the layout {self.layout!r}, as the model space is empty",) if self.layout else ()
         kinds = [f"{count} {kind}" for kind, count in sorted(self.ignored.items())]
-        return (f"left out {', '.join(kinds)}",) if kinds else ()
+        return (*read, f"left out {', '.join(kinds)}") if kinds else read
 
-    def _lines_of(self, entities: Any, depth: int) -> Iterator[tuple[Ring, bool]]:
+    def _lines_of(self, entities: Any, depth: int, block_name: str) -> Iterator[DrawnLine]:
         for entity in entities:
             self._spend(1, depth)
             kind = entity.dxftype()
@@ -146,14 +194,22 @@ class _ModelSpace:
                 if block is None:
                     raise OutlineError(f"{self.name}: the block {entity.dxf.name!r} is missing: explode the blocks")
                 self._spend(abs(entity.mcount) * (1 + len(block)), depth)
+                named = f"{block_name} {entity.dxf.name}".strip()
                 for insert in entity.multi_insert() if entity.mcount > 1 else (entity,):
-                    yield from self._lines_of(insert.virtual_entities(), depth + 1)
+                    yield from self._lines_of(insert.virtual_entities(), depth + 1, named)
             elif kind in _LINES and not (kind == "POLYLINE" and (entity.is_poly_face_mesh or entity.is_polygon_mesh)):
                 points = _flatten(entity)
+                self.points += len(points)
+                if self.points > MOST_POINTS:
+                    raise OutlineError(f"{self.name}: more than {MOST_POINTS} points: simplify the drawing")
                 if len(points) > 1:
-                    yield points, _is_closed(entity, points)
+                    label = f"{entity.dxf.get('layer', '0')} {block_name}".strip()
+                    yield DrawnLine(points=points, closed=_is_closed(entity, points), label=label)
             else:
                 self.ignored[kind] += 1
+                place = entity.dxf.get("insert") if kind in ("TEXT", "MTEXT", "ATTRIB", "ATTDEF") else None
+                if place is not None:
+                    self.texts.append((float(place.x), float(place.y)))
 
     def _spend(self, count: int, depth: int) -> None:
         """Refuse drawings that repeat their blocks without end."""
@@ -178,6 +234,9 @@ def _flatten(entity: Any) -> Ring:
 
     if entity.dxftype() == "SPLINE":
         return without_repeats(_spline(entity))
+    if entity.dxftype() == "POLYLINE" and any(vertex.dxf.flags & _FRAME_VERTEX for vertex in entity.vertices):
+        places = [vertex.dxf.location for vertex in entity.vertices if not vertex.dxf.flags & _FRAME_VERTEX]
+        return without_repeats(np.array([(place.x, place.y) for place in places]).reshape(-1, 2))
     path = make_path(entity, segments=16)
     control = np.array([(point.x, point.y) for point in path.control_vertices()]).reshape(-1, 2)
     if not len(control):

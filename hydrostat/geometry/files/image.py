@@ -8,7 +8,7 @@ import numpy as np
 
 from hydrostat.arrays import Float
 from hydrostat.errors import OutlineError
-from hydrostat.geometry.files.drawn_lines import Inner, drawn_picture
+from hydrostat.geometry.files.drawing_body import Inner, drawn_picture
 from hydrostat.geometry.files.rings import Drawing, Page, one_line, outline_on_page, page_about
 from hydrostat.geometry.files.silhouette import (
     Contrast,
@@ -30,7 +30,9 @@ MOST_PIXELS = 50_000_000  # a picture with more pixels is refused
 _BROKEN = (OSError, ValueError, TypeError, LookupError, SyntaxError, ArithmeticError, AttributeError, EOFError)
 
 
-def read_image(content: bytes, name: str, size: float | None, page: Page | None, inner: Inner) -> Drawing:
+def read_image(
+    content: bytes, name: str, size: float | None, page: Page | None, inner: Inner, part: int | None = None
+) -> Drawing:
     """Read the outline of a body from a photograph or a drawing on plain ground, PNG or JPEG, with notes on omissions.
 
     A picture with transparent parts tells the body by them; else the body is what differs in color from the ground,
@@ -41,6 +43,8 @@ def read_image(content: bytes, name: str, size: float | None, page: Page | None,
     A picture has no size of its own: `size` or `page` is needed; see `read_outline`. Raises OutlineError: no picture,
     too large, without size, or no single body on plain ground; the message says where.
     """
+    if part is not None:
+        raise OutlineError(f"{name}: parts are numbered in SVG and DXF drawings only: cut the picture to the body")
     if size is None and page is None:
         raise OutlineError(f'{name}: a picture has no physical size: give the longest side of the body, as "200 mm"')
     pixels, step = _pixels(content, name)

@@ -6,10 +6,13 @@ from pathlib import PurePath
 import numpy as np
 
 from hydrostat.errors import InputError, OutlineError
-from hydrostat.geometry.files.drawn_lines import Inner
+from hydrostat.geometry.files.drawing_body import Inner
 from hydrostat.geometry.files.rings import Drawing, Page
 from hydrostat.geometry.files.stranger import MOST_BYTES
 from hydrostat.geometry.outline import Outline
+
+LARGEST = 20.0
+"""Longest side of a drawn body [m]; what is longer has the wrong unit."""
 
 OUTLINE_SUFFIXES = tuple(MOST_BYTES)  # names of files that outlines are read from end in one of these
 
@@ -21,18 +24,20 @@ def read_outline(
     size: float | None = None,
     page: Page | None = None,
     inner: Inner = Inner.HOLES,
+    part: int | None = None,
 ) -> Outline:
     """Read the outline of a body [m] from a drawing or a picture; its name says which kind it is, and stands in errors.
 
     The x axis points right, y up, the origin is the center of the bounding box or that of the `page`: of another
     drawing, which this one was drawn over. `size` is the longest side of the bounding box [m], not needed where the
-    file has a unit. `inner` says whether shapes in the body are holes, or drawn on it.
+    file has a unit. `inner` says whether shapes in the body are holes, or drawn on it. `part` is the number of the
+    closed shape that is the body, the largest area is 1; the reader chooses if it is left out.
 
     Raises:
         OutlineError: no kind of file that is read, or no body can be made of it; the message says why.
         InputError: `size` is not positive, or there is a page as well.
     """
-    return read_drawing(content, name=name, size=size, page=page, inner=inner).outline
+    return read_drawing(content, name=name, size=size, page=page, inner=inner, part=part).outline
 
 
 def read_drawing(
@@ -42,16 +47,19 @@ def read_drawing(
     size: float | None = None,
     page: Page | None = None,
     inner: Inner = Inner.HOLES,
+    part: int | None = None,
 ) -> Drawing:
     """Read the outline of a body, with notes on omissions; otherwise as `read_outline`.
 
     The last drawing is kept: who makes a robot of one reads it several times.
     """
-    return _read_drawing(content, name, size, page, inner)
+    return _read_drawing(content, name, size, page, inner, part)
 
 
 @lru_cache(maxsize=1)
-def _read_drawing(content: bytes, name: str, size: float | None, page: Page | None, inner: Inner) -> Drawing:
+def _read_drawing(
+    content: bytes, name: str, size: float | None, page: Page | None, inner: Inner, part: int | None
+) -> Drawing:
     if size is not None and page is not None:
         raise InputError(f"{name}: a drawing on the page of another has its size from there: leave the size out")
     if size is not None and not 0.0 < size < np.inf:
@@ -74,4 +82,8 @@ def _read_drawing(content: bytes, name: str, size: float | None, page: Page | No
         from hydrostat.geometry.files.dxf import read_dxf as read
     else:
         from hydrostat.geometry.files.image import read_image as read
-    return read(content, name, size, page, inner)
+    drawing = read(content, name, size, page, inner, part)
+    if size is None and page is None and drawing.outline.size > LARGEST:
+        long = f"{drawing.outline.size:.4g} m long"
+        raise OutlineError(f"{name}: would be {long}, as its unit says (at most {LARGEST:g} m). Give its size")
+    return drawing

@@ -1,7 +1,7 @@
 """Lines of any kind of drawing, joined to rings and sorted into the body, its holes and its page."""
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -65,67 +65,36 @@ class Drawing:
     marks: tuple[Ring, ...] = ()  # lines that are drawn on the body [m]; closed ones end where they begin
 
 
+PART_HINT = "--part N, or drawing_part = N in [body]"
+"""Hint for errors about several closed shapes in a drawing."""
+
 DRAWN_HINT = '--inner drawn, or inner = "drawn" in [body]'
 """Hint for errors about closed shapes that are no holes."""
 
 MOST_POINTS = 100_000  # a drawing with more points, counting what it repeats, is refused
 CHORD_ERROR = 2e-5  # curves become chords that stray at most this part of their box
 
-_GAP = 1e-3
 
-
-def closed_rings(lines: Iterable[tuple[Ring, bool]], name: str) -> tuple[list[Ring], list[Ring]]:
-    """Rings among a drawing's lines, in its units, and the open lines.
-
-    Each line is said to close itself or not; ends that all but meet are closed. Errors call the file by its name.
-    Raises OutlineError: too many points, numbers that are not finite, no closed line, or an open one larger than all.
-    """
-    rings, open_lines = [], []
-    rounding = 1e-6
-    for line, closed in checked_lines(lines, name):
-        extent = float(np.ptp(line, axis=0).max())
-        gap = float(np.linalg.norm(line[0] - line[-1]))
-        closed = closed or gap <= _GAP * extent
-        if 0.0 < gap <= rounding * extent:
-            line = np.concatenate([line[:-1], line[:1]])
-        (rings if closed else open_lines).append((extent, line))
-    largest = max((extent for extent, _ in rings), default=0.0)
-    extent, line = max(open_lines, key=lambda pair: pair[0], default=(0.0, np.zeros((2, 2))))
-    if extent > largest:
-        start, end = point_text(line[0]), point_text(line[-1])
-        gap = float(np.linalg.norm(line[0] - line[-1]))
-        raise OutlineError(f"{name}: the outline is open between {start} and {end}, a gap of {gap:.4g}: close the path")
-    if largest == 0.0:
-        raise OutlineError(f"{name}: no closed shape: draw the outline of the body as one closed path")
-    return [line for extent, line in rings if extent > 0.0], [line for _, line in open_lines]
-
-
-def checked_lines(lines: Iterable[tuple[Ring, bool]], name: str) -> Iterator[tuple[Ring, bool]]:
-    """Yield the lines unchanged; too many points or one that is not finite raise an OutlineError."""
+def checked_points(lines: Iterable[Ring], name: str) -> None:
+    """Refuse too many points, or one that is not finite (OutlineError)."""
     count = 0
-    for line, closed in lines:
+    for line in lines:
         count += len(line)
         if count > MOST_POINTS:
             raise OutlineError(f"{name}: more than {MOST_POINTS} points: simplify the drawing")
         if not (np.abs(line) < 1e100).all():
             raise OutlineError(f"{name}: a coordinate is not a finite number: save the drawing again")
-        yield line, closed
 
 
 def body_and_holes(rings: list[Ring], name: str) -> tuple[Ring, list[Ring]]:
-    """Largest ring, and the rings inside it.
+    """Largest ring, and the others, which lie inside it.
 
     Raises:
-        OutlineError: a ring crosses itself or another, lies outside the body or inside a hole, or there are too many.
+        OutlineError: a ring crosses itself or another, lies inside a hole, or there are too many.
     """
     shapes = shapes_of(rings, name)
     body, holes = shapes[0], []
     for shape in shapes[1:]:
-        if body.disjoint(shape):
-            raise OutlineError(
-                f"{name}: a second closed shape lies outside the body at {point_text(shape.exterior.coords[0])}: "
-                "unite the shapes into one or delete it"
-            )
         if any(shape.equals(other) for other in (body, *holes)):
             continue
         inside = next((hole for hole in holes if hole.contains(shape)), None)
@@ -155,9 +124,6 @@ def shapes_of(rings: list[Ring], name: str) -> list[Polygon]:
             shapes.append(polygon)
     if not shapes:
         raise OutlineError(f"{name}: the outline has no area: draw the body as one closed path")
-    most_shapes = 200  # a drawing may have this many closed shapes: the body and its holes
-    if len(shapes) > most_shapes:
-        raise OutlineError(f"{name}: has {len(shapes)} closed shapes, more than {most_shapes}: leave out some holes")
     return sorted(shapes, key=lambda shape: shape.area, reverse=True)
 
 
@@ -195,17 +161,18 @@ _JOINED = 1e-3
 _Ends = Int[np.ndarray, "lines 2"]
 
 
-def join_lines(lines: list[Ring], name: str) -> list[tuple[Ring, bool]]:
+def join_lines(lines: list[Ring], name: str, *, within: float = 0.0) -> list[tuple[Ring, bool]]:
     """Join open lines of finite points at their ends, in either direction; return each with True if it is closed.
 
     Ends that are a millionth of the drawing apart are one; a free end and the free end nearest to it are one when they
-    are a thousandth apart or less. A line drawn twice counts once. Lines with a free end that lead nowhere stay open.
+    are a thousandth apart or less, or nearer than `within`. A line drawn twice counts once. Lines with a free end that
+    lead nowhere stay open.
     Raises OutlineError if lines branch, so that it is not clear which of them are the outline.
     """
     if not lines:
         return []
     extent = float(np.ptp(np.concatenate(lines), axis=0).max()) or 1.0
-    ends = _numbers_of_ends(np.array([[line[0], line[-1]] for line in lines]), extent)
+    ends = _numbers_of_ends(np.array([[line[0], line[-1]] for line in lines]), extent, within)
     kept = _unique_lines(lines, ends, extent)
     lines, ends = [lines[index] for index in kept], ends[kept]
     dead = _dead_ends(ends)
@@ -220,7 +187,7 @@ def join_lines(lines: list[Ring], name: str) -> list[tuple[Ring, bool]]:
     return joined
 
 
-def _numbers_of_ends(points: Float[np.ndarray, "lines 2 2"], extent: float) -> _Ends:
+def _numbers_of_ends(points: Float[np.ndarray, "lines 2 2"], extent: float, within: float) -> _Ends:
     """Number for each end of each line, the same for those that meet."""
     from scipy.spatial import KDTree  # Imported here: not every command needs it.
 
@@ -237,7 +204,7 @@ def _numbers_of_ends(points: Float[np.ndarray, "lines 2 2"], extent: float) -> _
         found = KDTree(flat[free]).query(flat[free], k=2)
         distance, near = np.asarray(found[0]), np.asarray(found[1])
         other = near[:, 1]
-        mutual = (other[other] == np.arange(len(free))) & (distance[:, 1] <= _JOINED * extent)
+        mutual = (other[other] == np.arange(len(free))) & (distance[:, 1] <= max(_JOINED * extent, within))
         mutual &= free // 2 != free[other] // 2
         numbers = joined_groups(numbers[np.stack([free[mutual], free[other[mutual]]])], count)[numbers]
     return numbers.reshape(-1, 2)

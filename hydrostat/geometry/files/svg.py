@@ -2,7 +2,7 @@
 
 import io
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
@@ -11,16 +11,25 @@ from xml.parsers import expat
 import numpy as np
 
 from hydrostat.errors import OutlineError
-from hydrostat.geometry.files.drawn_lines import Inner, drawing_of
+from hydrostat.geometry.files.drawing_body import Inner, drawing_of
+from hydrostat.geometry.files.drawn_line import DrawnLine, Fill, Sheet
+from hydrostat.geometry.files.drawn_shapes import sorted_shapes
 from hydrostat.geometry.files.rings import (
     CHORD_ERROR,
     MOST_POINTS,
     Drawing,
     Page,
-    closed_rings,
     one_line,
     page_about,
     without_repeats,
+)
+from hydrostat.geometry.files.svg_groups import (
+    LABEL,
+    clipped_lines,
+    is_clip,
+    mark_clips,
+    mark_labels,
+    symbols_to_groups,
 )
 from hydrostat.geometry.outline import Ring
 from hydrostat.units import printable
@@ -34,7 +43,7 @@ _METERS = {"mm": 1e-3, "cm": 1e-2, "in": 0.0254, "pt": 0.0254 / 72, "pc": 0.0254
 _PIXEL = 0.0254 / 96
 _LENGTH = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([a-zA-Z]*)\s*")
 _NO_SHAPES = {
-    "text", "image", "clipPath", "mask", "pattern", "marker", "symbol", "foreignObject", "metadata", "script",
+    "text", "image", "clipPath", "mask", "pattern", "marker", "foreignObject", "metadata", "script",
     "linearGradient", "radialGradient", "filter", "namedview",
 }  # fmt: skip
 
@@ -56,6 +65,12 @@ def _open(content: bytes, name: str) -> _SvgDocument:
     root = ElementTree.fromstring(content)
     if _tag(root) != "svg":
         raise OutlineError(f"{name}: not an SVG drawing, its first element is <{_tag(root)}>: save it as SVG")
+    symbols_to_groups(root, _sheet(root))
+    mark_labels(root)
+    try:
+        mark_clips(root)
+    except ValueError as error:
+        raise OutlineError(f"{name}: {error}: release them, or save the outline alone") from None
     _strip_others(root)
     _check_points(root, name)
     for element in root.iter():
@@ -70,10 +85,10 @@ def _open(content: bytes, name: str) -> _SvgDocument:
 
 
 def _guard(content: bytes, name: str) -> None:
-    """Read the XML once without building anything: reject XML that is broken, deep, or declares entities."""
+    """Read the XML once without building anything: reject XML that is broken, deep, or whose entities are no words."""
     depth = 0
 
-    most_depth = 200
+    most_depth, most_expanded = 200, 2_000_000  # elements in one another; letters that entities may become
 
     def start(_tag: str, _attributes: dict[str, str]) -> None:
         nonlocal depth
@@ -85,8 +100,9 @@ def _guard(content: bytes, name: str) -> None:
         nonlocal depth
         depth -= 1
 
-    def entity(*_arguments: object) -> None:
-        raise OutlineError(f"{name}: declares XML entities, which are not read: save it as plain SVG")
+    def entity(_name: str, parameter: bool, value: str | None, *_others: object) -> None:
+        if parameter or value is None or "&" in value or len(value) * content.count(b"&") > most_expanded:
+            raise OutlineError(f"{name}: declares XML entities that are not plain words: save it as plain SVG")
 
     parser = expat.ParserCreate(namespace_separator="}")
     parser.StartElementHandler, parser.EndElementHandler = start, end
@@ -206,13 +222,17 @@ def _box(text: str) -> tuple[float, float, float, float] | None:
 _BROKEN = (ValueError, TypeError, AttributeError, LookupError, ArithmeticError, RecursionError)
 
 
-def read_svg(content: bytes, name: str, size: float | None, page: Page | None, inner: Inner) -> Drawing:
+def read_svg(
+    content: bytes, name: str, size: float | None, page: Page | None, inner: Inner, part: int | None = None
+) -> Drawing:
     """Read the outline of a body from an SVG drawing, with notes on omissions.
 
-    The largest closed shape is the body, the shapes inside it are holes, or drawn on it; whether they are filled plays
-    no part. Text, pictures, what is hidden and open lines smaller than the body are ignored. Curves become chords.
-    Without `size` or `page` the file must have a size in mm, cm, in, ...; see `read_outline`. Raises OutlineError: the
-    file is no SVG, or no body can be made of it; the message says where, in the drawing's units.
+    What is painted is the body: filled shapes that overlap are one, filled lines are closed, what is clipped is cut,
+    grounds and what is invisible are left out. Lines without fill are joined where their ends meet within their width.
+    The largest closed shape, or that of number `part`, is the body; the shapes inside it are holes, or drawn on it.
+    Text, pictures and open lines smaller than the body are ignored. Curves become chords. Without `size` or `page` the
+    file must have a size in mm, cm, in, ...; see `read_outline`. Raises OutlineError: the file is no SVG, or no body
+    can be made of it; the message says where, in the drawing's units.
     """
     document = _open(content, name)
     across, down = document.unit or (1.0, 1.0)
@@ -221,8 +241,21 @@ def read_svg(content: bytes, name: str, size: float | None, page: Page | None, i
         page.check(kind, name)
     elif size is None and document.unit is None:
         raise OutlineError(f"{name}: the drawing has no physical size (width in mm, cm or in): give its size")
-    lines = closed_rings(_subpaths(document, name), name)
-    return drawing_of(lines, name, inner, lambda body: page or page_about(body, kind, (across, -down), size))
+    shapes = sorted_shapes(clipped_lines(_elements(document, name)), _sheet_of(document), name)
+
+    def page_of(body: Ring) -> Page:
+        return page or page_about(body, kind, (across, -down), size)
+
+    return drawing_of(shapes, name, inner, page_of, part=part)
+
+
+def _sheet_of(document: _SvgDocument) -> Sheet:
+    """What the drawing says of its page."""
+    unit = 1e3 * document.unit[0] if document.unit else None
+    if document.sheet is None:
+        return Sheet(unit=unit)
+    left, top, width, height = document.sheet
+    return Sheet(box=(left, top, left + width, top + height), unit=unit)
 
 
 def _kind_of_page(document: _SvgDocument) -> str:
@@ -237,20 +270,54 @@ def _kind_of_page(document: _SvgDocument) -> str:
     return f"{kind} on a page of {width:.6g} x {height:.6g} units from ({left:.6g}, {top:.6g})"
 
 
-def _subpaths(document: _SvgDocument, name: str) -> Iterator[tuple[Ring, bool]]:
-    """Yield every visible subpath of a drawing as points in its own units, and whether it is closed."""
+def _elements(document: _SvgDocument, name: str) -> Iterator[tuple[Mapping[str, str], list[DrawnLine]]]:
+    """Yield the attributes of every visible element of a drawing, those of its groups too, and its lines."""
     from svgelements import SVG, Path, Shape
 
     try:
-        for element in SVG.parse(io.BytesIO(document.content), reify=True, ppi=96).elements():
-            if isinstance(element, Shape) and (element.values or {}).get("visibility") not in ("hidden", "collapse"):
-                for subpath in Path(element).as_subpaths():
-                    path = Path(subpath)
-                    points = _flatten(path)
-                    if len(points) > 1:
-                        yield points, any(type(segment).__name__ == "Close" for segment in path)
+        elements = SVG.parse(io.BytesIO(document.content), reify=True, ppi=96).elements()
+        for number, element in enumerate(elements):
+            values = getattr(element, "values", None) or {}
+            if not isinstance(element, Shape) or values.get("visibility") in ("hidden", "collapse"):
+                continue
+            fill, color, width = _paint(element, values)
+            if fill is Fill.NONE and width == 0.0 and not is_clip(values):
+                continue
+            lines = []
+            for subpath in Path(element).as_subpaths():
+                path = Path(subpath)
+                points = _flatten(path)
+                if len(points) > 1:
+                    closed = any(type(segment).__name__ == "Close" for segment in path)
+                    label = values.get(LABEL) or ""
+                    paint = {"fill": fill, "color": color, "width": width, "label": label, "element": number}
+                    lines.append(DrawnLine(points=points, closed=closed, **paint))
+            yield values, lines
     except _BROKEN as error:
         raise OutlineError(f"{name}: cannot be read as SVG ({one_line(error)}): save it again as plain SVG") from error
+
+
+def _paint(element: Any, values: Mapping[str, Any]) -> tuple[Fill, tuple[int, int, int] | None, float]:
+    """Fill of an element, its color, and the width of its line; no fill and no width where nothing is to be seen."""
+    seen = _number(values.get("opacity"))
+    fill, stroke = element.fill, element.stroke
+    faint = 0.05
+    width = 0.0
+    if stroke is not None and stroke.value is not None and seen * stroke.opacity > faint:
+        width = max(float(element.stroke_width or 0.0), 0.0)
+    if fill is None or fill.value is None or seen * fill.opacity <= faint or type(element).__name__ == "SimpleLine":
+        return Fill.NONE, None, width
+    color = (int(fill.red), int(fill.green), int(fill.blue))
+    pale = 235  # white, and what paper looks like
+    return (Fill.PALE if min(color) >= pale else Fill.FULL), color, width
+
+
+def _number(text: Any) -> float:
+    """An opacity; 1 where it is none."""
+    try:
+        return float(str(text).rstrip("%")) / (100.0 if str(text).endswith("%") else 1.0)
+    except ValueError:
+        return 1.0
 
 
 def _flatten(path: "Path") -> Ring:

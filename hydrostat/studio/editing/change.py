@@ -156,5 +156,6 @@ def remesh(
             .with_elements(body.elements)
         )
     assert body.thickness is not None
-    drawn = outline_body(body.content, thickness=body.thickness, volume=body.volume, inner=body.inner, **given)
+    reading = {"inner": body.inner, "drawing_part": body.drawing_part}
+    drawn = outline_body(body.content, thickness=body.thickness, volume=body.volume, **reading, **given)
     return replace(drawn.with_parts(body.parts), plane=body.plane).with_elements(body.elements)

@@ -1,0 +1,186 @@
+"""`drawing_of`: the body among the closed shapes of a drawing, and the meaning of what lies in it: holes or marks."""
+
+from collections.abc import Callable, Iterable, Sequence
+from enum import StrEnum
+
+import numpy as np
+from shapely import LineString, MultiLineString, disjoint, get_parts, line_merge
+
+from hydrostat.errors import OutlineError, SeveralPartsError
+from hydrostat.geometry.files.drawn_line import DrawnLine
+from hydrostat.geometry.files.drawn_shapes import Shapes
+from hydrostat.geometry.files.rings import (
+    DRAWN_HINT,
+    PART_HINT,
+    Drawing,
+    Page,
+    body_and_holes,
+    outline_on_page,
+    point_text,
+    shapes_of,
+)
+from hydrostat.geometry.outline import Outline, Ring
+from hydrostat.units import plural
+
+
+class Inner(StrEnum):
+    """Meaning of the shapes and open lines within the outer line of a drawing."""
+
+    HOLES = "holes"  # closed shapes are holes through the body, open lines nothing
+    DRAWN = "drawn"  # all of them are drawn on the body, such as eyes and a mouth
+
+
+def drawing_of(
+    shapes: Shapes,
+    name: str,
+    inner: Inner,
+    page: Callable[[Ring], Page],
+    *,
+    part: int | None = None,
+    notes: tuple[str, ...] = (),
+) -> Drawing:
+    """Drawing that closed and open lines make, in its units.
+
+    Args:
+        shapes: the lines, of `sorted_shapes`.
+        name: name of the file, for errors.
+        inner: meaning of the lines within the body.
+        page: function that returns the page on which the outer ring of a body lies.
+        part: number of the closed shape that is the body, the largest area is 1; chosen if left out.
+        notes: notes so far.
+
+    Raises:
+        OutlineError: they make no body; see `choose_body` and `body_and_holes`.
+    """
+    try:
+        body_line, inside_lines, chosen = choose_body(shapes, part, name)
+    except SeveralPartsError as error:
+        on = page(shapes.closed[0].points)
+        places = {number: on.places(shapes.closed[number - 1].points) for number in error.parts}
+        raise SeveralPartsError(str(error), places) from None
+    notes = (*notes, *shapes.notes, *chosen)
+    rings, open_lines = [line.points for line in (body_line, *inside_lines)], list(shapes.open)
+    if inner is Inner.HOLES:
+        body, holes = body_and_holes(rings, name)
+        on = page(body)
+        outline = outline_on_page(body, holes, on, name)
+        left = []
+        if open_lines:
+            where = point_text(max(open_lines, key=_extent)[0])
+            left = [f"left out {plural(len(open_lines), 'open line')}, the largest at {where}"]
+        return Drawing(
+            outline, on, (*notes, *left, *holes_told(outline), *_frame_told(shapes, body_line, inside_lines))
+        )
+    body = np.array(shapes_of(rings[:1], name)[0].exterior.coords)
+    on = page(body)
+    outline = outline_on_page(body, [], on, name)
+    drawn = [*(np.concatenate([ring, ring[:1]]) for ring in rings[1:]), *open_lines]
+    marks = marks_on(outline, [on.places(line) for line in drawn])
+    told = (f"{plural(len(marks), 'line')} drawn on the body, not cut",) if marks else ()
+    return Drawing(outline, on, (*notes, *told), marks)
+
+
+_PART = 0.1  # a second shape beside the largest is a part of its own where it has this share of the area
+_FRAME = 0.1  # a hole that may be the body, and what is around it a frame, has this share
+
+
+def choose_body(shapes: Shapes, part: int | None, name: str) -> tuple[DrawnLine, list[DrawnLine], list[str]]:
+    """Choose the closed shape that is the body, and find what lies in it.
+
+    Args:
+        shapes: lines of a drawing.
+        part: number of the shape, the largest area is 1; if left out, the largest that is no ground.
+        name: name of the file, for errors.
+
+    Returns:
+        The shape, the smaller ones that are not beside it, and notes on what was left out.
+
+    Raises:
+        SeveralPartsError: there are several and none was chosen.
+        OutlineError: there is no such part.
+    """
+    closed = shapes.closed
+    if part is not None and not 1 <= part <= len(closed):
+        raise OutlineError(f"{name}: part {part} is not there. Allowed: 1 to {len(closed)}, the largest area first")
+    candidates = [line for line in closed if line not in shapes.grounds]
+    body = _the_largest(candidates, closed, name) if part is None else closed[part - 1]
+    smaller = [line for line in closed[closed.index(body) + 1 :] if line not in shapes.grounds]
+    beside = disjoint(body.polygon, [line.polygon for line in smaller])
+    left = [line for line, apart in zip(smaller, beside, strict=True) if apart]
+    notes = []
+    if part is None and shapes.grounds:
+        ground = shapes.grounds[0]
+        across, up = np.ptp(ground.points, axis=0)
+        notes.append(
+            f"left out a ground or frame of {across:.4g} x {up:.4g}; if it is the body, say "
+            f"{PART_HINT.replace('N', str(closed.index(ground) + 1))}"
+        )
+    if left:
+        where = point_text(left[0].points[0])
+        notes.append(f"left out {plural(len(left), 'closed shape')} beside the body, the largest at {where}")
+    return body, [line for line, apart in zip(smaller, beside, strict=True) if not apart], notes
+
+
+def _the_largest(candidates: list[DrawnLine], closed: Sequence[DrawnLine], name: str) -> DrawnLine:
+    """The largest shape (SeveralPartsError: another beside it is a part as well)."""
+    body, parts = candidates[0], candidates[:1]
+    for line in candidates[1:]:
+        if line.polygon.area < _PART * body.polygon.area:
+            break
+        if all(line.polygon.disjoint(other.polygon) for other in parts):
+            parts.append(line)
+    if len(parts) > 1:
+        most_named = 6
+        listed = []
+        for line in parts[:most_named]:
+            (x, y), (across, up) = line.points.min(axis=0), np.ptp(line.points, axis=0)
+            listed.append(f"{closed.index(line) + 1}: {across:.4g} x {up:.4g} at {point_text((x, y))}")
+        more = f", and {len(parts) - most_named} more" if len(parts) > most_named else ""
+        told = f"{name}: has {len(parts)} parts ({'; '.join(listed)}{more}): choose one by {PART_HINT}"
+        raise SeveralPartsError(told, {closed.index(line) + 1: None for line in parts})
+    return body
+
+
+def _frame_told(shapes: Shapes, body: DrawnLine, inside: list[DrawnLine]) -> tuple[str, ...]:
+    """Note on a large hole that may be the body, and what is around it a frame."""
+    if not inside or inside[0].polygon.area < _FRAME * body.polygon.area or len(inside) > 1:
+        return ()
+    number = shapes.closed.index(inside[0]) + 1
+    return (f"if that shape is the body, and what is around it a frame, say {PART_HINT.replace('N', str(number))}",)
+
+
+def drawn_picture(drawing: Drawing) -> Drawing:
+    """Return the drawing with its holes as lines on the body instead."""
+    outline, *_ = drawing.outline.rings
+    whole = Outline(outline)
+    rings = [np.concatenate([ring, ring[:1]]) for ring in drawing.outline.rings[1:]]
+    return Drawing(whole, drawing.page, drawing.notes, marks_on(whole, rings))
+
+
+def holes_told(outline: Outline) -> tuple[str, ...]:
+    """Note on the holes of a body: where drawings have an eye, they would go through it."""
+    holes = outline.rings[1:]
+    if not holes:
+        return ()
+    largest = max(holes, key=_extent)
+    x, y = 1e3 * (largest.min(axis=0) + largest.max(axis=0)) / 2
+    where = f"{1e3 * _extent(largest):.3g} mm across at ({round(x, 1) + 0.0:g}, {round(y, 1) + 0.0:g}) mm"
+    which = where if len(holes) == 1 else f"the largest {where}"
+    noun = "closed shape is a hole" if len(holes) == 1 else "closed shapes are holes"
+    return (f"{len(holes)} {noun} through the body ({which}); if drawn on it, such as an eye, say {DRAWN_HINT}",)
+
+
+def _extent(line: Ring) -> float:
+    return float(np.ptp(line, axis=0).max())
+
+
+def marks_on(outline: Outline, lines: Iterable[Ring]) -> tuple[Ring, ...]:
+    """Parts of lines [m] that lie on a body; each is cut where it leaves it."""
+    kept: list[Ring] = []
+    for line in lines:
+        if len(line) > 1 and _extent(line) > 0.0:
+            parts = get_parts(LineString(line).intersection(outline.polygon)).tolist()
+            found = [part for part in parts if isinstance(part, LineString)]
+            pieces = get_parts(line_merge(MultiLineString(found))).tolist() if len(found) > 1 else found
+            kept += [np.array(piece.coords) for piece in pieces if piece.length > 0.0]
+    return tuple(kept)

@@ -1,0 +1,201 @@
+"""Kinds of drawings that strangers bring: grounds, frames, overlapping paint, open lines, marks, versions of DXF.
+
+Oracle: the sizes of the shapes that were drawn.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from drawings import dxf
+from ezdxf.document import Drawing as Document
+from ezdxf.layouts import Modelspace
+from shapely import Polygon
+
+from hydrostat.errors import OutlineError, SeveralPartsError
+from hydrostat.geometry.files.outline_file import read_drawing
+
+FISH = "M12 45 L30 30 L60 28 L78 45 L60 62 L30 60 Z"
+TEAL, BLACK, RED = f'<path d="{FISH}" fill="teal"/>', f'<path d="{FISH}"/>', f'<path d="{FISH}" {{}} stroke="red"/>'
+LINE = RED.format('fill="none"')
+FULL = 'width="90" height="90"'
+
+
+CORNERS = [(12, 45), (30, 30), (60, 28), (78, 45), (60, 62), (30, 60)]
+AREA = Polygon(CORNERS).area
+LEFT = Polygon([(12, 45), (30, 30), (45, 29), (45, 61), (30, 60)]).area
+SIDES = Polygon([(10, 15), (75, 15), (80, 60), (20, 70)]).area
+
+
+def svg(body: str, head: str = "") -> bytes:
+    """A page of 90 mm; one unit is a millimeter."""
+    return f'{head}<svg xmlns="http://www.w3.org/2000/svg" {SHEET}>{body}</svg>'.encode()
+
+
+SHEET = 'width="90mm" height="90mm" viewBox="0 0 90 90"'
+STROKE = 'fill="none" stroke="black"'
+
+
+@pytest.mark.parametrize(
+    "ground",
+    [
+        f'<rect {FULL} fill="white"/>',
+        f'<rect {FULL} style="fill:#fffffe;stroke:none"/>',
+        f"<style>.g {{fill: #fff}}</style><rect class='g' {FULL}/>",
+        f'<rect {FULL} fill="white" stroke="black"/>',
+        '<rect x="-20" y="-9" width="300" height="200" fill="ivory" rx="4"/>',
+        f'<rect {FULL} fill="skyblue"/>',
+        f'<rect {FULL} fill="none"/>',
+        f'<rect {FULL} opacity="0"/>',
+        f'<g opacity="0"><rect {FULL}/></g>',
+        f'<rect {FULL} fill="red" fill-opacity="0"/>',
+        f'<rect {FULL} style="display:none"/>',
+        f"<rect {FULL} {STROKE}/>",
+        f'<rect id="background" {FULL} fill="#888"/>',
+        f'<rect width="89" height="89" x=".5" y=".5" {STROKE}/><rect x="3" y="3" width="84" height="84" {STROKE}/>'
+        f'<rect x="50" y="72" width="37" height="15" {STROKE}/>',
+    ],
+)
+def test_a_ground_is_no_body(ground: str) -> None:
+    found = read_drawing(svg(ground + TEAL), name="a.svg")
+    assert found.outline.size == pytest.approx(0.066)
+    assert found.outline.holes == ()
+
+
+@pytest.mark.parametrize(
+    ("body", "area", "holes"),
+    [
+        (f'<rect {FULL}/><circle cx="45" cy="45" r="20" fill="white"/>', 8100 - np.pi * 400, 1),
+        (f'<rect {FULL} {STROKE}/><circle cx="45" cy="45" r="20" {STROKE}/>', 8100 - np.pi * 400, 1),
+        ('<rect width="50" height="40" fill="red"/><rect x="30" y="10" width="50" height="20" fill="blue"/>', 2600, 0),
+        ('<rect width="40" height="40"/><rect x="40" width="40" height="40"/>', 3200, 0),
+        ('<path d="M0 0 h40 v40 h-40z m10 10 h20 v20 h-20z"/><rect x="18" y="5" width="4" height="30"/>', 1280, 2),
+        ('<path d="M10 15 L75 15 L80 60 L20 70"/>', SIDES, 0),
+        (f'{TEAL}<path d="M40 45 q5 5 10 0"/>', AREA, 0),
+        (
+            '<g stroke="red"><line x1="10" y1="15" x2="75" y2="15"/><line x2="75" y2="15" x1="80" y1="60"/>'
+            '<line x1="80" y1="60" x2="20" y2="70"/><line x1="20.4" y1="70.4" x2="10" y2="15"/></g>',
+            SIDES,
+            0,
+        ),
+        (f'<symbol id="s" viewBox="0 0 45 45"><path d="{FISH}"/></symbol><use href="#s" {FULL}/>', 4 * AREA, 0),
+        (f'<symbol id="s"><path d="{FISH}"/></symbol>{TEAL}', AREA, 0),
+        (f'<clipPath id="c"><rect width="45" height="90"/></clipPath><g clip-path="url(#c)">{TEAL}</g>', LEFT, 0),
+        (f'<clipPath id="c"><rect {FULL}/></clipPath><g clip-path="url(#c)">{TEAL}</g>', AREA, 0),
+    ],
+)
+def test_what_is_painted_is_the_body(body: str, area: float, holes: int) -> None:
+    """Oracle: closed forms [mm^2]."""
+    found = read_drawing(svg(body), name="a.svg").outline
+    assert 1e6 * found.area == pytest.approx(area, rel=3e-3)
+    assert len(found.holes) == holes
+
+
+def test_entities_that_are_words_are_read() -> None:
+    head = '<!DOCTYPE svg [<!ENTITY ns "http://www.w3.org/2000/svg"><!ENTITY red "fill:red">]>'
+    body = f'<svg xmlns="&ns;" {SHEET}><path style="&red;" d="{FISH}"/></svg>'
+    assert read_drawing((head + body).encode(), name="a.svg").outline.size == pytest.approx(0.066)
+
+
+PART = [(0, 0), (130, 0), (130, 50), (70, 75), (0, 50)]
+
+
+def drawn(*more: Callable[[Modelspace], object]) -> bytes:
+    """A part of lines, 130 mm long, and more."""
+
+    def draw(space: Modelspace, _: Document) -> None:
+        for start, end in zip(PART, PART[1:] + PART[:1], strict=True):
+            space.add_line(start, end)
+        for each in more:
+            each(space)
+
+    return dxf(draw)
+
+
+def box(x: float, y: float, across: float, up: float, **more: str) -> Callable[[Modelspace], object]:
+    corners = [(x, y), (x + across, y), (x + across, y + up), (x, y + up)]
+    return lambda space: space.add_lwpolyline(corners, close=True, dxfattribs=more)
+
+
+def title(space: Modelspace) -> None:
+    for number in range(3):
+        space.add_text("Part", height=4).set_placement((150, -20 + 8 * number))
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        drawn(),
+        drawn(box(-40, -40, 420, 297)),
+        drawn(box(-40, -40, 277, 190)),
+        drawn(box(-50, -50, 1188, 840)),
+        drawn(box(-40, -40, 300, 200, layer="BORDER")),
+        drawn(box(-40, -40, 300, 200), title),
+        drawn(box(-50, -50, 420, 297), box(-40, -40, 400, 277), box(250, -40, 110, 30)),
+        drawn(lambda space: space.add_line((-15, 25), (145, 25)), lambda space: space.add_line((65, -20), (65, 95))),
+        drawn(lambda space: [space.add_circle(at, 2) for at in ((-25, -25), (155, -25), (155, 100), (-25, 100))]),
+        drawn(lambda space: space.add_lwpolyline([(30, 30), (29.5, 30), (29.5, 30)], close=True)),
+        drawn() + b"\r\n\x1a",
+        drawn().replace(b"100\nAcDbLine\n", b""),
+    ],
+)
+def test_one_good_outline_is_enough(content: bytes) -> None:
+    outline = read_drawing(content, name="a.dxf").outline
+    assert outline.size == pytest.approx(0.13)
+    assert 1e6 * outline.area == pytest.approx(130 * 50 + 0.5 * 130 * 25)
+
+
+def test_old_and_bare_dxf() -> None:
+    bare = "0\nSECTION\n2\nENTITIES\n0\nLWPOLYLINE\n8\n0\n90\n5\n70\n1\n" + "".join(
+        f"10\n{x}\n20\n{y}\n" for x, y in PART
+    )
+    for head in ("", "0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1006\n0\nENDSEC\n"):
+        content = f"{head}{bare}0\nENDSEC\n0\nEOF\n".encode()
+        assert read_drawing(content, name="a.dxf", size=0.2).outline.size == pytest.approx(0.2)
+
+    def fitted(space: Modelspace, _: Document) -> None:
+        """Corners of the frame are flagged 16, points of the curve 8."""
+        turns = np.linspace(0, 2 * np.pi, 60, endpoint=False)
+        line = space.add_polyline2d([(0, 0), (140, 0), (140, 70), (0, 70)], close=True)
+        line.append_vertices([(70 + 52 * np.cos(turn), 35 + 26 * np.sin(turn)) for turn in turns])
+        for number, vertex in enumerate(line.vertices):
+            vertex.dxf.flags = 16 if number < 4 else 8
+
+    outline = read_drawing(dxf(fitted), name="a.dxf").outline
+    assert outline.size == pytest.approx(0.104)
+    assert outline.area == pytest.approx(np.pi * 0.052 * 0.026, rel=3e-3)
+
+    def paper(_: Modelspace, document: Document) -> None:
+        document.layout("Layout1").add_circle((0, 0), 30)
+
+    found = read_drawing(dxf(paper), name="a.dxf")
+    assert found.outline.size == pytest.approx(0.06)
+    assert "read from the layout 'Layout1'" in found.notes[0]
+
+
+def test_a_drawing_in_meters_is_asked_about() -> None:
+    content = drawn().replace(b"$INSUNITS\n 70\n4\n", b"$INSUNITS\n 70\n6\n")
+    with pytest.raises(OutlineError, match=r"a.dxf: would be 130 m long, as its unit says .* Give its size"):
+        read_drawing(content, name="a.dxf")
+    assert read_drawing(content, name="a.dxf", size=0.13).outline.size == pytest.approx(0.13)
+
+
+def test_of_several_parts_one_is_chosen() -> None:
+    content = drawn(box(200, 0, 60, 60), box(210, 10, 5, 5), box(300, 0, 2, 2))
+    with pytest.raises(SeveralPartsError, match=r"2 parts \(1: 130 x 75 at \(0, 0\); 2: 60 x 60 .*--part N") as told:
+        read_drawing(content, name="a.dxf")
+    assert {number: np.ptp(ring[:, 0]) for number, ring in told.value.parts.items()} == pytest.approx(
+        {1: 0.13, 2: 0.06}
+    )
+    second = read_drawing(content, name="a.dxf", part=2).outline
+    assert (second.size, len(second.holes)) == (pytest.approx(0.06), 1)
+    with pytest.raises(OutlineError, match=r"part 5 is not there. Allowed: 1 to 4"):
+        read_drawing(content, name="a.dxf", part=5)
+
+
+def test_a_frame_can_be_the_body() -> None:
+    content = drawn(box(-40, -40, 420, 297))
+    note = next(note for note in read_drawing(content, name="a.dxf").notes if "frame" in note)
+    assert "left out a ground or frame of 420 x 297; if it is the body, say --part 1" in note
+    framed = read_drawing(content, name="a.dxf", part=1).outline
+    assert (framed.size, len(framed.holes)) == (pytest.approx(0.42), 1)
