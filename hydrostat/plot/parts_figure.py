@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 
 import numpy as np
-from jaxtyping import Float
 from matplotlib.figure import Figure
 from shapely import Polygon, maximum_inscribed_circle
 
+from hydrostat.arrays import Float
 from hydrostat.drawing import Color
 from hydrostat.plot.sheet import MILLIMETERS, WIDTH, new_sheet
 

@@ -4,10 +4,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Int
 from shapely import Polygon, STRtree, multipoints, unary_union
 from shapely.geometry.base import BaseGeometry
 
+from hydrostat.arrays import Int
 from hydrostat.errors import OutlineError
 from hydrostat.geometry.files.drawn_line import PAINTED, DrawnLine, Fill, Sheet, painted_area
 from hydrostat.geometry.files.grounds import find_grounds
