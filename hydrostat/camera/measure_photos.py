@@ -15,7 +15,7 @@ from hydrostat.camera.photo import Photo, read_pixels
 from hydrostat.camera.tags import MARKER_SIDE, marker_tags, sheet_of
 from hydrostat.errors import InputError
 from hydrostat.identification import Measurements
-from hydrostat.robot import Load, Robot, check_not_negative, check_positive
+from hydrostat.robot import Robot, check_not_negative, check_positive
 from hydrostat.simulation import Equilibrium, Simulation
 from hydrostat.units import plural
 
@@ -313,12 +313,10 @@ def _simulate(robot: Robot, photos: Sequence[Photo]) -> list[Equilibrium | None]
     simulations: dict[object, Simulation] = {}
     solved: dict[object, Equilibrium | None] = {}
     for photo in photos:
-        masses = tuple(sorted((name, mass) for name, mass in photo.masses.items() if mass > 0))
-        if masses not in simulations:
-            loads = [Load(name=f"measured {name}", marker=name, mass=mass) for name, mass in masses]
-            simulations[masses] = Simulation(replace(robot, loads=(*robot.loads, *loads)) if loads else robot)
+        if photo.hung not in simulations:
+            simulations[photo.hung] = Simulation(replace(robot, loads=(*robot.loads, *photo.hung)))
         if photo.pose not in solved:
-            pose = simulations[masses].solve(dict(photo.contractions), strict=False)
+            pose = simulations[photo.hung].solve(dict(photo.contractions), strict=False)
             solved[photo.pose] = pose if pose.result.converged else None
     return [solved[photo.pose] for photo in photos]
 

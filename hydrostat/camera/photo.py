@@ -15,7 +15,7 @@ from hydrostat.arrays import UInt8
 from hydrostat.camera.find_tags import Gray
 from hydrostat.errors import InputError
 from hydrostat.geometry import read_stranger
-from hydrostat.robot import Robot
+from hydrostat.robot import Load, Robot
 from hydrostat.units import LENGTH, MASS, parse_quantity
 
 if TYPE_CHECKING:
@@ -36,11 +36,13 @@ class Photo:
         file: its file.
         contractions: contraction of winches [m]; others do not contract.
         masses: masses hung at markers [kg].
+        loads: other loads, which are in no table.
     """
 
     file: Path
     contractions: Mapping[str, float]
     masses: Mapping[str, float]
+    loads: tuple[Load, ...] = ()
 
     @property
     def name(self) -> str:
@@ -48,10 +50,16 @@ class Photo:
         return self.file.name
 
     @property
-    def pose(self) -> tuple[tuple[str, float], ...]:
-        """Contractions and masses, which photographs of one pose share."""
-        both = [*((name, value) for name, value in self.contractions.items() if value), *self.masses.items()]
-        return tuple(sorted(both))
+    def pose(self) -> tuple[object, ...]:
+        """Contractions and loads, which photographs of one pose share."""
+        pulls = sorted((name, value) for name, value in self.contractions.items() if value)
+        return (*pulls, *self.hung)
+
+    @property
+    def hung(self) -> tuple[Load, ...]:
+        """All loads of the pose."""
+        masses = sorted((name, mass) for name, mass in self.masses.items() if mass > 0)
+        return (*(Load(name=f"measured {name}", marker=name, mass=mass) for name, mass in masses), *self.loads)
 
 
 def read_photos(files: Sequence[Path], robot: Robot, table: Path | None = None) -> list[Photo]:

@@ -39,8 +39,9 @@ def compare(
     from hydrostat.camera import Photo, measure_photos
 
     require_folder(out)
-    loaded = loads(read_robot(robot), load)
-    photos = [Photo(file=photo, contractions=contractions(loaded, contract), masses={})]
+    loaded = read_robot(robot)
+    added = loads(loaded, load).loads[len(loaded.loads) :]
+    photos = [Photo(file=photo, contractions=contractions(loaded, contract), masses={}, loads=added)]
     if rest is not None:
         photos.append(Photo(file=rest, contractions={}, masses={}))
     found = measure_photos(loaded, photos, photo_options(tag, height))

@@ -91,7 +91,7 @@ def tag_plane(number: int, center, side: float, turn: float = 0.0, tilt: np.ndar
 
 
 def board_plane(sheet: int = 0, move=(0.0, 0.0, 0.0), clutter: int | None = 0) -> Plane:
-    """A sheet of the board on a table; move: x, y [m] and turn [degrees]."""
+    """A sheet of the board, on a cluttered table or alone; move: x, y [m] and turn [degrees]."""
     unit = SIDE / 8 / 12  # whole pixels for each cell and pitch
     half = np.array([4 * PITCH, 5 * PITCH])
     rows, columns = np.round(2 * half[::-1] / unit).astype(int)
@@ -114,7 +114,18 @@ def board_plane(sheet: int = 0, move=(0.0, 0.0, 0.0), clutter: int | None = 0) -
     x = np.array([np.cos(angle), np.sin(angle), 0.0])
     y = np.array([-np.sin(angle), np.cos(angle), 0.0])
     corner = np.array([move[0], move[1], 0.0]) + (-half[0] + unit / 2) * x + (half[1] - unit / 2) * y
-    return Plane(table, np.ones_like(table), corner, x * unit, -y * unit)
+    cover = np.full_like(table, float(clutter is not None))
+    cover[r:-r, c:-c] = 1.0
+    return Plane(table, cover, corner, x * unit, -y * unit)
+
+
+def wall_plane(half: float = 0.5, brightness: float = 0.42) -> Plane:
+    """A plain wall behind sheets of the board [m]."""
+    picture = np.full((8, 8), brightness, np.float32)
+    unit = half / 4
+    return Plane(
+        picture, np.ones_like(picture), np.array([-half, half, 0]), np.array([unit, 0, 0]), np.array([0, -unit, 0])
+    )
 
 
 def body_plane(rings, height: float, brightness: float = 0.6) -> Plane:
