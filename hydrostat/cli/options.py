@@ -47,6 +47,10 @@ Contract = Annotated[
     list[str] | None,
     typer.Option(metavar="WINCH=LENGTH", help="Length of cable to reel in on one winch, e.g. left=12mm. Repeatable."),
 ]
+Moves = Annotated[
+    list[str] | None,
+    typer.Option(metavar="DRIVE=VALUE", help="Angle or travel of one drive, e.g. leg=30deg or base=5mm. Repeatable."),
+]
 AddedLoads = Annotated[
     list[str] | None,
     typer.Option(
@@ -185,6 +189,29 @@ def _contraction(text: str) -> tuple[str, float]:
         return name, sign * parse_quantity(length.removeprefix("-"), LENGTH)
     except InputError as error:
         raise InputError(f"--contract {text}: {error}") from None
+
+
+def moves(robot: "Robot", texts: Sequence[str] | None) -> dict[str, float]:
+    """Angles [rad] and travels [m] by drive, from texts such as "leg=30deg" (InputError: a text or drive that is none).
+
+    A warning is printed for a drive beyond its limits.
+    """
+    from hydrostat.robot import check_drive_values, parse_drive_value
+
+    drives = {drive.name: drive for drive in robot.drives}
+    found = {}
+    for text in texts or []:
+        name, value = _split_value("--move", text, "DRIVE=VALUE, e.g. leg=30deg")
+        if name not in drives:
+            known = f"Available: {', '.join(drives)}." if drives else "The robot has no drives."
+            raise InputError(f'--move {text}: unknown drive "{name}". {known}')
+        try:
+            found[name] = parse_drive_value(value, turns=drives[name].turns)
+        except InputError as error:
+            raise InputError(f"--move {text}: {error}") from None
+        for line in check_drive_values([drives[name]], [found[name]]):
+            print(f"warning: {line}")
+    return found
 
 
 def loads(robot: "Robot", texts: Sequence[str] | None) -> "Robot":

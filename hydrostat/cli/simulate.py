@@ -13,10 +13,12 @@ from hydrostat.cli.limits import print_exceeded
 from hydrostat.cli.options import (
     AddedLoads,
     Contract,
+    Moves,
     Pulls,
     check_contraction,
     contractions,
     loads,
+    moves,
     parse_optional,
     positive,
     pulls,
@@ -38,6 +40,7 @@ def simulate(
     contract: Contract = None,
     pull: Pulls = None,
     load: AddedLoads = None,
+    move: Moves = None,
     jacobian: Annotated[bool, typer.Option(help="Also write jacobian.npz.")] = False,
     dynamic: Annotated[
         bool,
@@ -62,7 +65,8 @@ def simulate(
 ) -> None:
     """Solve for static equilibrium, or simulate a motion.
 
-    Give winch contractions with --contract or forces with --pull, and add --dynamic to simulate the motion.
+    Give contractions with --contract, forces with --pull or values of drives with --move. Add --dynamic to simulate
+    the motion.
 
     Writes pose.json, pose.vtu (for ParaView) and pose.png. With --dynamic these show the final state, and the command
     also writes motion.csv, motion.pvd (for ParaView) and motion.png.
@@ -82,6 +86,9 @@ def simulate(
         raise InputError(f"--pull {both[0]}: --contract is given for this winch, too. Remove one of them.")
     if forces and (dynamic or within is not None):
         raise InputError(f"--pull: not available with {'--dynamic' if dynamic else '--within'}. Remove one of them.")
+    driven = moves(loaded, move)
+    if driven and (dynamic or forces):
+        raise InputError(f"--move: not available with {'--dynamic' if dynamic else '--pull'}. Remove one of them.")
     if dynamic and jacobian:
         raise InputError("--jacobian: not available with --dynamic. Remove one of them.")
     if not dynamic and (play is not None or duration is not None):
@@ -98,7 +105,7 @@ def simulate(
         return
     began = time.process_time()
     with print_profile(profile, "solving"):
-        pose = _solve(simulation, given, forces, limit)
+        pose = _solve(simulation, {**given, **driven}, forces, limit)
     seconds = time.process_time() - began
     _print_places(pose, loaded)
     for name, contraction in zip(forces, _contractions_of(pose, forces), strict=True):

@@ -54,6 +54,7 @@ class PinEnergy(Energy):
     """Penalty of boundary conditions: sum of k/2 |y - y_pin|^2 over anchors y = sum of weights x nodes (R29, E10)."""
 
     quadratic = True
+    supports: Int[np.ndarray, " terms"]
 
     def __init__(
         self,

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from hydrostat.robot.merge import comments, lost_comments, merged_text
     from hydrostat.robot.obstacle_lines import obstacle_lines, rims
     from hydrostat.robot.part import BodyPart
+    from hydrostat.robot.pin_drive import PinDrive, check_drive_values, check_radians, parse_drive_value
     from hydrostat.robot.read import FILE, GALLERY, RobotReader, gallery_folder, is_of_gallery, list_gallery, load_robot
     from hydrostat.robot.risks import SEWN_DEPTH, find_risks, limit_travels
     from hydrostat.robot.risks.body_risks import LEAST_ACROSS, LOCKING
@@ -64,6 +65,7 @@ __all__ = [
     "Obstacle",
     "ObstacleShape",
     "Pin",
+    "PinDrive",
     "Plane",
     "Point",
     "PoseTarget",
@@ -78,10 +80,12 @@ __all__ = [
     "Torque",
     "Volume",
     "Winch",
+    "check_drive_values",
     "check_name",
     "check_not_negative",
     "check_number",
     "check_positive",
+    "check_radians",
     "clear_unfinished",
     "closed_mesh",
     "commented_text",
@@ -105,6 +109,7 @@ __all__ = [
     "mesh_body",
     "obstacle_lines",
     "outline_body",
+    "parse_drive_value",
     "read_text",
     "replace_file",
     "rims",

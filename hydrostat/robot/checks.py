@@ -71,3 +71,15 @@ def _is_word(letter: str) -> bool:
     """Return True for a letter, a combining mark, as in many scripts, or a digit."""
     category = unicodedata.category(letter)
     return category[0] in "LM" or category == "Nd"
+
+
+def check_unique(kind: str, names: list[str]) -> None:
+    """Reject names that are given twice (InputError); `kind` is the key of their tables."""
+    for index, name in enumerate(names):
+        if name in names[:index]:
+            raise InputError(f'{kind}[{index}].name: there are two of the name "{name}"; names must be unique')
+
+
+def list_choices(kind: str, names: list[str]) -> str:
+    """Names that are available, in words; `kind` is their plural."""
+    return f"Available: {', '.join(names)}." if names else f"The robot has no {kind}."

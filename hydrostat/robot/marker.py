@@ -62,12 +62,14 @@ class Pin:
         radius: radius within which nodes are held [m].
         box: two opposite corners [m].
         stiffness: stiffness of the whole pin [N/m], shared equally by all nodes that it holds.
+        drive: name of the drive that moves it; None: it stands still.
     """
 
     at: Point | None = None
     radius: float = 0.0
     box: tuple[Point, Point] | None = None
     stiffness: float = DEFAULT_STIFFNESS
+    drive: str | None = None
 
     def __post_init__(self) -> None:
         if (self.at is None) == (self.box is None):

@@ -16,6 +16,7 @@ from hydrostat.robot.cable import Cable
 from hydrostat.robot.contact import Contact, Obstacle
 from hydrostat.robot.load import Load
 from hydrostat.robot.marker import Marker, Pin, PoseTarget
+from hydrostat.robot.pin_drive import PinDrive
 from hydrostat.robot.read import RobotReader, read_material
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.rod import Rod
@@ -111,6 +112,7 @@ _RECORDS = {
     "body": Body,
     "contact": Contact,
     "pin": Pin,
+    "drive": PinDrive,
     "winch": Winch,
     "cable": Cable,
     "marker": Marker,
@@ -119,7 +121,7 @@ _RECORDS = {
     "load": Load,
     "rod": Rod,
 }
-_LISTS = ("pin", "winch", "cable", "marker", "pose", "obstacle", "load", "rod")
+_LISTS = ("pin", "drive", "winch", "cable", "marker", "pose", "obstacle", "load", "rod")
 _SINGLE = ("body", "contact")
 _ORDER = ("", *_SINGLE, *_LISTS)
 _TOP = ("name", "length_unit", "gravity", "face")

@@ -19,6 +19,7 @@ from hydrostat.robot.load import Load
 from hydrostat.robot.marker import Marker, Pin, PoseTarget
 from hydrostat.robot.materials import Material, Relaxation, get_material
 from hydrostat.robot.part import BodyPart, PartShape
+from hydrostat.robot.pin_drive import PinDrive, parse_drive_value
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.rod import Rod
 from hydrostat.robot.tables_file import TablesFile, read_text
@@ -96,6 +97,7 @@ class RobotReader(TablesFile):
         self.at("length_unit", lambda: units.unit_factor(self.unit, units.LENGTH))
         parts = {
             "pins": self.records("pin", self._pin),
+            "drives": self.records("drive", self._drive),
             "winches": self.records("winch", self._winch),
             "cables": self.records("cable", self._cable),
             "markers": self.records("marker", self._marker),
@@ -119,8 +121,17 @@ class RobotReader(TablesFile):
             at=None if entry.at is None else self.point(entry.at),
             radius=units.scale_up(entry.radius, self.unit, units.LENGTH),
             box=None if entry.box is None else (self.point(entry.box[0]), self.point(entry.box[1])),
-            **_given_keys(entry, "stiffness"),
+            **_given_keys(entry, "stiffness", "drive"),
         )
+
+    def _drive(self, entry: Any) -> PinDrive:
+        given: dict[str, Any] = {} if entry.at is None else {"at": self.point(entry.at)}
+        for key in ("axis", "slide"):
+            if (way := getattr(entry, key)) is not None:
+                given[key] = tuple(float(value) for value in way)
+        for key, text in _given_keys(entry, "min", "max").items():
+            given[key] = _drive_value(key, text, turns=entry.slide is None)
+        return PinDrive(name=entry.name, **given)
 
     def _contact(self, entry: Any) -> Contact:
         friction = {} if entry.friction is None else {"friction": float(entry.friction)}
@@ -274,6 +285,13 @@ def _gravity(entry: Any, dim: int) -> tuple[float, ...] | None:
     if entry is None:
         return None
     return gravity_along(entry, dim) if isinstance(entry, str) else tuple(entry)
+
+
+def _drive_value(key: str, text: str, *, turns: bool) -> float:
+    try:
+        return parse_drive_value(text, turns=turns)
+    except InputError as error:
+        raise InputError(f"{key}: {error}") from None
 
 
 def _given_keys(entry: Any, *keys: str) -> dict[str, Any]:

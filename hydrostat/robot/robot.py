@@ -16,13 +16,14 @@ from hydrostat.painters import draw_record
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable, given_names, name_cables
 from hydrostat.robot.cable_side import Face
-from hydrostat.robot.checks import Point
+from hydrostat.robot.checks import Point, check_unique, list_choices
 from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape
 from hydrostat.robot.gravity import check_gravity, gravity_along
 from hydrostat.robot.html_repr import html_repr
 from hydrostat.robot.load import Load
 from hydrostat.robot.marker import Marker, Pin, PoseTarget
 from hydrostat.robot.materials import Material, get_material
+from hydrostat.robot.pin_drive import PinDrive, check_drives
 from hydrostat.robot.rod import Rod, check_rods_inside
 from hydrostat.robot.winch import Mount, Winch
 from hydrostat.units import plural
@@ -42,6 +43,7 @@ class Robot:
         body: soft body.
         pins: boundary conditions; together they must exclude rigid motion. None: the robot lies on the ground, an
             obstacle.
+        drives: actuators that move pins, in the order of every array of drive values.
         winches: winches in the order of every array of contractions.
         cables: cables in the order of every array of tensions; a cable without a name gets one.
         markers: tracked points.
@@ -61,6 +63,7 @@ class Robot:
     name: str
     body: Body
     pins: tuple[Pin, ...]
+    drives: tuple[PinDrive, ...] = ()
     winches: tuple[Winch, ...] = ()
     cables: tuple[Cable, ...] = ()
     markers: tuple[Marker, ...] = ()
@@ -82,9 +85,9 @@ class Robot:
         except InputError as error:
             raise InputError(f"length_unit: {error}") from None
         object.__setattr__(self, "cables", name_cables(self.cables))
-        _unique("winch", [winch.name for winch in self.winches])
-        _unique("cable", [cable.name for cable in self.cables])
-        _unique("marker", [marker.name for marker in self.markers])
+        check_unique("winch", [winch.name for winch in self.winches])
+        check_unique("cable", [cable.name for cable in self.cables])
+        check_unique("marker", [marker.name for marker in self.markers])
         for index, (name, pose) in enumerate(self.poses.items()):
             if name != pose.name:
                 raise InputError(f'pose[{index}].name: a pose called "{pose.name}" is filed under "{name}"')
@@ -95,6 +98,7 @@ class Robot:
         if self.gravity is not None:
             check_gravity(self.gravity, self.body.mesh.dim)
         self._check_pins()
+        check_drives(self.drives, self.pins, self.winches, self.cables, self.body.mesh.dim)
         self._check_contact()
         self._check_markers_and_poses()
         self._check_loads_and_rods()
@@ -120,7 +124,7 @@ class Robot:
     def pose(self, name: str) -> PoseTarget:
         """Return the target pose of this name (InputError: there is none)."""
         if name not in self.poses:
-            raise InputError(f'unknown pose "{name}". {_choices("poses", list(self.poses))}')
+            raise InputError(f'unknown pose "{name}". {list_choices("poses", list(self.poses))}')
         return self.poses[name]
 
     @property
@@ -153,6 +157,11 @@ class Robot:
         return max(
             [winch.spool_radius, *(cable.spool_radius or 0 for cable in self.cables if cable.winch == winch.name)]
         )
+
+    @property
+    def num_controls(self) -> int:
+        """Number of winches and drives."""
+        return len(self.winches) + len(self.drives)
 
     def with_network(self, winches: Iterable[Winch], cables: Iterable[Cable]) -> Self:
         """Return the same robot with other winches and cables."""
@@ -204,11 +213,7 @@ class Robot:
         for pose in self.poses.values():
             check_type(pose, PoseTarget, "poses must be Pose records")
         check_type(self.contact, (Contact, type(None)), "contact must be a Contact()")
-        check_type(
-            self.gravity,
-            (tuple, list, np.ndarray, str, type(None)),
-            "gravity must be m/s^2 along each axis",
-        )
+        check_type(self.gravity, (tuple, list, np.ndarray, str, type(None)), "gravity must be m/s^2 along each axis")
 
     def _check_dimensions(self) -> None:
         dim = self.body.mesh.dim
@@ -247,7 +252,7 @@ class Robot:
                 f"contact.distance of {1e3 * distance:.4g} mm is large beside a body of {1e3 * mesh.size:.4g} mm; "
                 f"it is usually {DISTANCE:.1%} of that"
             )
-        _unique("obstacle", [obstacle.name for obstacle in self.obstacles])
+        check_unique("obstacle", [obstacle.name for obstacle in self.obstacles])
         skin = mesh.nodes[np.unique(mesh.boundary)]
         for index, obstacle in enumerate(self.obstacles):
             if len(obstacle.at) != mesh.dim:
@@ -296,19 +301,21 @@ class Robot:
             for name in pose.targets:
                 if name not in names:
                     key = f"pose[{index}].targets.{name}"
-                    raise InputError(f'{key}: unknown marker "{name}". {_choices("markers", names)}')
+                    raise InputError(f'{key}: unknown marker "{name}". {list_choices("markers", names)}')
 
     def _check_loads_and_rods(self) -> None:
         names = [marker.name for marker in self.markers]
-        _unique("load", [load.name for load in self.loads])
+        check_unique("load", [load.name for load in self.loads])
         for index, load in enumerate(self.loads):
             if load.marker is not None and load.marker not in names:
-                raise InputError(f'load[{index}].marker: unknown marker "{load.marker}". {_choices("markers", names)}')
+                raise InputError(
+                    f'load[{index}].marker: unknown marker "{load.marker}". {list_choices("markers", names)}'
+                )
             if load.mass is not None and self.gravity is None:
                 raise InputError(f'load[{index}].mass weighs nothing without gravity; add gravity = "-y", or a force')
             if load.force is not None and (count := len(load.force)) != self.body.mesh.dim:
                 raise InputError(f"load[{index}].force has {count} entries, but the body has {self.body.mesh.dim} axes")
-        _unique("rod", [rod.name for rod in self.rods])
+        check_unique("rod", [rod.name for rod in self.rods])
         self._check_inside([(key, point) for key, point in self._points() if key.startswith(("load", "rod"))])
         check_rods_inside(self.rods, self.body, self._text)
 
@@ -372,25 +379,16 @@ class Robot:
         return f"{value / scale:.4g} {self.length_unit}"
 
 
-def _unique(kind: str, names: list[str]) -> None:
-    for index, name in enumerate(names):
-        if name in names[:index]:
-            raise InputError(f'{kind}[{index}].name: there are two of the name "{name}"; names must be unique')
-
-
 def _find_part(kind: str, kinds: str, parts: Iterable[_Part], name: str) -> _Part:
     for part in parts:
         if part.name == name:
             return part
-    raise InputError(f'unknown {kind} "{name}". {_choices(kinds, [part.name for part in parts])}')
-
-
-def _choices(kind: str, names: list[str]) -> str:
-    return f"Available: {', '.join(names)}." if names else f"The robot has no {kind}."
+    raise InputError(f'unknown {kind} "{name}". {list_choices(kinds, [part.name for part in parts])}')
 
 
 _PARTS = {
     "pins": Pin,
+    "drives": PinDrive,
     "winches": Winch,
     "cables": Cable,
     "markers": Marker,

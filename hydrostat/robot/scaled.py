@@ -41,9 +41,8 @@ def scaled_robot(robot: Robot, factor: float) -> Robot:
         return None if value is None else length(value)
 
     def scale_pin(pin: Pin) -> Pin:
-        if pin.box is not None:
-            return replace(pin, box=(point(pin.box[0]), point(pin.box[1])))
-        return replace(pin, at=point(pin.at or ()), radius=length(pin.radius))
+        box = None if pin.box is None else (point(pin.box[0]), point(pin.box[1]))
+        return replace(pin, box=box, at=None if pin.at is None else point(pin.at), radius=length(pin.radius))
 
     def scale_obstacle(each: Obstacle) -> Obstacle:
         return replace(
@@ -55,6 +54,7 @@ def scaled_robot(robot: Robot, factor: float) -> Robot:
         robot,
         body=_scaled_body(robot, factor, tuple(part.with_transform(point, factor) for part in robot.body.parts)),
         pins=tuple(map(scale_pin, robot.pins)),
+        drives=tuple(drive.with_transform(point, length) for drive in robot.drives),
         winches=tuple(
             replace(
                 winch,

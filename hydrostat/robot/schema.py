@@ -194,6 +194,18 @@ class PinTable(TomlTable):
     radius: Number = Decimal(0)
     box: Annotated[list[Coordinates], Field(min_length=2, max_length=2)] | None = None
     stiffness: Stiffness | None = None
+    drive: Text | None = None
+
+
+class DriveTable(TomlTable):
+    """[[drive]]."""
+
+    name: Name
+    at: Coordinates | None = None
+    axis: Coordinates | None = None
+    slide: Coordinates | None = None
+    min: Text | None = None
+    max: Text | None = None
 
 
 class WinchTable(TomlTable):
@@ -296,6 +308,7 @@ class RobotTable(TomlTable):
     face: Face | None = None
     body: BodyTable
     pin: list[PinTable] = []
+    drive: list[DriveTable] = []
     winch: list[WinchTable] = []
     cable: list[CableTable] = []
     marker: list[MarkerTable] = []

@@ -1,6 +1,7 @@
 """`save_robot`: a `Robot` as a folder that reads back to the very same robot."""
 
 import hashlib
+import math
 import os
 from collections.abc import Iterable
 from contextlib import suppress
@@ -23,6 +24,7 @@ from hydrostat.robot.load import Load
 from hydrostat.robot.marker import DEFAULT_STIFFNESS, Pin
 from hydrostat.robot.materials import MATERIALS, Material, Relaxation
 from hydrostat.robot.part import BodyPart
+from hydrostat.robot.pin_drive import PinDrive
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.rod import Rod
 from hydrostat.robot.winch import Mount
@@ -47,7 +49,10 @@ def save_robot(robot: Robot, folder: str | Path, *, text: str | None = None) -> 
     for name in (
         robot.name,
         *robot.poses,
-        *(part.name for part in (*robot.winches, *robot.cables, *robot.markers, *robot.loads, *robot.rods)),
+        *(
+            part.name
+            for part in (*robot.winches, *robot.cables, *robot.markers, *robot.loads, *robot.rods, *robot.drives)
+        ),
     ):
         check_name(name)
     try:
@@ -116,6 +121,7 @@ def robot_text(robot: Robot) -> str:
         document["contact"] = writer.contact(robot.contact)
     groups: dict[str, Iterable[dict[str, Any]]] = {
         "pin": map(writer.pin, robot.pins),
+        "drive": map(writer.drive, robot.drives),
         "winch": map(writer.winch, robot.winches),
         "cable": map(writer.cable, robot.cables, robot.given_cable_names),
         "marker": ({"name": marker.name, "at": writer.point(marker.at)} for marker in robot.markers),
@@ -291,6 +297,20 @@ class _Writer:
             entry["radius"] = self.number(pin.radius)
         if pin.stiffness != DEFAULT_STIFFNESS:
             entry["stiffness"] = units.format_quantity(pin.stiffness, units.STIFFNESS)
+        if pin.drive is not None:
+            entry["drive"] = pin.drive
+        return entry
+
+    def drive(self, drive: PinDrive) -> dict[str, Any]:
+        entry: dict[str, Any] = {"name": drive.name}
+        if drive.at is not None:
+            entry["at"] = self.point(drive.at)
+        for key in ("axis", "slide"):
+            if (way := getattr(drive, key)) is not None:
+                entry[key] = self._array(self._toml.value(units.plain(Decimal(repr(float(value))))) for value in way)
+        low, high = drive.limits
+        if drive.slide is not None or (low, high) != (-math.pi, math.pi):
+            entry["min"], entry["max"] = drive.limit_texts()
         return entry
 
     def winch(self, winch: Any) -> dict[str, Any]:

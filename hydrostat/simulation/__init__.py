@@ -19,13 +19,8 @@ if TYPE_CHECKING:
         read_profile,
         write_profile,
     )
-    from hydrostat.simulation.equilibrium import (
-        Contractions,
-        Equilibrium,
-        check_pose,
-        contraction_values,
-        largest_distance,
-    )
+    from hydrostat.simulation.controls import Contractions, contraction_values
+    from hydrostat.simulation.equilibrium import Equilibrium, check_pose, largest_distance
     from hydrostat.simulation.filled import filled_motion, is_filled_motion_fast
     from hydrostat.simulation.find_contacts import ContactPatch, describe_contacts, find_contacts
     from hydrostat.simulation.marker_compliance import marker_compliance

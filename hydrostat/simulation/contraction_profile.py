@@ -14,7 +14,7 @@ from hydrostat.arrays import Float, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry import read_stranger
 from hydrostat.robot import Robot, replace_file
-from hydrostat.simulation.equilibrium import contraction_values
+from hydrostat.simulation.controls import contraction_values
 from hydrostat.units import quote
 
 

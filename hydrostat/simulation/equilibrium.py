@@ -1,6 +1,6 @@
 """`Equilibrium`: a robot in quasi-static equilibrium under given contractions."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -11,16 +11,12 @@ from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh, find_crossings
 from hydrostat.mechanics import NewtonResult
 from hydrostat.painters import draw_record
-from hydrostat.robot import Robot, html_repr
+from hydrostat.robot import Robot, check_drive_values, html_repr
 from hydrostat.simulation.mesh_error import WORTH_A_NOTE, estimate_stiffening
 from hydrostat.simulation.strain import find_overstrain, node_strains, node_stresses
-from hydrostat.units import plural
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-Contractions = Mapping[str, float] | Sequence[float] | Vector
-"""Cable taken in [m]: by the name of a winch (others 0), or numbers in winch order."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -37,6 +33,7 @@ class Equilibrium:
         history: history variables of the physics: cable slip at each point with friction so far and the anchors of the
             skin on obstacles with friction [m]; empty without friction.
         robot: robot that is in this pose.
+        drives: value of each drive: angle [rad] or travel [m].
         carried: unknowns of moving obstacles [m]: position and axes of each; empty if no obstacle moves.
     """
 
@@ -48,6 +45,7 @@ class Equilibrium:
     result: NewtonResult
     history: Vector = field(default_factory=lambda: np.zeros(0))
     carried: Points | None = None
+    drives: Vector = field(default_factory=lambda: np.zeros(0))
     robot: Robot
 
     @property
@@ -59,7 +57,7 @@ class Equilibrium:
         told = []
         if not self.result.converged:
             told.append(f"no equilibrium: {self.result.reason}")
-        told += beyond_travel(self.robot, self.contractions)
+        told += beyond_travel(self.robot, self.contractions) + check_drive_values(self.robot.drives, self.drives)
         if self.result.buckled:
             told.append("buckled: a mirror-image pose is equally likely")
         if self.result.converged and not self.result.stable:
@@ -106,6 +104,11 @@ class Equilibrium:
             for winch, value in zip(self.robot.winches, self.contractions, strict=True)
             if value
         ]
+        taken += [
+            f"{drive.name} {drive.format_value(value)}"
+            for drive, value in zip(self.robot.drives, self.drives, strict=True)
+            if value
+        ]
         pulls = f", tensions up to {self.tensions.max():.3g} N" if len(self.tensions) else ""
         contractions = ", ".join(taken) or "no contractions"
         return f"<Equilibrium of {self.robot.name!r}: {contractions}{pulls}; {self.result.reason}>"
@@ -113,6 +116,11 @@ class Equilibrium:
     def _repr_html_(self) -> str:
         """Summary, warnings and a picture, for a notebook."""
         return html_repr("\n".join([repr(self), *self.warnings, *self.notes]), self.plot())
+
+    @property
+    def controls(self) -> Vector:
+        """Contractions [m], then values of the drives [rad or m]: all that the energies read."""
+        return np.concatenate([self.contractions, self.drives]) if len(self.drives) else self.contractions
 
     @property
     def unknowns(self) -> Nodes:
@@ -163,7 +171,7 @@ def check_pose(
     Args:
         pose: value to check.
         shape: shape of the robot's node array.
-        winches: number of winches.
+        winches: number of winches and drives.
         history: history variables of physics that depend on the loading path; None for other physics.
         what: purpose of the pose, for messages.
 
@@ -175,7 +183,7 @@ def check_pose(
         raise InputError(f"{what} must be a solved pose, from `simulation.solve` or a result's `.pose`, not {kind}")
     if not (pose.nodes.shape == shape and np.isfinite(pose.nodes).all()):
         raise InputError(f"{what} must be a pose of this robot with finite nodes, {shape}, not {pose.nodes.shape}")
-    given = len(pose.contractions)
+    given = len(pose.controls)
     if given != winches:
         raise InputError(f"{what} has {given} contractions, the robot {winches} winches")
     if history is not None and len(pose.history) != len(history):
@@ -183,51 +191,3 @@ def check_pose(
             f"{what} must be a pose of these physics, which remember the way, such as slips of cables with friction: "
             f"{len(history)} numbers, not {len(pose.history)}"
         )
-
-
-def contraction_values(robot: Robot, given: Contractions) -> Vector:
-    """Contractions as an array in winch order [m].
-
-    Raises:
-        InputError: an unknown winch, a wrong number of values, or a value that is not finite.
-    """
-    winches, wanted = robot.winches, given
-    if isinstance(given, Mapping):
-        for name in given:
-            robot.winch(name)
-        wanted = np.array([given.get(winch.name, 0.0) for winch in winches], dtype=object)
-    try:
-        values = np.array(wanted, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError(f"contractions must be numbers [m], not {given!r}") from None
-    if values.ndim > 1:
-        raise InputError(
-            f"contractions must be one number for each of {len(winches)} winches, not an array of {values.shape}; "
-            "solve_batch takes a row for each pose"
-        )
-    names = ", ".join(winch.name for winch in winches)
-    if values.ndim == 0:
-        raise InputError(f"contractions must be given by winch, or a number for each of {names}, not {given!r:.60}")
-    if values.shape != (len(winches),):
-        raise InputError(f"{values.size} contractions given for {plural(len(winches), 'winch')}: {names}")
-    if not np.isfinite(values).all():
-        raise InputError("a contraction is not a finite number")
-    _check_meters(robot, values)
-    return values
-
-
-def _check_meters(robot: Robot, contractions: Vector) -> None:
-    """Reject contractions that no winch can reach, such as values in millimeters."""
-    size = robot.body.mesh.size
-    most = 3.0  # A winch moves at most so many lengths of body and cable together
-    if np.abs(contractions).max(initial=0.0) <= most * size:  # no winch has a lower limit
-        return
-    bare = {winch.name: 0.0 for winch in robot.winches}
-    for cable, ratio in zip(robot.cables, robot.spool_ratios, strict=True):
-        bare[cable.winch] = max(bare[cable.winch], cable.length / abs(float(ratio)))
-    for winch, value in zip(robot.winches, contractions, strict=True):
-        if abs(value) > most * (size + bare[winch.name]):
-            raise InputError(
-                f'the contraction of winch "{winch.name}", {value:g} m, is far more than the body, {size:.3g} m, and '
-                "all of its cable; contractions are in meters: 12 mm is 0.012"
-            )

@@ -44,7 +44,7 @@ def find_contacts(simulation: Simulation, pose: Equilibrium) -> tuple[ContactPat
     Raises:
         InputError: no pose of this robot.
     """
-    check_pose(pose, simulation.robot.body.mesh.nodes.shape, len(simulation.robot.winches), what="the pose")
+    check_pose(pose, simulation.robot.body.mesh.nodes.shape, simulation.robot.num_controls, what="the pose")
     where = pose.unknowns
     assembly = simulation.path.with_history(pose) if simulation.assembly.has_history else simulation.assembly
     names = dict(zip(simulation.body.obstacles, (each.name for each in simulation.robot.obstacles), strict=True))

@@ -1,6 +1,7 @@
 """Files of poses (JSON) and of motions (NumPy), written and read."""
 
 import json
+import math
 import shutil
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -37,6 +38,7 @@ def pose_facts(robot: Robot, pose: Equilibrium) -> dict[str, Any]:
         "contractions": {
             winch.name: float(value) for winch, value in zip(robot.winches, pose.contractions, strict=True)
         },
+        **({"drives": drives} if (drives := _drive_facts(pose)) else {}),
         "cables": [cable.name for cable in robot.cables],
         "tensions": [float(tension) for tension in pose.tensions],
         "energy": pose.energy,
@@ -46,6 +48,14 @@ def pose_facts(robot: Robot, pose: Equilibrium) -> dict[str, Any]:
         "buckled": pose.result.buckled,
         "iterations": pose.result.iterations,
         "markers": {name: [float(value) for value in place] for name, place in pose.markers.items()},
+    }
+
+
+def _drive_facts(pose: Equilibrium) -> dict[str, dict[str, float]]:
+    """Angle or travel of each drive."""
+    return {
+        drive.name: {"angle_deg": math.degrees(value)} if drive.turns else {"travel_mm": 1e3 * float(value)}
+        for drive, value in zip(pose.robot.drives, pose.drives, strict=True)
     }
 
 

@@ -1,5 +1,4 @@
 """`Simulation`: quasi-static equilibria, sensitivities and motions of one robot."""
-
 # Of the thesis (docs/thesis.md): R17, R23 to R29, E14, R33, E16
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -17,7 +16,9 @@ from hydrostat.robot import Robot
 from hydrostat.simulation.body_physics import BodyPhysics
 from hydrostat.simulation.cable_energies import cable_energy, friction_energy
 from hydrostat.simulation.contraction_profile import ContractionProfile, check_profile
-from hydrostat.simulation.equilibrium import Contractions, Equilibrium, check_apart, check_pose, contraction_values
+from hydrostat.simulation.controls import Contractions, contraction_values, split_controls
+from hydrostat.simulation.drive_energies import drive_energies
+from hydrostat.simulation.equilibrium import Equilibrium, check_apart, check_pose
 from hydrostat.simulation.route_points import RoutePoints, route_points
 from hydrostat.simulation.sensitivities.adjoint import Sensitivity, cotangents, response, sensitivity
 from hydrostat.simulation.sensitivities.friction import FrictionSensitivities, friction_adjoint, friction_sensitivities
@@ -70,15 +71,15 @@ class Simulation:
         self.route_points: RoutePoints = route_points(robot)
         self.cables = cable_energy(robot, self.route_points)
         self.friction = friction_energy(robot, self.route_points)
-        more = [self.friction or self.cables, *energies]
-        self.assembly: Assembly = self.body.assembly.with_added_energies(more, control_count=len(robot.winches))
+        more = [self.friction or self.cables, *drive_energies(robot, self.body.pins), *energies]
+        self.assembly: Assembly = self.body.assembly.with_added_energies(more, control_count=robot.num_controls)
         self._more = tuple(energies)
         springs = [*(cable.stiffness for cable in robot.cables), *(energy.stiffest for energy in energies)]
         hidden = self.body.round_off(max(springs, default=0.0))
         self.solver = StaticSolver(self.assembly, self.options, hidden, self.body.warp)
 
     def as_contractions(self, given: Contractions) -> Vector:
-        """Contractions as an array in winch order [m] (InputError: not one number in meters for each winch)."""
+        """Contractions [m], then values of drives [rad or m], as an array (InputError: not one number for each)."""
         return contraction_values(self.robot, given)
 
     def solve(
@@ -92,16 +93,15 @@ class Simulation:
     ) -> Equilibrium:
         """Equilibrium at the given contractions.
 
-        With friction it depends on the way there. This is then followed from `start` in small increments, in which all
-        contractions change in proportion.
+        With friction it depends on the way there, which is followed from `start` in small steps, all in proportion.
 
         Args:
-            contractions: cable taken in [m].
+            contractions: cable taken in [m], and value of each drive [rad or m]; those left out are 0.
             start: a pose to begin from; the rest pose if left out.
             strict: raise when the solver does not converge, rather than return the best pose found.
             seconds: after which it stops, with what it has; no limit if left out.
-            accuracy: approximate distance of a node from equilibrium [m] for streamed poses, for instance 1e-5; the
-                remaining distance is `pose.result.error`. None: solved to rounding, as always with friction.
+            accuracy: approximate distance of a node from equilibrium [m] for streamed poses, for instance 1e-5; what
+                remains is `pose.result.error`. None: solved to rounding, as always with friction.
 
         Raises:
             InputError: contractions that do not fit the robot, or a limit or an accuracy that is not above 0.
@@ -115,7 +115,7 @@ class Simulation:
         if self.assembly.has_history:
             result, history = self.path.with_timeout(seconds).solve(goal, start, known)
         else:
-            begin = None if start is None else (start.unknowns, start.contractions, known)
+            begin = None if start is None else (start.unknowns, start.controls, known)
             result, history = solver.solve(goal, (self.body.rest_unknowns, self.rest_stiffness), begin), np.zeros(0)
         pose = self.make_pose(goal, result, history)
         if strict and not result.converged:
@@ -137,7 +137,7 @@ class Simulation:
         A pose that is not found leaves NaN and its reason in its row. Ctrl-C ends it after the poses under way.
 
         Args:
-            contractions: cable taken in [m], (poses, winches), or each as in `solve`.
+            contractions: values of the controls, (poses, controls), or each as in `solve`.
             jacobians: also compute Jacobians of the markers.
             nodes: keep all nodes.
             threads: largest number of threads; small bodies, where two are slower, use one.
@@ -151,7 +151,7 @@ class Simulation:
         given = [self.as_contractions(each) for each in contractions]
         self.check_start(start)
         self.body.check_held(None if start is None else start.unknowns, guided=bool(self._more))
-        goals = np.array(given).reshape(len(given), len(self.robot.winches))
+        goals = np.array(given).reshape(len(given), self.robot.num_controls)
         _ = self.solver.with_timeout(seconds), self.rest_stiffness  # checked and made before threads ask for them
         slopes = self.marker_jacobian if jacobians else None
 
@@ -164,14 +164,14 @@ class Simulation:
 
     def diagnose(self, pose: Equilibrium) -> tuple[str, ...]:
         """Explain a solve without an equilibrium: the cable with the highest tension, an almost flat element."""
-        forces = self.forces(pose.unknowns, pose.contractions).reshape(self.assembly.shape)[: len(pose.nodes)]
+        forces = self.forces(pose.unknowns, pose.controls).reshape(self.assembly.shape)[: len(pose.nodes)]
         return diagnose_failure(self.robot, self.cables, pose.nodes, pose.contractions, forces)
 
     def check_start(self, start: Equilibrium | None) -> None:
         """Check that a solve can begin there (InputError: another robot, not finite, no slips, or crossing itself)."""
         if start is not None:
             history = self.assembly.history if self.assembly.has_history else None
-            check_pose(start, self.robot.body.mesh.nodes.shape, len(self.robot.winches), history)
+            check_pose(start, self.robot.body.mesh.nodes.shape, self.robot.num_controls, history)
             if self.robot.contact and self.stiffness_of(start) is None:
                 check_apart(self.robot.body.mesh, start.nodes)
 
@@ -184,13 +184,13 @@ class Simulation:
             InputError: other energies that remember the way, or others beside cables with friction.
             NotConvergedError: the Hessian is singular there: the pose is about to snap.
         """
-        check_pose(pose, self.robot.body.mesh.nodes.shape, len(self.robot.winches), what="the pose")
+        check_pose(pose, self.robot.body.mesh.nodes.shape, self.robot.num_controls, what="the pose")
         if not self.assembly.has_history:
-            right = -self.assembly_at(pose).control_derivative(pose.unknowns, pose.contractions).toarray()
+            right = -self.assembly_at(pose).control_derivative(pose.unknowns, pose.controls).toarray()
             return self.response(pose, right).reshape(*self.assembly.shape, -1)[: len(pose.nodes)]
         cables, stiffness = self._rubbing(pose)
         compliance = stiffness.compliance_to(cables.span_columns(pose.nodes))
-        return cables.moves(pose.nodes, pose.contractions, compliance).reshape(*pose.nodes.shape, -1)
+        return cables.moves(pose.nodes, pose.controls, compliance).reshape(*pose.nodes.shape, -1)
 
     def marker_jacobian(self, pose: Equilibrium) -> Float[np.ndarray, "markers dim winches"]:
         """Sensitivities of the markers at an equilibrium, in marker order; errors as for `jacobian`."""
@@ -226,7 +226,7 @@ class Simulation:
     def _rubbing(self, pose: Equilibrium) -> tuple[FrictionCableEnergy, Stiffness]:
         if self.friction is None or self._more or any(map(self.robot.friction_of, self.robot.obstacles)):
             raise InputError("physics that remember the way have a derivative only for cables with friction alone")
-        return self.friction.with_history(pose.history, pose.nodes, pose.contractions), self._regular(pose)
+        return self.friction.with_history(pose.history, pose.nodes, pose.controls), self._regular(pose)
 
     def response(
         self, pose: Equilibrium, forces: Float[np.ndarray, "dofs columns"]
@@ -243,7 +243,7 @@ class Simulation:
         """
         if self.assembly.has_history:
             raise InputError("with friction a pose gives way to forces as it goes on or back; ask for its adjoint")
-        return response(self.assembly_at(pose), self._regular(pose), (pose.unknowns, pose.contractions), forces)
+        return response(self.assembly_at(pose), self._regular(pose), (pose.unknowns, pose.controls), forces)
 
     def motion_at_rest(self, pose: Equilibrium | None = None, *, velocities: Nodes | None = None) -> Motion:
         """Return a motion that starts in a pose, by default the rest pose, with relaxed viscous branches.
@@ -255,7 +255,7 @@ class Simulation:
         self.check_start(pose)
         if pose is None:
             return self.dynamics.motion_at_rest(self.body.rest_unknowns, self.as_contractions({}), velocities, None)
-        return self.dynamics.motion_at_rest(pose.unknowns, pose.contractions, velocities, pose.history)
+        return self.dynamics.motion_at_rest(pose.unknowns, pose.controls, velocities, pose.history)
 
     def step(
         self,
@@ -333,8 +333,8 @@ class Simulation:
     def stiffness(self, pose: Equilibrium) -> Stiffness:
         """Factorized Hessian at a pose; after a solve it may be that of the start of its last step."""
         if self.assembly.has_history:
-            return self.path.with_history(pose).stiffness(pose.unknowns, pose.contractions)
-        return self.stiffness_of(pose) or self.assembly_at(pose).stiffness(pose.unknowns, pose.contractions)
+            return self.path.with_history(pose).stiffness(pose.unknowns, pose.controls)
+        return self.stiffness_of(pose) or self.assembly_at(pose).stiffness(pose.unknowns, pose.controls)
 
     def _regular(self, pose: Equilibrium) -> Stiffness:
         if (stiffness := self.stiffness(pose)).singular:
@@ -354,12 +354,12 @@ class Simulation:
     @cached_property
     def rest(self) -> Equilibrium:
         """Pose without contractions, under gravity (NotConvergedError: as for `solve`)."""
-        return self.solve(np.zeros(len(self.robot.winches)))
+        return self.solve(np.zeros(self.robot.num_controls))
 
     @cached_property
     def rest_stiffness(self) -> Stiffness:
         """Hessian at the nodes' rest positions."""
-        nodes, idle = self.body.rest_unknowns, np.zeros(len(self.robot.winches))
+        nodes, idle = self.body.rest_unknowns, np.zeros(self.robot.num_controls)
         near = self.assembly.with_active_terms(nodes)
         if self._more:
             return near.stiffness(nodes, idle)
@@ -388,7 +388,7 @@ class Simulation:
         positions, count = self.marker_anchors.positions(result.nodes), self.body.node_count
         return Equilibrium(
             robot=self.robot,
-            contractions=contractions,
+            **split_controls(self.robot, contractions),
             nodes=result.nodes if count is None else result.nodes[:count],
             carried=None if count is None else result.nodes[count:],
             markers={marker.name: position for marker, position in zip(self.robot.markers, positions, strict=True)},

@@ -10,6 +10,7 @@ from hydrostat.geometry import Mesh, locate
 from hydrostat.mechanics import (
     CableEnergy,
     CableSegments,
+    DriveEnergy,
     Energy,
     FibreEnergy,
     NeoHookean,
@@ -145,6 +146,17 @@ def pins(dim: int, random: np.random.Generator) -> State:
     return State(energy, deform(mesh, random), np.zeros(CONTROLS))
 
 
+def drives(dim: int, random: np.random.Generator) -> State:
+    """Two pins that turn and one that slides, of four."""
+    state = pins(dim, random)
+    assert isinstance(state.energy, PinEnergy)
+    first, second = random.uniform(-0.1, 0.1, (2, 3, dim))
+    turns = np.array([True, True, False])
+    terms, controls = np.array([0, 2, 3]), np.array([1, 1, 2])
+    energy = DriveEnergy(state.energy, terms=terms, controls=controls, directions=(first, second), turns=turns)
+    return State(energy, state.nodes, random.uniform(-1.5, 1.5, CONTROLS))
+
+
 def weight(dim: int, random: np.random.Generator) -> State:
     mesh = rough_mesh(dim, random)
     energy = WeightEnergy(mesh.nodes, random.standard_normal(mesh.nodes.shape))
@@ -168,6 +180,7 @@ _EPS = float(LAW.smoothing[0])
 ENERGIES: dict[str, Callable[[int, np.random.Generator], State]] = {
     "neo-hookean": neo_hookean,
     "pins": pins,
+    "drives": drives,
     "weight": weight,
     "rod": lambda dim, random: rod(dim, random, bent=False),
     "rod that is bent at rest": lambda dim, random: rod(dim, random, bent=True),

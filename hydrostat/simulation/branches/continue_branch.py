@@ -10,6 +10,7 @@ from hydrostat.errors import InputError
 from hydrostat.mechanics import NewtonResult, Reason
 from hydrostat.simulation.branches.bordered import Bordered, PathPoint, Tangent
 from hydrostat.simulation.branches.branch import Branch, BranchPoint, BranchReason, CriticalKind, CriticalPoint
+from hydrostat.simulation.controls import split_controls
 from hydrostat.simulation.equilibrium import Equilibrium, check_pose
 from hydrostat.simulation.simulation import Contractions, Simulation
 from hydrostat.simulation.static_obstacles import require_static_obstacles
@@ -102,7 +103,7 @@ class _Follower:
     ) -> None:
         self.simulation, self.start, self.goal = simulation, start, goal
         self.around, self.options = around, options
-        self.system = Bordered(simulation, start.contractions, goal)
+        self.system = Bordered(simulation, start.controls, goal)
         self.points: list[BranchPoint] = []
         self.critical: list[CriticalPoint] = []
 
@@ -112,7 +113,7 @@ class _Follower:
         self._keep(place)
         step = self.options.first_step
         reason = BranchReason.STEP_LIMIT
-        if (self.start.contractions == self.goal).all():
+        if (self.start.controls == self.goal).all():
             return self._branch(BranchReason.ARRIVED)
         for _ in range(self.options.steps):
             trial = self._step(place, step)
@@ -231,7 +232,7 @@ class _Follower:
 
     def _branch(self, reason: BranchReason) -> Branch:
         return Branch(
-            begin=self.start.contractions,
+            begin=self.start.controls,
             goal=self.goal,
             points=tuple(self.points),
             critical=tuple(self.critical),
@@ -246,7 +247,7 @@ def _solve_at(simulation: Simulation, controls: Callable[[float], Vector], place
     energy = simulation.assembly.value(place.nodes, contractions)
     return Equilibrium(
         robot=simulation.robot,
-        contractions=contractions,
+        **split_controls(simulation.robot, contractions),
         nodes=place.nodes,
         markers={marker.name: at for marker, at in zip(simulation.robot.markers, positions, strict=True)},
         tensions=simulation.tensions(place.nodes, contractions),

@@ -160,7 +160,7 @@ def _sort(
     near: float,
 ) -> None:
     """Add a pose to those that are the same, or as a new one."""
-    if not (pose.result.converged and pose.result.stable and (pose.contractions == goal).all()):
+    if not (pose.result.converged and pose.result.stable and (pose.controls == goal).all()):
         lost.append(way.name)
         return
     for known, names in groups:

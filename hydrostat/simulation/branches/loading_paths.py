@@ -56,7 +56,7 @@ def loading_paths_to(simulation: Simulation, goal: Vector, count: int, seed: int
 
 def follow_approach(simulation: Simulation, way: Approach) -> Equilibrium:
     """Return the pose at the end of a loading path; not converged if no equilibrium was found on it."""
-    idle = np.zeros(len(simulation.robot.winches))
+    idle = np.zeros(simulation.robot.num_controls)
     first, *others = way.stops
     if way.at_once:
         pose = simulation.solve(first, strict=False)
@@ -68,9 +68,10 @@ def follow_approach(simulation: Simulation, way: Approach) -> Equilibrium:
 
 
 def _range(robot: Robot) -> tuple[Vector, Vector]:
-    """Least and largest contraction of each winch [m]."""
-    low = np.array([-winch.release for winch in robot.winches])
-    return low, np.array([winch.travel for winch in robot.winches])
+    """Least and largest contraction of each winch [m], and value of each drive [rad or m]."""
+    limits = [(-winch.release, winch.travel) for winch in robot.winches] + [drive.limits for drive in robot.drives]
+    low, high = np.array(limits).reshape(-1, 2).T
+    return low, high
 
 
 def _in_turn(kinds: list[Iterator[Approach]]) -> Iterator[Approach]:
@@ -98,7 +99,7 @@ def _orders(robot: Robot, goal: Vector, random: np.random.Generator) -> Iterator
             now = now.copy()
             now[winch] = goal[winch]
             stops.append(now)
-        names = ", ".join(robot.winches[winch].name for winch in order)
+        names = ", ".join((*robot.winches, *robot.drives)[winch].name for winch in order)
         yield Approach(name=f"one winch after the other: {names}", stops=tuple(stops))
 
 
@@ -123,7 +124,7 @@ def _elsewhere(robot: Robot, goal: Vector, random: np.random.Generator) -> Itera
 def _in_steps(simulation: Simulation, pose: Equilibrium, goal: Vector) -> Equilibrium:
     """From pose to pose in even steps of a small part of a winch's range; no further than it converges."""
     low, high = _range(simulation.robot)
-    begin = pose.contractions
+    begin = pose.controls
     steps = ceil(float((np.abs(goal - begin) / (high - low)).max(initial=0.0)) / _STEP - 1e-9)
     # More steps are not taken, however far beyond its range a winch goes; they are longer then
     most_steps = 100
@@ -145,7 +146,7 @@ def _let_go(simulation: Simulation, pose: Equilibrium, push: Nodes, reach: float
     step = stiffness.solve(push.ravel()).reshape(push.shape)
     step *= reach * robot.body.mesh.size / np.linalg.norm(step, axis=1).max()
     pushed = _push_nodes(simulation, pose, step)
-    return simulation.solve(pose.contractions, start=replace(pose, nodes=pushed), strict=False)
+    return simulation.solve(pose.controls, start=replace(pose, nodes=pushed), strict=False)
 
 
 def _push_nodes(simulation: Simulation, pose: Equilibrium, step: Nodes) -> Nodes:
@@ -153,7 +154,7 @@ def _push_nodes(simulation: Simulation, pose: Equilibrium, step: Nodes) -> Nodes
     halvings = 12
     for _ in range(halvings):
         nodes = simulation.body.warp(pose.nodes, step)
-        if np.isfinite(simulation.assembly.with_active_terms(nodes).value(nodes, pose.contractions)):
+        if np.isfinite(simulation.assembly.with_active_terms(nodes).value(nodes, pose.controls)):
             return nodes
         step = 0.5 * step
     return pose.nodes
@@ -181,6 +182,6 @@ def friction_hysteresis(simulation: Simulation, pose: Equilibrium, *, overshoot:
         raise InputError(f"overshoot must be a share above 0, not {overshoot:g}")
     if not simulation.assembly.has_history:
         return {}
-    above = simulation.solve((1.0 + overshoot) * pose.contractions, start=pose)
-    back = simulation.solve(pose.contractions, start=above)
+    above = simulation.solve((1.0 + overshoot) * pose.controls, start=pose)
+    back = simulation.solve(pose.controls, start=above)
     return {name: float(np.linalg.norm(back.markers[name] - place)) for name, place in pose.markers.items()}

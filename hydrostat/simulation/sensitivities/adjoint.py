@@ -1,7 +1,7 @@
 """`sensitivity`: sensitivities of a number that depends on a pose to all that the robot is made of, by the adjoint."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,7 @@ from hydrostat.geometry import locate
 from hydrostat.mechanics import Assembly, CableEnergy, Stiffness
 from hydrostat.robot import Material, Robot
 from hydrostat.simulation.body_physics import BodyPhysics
+from hydrostat.simulation.drive_energies import drive_energies
 from hydrostat.simulation.equilibrium import Equilibrium
 from hydrostat.simulation.route_points import RoutePoints, RouteSlopes
 
@@ -54,6 +55,7 @@ class Sensitivity:
 
     Attributes:
         contractions: derivative by each winch's contraction [1/m].
+        drives: derivative by the value of each drive [1/rad or 1/m].
         slack: derivative by each cable's slack [1/m].
         routes: derivative by the rest position of each point of each cable [1/m], which changes its position in the
             body and the rest lengths next to it. The first point of a cable of a winch in the world moves in space.
@@ -90,6 +92,7 @@ class Sensitivity:
     gravity: Vector
     rod_axial: Vector
     rod_bending: Vector
+    drives: Vector = field(default_factory=lambda: np.zeros(0))
 
 
 def sensitivity(
@@ -123,18 +126,19 @@ def sensitivity(
     """
     nodes, tensions = cotangents(pose, assembly.shape, len(cables.winches), nodes, tensions)
     assembly = assembly.with_active_terms(pose.nodes)
-    elongations = cables.elongations(pose.nodes, pose.contractions)
+    elongations = cables.elongations(pose.nodes, pose.controls)
     tangents, pulls = cables.law.tangent(elongations), cables.law.tension(elongations)
     columns = cables.columns(pose.nodes)
     right = nodes.ravel() + columns @ (tangents * tensions)
     field = response(right[:, None])[:, 0]
     taken = np.bincount(cables.winches, cables.ratios * tangents * tensions, assembly.control_count).astype(float)
-    by_controls = taken - assembly.control_derivative(pose.nodes, pose.contractions).T @ field
+    by_controls = taken - assembly.control_derivative(pose.nodes, pose.controls).T @ field
     by_tension = tensions - columns.T @ field
     by_elongation = tangents * by_tension
     field = field.reshape(assembly.shape)
     return Sensitivity(
-        contractions=by_controls,
+        contractions=by_controls[: len(pose.contractions)],
+        drives=by_controls[len(pose.contractions) :],
         slack=-by_elongation,
         routes=points.by_cable(by_routes(points, cables, pose.nodes, field[None], by_elongation[None], pulls)[0]),
         cable_stiffness=by_tension * pulls / cables.law.stiffness,
@@ -176,6 +180,8 @@ def by_body(body: BodyPhysics, pose: Equilibrium, field: Nodes) -> dict[str, Any
     for energy in body.assembly.energies:
         for name, work in energy.parameter_work(pose.nodes, field).items():
             works[name] = works[name] + work if name in works else work
+    for moved in drive_energies(pose.robot, body.pins):
+        works["support_stiffness"] = works["support_stiffness"] + moved.support_work(field, pose.controls)
     materials = pose.robot.body.materials
     none = np.zeros(len(materials))
     shear, squeeze = (np.resize(works.get(name, none), len(materials)) for name in ("mu", "lame"))

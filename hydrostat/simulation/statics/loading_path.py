@@ -39,7 +39,7 @@ class LoadingPath:
 
     def __init__(self, robot: Robot, solver: StaticSolver, begin: Nodes) -> None:
         """Physics of a robot, and its unknowns at rest [m]."""
-        self._rest = _PathState(begin, np.zeros(len(robot.winches)), solver.assembly)
+        self._rest = _PathState(begin, np.zeros(robot.num_controls), solver.assembly)
         self._solver = solver
         wholes = [
             (cable.winch, cable.length / abs(ratio))
@@ -48,7 +48,8 @@ class LoadingPath:
         lengths = [
             min((whole for own, whole in wholes if own == winch.name), default=np.inf) for winch in robot.winches
         ]
-        self._increment = _INCREMENT * np.array(lengths)
+        steps = [_TURN if drive.turns else _INCREMENT * robot.body.mesh.size for drive in robot.drives]
+        self._increment = np.append(_INCREMENT * np.array(lengths), steps)
 
     def with_timeout(self, seconds: float | None) -> "LoadingPath":
         """Return the same path with a timeout counted from now [s]; itself if that is None."""
@@ -73,7 +74,7 @@ class LoadingPath:
         """
         state = replace(self._rest, known=known)
         if start is not None:
-            state = _PathState(start.unknowns, start.contractions, self.with_history(start), known=known)
+            state = _PathState(start.unknowns, start.controls, self.with_history(start), known=known)
         begin = state.contractions
         steps = max(1, ceil(float((np.abs(goal - begin) / self._increment).max(initial=0.0)) - 1e-9))
         iterations = 0
@@ -100,7 +101,7 @@ class LoadingPath:
     def with_history(self, pose: Equilibrium) -> Assembly:
         """Return the physics with the history of a pose."""
         return self._rest.assembly.with_active_terms(pose.unknowns).with_history(
-            pose.history, pose.unknowns, pose.contractions
+            pose.history, pose.unknowns, pose.controls
         )
 
     def _advance(self, state: _PathState, goal: Vector, halvings: int = 0) -> _PathState:
@@ -170,6 +171,7 @@ def _with_count(state: _PathState, iterations: int) -> _PathState:
 
 
 _INCREMENT = 0.05
+_TURN = 0.1  # Largest increment of an angle [rad]
 """Largest increment of a contraction, as a share of that which would take in a whole cable of the winch."""
 
 

@@ -88,6 +88,8 @@ class Dynamics:
         options: NewtonOptions,
     ) -> None:
         """Take the robot's physics at rest, functions for tensions and markers, and the Newton options."""
+        if robot.drives:
+            raise InputError(f'drives, such as "{robot.drives[0].name}", move in statics only; remove them for motion')
         material = robot.body.material
         self.robot, self.masses = robot, body.inertias
         self._statics, self._tensions, self._markers, self._options = statics, tensions, markers, options

@@ -1,0 +1,74 @@
+"""Controls of a robot: contractions of its winches, then values of its drives."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.errors import InputError
+from hydrostat.robot import Robot, check_radians
+from hydrostat.units import plural
+
+Contractions = Mapping[str, float] | Sequence[float] | Vector
+"""Cable taken in [m] and values of drives [rad or m]: by name (others 0), or numbers of winches, then of drives."""
+
+
+def split_controls(robot: Robot, controls: Vector) -> dict[str, Vector]:
+    """Contractions and values of the drives, as fields of an `Equilibrium`."""
+    count = len(robot.winches)
+    return (
+        {"contractions": controls[:count], "drives": controls[count:]} if robot.drives else {"contractions": controls}
+    )
+
+
+def contraction_values(robot: Robot, given: Contractions) -> Vector:
+    """Contractions as an array in winch order [m], then the values of the drives [rad or m].
+
+    Raises:
+        InputError: an unknown winch or drive, a wrong number of values, or a value that is not finite.
+    """
+    winches, wanted = (*robot.winches, *robot.drives), given
+    if isinstance(given, Mapping):
+        drives = {drive.name for drive in robot.drives}
+        for name in given:
+            if name not in drives:
+                robot.winch(name)
+        wanted = np.array([given.get(winch.name, 0.0) for winch in winches], dtype=object)
+    try:
+        values = np.array(wanted, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"contractions must be numbers [m], not {given!r}") from None
+    if values.ndim > 1:
+        raise InputError(
+            f"contractions must be one number for each of {len(winches)} winches, not an array of {values.shape}; "
+            "solve_batch takes a row for each pose"
+        )
+    names = ", ".join(winch.name for winch in winches)
+    if values.ndim == 0:
+        raise InputError(f"contractions must be given by winch, or a number for each of {names}, not {given!r:.60}")
+    if robot.drives and values.shape == (len(robot.winches),):
+        values = np.append(values, np.zeros(len(robot.drives)))
+    if values.shape != (len(winches),):
+        raise InputError(f"{values.size} contractions given for {plural(len(winches), 'winch')}: {names}")
+    if not np.isfinite(values).all():
+        raise InputError("a contraction is not a finite number")
+    _check_meters(robot, values[: len(robot.winches)])
+    check_radians(robot.drives, values[len(robot.winches) :])
+    return values
+
+
+def _check_meters(robot: Robot, contractions: Vector) -> None:
+    """Reject contractions that no winch can reach, such as values in millimeters."""
+    size = robot.body.mesh.size
+    most = 3.0  # A winch moves at most so many lengths of body and cable together
+    if np.abs(contractions).max(initial=0.0) <= most * size:  # no winch has a lower limit
+        return
+    bare = {winch.name: 0.0 for winch in robot.winches}
+    for cable, ratio in zip(robot.cables, robot.spool_ratios, strict=True):
+        bare[cable.winch] = max(bare[cable.winch], cable.length / abs(float(ratio)))
+    for winch, value in zip(robot.winches, contractions, strict=True):
+        if abs(value) > most * (size + bare[winch.name]):
+            raise InputError(
+                f'the contraction of winch "{winch.name}", {value:g} m, is far more than the body, {size:.3g} m, and '
+                "all of its cable; contractions are in meters: 12 mm is 0.012"
+            )
