@@ -28,6 +28,9 @@ def check(
 ) -> None:
     """Check a robot: report errors and warnings.
 
+    Without options nothing is simulated: mesh, parts, rods, cables, winches and fit of the kit are checked. `hydrostat
+    fabricate` also checks the motor and line loads of the poses.
+
     Example: hydrostat check gallery:starfish --thorough
     """
     from hydrostat.robot import describe_cable_side
@@ -57,7 +60,7 @@ def check(
         _print_reach(found)
     left_out = ["marker workspaces"] * reaches + ["out-of-plane motion"] * (bool(words) and not filled)
     if left_out and not thorough:
-        print(f"not computed: {' and '.join(left_out)}. Add --thorough.")
+        print(f"not computed: {' and '.join(left_out)}. Add --thorough. The rest is checked.")
     _print_judgement(found)
 
 

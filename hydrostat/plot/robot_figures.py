@@ -126,7 +126,7 @@ def _draw_parts(
         draw_rods(sheet, pane, robot, robot.body.mesh.nodes)
         arrows.append(draw_loads(sheet, pane, robot, robot.body.mesh.nodes))
     labels = drawn[0].labels(sheet, np.array(list(panes[0].locate_points(rest).values())).reshape(-1, 2))
-    labels.avoid([np.linspace(*ends, 12) for ends in arrows[0].values()])
+    labels.avoid([np.linspace(start, end, 12) for start, end in arrows[0].values()])
     name_loads(labels, robot, arrows[0])
     return drawn[0], labels
 
@@ -285,7 +285,7 @@ def _in_pose(
         arrows.append(draw_loads(sheet, pane, robot, pose.nodes))
     points = [*pose.markers.values(), *goals]
     labels = drawn[0].labels(sheet, panes[0].places(np.array(points)) if points else np.empty((0, 2)))
-    labels.avoid([np.linspace(*ends, 12) for ends in arrows[0].values()])
+    labels.avoid([np.linspace(start, end, 12) for start, end in arrows[0].values()])
     name_loads(labels, robot, arrows[0])
     if robot.cables:
         scale.draw_bar(sheet, of="cable tension")

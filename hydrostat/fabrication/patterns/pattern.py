@@ -249,8 +249,8 @@ def _warnings(draft: _PatternDraft, thickness: float, *, gusset: bool) -> tuple[
     if draft.robot.cables and len(sewn_sides(draft.robot)) == 1:
         (panel,) = sewn_sides(draft.robot)
         warnings.append(
-            f"the cables are sewn on the {panel} alone, so they also curl the body toward it (`hydrostat check` prints "
-            'by how much). Set face = "pairs" before [body] in the robot file to sew each on both panels'
+            f"the cables are sewn on the {panel} alone, so they also curl the body toward it (`hydrostat check ROBOT "
+            '--thorough` prints by how much). Set face = "pairs" before [body] in the robot file to sew each on both panels'
         )
     return tuple(warnings)
 
