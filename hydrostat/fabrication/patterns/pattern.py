@@ -250,7 +250,8 @@ def _warnings(draft: _PatternDraft, thickness: float, *, gusset: bool) -> tuple[
         (panel,) = sewn_sides(draft.robot)
         warnings.append(
             f"the cables are sewn on the {panel} alone, so they also curl the body toward it (`hydrostat check ROBOT "
-            '--thorough` prints by how much). Set face = "pairs" before [body] in the robot file to sew each on both panels'
+            '--thorough` prints by how much). Set face = "pairs" before [body] in the robot file to sew each on both '
+            "panels"
         )
     return tuple(warnings)
 
