@@ -1,12 +1,14 @@
 """`hydrostat identify`."""
 
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hydrostat.cli.folders import OutFolder, RobotFolder, folder_of, require_folder
+from hydrostat.cli.folders import RobotFolder, folder_of, require_folder
+from hydrostat.cli.options import MostTension, parse_optional, positive
 from hydrostat.cli.waiting import read_robot
 from hydrostat.errors import InputError
 from hydrostat.units import plural
@@ -19,34 +21,58 @@ if TYPE_CHECKING:
 def identify(
     robot: RobotFolder,
     measurements: Annotated[
-        Path,
-        typer.Argument(metavar="TABLE.csv", help="Columns left_mm per winch, tip_x_mm ... per marker, tip_load_g."),
-    ],
-    out: OutFolder,
+        Path | None,
+        typer.Argument(
+            metavar="TABLE.csv",
+            help="Columns left_mm per winch, tip_x_mm ... per marker, tip_load_g.",
+            show_default=False,
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Output folder (created if missing).")
+    ] = None,
     fit: Annotated[
         str | None,
         typer.Option(
             "--fit", metavar="NAMES", help="Parameters to fit, with commas.", show_default="all that are common"
         ),
     ] = None,
+    suggest: Annotated[
+        int | None, typer.Option(metavar="N", help="Print the N most informative measurements to make.")
+    ] = None,
+    hang: Annotated[
+        list[str] | None,
+        typer.Option(metavar="MASS", help="Mass that you can hang at a marker, for --suggest, e.g. 50g. Repeatable."),
+    ] = None,
+    tension: MostTension = None,
 ) -> None:
     """Fit a robot's parameters to measured marker positions.
 
     Parameters: young, poisson, density, stiffness (of cables), zero and gain (of winches), friction, pins, gravity,
     rods, frame (of the measurement). Writes the fitted robot, parameters.csv with 95 % intervals and identified.png.
-    Every fifth of ten or more rows is also predicted by a fit that did not see it.
+    Every fifth of ten or more rows is also predicted by a fit that did not see it. With --suggest, the command prints
+    file names of photographs to take, the most informative first.
 
     Example: hydrostat identify my_starfish measured.csv --out build/fitted
     """
     from hydrostat.identification import identify as identify_robot
     from hydrostat.identification import read_measurements
 
-    require_folder(out)
-    if out.resolve() == folder_of(robot).resolve():
-        raise InputError(f"--out {out}: is the folder of the robot. Name another one.")
     names = None if fit is None else tuple(name.strip() for name in fit.split(",") if name.strip())
     if names == ():
         raise InputError('--fit "": name at least one parameter')
+    if suggest is not None:
+        if measurements is not None or out is not None:
+            raise InputError("--suggest: plans measurements and writes nothing. Remove TABLE.csv and --out.")
+        _suggest(read_robot(robot), suggest, names, hang or [], tension)
+        return
+    if hang or tension is not None:
+        raise InputError("--hang and --tension: need --suggest. Add it.")
+    if measurements is None or out is None:
+        raise InputError("give TABLE.csv and --out DIR to fit, or --suggest N to plan measurements")
+    require_folder(out)
+    if out.resolve() == folder_of(robot).resolve():
+        raise InputError(f"--out {out}: is the folder of the robot. Name another one.")
     loaded = read_robot(robot)
     table = read_measurements(measurements, loaded)
     began = time.process_time()
@@ -56,6 +82,37 @@ def identify(
     _print_errors(found, table, time.process_time() - began)
     _warn(loaded, table, found)
     print(f"Wrote {out}. Next: hydrostat check {out}")
+
+
+def _suggest(
+    robot: "Robot", count: int, names: tuple[str, ...] | None, hang: Sequence[str], tension: str | None
+) -> None:
+    """Print measurements that tell most about the parameters, named as `hydrostat measure` reads them."""
+    from hydrostat.identification import suggest_measurements
+    from hydrostat.units import FORCE, MASS
+
+    most = parse_optional("--tension", tension, FORCE)
+    found = suggest_measurements(
+        robot,
+        count,
+        fit=names,
+        masses=[positive("--hang", text, MASS) for text in hang],
+        tension=float("inf") if most is None else most,
+    )
+    print(f"Take these photographs, chosen from {plural(found.candidates, 'pose')}. The first show most.")
+    for command, masses in zip(found.commands, found.masses, strict=True):
+        parts = [f"{w.name}={1e3 * pull:g}mm" for w, pull in zip(robot.winches, command, strict=True) if pull]
+        parts += [f"{marker}={1e3 * mass:g}g" for marker, mass in zip(found.markers, masses, strict=True) if mass]
+        print(f"  {','.join(parts) or 'rest'}.jpg")
+    hidden = [name for name, share in found.deviations.items() if share > HIDDEN]
+    if hidden:
+        print(f"note: these photographs will not show {', '.join(hidden)}.")
+    if not hang and any(name.endswith(".young") for name in hidden):
+        print("note: a hung mass shows a modulus. Add --hang 50g, and gravity to robot.toml.")
+
+
+HIDDEN = 0.7
+"""Uncertainty of a parameter over that of its guess from which on measurements do not show it."""
 
 
 class _Lines:

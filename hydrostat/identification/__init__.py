@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from hydrostat.identification.measurements import Measurements, rms
     from hydrostat.identification.model import IdentificationModel, Parameter
     from hydrostat.identification.read import read_measurements
+    from hydrostat.identification.suggest_measurements import suggest_measurements
 
 __all__ = [
     "KINDS",
@@ -23,6 +24,7 @@ __all__ = [
     "identify",
     "read_measurements",
     "rms",
+    "suggest_measurements",
 ]
 
 open_package(__name__)

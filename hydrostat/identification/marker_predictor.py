@@ -43,6 +43,11 @@ class MarkerPredictor:
         self.model, self.measurements = model, measurements
         self._poses: list[Equilibrium | None] = [None] * len(measurements.commands)
 
+    @property
+    def poses(self) -> list[Equilibrium | None]:
+        """Last equilibrium of each row; None where none was found."""
+        return list(self._poses)
+
     def predict(self, numbers: Vector, *, slopes: bool) -> MarkerPrediction:
         """Places at coordinates of the fit, with their Jacobian if requested.
 

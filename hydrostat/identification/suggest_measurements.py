@@ -1,0 +1,167 @@
+"""`suggest_measurements`: poses and hung masses that tell most about the parameters of a robot."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hydrostat.arrays import Float, Int
+from hydrostat.errors import InputError
+from hydrostat.geometry import find_crossings
+from hydrostat.identification.kinds import named_model
+from hydrostat.identification.marker_predictor import MarkerPredictor
+from hydrostat.identification.measurements import Measurements
+from hydrostat.robot import Robot
+
+MM = 1e-3
+NOISE = 0.01
+"""Standard deviation of a measured coordinate about a good model, as a share of the body's size."""
+
+IDLE = 0.4
+"""Share of the winches that do not contract in a candidate."""
+
+CANDIDATES = 60
+"""Poses of which the best are chosen; at least three for each that is asked for."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SuggestedMeasurements:
+    """Measurements to make, those that tell most first.
+
+    Attributes:
+        commands: contraction of each winch [m], (rows, winches).
+        markers: names of all markers.
+        masses: mass to hang at each marker [kg], (rows, markers).
+        deviations: standard deviation of each parameter after these measurements, over that of its guess.
+        candidates: number of poses they were chosen from.
+    """
+
+    commands: Float[np.ndarray, "rows winches"]
+    markers: tuple[str, ...]
+    masses: Float[np.ndarray, "rows markers"]
+    deviations: dict[str, float]
+    candidates: int
+
+
+def suggest_measurements(
+    robot: Robot,
+    count: int,
+    *,
+    fit: tuple[str, ...] | None = None,
+    masses: Sequence[float] = (),
+    tension: float = np.inf,
+    seed: int = 0,
+) -> SuggestedMeasurements:
+    """Choose poses and hung masses that tell most about the parameters (D-optimal, exact sensitivities as assumed).
+
+    Args:
+        robot: robot as it is assumed to be built; all its markers are measured.
+        count: measurements to make.
+        fit: kinds of parameters, see `KINDS`; those that are fitted by default if left out.
+        masses: masses that can be hung at a marker, one at a time [kg].
+        tension: most tension of a cable [N].
+        seed: seed of the candidates.
+
+    Raises:
+        InputError: no markers, masses without gravity, or fewer poses within the limits than asked for.
+    """
+    if not robot.markers:
+        raise InputError(f"{robot.name}: no [[marker]] in robot.toml. Add one for each point to measure.")
+    if count < 1:
+        raise InputError(f"--suggest {count}: must be 1 or more")
+    if masses and robot.gravity is None:
+        raise InputError('--hang: the robot has no gravity. Add gravity = "-y" to robot.toml.')
+    model = named_model(robot, fit)
+    commands, hung = _candidates(robot, max(CANDIDATES, 3 * count), masses, np.random.default_rng(seed))
+    names = tuple(marker.name for marker in robot.markers)
+    places = np.zeros((len(commands), len(names), robot.body.mesh.dim))
+    predictor = MarkerPredictor(model, Measurements(commands=commands, markers=names, places=places, masses=hung))
+    found = predictor.predict(np.zeros(len(model.parameters)), slopes=True)
+    assert found.jacobian is not None
+    able = [
+        row
+        for row, pose in enumerate(predictor.poses)
+        if pose is not None
+        and found.found[row]
+        and pose.tensions.max(initial=0.0) <= tension
+        and not str(find_crossings(robot.body.mesh, pose.nodes))
+    ]
+    if len(able) < count:
+        raise InputError(
+            f"--suggest {count}: {len(able)} of {len(commands)} poses tried are within the limits. Ask fewer."
+        )
+    slopes = found.jacobian[able].reshape(len(able), -1, len(model.parameters)) / (NOISE * robot.body.mesh.size)
+    chosen = choose_measurements(slopes, count)
+    information = np.eye(len(model.parameters)) + np.einsum("rci,rcj->ij", slopes[chosen], slopes[chosen])
+    kept = np.sqrt(np.diag(np.linalg.inv(information)))
+    rows = np.array(able)[chosen]
+    return SuggestedMeasurements(
+        commands=commands[rows],
+        markers=names,
+        masses=hung[rows],
+        deviations=dict(zip((parameter.name for parameter in model.parameters), kept.tolist(), strict=True)),
+        candidates=len(able),
+    )
+
+
+def choose_measurements(
+    slopes: Float[np.ndarray, "candidates coordinates parameters"], count: int
+) -> Int[np.ndarray, " count"]:
+    """Measurements whose information has the largest determinant: greedy choice, then exchanges (Fedorov 1972).
+
+    Args:
+        slopes: slopes of the coordinates of each candidate in standard deviations of the noise, by parameters in
+            standard deviations of their guesses.
+        count: measurements to choose, each at most once.
+
+    Returns:
+        Indices of the candidates, in the order in which a greedy choice takes them.
+    """
+    prior = np.eye(slopes.shape[2])
+    alone = np.einsum("rci,rcj->rij", slopes, slopes)
+    chosen: list[int] = []
+    for _ in range(count):
+        chosen.append(_best(prior + alone[chosen].sum(axis=0), alone, chosen))
+    improved = True
+    while improved:
+        improved = False
+        for place in range(count):
+            others = chosen[:place] + chosen[place + 1 :]
+            base = prior + alone[others].sum(axis=0)
+            best = _best(base, alone, others)
+            if _log_det(base + alone[best]) > _log_det(base + alone[chosen[place]]) + 1e-9:
+                chosen[place], improved = best, True
+    ordered: list[int] = []
+    for _ in range(count):
+        left = [row for row in range(len(alone)) if row not in chosen or row in ordered]
+        ordered.append(_best(prior + alone[ordered].sum(axis=0), alone, left))
+    return np.array(ordered)
+
+
+def _best(base: np.ndarray, alone: np.ndarray, taken: Sequence[int]) -> int:
+    """Candidate that adds most to a base, but for those that are taken."""
+    gains = np.linalg.slogdet(base + alone)[1]
+    gains[list(taken)] = -np.inf
+    return int(np.argmax(gains))
+
+
+def _log_det(matrix: np.ndarray) -> float:
+    return float(np.linalg.slogdet(matrix)[1])
+
+
+def _candidates(
+    robot: Robot, count: int, masses: Sequence[float], rng: np.random.Generator
+) -> tuple[np.ndarray, np.ndarray]:
+    """Contractions [m] in whole millimeters and hung masses [kg]: rest, each winch alone, then random ones."""
+    travel = np.array([winch.travel for winch in robot.winches])
+    idle = rng.random((count, len(travel))) < IDLE
+    pulls = [np.zeros(len(travel)), *np.eye(len(travel)), *np.where(idle, 0.0, rng.random((count, len(travel))))]
+    loads = [np.zeros(len(robot.markers))]
+    loads += [mass * row for mass in masses for row in np.eye(len(robot.markers))]
+    rows = {}
+    for index, pull in enumerate(pulls):
+        for load in loads[:1] if not masses else (loads[0], loads[1 + index % (len(loads) - 1)]):
+            command = MM * np.round(pull * travel / MM)
+            rows.setdefault((*command, *load), (command, load))
+    commands, hung = zip(*rows.values(), strict=True)
+    return np.array(commands), np.array(hung)

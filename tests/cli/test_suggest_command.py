@@ -1,0 +1,32 @@
+"""`hydrostat identify --suggest`. Oracle: `hydrostat measure` reads the names that it prints."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from hydrostat.camera import read_photos
+from hydrostat.robot import load_robot
+
+Run = Callable[..., tuple[int, str, str]]
+
+
+@pytest.mark.slow
+def test_names_of_suggested_photographs_can_be_read(run: Run, starfish: Path) -> None:
+    code, text, _ = run("identify", starfish, "--suggest", 4, "--fit", "gain", "--tension", "10N")
+    assert code == 0
+    names = [line.strip() for line in text.splitlines() if line.endswith(".jpg")]
+    photos = read_photos([Path(name) for name in names], load_robot(starfish))
+    assert len({photo.pose for photo in photos}) == 4
+    assert all(0 <= pull <= 0.06 for photo in photos for pull in photo.contractions.values())
+
+
+def test_fit_or_suggest(run: Run, starfish: Path, tmp_path: Path) -> None:
+    for arguments, words in (
+        ((), "or --suggest N to plan"),
+        (("--suggest", 3, "--out", tmp_path), "Remove TABLE.csv and --out"),
+        ((tmp_path / "a.csv", "--out", tmp_path / "b", "--hang", "5g"), "need --suggest"),
+        (("--suggest", 3, "--hang", "50g"), "has no gravity"),
+    ):
+        code, _, err = run("identify", starfish, *arguments)
+        assert (code, words in err) == (2, True), err

@@ -1,0 +1,61 @@
+"""Measurements that tell most. Oracle: all subsets of a small set of candidates, and a heavy strip."""
+
+from dataclasses import replace
+from importlib import import_module
+from itertools import combinations
+
+import numpy as np
+import pytest
+from builders import mesh_body, strip_mesh
+
+from hydrostat.errors import InputError
+from hydrostat.identification import suggest_measurements
+from hydrostat.identification.suggest_measurements import choose_measurements
+from hydrostat.robot import Cable, Marker, Pin, Robot, Winch
+
+UPPER = ((0.0083, 0.0137), (0.0587, 0.0161), (0.1129, 0.0147), (0.1833, 0.0143))
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_the_choice_is_that_of_all_subsets(seed: int) -> None:
+    slopes = np.random.default_rng(seed).standard_normal((10, 2, 4)) * [3.0, 1.0, 0.3, 2.0]
+    alone = np.einsum("rci,rcj->rij", slopes, slopes)
+    found = choose_measurements(slopes, 3)
+    best = max(combinations(range(10), 3), key=lambda rows: np.linalg.slogdet(np.eye(4) + alone[list(rows)].sum(0))[1])
+    assert sorted(found.tolist()) == list(best)
+
+
+def strip() -> Robot:
+    """A flat strip with a cable and weight."""
+    return Robot(
+        name="strip",
+        body=mesh_body(strip_mesh(8, 2)),
+        pins=(Pin(box=((-0.001, -1.0), (0.001, 1.0)), stiffness=3e3),),
+        gravity=(0.0, -9.81),
+        winches=(Winch(name="up", at=UPPER[0], travel=0.02),),
+        cables=(Cable(winch="up", points=UPPER, slack=0.001),),
+        markers=(Marker(name="middle", at=(0.11, 0.0)), Marker(name="tip", at=(0.19, 0.0))),
+        poses={},
+    )
+
+
+@pytest.mark.slow
+def test_a_mass_is_hung_where_it_shows_the_modulus(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(import_module("hydrostat.identification.suggest_measurements"), "CANDIDATES", 12)
+    robot = strip()
+    bare = suggest_measurements(robot, 3, fit=("young", "gain", "density"))
+    hung = suggest_measurements(robot, 3, fit=("young", "gain", "density"), masses=[0.01])
+    tip = hung.markers.index("tip")
+    assert hung.masses[:, tip].any()
+    assert hung.deviations["body.young"] < 0.7 * bare.deviations["body.young"]
+    assert hung.commands.max() <= 0.02
+    calm = suggest_measurements(robot, 2, fit=("young", "gain"), tension=0.3)
+    assert calm.commands.max() < hung.commands.max()
+
+
+@pytest.mark.slow
+def test_requests_that_cannot_be_met_are_refused() -> None:
+    with pytest.raises(InputError, match="has no gravity"):
+        suggest_measurements(replace(strip(), gravity=None), 3, masses=[0.01])
+    with pytest.raises(InputError, match="poses tried are within the limits"):
+        suggest_measurements(strip(), 40)
