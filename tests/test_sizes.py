@@ -81,6 +81,8 @@ def lines_of(text: str) -> list[str]:
 def functions(node: ast.AST, name: str = "") -> Iterator[tuple[str, Function]]:
     """Every function with its full name, also within classes and functions."""
     for child in ast.iter_child_nodes(node):
+        if isinstance(child, ast.expr):  # in which no function is defined
+            continue
         inner = f"{name}.{child.name}" if isinstance(child, Function | ast.ClassDef) else name
         if isinstance(child, Function):
             yield inner.removeprefix("."), child

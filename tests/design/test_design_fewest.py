@@ -7,7 +7,7 @@ import pytest
 from builders import strip_robot
 from test_design_routes import DOWN, SMALL, UP, Stopped, bare, broken
 
-from hydrostat.design import Constraints, Network, design_cables
+from hydrostat.design import Constraints, DesignStage, Network, design_cables
 from hydrostat.design.request import RouteOptions
 from hydrostat.errors import HydrostatError
 from hydrostat.fabrication import demand_of, find_refusals
@@ -22,6 +22,14 @@ def options(tolerance: float = TOLERANCE) -> RouteOptions:
 @cache
 def fewest(tolerance: float = TOLERANCE) -> Network:
     return design_cables(bare(), [UP, DOWN], winches="auto", cables=3, options=options(tolerance))
+
+
+@cache
+def out_of_reach() -> tuple[Network, list[DesignStage]]:
+    """The best network where none is within the tolerance, and what was told on the way."""
+    told: list[DesignStage] = []
+    asked = options(1e-9)
+    return design_cables(bare(), [UP, DOWN], winches="auto", cables=2, options=asked, watch=told.append), told
 
 
 @pytest.mark.slow
@@ -53,10 +61,18 @@ def test_the_front_holds_every_size_once(unchecked: None) -> None:
 
 @pytest.mark.slow
 def test_a_tolerance_out_of_reach_gives_the_best(unchecked: None) -> None:
-    network = design_cables(bare(), [UP, DOWN], winches="auto", cables=2, options=options(1e-9))
+    network, _ = out_of_reach()
     assert network.complete
     fitting = [one for one in network.alternatives if not find_refusals(one.robot, demand_of(one.robot, one.reached))]
     assert network.built == pytest.approx(min(one.built for one in fitting))
+
+
+@pytest.mark.slow
+def test_told_is_only_what_beats_fewer_winches(unchecked: None) -> None:
+    _, told = out_of_reach()
+    errors = [stage.error for stage in told]
+    assert errors == sorted(set(errors), reverse=True)
+    assert {len(stage.robot.winches) for stage in told} == {1, 2}
 
 
 def test_locked_winches_count(unchecked: None) -> None:
@@ -83,7 +99,7 @@ def test_ctrl_c_keeps_what_was_found(at: int, unchecked: None) -> None:
 def test_a_number_of_winches_that_cannot_be_built_is_passed_over(unchecked: None) -> None:
     """Two winches 160 mm apart find room on the strip; three do not."""
     limits = Constraints(winch_gap=0.16)
-    network = design_cables(bare(), [UP, DOWN], winches="auto", cables=3, constraints=limits, options=options(1e-9))
+    network = design_cables(bare(), [UP], winches="auto", cables=3, constraints=limits, options=options(1e-9))
     assert broken(network) == []
     with pytest.raises(HydrostatError):
         design_cables(bare(), [UP], winches="auto", cables=2, constraints=Constraints(longest=0.003), options=SMALL)

@@ -1,6 +1,7 @@
 """One judgement for design and fabrication. Oracles: the kit's own refusals, networks that designs return."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -13,6 +14,13 @@ from hydrostat.fabrication import MOTORS, KitOptions, build_kit, demand_of, find
 from hydrostat.robot import Robot, find_risks, robot_hash
 
 SMALL = RouteOptions(starts=1, exchanges=0, polish=2, trials=2, steps=2, hops=6)
+
+
+@cache
+def designed(name: str, winches: int, cables: int) -> Network:
+    """A network for the first pose of a robot of the gallery."""
+    robot = gallery_robot(name)
+    return design_cables(robot, [next(iter(robot.poses.values()))], winches=winches, cables=cables, options=SMALL)
 
 
 def refused(robot: Robot, **given: object) -> list[str]:
@@ -88,7 +96,7 @@ def test_the_motor_of_the_judgement_is_that_of_the_poses(unchecked: None) -> Non
 def test_a_kit_never_refuses_what_a_design_returned(name: str, winches: int, cables: int, unchecked: None) -> None:
     robot = gallery_robot(name)
     pose = next(iter(robot.poses.values()))
-    network = design_cables(robot, [pose], winches=winches, cables=cables, options=SMALL)
+    network = designed(name, winches, cables)
     made = replace(network.robot, poses={pose.name: pose})
     assert refused(made, demand=demand_of(made, network.reached)) == []
     kit = build_kit(
@@ -103,19 +111,13 @@ def test_a_network_that_can_be_built_comes_before_a_better_one_that_cannot(
     monkeypatch: pytest.MonkeyPatch, unchecked: None
 ) -> None:
     """Oracle: the same search, whose best network is then said to be refused."""
-    robot = gallery_robot("letter_s")
-    poses = [next(iter(robot.poses.values()))]
-
-    def found() -> Network:
-        return design_cables(robot, poses, winches=1, cables=2, options=SMALL)
-
-    free = found()
+    free = designed("letter_s", 1, 2)
     assert free.alternatives
     best = robot_hash(free.robot)
     monkeypatch.setattr(
         "hydrostat.design.routes.finalists.find_refusals",
         lambda made, demand: ("no room",) if robot_hash(made) == best else (),
     )
-    bound = found()
+    bound = designed.__wrapped__("letter_s", 1, 2)
     assert robot_hash(bound.robot) == robot_hash(min(free.alternatives, key=lambda other: other.built).robot)
     assert best in {robot_hash(other.robot) for other in bound.alternatives}

@@ -1,7 +1,5 @@
 """Networks told of on the way. Oracles: the stages that the design keeps; errors of all that were judged."""
 
-from dataclasses import replace
-
 import pytest
 from builders import strip_robot
 from test_design_routes import DOWN, SMALL, UP, bare
@@ -23,16 +21,6 @@ def test_routes_tell_each_stage_that_is_better_than_all_before(unchecked: None) 
             least, expected = stage.error, [*expected, stage]
     assert told == expected
     assert len(told) > 1
-
-
-@pytest.mark.slow
-def test_the_fewest_tell_only_what_beats_fewer_winches(unchecked: None) -> None:
-    told: list[DesignStage] = []
-    options = replace(SMALL, tolerance=1e-9)
-    design_cables(bare(), [UP, DOWN], winches="auto", cables=2, options=options, watch=told.append)
-    errors = [stage.error for stage in told]
-    assert errors == sorted(set(errors), reverse=True)
-    assert {len(stage.robot.winches) for stage in told} == {1, 2}
 
 
 def test_the_watched_may_stop_the_search(unchecked: None) -> None:

@@ -12,7 +12,7 @@ from toy_server import Server
 TOY = Path(__file__).parent / "toy_studio.py"
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def serving() -> Iterator[Callable[..., Server]]:
     """Starts studios that listen at an address."""
     with ExitStack() as stack:
@@ -27,7 +27,7 @@ def serving() -> Iterator[Callable[..., Server]]:
         yield start
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def server(serving: Callable[..., Server]) -> Server:
     """A studio for this machine only."""
     return serving("127.0.0.1")
