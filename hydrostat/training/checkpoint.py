@@ -142,5 +142,5 @@ def _fill_replay(buffer: Any, arrays: Mapping[str, np.ndarray]) -> None:
 
 
 def _as_json(value: Any) -> Any:
-    """What JSON has no form for: NumPy arrays and numbers."""
+    """Convert NumPy arrays and numbers, for which JSON has no form, to lists and plain numbers."""
     return value.tolist()
