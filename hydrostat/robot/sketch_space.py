@@ -176,12 +176,26 @@ def _hold(mesh: Mesh) -> Pin:
     ends = [float(mesh.volumes[chosen].sum()) for chosen in (along < end, along > 1 - end)]
     if max(ends) < _STOUT * slabs.max():
         inner = np.setdiff1d(np.arange(len(mesh.nodes)), mesh.boundary_nodes)
+        if not len(inner):  # one element across everywhere
+            inner = np.argmin(np.linalg.norm(mesh.nodes - mesh.nodes.mean(axis=0), axis=1), keepdims=True)
         depths = clearance(mesh, mesh.nodes[inner])
-        return Pin(at=_point(mesh.nodes[inner[np.argmax(depths)]]), radius=round(0.8 * float(depths.max()), 4))
+        center = mesh.nodes[inner[np.argmax(depths)]]
+        return Pin(at=_point(center), radius=round(max(0.8 * float(depths.max()), _least_radius(mesh, center)), 4))
     box = np.array([low, high]) + 0.05 * (high - low) * [[-1.0], [1.0]]
     last = ends[1] > ends[0]
     box[0 if last else 1, axis] = (high if last else low)[axis] + (-1 if last else 1) * end * (high - low)[axis]
     return Pin(box=(_point(box[0]), _point(box[1])))
+
+
+def _least_radius(mesh: Mesh, center: Vector) -> float:
+    """Radius of a ball about a place [m] whose nodes span a plane at least, so that the body cannot turn about them."""
+    away = np.linalg.norm(mesh.nodes - center, axis=1)
+    order = np.argsort(away)
+    for count in range(4, len(order)):
+        spread = np.linalg.svd(mesh.nodes[order[:count]] - mesh.nodes[order[:count]].mean(axis=0), compute_uv=False)
+        if spread[1] > 0.02 * mesh.size:
+            return 1.01 * float(away[order[count - 1]])
+    return float(away.max())
 
 
 @dataclass(frozen=True, eq=False)

@@ -85,6 +85,16 @@ def test_a_ready_mesh(run: Run, tmp_path: Path) -> None:
     assert not (tmp_path / "b").exists()
 
 
+def test_a_mesh_of_one_layer_is_held(tmp_path: Path) -> None:
+    """No node lies inside; the ball that holds it reaches nodes about which the body cannot turn."""
+    import meshio
+    from builders import box_mesh
+
+    mesh = box_mesh((6, 4, 1), size=(60.0, 40.0, 4.0))
+    meshio.write(tmp_path / "a.vtu", meshio.Mesh(mesh.nodes, {"tetra": mesh.elements}))
+    assert len(hs.new_robot(tmp_path / "a.vtu").pins) == 1
+
+
 @pytest.mark.slow
 def test_a_drawing_is_blown_up(run: Run, tmp_path: Path) -> None:
     """As thick in the middle as asked for; whether it can be sewn is told at once."""

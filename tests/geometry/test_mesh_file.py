@@ -57,6 +57,12 @@ def test_what_meshio_writes_is_read(kind: str, tmp_path: Path, capsys) -> None:
     np.testing.assert_array_equal(np.sort(mesh.elements), np.sort(_TETRAHEDRA))
 
 
+@pytest.mark.parametrize(("kind", "suffix"), [("vtu text", ".vtk"), ("vtk 4.2 text", ".vtu")])
+def test_a_kind_under_the_name_of_the_other_is_read(kind: str, suffix: str, tmp_path: Path) -> None:
+    path = written(tmp_path, kind)
+    assert len(read_mesh(path.rename(path.with_suffix(suffix)), unit=1e-3).elements) == len(_TETRAHEDRA)
+
+
 @pytest.mark.parametrize("dim", [2, 3])
 @pytest.mark.parametrize("copies", [1, 1024])
 def test_what_is_written_is_read_by_us_and_by_meshio(dim: int, copies: int, tmp_path: Path) -> None:

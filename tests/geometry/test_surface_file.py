@@ -144,6 +144,24 @@ def test_3mf_objects_are_where_they_are_built() -> None:
     np.testing.assert_allclose(surface.box, [[-0.03, 0.0, 0.0], [0.11, 0.01, 0.025]], atol=1e-12)
 
 
+def test_strips_remarks_and_supports() -> None:
+    """Oracle: a tetrahedron of 90 x 75 x 60 mm as one strip and as two with a mark between; a box without its support."""
+    head = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+    head += "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+    places = "0 0 0\n90 0 0\n45 75 0\n45 25 60\n"
+    for strip in ("6 0 2 1 3 0 2", "9 0 2 1 3 -1 1 3 0 2"):
+        surface = read_surface(f"{head}{places}{strip}\n".encode(), name="a.ply")
+        assert surface.volume == pytest.approx(90 * 75 * 60 / 6 * 1e-9)
+    ball = b"# made by hand\n\n# OFF\n" + off(_BALL)
+    _same(read_surface(ball, name="a.off"), _BALL)
+    box, pillar = (mesh_xml(cuboid((0, 0, 0), (0.01, 0.01, height))) for height in (0.01, 0.05))
+    for kind in ("support", "solidsupport"):
+        objects = f'<object id="1" type="model">{box}</object><object id="2" type="{kind}">{pillar}</object>'
+        items = '<item objectid="1"/><item objectid="2"/>'
+        content = archive({"3D/3dmodel.model": model_xml(objects, items)})
+        assert read_surface(content, name="a.3mf").volume == pytest.approx(1e-6)
+
+
 def test_numbers_in_stl_that_are_the_same_place_are_one_vertex() -> None:
     surface = read_surface(stl(torus()), name="a.stl")
     assert len(surface.vertices) == len(surface.triangles) / 2  # Euler: 0 = V - 3/2 T + T

@@ -21,7 +21,11 @@ def read_mesh(path: Path, *, unit: float = 1.0, size: float | None = None) -> Me
     reader = _READERS.get(path.suffix.lower())
     if reader is None:
         raise InputError(f"{path.name}: meshes are read from {', '.join(_READERS)} files only")
-    cells = reader(read_stranger(path, name=path.name), path.name)
+    content = read_stranger(path, name=path.name)
+    if reader in (read_vtk, read_vtu):  # either kind is found under either name
+        begin = content[:100].lstrip().lower()
+        reader = read_vtu if begin.startswith(b"<") else read_vtk if begin.startswith(b"# vtk") else reader
+    cells = reader(content, path.name)
     for elements, dim in ((cells.tetrahedra, 3), (cells.triangles, 2)):
         if len(elements):
             return _simplices(path.name, cells.points, elements, dim, unit, size)

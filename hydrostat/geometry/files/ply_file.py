@@ -55,6 +55,9 @@ def read_ply(content: bytes, name: str) -> Soup:
         elif element.name == "face":
             faces = _faces(element, values, name)
             break
+        elif element.name == "tristrips":
+            faces = _strips(*_faces(element, values, name))
+            break
     if faces is None:
         raise SurfaceError(f"{name}: has no faces, as a cloud of points: make a surface of it first")
     corners, counts = faces
@@ -234,6 +237,24 @@ def _faces(
         # from text; what is no number of a vertex is made one that no surface has
         corners = np.where(np.abs(corners) < 2**40, corners, -1.0)
     return corners.astype(np.int64), counts.astype(np.int64)
+
+
+def _strips(
+    corners: Int[np.ndarray, " corners"], counts: Int[np.ndarray, " strips"]
+) -> tuple[Int[np.ndarray, " corners"], Int[np.ndarray, " faces"]]:
+    """Triangles of strips, as faces: each three corners in a row are one, every other one turned; -1 begins anew."""
+    ends = np.zeros(len(corners) + 1, dtype=bool)
+    ends[np.cumsum(counts)] = True
+    place = np.arange(len(corners))
+    fresh = ends[:-1] | np.r_[False, corners[:-1] == -1] | (place == 0)
+    since = place - np.maximum.accumulate(np.where(fresh, place, 0))
+    whole = np.flatnonzero((since[2:] >= 2) & (corners[2:] != -1))
+    triangles = corners[whole[:, None] + np.arange(3)]
+    turned = since[whole + 2] % 2 == 1
+    triangles[turned] = triangles[turned][:, [1, 0, 2]]
+    different = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
+    triangles = triangles[different]
+    return triangles.ravel(), np.full(len(triangles), 3)
 
 
 def write_ply(surface: Surface) -> bytes:

@@ -135,8 +135,8 @@ def _index(word: bytes, vertices: int) -> int:
     return number - 1 if number > 0 else vertices + number
 
 
-OFF_HEAD = re.compile(rb"\s*(?:ST)?C?N?OFF\b")
-"""Header of OFF files: with or without texture, colors and normals, none of which is used."""
+OFF_HEAD = re.compile(rb"(?:\s|#[^\r\n]{0,1000}[\r\n]){0,1000}(?:ST)?C?N?OFF\b")
+"""Header of OFF files, after remarks: with or without texture, colors and normals, none of which is used."""
 
 
 _Rows = Iterator[tuple[int, list[bytes]]]

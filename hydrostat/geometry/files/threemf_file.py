@@ -29,6 +29,7 @@ class _Object:
     places: array = field(default_factory=lambda: array("d"))
     corners: array = field(default_factory=lambda: array("q"))
     parts: list[tuple[_Key, np.ndarray]] = field(default_factory=list)
+    support: bool = False  # a scaffold of the printer, no part of the body
 
 
 @dataclass
@@ -153,7 +154,8 @@ def _read_xml(text: bytes, part: str, model: _Model, *, root: bool, name: str) -
                 case "triangle":
                     now.corners.extend([int(attributes[corner]) for corner in ("v1", "v2", "v3")])
                 case "object":
-                    now = model.objects[part, attributes["id"]] = _Object()
+                    support = attributes.get("type") in ("support", "solidsupport")
+                    now = model.objects[part, attributes["id"]] = _Object(support=support)
                 case "component":
                     now.parts.append(_read_item(attributes, part, model))
                 case "item" if root:
@@ -215,6 +217,6 @@ def _meshes(model: _Model, name: str) -> Iterator[tuple[_Object, np.ndarray]]:
         if depth > _MOST_DEPTH or placed > most_placed:
             raise SurfaceError(f"{name}: its objects hold themselves, or too many others: export it again as STL")
         found = model.objects[key]
-        if found.corners:
+        if found.corners and not found.support:
             yield found, transform
         stack.extend((child, at @ transform, depth + 1) for child, at in reversed(found.parts))
