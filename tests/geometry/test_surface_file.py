@@ -145,7 +145,7 @@ def test_3mf_objects_are_where_they_are_built() -> None:
 
 
 def test_strips_remarks_and_supports() -> None:
-    """Oracle: a tetrahedron of 90 x 75 x 60 mm as one strip and as two with a mark between; a box without its support."""
+    """Oracle: a tetrahedron of 90 x 75 x 60 mm as one strip, and as two; a box without its support."""
     head = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
     head += "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
     places = "0 0 0\n90 0 0\n45 75 0\n45 25 60\n"
