@@ -40,11 +40,12 @@ if TYPE_CHECKING:
     from hydrostat.fabrication.patterns.marks import winch_marks
     from hydrostat.fabrication.patterns.pattern import plush_pattern
     from hydrostat.fabrication.patterns.shape import Circle, PatternPart
-    from hydrostat.fabrication.refusals import find_motor, find_refusals, find_weak_lines
+    from hydrostat.fabrication.refusals import find_motor, find_refusals
     from hydrostat.fabrication.sheets.solid_pictures import drawn_solid
     from hydrostat.fabrication.sheets.tiles import PAPERS
     from hydrostat.fabrication.solids.construct import Box, Cuboid, Cylinder, sides_text, solid_of
     from hydrostat.fabrication.solids.printed import Printed
+    from hydrostat.fabrication.weak_lines import find_weak_lines
     from hydrostat.fabrication.winch_marks import winch_marks_of
 
 __all__ = [

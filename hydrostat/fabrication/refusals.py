@@ -2,9 +2,6 @@
 
 from collections.abc import Iterable
 
-import numpy as np
-
-from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.fabrication.body_work import channel_problems, stuffing_problems
 from hydrostat.fabrication.demand import Demand
@@ -16,6 +13,7 @@ from hydrostat.fabrication.moulds.setting import mold_setting
 from hydrostat.fabrication.parts.motor import MOTORS, Motor, choose_motor, largest_torque
 from hydrostat.fabrication.parts.winch_unit import unit_problems, unit_rooms
 from hydrostat.fabrication.patterns.pattern import pattern_problems
+from hydrostat.fabrication.weak_lines import share_tensions
 from hydrostat.robot import Mount, Robot, sewn_robot
 
 
@@ -33,16 +31,8 @@ def find_refusals(robot: Robot, demand: Demand | None = None, *, options: KitOpt
     motor = find_motor(robot, () if demand is None else demand.torques, options)
     found = [*_fit(robot, options, motor)[0], *_of_body(robot, options), *rod_problems(robot)]
     if demand is not None:
-        found += check_line(sewn, _share_tensions(demand.tensions, sewn), line_for(options.parts.cable)).problems
+        found += check_line(sewn, share_tensions(demand.tensions, sewn), line_for(options.parts.cable)).problems
     return tuple(found)
-
-
-def find_weak_lines(robot: Robot, tensions: Vector) -> tuple[str, ...]:
-    """Return a line for each cable whose line breaks at such tensions [N], for the line of a kit."""
-    sewn = sewn_robot(robot) if KitOptions().method_for(robot.body) is Method.PLUSH else robot
-    line = line_for(KitOptions().parts.cable)
-    problems = check_line(sewn, _share_tensions(tensions, sewn), line).problems
-    return problems[: len(tensions)]
 
 
 def find_motor(robot: Robot, torques: Iterable[float], options: KitOptions) -> Motor:
@@ -93,12 +83,6 @@ def pocket_problems(robot: Robot, options: KitOptions, motor: Motor) -> tuple[st
         clearance=options.mould.pocket_clearance,
     )
     return (*(pocket.problem for pocket in pockets if pocket.problem), *clashes(pockets))
-
-
-def _share_tensions(tensions: Vector, sewn: Robot) -> Vector:
-    """Tensions of all cables that are sewn [N]: those of a drawn one are shared evenly by its pair."""
-    times = max(len(sewn.cables) // max(len(tensions), 1), 1)
-    return np.tile(tensions / times, times)
 
 
 def _of_body(robot: Robot, options: KitOptions) -> tuple[str, ...]:

@@ -2,17 +2,13 @@
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hydrostat.arrays import Float, Nodes, Vector
+from hydrostat.arrays import Float, Int, Nodes, Vector
 from hydrostat.geometry import Mesh
 from hydrostat.mechanics import solve_thickening
 from hydrostat.robot import Body, Plane, Robot
-
-if TYPE_CHECKING:
-    from scipy.sparse import csr_array
 
 
 def node_strains(robot: Robot, nodes: Nodes) -> Vector:
@@ -23,7 +19,7 @@ def node_strains(robot: Robot, nodes: Nodes) -> Vector:
     """
     grid = _operators(robot.body.mesh)
     shape = _Stretch(grid, nodes, robot.body)
-    return grid.average @ (np.sqrt(shape.largest()) - 1.0)
+    return grid.average(np.sqrt(shape.largest()) - 1.0)
 
 
 def node_stresses(robot: Robot, nodes: Nodes) -> Vector:
@@ -35,7 +31,7 @@ def node_stresses(robot: Robot, nodes: Nodes) -> Vector:
     grid = _operators(robot.body.mesh)
     shape = _Stretch(grid, nodes, robot.body)
     mu, _ = robot.body.lame()
-    return grid.average @ (mu * np.sqrt(1.5 * shape.deviation) / shape.volume)
+    return grid.average(mu * np.sqrt(1.5 * shape.deviation) / shape.volume)
 
 
 MANY = 0.02
@@ -67,30 +63,31 @@ def find_overstrain(robot: Robot, nodes: Nodes) -> str:
 
 @dataclass(frozen=True, eq=False)
 class _NodeOperators:
-    """Operators of a mesh that do not depend on the pose."""
+    """Operators of a mesh that do not depend on the pose; plain sums, as scipy.sparse takes 65 ms to load."""
 
-    dim: int  # space dimension
-    slopes: "csr_array"  # maps nodes to F of all elements, a row for each element and rest coordinate
-    average: "csr_array"  # maps values of elements to values of nodes
+    elements: Int[np.ndarray, "elements corners"]
+    gradients: Float[np.ndarray, "elements dim corners"]  # slope along each axis at rest by the value at each corner
+    weights: Float[np.ndarray, " corners"]  # share of each element in the value of each of its corners, in one row
+
+    def slopes(self, nodes: Nodes) -> Float[np.ndarray, "elements dim dim"]:
+        """Slopes of places, a row for each coordinate at rest."""
+        return self.gradients @ nodes[self.elements]
+
+    def average(self, values: Float[np.ndarray, " elements"]) -> Vector:
+        """Values of nodes by those of the elements around them."""
+        corners = self.elements.shape[1]
+        return np.bincount(self.elements.ravel(), self.weights * np.repeat(values, corners))
 
 
 @lru_cache(maxsize=2)
 def _operators(mesh: Mesh) -> _NodeOperators:
-    from scipy.sparse import csr_array
-
-    count, corners = mesh.elements.shape
-    dim = mesh.dim
+    corners = mesh.elements.shape[1]
     inverse = np.linalg.inv(np.swapaxes(mesh.nodes[mesh.elements[:, 1:]] - mesh.nodes[mesh.elements[:, :1]], 1, 2))
     gradients = np.concatenate([-inverse.sum(axis=1, keepdims=True), inverse], axis=1)
-    rows = np.broadcast_to(np.arange(count * dim).reshape(count, 1, dim), gradients.shape)
-    columns = np.broadcast_to(mesh.elements[:, :, None], gradients.shape)
-    entries = (gradients.ravel(), (rows.ravel(), columns.ravel()))
-    slopes = csr_array(entries, shape=(count * dim, len(mesh.nodes)))
     weights = np.repeat(mesh.volumes, corners)
     total = np.maximum(np.bincount(mesh.elements.ravel(), weights, len(mesh.nodes)), np.finfo(float).tiny)
-    places = (mesh.elements.ravel(), np.repeat(np.arange(count), corners))
-    average = csr_array((weights / total[mesh.elements.ravel()], places), shape=(len(mesh.nodes), count))
-    return _NodeOperators(dim, slopes, average)
+    across = np.ascontiguousarray(np.swapaxes(gradients, 1, 2))
+    return _NodeOperators(mesh.elements, across, weights / total[mesh.elements.ravel()])
 
 
 class _Stretch:
@@ -103,14 +100,14 @@ class _Stretch:
     """
 
     def __init__(self, grid: _NodeOperators, nodes: Nodes, body: Body) -> None:
-        slopes = (grid.slopes @ nodes).reshape(-1, grid.dim, grid.dim)
-        rows = [slopes[:, axis] for axis in range(grid.dim)]
+        slopes, dim = grid.slopes(nodes), nodes.shape[1]
+        rows = [slopes[:, axis] for axis in range(dim)]
         stretch = np.zeros((3, 3, len(slopes)))
         stretch[2, 2] = 1.0
         if body.plane is Plane.STRESS:
             stretch[2, 2] += solve_thickening(np.linalg.det(slopes) - 1.0, *body.lame())
-        for i in range(grid.dim):
-            for j in range(i, grid.dim):
+        for i in range(dim):
+            for j in range(i, dim):
                 stretch[i, j] = stretch[j, i] = np.einsum("ek,ek->e", rows[i], rows[j])
         self.mean = (stretch[0, 0] + stretch[1, 1] + stretch[2, 2]) / 3.0
         for i in range(3):

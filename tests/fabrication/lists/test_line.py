@@ -8,7 +8,7 @@ from small_inputs import square
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.lists.line import KNOT, LINES, SAFETY, FishingLine, check_line, line_for
-from hydrostat.fabrication.refusals import find_weak_lines
+from hydrostat.fabrication.weak_lines import find_weak_lines
 from hydrostat.robot import Face
 
 TEN = FishingLine(name="ten", diameter=0.3, pounds=10 / 4.448222)
