@@ -1,7 +1,7 @@
 """Parsing of options given as text: quantities with units, limits, contractions."""
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from string import ascii_letters
@@ -173,10 +173,20 @@ def contractions(robot: "Robot", texts: Sequence[str] | None) -> dict[str, float
 
     A text or winch that is none, or a winch that would take in all of a cable, is an InputError.
     """
-    given = dict(_contraction(text) for text in texts or [])
+    given = _unique("--contract", (_contraction(text) for text in texts or []))
     for name, value in given.items():
         check_contraction(robot, name, value)
     return given
+
+
+def _unique(option: str, pairs: Iterable[tuple[str, float]]) -> dict[str, float]:
+    """Values by name (InputError: a name that is given twice)."""
+    found: dict[str, float] = {}
+    for name, value in pairs:
+        if name in found:
+            raise InputError(f'{option}: "{name}" is given twice. Give each name once.')
+        found[name] = value
+    return found
 
 
 def _contraction(text: str) -> tuple[str, float]:
@@ -272,15 +282,15 @@ def pulls(robot: "Robot", texts: Sequence[str] | None) -> dict[str, float]:
     """Pulls [N] by winch, from texts such as "left=5N" (InputError: a text or winch that is none)."""
     from hydrostat.units import FORCE, parse_quantity
 
-    found = {}
-    for text in texts or []:
+    def read(text: str) -> tuple[str, float]:
         name, force = _split_value("--pull", text, "WINCH=FORCE, e.g. left=5N")
         try:
             robot.winch(name)
-            found[name] = parse_quantity(force, FORCE)
+            return name, parse_quantity(force, FORCE)
         except InputError as error:
             raise InputError(f"--pull {text}: {error}") from None
-    return found
+
+    return _unique("--pull", map(read, texts or []))
 
 
 def _split_value(option: str, text: str, form: str) -> tuple[str, str]:

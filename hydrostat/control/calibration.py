@@ -244,8 +244,9 @@ def _spool(entry: dict[str, Any], file: Path) -> WinchMotor:
     for key, value in entry.items():
         if key not in _KEYS:
             raise InputError(f'{file}: [[motor]] of "{name}": unknown key "{key}". Allowed: {", ".join(_KEYS)}.')
-        if not isinstance(value, _KEYS[key]) or isinstance(value, bool):
-            raise InputError(f'{file}: [[motor]] of "{name}": {key} cannot be {value!r}')
+        too_large = isinstance(value, int) and abs(value) > 2**53
+        if not isinstance(value, _KEYS[key]) or isinstance(value, bool) or too_large:
+            raise InputError(f'{file}: [[motor]] of "{name}": {key} cannot be {repr(value)[:60]}')
     for key in ("winch", "number", "radius"):
         if key not in entry:
             raise InputError(f'{file}: [[motor]] of "{name}" needs {key}')
@@ -261,5 +262,5 @@ def _pairs(entries: list[Any]) -> tuple[tuple[float, float], ...]:
     """A curve as it is written; what is none becomes NaN, which a `WinchMotor` refuses."""
     try:
         return tuple((float(turned), float(taken)) for turned, taken in entries)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         return ((np.nan, np.nan),)

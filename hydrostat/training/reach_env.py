@@ -31,7 +31,7 @@ class ReachOptions:
         shaped: reward is minus the mean distance in units of the tolerance; else 0 for success and -1.
 
     Raises:
-        InputError: no step, or a tolerance that is not above 0.
+        InputError: markers that are no list, no step, or a tolerance that is not above 0.
     """
 
     markers: Sequence[str] = ()
@@ -42,6 +42,8 @@ class ReachOptions:
     shaped: bool = True
 
     def __post_init__(self) -> None:
+        if isinstance(self.markers, str):
+            raise InputError(f'markers must be a list of names, such as ["{self.markers}"]')
         if self.steps < 1:
             raise InputError(f"steps must be 1 or more, not {self.steps}")
         if not 0 < self.tolerance < np.inf:

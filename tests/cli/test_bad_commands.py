@@ -16,7 +16,7 @@ from hydrostat.simulation import Simulation
 Run = Callable[..., tuple[int, str, str]]
 
 
-OPEN = b'<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="40mm"><path d="M0 0H60V40"/></svg>'
+OPEN = b'<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="40mm"><path fill="none" stroke="red" d="M0 0H60V40"/></svg>'
 
 
 @pytest.mark.parametrize(
@@ -24,6 +24,11 @@ OPEN = b'<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="40mm"><pat
     [
         (("check", "nowhere"), ("nowhere", "no such file")),
         (("simulate", "STARFISH", "--contract", "left=12", "--out", "OUT"), ("left=12", "no unit")),
+        (
+            ("simulate", "STARFISH", "--contract", "left=2mm", "--contract", "left=3mm", "--out", "OUT"),
+            ("left", "twice"),
+        ),
+        (("simulate", "STARFISH", "--pull", "left=2N", "--pull", "left=3N", "--out", "OUT"), ("left", "twice")),
         (("simulate", "STARFISH", "--contract", "left", "--out", "OUT"), ("WINCH=LENGTH",)),
         (("simulate", "STARFISH", "--contract", "up=12mm", "--out", "OUT"), ('"up"', "right, left, feet")),
         (("pose", "STARFISH", "--pose", "dance", "--out", "OUT"), ('"dance"', "wave")),

@@ -33,3 +33,13 @@ def test_emulated_motors_of_a_calibration_that_was_cut_short_say_so() -> None:
     with pytest.raises(HydrostatError, match="motors cannot be armed: first calibrate them"):
         link.arm()
     link.close()
+
+
+def test_a_number_of_400_digits_is_refused(tmp_path: Path) -> None:
+    for key in ("number", "current"):
+        values = {"number": "1", "current": "0.5", key: "9" * 400}
+        text = "".join(f"{name} = {value}\n" for name, value in values.items())
+        (tmp_path / "motors.toml").write_text(f'[[motor]]\nwinch = "left"\nradius = "5 mm"\n{text}')
+        with pytest.raises(HydrostatError, match=f"{key} cannot be 999") as told:
+            read_calibration(tmp_path, strip_robot(columns=4, rows=1))
+        assert len(str(told.value)) < 300

@@ -30,6 +30,8 @@ from hydrostat.studio.view.robot_things import robot_things
 from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
 from hydrostat.units import quote
 
+_BROKEN = (BadZipFile, EOFError, NotImplementedError, RuntimeError, OSError, zlib.error, LZMAError)
+
 MOST_FILES = 200  # in an archive
 MOST_BYTES = 200_000_000  # of all its files, unpacked
 
@@ -55,7 +57,16 @@ def unpack_robot(name: str, content: bytes) -> tuple[Work, str]:
             return open_work(folder), text_of(folder)
     except InputError as error:  # of robot.toml, by the name of a scratch folder that nobody knows
         raise InputError(str(error).replace(f"{folder}/", f"{shown}: ")) from None
-    except (BadZipFile, EOFError, NotImplementedError, RuntimeError, OSError, zlib.error, LZMAError) as error:
+    except (
+        BadZipFile,
+        EOFError,
+        NotImplementedError,
+        RuntimeError,
+        OSError,
+        ValueError,
+        zlib.error,
+        LZMAError,
+    ) as error:
         words = str(error).replace(f"{folder}/", "")
         raise InputError(f"{shown}: cannot be unpacked ({words}); download the robot again") from None
 

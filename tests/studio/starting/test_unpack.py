@@ -78,7 +78,10 @@ def test_a_bomb_is_refused_before_it_is_unpacked(monkeypatch: pytest.MonkeyPatch
         unpack_robot("bomb.zip", bomb)
 
 
-@pytest.mark.parametrize("content", [b"", b"PK", b"no archive", packed({"robot/robot.toml": TOML})[:-40]])
+CUT = packed({"robot/robot.toml": TOML})[:30] + packed({"robot/robot.toml": TOML})[38:]  # its list lies before 0
+
+
+@pytest.mark.parametrize("content", [b"", b"PK", b"no archive", packed({"robot/robot.toml": TOML})[:-40], CUT])
 def test_what_is_no_archive_is_told(content: bytes) -> None:
     with pytest.raises(InputError, match="cannot be unpacked"):
         unpack_robot("x.zip", content)
