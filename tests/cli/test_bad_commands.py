@@ -16,7 +16,8 @@ from hydrostat.simulation import Simulation
 Run = Callable[..., tuple[int, str, str]]
 
 
-OPEN = b'<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="40mm"><path fill="none" stroke="red" d="M0 0H60V40"/></svg>'
+OPEN = b'<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="40mm">'
+OPEN += b'<path fill="none" stroke="red" d="M0 0H60V40"/></svg>'
 
 
 @pytest.mark.parametrize(
