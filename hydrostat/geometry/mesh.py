@@ -209,6 +209,16 @@ class Mesh:
         """Nodes on the boundary, sorted."""
         return np.unique(self.boundary)
 
+    def cavity(self, point: Float[np.ndarray, " dim"]) -> Int[np.ndarray, "facets dim"]:
+        """Facets of `boundary` that close a hole of the body around a point [m]; none if it lies in no hole."""
+        facets = self.boundary
+        group = joined_groups(facets[:, [0, -1]].T, len(self.nodes))
+        if self.dim == 3:
+            group = joined_groups(np.concatenate([facets[:, :2], facets[:, 1:]]).T, len(self.nodes))
+        turns = np.bincount(group[facets[:, 0]], _angles_seen(self.nodes[facets] - point), int(group.max()) + 1)
+        around = np.flatnonzero(turns < -0.5)  # the outer rim turns the other way
+        return facets[np.isin(group[facets[:, 0]], around)]
+
     @cached_property
     def size(self) -> float:
         """Longest side of the bounding box [m]."""
@@ -218,6 +228,19 @@ class Mesh:
     def edge_lengths(self) -> Float[np.ndarray, " edges"]:
         """Length of each edge at rest [m]."""
         return np.linalg.norm(np.diff(self.nodes[self.edges], axis=1)[:, 0], axis=1)
+
+
+def _angles_seen(corners: Float[np.ndarray, "facets dim dim"]) -> Float[np.ndarray, " facets"]:
+    """Share of the full angle under which facets are seen from the origin (van Oosterom and Strackee 1983)."""
+    if corners.shape[1] == 2:
+        one, two = corners[:, 0], corners[:, 1]
+        crossed = one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0]
+        return np.arctan2(crossed, (one * two).sum(axis=1)) / (2 * np.pi)
+    lengths = np.linalg.norm(corners, axis=2)
+    below = lengths.prod(axis=1)
+    for one, two, third in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        below = below + (corners[:, one] * corners[:, two]).sum(axis=1) * lengths[:, third]
+    return np.arctan2(np.linalg.det(corners), below) / (2 * np.pi)
 
 
 def _split_quadratic(nodes: Nodes, quadratic: Int[np.ndarray, "quadratic _"]) -> Elements:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from hydrostat.mechanics.obstacle import ObstacleEnergy
     from hydrostat.mechanics.patch_volume import PATCH_SIZE, PatchVolume, grow_patches
     from hydrostat.mechanics.plane_stress import PlaneStress, solve_thickening
+    from hydrostat.mechanics.pressure import PressureEnergy
     from hydrostat.mechanics.quadratic_solid import POINTWISE, QuadraticSolid
     from hydrostat.mechanics.rigid import CarriedWarp, GuideEnergy, RigidBodyDofs, RigidEnergy
     from hydrostat.mechanics.rod_energy import RodEnergy, rod_points
@@ -62,6 +63,7 @@ __all__ = [
     "PatchVolume",
     "PinEnergy",
     "PlaneStress",
+    "PressureEnergy",
     "QuadraticSolid",
     "Reason",
     "RigidBodyDofs",

@@ -14,7 +14,7 @@ from hydrostat.ik import IKResult, IKStatus
 from hydrostat.plot.drawn_body import DrawnBody
 from hydrostat.plot.frame import Attachments
 from hydrostat.plot.hardware import DrawnRobot, draw_hardware, draw_numbers, name_winches
-from hydrostat.plot.labels import Labels, shorten
+from hydrostat.plot.labels import HALO, Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import Pane
 from hydrostat.plot.sheet import MILLIMETERS, WIDTH, PictureSheet, Place, Places, Spread
@@ -29,7 +29,7 @@ from hydrostat.plot.targets import (
     target_points,
 )
 from hydrostat.plot.tension_scale import TensionScale
-from hydrostat.robot import Obstacle, PoseTarget, Robot, check_positive
+from hydrostat.robot import Load, Obstacle, PoseTarget, Robot, check_positive
 from hydrostat.simulation import Equilibrium, check_pose, obstacles_in_pose
 from hydrostat.units import plural
 
@@ -343,6 +343,8 @@ def draw_loads(sheet: PictureSheet, pane: Pane, robot: Robot, nodes: Nodes) -> d
     places, forces = locate(robot.body.mesh, robot.load_points()).positions(nodes), robot.load_forces()
     largest = max(float(np.linalg.norm(forces, axis=1).max()), 1e-300)
     for load, at, force in zip(robot.loads, places, forces, strict=True):
+        if load.pressure is not None:
+            _draw_pressure(sheet, pane, robot, nodes, load)
         size = float(np.linalg.norm(force))
         if size == 0.0:
             continue
@@ -355,6 +357,15 @@ def draw_loads(sheet: PictureSheet, pane: Pane, robot: Robot, nodes: Nodes) -> d
         sheet.axes.add_patch(arrow)
         drawn[load.name] = (start, end)
     return drawn
+
+
+def _draw_pressure(sheet: PictureSheet, pane: Pane, robot: Robot, nodes: Nodes, load: Load) -> None:
+    """Write a pressure in the middle of its cavity."""
+    facets = robot.body.mesh.cavity(np.array(load.at))
+    x, y = pane.places(nodes[np.unique(facets)].mean(axis=0)[None])[0]
+    words = f"{1e-3 * (load.pressure or 0.0):.3g} kPa"
+    style = {"fontsize": 7, "color": Color.ERROR, "weight": "bold", "ha": "center", "va": "center", "gid": HALO}
+    sheet.text((float(x), float(y)), words, zorder=30, **style)
 
 
 def name_loads(labels: Labels, robot: Robot, arrows: Mapping[str, tuple[Place, Place]]) -> None:

@@ -80,7 +80,7 @@ def inflated_robot(robot: Robot, face: Face | str | None = None, *, element_size
         gravity=None if flat is None else (*flat, 0.0),
         face=None,
         obstacles=(),
-        loads=tuple(map(_lift_load, robot.loads)),
+        loads=tuple(_lift_load(load) for load in robot.loads if load.pressure is None),  # its holes are open now
         rods=tuple(replace(rod, points=tuple(map(_raise_place, rod.points))) for rod in robot.rods),
     )
 

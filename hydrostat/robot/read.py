@@ -168,7 +168,7 @@ class RobotReader(TablesFile):
     def _load(self, entry: Any) -> Load:
         at = {} if entry.at is None else {"at": self.point(entry.at)}
         force = {} if entry.force is None else {"force": tuple(entry.force)}
-        return Load(name=entry.name, **at, **force, **_given_keys(entry, "marker", "mass"))
+        return Load(name=entry.name, **at, **force, **_given_keys(entry, "marker", "mass", "pressure"))
 
     def _rod(self, entry: Any) -> Rod:
         given = _given_keys(entry, "diameter", "young", "axial_stiffness", "bending_stiffness")

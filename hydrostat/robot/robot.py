@@ -20,7 +20,7 @@ from hydrostat.robot.checks import Point, check_unique, list_choices
 from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape
 from hydrostat.robot.gravity import check_gravity, gravity_along
 from hydrostat.robot.html_repr import html_repr
-from hydrostat.robot.load import Load
+from hydrostat.robot.load import Load, check_cavity
 from hydrostat.robot.marker import Marker, Pin, PoseTarget
 from hydrostat.robot.materials import Material, get_material
 from hydrostat.robot.pin_drive import PinDrive, check_drives
@@ -240,7 +240,7 @@ class Robot:
         for index, rod in enumerate(self.rods):
             yield from ((f"rod[{index}].points[{place}]", point) for place, point in enumerate(rod.points))
         for index, load in enumerate(self.loads):
-            yield from ((f"load[{index}].at", point) for point in ((load.at,) if load.at is not None else ()))
+            yield from ((f"load[{index}].at", point) for point in load.body_points)
         for index, pose in enumerate(self.poses.values()):
             yield from ((f"pose[{index}].targets.{name}", point) for name, point in pose.targets.items())
 
@@ -313,6 +313,7 @@ class Robot:
                 )
             if load.mass is not None and self.gravity is None:
                 raise InputError(f'load[{index}].mass weighs nothing without gravity; add gravity = "-y", or a force')
+            check_cavity(index, load, self.body.mesh)
             if load.force is not None and (count := len(load.force)) != self.body.mesh.dim:
                 raise InputError(f"load[{index}].force has {count} entries, but the body has {self.body.mesh.dim} axes")
         check_unique("rod", [rod.name for rod in self.rods])

@@ -285,6 +285,7 @@ class LoadTable(TomlTable):
     marker: Text | None = None
     force: Annotated[list[Force], Field(min_length=2, max_length=3)] | None = None
     mass: Mass | None = None
+    pressure: Pressure | None = None
 
 
 class RodTable(TomlTable):

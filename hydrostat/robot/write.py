@@ -268,6 +268,8 @@ class _Writer:
             entry["force"] = [units.format_quantity(value, units.FORCE) for value in load.force]
         if load.mass is not None:
             entry["mass"] = units.format_quantity(load.mass, units.MASS)
+        if load.pressure is not None:
+            entry["pressure"] = units.format_quantity(load.pressure, units.PRESSURE)
         return entry
 
     def rod(self, rod: Rod) -> dict[str, Any]:

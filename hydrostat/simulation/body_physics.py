@@ -24,6 +24,7 @@ from hydrostat.mechanics import (
     PatchVolume,
     PinEnergy,
     PlaneStress,
+    PressureEnergy,
     QuadraticSolid,
     RigidBodyDofs,
     RigidEnergy,
@@ -97,6 +98,11 @@ class BodyPhysics:
         energies += self.rods
         if robot.loads:
             energies.append(LoadEnergy(self.rest_unknowns, self._load_forces(robot)))
+        energies += [
+            PressureEnergy(self.rest_unknowns, mesh.cavity(np.array(load.at)), load.pressure, thickness)
+            for load in robot.loads
+            if load.pressure is not None
+        ]
         self.own_contact = None if robot.contact is None else len(energies)
         if robot.contact is not None:
             own = ContactEnergy.of(mesh, **_contact_parameters(robot), rest=self.rest_unknowns)

@@ -15,6 +15,7 @@ from hydrostat.mechanics import (
     FibreEnergy,
     NeoHookean,
     PinEnergy,
+    PressureEnergy,
     RodEnergy,
     TensionLaw,
     WeightEnergy,
@@ -163,6 +164,12 @@ def weight(dim: int, random: np.random.Generator) -> State:
     return State(energy, deform(mesh, random), np.zeros(CONTROLS))
 
 
+def pressure(dim: int, random: np.random.Generator) -> State:
+    """Pressure on the whole skin, from inside."""
+    mesh = rough_mesh(dim, random)
+    return State(PressureEnergy(mesh.nodes, mesh.boundary, 2e4, 0.03), deform(mesh, random), np.zeros(CONTROLS))
+
+
 def edge_fibres(dim: int, random: np.random.Generator) -> State:
     mesh = rough_mesh(dim, random)
     energy = FibreEnergy(stencils=mesh.edges, weights=np.tile([-1.0, 1.0], (len(mesh.edges), 1)))
@@ -182,6 +189,7 @@ ENERGIES: dict[str, Callable[[int, np.random.Generator], State]] = {
     "pins": pins,
     "drives": drives,
     "weight": weight,
+    "pressure": pressure,
     "rod": lambda dim, random: rod(dim, random, bent=False),
     "rod that is bent at rest": lambda dim, random: rod(dim, random, bent=True),
     "fibres on edges": edge_fibres,

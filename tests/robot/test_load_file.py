@@ -11,6 +11,7 @@ from hydrostat.robot import inflated_robot, load_robot, merged_text, save_robot,
 
 HUNG = '[[load]]\nname = "weight"\nmarker = "tip"\nmass = "20 g"\n'
 PUSH = '[[load]]\nname = "push"\nat = [0, 0]\nforce = ["0.5 N", "-1 N"]\n'
+BLOWN = '[[load]]\nname = "air"\nat = [0, 0]\npressure = "2 kPa"\n'
 HEAVY = 'gravity = "-y"\n'
 
 
@@ -43,6 +44,12 @@ def test_loads_go_along(tmp_path: Path) -> None:
         (PUSH + 'mass = "2 g"\n', r"load\[0\]: give either force, or mass"),
         (PUSH + 'marker = "tip"\n', r"load\[0\]: give either marker, or at"),
         (HUNG.replace("20 g", "0 g"), r"load\[0\].mass must be finite and above 0"),
+        (BLOWN, r"load\[0\].at: a pressure fills a hole that the body closes, and this point is in none"),
+        (
+            BLOWN.replace("at = [0, 0]", 'marker = "tip"'),
+            r"load\[0\].*pressure needs at",
+        ),
+        (BLOWN.replace("2 kPa", "2 N"), r"load\[0\].pressure: .* does not measure a pressure"),
         (PUSH + PUSH, r'load\[1\].name: there are two of the name "push"'),
     ],
 )
