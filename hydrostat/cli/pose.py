@@ -151,7 +151,10 @@ def _print_reached(loaded: "Robot", reached: "IKResult", title: str, seconds: fl
         markers = ", ".join(f"{name} {1e3 * error:.2f} mm" for name, error in reached.errors.items())
         print(f"  marker errors: {markers}")
     text = ", ".join(f"{winch} {1e3 * value:z.1f} mm" for winch, value in _contraction_facts(loaded, reached).items())
-    print(f"  contractions: {text}")
+    if text:
+        print(f"  contractions: {text}")
+    if turned := list(zip(loaded.drives, reached.pose.drives, strict=True)):
+        print(f"  drives: {', '.join(f'{drive.name} {drive.format_value(value)}' for drive, value in turned)}")
     if reached.friction_hysteresis:
         band = ", ".join(f"{name} {1e3 * apart:.2f} mm" for name, apart in reached.friction_hysteresis.items())
         print(f"  friction: hysteresis after 10 % overshoot: {band}")
@@ -166,7 +169,7 @@ def _note_other_pose(simulation: "Simulation", reached: "IKResult") -> None:
     """Say it if the contractions alone do not decide the pose (E20): at once from rest they may lead to another."""
     from hydrostat.simulation import largest_distance
 
-    pose = simulation.solve(reached.pose.contractions, strict=False)
+    pose = simulation.solve(reached.pose.controls, strict=False)
     away = largest_distance(pose.nodes, reached.pose.nodes)
     apart = 1e-3  # poses that differ by more than this share of the body's size are different
     if pose.result.converged and away > apart * simulation.robot.body.mesh.size:

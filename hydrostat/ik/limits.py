@@ -38,22 +38,23 @@ class Limits:
 
 @dataclass(frozen=True, eq=False)
 class Bounds:
-    """Limits on one robot. A channel is a winch, or a group of winches of one contraction."""
+    """Limits on one robot. A channel is a winch, a group of winches of one contraction, or a drive."""
 
     low: Vector  # least contraction of each channel [m]
     high: Vector  # largest contraction of each channel [m]
     span: Vector  # full range, whatever the rate allows [m]; the unit of steps
     tension: Vector  # maximum tension of each cable [N]; infinite without a limit
     reach: Vector  # maximum change of each channel from the start [m]; infinite without a limit
-    channels: np.ndarray  # channel of each winch
-    spread: Float[np.ndarray, "winches channels"]  # 1 where a winch follows a channel
+    channels: np.ndarray  # channel of each winch, then of each drive
+    driven: np.ndarray  # True for a channel that is a drive, whose value is an angle [rad] or a travel [m]
+    spread: Float[np.ndarray, "controls channels"]  # 1 where a winch or drive follows a channel
     cables: np.ndarray  # channel of each cable
     loads: Float[np.ndarray, "loads cables"]  # limited sums of tensions: single cables [1], torques of winches [m]
     most: Vector  # their maxima [N], [N m]
     motors: tuple[str, ...]  # winches of the torques among them, the last of the loads
 
     def channel(self, contractions: Vector) -> Vector:
-        """Contractions of the channels, from those of the winches: the mean of a group, within the limits."""
+        """Values of the channels, from those of the controls: the mean of a group, within the limits."""
         means = self.spread.T @ contractions / self.spread.sum(axis=0)
         return np.clip(means, self.low, self.high)
 
@@ -76,12 +77,14 @@ def bounds(simulation: Simulation, limits: Limits) -> Bounds:
         raise InputError(f"limits must be Limits(...), such as Limits(tension=5.0), not {describe(limits)}")
     robot = simulation.robot
     channels = _groups(robot, limits.equal)
-    count = channels.max(initial=-1) + 1
+    pulled = channels.max(initial=-1) + 1
+    channels = np.append(channels, pulled + np.arange(len(robot.drives)))
+    count = pulled + len(robot.drives)
     spread = np.zeros((len(channels), count))
     spread[np.arange(len(channels)), channels] = 1.0
     low, high = _ranges(robot, limits.contraction)
     largest = limit_by_winch(robot, limits.tension, "tension", "N")
-    reach = limit_by_winch(robot, limits.rate, "rate", "m/s")
+    reach = np.append(limit_by_winch(robot, limits.rate, "rate", "m/s"), np.full(len(robot.drives), np.inf))
     if limits.rate is not None:
         if limits.interval is None:
             raise InputError("a limit on the rate needs an interval above 0 s, the time since the start")
@@ -101,6 +104,7 @@ def bounds(simulation: Simulation, limits: Limits) -> Bounds:
         tension=tension,
         reach=np.array([reach[channels == channel].min() for channel in range(count)]),
         channels=channels,
+        driven=np.arange(count) >= pulled,
         spread=spread,
         cables=channels[simulation.cables.winches],
         loads=np.concatenate([np.eye(len(tension))[limited], arms[turned], -arms[back]]),
@@ -108,7 +112,7 @@ def bounds(simulation: Simulation, limits: Limits) -> Bounds:
         motors=tuple(robot.winches[number].name for number in np.append(np.flatnonzero(turned), np.flatnonzero(back))),
     )
     for channel in np.flatnonzero(found.low > found.high):
-        names = ", ".join(winch.name for winch, own in zip(robot.winches, channels, strict=True) if own == channel)
+        names = ", ".join(winch.name for winch, own in zip(robot.winches, channels, strict=False) if own == channel)
         raise InputError(f"no contraction of {names} is within all of its limits; widen them")
     return found
 
@@ -158,7 +162,7 @@ def _ranges(robot: Robot, given: Mapping[str, tuple[float, float]]) -> tuple[Vec
         for end in ends:
             contraction_values(robot, {name: float(end)})  # in meters
         ranges[name] = (ends[0], ends[1])
-    values = np.array(list(ranges.values()), dtype=float).reshape(-1, 2)
+    values = np.array([*ranges.values(), *(drive.limits for drive in robot.drives)], dtype=float).reshape(-1, 2)
     return values[:, 0], values[:, 1]
 
 

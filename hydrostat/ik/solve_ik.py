@@ -130,7 +130,7 @@ def solve_ik(
     given = limits or Limits()
     allowed = bounds(simulation, given)
     if given.rate is not None:
-        allowed = allowed.near(allowed.channel((start or simulation.rest).contractions))
+        allowed = allowed.near(allowed.channel((start or simulation.rest).controls))
     terms = [wish.bind(simulation) for wish in wishes(target, objectives)]
     ready = given.rate is not None or any(keeps_taut(wish) for wish in objectives)
     problem = InverseProblem(simulation, terms, allowed, options or IKOptions(), ready=ready)
@@ -155,7 +155,7 @@ def solve_ik(
 
 def _follow_friction(simulation: Simulation, found: IKResult, start: Equilibrium | None) -> IKResult:
     """Solve an answer that was found without obstacle friction again, with friction along its loading path."""
-    pose = simulation.solve(found.pose.contractions, start=start, strict=False)
+    pose = simulation.solve(found.pose.controls, start=start, strict=False)
     if pose.result.reason is Reason.TIME_LIMIT:
         found = replace(found, status=IKStatus.TIME_LIMIT)
     elif not pose.result.converged:

@@ -213,7 +213,7 @@ class Tracker:
         """Inverse problem of these terms, within the bounds reachable from the pose in a given time [s]."""
         limits = self._limits if self._limits.rate is None else replace(self._limits, interval=seconds)
         allowed = bounds(self._simulation, limits)
-        allowed = allowed.near(allowed.channel(self.pose.contractions))
+        allowed = allowed.near(allowed.channel(self.pose.controls))
         return InverseProblem(self._simulation, terms, allowed, self._options, ready=True)
 
 

@@ -16,6 +16,7 @@ from hydrostat.ik.objectives.objective import (
     Slopes,
     StateJacobian,
     above_zero,
+    full_travels,
     not_negative,
 )
 from hydrostat.simulation import Simulation
@@ -50,7 +51,7 @@ class Effort(Objective):
     def bind(self, simulation: Simulation) -> Residual:
         """Return the residual on this robot (InputError: a weight below 0, or a scale not above 0)."""
         robot = simulation.robot
-        travel = np.array([winch.travel for winch in robot.winches])
+        travel = full_travels(robot)
         weight = not_negative("weight of an effort", self.weight) * robot.body.mesh.size
         scale = None if self.scale is None else above_zero("scale of an effort", self.scale)
         tension = 10.0  # a pull that winches of small robots bear with ease [N]

@@ -11,6 +11,7 @@ from hydrostat.arrays import Bool, Float, Int, Nodes, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh
 from hydrostat.mechanics import FrictionCableEnergy, Stiffness
+from hydrostat.robot import Robot
 from hydrostat.simulation import Equilibrium, Simulation
 
 Rows = Float[np.ndarray, " rows"]
@@ -23,7 +24,7 @@ class EquilibriumState:
 
     Attributes:
         nodes: node positions [m].
-        contractions: contraction of each winch [m].
+        contractions: contraction of each winch [m], then the value of each drive [rad or m].
         elongations: elongation of each cable beyond its free length [m]; negative when slack.
         tensions: tension of each cable [N]; at its winch for cables with friction.
         history: history variables of the physics, as in an `Equilibrium`.
@@ -92,7 +93,7 @@ def checked_objectives(given: object) -> tuple[Objective, ...]:
 
 def state_at(simulation: Simulation, pose: Equilibrium) -> EquilibriumState:
     """Return the state of a pose that objectives depend on."""
-    return posture_of(simulation, pose.nodes, pose.contractions, pose.history)
+    return posture_of(simulation, pose.nodes, pose.controls, pose.history)
 
 
 def posture_of(
@@ -113,9 +114,14 @@ def posture_of(
     )
 
 
+def full_travels(robot: Robot) -> Vector:
+    """Largest contraction of each winch [m], then largest distance of each drive from rest [rad or m]."""
+    return np.array([winch.travel for winch in robot.winches] + [max(map(abs, one.limits)) for one in robot.drives])
+
+
 def winch_to_cable_matrix(simulation: Simulation) -> Float[np.ndarray, "cables winches"]:
-    """B: contraction of each cable per meter of its winch's contraction; 0 for other winches."""
-    cables, winches = simulation.cables, np.arange(len(simulation.robot.winches))
+    """B: contraction of each cable per meter of its winch's contraction; 0 for other winches, and drives."""
+    cables, winches = simulation.cables, np.arange(simulation.robot.num_controls)
     return np.where(cables.winches[:, None] == winches, cables.ratios[:, None], 0.0)
 
 
@@ -132,7 +138,7 @@ def state_jacobian_at(simulation: Simulation, pose: Equilibrium) -> StateJacobia
         return rubbing_moves(simulation, simulation.friction, state_at(simulation, pose), stiffness)
     cables, nodes = simulation.cables, simulation.jacobian(pose)
     elongations = winch_to_cable_matrix(simulation) + cables.columns(pose.nodes).T @ nodes.reshape(pose.nodes.size, -1)
-    tangents = cables.law.tangent(cables.elongations(pose.nodes, pose.contractions))
+    tangents = cables.law.tangent(cables.elongations(pose.nodes, pose.controls))
     return StateJacobian(nodes=nodes, elongations=elongations, tensions=tangents[:, None] * elongations)
 
 

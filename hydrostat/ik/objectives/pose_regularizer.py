@@ -69,7 +69,7 @@ class PoseRegularizer(Objective):
                 [index for index, name in enumerate(names) if self.markers is None or name in self.markers]
             )
             return _Markers(weight, simulation.marker_anchors, which.astype(int), self.pose.nodes)
-        return _Contractions(weight, self.pose.contractions)
+        return _Contractions(weight, self.pose.controls)
 
 
 class _Nodes(Residual):

@@ -14,7 +14,7 @@ from hydrostat.ik.ik_result import IKResult, IKStatus
 from hydrostat.ik.search.linear_model import channels
 from hydrostat.ik.search.problem import InverseProblem, InverseState, ModelStep
 from hydrostat.mechanics import NewtonResult
-from hydrostat.robot import PoseTarget
+from hydrostat.robot import PinDrive, PoseTarget
 from hydrostat.simulation import Equilibrium
 
 SearchProgress = Callable[[int, float], None]
@@ -77,11 +77,11 @@ class InverseSearch:
         """State of a pose, or of rest, within the limits (NotConvergedError: there is no equilibrium)."""
         pose = start or self.problem.simulation.rest
         self.problem.simulation.check_start(pose)
-        values = self.problem.bounds.channel(pose.contractions)
+        values = self.problem.bounds.channel(pose.controls)
         if self._remembers:
             return self._begin_where(values, pose)
         given = self._result(pose)
-        if (self.problem.bounds.spread @ values == pose.contractions).all() and given.stable:
+        if (self.problem.bounds.spread @ values == pose.controls).all() and given.stable:
             found = self.problem.state(values, given)
             if found.sharp:
                 return self.problem.idle(found)
@@ -96,7 +96,7 @@ class InverseSearch:
         simulation = self.problem.simulation
         origin = self._origin or simulation.rest
         contractions = self.problem.bounds.spread @ values
-        if pose is not origin or (contractions != pose.contractions).any():
+        if pose is not origin or (contractions != pose.controls).any():
             pose = _usable_start(simulation.solve(contractions, start=self._origin, strict=False))
         stiffness = simulation.stiffness(pose)
         return self._idle_slack(self.problem.state(values, replace(pose.result, stiffness=stiffness), pose.history))
@@ -191,12 +191,13 @@ class InverseSearch:
         """Release channels with hardly any tension, if the goals stay reached."""
         cables, posture = self.problem.simulation.cables, state.posture
         places = channels(cables, posture, state.values, self.problem.bounds)
-        pulls = posture.tensions[places.first]
-        hardly = (places.gaps == 0) & (pulls < _HARDLY * posture.tensions.max(initial=0.0))
+        winches = ~self.problem.bounds.driven
+        hardly = winches & (places.gaps == 0)
+        hardly[winches] &= posture.tensions[places.first[winches]] < _HARDLY * posture.tensions.max(initial=0.0)
         if not hardly.any():
             return state
-        pulled = (posture.elongations / cables.ratios)[places.first]
-        values = state.values - np.where(hardly, pulled + places.beyond, 0.0)
+        values = state.values.copy()
+        values[hardly] -= (posture.elongations / cables.ratios)[places.first[hardly]] + places.beyond[hardly]
         found = self.follow(state, np.clip(values, self.problem.bounds.low, self.problem.bounds.high))
         if found is not None and found.error > self.problem.reached:
             step = self.problem.step(found, self.problem.weight(found), self.problem.options.largest_step)
@@ -207,7 +208,7 @@ class InverseSearch:
     def _result(self, pose: Equilibrium) -> NewtonResult:
         """Return the solver result of a pose in this simulation; another one may have found it."""
         stiffness = self.problem.simulation.stiffness(pose)
-        residual = float(np.abs(self.problem.simulation.forces(pose.nodes, pose.contractions)).max())
+        residual = float(np.abs(self.problem.simulation.forces(pose.nodes, pose.controls)).max())
         return replace(pose.result, stiffness=stiffness, residual=residual, stable=stiffness.definite)
 
     def _solve_newton(self, values: Vector, start: NewtonResult) -> InverseState | None:
@@ -335,7 +336,10 @@ def limits_that_hold(search: InverseSearch, found: Descent) -> tuple[str, ...]:
     words = []
     hair = _HAIR * bounds.span
     for channel, value in enumerate(state.values):
-        winches = [winch.name for winch, own in zip(robot.winches, bounds.channels, strict=True) if own == channel]
+        if bounds.driven[channel]:
+            words += drive_at_end(robot.drives[channel - len(bounds.driven)], value, hair[channel])
+            continue
+        winches = [winch.name for winch, own in zip(robot.winches, bounds.channels, strict=False) if own == channel]
         name = " and ".join(winches)
         if value >= bounds.high[channel] - hair[channel]:
             words.append(f"{name}: at maximum contraction, {1e3 * value:.4g} mm")
@@ -352,6 +356,13 @@ def limits_that_hold(search: InverseSearch, found: Descent) -> tuple[str, ...]:
         if torque >= (1.0 - _HAIR) * most
     )
     return tuple(words)
+
+
+def drive_at_end(drive: PinDrive, value: float, hair: float) -> list[str]:
+    """Limit at which a drive stands, in words; empty within its limits."""
+    low, high = drive.limits
+    ends = {"maximum": value >= high - hair, "minimum": value <= low + hair}
+    return [f"{drive.name}: at {name}, {drive.format_value(value)}" for name, holds in ends.items() if holds]
 
 
 _HAIR = 1e-6  # a limit holds within this share of it

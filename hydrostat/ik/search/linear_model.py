@@ -58,6 +58,7 @@ def channels(
             gaps[channel] = ways[cable] * max(-pulled[cable], 0.0)
             left = max(posture.elongations[cable] - fall[cable], 0.0) + 0.01 * law.smoothing[cable]
             beyond[channel] = left / cables.ratios[cable]
+    gaps[bounds.driven] = 0.0
     room = np.where(gaps < 0, values - bounds.low, bounds.high - values)
     return Channels(gaps, beyond, first, np.abs(gaps) <= room, two_way, between)
 
@@ -80,6 +81,10 @@ def stack_jacobians(
     tangents = cables.law.tangent(np.where(loose, 0.5 * cables.law.smoothing, posture.elongations))
     own = winch_to_cable_matrix(simulation)
     moves = stiffness.response(np.diag(tangents)) @ own
+    if simulation.robot.drives:
+        first = len(simulation.robot.winches)
+        pushed = simulation.assembly.control_derivative(posture.nodes, posture.contractions)[:, first:].toarray()
+        moves[:, first:] -= stiffness.solve(pushed)
     elongations = own + stiffness.columns.T @ moves
     return StateJacobian(
         nodes=moves.reshape(*posture.nodes.shape, -1), elongations=elongations, tensions=tangents[:, None] * elongations
@@ -106,9 +111,10 @@ class LinearModel:
     ) -> None:
         """Residual and its slopes, slopes of tensions, and limits at contractions `values` of the channels."""
         self.residual, self.matrix, self.places, self.bounds, self.values = residual, matrix, places, bounds, values
-        self._pulls = posture.tensions[places.first], tensions[places.first]
+        self._pulls = _first_pulls(posture, tensions, places, bounds)
         self._loads = bounds.loads @ posture.tensions, bounds.loads @ tensions, bounds.most
-        self._efforts = posture.tensions, tensions
+        spans = np.diag(1.0 / bounds.span)[bounds.driven]
+        self._efforts = np.append(posture.tensions, spans @ values), np.vstack([tensions, spans])
         self.active = places.active
         self.range = bounds.span
 
@@ -116,8 +122,8 @@ class LinearModel:
         """Step of the channels [m] that minimizes residual and effort, and the decrease of half their squares.
 
         Where no step keeps the limits on tension, it goes as far towards them as it can. The effort is the residual
-        that a tension of each cable is worth [m/N], the radius the largest step as a share of each range, the curvature
-        (channels, channels) what Gauss-Newton leaves out of the Hessian.
+        that a tension of each cable is worth [m/N], then that of the range of each drive [m]; the radius is the largest
+        step as a share of each range, the curvature (channels, channels) what Gauss-Newton leaves out of the Hessian.
         """
         active = self.active
         scale = self.range[active]
@@ -220,6 +226,18 @@ class LinearModel:
             largest - loads,
         ]
         return np.vstack(rows), np.concatenate(room)
+
+
+def _first_pulls(
+    posture: EquilibriumState, tensions: Float[np.ndarray, "cables channels"], places: Channels, bounds: Bounds
+) -> tuple[Vector, Float[np.ndarray, "channels channels"]]:
+    """Tension of the first cable of each channel, and its slopes; that of a drive pulls always."""
+    if not bounds.driven.any():
+        return posture.tensions[places.first], tensions[places.first]
+    pulls, slopes = np.full(len(places.first), np.inf), np.zeros((len(places.first), len(places.first)))
+    winches = ~bounds.driven
+    pulls[winches], slopes[winches] = posture.tensions[places.first[winches]], tensions[places.first[winches]]
+    return pulls, slopes
 
 
 Matrix = Float[np.ndarray, "rows size"]

@@ -17,6 +17,7 @@ from hydrostat.ik.objectives.objective import (
     Rows,
     Slopes,
     StateJacobian,
+    full_travels,
     posture_of,
     winch_to_cable_matrix,
 )
@@ -113,16 +114,19 @@ class InverseProblem:
         """
         robot = simulation.robot
         simulation.body.check_held()
-        if not robot.cables:
+        if not robot.cables and not robot.drives:
             raise InputError(
                 "the robot has no cables to pull; add winches and cables, or let `hydrostat design` find them"
             )
         require_static_obstacles(simulation.robot, "inverse kinematics")
         own = simulation.friction or simulation.cables
         others = [energy for energy in simulation.assembly.energies if energy is not own]
-        idle = simulation.robot.body.mesh.nodes, np.zeros(len(robot.winches))
+        idle, winches = (simulation.robot.body.mesh.nodes, np.zeros(robot.num_controls)), len(robot.winches)
         if any(
-            energy.controls is not None or energy.has_history or energy.coupling(*idle) is not None for energy in others
+            (energy.controls is not None and (energy.controls < winches).any())
+            or energy.has_history
+            or energy.coupling(*idle) is not None
+            for energy in others
         ):
             raise InputError(
                 "inverse kinematics knows no energy beside the cables that follows winches, remembers the way or "
@@ -132,7 +136,8 @@ class InverseProblem:
         size = robot.body.mesh.size
         self.reached = options.tolerance * size  # error [m] at which a goal counts as reached
         self.size = size  # of the body [m]
-        self.worth = np.full(len(robot.cables), size / _full_tension(simulation))  # of a tension, at weight 1 [m/N]
+        by_tension = np.full(len(robot.cables), size / _full_tension(simulation))  # of a tension, at weight 1 [m/N]
+        self.worth = np.append(by_tension, np.full(len(robot.drives), size))  # then of the range of a drive [m]
         self._ready = ready
 
     def with_term(self, term: Residual) -> "InverseProblem":
@@ -210,7 +215,8 @@ class InverseProblem:
         """
         assert state.result.stiffness is not None
         places = channels(self.simulation.cables, state.posture, state.values, self.bounds, turned=turned)
-        moves = stack_jacobians(self.simulation, state.posture, state.result.stiffness, places.first[places.active])
+        taut = places.first[places.active & ~self.bounds.driven]
+        moves = stack_jacobians(self.simulation, state.posture, state.result.stiffness, taut)
         matrix = self._rows(state.posture, moves)
         edge = 1e-9  # a channel this near to taut, in shares of its range, is at the edge of it
         loose = np.abs(places.gaps) > edge * self.bounds.span
@@ -239,7 +245,9 @@ class InverseProblem:
 
     def objective(self, state: InverseState, weight: float) -> float:
         """Half the squares of residual and effort [m^2]."""
-        effort = weight * self.worth * state.posture.tensions
+        driven = self.bounds.driven
+        turned = state.values[driven] / self.bounds.span[driven]
+        effort = weight * self.worth * np.append(state.posture.tensions, turned)
         return 0.5 * float(state.residual @ state.residual + effort @ effort)
 
     def weight(self, state: InverseState) -> float:
@@ -279,7 +287,9 @@ _LEAST_WEIGHT = 1e-8  # of the effort; enough to keep the linearized problem wel
 def _full_tension(simulation: Simulation) -> float:
     """Largest cable tension at full travel of its winch if the body were linear [N]."""
     robot, cables = simulation.robot, simulation.cables
-    travel = cables.compute_contractions(np.array([winch.travel for winch in robot.winches]))
+    if not robot.cables:
+        return 1.0
+    travel = cables.compute_contractions(full_travels(robot))
     rest = simulation.rest
     compliance = simulation.stiffness(rest).compliance_to(cables.columns(rest.nodes)).compliance.diagonal()
     return float((travel / (1.0 / cables.law.stiffness + compliance)).max())

@@ -213,6 +213,8 @@ def _check_own(simulation: Simulation, name: str, pose: Equilibrium) -> None:
     robot = simulation.robot
     shape, count = robot.body.mesh.nodes.shape, len(robot.winches)
     remedy = "solve it with the simulation that is given"
+    if robot.drives:
+        raise InputError(f'trajectories move winches only, not drives, such as "{robot.drives[0].name}"; remove them')
     if pose.nodes.shape != shape or not np.isfinite(pose.nodes).all():
         raise InputError(f"{name}: a pose of this robot has finite nodes, {shape}, not {pose.nodes.shape}; {remedy}")
     if len(pose.contractions) != count or not np.isfinite(pose.contractions).all():

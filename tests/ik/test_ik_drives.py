@@ -1,0 +1,70 @@
+"""Inverse kinematics of robots with drives. Oracles: a forward solve at the answer, differences of poses."""
+
+import numpy as np
+import pytest
+from builders import box_mesh, mesh_body
+
+from hydrostat.errors import InputError
+from hydrostat.ik import IKStatus, solve_ik, solve_ik_trajectory, state_at, state_jacobian_at
+from hydrostat.robot import Cable, Marker, Material, Pin, PinDrive, Robot, Winch
+from hydrostat.simulation import Simulation
+
+SILICONE = Material(young=200e3, poisson=0.3, density=1070.0)
+AXIS = (0.0, 0.01, 0.01)
+
+
+def arm(*, cabled: bool) -> Robot:
+    """A bar on a servo that turns it about y and a stage that slides it along y, with a cable below if asked."""
+    pin = Pin(box=((-1e-4, -1.0, -1.0), (1e-4, 1.0, 1.0)), stiffness=1e6)
+    far = Pin(box=((0.1199, -1.0, -1.0), (0.1201, 1.0, 1.0)), stiffness=1e6)
+    servo = PinDrive(name="servo", at=AXIS, axis=(0.0, 1.0, 0.0), min=-1.0, max=1.0)
+    stage = PinDrive(name="stage", slide=(0.0, 0.0, 1.0), min=-0.03, max=0.03)
+    route = ((0.005, 0.01, 0.003), (0.06, 0.01, 0.003), (0.115, 0.01, 0.003))
+    ends = (Pin(**{**vars(pin), "drive": "servo"}), *(() if cabled else (Pin(**{**vars(far), "drive": "stage"}),)))
+    return Robot(
+        name="arm",
+        body=mesh_body(box_mesh((12, 2, 2), size=(0.12, 0.02, 0.02)), material=SILICONE),
+        pins=ends,
+        drives=(servo,) if cabled else (servo, stage),
+        winches=(Winch(name="below", at=route[0], spool_radius=5e-3, travel=0.03),) if cabled else (),
+        cables=(Cable(winch="below", points=route),) if cabled else (),
+        markers=(Marker(name="tip", at=(0.12, 0.01, 0.01)), Marker(name="mid", at=(0.06, 0.01, 0.01))),
+        poses={},
+    )
+
+
+@pytest.mark.parametrize(("cabled", "asked"), [(True, (0.012, -0.5)), (False, (0.4, 0.01))])
+def test_angles_that_reach_a_target_are_found(cabled: bool, asked: tuple[float, float]) -> None:
+    """The target is the pose of other values; both controls are needed to reach it."""
+    simulation = Simulation(arm(cabled=cabled))
+    target = simulation.solve(np.array(asked)).markers
+    found = solve_ik(simulation, target)
+    assert found.status is IKStatus.REACHED
+    again = simulation.solve(found.pose.controls)
+    for marker, place in target.items():
+        np.testing.assert_allclose(again.markers[marker], place, atol=2e-5)
+    np.testing.assert_allclose(found.pose.controls, asked, atol=2e-3)
+
+
+def test_a_limit_of_a_drive_holds_and_is_told() -> None:
+    simulation = Simulation(arm(cabled=True))
+    found = solve_ik(simulation, {"tip": (0.0, 0.01, -0.2)})
+    assert found.pose.drives[0] == pytest.approx(1.0)
+    assert any("servo: at maximum, 57.3 deg" in words for words in found.active_limits)
+
+
+def test_state_jacobian_is_that_of_differences() -> None:
+    simulation = Simulation(arm(cabled=True))
+    at, step = np.array([0.01, 0.3]), 1e-5
+    moves = state_jacobian_at(simulation, simulation.solve(at))
+    ends = [[state_at(simulation, simulation.solve(at + sign * way)) for sign in (1, -1)] for way in step * np.eye(2)]
+    tensions = np.stack([(up.tensions - down.tensions) / (2 * step) for up, down in ends], axis=1)
+    nodes = np.stack([(up.nodes - down.nodes) / (2 * step) for up, down in ends], axis=2)
+    np.testing.assert_allclose(moves.nodes, nodes, atol=1e-5)
+    np.testing.assert_allclose(moves.tensions, tensions, rtol=1e-5, atol=1e-6)
+
+
+def test_trajectories_refuse_drives_in_one_line() -> None:
+    simulation = Simulation(arm(cabled=True))
+    with pytest.raises(InputError, match='trajectories move winches only, not drives, such as "servo"'):
+        solve_ik_trajectory(simulation, [{"tip": (0.1, 0.01, 0.02)}])
