@@ -14,11 +14,18 @@ from hydrostat.camera.tags import BOX
 Place = Float[np.ndarray, " 3"]
 
 
-def locate_on_plane(corners: Corners, lens: Lens, view: View, height: float) -> tuple[Place, float]:
-    """Center of a tag at a height above the board, in the board's frame [m], and its side at that height [m]."""
+def locate_on_plane(corners: Corners, lens: Lens, view: View, height: float) -> tuple[Place, float, float]:
+    """Find a tag at a height above the board.
+
+    Returns:
+        Its center in the board's frame [m], its side at that height [m], and the root mean square distance of its
+        corners from those of a square [m].
+    """
     places = view.meet_plane(lens.rays(corners), height)
-    sides = np.linalg.norm(places - np.roll(places, 1, axis=0), axis=1)
-    return places.mean(axis=0), float(sides.mean())
+    side = float(np.linalg.norm(places - np.roll(places, 1, axis=0), axis=1).mean())
+    turn, shift = align_places(side * BOX, places[:, :2])
+    away = side * BOX @ turn.T + shift - places[:, :2]
+    return places.mean(axis=0), side, float(np.sqrt((away**2).sum(axis=1).mean()))
 
 
 def locate_in_space(seen: Sequence[tuple[Corners, View]], lens: Lens, side: float) -> tuple[Place, float]:

@@ -12,6 +12,15 @@ from hydrostat.camera.find_tags import Corners, find_tags, load_opencv
 from hydrostat.camera.lens import Lens, View
 from hydrostat.camera.locate_tags import align_places, locate_in_space, locate_on_plane, pairs_of
 from hydrostat.camera.photo import Photo, read_pixels
+from hydrostat.camera.photo_warnings import (
+    SHIFTED,
+    check_sheets,
+    doubt_board,
+    doubt_frame,
+    doubt_sizes,
+    doubt_tags,
+    find_missing,
+)
 from hydrostat.camera.tags import MARKER_SIDE, marker_tags, sheet_of
 from hydrostat.errors import InputError
 from hydrostat.identification import Measurements
@@ -21,18 +30,6 @@ from hydrostat.units import plural
 
 LEAST = 4
 """Tags of the board that a photograph must show."""
-
-MISPLACED = 0.35
-"""Share of the corners of a sheet that may be elsewhere than its others say: tags that the robot half covers."""
-
-BENT = 0.3e-3
-"""Error of the board's corners [m] from which on it is bent."""
-
-MISSIZED = 0.015
-"""Share by which tags of markers may look larger or smaller than they are."""
-
-SHIFTED = 0.05
-"""Shift of the frame in one photograph, as a share of the body's size, from which on the board has moved."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -136,21 +133,23 @@ def measure_photos(robot: Robot, photos: Sequence[Photo], options: PhotoOptions 
     tags, size, focal = _read(photos)
     markers = [_markers_in(found, names, photo.name) for found, photo in zip(tags, photos, strict=True)]
     calibration = calibrate_camera(tags, size, focal=focal)
-    _check_sheets(photos, calibration)
+    check_sheets(photos, calibration)
     flat = robot.body.mesh.dim == 2
     height = (options.height if options.height is not None else robot.body.thickness or 0.0) if flat else 0.0
     rows = [[index] for index in range(len(photos))] if flat else _same_poses(photos)
     scale = median(_scale(calibration, index, height) for index in range(len(photos)))
-    warnings = _missing(photos, markers, names)
-    warnings += _doubt_board(photos, calibration, scale)
+    warnings = find_missing(photos, markers, names, rows)
+    warnings += doubt_board(photos, calibration, scale)
     if flat:
-        found, sides = _on_plane(markers, calibration, height)
-        warnings += _doubt_sizes(sides, options.side, height, calibration)
+        found, sides, misfits = _on_plane(markers, calibration, height)
+        warnings += doubt_sizes(sides, options.side, height, calibration)
+        misfits = [{name: misfit / scale for name, misfit in each.items()} for each in misfits]
     else:
-        found = _in_space(markers, rows, calibration, options.side)
+        found, misfits = _in_space(markers, rows, calibration, options.side)
+    warnings += doubt_tags([photos[row[0]] for row in rows], misfits)
     poses = _simulate(robot, [photos[row[0]] for row in rows])
     turn, shift = _align(robot, found, poses)
-    warnings += _doubt_frame(robot, [photos[row[0]] for row in rows], found, poses, (turn, shift))
+    warnings += doubt_frame(robot, [photos[row[0]] for row in rows], found, poses, (turn, shift))
     places = [{name: turn @ at + shift for name, at in each.items()} for each in found]
     row_of = {index: row for row, members in enumerate(rows) for index in members}
     measured = [
@@ -213,37 +212,6 @@ def _markers_in(tags: Mapping[int, Corners], names: Mapping[str, int], where: st
     raise InputError(f"{where}: no tag of a marker in sight. Stick them where the sheet of tags says.")
 
 
-def _missing(photos: Sequence[Photo], markers: Sequence[Mapping[str, Corners]], names: Mapping[str, int]) -> list[str]:
-    never = [name for name in names if not any(name in found for found in markers)]
-    texts = [f"{name}: its tag is in no photograph. The table leaves it out." for name in never]
-    for photo, found in zip(photos, markers, strict=True):
-        if gone := [name for name in names if name not in found and name not in never]:
-            texts.append(f"{photo.name}: no tag of {', '.join(gone)}. Their cells stay empty.")
-    return texts
-
-
-def _check_sheets(photos: Sequence[Photo], calibration: CameraCalibration) -> None:
-    for (photo, sheet), share in calibration.wrong.items():
-        if share > MISPLACED:
-            raise InputError(
-                f"{photos[photo].name}: sheet {sheet + 1} of the board is bent or has moved ({100 * share:.0f} % of "
-                "its corners are elsewhere). Glue sheets to a flat plate."
-            )
-
-
-def _doubt_board(photos: Sequence[Photo], calibration: CameraCalibration, scale: float) -> list[str]:
-    return [
-        f"{photo.name}: the board is off by {1e3 * error * scale:.2f} mm ({error:.2f} pixels). It is bent or "
-        "printed in different sizes."
-        for photo, error in zip(photos, calibration.errors, strict=True)
-        if error * scale > BENT and error > COARSE
-    ]
-
-
-COARSE = 0.5
-"""Error of corners that sharp photographs do not have [pixels]."""
-
-
 def _scale(calibration: CameraCalibration, index: int, height: float) -> float:
     """Size of a pixel in the middle of a photograph [m]."""
     lens, view = calibration.lens, calibration.views[index]
@@ -258,46 +226,35 @@ Found = list[dict[str, np.ndarray]]
 
 def _on_plane(
     markers: Sequence[Mapping[str, Corners]], calibration: CameraCalibration, height: float
-) -> tuple[Found, list[float]]:
-    found, sides = [], []
+) -> tuple[Found, list[float], list[dict[str, float]]]:
+    """Places of markers, sides of all tags [m], and the misfit of each tag to a square [m]."""
+    found, sides, misfits = [], [], []
     for seen, view in zip(markers, calibration.views, strict=True):
-        both = {name: locate_on_plane(corners, calibration.lens, view, height) for name, corners in seen.items()}
-        found.append({name: place[:2] for name, (place, _) in both.items()})
-        sides += [side for _, side in both.values()]
-    return found, sides
+        tags = {name: locate_on_plane(corners, calibration.lens, view, height) for name, corners in seen.items()}
+        found.append({name: place[:2] for name, (place, _, _) in tags.items()})
+        misfits.append({name: misfit for name, (_, _, misfit) in tags.items()})
+        sides += [side for _, side, _ in tags.values()]
+    return found, sides, misfits
 
 
 def _in_space(
     markers: Sequence[Mapping[str, Corners]], rows: list[list[int]], calibration: CameraCalibration, side: float
-) -> Found:
-    found = []
+) -> tuple[Found, list[dict[str, float]]]:
+    """Places of markers, and the misfit of each tag to a square of its size [pixels]."""
+    found, misfits = [], []
     for row in rows:
         names = dict.fromkeys(name for index in row for name in markers[index])
-        found.append(
-            {
-                name: locate_in_space(
-                    [(markers[index][name], calibration.views[index]) for index in row if name in markers[index]],
-                    calibration.lens,
-                    side,
-                )[0]
-                for name in names
-            }
-        )
-    return found
-
-
-def _doubt_sizes(sides: list[float], side: float, height: float, calibration: CameraCalibration) -> list[str]:
-    """Warn if tags look larger or smaller than they are: their height or their print is another."""
-    share = median(sides) / side
-    if abs(share - 1) < MISSIZED:
-        return []
-    away = median(float(-(view.rotation.T @ view.translation)[2]) for view in calibration.views)
-    likely = away - (away - height) / share
-    other = f", or they lie {1e3 * likely:.0f} mm high" if likely >= 0 else ""
-    return [
-        f"tags of markers measure {1e3 * median(sides):.2f} mm at a height of {1e3 * height:.1f} mm, not "
-        f"{1e3 * side:.2f} mm. Check --height and --tag{other}."
-    ]
+        tags = {
+            name: locate_in_space(
+                [(markers[index][name], calibration.views[index]) for index in row if name in markers[index]],
+                calibration.lens,
+                side,
+            )
+            for name in names
+        }
+        found.append({name: place for name, (place, _) in tags.items()})
+        misfits.append({name: misfit for name, (_, misfit) in tags.items()})
+    return found, misfits
 
 
 def _same_poses(photos: Sequence[Photo]) -> list[list[int]]:
@@ -345,31 +302,6 @@ def _align(robot: Robot, found: Found, poses: Sequence[Equilibrium | None]) -> t
             "the markers are a mirror image of the robot's. Turn the robot over, or swap the tags of left and right."
         )
     return turn, shift
-
-
-def _doubt_frame(
-    robot: Robot,
-    photos: Sequence[Photo],
-    found: Found,
-    poses: Sequence[Equilibrium | None],
-    frame: tuple[np.ndarray, np.ndarray],
-) -> list[str]:
-    """Warn of photographs that fit the robot much better with a frame of their own."""
-    texts = []
-    turn, shift = frame
-    for photo, each, pose in zip(photos, found, poses, strict=True):
-        if pose is None:
-            texts.append(f"{photo.name}: the simulated robot reaches no equilibrium at these contractions.")
-            continue
-        places, targets = pairs_of(each, pose.markers)
-        if len(photos) < 3 or len(places) <= robot.body.mesh.dim:
-            continue
-        own_turn, own_shift = align_places(places, targets)
-        common = np.sqrt(((places @ turn.T + shift - targets) ** 2).sum(axis=1).mean())
-        own = np.sqrt(((places @ own_turn.T + own_shift - targets) ** 2).sum(axis=1).mean())
-        if common > max(SHIFTED * robot.body.mesh.size, 4 * own):
-            texts.append(f"{photo.name}: board or robot moved by about {1e3 * common:.0f} mm since other photographs.")
-    return texts
 
 
 def _table(robot: Robot, photos: Sequence[Photo], places: Found) -> Measurements:

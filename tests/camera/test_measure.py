@@ -12,7 +12,7 @@ pytest.importorskip("cv2", reason="extra photos (OpenCV) is not installed")
 import io
 
 import typst
-from photographs import Camera, Scene, board_plane, photograph, tag_corners, tag_plane
+from photographs import Camera, Scene, board_plane, photograph, tag_corners, tag_plane, wall_plane
 from PIL import Image
 
 from hydrostat.camera import Photo, PhotoOptions, measure_photos, read_photos, table_text
@@ -177,6 +177,33 @@ def test_faults_of_photographs_are_said_in_one_line(rest: Path, tmp_path: Path) 
     assert found.measurements.markers == ("root", "tip")
     high = measure_photos(robot, read_photos([rest], robot), PhotoOptions(height=0.0))
     assert "Check --height and --tag" in high.warnings[0]
+    bent = pixels.copy()
+    corners = tags[numbers["tip"]]
+    low = corners[0].astype(int) - 6
+    bent[low[1] : low[1] + 14, low[0] : low[0] + 14] = 200
+    found = measure_photos(robot, read_photos([save(bent, tmp_path / "rest.png")], robot))
+    assert [text for text in found.warnings if "the tag of tip is no square" in text or "tip: its tag" in text]
+
+
+@pytest.mark.slow
+def test_a_sheet_that_moved_is_named(tmp_path: Path) -> None:
+    """Oracle: two sheets, the second 3 mm away in the last of three photographs."""
+    robot = strip(gravity=None)
+    files = []
+    for index, camera in enumerate(CAMERAS):
+        away = 0.003 * (index == 2)
+        planes = [wall_plane(), board_plane(0, clutter=None), board_plane(1, (0.2 + away, 0, 2), clutter=None)]
+        planes += [tag_plane(number, (0.05 * k, 0.02 * k, 0.03), 0.015) for k, number in enumerate(tags_of(robot))]
+        far = replace(camera, position=camera.position + np.array([0.08, 0.0, 0.3]))
+        files.append(save(photograph(far, planes, seed=index, over=1), tmp_path / f"rest ({index}).png"))
+    with pytest.raises(InputError, match=r"rest \(2\).png: the board is bent or its sheets have moved"):
+        measure_photos(robot, read_photos(files, robot))
+    first = measure_photos(robot, read_photos(files[:2], robot))
+    assert first.error < 0.5
+
+
+def tags_of(robot: Robot) -> list[int]:
+    return list(marker_tags(robot).values())
 
 
 @pytest.mark.slow
@@ -186,7 +213,7 @@ def test_a_board_that_moved_is_named(rest: Path, tmp_path: Path) -> None:
     pose = Simulation(robot).solve({})
     scene = Scene(robot, (0.01, -0.1, 90.0), robot.body.thickness or 0.0)
     planes = scene.planes(pose.nodes, pose.markers, move=(0.02, 0.0, 0.0))
-    moved = save(photograph(CAMERAS[0], planes), tmp_path / "rest (3).png")
+    moved = save(photograph(CAMERAS[0], planes, over=1), tmp_path / "rest (3).png")
     same = save(np.array(Image.open(rest)), tmp_path / "rest (2).png")
     found = measure_photos(robot, read_photos([rest, same, moved], robot))
     assert [text for text in found.warnings if text.startswith("rest (3).png: board or robot moved by about")]
