@@ -14,11 +14,13 @@ from hydrostat.design.network import RouteTrace
 from hydrostat.design.region import body_region
 from hydrostat.design.request import RouteOptions
 from hydrostat.design.routes import design_routes as routes
-from hydrostat.design.routes import finalists
+from hydrostat.design.routes import final_judgement, finalists
+from hydrostat.design.routes.deadline import Deadline
 from hydrostat.design.zone import Zone
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.fabrication import demand_of, find_refusals
 from hydrostat.ik import solve_ik
+from hydrostat.progress import no_progress
 from hydrostat.robot import Marker, Mount, Pin, PoseTarget, Robot, Winch, robot_hash
 from hydrostat.simulation import BodyPhysics, Simulation
 
@@ -182,7 +184,7 @@ def test_more_cables_do_no_harm(name: str, unchecked: None) -> None:
 @pytest.mark.slow
 def test_a_network_whose_kit_fits_comes_first(monkeypatch: pytest.MonkeyPatch, unchecked: None) -> None:
     """Where no kit can be made of the refined networks, the best one on the way is taken: here one of 3 cables."""
-    for module in (routes, finalists):
+    for module in (final_judgement, finalists):
         monkeypatch.setattr(module, "kit_fits", lambda network: len(network.robot.cables) == 3)
     network = design_cables(bare(), [UP, DOWN], winches=2, cables=4, options=SMALL)
     assert len(network.robot.cables) == 3
@@ -196,6 +198,22 @@ def test_a_time_limit_gives_the_best_network_so_far(unchecked: None) -> None:
     assert broken(network) == []
     with pytest.raises(InputError, match="seconds must be finite and above 0 s, or None for no limit, not 0"):
         DesignRequest(poses=(UP, DOWN), seconds=0)
+
+
+@pytest.mark.parametrize("allowed", [15, 40])
+def test_search_and_judgement_end_with_their_time(
+    allowed: int, monkeypatch: pytest.MonkeyPatch, unchecked: None
+) -> None:
+    """Oracle: a clock that ticks with each layout. No kit fits, so the judgement tries layouts for its second."""
+    for module in (final_judgement, finalists):
+        monkeypatch.setattr(module, "kit_fits", lambda network: False)
+    request, deadline = DesignRequest(poses=(UP, DOWN), winches=2, cables=4), Deadline(allowed)
+    robot = bare()
+    search = routes.RouteSearch(robot, request, BodyPhysics(robot), no_progress, deadline=deadline)
+    deadline.clock = lambda: float(search.bench.solves)
+    network = search.run()
+    assert (network.timed_out, network.complete) == (True, False)
+    assert network.tried == allowed + 1
 
 
 def test_winches_move_apart_where_their_units_meet(unchecked: None) -> None:

@@ -55,7 +55,8 @@ class Bench:
     body: BodyPhysics | None = None  # physics of the body, which all layouts share; each has its own if left out
     reach: float = 0.0  # what reach beyond the poses is worth: see `RouteOptions`
     solves: int = field(default=0)  # layouts tried
-    look: Callable[[], None] = lambda: None  # called before each layout is solved; what it raises ends the search
+    look: Callable[[], None] = lambda: None  # called before each pose is solved; what it raises ends the search
+    time_left: Callable[[], float | None] = lambda: None  # seconds that a solve may take; None for no limit
 
     @cached_property
     def markers(self) -> list[list[int]]:
@@ -109,26 +110,29 @@ class Bench:
         If it is `rough`, poses from rest are not checked by playing their contractions.
         None: no equilibrium, or an error above `worst` [m]; poses that are left when it is sure of that are not solved.
         """
-        self.look()
         self.solves += 1
         simulation = Simulation(layout.robot(limited=True), body=self.body)
         options = IKOptions(restarts=0, min_tension=False, iterations=iterations, tolerance=1e-5, progress=1e-5)
         limits = self.constraints.limits
         found = []
         for index, target in enumerate(self.targets):
+            self.look()
             start = None if before is None else self._relax_start(simulation, before, index, kept)
             try:
                 if start is None and layout.two_way:
                     begin = None if hoped is None else simulation.solve(hoped.poses[index].contractions)
                     pose = self._reach_either_way(layout, simulation, index, options, begin)
                 elif start is None and not rough:
-                    pose = reach_from_rest(simulation, target, limits, options).pose
+                    pose = reach_from_rest(simulation, target, limits, options, seconds=self.time_left).pose
                 else:
-                    pose = solve_ik(simulation, target, start=start, limits=limits, options=options).pose
+                    left = self.time_left()
+                    pose = solve_ik(simulation, target, start=start, limits=limits, options=options, seconds=left).pose
                 if hoped is not None and self._pose_error(simulation, index, pose) > self._short_of(hoped, index):
                     more = replace(options, restarts=_RESTARTS)
                     with suppress(NotConvergedError):  # then the first one stands
-                        pose = reach_from_rest(simulation, target, limits, more, start=start).pose
+                        pose = reach_from_rest(
+                            simulation, target, limits, more, start=start, seconds=self.time_left
+                        ).pose
                 found.append(pose)
             except NotConvergedError:
                 return None
@@ -175,6 +179,7 @@ class Bench:
     def _within(
         self, layout: Layout, simulation: Simulation, poses: Sequence[Equilibrium], worst: float
     ) -> Trial | None:
+        self.look()
         try:
             trial = self.trial(layout, simulation, poses)
         except NotConvergedError:  # about to snap
@@ -185,6 +190,7 @@ class Bench:
         self, layout: Layout, near: Equilibrium, contractions: Vector, index: int
     ) -> tuple[Simulation, Nodes, CableSensitivities] | None:
         """Solve a layout built otherwise, near a pose: nodes [m] and slopes of markers; None without equilibrium."""
+        self.look()
         try:
             simulation = Simulation(layout.robot(limited=True), body=self.body)
             result = simulation.solver.relax(near.nodes, contractions, iterations=15)
@@ -264,19 +270,20 @@ def reach_from_rest(
     options: IKOptions,
     *,
     start: Equilibrium | None = None,
+    seconds: Callable[[], float | None] = lambda: None,
 ) -> IKResult:
     """The pose that is reached when its contractions are played from rest on, as the robot will.
 
     Inverse kinematics may end on a branch of equilibria that the straight way from rest does not lead to. Then it
     begins again where that leads, a few times. Raises NotConvergedError where there is no equilibrium on the way.
     """
-    found = solve_ik(simulation, target, start=start, limits=limits, options=options)
+    found = solve_ik(simulation, target, start=start, limits=limits, options=options, seconds=seconds())
     for _ in range(_REPLAYS):
         played = simulation.solve(found.pose.contractions)
         apart = max(float(np.linalg.norm(played.markers[name] - place)) for name, place in found.pose.markers.items())
         if apart <= _SAME * simulation.robot.body.mesh.size:
             return found
-        found = solve_ik(simulation, target, start=played, limits=limits, options=options)
+        found = solve_ik(simulation, target, start=played, limits=limits, options=options, seconds=seconds())
     played = simulation.solve(found.pose.contractions)
     errors = {name: float(np.linalg.norm(played.markers[name] - place)) for name, place in target.targets.items()}
     return replace(found, pose=played, errors=errors)

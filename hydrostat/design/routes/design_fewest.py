@@ -5,7 +5,8 @@ from dataclasses import replace
 
 from hydrostat.design.network import Alternative, Network, Size, size_of
 from hydrostat.design.request import COUNTS, DesignRequest
-from hydrostat.design.routes.design_routes import Hints, RouteSearch, deadline_of
+from hydrostat.design.routes.deadline import Deadline
+from hydrostat.design.routes.design_routes import Hints, RouteSearch
 from hydrostat.design.routes.finalists import kit_fits
 from hydrostat.design.watch import Better, Watch, unseen
 from hydrostat.errors import HydrostatError, InputError
@@ -35,7 +36,7 @@ def design_fewest(
     found: list[Network] = []
     body, better = BodyPhysics(robot), Better(watch)
     front: dict[Size, Alternative] = {}
-    interrupted, deadline = False, deadline_of(request)
+    interrupted, deadline = False, Deadline.after(request.seconds)
     least = _fewest(robot, request)
     largest = min(cables, int(COUNTS["winches"].most))
     for winches in range(least, largest + 1):
@@ -55,7 +56,8 @@ def design_fewest(
             if winches == largest and not found:
                 raise
             continue
-        judged = (search.finalists.judge(trial.layout) for trial in search.sizes.values())
+        sizes = search.sizes if found[-1].complete else {}
+        judged = (search.finalists.judge(trial.layout) for trial in sizes.values())
         _keep_best(front, [*(network for network in judged if network is not None), *_all(found[-1])])
         if not found[-1].complete or all(reached.rms_error <= tolerance for reached in found[-1].reached):
             break

@@ -14,8 +14,10 @@ from hydrostat.design.request import DesignRequest
 from hydrostat.design.routes.begin import layout_of
 from hydrostat.design.routes.bench import Bench, Trial
 from hydrostat.design.routes.certificate import certify
+from hydrostat.design.routes.deadline import Deadline, TimeUpError
 from hydrostat.design.routes.exchange import Exchanges
-from hydrostat.design.routes.finalists import DIGITS, Finalists, kit_fits
+from hydrostat.design.routes.final_judgement import FinalJudgement
+from hydrostat.design.routes.finalists import DIGITS, Finalists
 from hydrostat.design.routes.growth import Growth
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.propose import Proposals
@@ -27,7 +29,7 @@ from hydrostat.design.routes.thin import remove_via_points
 from hydrostat.design.skin_region import cable_region
 from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.design.watch import Watch, unseen
-from hydrostat.design.winch_room import built_in, find_holding_torque
+from hydrostat.design.winch_room import built_in
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.progress import Progress
 from hydrostat.robot import Robot
@@ -59,7 +61,8 @@ def design_routes(
         InputError: a body too thin for the constraints.
         HydrostatError: no network can be built.
     """
-    return RouteSearch(robot, request, BodyPhysics(robot), progress, watch, hints, deadline_of(request)).run()
+    deadline = Deadline.after(request.seconds)
+    return RouteSearch(robot, request, BodyPhysics(robot), progress, watch, hints, deadline).run()
 
 
 class RouteSearch:
@@ -80,8 +83,9 @@ class RouteSearch:
         progress: Progress,
         watch: Watch = unseen,
         hints: Hints = lambda _: (),
-        deadline: float = math.inf,
+        deadline: Deadline | None = None,
     ) -> None:
+        self.deadline = deadline or Deadline.after(request.seconds)
         self.robot, self.request, self.progress, self.watch = robot, request, progress, watch
         self.hints, self.physics = hints, body
         self.winches, self.cables = int(request.winches), request.cables
@@ -96,7 +100,7 @@ class RouteSearch:
             body,
             self.options.reach,
         )
-        self.deadline, self.bench.look = deadline, self._look
+        self.bench.look, self.bench.time_left = self._look, self._time_left
         self.stages: list[DesignStage] = []
         self.passed: list[tuple[float, Layout]] = []
         self.found: list[Trial] = []
@@ -106,22 +110,29 @@ class RouteSearch:
 
     def run(self) -> Network:
         """Search, judge, and tell how it came about."""
-        began, deadline = time.process_time(), self.deadline
+        began = time.process_time()
         complete = True
         try:
             self._search()
-        except (KeyboardInterrupt, _TimeUpError):
+        except (KeyboardInterrupt, TimeUpError):
             complete = False
             if self.best is None:
                 raise
-        self.deadline = math.inf
-        timed_out = not complete and time.monotonic() >= deadline
+        timed_out = not complete and self.deadline.is_over
+        self.deadline = self.deadline.with_grace()
+        judgement = self._judgement(complete)
+        certificate = None
         try:
-            network, alternatives = self._judge_networks(complete)
-            certificate = self._certificate(network) if complete else None
-        except KeyboardInterrupt:
-            complete, certificate, self.found = False, None, self.found[:1]
-            network, alternatives = self._judge_networks(complete)
+            judgement.judge_networks()
+            certificate = self._certificate(judgement.networks[0]) if complete else None
+        except (KeyboardInterrupt, TimeUpError) as stop:
+            complete, timed_out = False, timed_out or isinstance(stop, TimeUpError)
+            if not judgement.networks:
+                self.deadline = Deadline()
+                judgement = self._judgement(complete)
+                judgement.judge_networks()
+        network, *alternatives = judgement.networks
+        self.constraints = judgement.finalists.constraints
         return Network(
             robot=network.robot,
             source=self.robot,
@@ -138,8 +149,18 @@ class RouteSearch:
 
     def _look(self) -> None:
         """End the search when its time is up and there is a network."""
-        if self.best is not None and time.monotonic() >= self.deadline:
-            raise _TimeUpError
+        if self.best is not None and self.deadline.is_over:
+            raise TimeUpError
+
+    def _time_left(self) -> float | None:
+        """Return the seconds that are left once there is a network; None for no limit."""
+        left = self.deadline.left
+        return None if self.best is None or left == math.inf else max(left, _LEAST)
+
+    def _judgement(self, complete: bool) -> FinalJudgement:
+        found = self.found if complete else [trial for trial in (self.best,) if trial is not None]
+        finalists = self.finalists if complete else replace(self.finalists, restarts=0)
+        return FinalJudgement(self.growth, finalists, found, self.passed, self.sizes, complete=complete)
 
     def _search(self) -> None:
         if self.constraints.mirror is not None and self.cables < 2:
@@ -309,64 +330,11 @@ class RouteSearch:
             self.best = trial
             self.watch(stage)
 
-    def _judge_networks(self, complete: bool) -> tuple[Alternative, list[Alternative]]:
-        """Judge the networks found as their user will find them, the best first."""
-        found = self.found if complete else [self.best]
-        judged = self.finalists.judge_all(found)
-        if judged and not kit_fits(judged[0]):
-            refined = self.growth.refine if complete else self.growth.refine_briefly
-            judged += self.finalists.with_room(found[:1], refined)
-        if not any(kit_fits(network) for network in judged):
-            judged += self.finalists.with_room(found[1:], self.growth.refine_briefly)
-            known = [trial.layout for trial in self.found]
-            others = [pair for pair in self.passed if not any(pair[1] is layout for layout in known)]
-            judged += self.finalists.first_to_fit(others, _LOOKED_AT if complete else _LOOKED_AT_LATE)
-        judged += self.finalists.judge_all(self._simpler() if complete else [], thorough=False)
-        if not judged:
-            raise HydrostatError(
-                "no network that was found keeps all constraints; relax them, or ask for other numbers of cables"
-            )
-        best = judged[0]
-        judged.sort(key=self.finalists.cost)
-        first = next((place for place, network in enumerate(judged) if kit_fits(network)), 0)
-        if first or judged[first] is not best:
-            judged[first] = self.finalists.judge(layout_of(judged[first].robot, self.constraints)) or judged[first]
-        held = self._hold(judged[first]) if complete and self.constraints.built_in else None
-        if held is not None:
-            judged.insert(first, held)
-        return judged[first], [*judged[:first], *judged[first + 1 :]]
-
-    def _hold(self, network: Alternative) -> Alternative | None:
-        """Refine a network that its motors hold for seconds until they hold it for long; None if that costs much."""
-        torque = find_holding_torque(network.robot, network.reached)
-        if torque is None:
-            return None
-        usual, self.bench.constraints = self.constraints, replace(self.constraints, torque=torque)
-        layout = layout_of(network.robot, self.bench.constraints)
-        trial = self.bench.reach_poses(layout, None)
-        finalists = replace(self.finalists, constraints=self.bench.constraints)
-        held = None if trial is None else finalists.judge(self.growth.refine(trial).layout)
-        if held is not None and kit_fits(held) and held.built < (1 + _WORTH) * network.built:
-            self.constraints = self.bench.constraints
-            return held
-        self.bench.constraints = usual
-        return None
-
     @property
     def _fitting_constraints(self) -> Constraints:
         """Return the request with the torque of the motors that fit."""
         own = self.constraints
         return replace(self.request.constraints, torque=own.torque)
-
-    def _simpler(self) -> list[Trial]:
-        """The best network of each size with fewer cables, where none with fewer still is as good."""
-        kept: list[Trial] = []
-        for winches, cables in sorted(self.sizes, key=lambda size: size[1]):
-            trial = self.sizes[winches, cables]
-            fewer = cables < len(self.found[0].layout.routes)
-            if fewer and all(trial.cost < (1 - _WORSE) * other.cost for other in kept):
-                kept.append(trial)
-        return kept
 
     def _certificate(self, network: Alternative) -> Certificate | None:
         layout = layout_of(network.robot, self.constraints)
@@ -374,23 +342,11 @@ class RouteSearch:
         return certify(self.proposals, self.bench.trial(layout, Simulation(network.robot, body=self.bench.body), poses))
 
 
-class _TimeUpError(Exception):
-    """The time of a search is up."""
-
-
-def deadline_of(request: DesignRequest) -> float:
-    """The monotonic time at which a search that begins now should end [s]; infinite where it has no limit."""
-    return math.inf if request.seconds is None else time.monotonic() + request.seconds
-
-
 _LOOSER = 0.02  # fewer holes may cost so much
-_WORSE = 0.05  # a simpler network is told of where those that are simpler still have so much larger errors
 _HELPS = 0.02  # a sketch that lowers the cost by less than this share is none
 _STRONG = 0.1  # what the effort of stronger paths counts
 _DRAWN = 9  # sketches that are solved for each network that is grown, and for one more
 _SPARE = 8  # more of them than are grown get further cables priced
-_WORTH = 0.1  # errors may be so much larger where motors hold poses for long
-_LOOKED_AT = 12  # networks on the way that are judged where no refined one can be built
-_LOOKED_AT_LATE = 4  # where the search was ended before
 _REFINED = 2  # networks that are refined to the end
 _NEARLY = 1.1  # the second one only if its error is below this multiple of that of the first
+_LEAST = 1e-3  # time limit of a solve that begins when the time is up [s]

@@ -34,16 +34,18 @@ class Finalists:
     constraints: Constraints  # of the search
     bench: Bench
     region: Region
+    restarts: int = IKOptions.restarts  # of the search for each pose
 
-    def judge(self, layout: Layout, *, restarts: int = IKOptions.restarts) -> Alternative | None:
+    def judge(self, layout: Layout, *, restarts: int | None = None) -> Alternative | None:
         """A network with rounded coordinates and poses solved from rest; None if it breaks a constraint."""
         robot = self.safe_robot(layout)
         if violations(robot, self.constraints, self.region):
             return None
+        self.bench.look()
         simulation = Simulation(robot, body=self.bench.body)
         limits = self.constraints.limits
         try:
-            options = IKOptions(restarts=restarts)
+            options = IKOptions(restarts=self.restarts if restarts is None else restarts)
             reached = [reach_from_rest(simulation, pose, limits, options) for pose in self.request.poses]
         except NotConvergedError:
             return None
@@ -85,7 +87,7 @@ class Finalists:
         """
         judged = []
         for trial in trials:
-            network = trial and self.judge(trial.layout, restarts=IKOptions.restarts if thorough else 0)
+            network = trial and self.judge(trial.layout, restarts=None if thorough else 0)
             if network is not None:
                 judged.append(network)
                 thorough = thorough and not kit_fits(network)

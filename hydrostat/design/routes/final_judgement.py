@@ -1,0 +1,103 @@
+"""`FinalJudgement`: the networks that a search found, judged as their user will find them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+from hydrostat.design.network import Alternative
+from hydrostat.design.routes.begin import layout_of
+from hydrostat.design.routes.bench import Trial
+from hydrostat.design.routes.deadline import TimeUpError
+from hydrostat.design.routes.finalists import Finalists, kit_fits
+from hydrostat.design.routes.growth import Growth
+from hydrostat.design.routes.layout import Layout
+from hydrostat.design.winch_room import find_holding_torque
+from hydrostat.errors import HydrostatError
+
+
+@dataclass(eq=False)
+class FinalJudgement:
+    """Judges networks, the best first; its time is that of the bench."""
+
+    growth: Growth
+    finalists: Finalists  # with the torque of the motors that hold the first network, once that is judged
+    found: Sequence[Trial]  # the networks of the search, the best first
+    passed: Sequence[tuple[float, Layout]]  # cost and layout of the networks on the way
+    sizes: dict[tuple[int, int], Trial]  # the best network of each size
+    complete: bool  # whether the search came to its end
+    networks: list[Alternative] = field(default_factory=list)  # that were judged, the chosen one first
+
+    def judge_networks(self) -> None:
+        """Fill `networks`, the best first; those whose kit would be refused come last.
+
+        A search that was ended before has its best network judged without restarts, and others only if its kit would
+        be refused. Where it is stopped or the time is up, the networks judged by then are in this order too.
+        """
+        try:
+            self._judge_found()
+        except (KeyboardInterrupt, TimeUpError):
+            self.networks.sort(key=lambda network: (not kit_fits(network), network.built))
+            raise
+
+    def _judge_found(self) -> None:
+        judged, finalists = self.networks, self.finalists
+        judged += finalists.judge_all(self.found[:1])
+        judged += finalists.judge_all(self.found[1:], thorough=not (judged and kit_fits(judged[0])))
+        if judged and not kit_fits(judged[0]):
+            refined = self.growth.refine if self.complete else self.growth.refine_briefly
+            judged += finalists.with_room(self.found[:1], refined)
+        if not any(kit_fits(network) for network in judged):
+            judged += finalists.with_room(self.found[1:], self.growth.refine_briefly)
+            known = [trial.layout for trial in self.found]
+            others = [pair for pair in self.passed if not any(pair[1] is layout for layout in known)]
+            judged += finalists.first_to_fit(others, _LOOKED_AT if self.complete else _LOOKED_AT_LATE)
+        judged += finalists.judge_all(self._simpler() if self.complete else [], thorough=False)
+        if not judged:
+            raise HydrostatError(
+                "no network that was found keeps all constraints; relax them, or ask for other numbers of cables"
+            )
+        best = judged[0]
+        judged.sort(key=finalists.cost)
+        first = next((place for place, network in enumerate(judged) if kit_fits(network)), 0)
+        judged.insert(0, judged.pop(first))
+        if self.complete and judged[0] is not best:
+            judged[0] = finalists.judge(layout_of(judged[0].robot, finalists.constraints)) or judged[0]
+        held = self._hold(judged[0]) if self.complete and finalists.constraints.built_in else None
+        if held is not None:
+            judged.insert(0, held)
+
+    def _hold(self, network: Alternative) -> Alternative | None:
+        """Refine a network that its motors hold for seconds until they hold it for long; None if that costs much."""
+        torque = find_holding_torque(network.robot, network.reached)
+        if torque is None:
+            return None
+        bench, usual = self.growth.bench, self.growth.bench.constraints
+        bench.constraints = replace(usual, torque=torque)
+        try:
+            layout = layout_of(network.robot, bench.constraints)
+            trial = bench.reach_poses(layout, None)
+            finalists = replace(self.finalists, constraints=bench.constraints)
+            held = None if trial is None else finalists.judge(self.growth.refine(trial).layout)
+        except BaseException:
+            bench.constraints = usual
+            raise
+        if held is not None and kit_fits(held) and held.built < (1 + _WORTH) * network.built:
+            self.finalists = finalists
+            return held
+        bench.constraints = usual
+        return None
+
+    def _simpler(self) -> list[Trial]:
+        """The best network of each size with fewer cables, where none with fewer still is as good."""
+        kept: list[Trial] = []
+        for winches, cables in sorted(self.sizes, key=lambda size: size[1]):
+            trial = self.sizes[winches, cables]
+            fewer = cables < len(self.found[0].layout.routes)
+            if fewer and all(trial.cost < (1 - _WORSE) * other.cost for other in kept):
+                kept.append(trial)
+        return kept
+
+
+_WORSE = 0.05  # a simpler network is told of where those that are simpler still have so much larger errors
+_WORTH = 0.1  # errors may be so much larger where motors hold poses for long
+_LOOKED_AT = 12  # networks on the way that are judged where no refined one can be built
+_LOOKED_AT_LATE = 4  # where the search was ended before
