@@ -166,7 +166,7 @@ def draw_pose(
     under its contractions; width in inches.
     """
     _check(robot, width)
-    check_pose(pose, robot.body.mesh.nodes.shape, len(robot.winches), what="the pose")
+    check_pose(pose, robot.body.mesh.nodes.shape, robot.num_controls, what="the pose")
     head = shorten(robot.name) if title is None else title
     line = _rests(pose) if note is None else note
     sheet, panes, labels = _in_pose(robot, pose, head, line, width, targets={})
@@ -200,7 +200,7 @@ def draw_reached(
     """
     _check(robot, width)
     check_type(reached, IKResult, "what is reached must be what solve_ik gives")
-    check_pose(reached.pose, robot.body.mesh.nodes.shape, len(robot.winches), what="the pose")
+    check_pose(reached.pose, robot.body.mesh.nodes.shape, robot.num_controls, what="the pose")
     head = reached_title(reached) if title is None else title
     goals = {} if reached.target is None else target_places(reached.target)
     rings = [] if outline is None else list(outline.rings)

@@ -1,0 +1,73 @@
+"""`hydrostat simulate --move`, drives in `hydrostat pose`. Oracle: a body on one servo turns as a rigid one."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hydrostat.robot import load_robot
+
+Run = Callable[..., tuple[int, str, str]]
+SHEET = 'xmlns="http://www.w3.org/2000/svg" width="60mm" height="20mm" viewBox="0 0 60 20"'
+BAR = f'<svg {SHEET}><path d="M0 0H60V20H0Z"/></svg>'
+TEXT = """\
+format = 1
+name = "bar"
+[body]
+outline = "bar.svg"
+element_size = "10 mm"
+thickness = "10 mm"
+material = "ecoflex 00-30"
+[[pin]]
+at = [-30, 0]
+radius = 12
+drive = "servo"
+[[drive]]
+name = "servo"
+at = [-30, 0]
+[[marker]]
+name = "tip"
+at = [28, 0]
+[[pose]]
+name = "up"
+targets = { tip = [-30, 58] }
+"""
+
+
+@pytest.fixture
+def bar(tmp_path: Path) -> Path:
+    (tmp_path / "bar.svg").write_text(BAR)
+    (tmp_path / "robot.toml").write_text(TEXT)
+    return tmp_path
+
+
+def test_a_servo_turns_a_bar(bar: Path, run: Run) -> None:
+    code, out, _ = run("simulate", str(bar), "--move", "servo=-90deg", "--out", str(bar / "out"))
+    assert code == 0, out
+    pose = json.loads((bar / "out" / "pose.json").read_text())
+    tip = np.array(load_robot(bar).marker("tip").at)
+    assert pose["drives"]["servo"]["angle_deg"] == pytest.approx(-90)
+    np.testing.assert_allclose(pose["markers"]["tip"], [-0.03, -0.03 - tip[0]], atol=1e-9)
+    assert (bar / "out" / "pose.png").is_file()
+
+
+def test_the_angle_of_a_pose_is_printed(bar: Path, run: Run) -> None:
+    code, out, _ = run("pose", str(bar), "--pose", "up", "--out", str(bar / "out"))
+    assert code == 0, out
+    assert "drives: servo 90 deg" in out
+
+
+@pytest.mark.parametrize(
+    ("value", "told"),
+    [
+        ("leg=3deg", '--move leg=3deg: unknown drive "leg". Available: servo.'),
+        ("servo=3mm", '--move servo=3mm: "mm" does not measure an angle'),
+        ("servo", '--move servo: missing "=". Write DRIVE=VALUE'),
+    ],
+)
+def test_what_is_wrong_is_told_in_one_line(value: str, told: str, bar: Path, run: Run) -> None:
+    code, _, err = run("simulate", str(bar), "--move", value, "--out", str(bar / "out"))
+    assert code != 0
+    assert told in err
