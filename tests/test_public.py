@@ -70,10 +70,10 @@ NEVER += " hydrostat.learning hydrostat.training hydrostat.studio jaxtyping asyn
             "simulate R --contract left=12mm --out pose",
             "scipy.optimize scipy.spatial scipy.sparse scipy.linalg hydrostat.ik.solve_ik hydrostat.design",
         ),
-        ("pose R --pose wave --out pose", "scipy.interpolate scipy.linalg urllib.request hydrostat.design"),
+        ("pose R --pose wave --out pose", "scipy.sparse scipy.linalg urllib.request hydrostat.design"),
         (
             "new other --from gallery:starfish",
-            "urllib.request scipy.optimize hydrostat.design hydrostat.simulation.simulation",
+            "urllib.request scipy hydrostat.design hydrostat.simulation.simulation",
         ),
         ("check R", "scipy.optimize matplotlib"),
     ],

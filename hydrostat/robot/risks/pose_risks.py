@@ -82,10 +82,22 @@ def _stretching(robot: Robot) -> Iterator[Risk]:
     held = np.flatnonzero(np.any([np.zeros(len(mesh.nodes), bool), *(pin.holds(mesh) for pin in robot.pins)], axis=0))
     if material.largest_stretch is None or not robot.poses or not len(held):
         return
-    ways = _ways(mesh, np.array([marker.at for marker in robot.markers], dtype=float))[:, held]
-    short = 2.0  # ways of fewer elements than this tell nothing of a stretch
-    ways[ways < short * np.median(spacings(mesh))] = np.inf
+    places = np.array([marker.at for marker in robot.markers], dtype=float)
     rows = {marker.name: row for row, marker in enumerate(robot.markers)}
+    short = 2.0 * float(np.median(spacings(mesh)))  # ways of fewer elements than this tell nothing of a stretch
+    direct = np.maximum(np.linalg.norm(mesh.nodes[held] - places[:, None], axis=2), short)  # no way is shorter
+    most = max(
+        (
+            float((np.linalg.norm(mesh.nodes[held] - target, axis=1) / direct[rows[name]]).max())
+            for pose in robot.poses.values()
+            for name, target in pose.targets.items()
+        ),
+        default=0.0,
+    )
+    if most <= material.largest_stretch:  # of most robots: thus they need no search for ways
+        return
+    ways = _ways(mesh, places)[:, held]
+    ways[ways < short] = np.inf
     limit = known_up_to(material, f"{material.largest_stretch:g} times")
     for pose in robot.poses.values():
         for name, target in pose.targets.items():
