@@ -75,7 +75,7 @@ NEVER += " hydrostat.learning hydrostat.training hydrostat.studio jaxtyping asyn
             "new other --from gallery:starfish",
             "urllib.request scipy hydrostat.design hydrostat.simulation.simulation",
         ),
-        ("check R", "scipy.optimize matplotlib"),
+        ("check R", "scipy.optimize scipy.linalg scipy.sparse.csgraph scipy.spatial matplotlib"),
     ],
 )
 def test_a_command_loads_what_it_needs(command: str, heavy: str, tmp_path: Path) -> None:

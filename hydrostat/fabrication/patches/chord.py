@@ -5,8 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from scipy.sparse import csc_array
-from scipy.sparse.linalg import splu
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import split
 
@@ -172,6 +170,7 @@ class _Judge:
 
     def __init__(self, disc: Disc) -> None:
         import igl
+        from scipy.sparse import csc_array  # Imported here: not every command needs it.
 
         self._stiffness = csc_array(-igl.intrinsic_delaunay_cotmatrix(disc.vertices, disc.triangles)[0])
         self._curvature = np.array(igl.gaussian_curvature(disc.vertices, disc.triangles))
@@ -182,6 +181,9 @@ class _Judge:
 
     def score(self, patch: Patch, chord: Chord) -> float:
         """Mean square of the logarithm of the scale."""
+        from scipy.sparse import csc_array
+        from scipy.sparse.linalg import splu
+
         fixed = self._rim.copy()
         fixed[self._edges[chord.crosses(patch.flat[self._edges])]] = True
         free = np.flatnonzero(~fixed)

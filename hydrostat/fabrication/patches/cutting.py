@@ -4,8 +4,6 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
-from scipy.sparse import csc_array, diags_array
-from scipy.sparse.linalg import splu
 
 from hydrostat.arrays import Float, Int
 from hydrostat.fabrication.patches.chord import NARROWEST, best_chord, cut_chord, is_narrow
@@ -159,6 +157,9 @@ def _smooth_values(mesh: SkinMesh, values: Float[np.ndarray, " vertices"]) -> Fl
     # smoothing length of the normals before the silhouette is drawn, as a share of the body's diagonal
     smooth = 0.02
     reach = smooth * float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
+    from scipy.sparse import csc_array, diags_array
+    from scipy.sparse.linalg import splu  # Imported here: not every command needs it.
+
     spread = csc_array(igl.intrinsic_delaunay_cotmatrix(mesh.vertices, mesh.triangles)[0])
     mass = np.bincount(mesh.triangles.ravel(), np.repeat(mesh.areas / 3, 3), len(mesh.vertices))
     return splu(csc_array(diags_array(mass) - reach**2 * spread)).solve(mass * values)

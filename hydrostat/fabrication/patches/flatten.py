@@ -3,8 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csc_array, csr_array
-from scipy.sparse.linalg import splu
 
 from hydrostat.arrays import Float
 from hydrostat.fabrication.patches.patch import Disc, Patch
@@ -130,6 +128,9 @@ def _tutte(disc: Disc) -> Float[np.ndarray, "vertices 2"]:
     ends = np.sort(disc.triangles[:, ((0, 1), (1, 2), (2, 0))].reshape(-1, 2), axis=1)
     one, other = np.unique(ends, axis=0).T
     count, weights = len(flat), np.ones(2 * len(one))
+    from scipy.sparse import csc_array, csr_array
+    from scipy.sparse.linalg import splu  # Imported here: not every command needs it.
+
     beside = csr_array((weights, (np.concatenate([one, other]), np.concatenate([other, one]))), shape=(count, count))
     inner = np.setdiff1d(np.arange(count), disc.rim)
     if len(inner):

@@ -5,8 +5,6 @@ from functools import cached_property
 
 import numpy as np
 from manifold3d import Manifold
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from hydrostat.arrays import Bool, Float, Int, Vector
 from hydrostat.fabrication.solids.construct import Construction, solid_of
@@ -178,6 +176,9 @@ class TriangleMesh:
 
 def number_groups(links: Int[np.ndarray, "links 2"], count: int) -> Int[np.ndarray, " count"]:
     """Number the groups of so many things that links join, in the order of their first members."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components  # Imported here: not every command needs it.
+
     graph = coo_array((np.ones(len(links)), (links[:, 0], links[:, 1])), shape=(count, count))
     return connected_components(graph, directed=False)[1].astype(np.int64)
 
