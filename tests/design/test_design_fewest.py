@@ -99,7 +99,7 @@ def test_ctrl_c_keeps_what_was_found(at: int, unchecked: None) -> None:
 def test_a_number_of_winches_that_cannot_be_built_is_passed_over(unchecked: None) -> None:
     """Two winches 160 mm apart find room on the strip; three do not."""
     limits = Constraints(winch_gap=0.16)
-    network = design_cables(bare(), [UP], winches="auto", cables=3, constraints=limits, options=options(1e-9))
+    network = design_cables(bare(), [UP, DOWN], winches="auto", cables=3, constraints=limits, options=options(1e-9))
     assert broken(network) == []
     with pytest.raises(HydrostatError):
         design_cables(bare(), [UP], winches="auto", cables=2, constraints=Constraints(longest=0.003), options=SMALL)

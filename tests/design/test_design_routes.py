@@ -218,7 +218,7 @@ def test_search_and_judgement_end_with_their_time(
 
 def test_winches_move_apart_where_their_units_meet(unchecked: None) -> None:
     """Oracle: the kit, which refuses units of 25 x 25 x 40 mm as near as the constraints alone would let them be."""
-    network = design_cables(bare(), [UP, DOWN], winches=2, cables=2, options=SMALL)
+    network = design_cables(bare(), [UP, DOWN], winches=2, cables=2)
     assert len(network.robot.winches) == 2
     assert find_refusals(network.robot, demand_of(network.robot, network.reached)) == ()
     one, other = (np.array(winch.at) for winch in network.robot.winches)
