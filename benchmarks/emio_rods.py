@@ -1,0 +1,242 @@
+"""Emio's four legs as elastic rods on a rigid connector: servo angles that reach places of the connector.
+
+Each leg is a chain of rigid links with elastic joints (bending about both axes of its section, twist), in equilibrium
+under weight; unknowns are force and moment at its base. Four angles for three coordinates leave one freedom: the least
+elastic energy decides.
+"""
+
+import json
+import struct
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+LINKS = 40
+GRAVITY = 9.81  # [m/s^2]
+SCALES = np.repeat([1.0, 0.05, 1.0], [12, 12, 7])  # of forces [N], moments [N m], angles
+HALF_TURN = np.diag([1.0, -1.0, -1.0])
+
+
+@dataclass(frozen=True, kw_only=True)
+class EmioRobot:
+    """Numbers of the robot, in SI, y up; legs in the order of the motors.
+
+    Attributes:
+        young: Young's modulus of the legs [Pa].
+        poisson: Poisson's ratio.
+        density: of legs and connector [kg/m^3].
+        section: width along the motor axis and thickness of a leg [m].
+        length: free length of a leg [m].
+        turns: rotation of each leg from its file to the world, at angle 0.
+        motors: place of each motor [m].
+        axes: axis of each motor.
+        bases: begin of each free length from its motor [m].
+        frames: tangent, width and thickness of each leg at rest, as columns.
+        seats: place of the end of each leg from the middle of the connector [m].
+        seat_frames: tangent, width and thickness of that end, as columns.
+        end: place [m] and axes of the end in the file of a leg.
+        mass: mass of the connector [kg].
+    """
+
+    young: float
+    poisson: float
+    density: float
+    section: tuple[float, float]
+    length: float
+    turns: np.ndarray
+    motors: np.ndarray
+    axes: np.ndarray
+    bases: np.ndarray
+    frames: np.ndarray
+    seats: np.ndarray
+    seat_frames: np.ndarray
+    end: tuple[np.ndarray, np.ndarray]
+    mass: float
+
+
+def read_emio(folder: Path) -> EmioRobot:
+    """Read robot.json, the centre line of a leg and the seats of the connector."""
+    facts = json.loads((folder / "robot.json").read_text(encoding="utf-8"))
+    part = json.loads((folder / "bluepart.json").read_text(encoding="utf-8"))
+    line = np.loadtxt(folder / "blueleg_frames.txt")
+    extra = facts["leg_extra_euler_deg"]
+    motors = [turn_about("y", angle) for angle in facts["motor_euler_deg_y"]]
+    mounts = [turn_by(extra[kind]) for kind in facts["leg_position_on_motor"]]
+    turns = np.array([motor @ mount for motor, mount in zip(motors, mounts, strict=True)])
+    end = 1e-3 * line[-1, :3], quaternion(line[-1, 3:])
+    upside = quaternion(part["initialPosition"][0][3:])
+    seats = np.array(part["attachPositionInLocalCoord"])
+    frames = turns @ end[1]
+    seat_frames = np.array([upside @ quaternion(seat[3:]) for seat in seats])
+    rolled = np.einsum("lij,lij->l", frames[:, :, 1:2], seat_frames[:, :, 1:2]) < 0
+    seat_frames[rolled] = seat_frames[rolled] @ HALF_TURN  # the section is symmetric
+    return EmioRobot(
+        young=1e3 * facts["youngs_modulus_kPa"],
+        poisson=facts["poisson"],
+        density=1e9 * facts["density_kg_mm3"],
+        section=(1e-3 * facts["leg_section_mm"]["width"], 1e-3 * facts["leg_section_mm"]["thickness"]),
+        length=float(end[0][1]),
+        turns=turns,
+        motors=1e-3 * np.array(facts["motor_centres_mm"]),
+        axes=np.array([motor @ facts["motor_axis_local"] for motor in motors]),
+        bases=turns @ [0.0, 0.0, 0.022],
+        frames=frames,
+        seats=1e-3 * seats[:, :3] @ upside.T,
+        seat_frames=seat_frames,
+        end=end,
+        mass=1e9 * facts["density_kg_mm3"] * stl_volume(folder / "bluepart.stl"),
+    )
+
+
+def stl_volume(file: Path) -> float:
+    """Volume of a binary STL in millimeters [m^3]."""
+    raw = file.read_bytes()
+    (count,) = struct.unpack("<I", raw[80:84])
+    kind = np.dtype([("normal", "<3f4"), ("corners", "<(3,3)f4"), ("more", "<u2")])
+    corners = np.frombuffer(raw[84:], dtype=kind, count=count)["corners"].astype(float)
+    return 1e-9 * abs(np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum() / 6)
+
+
+def turn_about(axis: str, degrees: float) -> np.ndarray:
+    """Rotation about a coordinate axis."""
+    return rotation(np.deg2rad(degrees) * np.eye(3)["xyz".index(axis)])
+
+
+def turn_by(degrees: list[float]) -> np.ndarray:
+    """Rotation by Euler angles about x, then y, then z."""
+    return turn_about("z", degrees[2]) @ turn_about("y", degrees[1]) @ turn_about("x", degrees[0])
+
+
+def quaternion(values: np.ndarray) -> np.ndarray:
+    """Rotation of a quaternion x, y, z, w."""
+    x, y, z, w = np.array(values) / np.linalg.norm(values)
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def rotation(vectors: np.ndarray) -> np.ndarray:
+    """Rotations by rotation vectors, (..., 3)."""
+    angles = np.maximum(np.linalg.norm(vectors, axis=-1), 1e-12)[..., None, None]
+    spins = np.zeros((*vectors.shape, 3))
+    spins[..., 2, 1], spins[..., 0, 2], spins[..., 1, 0] = np.moveaxis(vectors, -1, 0)
+    spins = spins - np.swapaxes(spins, -1, -2)
+    return np.eye(3) + np.sin(angles) / angles * spins + (1 - np.cos(angles)) / angles**2 * (spins @ spins)
+
+
+def rotation_vector(turns: np.ndarray) -> np.ndarray:
+    """Rotation vectors of rotations below a half turn, (..., 3, 3)."""
+    skew = 0.5 * (turns - np.swapaxes(turns, -1, -2))
+    vectors = np.stack([skew[..., 2, 1], skew[..., 0, 2], skew[..., 1, 0]], axis=-1)
+    sines = np.linalg.norm(vectors, axis=-1)
+    angles = np.arctan2(sines, 0.5 * (np.trace(turns, axis1=-2, axis2=-1) - 1))
+    return vectors * np.where(sines < 1e-9, 1.0, angles / np.maximum(sines, 1e-12))[..., None]
+
+
+class RodLegs:
+    """Equilibrium of the four rods and the connector."""
+
+    def __init__(self, robot: EmioRobot) -> None:
+        """Stiffness and weight of the links of a robot."""
+        self.robot = robot
+        width, thick = robot.section
+        shear = robot.young / (2 + 2 * robot.poisson)
+        torsion = width * thick**3 * (1 / 3 - 0.21 * thick / width * (1 - (thick / width) ** 4 / 12))
+        bend = robot.young * width * thick**3 / 12, robot.young * thick * width**3 / 12
+        self.half = robot.length / LINKS / 2
+        self.compliance = 2 * self.half / np.array([shear * torsion, *bend])
+        self.weight = np.array([0.0, -GRAVITY * robot.density * width * thick * self.half, 0.0])  # of half a link
+
+    def shoot(self, angles: np.ndarray, forces: np.ndarray, moments: np.ndarray) -> tuple[np.ndarray, ...]:
+        """End, frame, force and moment on the connector of each leg, and elastic energy, from loads at the bases."""
+        robot = self.robot
+        turned = rotation(robot.axes * angles[..., None])
+        places = robot.motors + (turned @ robot.bases[..., None])[..., 0]
+        frames, energy = turned @ robot.frames, np.zeros(angles.shape[:-1])
+        for half in range(2 * LINKS):
+            step = self.half * frames[..., :, 0]
+            moments = moments - np.cross(step, forces) - np.cross(step, self.weight) / 2
+            forces, places = forces + self.weight, places + step
+            if half % 2 == 0:  # the middle of a link bends
+                own = (np.swapaxes(frames, -1, -2) @ moments[..., None])[..., 0]
+                energy = energy + 0.5 * (own * own * self.compliance).sum(axis=(-1, -2))
+                frames = frames @ rotation(-own * self.compliance)
+        return places, frames, forces, moments, energy
+
+    def residual(self, unknowns: np.ndarray, place: np.ndarray, yaw: float) -> tuple[np.ndarray, np.ndarray]:
+        """Gaps at the seats, load on the connector and distance from a value of the freedom; elastic energy."""
+        robot, values = self.robot, unknowns * SCALES
+        shape = values.shape[:-1]
+        forces, moments = values[..., :12].reshape(*shape, 4, 3), values[..., 12:24].reshape(*shape, 4, 3)
+        angles, turn = values[..., 24:28], rotation(values[..., 28:])[..., None, :, :]
+        places, frames, forces, moments, energy = self.shoot(angles, forces, moments)
+        arms = (turn @ robot.seats[..., None])[..., 0]
+        gaps = 10 * (places - place - arms), rotation_vector(np.swapaxes(turn @ robot.seat_frames, -1, -2) @ frames)
+        load = forces.sum(axis=-2) + np.array([0.0, -GRAVITY * robot.mass, 0.0])
+        torque = 20 * (moments + np.cross(arms, forces)).sum(axis=-2)
+        parts = [*(gap.reshape(*shape, 12) for gap in gaps), load, torque, angles.sum(axis=-1)[..., None] - yaw]
+        return np.concatenate(parts, axis=-1), energy
+
+    def solve(self, unknowns: np.ndarray, place: np.ndarray, yaw: float) -> tuple[np.ndarray, float]:
+        """Newton's method by differences; unknowns and elastic energy at a place of the connector [m]."""
+        step = 1e-6
+        for _ in range(40):
+            values, energy = self.residual(np.vstack([unknowns, unknowns + step * np.eye(31)]), place, yaw)
+            if np.linalg.norm(values[0]) < 2e-8:
+                return unknowns, float(energy[0])
+            unknowns = unknowns - np.linalg.solve((values[1:] - values[0]).T / step, values[0])
+        raise RuntimeError(f"no equilibrium of the rods at {1e3 * place} mm")
+
+    def least_energy(self, unknowns: np.ndarray, place: np.ndarray, yaw: float) -> tuple[np.ndarray, float]:
+        """Unknowns and value of the freedom with the least elastic energy at a place [m]."""
+        width = 0.02
+        for _ in range(5):
+            unknowns, middle = self.solve(unknowns, place, yaw)
+            above, below = (self.solve(unknowns, place, yaw + sign * width)[1] for sign in (1, -1))
+            change = -0.5 * width * (above - below) / (above - 2 * middle + below)
+            yaw += change
+            if abs(change) < 1e-3:
+                break
+        return self.solve(unknowns, place, yaw)[0], yaw
+
+    def begin(self, place: np.ndarray) -> np.ndarray:
+        """Unknowns with all angles 0: legs bent by a quarter turn, then led to their seats at a place [m]."""
+        robot, zero = self.robot, np.zeros(4)
+        bend = (np.pi / 2) / (LINKS * self.compliance[1])
+        inward = np.einsum(
+            "li,li->l", np.cross(robot.frames[:, :, 0], robot.seat_frames[:, :, 0]), robot.frames[:, :, 1]
+        )
+        loads = np.concatenate([np.zeros((4, 3)), -bend * inward[:, None] * robot.frames[:, :, 1]], axis=1)
+        places, frames, *_ = self.shoot(zero, loads[:, :3], loads[:, 3:])
+        scale = np.repeat([1.0, 0.05], 3)
+        loads, shifts = loads / scale, place + robot.seats - places
+        turns = rotation_vector(np.swapaxes(frames, -1, -2) @ robot.seat_frames)
+        for share in np.linspace(0, 1, 31)[1:]:
+            goal, aim = places + share * shifts, frames @ rotation(share * turns)
+            for _ in range(20):
+                tried = np.concatenate([loads[None], loads + 1e-6 * np.eye(6)[:, None]]) * scale
+                ends, axes, *_ = self.shoot(np.zeros((7, 4)), tried[..., :3], tried[..., 3:])
+                gaps = np.concatenate([10 * (ends - goal), rotation_vector(np.swapaxes(aim, -1, -2) @ axes)], axis=-1)
+                if np.linalg.norm(gaps[0]) < 1e-8:
+                    break
+                slopes = np.moveaxis((gaps[1:] - gaps[0]) / 1e-6, 0, -1)
+                loads = loads - np.linalg.solve(slopes, gaps[0][..., None])[..., 0]
+        return np.concatenate([loads[:, :3].ravel(), loads[:, 3:].ravel(), np.zeros(7)])
+
+    def find_angles(self, places: np.ndarray) -> np.ndarray:
+        """Angles [rad] that lead the connector to each place [m], one after the other."""
+        at, yaw, found = np.array([0.0, -0.15, 0.0]), 0.0, []
+        unknowns = self.begin(at)
+        for place in places:
+            steps = max(1, int(np.ceil(np.linalg.norm(place - at) / 8e-3)))
+            for share in np.linspace(0, 1, steps + 1)[1:]:
+                unknowns, _ = self.solve(unknowns, at + share * (place - at), yaw)
+            unknowns, yaw = self.least_energy(unknowns, place, yaw)
+            at = place
+            found.append(unknowns[24:28])
+        return np.array(found)
