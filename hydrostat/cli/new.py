@@ -88,19 +88,31 @@ def new(
     )
     seconds = parse_optional("--within", within, TIME) or SECONDS + SECONDS_A_NODE * (nodes or 0)
     with _made_whole(name) as folder:
-        try:
+        with _blaming_the_option(name):
             lines = _begin(source, folder, wish, seconds)
-        except SeveralPartsError as error:
-            raise InputError(f"{error}. See {_draw_parts(error.parts, name)}") from None
-        except InputError as error:
-            raise _of_option(error) from None
         with patiently("reading the robot back and drawing it ..."):
             made = _draw(folder)
-    count = len(made.body.mesh.nodes)
-    if nodes is not None and abs(count / nodes - 1) > 0.1:
-        lines.append(f"note: {count} nodes instead of {nodes}: thin parts need finer elements")
+    lines += _other_count(len(made.body.mesh.nodes), nodes)
     told = [line.replace(str(folder), str(name)) for line in lines]
     _print_made(made, name, told, chosen=bool(nodes or element_size))
+
+
+def _other_count(count: int, wanted: int | None) -> list[str]:
+    """Note on a number of nodes that is not the one that was asked for."""
+    if wanted is None or abs(count / wanted - 1) <= 0.1:
+        return []
+    return [f"note: {count} nodes instead of {wanted}: thin parts need finer elements"]
+
+
+@contextmanager
+def _blaming_the_option(name: Path) -> Iterator[None]:
+    """Complaints about wishes as they are written on the command line, with a picture where parts are to choose."""
+    try:
+        yield
+    except SeveralPartsError as error:
+        raise InputError(f"{error}. See {_draw_parts(error.parts, name)}") from None
+    except InputError as error:
+        raise _of_option(error) from None
 
 
 def _draw_parts(parts: Any, name: Path) -> Path:

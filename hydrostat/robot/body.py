@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from functools import cached_property
 from pathlib import Path
+from typing import TypedDict, Unpack
 
 import numpy as np
 
@@ -232,6 +233,20 @@ def _blaming_the_element_size() -> Iterator[None]:
         raise InputError(f"element_size: {error}") from None
 
 
+class DrawingReading(TypedDict, total=False):
+    """Choices that a drawing is read by.
+
+    Attributes:
+        size: longest side of the bounding box [m]; as the drawing says if left out.
+        inner: meaning of shapes in the body: holes, or lines drawn on it.
+        drawing_part: number of the closed shape that is the body, the largest area is 1; chosen if left out.
+    """
+
+    size: float | None
+    inner: Inner
+    drawing_part: int | None
+
+
 def outline_body(
     content: bytes,
     *,
@@ -239,14 +254,12 @@ def outline_body(
     material: Material,
     element_size: float,
     thickness: float,
-    size: float | None = None,
     volume: Volume = Volume.ELEMENT,
-    inner: Inner = Inner.HOLES,
-    drawing_part: int | None = None,
+    **reading: Unpack[DrawingReading],
 ) -> Body:
     """Body from a drawing or picture, by its name (InputError: no closed outline, or a number is out of range)."""
+    size, inner, drawing_part = reading.get("size"), Inner(reading.get("inner", "holes")), reading.get("drawing_part")
     _check_lengths(size=size, element_size=element_size)
-    inner = Inner(inner)
 
     def make() -> Arrays:
         from hydrostat.geometry import read_drawing, triangulate

@@ -1,4 +1,4 @@
-"""`DrawnLine`: a line of a drawing with its paint; `Sheet`: what the drawing says of its page."""
+"""`DrawnLine`: a line of a drawing with its paint; `PageFacts`: what the drawing says of its page."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -64,7 +64,7 @@ class DrawnLine:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Sheet:
+class PageFacts:
     """Drawing's own word on what surrounds the body, in its units.
 
     Attributes:

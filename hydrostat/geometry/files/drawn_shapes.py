@@ -9,7 +9,7 @@ from shapely.geometry.base import BaseGeometry
 
 from hydrostat.arrays import Int
 from hydrostat.errors import OutlineError
-from hydrostat.geometry.files.drawn_line import PAINTED, DrawnLine, Fill, Sheet, painted_area
+from hydrostat.geometry.files.drawn_line import PAINTED, DrawnLine, Fill, PageFacts, painted_area
 from hydrostat.geometry.files.grounds import find_grounds
 from hydrostat.geometry.files.rings import checked_points, join_lines, point_text
 from hydrostat.geometry.mesh import joined_groups
@@ -40,7 +40,7 @@ _MOST_SHAPES = 200  # a drawing may have this many closed shapes
 _SPECK = 1e-8  # a closed shape of this part of the largest one's area is none
 
 
-def sorted_shapes(lines: Sequence[DrawnLine], sheet: Sheet, name: str) -> Shapes:
+def sorted_shapes(lines: Sequence[DrawnLine], sheet: PageFacts, name: str) -> Shapes:
     """Close, join, unite and sort the lines of a drawing.
 
     A filled line is closed as it is painted. Open lines whose ends meet within their width are joined. Filled shapes
@@ -48,7 +48,7 @@ def sorted_shapes(lines: Sequence[DrawnLine], sheet: Sheet, name: str) -> Shapes
 
     Args:
         lines: lines of the drawing, finite or not.
-        sheet: what surrounds the body.
+        sheet: facts on what surrounds the body.
         name: name of the file, for errors.
 
     Raises:
@@ -56,13 +56,13 @@ def sorted_shapes(lines: Sequence[DrawnLine], sheet: Sheet, name: str) -> Shapes
             is larger than all.
     """
     checked_points((line.points for line in lines), name)
-    lines = [_closed(line) for line in lines if len(line.points) > 1]
+    lines = [_close(line) for line in lines if len(line.points) > 1]
     rings = [line for line in lines if line.closed]
     loose = [line for line in lines if not line.closed]
     painted = _painted_outlines(loose, rings)
     rings += [replace(line, closed=True) for line in painted]
     notes = [f"closed {plural(len(painted), 'filled line')} as painted"] if painted else []
-    joined, branch = _joined([line for line in loose if line not in painted], name)
+    joined, branch = _join([line for line in loose if line not in painted], name)
     rings += [line for line in joined if line.closed]
     loose = [line for line in joined if not line.closed]
     largest = max((line.hull_area for line in rings), default=0.0)
@@ -91,7 +91,7 @@ def _by_area(lines: Iterable[DrawnLine]) -> list[DrawnLine]:
     return sorted(lines, key=lambda line: line.polygon.area, reverse=True)
 
 
-def _closed(line: DrawnLine) -> DrawnLine:
+def _close(line: DrawnLine) -> DrawnLine:
     """The line, closed where its ends all but meet."""
     points, extent = line.points, line.extent
     gap = float(np.linalg.norm(points[0] - points[-1]))
@@ -110,7 +110,7 @@ def _painted_outlines(loose: list[DrawnLine], rings: list[DrawnLine]) -> list[Dr
     return [line for line in filled if not around.query(multipoints(line.points), predicate="covered_by").size]
 
 
-def _joined(lines: list[DrawnLine], name: str) -> tuple[list[DrawnLine], OutlineError | None]:
+def _join(lines: list[DrawnLine], name: str) -> tuple[list[DrawnLine], OutlineError | None]:
     """Open lines joined at their ends, and the complaint where they branch, so that they were not."""
     width = max((line.width for line in lines), default=0.0)
     try:
@@ -120,7 +120,7 @@ def _joined(lines: list[DrawnLine], name: str) -> tuple[list[DrawnLine], Outline
     fill = Fill.NONE if any(line.fill is not Fill.UNKNOWN for line in lines) else Fill.UNKNOWN
     label = " ".join(sorted({line.label for line in lines}))
     made = [DrawnLine(points=points, closed=closed, fill=fill, label=label) for points, closed in found]
-    return [_closed(line) for line in made], None
+    return [_close(line) for line in made], None
 
 
 def _refuse_open(rings: list[DrawnLine], loose: list[DrawnLine], branch: OutlineError | None, name: str) -> None:

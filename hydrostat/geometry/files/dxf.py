@@ -15,7 +15,7 @@ import numpy as np
 
 from hydrostat.errors import OutlineError
 from hydrostat.geometry.files.drawing_body import Inner, drawing_of
-from hydrostat.geometry.files.drawn_line import DrawnLine, Sheet
+from hydrostat.geometry.files.drawn_line import DrawnLine, PageFacts
 from hydrostat.geometry.files.drawn_shapes import sorted_shapes
 from hydrostat.geometry.files.rings import (
     CHORD_ERROR,
@@ -67,7 +67,7 @@ def read_dxf(
     with _listening(), np.errstate(all="ignore"), warnings.catch_warnings(action="ignore"):
         lines = space.lines()
     side = unit or 1.0
-    sheet = Sheet(unit=1e3 * unit if unit else None, texts=tuple(space.texts))
+    sheet = PageFacts(unit=1e3 * unit if unit else None, texts=tuple(space.texts))
     shapes = sorted_shapes(lines, sheet, name)
     notes = (*mended, *space.notes())
 

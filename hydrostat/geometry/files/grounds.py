@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hydrostat.geometry.files.drawn_line import PAINTED, DrawnLine, Fill, Sheet
+from hydrostat.geometry.files.drawn_line import PAINTED, DrawnLine, Fill, PageFacts
 
 _NAMES = re.compile(
     r"(?<![a-z])(back ?ground|backdrop|page|sheet|paper|frame|border|title ?block|title|canvas|artboard)(?![a-z])",
@@ -16,10 +16,10 @@ _PAPERS = (
     (279.4, 215.9), (431.8, 279.4), (558.8, 431.8), (863.6, 558.8), (1117.6, 863.6), (355.6, 215.9),  # ANSI, legal
 )  # fmt: skip
 _MARGINS = (0.0, 10.0, 20.0, 30.0, 40.0)
-"""What a frame is narrower than its sheet, in all [mm]: 5, 10 or 20 at each side, or 20 where it is bound."""
+"""Widths that a frame lacks of its sheet, in all [mm]: 5, 10 or 20 at each side, or 20 where it is bound."""
 
 
-def find_grounds(rings: Sequence[DrawnLine], sheet: Sheet) -> list[DrawnLine]:
+def find_grounds(rings: Sequence[DrawnLine], sheet: PageFacts) -> list[DrawnLine]:
     """Find rectangles that are the ground of a drawing, its page or a frame, and what touches them, as a title block.
 
     Paint decides first: a white rectangle behind what is not white, one of another color as large as the page, or an
@@ -28,7 +28,7 @@ def find_grounds(rings: Sequence[DrawnLine], sheet: Sheet) -> list[DrawnLine]:
 
     Args:
         rings: closed lines, the largest area first.
-        sheet: what the drawing says of its page.
+        sheet: facts on the page of the drawing.
 
     Returns:
         The lines that are no body; empty if the largest one is.
@@ -55,7 +55,7 @@ def _is_rectangle(ring: DrawnLine) -> bool:
     return ring.polygon.area > 0.97 * float(np.prod(np.ptp(ring.points, axis=0)))
 
 
-def _is_ground(first: DrawnLine, inside: list[DrawnLine], sheet: Sheet) -> bool:
+def _is_ground(first: DrawnLine, inside: list[DrawnLine], sheet: PageFacts) -> bool:
     """True if paint, names, size or texts say that a rectangle is no body."""
     largest = max(inside, key=lambda ring: ring.polygon.area)
     if _NAMES.search(first.label.replace("_", " ").replace("-", " ")):
@@ -76,7 +76,7 @@ def _is_ground(first: DrawnLine, inside: list[DrawnLine], sheet: Sheet) -> bool:
     return _is_paper(first, sheet) or (titles > 1 and drawn and len(inside) < 4)
 
 
-def _fills_page(ring: DrawnLine, sheet: Sheet) -> bool:
+def _fills_page(ring: DrawnLine, sheet: PageFacts) -> bool:
     """True if its box covers the page, or all but a hundredth of it."""
     if sheet.box is None:
         return False
@@ -86,7 +86,7 @@ def _fills_page(ring: DrawnLine, sheet: Sheet) -> bool:
     return x0 < left + slack and y0 < low + slack and x1 > right - slack and y1 > high - slack
 
 
-def _is_paper(ring: DrawnLine, sheet: Sheet) -> bool:
+def _is_paper(ring: DrawnLine, sheet: PageFacts) -> bool:
     """True if its sides are those of a standard sheet of paper at a standard scale, less usual margins."""
     sides = np.sort(np.ptp(ring.points, axis=0))[::-1]
     near = 0.6  # mm of paper

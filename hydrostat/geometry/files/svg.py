@@ -12,7 +12,7 @@ import numpy as np
 
 from hydrostat.errors import OutlineError
 from hydrostat.geometry.files.drawing_body import Inner, drawing_of
-from hydrostat.geometry.files.drawn_line import DrawnLine, Fill, Sheet
+from hydrostat.geometry.files.drawn_line import DrawnLine, Fill, PageFacts
 from hydrostat.geometry.files.drawn_shapes import sorted_shapes
 from hydrostat.geometry.files.rings import (
     CHORD_ERROR,
@@ -249,13 +249,13 @@ def read_svg(
     return drawing_of(shapes, name, inner, page_of, part=part)
 
 
-def _sheet_of(document: _SvgDocument) -> Sheet:
-    """What the drawing says of its page."""
+def _sheet_of(document: _SvgDocument) -> PageFacts:
+    """Facts on the page of the drawing."""
     unit = 1e3 * document.unit[0] if document.unit else None
     if document.sheet is None:
-        return Sheet(unit=unit)
+        return PageFacts(unit=unit)
     left, top, width, height = document.sheet
-    return Sheet(box=(left, top, left + width, top + height), unit=unit)
+    return PageFacts(box=(left, top, left + width, top + height), unit=unit)
 
 
 def _kind_of_page(document: _SvgDocument) -> str:

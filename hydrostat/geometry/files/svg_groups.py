@@ -24,7 +24,7 @@ def _tag(element: ElementTree.Element) -> str:
     return element.tag.rpartition("}")[2] if isinstance(element.tag, str) else ""
 
 
-def _named(element: ElementTree.Element, tag: str) -> str:
+def _rename(element: ElementTree.Element, tag: str) -> str:
     """Name of another element in the same namespace."""
     space = element.tag.rpartition("}")[0]
     return f"{space}}}{tag}" if space else tag
@@ -38,12 +38,12 @@ def symbols_to_groups(root: ElementTree.Element, sheet: tuple[float, float, floa
         sheet: left, top, width and height of its page, for uses without a size of their own.
     """
     boxes: dict[str, list[float] | None] = {}
-    hidden = ElementTree.SubElement(root, _named(root, "defs"))
+    hidden = ElementTree.SubElement(root, _rename(root, "defs"))
     for parent in list(root.iter()):
         for symbol in [child for child in parent if _tag(child) == "symbol"]:
             parent.remove(symbol)
             hidden.append(symbol)
-            symbol.tag = _named(symbol, "g")
+            symbol.tag = _rename(symbol, "g")
             box = _numbers(symbol.attrib.pop("viewBox", ""))
             boxes[symbol.get("id", "")] = box if len(box) == 4 and min(box[2:]) > 0.0 else None
     for use in root.iter():
@@ -111,9 +111,9 @@ def mark_clips(root: ElementTree.Element) -> None:
             most -= sum(1 for _ in clip.iter())
             if most < 0:
                 raise ValueError("clip paths are repeated too often")
-            group = ElementTree.Element(_named(element, "g"), {f"{_CLIPPED}{number}": "1"})
+            group = ElementTree.Element(_rename(element, "g"), {f"{_CLIPPED}{number}": "1"})
             moves = f"{element.get('transform', '')} {clip.get('transform', '')}".strip()
-            window = ElementTree.SubElement(group, _named(element, "g"), {f"{_CLIP}{number}": "1", "transform": moves})
+            window = ElementTree.SubElement(group, _rename(element, "g"), {f"{_CLIP}{number}": "1", "transform": moves})
             window.extend(deepcopy(list(clip)))
             group.append(element)
             parent[place] = group
