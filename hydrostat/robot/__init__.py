@@ -21,7 +21,13 @@ if TYPE_CHECKING:
     from hydrostat.robot.merge import comments, lost_comments, merged_text
     from hydrostat.robot.obstacle_lines import obstacle_lines, rims
     from hydrostat.robot.part import BodyPart
-    from hydrostat.robot.pin_drive import PinDrive, check_drive_values, check_radians, parse_drive_value
+    from hydrostat.robot.pin_drive import (
+        PinDrive,
+        check_drive_values,
+        check_radians,
+        parse_drive_value,
+        require_no_drives,
+    )
     from hydrostat.robot.read import FILE, GALLERY, RobotReader, gallery_folder, is_of_gallery, list_gallery, load_robot
     from hydrostat.robot.risks import SEWN_DEPTH, find_risks, limit_travels
     from hydrostat.robot.risks.body_risks import LEAST_ACROSS, LOCKING
@@ -112,6 +118,7 @@ __all__ = [
     "parse_drive_value",
     "read_text",
     "replace_file",
+    "require_no_drives",
     "rims",
     "robot_hash",
     "robot_text",

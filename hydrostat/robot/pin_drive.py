@@ -158,6 +158,12 @@ def check_radians(drives: Sequence[PinDrive], values: Vector) -> None:
             )
 
 
+def require_no_drives(drives: Sequence[PinDrive], what: str) -> None:
+    """Reject a robot with drives where only its winches are controls (InputError: it has one)."""
+    if drives:
+        raise InputError(f'drives, such as "{drives[0].name}", are not available in {what}. Remove them.')
+
+
 def parse_drive_value(text: str, *, turns: bool) -> float:
     """Angle [rad] or travel [m] of a text such as "30 deg" or "-5 mm" (InputError: it is none)."""
     bare = text.strip()

@@ -9,7 +9,7 @@ from builders import box_mesh, mesh_body, strip_mesh
 
 from hydrostat.errors import InputError
 from hydrostat.robot import Load, Marker, Material, Pin, PinDrive, Robot
-from hydrostat.simulation import Simulation
+from hydrostat.simulation import Simulation, find_equilibria
 
 LENGTH, WIDTH, HEIGHT, YOUNG = 0.2, 0.01, 0.005, 35e6
 TPU = Material(young=YOUNG, poisson=0.0, density=1220.0)
@@ -108,5 +108,7 @@ def test_wrong_values_are_told_in_one_line() -> None:
         simulation.solve({"servo": 30.0})
     with pytest.raises(InputError, match='drives, such as "servo", move in statics only'):
         simulation.motion_at_rest()
+    with pytest.raises(InputError, match='drives, such as "servo", are not available in a search for several'):
+        find_equilibria(simulation, [0.1])
     pose = simulation.solve({"servo": 3.2})
     assert pose.warnings == ("drive servo: 183.3 deg is outside its range (-180 deg to 180 deg)",)
