@@ -60,7 +60,7 @@ def check(
         _print_reach(found)
     left_out = ["marker workspaces"] * reaches + ["out-of-plane motion"] * (bool(words) and not filled)
     if left_out and not thorough:
-        print(f"not computed: {' and '.join(left_out)}. Add --thorough. The rest is checked.")
+        print(f"not computed: {' and '.join(left_out)}. Add --thorough. Loads of poses: hydrostat fabricate.")
     _print_judgement(found)
 
 
