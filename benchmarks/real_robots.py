@@ -9,7 +9,7 @@ import numpy as np
 
 from hydrostat.geometry import Mesh
 from hydrostat.identification import IdentificationModel, Parameter
-from hydrostat.robot import Body, BodyPart, Cable, Marker, Material, Mount, Pin, Robot, Rod, Source, Winch
+from hydrostat.robot import Body, BodyPart, Cable, Load, Marker, Material, Mount, Pin, Robot, Rod, Source, Winch
 
 MM = 1e-3
 SHIFT = 20.0  # slack of every tendon at zero [mm], as a cable's slack is not below 0
@@ -111,15 +111,29 @@ def opencr(lengths: list[float], angles: list[float], radius: float) -> Identifi
     return IdentificationModel(parameters=tuple(parameters), robot=robot, contractions=contractions, places=turned)
 
 
-TRUNK_SEGMENTS = (1, 2, 0, 2, 0, 1)
-"""Segment at whose end the tendons of each motor end, by which disks a linear regression of `train` lets it move."""
+TRUNK_MOTORS = (
+    (1, 0.85, 0.40),
+    (2, 1.91, 0.48),
+    (0, 2.88, 0.14),
+    (2, -2.88, 0.50),
+    (0, -1.68, 0.15),
+    (1, -0.74, 0.47),
+)
+"""Segment at whose end the tendons of each motor end, direction of its pull [rad], and pull [mm/degree].
 
-TRUNK_ANGLES = (0.83, 1.86, 3.02, -2.84, -1.93, -0.72)
-"""Direction in which each motor pulls the tip [rad], by the same regression."""
+Segments are those by which a regression of the fitted blocks lets a motor move the disks. The other numbers are first
+guesses, found in the same blocks by three arcs of constant curvature with springs for tendons.
+"""
+
+TRUNK_BENDING = (0.3, 1.4, 1.3)
+"""Bending stiffness of the segments over their mean, by the same guess."""
 
 
 def trunk(lengths: list[float], base: tuple[float, float, float]) -> IdentificationModel:
-    """Trunk of six motors with antagonistic tendons on three disks; its places have z up, its commands are degrees."""
+    """Trunk of six motors with antagonistic tendons on three disks; its places have z up, its commands are degrees.
+
+    The two tendons of a motor are alike and opposite, and all tendons have one radius, stiffness and pretension.
+    """
     thickness, layers, radius = 4.0, 5, 15.0  # of a disk; of elements in a segment; circle of the tendons
     ends = np.cumsum([0.0, *lengths])
     disks = np.stack([ends[1:] - thickness, ends[1:]], axis=1)
@@ -130,60 +144,58 @@ def trunk(lengths: list[float], base: tuple[float, float, float]) -> Identificat
     body = disk_body(hanging, -disks[:, ::-1])
     middles = -disks.mean(axis=1)
     parameters = [
-        Parameter(name="young", start=1e5, spread=1.5, unit="Pa", log=True),
-        Parameter(name="density", start=400.0, spread=0.7, unit="kg/m^3", log=True),
-        Parameter(name="bending", start=0.02, spread=1.5, unit="N m^2", log=True),
-        Parameter(name="axial", start=3000.0, spread=0.7, unit="N", log=True),
-        Parameter(name="stiffness", start=2.0, spread=0.7, unit="N/mm", log=True),
-        Parameter(name="pretension", start=1.0, spread=1.0, unit="mm"),
+        Parameter(name="young", start=3e4, spread=0.7, unit="Pa", log=True),
+        Parameter(name="density", start=200.0, spread=0.5, unit="kg/m^3", log=True),
+        Parameter(name="tip mass", start=0.1, spread=0.7, unit="kg", log=True),
+        Parameter(name="axial", start=1000.0, spread=0.7, unit="N", log=True),
+        Parameter(name="stiffness", start=3.0, spread=0.7, unit="N/mm", log=True),
+        Parameter(name="pretension", start=6.0, spread=3.0, unit="mm"),
         *frame_parameters(base, 8.0),
-        *(Parameter(name=f"bending {segment}", start=1.0, spread=0.5, log=True) for segment in range(3)),
+        *(
+            Parameter(name=f"bending {segment}", start=0.04 * share, spread=0.7, unit="N m^2", log=True)
+            for segment, share in enumerate(TRUNK_BENDING)
+        ),
     ]
-    for motor, angle in enumerate(TRUNK_ANGLES):
+    for motor, (_, angle, pull) in enumerate(TRUNK_MOTORS):
         parameters += [
-            Parameter(name=f"angle {motor}", start=angle, spread=0.3, unit="rad"),
-            Parameter(name=f"pull {motor}", start=0.2, spread=0.5, unit="mm/degree", log=True),
-            Parameter(name=f"zero {motor}", start=0.0, spread=10.0, unit="degrees"),
+            Parameter(name=f"angle {motor}", start=angle, spread=0.2, unit="rad"),
+            Parameter(name=f"pull {motor}", start=pull, spread=0.5, unit="mm/degree", log=True),
+            Parameter(name=f"zero {motor}", start=0.0, spread=8.0, unit="degrees"),
         ]
-        for side in (0, 1):
-            parameters += [
-                Parameter(name=f"angle {motor}{side}", start=0.0, spread=0.1, unit="rad"),
-                Parameter(name=f"zero {motor}{side}", start=0.0, spread=2.0, unit="mm"),
-                Parameter(name=f"radius {motor}{side}", start=radius, spread=1.5, unit="mm"),
-            ]
 
     def robot(values: dict[str, float]) -> Robot:
         cables = []
-        for motor, segment in enumerate(TRUNK_SEGMENTS):
+        for motor, (segment, *_) in enumerate(TRUNK_MOTORS):
+            heights = np.array([8.0, *middles[: segment + 1]])
             for side in (0, 1):
-                angle = values[f"angle {motor}"] + values[f"angle {motor}{side}"] + np.pi * side
-                heights = np.array([8.0, *middles[: segment + 1]])
-                cables.append((polar(values[f"radius {motor}{side}"], angle, heights), values["stiffness"]))
+                angle = values[f"angle {motor}"] + np.pi * side
+                cables.append((polar(radius, angle, heights), values["stiffness"]))
         rods = [
             rod(
                 f"hose {segment}",
                 -max(start - thickness, 0.0),
                 -end,
                 axial=values["axial"],
-                bending=values["bending"] * values[f"bending {segment}"],
+                bending=values[f"bending {segment}"],
             )
             for segment, (start, end) in enumerate(pairwise(ends))
         ]
-        return tendon_robot(
+        hanging = tendon_robot(
             body(values["young"], values["density"]),
             cables,
             gravity=(0.0, 0.0, -9.81),
             rods=rods,
             markers={f"disk {number}": height for number, height in enumerate(middles.tolist(), start=1)},
+            smoothing=5e-4,
         )
+        return replace(hanging, loads=(Load(name="tip", marker="disk 3", mass=values["tip mass"]),))
 
     def contractions(values: dict[str, float], commands: np.ndarray) -> np.ndarray:
         pulls = []
         for motor in range(6):
             for side in (0, 1):
                 turn = (1 - 2 * side) * (commands[:, 2 * motor] + values[f"zero {motor}"])
-                zero = SHIFT + values["pretension"] + values[f"zero {motor}{side}"]
-                pulls.append(MM * (zero + values[f"pull {motor}"] * turn))
+                pulls.append(MM * (SHIFT + values["pretension"] + values[f"pull {motor}"] * turn))
         return np.stack(pulls, axis=1)
 
     return IdentificationModel(parameters=tuple(parameters), robot=robot, contractions=contractions, places=turned)
@@ -208,6 +220,7 @@ def tendon_robot(
     gravity: tuple[float, ...],
     rods: list[Rod],
     markers: dict[str, float],
+    smoothing: float = 5e-5,
 ) -> Robot:
     """Robot held at height 0, with a winch for each cable (points [m], stiffness [N/mm]), markers at heights [mm]."""
     return Robot(
@@ -221,7 +234,7 @@ def tendon_robot(
             for number, (points, _) in enumerate(cables)
         ),
         cables=tuple(
-            Cable(winch=f"w{number}", points=points, stiffness=1e3 * stiffness, slack=MM * SHIFT, smoothing=5e-5)
+            Cable(winch=f"w{number}", points=points, stiffness=1e3 * stiffness, slack=MM * SHIFT, smoothing=smoothing)
             for number, (points, stiffness) in enumerate(cables)
         ),
         markers=tuple(Marker(name=name, at=(0.0, 0.0, MM * height)) for name, height in markers.items()),
