@@ -50,7 +50,7 @@ class Body:
     plane: Plane = Plane.STRAIN  # freedom of a flat body across its plane
     elements: ElementKind = ElementKind.LINEAR  # shape functions; change them by `with_elements`
     inner: Inner = Inner.HOLES  # meaning of shapes within the outer line of a drawing
-    drawing_part: int | None = None  # number of the closed shape of a drawing that is the body; None: chosen
+    drawing_part: int | None = None  # number of the closed shape of a drawing that is the body; None: 1, the largest
     parts: tuple[BodyPart, ...] = ()  # regions of other materials, or rigid
     mesh: Mesh = field(compare=False, repr=False)  # nodes and elements
     outline: Outline | None = field(default=None, compare=False, repr=False)  # outline of a flat drawn body
@@ -239,7 +239,7 @@ class DrawingReading(TypedDict, total=False):
     Attributes:
         size: longest side of the bounding box [m]; as the drawing says if left out.
         inner: meaning of shapes in the body: holes, or lines drawn on it.
-        drawing_part: number of the closed shape that is the body, the largest area is 1; chosen if left out.
+        drawing_part: number of the closed shape that is the body; 1 if left out, the largest area.
     """
 
     size: float | None
@@ -259,18 +259,19 @@ def outline_body(
 ) -> Body:
     """Body from a drawing or picture, by its name (InputError: no closed outline, or a number is out of range)."""
     size, inner, drawing_part = reading.get("size"), Inner(reading.get("inner", "holes")), reading.get("drawing_part")
+    part = drawing_part or 1
     _check_lengths(size=size, element_size=element_size)
 
     def make() -> Arrays:
         from hydrostat.geometry import read_drawing, triangulate
 
-        drawing = read_drawing(content, name=file, size=size, inner=inner, part=drawing_part)
+        drawing = read_drawing(content, name=file, size=size, inner=inner, part=part)
         with _blaming_the_element_size():
             mesh = triangulate(drawing.outline, element_size)
         rings, marks = drawing.outline.rings, drawing.marks
         return _mesh_arrays(mesh) | _number("ring", rings) | _number("mark", marks)
 
-    kept = keep_body(("outline", Path(file).suffix, size, str(inner), drawing_part, element_size), content, make)
+    kept = keep_body(("outline", Path(file).suffix, size, str(inner), part, element_size), content, make)
     exterior, *holes = _numbered_arrays("ring", kept)
     return Body(
         source=Source.OUTLINE,

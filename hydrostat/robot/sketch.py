@@ -4,7 +4,7 @@ from functools import partial
 
 import numpy as np
 
-from hydrostat.geometry import Inner, Outline, read_outline, size_for, thin_parts, triangulate
+from hydrostat.geometry import Inner, Outline, read_drawing, size_for, thin_parts, triangulate
 from hydrostat.robot.body import Body, outline_body
 from hydrostat.robot.marker import Marker, Pin, PoseTarget
 from hydrostat.robot.materials import get_material
@@ -65,7 +65,8 @@ def sketch_robot(
     from shapely import Point as ShapelyPoint
     from shapely import maximum_inscribed_circle
 
-    outline = read_outline(content, name=file, size=size, inner=inner, part=drawing_part)
+    drawing = read_drawing(content, name=file, size=size, inner=inner, part=drawing_part)
+    outline, drawing_part = drawing.outline, drawing.part if drawing.part > 1 else None
     length, asked = element_size or _element_size(outline, nodes), bool(element_size or nodes)
     reading = {"size": size, "inner": inner, "drawing_part": drawing_part}
     make = partial(outline_body, content, file=file, material=get_material(material), **reading)

@@ -4,6 +4,7 @@ Oracle: the sizes of the shapes that were drawn.
 """
 
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,11 +15,14 @@ from shapely import Polygon
 
 from hydrostat.errors import OutlineError, SeveralPartsError
 from hydrostat.geometry.files.outline_file import read_drawing
+from hydrostat.ik import new_robot
+from hydrostat.robot import get_material, load_robot, outline_body, save_robot
 
 FISH = "M12 45 L30 30 L60 28 L78 45 L60 62 L30 60 Z"
 TEAL, BLACK, RED = f'<path d="{FISH}" fill="teal"/>', f'<path d="{FISH}"/>', f'<path d="{FISH}" {{}} stroke="red"/>'
 LINE = RED.format('fill="none"')
-FULL = 'width="90" height="90"'
+FULL, WINDOW = 'width="90" height="90"', 'width="40" height="40"'
+NOSE = '<path d="M40 40 h9 l-4 6z" fill="gray"/>'
 
 
 CORNERS = [(12, 45), (30, 30), (60, 28), (78, 45), (60, 62), (30, 60)]
@@ -43,7 +47,7 @@ STROKE = 'fill="none" stroke="black"'
         f'<rect {FULL} style="fill:#fffffe;stroke:none"/>',
         f"<style>.g {{fill: #fff}}</style><rect class='g' {FULL}/>",
         f'<rect {FULL} fill="white" stroke="black"/>',
-        '<rect x="-20" y="-9" width="300" height="200" fill="ivory" rx="4"/>',
+        '<rect x="5" y="9" width="80" height="70" fill="ivory"/>',
         f'<rect {FULL} fill="skyblue"/>',
         f'<rect {FULL} fill="none"/>',
         f'<rect {FULL} opacity="0"/>',
@@ -191,6 +195,69 @@ def test_of_several_parts_one_is_chosen() -> None:
     assert (second.size, len(second.holes)) == (pytest.approx(0.06), 1)
     with pytest.raises(OutlineError, match=r"part 5 is not there. Allowed: 1 to 4"):
         read_drawing(content, name="a.dxf", part=5)
+
+
+@pytest.mark.parametrize(
+    ("content", "name", "size"),
+    [
+        (
+            svg('<rect width="90" height="80" rx="9" fill="white" stroke="black"/><path d="M40 40 h9 l-4 6z"/>'),
+            "a.svg",
+            90,
+        ),
+        (svg(f'<rect {FULL} fill="navy"/><circle cx="45" cy="45" r="20"/>'), "a.svg", 90),
+        (svg(f'<rect {FULL} fill="white" stroke="black"/><circle cx="45" cy="45" r="20"/>'), "a.svg", 90),
+        (
+            svg(f'<rect class="sheet_metal" {FULL} {STROKE}/><rect x="9" y="9" width="40" height="40" {STROKE}/>'),
+            "a.svg",
+            90,
+        ),
+        (svg('<rect width="90" height="60" stroke-width="0" fill="none" stroke="red"/>'), "a.svg", 90),
+        (svg('<rect width="60" height="40" transform="rotate(90)"/>'), "a.svg", 60),
+        (dxf(lambda space, _: (box(0, 0, 277, 190)(space), box(50, 50, 99, 80)(space))), "a.dxf", 277),
+        (dxf(lambda space, _: (box(0, 0, 300, 90)(space), space.add_circle((60, 40), 20), title(space))), "a.dxf", 300),
+    ],
+)
+def test_a_plate_keeps_its_holes_and_what_is_drawn_on_it(content: bytes, name: str, size: float) -> None:
+    assert 1e3 * read_drawing(content, name=name).outline.size == pytest.approx(size)
+
+
+def test_the_choice_is_kept_and_a_robot_without_one_is_as_before(tmp_path: Path) -> None:
+    (tmp_path / "a.svg").write_bytes(svg(f'<rect {FULL} fill="white"/>{TEAL}'))
+    robot = new_robot(tmp_path / "a.svg")
+    assert (robot.body.drawing_part, robot.body.outline.size) == (2, pytest.approx(0.066))
+    save_robot(robot, tmp_path / "fish")
+    assert load_robot(tmp_path / "fish") == robot
+    body = outline_body((tmp_path / "a.svg").read_bytes(), file="a.svg", **BODY)
+    assert body.outline.size == pytest.approx(0.09)
+
+
+BODY = {"material": get_material("polyester fibre"), "element_size": 5e-3, "thickness": 0.02}
+
+
+def test_a_turned_ellipse_is_turned() -> None:
+    """Oracle: the box of an ellipse turned by t is 2 sqrt(a^2 cos^2 t + b^2 sin^2 t) wide."""
+    body = '<ellipse cx="45" cy="45" rx="30" ry="10" transform="rotate(30 45 45)"/>'
+    ring = read_drawing(svg(body), name="a.svg").outline.exterior
+    assert 1e3 * np.ptp(ring[:, 0]) == pytest.approx(2 * np.sqrt(900 * 0.75 + 100 * 0.25), rel=1e-3)
+
+
+def test_a_white_bite_and_a_doubtful_frame_are_asked_about() -> None:
+    bite = f'{BLACK}<circle cx="78" cy="45" r="8" fill="white"/>'
+    with pytest.raises(OutlineError, match="two closed shapes cross"):
+        read_drawing(svg(bite), name="a.svg")
+    small = f'<rect width="200" height="180" {STROKE}/>{TEAL}'
+    with pytest.raises(SeveralPartsError, match=r"1: 200 x 180 at \(0, 0\); 2: 66 x 34"):
+        read_drawing(svg(small), name="a.svg")
+
+
+def test_bombs_are_refused() -> None:
+    window = "".join(f"M{n} 0h1v1z" for n in range(4000))
+    clip = f'<clipPath id="c"><path d="{window}"/></clipPath><g clip-path="url(#c)">{TEAL}</g>'
+    with pytest.raises(OutlineError, match="a clip path has 4000 lines"):
+        read_drawing(svg(clip), name="a.svg")
+    with pytest.raises(OutlineError, match="declares XML attributes"):
+        read_drawing(svg(TEAL, '<!DOCTYPE svg [<!ATTLIST path d CDATA "M0 0">]>'), name="a.svg")
 
 
 def test_a_frame_can_be_the_body() -> None:

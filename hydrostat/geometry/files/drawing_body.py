@@ -1,6 +1,7 @@
 """`drawing_of`: the body among the closed shapes of a drawing, and the meaning of what lies in it: holes or marks."""
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from enum import StrEnum
 
 import numpy as np
@@ -68,16 +69,15 @@ def drawing_of(
         if open_lines:
             where = point_text(max(open_lines, key=_extent)[0])
             left = [f"left out {plural(len(open_lines), 'open line')}, the largest at {where}"]
-        return Drawing(
-            outline, on, (*notes, *left, *holes_told(outline), *_frame_told(shapes, body_line, inside_lines))
-        )
+        told = (*notes, *left, *holes_told(outline), *_frame_told(shapes, body_line, inside_lines))
+        return Drawing(outline, on, told, part=shapes.closed.index(body_line) + 1)
     body = np.array(shapes_of(rings[:1], name)[0].exterior.coords)
     on = page(body)
     outline = outline_on_page(body, [], on, name)
     drawn = [*(np.concatenate([ring, ring[:1]]) for ring in rings[1:]), *open_lines]
     marks = marks_on(outline, [on.places(line) for line in drawn])
     told = (f"{plural(len(marks), 'line')} drawn on the body, not cut",) if marks else ()
-    return Drawing(outline, on, (*notes, *told), marks)
+    return Drawing(outline, on, (*notes, *told), marks, shapes.closed.index(body_line) + 1)
 
 
 _PART = 0.1  # a second shape beside the largest is a part of its own where it has this share of the area
@@ -103,6 +103,9 @@ def choose_body(shapes: Shapes, part: int | None, name: str) -> tuple[DrawnLine,
     if part is not None and not 1 <= part <= len(closed):
         raise OutlineError(f"{name}: part {part} is not there. Allowed: 1 to {len(closed)}, the largest area first")
     candidates = [line for line in closed if line not in shapes.grounds]
+    if part is None and shapes.doubtful is not None:
+        inside = [line for line in closed[closed.index(shapes.doubtful) + 1 :] if line not in shapes.grounds]
+        raise _several([shapes.doubtful, inside[0]], closed, name)
     body = _the_largest(candidates, closed, name) if part is None else closed[part - 1]
     smaller = [line for line in closed[closed.index(body) + 1 :] if line not in shapes.grounds]
     beside = disjoint(body.polygon, [line.polygon for line in smaller])
@@ -130,15 +133,20 @@ def _the_largest(candidates: list[DrawnLine], closed: Sequence[DrawnLine], name:
         if all(line.polygon.disjoint(other.polygon) for other in parts):
             parts.append(line)
     if len(parts) > 1:
-        most_named = 6
-        listed = []
-        for line in parts[:most_named]:
-            (x, y), (across, up) = line.points.min(axis=0), np.ptp(line.points, axis=0)
-            listed.append(f"{closed.index(line) + 1}: {across:.4g} x {up:.4g} at {point_text((x, y))}")
-        more = f", and {len(parts) - most_named} more" if len(parts) > most_named else ""
-        told = f"{name}: has {len(parts)} parts ({'; '.join(listed)}{more}): choose one by {PART_HINT}"
-        raise SeveralPartsError(told, {closed.index(line) + 1: None for line in parts})
+        raise _several(parts, closed, name)
     return body
+
+
+def _several(parts: list[DrawnLine], closed: Sequence[DrawnLine], name: str) -> SeveralPartsError:
+    """Complaint that one of several parts must be chosen."""
+    most_named = 6
+    listed = []
+    for line in parts[:most_named]:
+        (x, y), (across, up) = line.points.min(axis=0), np.ptp(line.points, axis=0)
+        listed.append(f"{closed.index(line) + 1}: {across:.4g} x {up:.4g} at {point_text((x, y))}")
+    more = f", and {len(parts) - most_named} more" if len(parts) > most_named else ""
+    told = f"{name}: has {len(parts)} parts ({'; '.join(listed)}{more}): choose one by {PART_HINT}"
+    return SeveralPartsError(told, {closed.index(line) + 1: None for line in parts})
 
 
 def _frame_told(shapes: Shapes, body: DrawnLine, inside: list[DrawnLine]) -> tuple[str, ...]:
@@ -154,7 +162,7 @@ def drawn_picture(drawing: Drawing) -> Drawing:
     outline, *_ = drawing.outline.rings
     whole = Outline(outline)
     rings = [np.concatenate([ring, ring[:1]]) for ring in drawing.outline.rings[1:]]
-    return Drawing(whole, drawing.page, drawing.notes, marks_on(whole, rings))
+    return replace(drawing, outline=whole, marks=marks_on(whole, rings))
 
 
 def holes_told(outline: Outline) -> tuple[str, ...]:

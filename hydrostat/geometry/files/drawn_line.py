@@ -6,7 +6,7 @@ from enum import Enum
 from functools import cached_property, reduce
 
 import numpy as np
-from shapely import MultiPoint, Point, Polygon
+from shapely import MultiPoint, Point, Polygon, get_parts, unary_union
 from shapely.geometry.base import BaseGeometry
 
 from hydrostat.geometry.outline import Ring
@@ -85,4 +85,5 @@ class PageFacts:
 
 def painted_area(lines: Iterable[DrawnLine]) -> BaseGeometry:
     """Area that the lines of one element bound: what is within an odd number of them."""
-    return reduce(lambda one, two: one.symmetric_difference(two), (line.polygon for line in lines), Polygon())
+    area = reduce(lambda one, two: one.symmetric_difference(two), (line.polygon for line in lines), Polygon())
+    return unary_union([part for part in get_parts(area) if isinstance(part, Polygon)])

@@ -24,12 +24,14 @@ class Shapes:
     Attributes:
         closed: closed lines, the largest area first.
         grounds: those of them that are the ground or a frame.
+        doubtful: one that may be the body or a frame around it; None if there is none.
         open: lines that are not closed.
         notes: one line for each thing that was left out or mended.
     """
 
     closed: tuple[DrawnLine, ...]
     grounds: tuple[DrawnLine, ...] = ()
+    doubtful: DrawnLine | None = None
     open: tuple[Ring, ...] = ()
     notes: tuple[str, ...] = ()
 
@@ -62,7 +64,8 @@ def sorted_shapes(lines: Sequence[DrawnLine], sheet: PageFacts, name: str) -> Sh
     painted = _painted_outlines(loose, rings)
     rings += [replace(line, closed=True) for line in painted]
     notes = [f"closed {plural(len(painted), 'filled line')} as painted"] if painted else []
-    joined, branch = _join([line for line in loose if line not in painted], name)
+    taken = {id(line) for line in painted}
+    joined, branch = _join([line for line in loose if id(line) not in taken], name)
     rings += [line for line in joined if line.closed]
     loose = [line for line in joined if not line.closed]
     largest = max((line.hull_area for line in rings), default=0.0)
@@ -75,13 +78,14 @@ def sorted_shapes(lines: Sequence[DrawnLine], sheet: PageFacts, name: str) -> Sh
         rings = [line for line in rings if line not in specks]
     if len(rings) > _MOST_SHAPES:
         raise OutlineError(f"{name}: has {len(rings)} closed shapes, more than {_MOST_SHAPES}: leave out some holes")
-    grounds = find_grounds(_by_area(rings), sheet)
+    grounds, doubtful = find_grounds(_by_area(rings), sheet)
     shapes, united = unite_fills([line for line in rings if line not in grounds])
     if united:
         notes.append(f"united {united} filled shapes that overlap")
     return Shapes(
         closed=tuple(_by_area([*grounds, *shapes])),
         grounds=tuple(grounds),
+        doubtful=doubtful if doubtful in shapes else None,
         open=tuple(line.points for line in loose),
         notes=tuple(notes),
     )
@@ -138,7 +142,7 @@ def _refuse_open(rings: list[DrawnLine], loose: list[DrawnLine], branch: Outline
 
 
 def unite_fills(rings: list[DrawnLine]) -> tuple[list[DrawnLine], int]:
-    """Unite painted elements whose edges meet, as paint does.
+    """Unite painted elements whose edges meet, as paint does; white ones with white ones only, as they may cover.
 
     Args:
         rings: closed lines.
@@ -153,7 +157,7 @@ def unite_fills(rings: list[DrawnLine]) -> tuple[list[DrawnLine], int]:
     members = list(elements.values())
     areas = [painted_area(each) for each in members]
     reach = _ROUNDING * max((ring.extent for ring in rings), default=0.0)
-    groups = _meeting(areas, reach)
+    groups = _meeting(areas, [each[0].fill is Fill.PALE for each in members], reach)
     made, parts, gone = [], 0, set()
     for group in np.flatnonzero(np.bincount(groups) > 1).tolist():
         chosen = np.flatnonzero(groups == group).tolist()
@@ -167,13 +171,15 @@ def unite_fills(rings: list[DrawnLine]) -> tuple[list[DrawnLine], int]:
     return [line for line in rings if id(line) not in gone] + made, parts
 
 
-def _meeting(areas: list[BaseGeometry], reach: float) -> Int[np.ndarray, " _"]:
-    """Group of each area; those whose edges meet are in one, unless they are equal."""
+def _meeting(areas: list[BaseGeometry], pale: list[bool], reach: float) -> Int[np.ndarray, " _"]:
+    """Group of each area; those of one paint whose edges meet are in one, unless they are equal."""
     if len(areas) < 2:
         return np.zeros(len(areas), dtype=int)
     edges = [area.boundary.buffer(reach, quad_segs=1) for area in areas]
     pairs = STRtree(edges).query(edges, predicate="intersects")
-    apart = [one > two and not areas[one].equals(areas[two]) for one, two in pairs.T.tolist()]
+    apart = [
+        one > two and pale[one] == pale[two] and not areas[one].equals(areas[two]) for one, two in pairs.T.tolist()
+    ]
     return joined_groups(pairs[:, np.array(apart, dtype=bool)], len(areas))
 
 

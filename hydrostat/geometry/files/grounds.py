@@ -2,36 +2,44 @@
 
 import re
 from collections.abc import Sequence
+from enum import Enum
 
 import numpy as np
 
 from hydrostat.geometry.files.drawn_line import PAINTED, DrawnLine, Fill, PageFacts
 
-_NAMES = re.compile(
-    r"(?<![a-z])(back ?ground|backdrop|page|sheet|paper|frame|border|title ?block|title|canvas|artboard)(?![a-z])",
-    re.IGNORECASE,
-)
+_SURE = re.compile(r"(?<![a-z])(back ?ground|backdrop|canvas|artboard|title ?block)(?![a-z])", re.IGNORECASE)
+_LIKELY = re.compile(r"(?<![a-z])(page|sheet|paper|frame|border)(?![a-z])", re.IGNORECASE)
 _PAPERS = (
-    *((round(1189 / 2 ** (n / 2)), round(841 / 2 ** (n / 2))) for n in range(7)),  # ISO 216, A0 to A6
+    (1189, 841), (841, 594), (594, 420), (420, 297), (297, 210), (210, 148), (148, 105),  # ISO 216, A0 to A6
     (279.4, 215.9), (431.8, 279.4), (558.8, 431.8), (863.6, 558.8), (1117.6, 863.6), (355.6, 215.9),  # ANSI, legal
 )  # fmt: skip
 _MARGINS = (0.0, 10.0, 20.0, 30.0, 40.0)
 """Widths that a frame lacks of its sheet, in all [mm]: 5, 10 or 20 at each side, or 20 where it is bound."""
 
 
-def find_grounds(rings: Sequence[DrawnLine], sheet: PageFacts) -> list[DrawnLine]:
+class Doubt(Enum):
+    """Answers to the question whether a rectangle is a ground."""
+
+    BODY = "body"
+    ASK = "ask"
+    GROUND = "ground"
+
+
+def find_grounds(rings: Sequence[DrawnLine], page: PageFacts) -> tuple[list[DrawnLine], DrawnLine | None]:
     """Find rectangles that are the ground of a drawing, its page or a frame, and what touches them, as a title block.
 
     Paint decides first: a white rectangle behind what is not white, one of another color as large as the page, or an
     unfilled one around what is filled. Without paint: names of layers, sheets of standard sizes (ISO 216, ANSI) with
-    usual margins, texts between the rectangle and what is in it, or a frame within a frame.
+    usual margins, texts between the rectangle and what is in it, or a frame within a frame. What is in it must be able
+    to be a body: circles and rectangles are rather holes of a plate.
 
     Args:
         rings: closed lines, the largest area first.
-        sheet: facts on the page of the drawing.
+        page: facts on the page of the drawing.
 
     Returns:
-        The lines that are no body; empty if the largest one is.
+        The lines that are no body, empty if the largest one is; and a rectangle that may be a body or a frame, or None.
     """
     found: list[DrawnLine] = []
     rest = [ring for ring in rings if ring.polygon.area > 0.0]
@@ -39,15 +47,20 @@ def find_grounds(rings: Sequence[DrawnLine], sheet: PageFacts) -> list[DrawnLine
         first, others = rest[0], rest[1:]
         inside = [ring for ring in others if first.polygon.buffer(1e-6 * first.extent).covers(ring.polygon)]
         inside = [ring for ring in inside if not ring.polygon.equals(first.polygon)]
-        if not inside or not (_is_ground(first, inside, sheet) or (found and _is_rectangle(first))):
+        if not inside:
             break
+        doubt = _doubt(first, inside, page)
+        if found and doubt is not Doubt.GROUND and not _is_hole(inside[0], first):
+            doubt = Doubt.GROUND  # a frame within a frame
+        if doubt is not Doubt.GROUND:
+            return found, first if doubt is Doubt.ASK else None
         edge = first.polygon.boundary.buffer(1e-3 * first.extent)
         block = [ring for ring in inside if first.fill not in PAINTED and ring.polygon.intersects(edge)]
         if len(block) == len(inside):
             break
         found += [first, *block]
-        rest = [ring for ring in others if ring not in block]
-    return found
+        rest = [ring for ring in others if all(ring is not one for one in block)]
+    return found, None
 
 
 def _is_rectangle(ring: DrawnLine) -> bool:
@@ -55,42 +68,58 @@ def _is_rectangle(ring: DrawnLine) -> bool:
     return ring.polygon.area > 0.97 * float(np.prod(np.ptp(ring.points, axis=0)))
 
 
-def _is_ground(first: DrawnLine, inside: list[DrawnLine], sheet: PageFacts) -> bool:
-    """True if paint, names, size or texts say that a rectangle is no body."""
-    largest = max(inside, key=lambda ring: ring.polygon.area)
-    if _NAMES.search(first.label.replace("_", " ").replace("-", " ")):
-        return True
+def _is_hole(ring: DrawnLine, plate: DrawnLine) -> bool:
+    """True for what a plate has rather than a frame around it: circles, rectangles, and what is small."""
+    hull = float(ring.polygon.convex_hull.area)
+    round_share = 4.0 * np.pi * hull / max(ring.polygon.convex_hull.length**2, 1e-300)
+    return round_share > 0.98 or _is_rectangle(ring) or ring.polygon.area < 0.005 * plate.polygon.area
+
+
+def _doubt(first: DrawnLine, inside: list[DrawnLine], page: PageFacts) -> Doubt:
+    """Answer of paint, names, size and texts to the question whether a rectangle is a ground."""
+    label = first.label.replace("_", " ").replace("-", " ")
+    largest = max((ring for ring in inside), key=lambda ring: (not _is_hole(ring, first), ring.polygon.area))
+    share = largest.polygon.area / first.polygon.area
+    if _SURE.search(label):
+        return Doubt.GROUND
+    sharp = first.polygon.area > 0.999 * float(np.prod(np.ptp(first.points, axis=0)))
+    bare = sharp and first.width == 0.0 and _fills_page(first, page)  # a page that is painted, without an edge
+    if first.fill is Fill.PALE and bare and any(ring.fill is not Fill.PALE for ring in inside):
+        return Doubt.GROUND
+    if _is_hole(largest, first) or not sharp:
+        return Doubt.BODY
     if first.fill is Fill.PALE:
-        return any(ring.fill is not Fill.PALE for ring in inside)
-    if first.fill is Fill.FULL:
-        other = largest.fill is Fill.FULL and largest.color != first.color
-        return other and _fills_page(first, sheet)
-    painted = max((ring.polygon.area for ring in inside if ring.fill is Fill.FULL), default=0.0)
-    if painted > 0.05 * first.polygon.area:  # less may be the eye of a body that is drawn as a line
-        return True
-    titles = sum(
-        first.polygon.contains(point) and not any(ring.polygon.intersects(point) for ring in inside)
-        for point in sheet.points
-    )
-    drawn = 0.02 * first.polygon.area < largest.polygon.area and not _is_rectangle(largest)
-    return _is_paper(first, sheet) or (titles > 1 and drawn and len(inside) < 4)
+        likely = any(ring.fill is not Fill.PALE for ring in inside)
+    elif first.fill is Fill.FULL:
+        likely = largest.fill is Fill.FULL and largest.color != first.color and _fills_page(first, page)
+    else:
+        titles = sum(
+            first.polygon.contains(point) and not any(ring.polygon.intersects(point) for ring in inside)
+            for point in page.points
+        )
+        if _is_paper(first, page):
+            return Doubt.GROUND
+        likely = largest.fill is Fill.FULL or titles > 1
+    if not likely and not _LIKELY.search(label):
+        return Doubt.BODY
+    return Doubt.GROUND if share > 0.1 else Doubt.ASK if share > 0.02 else Doubt.BODY
 
 
-def _fills_page(ring: DrawnLine, sheet: PageFacts) -> bool:
+def _fills_page(ring: DrawnLine, page: PageFacts) -> bool:
     """True if its box covers the page, or all but a hundredth of it."""
-    if sheet.box is None:
+    if page.box is None:
         return False
-    left, low, right, high = sheet.box
+    left, low, right, high = page.box
     slack = 0.01 * max(right - left, high - low)
     (x0, y0), (x1, y1) = ring.points.min(axis=0), ring.points.max(axis=0)
     return x0 < left + slack and y0 < low + slack and x1 > right - slack and y1 > high - slack
 
 
-def _is_paper(ring: DrawnLine, sheet: PageFacts) -> bool:
+def _is_paper(ring: DrawnLine, page: PageFacts) -> bool:
     """True if its sides are those of a standard sheet of paper at a standard scale, less usual margins."""
     sides = np.sort(np.ptp(ring.points, axis=0))[::-1]
     near = 0.6  # mm of paper
-    for unit in (sheet.unit,) if sheet.unit else (1.0, 25.4):
+    for unit in (page.unit,) if page.unit else (1.0, 25.4):
         for scale in (1.0, 2.0, 5.0, 10.0, 0.5, 0.2, 0.1):
             short_of = np.array(_PAPERS) - sides * unit / scale
             margins = np.array(_MARGINS) if scale == 1.0 else np.array([0.0, 20.0])

@@ -43,7 +43,7 @@ def read_image(
     A picture has no size of its own: `size` or `page` is needed; see `read_outline`. Raises OutlineError: no picture,
     too large, without size, or no single body on plain ground; the message says where.
     """
-    if part is not None:
+    if part not in (None, 1):
         raise OutlineError(f"{name}: parts are numbered in SVG and DXF drawings only: cut the picture to the body")
     if size is None and page is None:
         raise OutlineError(f'{name}: a picture has no physical size: give the longest side of the body, as "200 mm"')

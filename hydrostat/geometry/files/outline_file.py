@@ -4,10 +4,11 @@ from functools import lru_cache
 from pathlib import PurePath
 
 import numpy as np
+from shapely.errors import GEOSException
 
 from hydrostat.errors import InputError, OutlineError
 from hydrostat.geometry.files.drawing_body import Inner
-from hydrostat.geometry.files.rings import Drawing, Page
+from hydrostat.geometry.files.rings import Drawing, Page, one_line
 from hydrostat.geometry.files.stranger import MOST_BYTES
 from hydrostat.geometry.outline import Outline
 
@@ -82,7 +83,10 @@ def _read_drawing(
         from hydrostat.geometry.files.dxf import read_dxf as read
     else:
         from hydrostat.geometry.files.image import read_image as read
-    drawing = read(content, name, size, page, inner, part)
+    try:
+        drawing = read(content, name, size, page, inner, part)
+    except GEOSException as error:
+        raise OutlineError(f"{name}: its shapes cannot be sorted ({one_line(error)}): simplify the drawing") from None
     if size is None and page is None and drawing.outline.size > LARGEST:
         long = f"{drawing.outline.size:.4g} m long"
         raise OutlineError(f"{name}: would be {long}, as its unit says (at most {LARGEST:g} m). Give its size")

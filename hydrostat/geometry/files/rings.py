@@ -63,6 +63,7 @@ class Drawing:
     # one line for each thing that was ignored, filled or mended; empty if there was nothing
     notes: tuple[str, ...] = ()
     marks: tuple[Ring, ...] = ()  # lines that are drawn on the body [m]; closed ones end where they begin
+    part: int = 1  # number of the closed shape that is the body, the largest area is 1
 
 
 PART_HINT = "--part N, or drawing_part = N in [body]"

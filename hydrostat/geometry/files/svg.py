@@ -104,9 +104,13 @@ def _guard(content: bytes, name: str) -> None:
         if parameter or value is None or "&" in value or len(value) * content.count(b"&") > most_expanded:
             raise OutlineError(f"{name}: declares XML entities that are not plain words: save it as plain SVG")
 
+    def entity_free(*_arguments: object) -> None:
+        raise OutlineError(f"{name}: declares XML attributes, which are not read: save it as plain SVG")
+
     parser = expat.ParserCreate(namespace_separator="}")
     parser.StartElementHandler, parser.EndElementHandler = start, end
     parser.EntityDeclHandler = entity
+    parser.AttlistDeclHandler = entity_free
     try:
         parser.Parse(content, True)
     except (expat.ExpatError, ValueError, LookupError) as error:
@@ -241,7 +245,8 @@ def read_svg(
         page.check(kind, name)
     elif size is None and document.unit is None:
         raise OutlineError(f"{name}: the drawing has no physical size (width in mm, cm or in): give its size")
-    shapes = sorted_shapes(clipped_lines(_elements(document, name)), _sheet_of(document), name)
+    lines = _read_lines(document, name)
+    shapes = sorted_shapes(lines, _sheet_of(document), name)
 
     def page_of(body: Ring) -> Page:
         return page or page_about(body, kind, (across, -down), size)
@@ -270,7 +275,17 @@ def _kind_of_page(document: _SvgDocument) -> str:
     return f"{kind} on a page of {width:.6g} x {height:.6g} units from ({left:.6g}, {top:.6g})"
 
 
-def _elements(document: _SvgDocument, name: str) -> Iterator[tuple[Mapping[str, str], list[DrawnLine]]]:
+def _read_lines(document: _SvgDocument, name: str) -> list[DrawnLine]:
+    """Lines of the drawing, cut by its clip paths; where nothing is painted, those that are not painted either."""
+    try:
+        return clipped_lines(_elements(document, name)) or clipped_lines(_elements(document, name, unpainted=True))
+    except ValueError as error:
+        raise OutlineError(f"{name}: {error}: release the clip paths, or save the outline alone") from None
+
+
+def _elements(
+    document: _SvgDocument, name: str, *, unpainted: bool = False
+) -> Iterator[tuple[Mapping[str, str], list[DrawnLine]]]:
     """Yield the attributes of every visible element of a drawing, those of its groups too, and its lines."""
     from svgelements import SVG, Path, Shape
 
@@ -281,10 +296,12 @@ def _elements(document: _SvgDocument, name: str) -> Iterator[tuple[Mapping[str, 
             if not isinstance(element, Shape) or values.get("visibility") in ("hidden", "collapse"):
                 continue
             fill, color, width = _paint(element, values)
-            if fill is Fill.NONE and width == 0.0 and not is_clip(values):
+            if fill is Fill.NONE and width == 0.0 and not unpainted and not is_clip(values):
                 continue
             lines = []
-            for subpath in Path(element).as_subpaths():
+            whole = Path(element)
+            whole.reify()  # a turned rectangle or ellipse keeps its transform beside its numbers
+            for subpath in whole.as_subpaths():
                 path = Path(subpath)
                 points = _flatten(path)
                 if len(points) > 1:

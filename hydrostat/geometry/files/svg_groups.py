@@ -134,7 +134,7 @@ def clipped_lines(elements: Iterable[tuple[Mapping[str, str], list[DrawnLine]]])
     for values, lines in elements:
         names = [key.removeprefix(_CLIP) for key in values if key.startswith(_CLIP)]
         if names:
-            windows.setdefault(max(names, key=int), []).append(painted_area(lines))
+            windows.setdefault(max(names, key=int), []).append(_window(lines))
         else:
             drawn.append(([key.removeprefix(_CLIPPED) for key in values if key.startswith(_CLIPPED)], lines))
     areas = {name: unary_union(parts) for name, parts in windows.items()}
@@ -146,12 +146,20 @@ def clipped_lines(elements: Iterable[tuple[Mapping[str, str], list[DrawnLine]]])
     return made
 
 
+def _window(lines: list[DrawnLine]) -> BaseGeometry:
+    """Area of a shape of a clip path (ValueError: it has too many lines)."""
+    most_lines = 200
+    if len(lines) > most_lines:
+        raise ValueError(f"a clip path has {len(lines)} lines, more than {most_lines}")
+    return painted_area(lines)
+
+
 def _cut(lines: list[DrawnLine], window: BaseGeometry) -> Iterator[DrawnLine]:
     """Lines of an element within a window; unchanged where they lie in it."""
     if all(window.covers(LineString(line.points)) for line in lines):
         yield from lines
     elif lines and lines[0].fill in PAINTED:
-        for part in get_parts(painted_area(lines).intersection(window)):
+        for part in get_parts(_window(lines).intersection(window)):
             if isinstance(part, Polygon):
                 for ring in (part.exterior, *part.interiors):
                     yield replace(lines[0], points=np.array(ring.coords), closed=True)

@@ -211,5 +211,7 @@ def load_target_outline(robot: Robot, drawing: Path | str) -> Outline:
     if body.source is not Source.OUTLINE:
         raise InputError(f"{file.name}: a pose can be drawn over a drawing only, the body is of a {body.source} file")
     content = read_stranger(file)
-    page = read_drawing(body.content, name=body.file, size=body.size, inner=body.inner, part=body.drawing_part).page
-    return read_outline(content, name=file.name, page=page, inner=body.inner)
+    page = read_drawing(
+        body.content, name=body.file, size=body.size, inner=body.inner, part=body.drawing_part or 1
+    ).page
+    return read_outline(content, name=file.name, page=page, inner=body.inner, part=body.drawing_part or 1)

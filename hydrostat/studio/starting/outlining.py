@@ -105,7 +105,7 @@ def reshape_outline(work: Work, drawing: bytes, corner: tuple[float, float]) -> 
         volume=old.volume,
         inner=old.inner,
     )
-    x, y = read_drawing(drawing, name=file, inner=old.inner).page.origin
+    x, y = read_drawing(drawing, name=file, inner=old.inner, part=1).page.origin
     middle = np.array([1e-3 * (corner[0] + x), 1e-3 * (corner[1] - y)])
 
     def move(point: Point) -> Point:
