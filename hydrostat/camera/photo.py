@@ -106,6 +106,8 @@ def _sort(
 ) -> None:
     """Put a length to the contractions, a mass to the masses."""
     winches, markers = [winch.name for winch in robot.winches], [marker.name for marker in robot.markers]
+    if name in contractions or name in masses:
+        raise InputError(f"{where}: {name} is given twice. Give it once.")
     try:
         if name in winches and not (name in markers and value.endswith("g")):
             sign = -1.0 if value.startswith("-") else 1.0
@@ -127,7 +129,8 @@ def _with_table(files: Sequence[Path], robot: Robot, table: Path) -> list[Photo]
         raise InputError(f"{table}: cannot be read as a table; save it as CSV in UTF-8") from None
     head = [cell.strip() for cell in rows[0]] if rows else []
     if "photo" not in head:
-        raise InputError(f'{table}: no column "photo". Write photo, then {robot.winches[0].name}_mm and so on.')
+        columns = ", ".join(f"{winch.name}_mm" for winch in robot.winches[:2]) or "columns of hung masses"
+        raise InputError(f'{table}: no column "photo". Write photo, then {columns} and so on.')
     found: dict[str, Photo] = {}
     for line, row in enumerate(rows[1:], start=2):
         if not any(cell.strip() for cell in row):
@@ -167,7 +170,11 @@ def read_pixels(file: Path) -> tuple[Gray, float | None]:
         focal = picture.getexif().get_ifd(0x8769).get(0xA405)  # of film of 35 mm with the same view
         diagonal = float(np.hypot(*picture.size))
         pixels = np.asarray(picture.convert("L"))
-    return pixels, float(focal) / FULL_FRAME * diagonal if focal else None
+    try:
+        length = float(focal or 0.0)
+    except (TypeError, ValueError):  # what a camera wrote is no number
+        length = 0.0
+    return pixels, length / FULL_FRAME * diagonal if 0.0 < length < np.inf else None
 
 
 def read_colors(file: Path) -> UInt8[np.ndarray, "height width 3"]:

@@ -97,6 +97,8 @@ def fabricate(
     kit = _build_or_report(robot, loaded, options, out)
     kit.write(out)
     print_kit(kit)
+    for drive in loaded.drives:
+        print(f"warning: the kit has no servo or stage for drive {drive.name}; add your own")
     if kept is not None:
         print(f"Cable tension: at most {kept:g} N, the limit of its design or of the studio. Override with --tension")
     seconds = time.perf_counter() - began

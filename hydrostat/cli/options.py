@@ -215,6 +215,8 @@ def moves(robot: "Robot", texts: Sequence[str] | None) -> dict[str, float]:
         if name not in drives:
             known = f"Available: {', '.join(drives)}." if drives else "The robot has no drives."
             raise InputError(f'--move {text}: unknown drive "{name}". {known}')
+        if name in found:
+            raise InputError(f'--move: "{name}" is given twice. Give each name once.')
         try:
             found[name] = parse_drive_value(value, turns=drives[name].turns)
         except InputError as error:

@@ -13,7 +13,7 @@ from hydrostat import units
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry import read_stranger
-from hydrostat.robot import Robot, replace_file
+from hydrostat.robot import Robot, replace_file, require_no_drives
 
 CALIBRATION = "motors.toml"
 EMULATED_CALIBRATION = "motors_emulated.toml"
@@ -123,7 +123,8 @@ class Calibration:
         return all(spool.zero is not None for spool in self.motors)
 
     def check(self, robot: Robot) -> None:
-        """Check that these are the winches of a robot (InputError: another, one missing, or a number twice)."""
+        """Check that these are the winches of a robot (InputError: another, one missing, a number twice, or drives)."""
+        require_no_drives(robot.drives, "motors")
         wanted, given = [winch.name for winch in robot.winches], [spool.winch for spool in self.motors]
         for name in wanted:
             if name not in given:

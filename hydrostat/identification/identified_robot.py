@@ -10,7 +10,7 @@ from hydrostat.identification.fit import FittedModel, fit_model
 from hydrostat.identification.kinds import named_model
 from hydrostat.identification.measurements import Measurements
 from hydrostat.identification.model import IdentificationModel
-from hydrostat.robot import Robot
+from hydrostat.robot import Robot, require_no_drives
 
 MM = 1e-3
 UNKNOWN = 0.3
@@ -65,8 +65,9 @@ def identify(
         progress: receives a line after each evaluation.
 
     Raises:
-        InputError: an unknown kind, or measurements that do not fit the robot.
+        InputError: a robot with drives, an unknown kind, or measurements that do not fit the robot.
     """
+    require_no_drives(robot.drives, "identification")
     model, assumed = named_model(robot, fit), start_of(named_model(robot, ()))
     count = len(measurements.commands)
     held_out = np.arange(2, count, 5) if count >= 10 else np.zeros(0, dtype=int)

@@ -1,6 +1,6 @@
 """Films: a robot goes from rest through stops or along a trajectory, every frame an equilibrium."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import ceil
 
@@ -13,7 +13,7 @@ from hydrostat.plot.frame import Frame
 from hydrostat.plot.labels import shorten
 from hydrostat.plot.sheet import MILLIMETERS
 from hydrostat.progress import Progress
-from hydrostat.robot import PoseTarget, Robot
+from hydrostat.robot import PoseTarget, Robot, require_no_drives
 from hydrostat.simulation import Equilibrium, Simulation
 
 STILL = 0.25  # share of the time from one stop to the next in which the robot stays there
@@ -38,8 +38,10 @@ class Film:
     missing: tuple[int, ...]  # numbers of the frames without an equilibrium; they show the one before
 
 
-def pose_stops(reached: Iterable[IKResult]) -> list[Stop]:
-    """A stop for each pose that inverse kinematics found."""
+def pose_stops(reached: Sequence[IKResult]) -> list[Stop]:
+    """A stop for each pose that inverse kinematics found (InputError: a robot with drives)."""
+    for found in reached:
+        require_no_drives(found.pose.robot.drives, "films")
     return [
         Stop(
             name=shorten(found.pose_target.name),

@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 from builders import box_mesh, mesh_body, strip_mesh
 
+from hydrostat.control import usual_calibration
 from hydrostat.errors import InputError
+from hydrostat.ik import find_reach
 from hydrostat.robot import Load, Marker, Material, Pin, PinDrive, Robot
 from hydrostat.simulation import Simulation, find_equilibria
 
@@ -110,5 +112,11 @@ def test_wrong_values_are_told_in_one_line() -> None:
         simulation.motion_at_rest()
     with pytest.raises(InputError, match='drives, such as "servo", are not available in a search for several'):
         find_equilibria(simulation, [0.1])
+    for refuse, what in (
+        (find_reach, "workspaces"),
+        (lambda one: usual_calibration(one.robot).check(one.robot), "motors"),
+    ):
+        with pytest.raises(InputError, match=f'drives, such as "servo", are not available in {what}'):
+            refuse(simulation)
     pose = simulation.solve({"servo": 3.2})
     assert pose.warnings == ("drive servo: 183.3 deg is outside its range (-180 deg to 180 deg)",)
