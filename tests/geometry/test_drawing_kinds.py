@@ -22,7 +22,7 @@ FISH = "M12 45 L30 30 L60 28 L78 45 L60 62 L30 60 Z"
 TEAL, BLACK, RED = f'<path d="{FISH}" fill="teal"/>', f'<path d="{FISH}"/>', f'<path d="{FISH}" {{}} stroke="red"/>'
 LINE = RED.format('fill="none"')
 FULL, WINDOW = 'width="90" height="90"', 'width="40" height="40"'
-NOSE = '<path d="M40 40 h9 l-4 6z" fill="gray"/>'
+NOSE = '<path d="m40 40 h9 l-4 6z" fill="gray"/>'
 
 
 CORNERS = [(12, 45), (30, 30), (60, 28), (78, 45), (60, 62), (30, 60)]
@@ -75,7 +75,7 @@ def test_a_ground_is_no_body(ground: str) -> None:
         ('<rect width="40" height="40"/><rect x="40" width="40" height="40"/>', 3200, 0),
         ('<path d="M0 0 h40 v40 h-40z m10 10 h20 v20 h-20z"/><rect x="18" y="5" width="4" height="30"/>', 1280, 2),
         ('<path d="M10 15 L75 15 L80 60 L20 70"/>', SIDES, 0),
-        (f'{TEAL}<path d="M40 45 q5 5 10 0"/>', AREA, 0),
+        (f'{TEAL}<path d="m40 45 q5 5 10 0"/>', AREA, 0),
         (
             '<g stroke="red"><line x1="10" y1="15" x2="75" y2="15"/><line x2="75" y2="15" x1="80" y1="60"/>'
             '<line x1="80" y1="60" x2="20" y2="70"/><line x1="20.4" y1="70.4" x2="10" y2="15"/></g>',
@@ -201,7 +201,7 @@ def test_of_several_parts_one_is_chosen() -> None:
     ("content", "name", "size"),
     [
         (
-            svg('<rect width="90" height="80" rx="9" fill="white" stroke="black"/><path d="M40 40 h9 l-4 6z"/>'),
+            svg('<rect width="90" height="80" rx="9" fill="white" stroke="black"/><path d="m40 40 h9 l-4 6z"/>'),
             "a.svg",
             90,
         ),
