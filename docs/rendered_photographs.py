@@ -91,7 +91,14 @@ def main() -> None:
 def draw() -> None:
     """Write the picture of the page: a photograph compared with the assumed and the fitted robot."""
     file = "left=20mm,left_foot=50g.png"
-    both = [Image.open(Path(sys.argv[1]) / "build" / name / file).convert("RGB") for name in ("before", "after")]
+    files = [Path(sys.argv[1]) / "build" / name / file for name in ("before", "after")]
+    for path in files:
+        if not path.exists():
+            sys.exit(
+                f"{path}: run hydrostat compare on the assumed robot with --out build/before, on the fitted one with "
+                "--out build/after"
+            )
+    both = [Image.open(path).convert("RGB") for path in files]
     left, top, right, bottom = 490, 200, 1330, 940
     wide = Image.new("RGB", (2 * (right - left) + 12, bottom - top), "white")
     for index, picture in enumerate(both):

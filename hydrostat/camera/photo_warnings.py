@@ -51,15 +51,21 @@ def check_sheets(photos: Sequence[Photo], calibration: CameraCalibration) -> Non
         if share > MISPLACED:
             raise InputError(
                 f"{photos[photo].name}: the board is bent or its sheets have moved ({100 * share:.0f} % of the corners "
-                f"of sheet {sheet + 1} are elsewhere). Glue sheets to a flat plate."
+                f"of sheet {sheet + 1} are elsewhere). Glue sheets to a flat plate.{_few(photos)}"
             )
+
+
+def _few(photos: Sequence[Photo]) -> str:
+    """Other cause of a board that does not fit: too few photographs to find the lens; empty with enough of them."""
+    enough = 3
+    return "" if len(photos) >= enough else " Or the lens is not known from so few photographs: give three or more."
 
 
 def doubt_board(photos: Sequence[Photo], calibration: CameraCalibration, scale: float) -> list[str]:
     """Warn of photographs whose board is off by more than sharp ones."""
     return [
         f"{photo.name}: the board is off by {1e3 * error * scale:.2f} mm ({error:.2f} pixels). It is bent or "
-        "printed in different sizes."
+        f"printed in different sizes.{_few(photos)}"
         for photo, error in zip(photos, calibration.errors, strict=True)
         if error * scale > BENT and error > COARSE
     ]
