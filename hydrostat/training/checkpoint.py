@@ -116,7 +116,7 @@ def _replay_arrays(buffer: Any) -> dict[str, np.ndarray]:
 
 
 def _sized_replay(model: Any, rows: int) -> Any:
-    """The model's replay buffer; a new one where it shall hold another number of rows, as where steps were added."""
+    """The model's replay buffer; a new one where it needs another number of rows, as where steps were added."""
     if rows != model.replay_buffer.buffer_size:
         model.replay_buffer = model.replay_buffer_class(
             rows * model.n_envs,

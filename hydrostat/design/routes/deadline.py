@@ -20,7 +20,7 @@ class Deadline:
 
     @classmethod
     def after(cls, seconds: float | None, clock: Callable[[], float] = time.monotonic) -> Self:
-        """The deadline so many seconds from now; None for no limit."""
+        """Deadline this many seconds from now; None for no limit."""
         return cls(math.inf if seconds is None else clock() + seconds, clock)
 
     @property

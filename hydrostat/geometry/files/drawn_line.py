@@ -59,7 +59,7 @@ class DrawnLine:
 
     @cached_property
     def polygon(self) -> BaseGeometry:
-        """Area within it, mended where it crosses itself."""
+        """Area within it, repaired where it crosses itself."""
         return Polygon(self.points).buffer(0) if len(self.points) >= 3 else Polygon()
 
 

@@ -26,7 +26,7 @@ class Shapes:
         grounds: those of them that are the ground or a frame.
         doubtful: one that may be the body or a frame around it; None if there is none.
         open: lines that are not closed.
-        notes: one line for each thing that was left out or mended.
+        notes: one line for each thing that was left out or repaired.
     """
 
     closed: tuple[DrawnLine, ...]

@@ -99,7 +99,7 @@ def _open(content: bytes, name: str) -> tuple["Document", tuple[str, ...]]:
 
 
 _MARKERS = {b"LWPOLYLINE": b"AcDbPolyline", b"SPLINE": b"AcDbSpline", b"ELLIPSE": b"AcDbEllipse"}
-_COMMON = {5, 6, 8, 48, 60, 62, 102, 330, 360, 370}  # group codes of every entity, before those of its own kind
+_COMMON = {5, 6, 8, 48, 60, 62, 102, 330, 360, 370}  # group codes of every entity, before those of its kind
 
 
 def _with_markers(content: bytes) -> bytes:
