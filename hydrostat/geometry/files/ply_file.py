@@ -242,7 +242,7 @@ def _faces(
 def _strips(
     corners: Int[np.ndarray, " corners"], counts: Int[np.ndarray, " strips"]
 ) -> tuple[Int[np.ndarray, " corners"], Int[np.ndarray, " faces"]]:
-    """Triangles of strips, as faces: each three corners in a row are one, every other one turned; -1 starts a new strip."""
+    """Triangles of strips, as faces: three corners in a row each, every other one turned; -1 starts a new strip."""
     ends = np.zeros(len(corners) + 1, dtype=bool)
     ends[np.cumsum(counts)] = True
     place = np.arange(len(corners))
