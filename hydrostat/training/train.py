@@ -226,12 +226,12 @@ def begun_curve(out: Path, options: TrainOptions, *, resume: bool) -> list[Curve
         kept = json.loads((out / "curve.json").read_text())
         curve = [CurvePoint(**each) for each in kept["curve"]]
         made = dict(kept["options"])
-        if not curve:
-            raise InputError("no evaluation")
     for name, value in json.loads(json.dumps(asdict(options))).items():
         was = made.get(name)
         if was != value and name not in ("steps", "every"):
             raise InputError(f"{out}: this was begun with {name} = {was}, not {value}; go on with the same")
+    if not curve:
+        raise InputError(f"{out}: no checkpoint to resume from. Start without --resume.")
     return curve
 
 
