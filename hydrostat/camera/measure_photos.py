@@ -15,11 +15,11 @@ from hydrostat.camera.photo import Photo, read_pixels
 from hydrostat.camera.photo_warnings import (
     SHIFTED,
     check_sheets,
-    doubt_board,
-    doubt_frame,
-    doubt_sizes,
-    doubt_tags,
     find_missing,
+    warn_of_board,
+    warn_of_frame,
+    warn_of_sizes,
+    warn_of_tags,
 )
 from hydrostat.camera.tags import MARKER_SIDE, marker_tags, sheet_of
 from hydrostat.errors import InputError
@@ -139,17 +139,17 @@ def measure_photos(robot: Robot, photos: Sequence[Photo], options: PhotoOptions 
     rows = [[index] for index in range(len(photos))] if flat else _same_poses(photos)
     scale = median(_scale(calibration, index, height) for index in range(len(photos)))
     warnings = find_missing(photos, markers, names, rows)
-    warnings += doubt_board(photos, calibration, scale)
+    warnings += warn_of_board(photos, calibration, scale)
     if flat:
         found, sides, misfits = _on_plane(markers, calibration, height)
-        warnings += doubt_sizes(sides, options.side, height, calibration)
+        warnings += warn_of_sizes(sides, options.side, height, calibration)
         misfits = [{name: misfit / scale for name, misfit in each.items()} for each in misfits]
     else:
         found, misfits = _in_space(markers, rows, calibration, options.side)
-    warnings += doubt_tags([photos[row[0]] for row in rows], misfits)
+    warnings += warn_of_tags([photos[row[0]] for row in rows], misfits)
     poses = _simulate(robot, [photos[row[0]] for row in rows])
     turn, shift = _align(robot, found, poses)
-    warnings += doubt_frame(robot, [photos[row[0]] for row in rows], found, poses, (turn, shift))
+    warnings += warn_of_frame(robot, [photos[row[0]] for row in rows], found, poses, (turn, shift))
     places = [{name: turn @ at + shift for name, at in each.items()} for each in found]
     row_of = {index: row for row, members in enumerate(rows) for index in members}
     measured = [

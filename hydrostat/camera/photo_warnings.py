@@ -61,7 +61,7 @@ def _few(photos: Sequence[Photo]) -> str:
     return "" if len(photos) >= enough else " Or the lens is not known from so few photographs: give three or more."
 
 
-def doubt_board(photos: Sequence[Photo], calibration: CameraCalibration, scale: float) -> list[str]:
+def warn_of_board(photos: Sequence[Photo], calibration: CameraCalibration, scale: float) -> list[str]:
     """Warn of photographs whose board is off by more than sharp ones."""
     return [
         f"{photo.name}: the board is off by {1e3 * error * scale:.2f} mm ({error:.2f} pixels). It is bent or "
@@ -71,7 +71,7 @@ def doubt_board(photos: Sequence[Photo], calibration: CameraCalibration, scale: 
     ]
 
 
-def doubt_tags(photos: Sequence[Photo], misfits: Sequence[Mapping[str, float]]) -> list[str]:
+def warn_of_tags(photos: Sequence[Photo], misfits: Sequence[Mapping[str, float]]) -> list[str]:
     """Warn of tags that are no squares, by their misfits [pixels]."""
     return [
         f"{photo.name}: the tag of {name} is no square ({misfit:.1f} pixels). It is bent, tilted or half covered."
@@ -81,7 +81,7 @@ def doubt_tags(photos: Sequence[Photo], misfits: Sequence[Mapping[str, float]]) 
     ]
 
 
-def doubt_sizes(sides: list[float], side: float, height: float, calibration: CameraCalibration) -> list[str]:
+def warn_of_sizes(sides: list[float], side: float, height: float, calibration: CameraCalibration) -> list[str]:
     """Warn if tags look larger or smaller than they are: their height or their print is another."""
     share = median(sides) / side
     if abs(share - 1) < MISSIZED:
@@ -95,7 +95,7 @@ def doubt_sizes(sides: list[float], side: float, height: float, calibration: Cam
     ]
 
 
-def doubt_frame(
+def warn_of_frame(
     robot: Robot,
     photos: Sequence[Photo],
     found: Sequence[Mapping[str, np.ndarray]],

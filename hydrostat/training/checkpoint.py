@@ -20,7 +20,7 @@ REPLAY_FILE, STATE_FILE, WEIGHTS_FILE = "experience.npz", "state.json", "weights
 
 
 @contextmanager
-def damage_named(path: Path) -> Iterator[None]:
+def name_damage(path: Path) -> Iterator[None]:
     """Tell that what is read within is damaged, whatever the loaders of others say of it (InputError: it is)."""
     try:
         yield
@@ -75,7 +75,7 @@ def restore_checkpoint(model: Any, folder: Path) -> None:
             f"{folder}: holds a pickle, as an earlier version wrote; it could run code and is not read. "
             "Begin again, without --resume"
         )
-    with damage_named(folder):
+    with name_damage(folder):
         kept = torch.load(folder / WEIGHTS_FILE, weights_only=True)
         model.set_parameters(kept["parameters"], exact_match=True, device="cpu")
         for name in _tensor_names(model):

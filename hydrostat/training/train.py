@@ -17,7 +17,7 @@ from hydrostat.errors import HydrostatError, InputError
 from hydrostat.progress import Progress, no_progress
 from hydrostat.robot import replace_file
 from hydrostat.simulation import ContractionProfile
-from hydrostat.training.checkpoint import damage_named, drop_others, restore_checkpoint, save_checkpoint
+from hydrostat.training.checkpoint import drop_others, name_damage, restore_checkpoint, save_checkpoint
 from hydrostat.training.goal_env import GoalEnv
 from hydrostat.version import install_command
 
@@ -222,7 +222,7 @@ def begun_curve(out: Path, options: TrainOptions, *, resume: bool) -> list[Curve
         return []
     if not (out / "curve.json").exists():
         raise InputError(f"{out}: no checkpoint to resume from. Start without --resume.")
-    with damage_named(out / "curve.json"):
+    with name_damage(out / "curve.json"):
         kept = json.loads((out / "curve.json").read_text())
         curve = [CurvePoint(**each) for each in kept["curve"]]
         made = dict(kept["options"])

@@ -104,13 +104,13 @@ def _guard(content: bytes, name: str) -> None:
         if parameter or value is None or "&" in value or len(value) * content.count(b"&") > most_expanded:
             raise OutlineError(f"{name}: declares XML entities that are not plain words: save it as plain SVG")
 
-    def entity_free(*_arguments: object) -> None:
+    def refuse_attributes(*_arguments: object) -> None:
         raise OutlineError(f"{name}: declares XML attributes, which are not read: save it as plain SVG")
 
     parser = expat.ParserCreate(namespace_separator="}")
     parser.StartElementHandler, parser.EndElementHandler = start, end
     parser.EntityDeclHandler = entity
-    parser.AttlistDeclHandler = entity_free
+    parser.AttlistDeclHandler = refuse_attributes
     try:
         parser.Parse(content, True)
     except (expat.ExpatError, ValueError, LookupError) as error:
