@@ -16,6 +16,7 @@ import numpy as np
 
 from hydrostat.arrays import Float, Vector
 from hydrostat.geometry import Mesh, locate, read_mesh
+from hydrostat.given import Point
 from hydrostat.robot import (
     Body,
     Cable,
@@ -23,7 +24,6 @@ from hydrostat.robot import (
     Material,
     Mount,
     Pin,
-    Point,
     Robot,
     Source,
     Winch,

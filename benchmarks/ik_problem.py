@@ -11,8 +11,9 @@ import numpy as np  # isort: skip
 from scipy.optimize import least_squares, minimize
 
 from hydrostat.arrays import Vector
+from hydrostat.given import Point
 from hydrostat.ik import MarkerTarget, state_at, state_jacobian_at
-from hydrostat.robot import Point, Robot
+from hydrostat.robot import Robot
 from hydrostat.simulation import Equilibrium, Simulation
 
 Answer = TypeVar("Answer")

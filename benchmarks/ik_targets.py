@@ -29,8 +29,9 @@ import numpy as np  # isort: skip
 
 import hydrostat as hs
 from hydrostat.geometry import tetrahedralize, triangulate
+from hydrostat.given import Point
 from hydrostat.ik import IKStatus
-from hydrostat.robot import Point, Robot, gallery_folder, list_gallery
+from hydrostat.robot import Robot, gallery_folder, list_gallery
 
 HEADS = {
     "hidden": "robot | nodes | winches | markers | poses | reached | without restarts | CPU ms | error mm | iterations "

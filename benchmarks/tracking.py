@@ -23,8 +23,9 @@ from scipy.interpolate import PchipInterpolator
 
 import hydrostat as hs
 from hydrostat.arrays import Vector
+from hydrostat.given import Point
 from hydrostat.ik import Limits, Tracker
-from hydrostat.robot import Point, gallery_folder
+from hydrostat.robot import gallery_folder
 
 UPDATES = 30
 """In a second."""

@@ -1,8 +1,15 @@
-"""Type checks of arguments at the public interface; an error says in one line what is wanted."""
+"""Checks of arguments and of fields of records: types, numbers, points and names.
 
+A message about a field begins with the field, which the reader of a file looks up.
+"""
+
+import math
 import os
+import unicodedata
+from numbers import Real
 from pathlib import Path
 
+from hydrostat import units
 from hydrostat.errors import InputError
 
 
@@ -23,3 +30,81 @@ def path_of(given: object, wanted: str) -> Path:
     if not isinstance(given, str | os.PathLike) or isinstance(os.fspath(given), bytes):
         raise InputError(f"{wanted}, not {given!r:.60}")
     return Path(given)
+
+
+Point = tuple[float, ...]  # coordinates [m] in the rest pose, two or three
+
+
+def check_number(field: str, value: object, unit: str) -> None:
+    """Reject a value that is no number, such as a text with a unit, which only robot.toml accepts."""
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise InputError(f"{field} must be a number{f' in {unit}' if unit else ''}, not {value!r:.60}")
+
+
+def check_positive(field: str, value: float, unit: str) -> None:
+    """Reject a value that is no number, not finite or not above 0."""
+    check_number(field, value, unit)
+    if not 0 < value < math.inf:
+        raise InputError(f"{field} must be finite and above 0, not {value:g} {unit}")
+
+
+def check_not_negative(field: str, value: float, unit: str) -> None:
+    """Reject a value that is no number, not finite or below 0."""
+    check_number(field, value, unit)
+    if not 0 <= value < math.inf:
+        raise InputError(f"{field} must be finite and not negative, not {value:g} {unit}")
+
+
+def check_point(field: str, point: Point) -> None:
+    """Reject a value that is no point in the plane or in space."""
+    try:
+        count, finite = len(point), all(map(math.isfinite, point))
+    except TypeError:
+        raise InputError(f"{field} must be two or three coordinates [m], not {point!r:.60}") from None
+    if count not in (2, 3):
+        raise InputError(f"{field} has {count} coordinates; a point has two, or three in space")
+    if not finite:
+        raise InputError(f"{field} must have finite coordinates, not {[float(value) for value in point]}")
+
+
+LONGEST_NAME = 60  # a name has at most this many characters
+
+
+def check_name(name: str) -> str:
+    """Check a name and return it.
+
+    Raises InputError: it is empty, too long, has another character than letters (of any language), digits, space and .
+    _ -, or begins with none of the first two.
+    """
+    if not name:
+        raise InputError("a name must not be empty")
+    if len(name) > LONGEST_NAME:
+        raise InputError(f"{units.quote(name)} has {len(name)} characters; a name has at most {LONGEST_NAME}")
+    wrong = next((letter for letter in name if not (_is_word(letter) or letter in " ._-")), None)
+    if wrong is not None:
+        raise InputError(
+            f"{units.quote(name)} has {units.quote(wrong)} in it; a name has letters, digits, space and . _ -"
+        )
+    if name[0] in " ._-" or unicodedata.category(name[0]).startswith("M"):
+        raise InputError(
+            f"{units.quote(name)} begins with {units.quote(name[0])}; a name begins with a letter or digit"
+        )
+    return name
+
+
+def _is_word(letter: str) -> bool:
+    """Return True for a letter, a combining mark, as in many scripts, or a digit."""
+    category = unicodedata.category(letter)
+    return category[0] in "LM" or category == "Nd"
+
+
+def check_unique(kind: str, names: list[str]) -> None:
+    """Reject names that are given twice (InputError); `kind` is the key of their tables."""
+    for index, name in enumerate(names):
+        if name in names[:index]:
+            raise InputError(f'{kind}[{index}].name: there are two of the name "{name}"; names must be unique')
+
+
+def list_choices(kind: str, names: list[str]) -> str:
+    """Names that are available, in words; `kind` is their plural."""
+    return f"Available: {', '.join(names)}." if names else f"The robot has no {kind}."

@@ -1,5 +1,8 @@
 """Registry of functions that draw records: the top package fills it, so that lower rooms need not import `plot`."""
 
+import base64
+import html
+import io
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -19,3 +22,17 @@ def register_painters(painters: dict[str, Painter]) -> None:
 def draw_record(kind: str, *records: object, **options: Any) -> "Figure":
     """Draw records by the function that is registered for this kind of picture, such as "pose"."""
     return _registered[kind](*records, **options)
+
+
+def html_repr(text: str, figure: "Figure") -> str:
+    """Return one element of HTML: a text above a picture.
+
+    Args:
+        text: description of the record.
+        figure: Matplotlib figure, which all pictures of hydrostat are.
+    """
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", dpi=110)
+    picture = base64.b64encode(buffer.getvalue()).decode()
+    shown = html.escape(text)
+    return f'<div><pre>{shown}</pre><img alt="{shown}" src="data:image/png;base64,{picture}"></div>'

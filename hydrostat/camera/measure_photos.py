@@ -23,8 +23,9 @@ from hydrostat.camera.photo_warnings import (
 )
 from hydrostat.camera.tags import MARKER_SIDE, marker_tags, sheet_of
 from hydrostat.errors import InputError
+from hydrostat.given import check_not_negative, check_positive
 from hydrostat.identification import Measurements
-from hydrostat.robot import Robot, check_not_negative, check_positive
+from hydrostat.robot import Robot
 from hydrostat.simulation import Equilibrium, Simulation
 from hydrostat.units import plural
 

@@ -14,7 +14,7 @@ import numpy as np
 from hydrostat.arrays import UInt8
 from hydrostat.camera.find_tags import Gray
 from hydrostat.errors import InputError
-from hydrostat.geometry import read_stranger
+from hydrostat.files import read_stranger
 from hydrostat.robot import Load, Robot
 from hydrostat.units import LENGTH, MASS, parse_quantity
 

@@ -69,8 +69,9 @@ def _follow(simulation: "Simulation", found: "Multistability") -> "list[tuple[st
 def _write(
     simulation: "Simulation", found: "Multistability", followed: "list[tuple[str, Branch]]", out: Path
 ) -> list[Path]:
+    from hydrostat.files import replace_file
     from hydrostat.plot import draw_branches, save_png
-    from hydrostat.robot import replace_file, robot_hash
+    from hydrostat.robot import robot_hash
     from hydrostat.version import __version__
 
     out.mkdir(parents=True, exist_ok=True)

@@ -67,7 +67,7 @@ def check(
 def _print_judgement(robot: "Robot") -> None:
     """Print the design review of a robot, as the studio does, regardless of the motor loads in its poses."""
     from hydrostat.design import Constraints, Diagnostic, Severity, find_no_room, review_robot
-    from hydrostat.robot import in_words
+    from hydrostat.errors import in_words
 
     found = [Diagnostic(text=text, weight=Severity.REFUSED, places=()) for text in print_sewing(robot.body)]
     found += review_robot(robot, constraints=Constraints())

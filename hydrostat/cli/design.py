@@ -206,7 +206,7 @@ def design(
         lock_cable=lock_cable or [],
     )
     from hydrostat.design import kit_fits
-    from hydrostat.robot import in_words
+    from hydrostat.errors import in_words
 
     began = time.perf_counter()
     source = read_robot(robot)

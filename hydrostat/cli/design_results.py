@@ -19,8 +19,9 @@ STALE = r"alternatives/\d+_\d+_winches_\d+_cables"  # folders of alternatives of
 def write_results(network: "Network", folder: Path) -> None:
     """The robot, score.json, report.html and the alternatives."""
     from hydrostat.design import score_card
+    from hydrostat.files import replace_file
     from hydrostat.plot import write_report
-    from hydrostat.robot import replace_file, save_robot
+    from hydrostat.robot import save_robot
     from hydrostat.version import __version__
 
     save_robot(network.robot, folder / "robot")
@@ -126,8 +127,8 @@ def _print_findings(network: "Network") -> tuple[str, ...]:
     """Print errors that would prevent a kit, and warnings, for the loads that the design found; return them."""
     from hydrostat.cli.check import FINDINGS
     from hydrostat.design import review_robot
+    from hydrostat.errors import in_words
     from hydrostat.fabrication import demand_of
-    from hydrostat.robot import in_words
 
     found = review_robot(network.robot, demand=demand_of(network.robot, network.reached))
     for finding in found:

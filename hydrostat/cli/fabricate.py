@@ -108,8 +108,8 @@ def fabricate(
 def _build_or_report(folder: Path, robot: "Robot", options: "KitOptions", out: Path) -> "Kit":
     """The kit; else the reasons are printed, and a command that fixes them (InputError: it cannot be built well)."""
     from hydrostat.cli.remedies import kit_remedy
+    from hydrostat.errors import in_words
     from hydrostat.fabrication import UnbuildableError, build_kit
-    from hydrostat.robot import in_words
 
     try:
         with progress_bar() as progress:
@@ -125,7 +125,7 @@ def _build_or_report(folder: Path, robot: "Robot", options: "KitOptions", out: P
 
 def print_kit(kit: "Kit", *, printed: Collection[str] = ()) -> None:
     """Print the contents of a kit, its problems but those printed already, and its quality checks."""
-    from hydrostat.robot import in_words
+    from hydrostat.errors import in_words
 
     for level, texts in (("error", kit.problems), ("warning", kit.warnings), ("note", kit.notes)):
         for text in texts:

@@ -52,7 +52,7 @@ def require_folder(out: Path) -> None:
     Raises:
         InputError: something that is no folder is in the way, or nothing can be written there.
     """
-    from hydrostat.robot import clear_unfinished
+    from hydrostat.files import clear_unfinished
 
     for folder in (out, out.parent):
         clear_unfinished(folder)
@@ -76,7 +76,7 @@ def result_folder(out: Path, *, stale: str | None = None) -> Iterator[Path]:
     A new folder is renamed as a whole. In one that exists each file takes the place of the one of its name, and others
     stay, but for folders of earlier results that match the pattern `stale`.
     """
-    from hydrostat.robot import temporary_path
+    from hydrostat.files import temporary_path
 
     out = out.resolve()
     beside = out if out.exists() else out.parent

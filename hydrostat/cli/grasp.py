@@ -61,9 +61,9 @@ def grasp(
 
     Example: hydrostat grasp gallery:caging_gripper --pose close --object sphere:65mm --direction +z --out build/grasp
     """
+    from hydrostat.files import replace_file
     from hydrostat.grasp import PullOptions, pull_bands, pull_out, read_thing
     from hydrostat.plot import draw_pull, pull_frames, save_gif, save_png
-    from hydrostat.robot import replace_file
     from hydrostat.units import LENGTH, MASS
 
     require_folder(out)

@@ -130,7 +130,8 @@ class _Lines:
 
 def _write(path: Path, table: "Measurements", found: "IdentifiedRobot", out: Path) -> None:
     from hydrostat.cli.options import load_matplotlib
-    from hydrostat.robot import merged_text, read_text, replace_file, save_robot
+    from hydrostat.files import read_text, replace_file
+    from hydrostat.robot import merged_text, save_robot
     from hydrostat.simulation import csv_text
 
     load_matplotlib()

@@ -49,8 +49,8 @@ def learn(
 
     Example: hydrostat learn build/samples --out build/starfish.model
     """
+    from hydrostat.files import clear_unfinished
     from hydrostat.learning import LearnOptions, correct_model, learn_model, load_model, read_samples, save_model
-    from hydrostat.robot import clear_unfinished
 
     if out.is_dir() or not out.parent.is_dir():
         raise InputError(

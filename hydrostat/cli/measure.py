@@ -67,14 +67,14 @@ def measure(
         from hydrostat.camera import tags_pdf
         from hydrostat.closed_set import parse_choice
         from hydrostat.fabrication import Paper
-        from hydrostat.robot import replace_file
+        from hydrostat.files import replace_file
 
         replace_file(sheet, tags_pdf(loaded, parse_choice(Paper, paper, what="--paper"), options.side))
         print(f"Wrote {sheet}. Print it at 100 % (actual size).")
     if out is None:
         return
     from hydrostat.camera import measure_photos, read_photos, table_text
-    from hydrostat.robot import replace_file
+    from hydrostat.files import replace_file
 
     given = read_photos(photos or [], loaded, table)
     found = measure_photos(loaded, given, options)

@@ -17,7 +17,7 @@ from hydrostat.cli.options import parse_optional, positive
 from hydrostat.cli.remedies import body_refusals
 from hydrostat.cli.waiting import patiently
 from hydrostat.errors import InputError, SeveralPartsError
-from hydrostat.units import plural
+from hydrostat.units import plural, printable
 
 if TYPE_CHECKING:
     from hydrostat.geometry import Inner
@@ -141,7 +141,7 @@ def _inner(given: str | None) -> "Inner | None":
 
 def _robot_name(folder: Path) -> str:
     """Name of a robot after its folder (InputError: no robot may be called so)."""
-    from hydrostat.robot import check_name
+    from hydrostat.given import check_name
 
     return check_name(folder.resolve().name)
 
@@ -162,7 +162,7 @@ def _length(key: str, text: str | None) -> float | None:
 @contextmanager
 def _made_whole(name: Path) -> Iterator[Path]:
     """A folder to fill beside where it will stand; it gets its name when all is well, else it is gone."""
-    from hydrostat.robot import clear_unfinished, temporary_path
+    from hydrostat.files import clear_unfinished, temporary_path
 
     made = [parent for parent in name.resolve().parents if not parent.exists()]
     try:
@@ -199,8 +199,9 @@ def _begin(source: str, folder: Path, wish: "NewRobotWish", seconds: float) -> l
 
     if is_of_gallery(source):
         return _from_gallery(source, folder, wish)
+    from hydrostat.files import replace_file
     from hydrostat.ik import begin_robot
-    from hydrostat.robot import commented_text, replace_file, save_robot
+    from hydrostat.robot import save_robot
 
     wish = _asked_about_holes(source, wish, seconds)
 
@@ -208,7 +209,7 @@ def _begin(source: str, folder: Path, wish: "NewRobotWish", seconds: float) -> l
         return run_bounded(sketch, file=source, words="healing and meshing the body ...", seconds=seconds)
 
     begun = begin_robot(source, wish, run=run)
-    save_robot(begun.robot, folder, text=commented_text(begun.robot, Path(source).name))
+    save_robot(begun.robot, folder, text=_commented_text(begun.robot, Path(source).name))
     lines, sketch = list(begun.notes), begun.sketch
     if sketch is not None and not sketch.healing.clean:
         from hydrostat.plot import draw_healing, save_png
@@ -223,7 +224,8 @@ def _begin(source: str, folder: Path, wish: "NewRobotWish", seconds: float) -> l
 
 def _asked_about_holes(source: str, wish: "NewRobotWish", seconds: float) -> "NewRobotWish":
     """The wish with what a person at the terminal says of closed shapes in a drawing, if there are any to ask about."""
-    from hydrostat.geometry import OUTLINE_SUFFIXES, Inner, read_drawing, read_stranger
+    from hydrostat.files import read_stranger
+    from hydrostat.geometry import OUTLINE_SUFFIXES, Inner, read_drawing
 
     path = Path(source)
     if wish.inner is not None or path.suffix.lower() not in OUTLINE_SUFFIXES or not path.is_file():
@@ -247,7 +249,8 @@ def _asked_about_holes(source: str, wish: "NewRobotWish", seconds: float) -> "Ne
 
 def _from_gallery(source: str, folder: Path, wish: "NewRobotWish") -> list[str]:
     """Copy a robot under its new name, if asked with other elements."""
-    from hydrostat.robot import GALLERY, gallery_folder, load_robot, replace_file, with_values
+    from hydrostat.files import replace_file
+    from hydrostat.robot import GALLERY, gallery_folder, load_robot, with_values
 
     wish.refuse(
         "not available for gallery robots. Edit robot.toml",
@@ -282,7 +285,8 @@ def _draw(folder: Path) -> "Robot":
 
 def _print_made(made: "Robot", name: Path, lines: list[str], *, chosen: bool) -> None:
     """Say what there is now, and what to do next."""
-    from hydrostat.robot import find_risks, in_words
+    from hydrostat.errors import in_words
+    from hydrostat.robot import find_risks
 
     mesh, flat = made.body.mesh, made.body.mesh.dim == 2
     print(f"Created {name}: {1e3 * mesh.size:.0f} mm, {mesh.describe()}, poses: {', '.join(made.poses)}")
@@ -308,3 +312,56 @@ def _print_made(made: "Robot", name: Path, lines: list[str], *, chosen: bool) ->
     elif made.winches:
         pull = f"{made.winches[0].name}={250 * made.winches[0].travel:.0f}mm"
         print(f"Next: hydrostat simulate {folder} --contract {quote(pull)} --out {quote(f'build/{made.name}')}")
+
+
+def _commented_text(robot: "Robot", source: str) -> str:
+    """Text of robot.toml with a comment before the first table of each kind.
+
+    Args:
+        robot: newly created robot.
+        source: name of the file that it was created from.
+    """
+    from hydrostat.robot import robot_text
+
+    flat = robot.body.mesh.dim == 2
+    origin = "the middle of the drawing, x to the right, y up" if flat else "where the file of the body has it"
+    where = "[0, 0]" if flat else "[0, 0, 0]"
+    head = (
+        f"# {robot.name}, begun from {printable(source)}. All of it is meant to be changed.\n"
+        f"# Lengths are in {robot.length_unit}; {where} is {origin}. rest.png shows them.\n"
+        "# `hydrostat check` reports errors and warnings. docs/robot_toml.md of hydrostat lists all keys.\n"
+    )
+    notes = {
+        "[body]": "# The body. A smaller element_size is finer but slower; `hydrostat materials` lists materials.",
+        "[[pin]]": "# Where it is held: what is within `radius` of `at`, or in the `box`, stays put.",
+        "[[winch]]": "# A winch takes in up to `travel` of its cables' length, and lets out up to `release`.",
+        "[[cable]]": "# A cable runs from its winch, the first point, to its stopper, the last.",
+        "[[marker]]": "# Markers are points whose way is followed. Add one wherever the robot should reach something.",
+        "[[pose]]": (
+            "# A pose says where markers should go. `hydrostat design` finds cables for it.\n"
+            "# What it does not name may go anywhere: name markers that shall stay, too, where they are."
+        ),
+    }
+    lines, told = [], set()
+    for line in robot_text(robot).splitlines():
+        if line in notes and line not in told:
+            told.add(line)
+            if line == "[[marker]]" and "[[winch]]" not in told:
+                lines += _NO_WINCH.splitlines()
+            lines += notes[line].splitlines()
+        lines.append(line)
+    return head + "\n".join(lines) + "\n"
+
+
+_NO_WINCH = """\
+# There are no winches yet: `hydrostat design` finds them, and their cables, for the poses below. By hand:
+# [[winch]]
+# name = "left"
+# at = [0, 0]
+# travel = "60 mm"
+#
+# [[cable]]
+# winch = "left"
+# points = [[0, 0], [-20, 5], [-40, 10]]
+
+"""

@@ -121,8 +121,8 @@ def _write(
     from hydrostat.version import __version__
 
     load_matplotlib()
+    from hydrostat.files import replace_file
     from hydrostat.plot import draw_reached, reached_title, save_png
-    from hydrostat.robot import replace_file
     from hydrostat.simulation import write_pose
 
     extra: dict[str, Any] = {

@@ -24,8 +24,9 @@ def scale(
 
     Example: hydrostat scale my_starfish 1.5
     """
+    from hydrostat.files import read_text
     from hydrostat.project import PROJECT_FILE
-    from hydrostat.robot import merged_text, read_text, save_robot, scaled_robot
+    from hydrostat.robot import merged_text, save_robot, scaled_robot
 
     if out is not None and out.exists() and (not out.is_dir() or any(out.iterdir())):
         raise InputError(f"{out} already exists. Choose another name or delete the folder.")

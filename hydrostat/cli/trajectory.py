@@ -139,8 +139,8 @@ def _write(
     width: int,
     progress: Progress,
 ) -> list[Path]:
+    from hydrostat.files import replace_file
     from hydrostat.plot import draw_trajectory, save_gif, save_png, trajectory_frames
-    from hydrostat.robot import replace_file
     from hydrostat.simulation import write_profile
 
     out.mkdir(parents=True, exist_ok=True)

@@ -12,8 +12,8 @@ import numpy as np
 from hydrostat import units
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
-from hydrostat.geometry import read_stranger
-from hydrostat.robot import Robot, replace_file, require_no_drives
+from hydrostat.files import read_stranger, replace_file
+from hydrostat.robot import Robot, require_no_drives
 
 CALIBRATION = "motors.toml"
 EMULATED_CALIBRATION = "motors_emulated.toml"

@@ -14,7 +14,8 @@ from hydrostat.control.bus_link import LinkLimits
 from hydrostat.control.calibration import CALIBRATION, Calibration, WinchMotor
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.fabrication import BOARDS, BoardKind
-from hydrostat.robot import Robot, replace_file
+from hydrostat.files import replace_file
+from hydrostat.robot import Robot
 
 SPARE = 0.025
 """Cable length that a motor may turn beyond travel and release [m]: slack that calibration takes up."""

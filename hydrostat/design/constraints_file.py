@@ -14,19 +14,9 @@ from hydrostat.design.constraints import RANGES, Constraints
 from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.design.zone import Zone
 from hydrostat.errors import InputError
-from hydrostat.robot import (
-    Angle,
-    Coordinates,
-    Force,
-    Length,
-    Name,
-    Number,
-    Robot,
-    TablesFile,
-    TomlTable,
-    Torque,
-    read_text,
-)
+from hydrostat.files import read_text
+from hydrostat.robot import Robot, TablesFile
+from hydrostat.toml_schema import Angle, Coordinates, Force, Length, Name, Number, TomlTable, Torque
 
 Count = Annotated[int, Strict()]
 Choice = Annotated[bool, Strict()]

@@ -8,7 +8,8 @@ from enum import StrEnum
 import numpy as np
 
 from hydrostat.design.polyline import nearest_shares
-from hydrostat.robot import Point, Robot
+from hydrostat.given import Point
+from hydrostat.robot import Robot
 
 
 class Severity(StrEnum):

@@ -11,7 +11,7 @@ import numpy as np
 from hydrostat.arrays import Bool, Float, Int, Points
 from hydrostat.design.polyline import least_along
 from hydrostat.errors import InputError
-from hydrostat.robot import Point
+from hydrostat.given import Point
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,7 +12,8 @@ from typing import Any
 from hydrostat.errors import InputError
 from hydrostat.fabrication.kit_options import KitOptions, Method
 from hydrostat.fabrication.solids.printed import Printed
-from hydrostat.robot import Robot, replace_file, robot_hash
+from hydrostat.files import replace_file
+from hydrostat.robot import Robot, robot_hash
 from hydrostat.units import plural
 
 

@@ -7,7 +7,8 @@ from typing import Any
 
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
-from hydrostat.robot import Body, check_number
+from hydrostat.given import check_number
+from hydrostat.robot import Body
 
 STUFFINGS = ("polyester fibre",)  # materials that are stuffed into cloth: a body of them is plush, in space too
 

@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from hydrostat.geometry.files.ply_file import write_ply
     from hydrostat.geometry.files.rings import DRAWN_HINT
     from hydrostat.geometry.files.silhouette import contrast
-    from hydrostat.geometry.files.stranger import read_stranger
     from hydrostat.geometry.files.surface_file import SURFACE_SUFFIXES, read_surface
     from hydrostat.geometry.files.vtu_file import write_vtu
     from hydrostat.geometry.healing.faults import crossing_pairs
@@ -89,7 +88,6 @@ __all__ = [
     "read_drawing",
     "read_mesh",
     "read_outline",
-    "read_stranger",
     "read_surface",
     "shell_field",
     "sides_of",

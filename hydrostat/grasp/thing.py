@@ -7,7 +7,8 @@ import numpy as np
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
-from hydrostat.geometry import SURFACE_SUFFIXES, locate, read_stranger
+from hydrostat.files import read_stranger
+from hydrostat.geometry import SURFACE_SUFFIXES, locate
 from hydrostat.robot import Obstacle, Robot, closed_mesh
 from hydrostat.units import LENGTH, parse_quantity
 

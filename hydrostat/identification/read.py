@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.geometry import read_stranger
+from hydrostat.files import read_stranger
 from hydrostat.identification.measurements import Measurements
 from hydrostat.robot import Robot
 

@@ -7,8 +7,8 @@ from enum import StrEnum
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.painters import draw_record
-from hydrostat.robot import PoseTarget, html_repr
+from hydrostat.painters import draw_record, html_repr
+from hydrostat.robot import PoseTarget
 from hydrostat.simulation import Equilibrium
 
 

@@ -8,10 +8,10 @@ import numpy as np
 
 from hydrostat.arrays import Float, Vector
 from hydrostat.errors import InputError
+from hydrostat.given import Point
 from hydrostat.ik.ik_result import IKResult
 from hydrostat.ik.search.linear_model import LinearModel
 from hydrostat.ik.search.problem import effort_weight
-from hydrostat.robot import Point
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -8,14 +8,14 @@ from typing import TypedDict, Unpack
 
 from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
-from hydrostat.geometry import Inner, read_stranger
-from hydrostat.given import check_type, path_of
+from hydrostat.files import read_stranger
+from hydrostat.geometry import Inner
+from hydrostat.given import check_number, check_type, path_of
 from hydrostat.robot import (
     GALLERY,
     PoseTarget,
     Robot,
     SurfaceSketch,
-    check_number,
     gallery_folder,
     is_of_gallery,
     load_robot,

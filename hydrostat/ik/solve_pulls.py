@@ -6,8 +6,8 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError, NotConvergedError
+from hydrostat.given import check_number
 from hydrostat.ik.objectives.objective import state_jacobian_at, winch_to_cable_matrix
-from hydrostat.robot import check_number
 from hydrostat.simulation import Contractions, Equilibrium, Simulation
 
 TOLERANCE = 1e-6

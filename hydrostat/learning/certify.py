@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.given import check_type
+from hydrostat.given import Point, check_type
 from hydrostat.ik import IKOptions, IKStatus, Limits, Targets, Tracker, named_targets, solve_ik
 from hydrostat.learning.known_contact import contact_facts
 from hydrostat.learning.learned_model import LearnedModel, LearnedPose, Tier
 from hydrostat.learning.sample_plan import physics_hash
-from hydrostat.robot import Point, PoseTarget, Robot
+from hydrostat.robot import PoseTarget, Robot
 from hydrostat.simulation import Equilibrium, Simulation
 
 

@@ -16,9 +16,8 @@ from typing import Any, TypeVar
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.geometry import read_stranger
+from hydrostat.files import read_stranger, replace_file
 from hydrostat.given import path_of
-from hydrostat.robot import replace_file
 
 Parts = tuple[dict[str, Any], dict[str, np.ndarray]]
 Made = TypeVar("Made")

@@ -16,11 +16,10 @@ import numpy as np
 
 from hydrostat.arrays import Bool, Float, Int, Vector
 from hydrostat.errors import InputError
-from hydrostat.geometry import read_stranger
+from hydrostat.files import clear_unfinished, read_stranger, temporary_path
 from hydrostat.given import path_of
 from hydrostat.learning.sample_plan import SamplePlan
 from hydrostat.learning.sample_shard import REASONS, sample_type
-from hydrostat.robot import clear_unfinished, temporary_path
 
 FORMAT = 1
 """Version of what lies in a folder of samples."""

@@ -12,11 +12,12 @@ import numpy as np
 from hydrostat.arrays import Bool, UInt8
 from hydrostat.drawing import Color, channels, winch_colors
 from hydrostat.errors import HydrostatError, InputError
+from hydrostat.files import replace_file
 from hydrostat.plot.frame import Frame, check_frames
 from hydrostat.plot.frame_pictures import FramePictures, Picture
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.progress import Progress
-from hydrostat.robot import Robot, replace_file
+from hydrostat.robot import Robot
 
 STAYS = 3.0
 """A pixel keeps its color until it is off by more than this (of 255, in the channel that differs most): no eye tells,

@@ -9,10 +9,11 @@ from matplotlib.figure import Figure
 from hydrostat.arrays import Vector
 from hydrostat.control import SlackCalibration, SpoolCurve, WinchPull
 from hydrostat.drawing import Color, Html, tag
+from hydrostat.files import replace_file
 from hydrostat.plot.chart import new_chart
 from hydrostat.plot.report_tables import NARROW, grid, number, page, picture, table
 from hydrostat.plot.sheet import MILLIMETERS
-from hydrostat.robot import Robot, replace_file
+from hydrostat.robot import Robot
 
 
 def write_calibration_page(

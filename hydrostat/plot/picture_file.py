@@ -19,9 +19,9 @@ from matplotlib.text import Text
 
 from hydrostat.arrays import UInt8
 from hydrostat.drawing import Color
+from hydrostat.files import replace_file
 from hydrostat.plot.labels import HALO
 from hydrostat.plot.sheet import BODY
-from hydrostat.robot import replace_file
 
 
 def save_png(figure: Figure, path: str | Path, *, dpi: float = 200) -> Path:

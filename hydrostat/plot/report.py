@@ -28,7 +28,7 @@ def write_report(
 
     The title is the robot's name if left out; facts are more lines for the end, such as options and seed.
     """
-    from hydrostat.robot import replace_file
+    from hydrostat.files import replace_file
 
     return replace_file(Path(path), report_text(network, title=title, facts=facts).encode(errors="replace"))
 

@@ -9,7 +9,7 @@ from matplotlib.patches import FancyArrowPatch
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.drawing import Color, winch_colors
 from hydrostat.geometry import Outline, Ring, locate
-from hydrostat.given import check_type
+from hydrostat.given import check_positive, check_type
 from hydrostat.ik import IKResult, IKStatus
 from hydrostat.plot.drawn_body import DrawnBody
 from hydrostat.plot.frame import Attachments
@@ -29,7 +29,7 @@ from hydrostat.plot.targets import (
     target_points,
 )
 from hydrostat.plot.tension_scale import TensionScale
-from hydrostat.robot import Load, Obstacle, PoseTarget, Robot, check_positive
+from hydrostat.robot import Load, Obstacle, PoseTarget, Robot
 from hydrostat.simulation import Equilibrium, check_pose, obstacles_in_pose
 from hydrostat.units import plural
 

@@ -10,6 +10,7 @@ import numpy as np
 from hydrostat.arrays import Float, Nodes, Points, Vector
 from hydrostat.drawing import Color, Spots, channels, upright, winch_colors
 from hydrostat.errors import InputError
+from hydrostat.files import replace_file
 from hydrostat.plot.frame import Attachments, Frame, check_frames
 from hydrostat.plot.glb import Glb, GlbPart
 from hydrostat.plot.open_sheet import way_up
@@ -17,7 +18,7 @@ from hydrostat.plot.sheet import Spread
 from hydrostat.plot.solids import Solid, cross, join_solids, skin, slab, sphere, spool, tube
 from hydrostat.plot.targets import target_points
 from hydrostat.plot.tension_scale import TensionScale
-from hydrostat.robot import PoseTarget, Robot, replace_file
+from hydrostat.robot import PoseTarget, Robot
 
 MOST_KEYS = 120  # of a film of more different frames every second, third ... is a key: programs hold them all at once
 CABLE, MARKER, TARGET = 0.0045, 0.011, 0.05

@@ -12,9 +12,8 @@ from hydrostat import units
 from hydrostat.control import Timeline
 from hydrostat.design import STEPPED, Constraints, RouteOptions, TreeKnobs
 from hydrostat.errors import InputError
-from hydrostat.geometry import read_stranger
+from hydrostat.files import read_stranger, replace_file
 from hydrostat.project.wishes import ELSEWHERE, Wishes
-from hydrostat.robot import replace_file
 
 PROJECT_FILE = "studio.json"
 

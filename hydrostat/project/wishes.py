@@ -22,7 +22,8 @@ from hydrostat.design import (
     Zone,
 )
 from hydrostat.errors import InputError
-from hydrostat.robot import Point, PoseTarget, Robot
+from hydrostat.given import Point
+from hydrostat.robot import PoseTarget, Robot
 from hydrostat.units import quote
 
 

@@ -8,19 +8,10 @@ from pathlib import Path
 
 from hydrostat.control import Timeline
 from hydrostat.errors import InputError
+from hydrostat.files import read_text
 from hydrostat.project.project_file import PROJECT_FILE, read_project_file, write_project_file
 from hydrostat.project.wishes import Wishes
-from hydrostat.robot import (
-    FILE,
-    Robot,
-    Source,
-    load_robot,
-    lost_comments,
-    merged_text,
-    read_text,
-    robot_text,
-    save_robot,
-)
+from hydrostat.robot import FILE, Robot, Source, load_robot, lost_comments, merged_text, robot_text, save_robot
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -5,15 +5,12 @@ from typing import TYPE_CHECKING
 from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
-    from hydrostat.robot.atomic_files import clear_unfinished, temporary_path
     from hydrostat.robot.body import Body, Source, mesh_body, outline_body, surface_body
     from hydrostat.robot.cable import Cable
     from hydrostat.robot.cable_side import Face
-    from hydrostat.robot.checks import Point, check_name, check_not_negative, check_number, check_positive
     from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape, closed_mesh
     from hydrostat.robot.element_kind import ElementKind, Plane, Volume
     from hydrostat.robot.gravity import DIRECTIONS, STANDARD_GRAVITY, direction_of, gravity_along
-    from hydrostat.robot.html_repr import html_repr, in_words
     from hydrostat.robot.inflated import describe_cable_side, inflated_robot, sewn_robot, sewn_sides
     from hydrostat.robot.load import Load
     from hydrostat.robot.marker import Marker, Pin, PoseTarget
@@ -34,12 +31,11 @@ if TYPE_CHECKING:
     from hydrostat.robot.robot import LARGEST_STEP, Robot
     from hydrostat.robot.rod import Rod
     from hydrostat.robot.scaled import scaled_robot
-    from hydrostat.robot.schema import Angle, Coordinates, Force, Length, Name, Number, TomlTable, Torque
     from hydrostat.robot.sketch import sketch_robot
     from hydrostat.robot.sketch_space import SurfaceSketch, inflate_outline, sketch_mesh, sketch_surface
-    from hydrostat.robot.tables_file import TablesFile, commented_text, read_text
+    from hydrostat.robot.tables_file import TablesFile
     from hydrostat.robot.winch import Mount, Winch
-    from hydrostat.robot.write import replace_file, robot_hash, robot_text, save_robot, with_values
+    from hydrostat.robot.write import robot_hash, robot_text, save_robot, with_values
 
 __all__ = [
     "DIRECTIONS",
@@ -52,28 +48,21 @@ __all__ = [
     "MATERIALS",
     "SEWN_DEPTH",
     "STANDARD_GRAVITY",
-    "Angle",
     "Body",
     "BodyPart",
     "Cable",
     "Contact",
-    "Coordinates",
     "ElementKind",
     "Face",
-    "Force",
-    "Length",
     "Load",
     "Marker",
     "Material",
     "Mount",
-    "Name",
-    "Number",
     "Obstacle",
     "ObstacleShape",
     "Pin",
     "PinDrive",
     "Plane",
-    "Point",
     "PoseTarget",
     "Relaxation",
     "Robot",
@@ -82,19 +71,11 @@ __all__ = [
     "Source",
     "SurfaceSketch",
     "TablesFile",
-    "TomlTable",
-    "Torque",
     "Volume",
     "Winch",
     "check_drive_values",
-    "check_name",
-    "check_not_negative",
-    "check_number",
-    "check_positive",
     "check_radians",
-    "clear_unfinished",
     "closed_mesh",
-    "commented_text",
     "comments",
     "describe_cable_side",
     "direction_of",
@@ -102,8 +83,6 @@ __all__ = [
     "gallery_folder",
     "get_material",
     "gravity_along",
-    "html_repr",
-    "in_words",
     "inflate_outline",
     "inflated_robot",
     "is_of_gallery",
@@ -116,8 +95,6 @@ __all__ = [
     "obstacle_lines",
     "outline_body",
     "parse_drive_value",
-    "read_text",
-    "replace_file",
     "require_no_drives",
     "rims",
     "robot_hash",
@@ -130,7 +107,6 @@ __all__ = [
     "sketch_robot",
     "sketch_surface",
     "surface_body",
-    "temporary_path",
     "with_values",
 ]
 

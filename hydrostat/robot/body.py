@@ -14,8 +14,8 @@ from hydrostat.arrays import Float, Int, Points
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError, OutlineError, SurfaceError
 from hydrostat.geometry import Anchors, Healing, Inner, Mesh, Outline, Solid, Thickness, locate, measure_thickness
+from hydrostat.given import check_positive
 from hydrostat.robot.body_cache import Arrays, keep_body
-from hydrostat.robot.checks import check_positive
 from hydrostat.robot.element_kind import ElementKind, Plane, Volume
 from hydrostat.robot.materials import Material, get_material
 from hydrostat.robot.part import BodyPart
@@ -365,7 +365,8 @@ def mesh_body(
     volume: Volume = Volume.ELEMENT,
 ) -> Body:
     """Body from a ready mesh, in units of `unit` meters (InputError: the file cannot be read or holds no such mesh)."""
-    from hydrostat.geometry import read_mesh, read_stranger
+    from hydrostat.files import read_stranger
+    from hydrostat.geometry import read_mesh
 
     _check_lengths(size=size, thickness=thickness)
     return Body(

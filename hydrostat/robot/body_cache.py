@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hydrostat.robot.atomic_files import temporary_path
+from hydrostat.files import temporary_path
 
 VARIABLE = "HYDROSTAT_CACHE"
 """Environment variable: the folder of the cache; no cache where it is set and empty."""

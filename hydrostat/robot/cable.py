@@ -10,8 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.given import check_type
-from hydrostat.robot.checks import (
+from hydrostat.given import (
     LONGEST_NAME,
     Point,
     check_name,
@@ -19,6 +18,7 @@ from hydrostat.robot.checks import (
     check_number,
     check_point,
     check_positive,
+    check_type,
 )
 
 

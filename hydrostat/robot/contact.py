@@ -21,7 +21,7 @@ from hydrostat.geometry import (
     shell_field,
     sphere_field,
 )
-from hydrostat.robot.checks import Point, check_name, check_number, check_point, check_positive
+from hydrostat.given import Point, check_name, check_number, check_point, check_positive
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,11 @@ import numpy as np
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
+from hydrostat.given import LONGEST_NAME, Point
 from hydrostat.robot.body import Body, surface_body
 from hydrostat.robot.body_cache import Arrays, keep_body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.cable_side import Face
-from hydrostat.robot.checks import LONGEST_NAME, Point
 from hydrostat.robot.load import Load
 from hydrostat.robot.marker import Pin
 from hydrostat.robot.robot import Robot

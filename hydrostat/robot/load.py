@@ -7,7 +7,7 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh
-from hydrostat.robot.checks import Point, check_name, check_number, check_point, check_positive
+from hydrostat.given import Point, check_name, check_number, check_point, check_positive
 
 
 @dataclass(frozen=True, kw_only=True)

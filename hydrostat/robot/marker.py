@@ -8,7 +8,7 @@ import numpy as np
 
 from hydrostat.errors import InputError
 from hydrostat.geometry import Anchors, Mesh, anchor_nodes, locate
-from hydrostat.robot.checks import Point, check_not_negative, check_point, check_positive
+from hydrostat.given import Point, check_not_negative, check_point, check_positive
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -13,8 +13,7 @@ from types import MappingProxyType
 from typing import Self
 
 from hydrostat.errors import InputError
-from hydrostat.given import check_type
-from hydrostat.robot.checks import check_not_negative, check_number, check_positive
+from hydrostat.given import check_not_negative, check_number, check_positive, check_type
 from hydrostat.units import quote
 
 SOFTEST = 100.0  # Young's modulus of a material is at least so much [Pa]: less was meant in another unit

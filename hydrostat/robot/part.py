@@ -9,7 +9,7 @@ import numpy as np
 from hydrostat.arrays import Points, Vector
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
-from hydrostat.robot.checks import Point, check_name, check_point, check_positive
+from hydrostat.given import Point, check_name, check_point, check_positive
 from hydrostat.robot.contact import ClosedMesh, Obstacle
 from hydrostat.robot.materials import Material, get_material
 

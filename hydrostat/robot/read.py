@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeGuard
 
 from hydrostat import units
 from hydrostat.errors import InputError
-from hydrostat.geometry import read_stranger
+from hydrostat.files import read_stranger, read_text
 from hydrostat.robot.body import Body, Source, mesh_body, outline_body, surface_body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.contact import ClosedMesh, Contact, Obstacle, closed_mesh
@@ -22,11 +22,11 @@ from hydrostat.robot.part import BodyPart, PartShape
 from hydrostat.robot.pin_drive import PinDrive, parse_drive_value
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.rod import Rod
-from hydrostat.robot.tables_file import TablesFile, read_text
+from hydrostat.robot.tables_file import TablesFile
 from hydrostat.robot.winch import Winch
 
 if TYPE_CHECKING:
-    from hydrostat.robot.schema import TomlTable
+    from hydrostat.toml_schema import TomlTable
 
 GALLERY = "gallery:"
 """Prefix of the name of a gallery robot, instead of a folder."""

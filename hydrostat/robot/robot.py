@@ -11,15 +11,13 @@ from hydrostat.arrays import Points, Vector
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
 from hydrostat.geometry import locate
-from hydrostat.given import check_type
-from hydrostat.painters import draw_record
+from hydrostat.given import Point, check_type, check_unique, list_choices
+from hydrostat.painters import draw_record, html_repr
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable, given_names, name_cables
 from hydrostat.robot.cable_side import Face
-from hydrostat.robot.checks import Point, check_unique, list_choices
 from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape
 from hydrostat.robot.gravity import check_gravity, gravity_along
-from hydrostat.robot.html_repr import html_repr
 from hydrostat.robot.load import Load, check_cavity
 from hydrostat.robot.marker import Marker, Pin, PoseTarget
 from hydrostat.robot.materials import Material, get_material

@@ -8,8 +8,8 @@ import numpy as np
 
 from hydrostat.arrays import Points
 from hydrostat.errors import InputError
+from hydrostat.given import Point, check_name, check_point, check_positive
 from hydrostat.robot.body import Body
-from hydrostat.robot.checks import Point, check_name, check_point, check_positive
 
 SHARPEST = 100.0
 """Sharpest turn of a rod at rest [degrees]."""

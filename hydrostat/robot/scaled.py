@@ -6,8 +6,8 @@ from tempfile import TemporaryDirectory
 
 from hydrostat import units
 from hydrostat.errors import InputError
+from hydrostat.given import Point
 from hydrostat.robot.body import Body, Source, mesh_body, outline_body, surface_body
-from hydrostat.robot.checks import Point
 from hydrostat.robot.contact import Contact, Obstacle
 from hydrostat.robot.marker import Pin, PoseTarget
 from hydrostat.robot.part import BodyPart

@@ -1,65 +1,43 @@
 """Schema of robot.toml: its tables, keys and units, as pydantic models."""
 
-from collections.abc import Callable
 from decimal import Decimal
 from typing import Annotated
 
 from pydantic import (
     AfterValidator,
-    BaseModel,
     BeforeValidator,
-    ConfigDict,
     Discriminator,
     Field,
-    Strict,
     Tag,
 )
 
-from hydrostat import units
-from hydrostat.errors import InputError
 from hydrostat.geometry import Inner
 from hydrostat.robot.cable_side import Face
-from hydrostat.robot.checks import check_name
 from hydrostat.robot.contact import ObstacleShape
 from hydrostat.robot.element_kind import ElementKind, Plane, Volume
 from hydrostat.robot.gravity import DIRECTIONS
 from hydrostat.robot.materials import MOST_BRANCHES
 from hydrostat.robot.part import PartShape
 from hydrostat.robot.winch import Mount
+from hydrostat.toml_schema import (
+    BendingStiffness,
+    Components,
+    Coordinates,
+    Density,
+    Force,
+    Length,
+    Mass,
+    Name,
+    Number,
+    Pair,
+    Pressure,
+    Stiffness,
+    Text,
+    Time,
+    TomlTable,
+    Viscosity,
+)
 from hydrostat.units import quote
-
-LARGEST = 10**12  # no number of robot.toml is larger, whether bare or in SI
-
-
-def _quantity(dimension: units.Dimension) -> Callable[[object], float]:
-    def parse(text: object) -> float:
-        try:
-            value = units.parse_quantity(text, dimension)
-        except InputError as error:
-            raise ValueError(str(error)) from None
-        if abs(value) > LARGEST:
-            raise ValueError(f"{quote(text)} is too large")
-        return value
-
-    return parse
-
-
-def _number(value: object) -> Decimal:
-    """Bare number; tomllib hands over int or Decimal."""
-    if isinstance(value, bool) or not isinstance(value, int | Decimal):
-        raise ValueError(f"{quote(value)} is not a number")
-    if isinstance(value, Decimal) and not value.is_finite():
-        raise ValueError(f"{quote(value)} is not a finite number")
-    if abs(value) > LARGEST:
-        raise ValueError(f"{quote(value)} is too large; write a number between -1e12 and 1e12")
-    return Decimal(value)
-
-
-def _name(value: object) -> object:
-    try:
-        return check_name(value) if isinstance(value, str) else value
-    except InputError as error:
-        raise ValueError(str(error)) from None
 
 
 def _direction(value: str) -> str:
@@ -77,30 +55,7 @@ def _format(value: object) -> object:
     return value
 
 
-Length = Annotated[float, BeforeValidator(_quantity(units.LENGTH))]
-Pressure = Annotated[float, BeforeValidator(_quantity(units.PRESSURE))]
-Mass = Annotated[float, BeforeValidator(_quantity(units.MASS))]
-Density = Annotated[float, BeforeValidator(_quantity(units.DENSITY))]
-Stiffness = Annotated[float, BeforeValidator(_quantity(units.STIFFNESS))]
-Acceleration = Annotated[float, BeforeValidator(_quantity(units.ACCELERATION))]
-Viscosity = Annotated[float, BeforeValidator(_quantity(units.VISCOSITY))]
-Time = Annotated[float, BeforeValidator(_quantity(units.TIME))]
-Force = Annotated[float, BeforeValidator(_quantity(units.FORCE))]
-Torque = Annotated[float, BeforeValidator(_quantity(units.TORQUE))]
-Angle = Annotated[float, BeforeValidator(_quantity(units.ANGLE))]
-Number = Annotated[Decimal, BeforeValidator(_number)]
-Coordinates = Annotated[list[Number], Field(min_length=2, max_length=3)]
-Text = Annotated[str, Field(min_length=1, max_length=200)]
-Name = Annotated[str, BeforeValidator(_name)]
 Direction = Annotated[str, AfterValidator(_direction)]
-Components = Annotated[list[Acceleration], Field(min_length=2, max_length=3)]
-Pair = Annotated[list[Annotated[int, Strict()]], Field(min_length=2, max_length=2)]
-
-
-class TomlTable(BaseModel):
-    """Table of the file; an unknown key is an error."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 class RelaxationTable(TomlTable):
@@ -162,7 +117,7 @@ class PartTable(TomlTable):
     at: Coordinates | None = None
     to: Coordinates | None = None
     radius: Number | None = None
-    points: Annotated[list[Coordinates], Field(max_length=1000)] = []
+    points: Annotated[list[Coordinates], Field(max_length=1000)] = Field([])
     file: Text | None = None
     material: AnyMaterial | None = None
     rigid: bool = False
@@ -184,7 +139,7 @@ class BodyTable(TomlTable):
     plane: Plane | None = None
     inner: Inner | None = None
     drawing_part: Annotated[int, Field(ge=1)] | None = None
-    part: list[PartTable] = []
+    part: list[PartTable] = Field([])
 
 
 class PinTable(TomlTable):
@@ -273,7 +228,7 @@ class ObstacleTable(TomlTable):
     normal: Coordinates | None = None
     friction: Number | None = None
     mass: Mass | None = None
-    path: list[KeyframeTable] = []
+    path: list[KeyframeTable] = Field([])
     file: Text | None = None
 
 
@@ -296,7 +251,7 @@ class RodTable(TomlTable):
     diameter: Length | None = None
     young: Pressure | None = None
     axial_stiffness: Force | None = None
-    bending_stiffness: Annotated[float, BeforeValidator(_quantity(units.BENDING))] | None = None
+    bending_stiffness: BendingStiffness | None = None
 
 
 class RobotTable(TomlTable):
@@ -308,13 +263,13 @@ class RobotTable(TomlTable):
     gravity: Gravity | None = None
     face: Face | None = None
     body: BodyTable
-    pin: list[PinTable] = []
-    drive: list[DriveTable] = []
-    winch: list[WinchTable] = []
-    cable: list[CableTable] = []
-    marker: list[MarkerTable] = []
-    pose: list[PoseTable] = []
+    pin: list[PinTable] = Field([])
+    drive: list[DriveTable] = Field([])
+    winch: list[WinchTable] = Field([])
+    cable: list[CableTable] = Field([])
+    marker: list[MarkerTable] = Field([])
+    pose: list[PoseTable] = Field([])
     contact: ContactTable | None = None
-    obstacle: list[ObstacleTable] = []
-    load: list[LoadTable] = []
-    rod: list[RodTable] = []
+    obstacle: list[ObstacleTable] = Field([])
+    load: list[LoadTable] = Field([])
+    rod: list[RodTable] = Field([])

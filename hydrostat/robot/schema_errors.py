@@ -5,7 +5,8 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from hydrostat.robot.schema import RobotTable, TomlTable
+from hydrostat.robot.schema import RobotTable
+from hydrostat.toml_schema import TomlTable
 from hydrostat.units import quote
 
 _NAMED = "a material with a name has its own; remove this key, or the name"

@@ -9,9 +9,9 @@ import numpy as np
 from hydrostat.arrays import Bool, Float, Int, Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry import Healing, Mesh, Outline, Solid, Surface, clearance, heal, locate, size_for
+from hydrostat.given import Point
 from hydrostat.robot.body import Body, Source, mesh_body
 from hydrostat.robot.cable import Cable
-from hydrostat.robot.checks import Point
 from hydrostat.robot.marker import Marker, Pin, PoseTarget
 from hydrostat.robot.materials import get_material
 from hydrostat.robot.robot import Robot

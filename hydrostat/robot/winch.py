@@ -7,8 +7,7 @@ from enum import StrEnum
 
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
-from hydrostat.given import check_type
-from hydrostat.robot.checks import Point, check_not_negative, check_point, check_positive
+from hydrostat.given import Point, check_not_negative, check_point, check_positive, check_type
 
 
 class Mount(StrEnum):

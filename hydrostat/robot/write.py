@@ -2,21 +2,18 @@
 
 import hashlib
 import math
-import os
 from collections.abc import Iterable
-from contextlib import suppress
 from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
 from hydrostat import units
 from hydrostat.errors import InputError
+from hydrostat.files import replace_file
 from hydrostat.geometry import Inner
-from hydrostat.given import check_type, path_of
-from hydrostat.robot.atomic_files import temporary_path
+from hydrostat.given import Point, check_name, check_type, path_of
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable
-from hydrostat.robot.checks import Point, check_name
 from hydrostat.robot.contact import Contact, Obstacle
 from hydrostat.robot.element_kind import ElementKind, Plane, Volume
 from hydrostat.robot.gravity import direction_of
@@ -74,20 +71,6 @@ def with_values(text: str, *, name: str | None = None, element_size: float | Non
     if element_size is not None:
         document["body"]["element_size"] = units.format_quantity(element_size, units.LENGTH)  # type: ignore[index]
     return tomlkit.dumps(document)
-
-
-def replace_file(path: Path, content: bytes) -> Path:
-    """Write a file whole or not at all (InputError: it cannot be written)."""
-    part = temporary_path(path)
-    try:
-        part.write_bytes(content)
-        os.replace(part, path)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be written ({error.strerror})") from None
-    finally:
-        with suppress(OSError):
-            part.unlink(missing_ok=True)
-    return path
 
 
 def robot_hash(robot: Robot) -> str:

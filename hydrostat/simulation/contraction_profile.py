@@ -12,8 +12,8 @@ import numpy as np
 
 from hydrostat.arrays import Float, Vector
 from hydrostat.errors import InputError
-from hydrostat.geometry import read_stranger
-from hydrostat.robot import Robot, replace_file
+from hydrostat.files import read_stranger, replace_file
+from hydrostat.robot import Robot
 from hydrostat.simulation.controls import contraction_values
 from hydrostat.units import quote
 

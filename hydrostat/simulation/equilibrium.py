@@ -10,8 +10,8 @@ from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh, find_crossings
 from hydrostat.mechanics import NewtonResult
-from hydrostat.painters import draw_record
-from hydrostat.robot import Robot, check_drive_values, html_repr
+from hydrostat.painters import draw_record, html_repr
+from hydrostat.robot import Robot, check_drive_values
 from hydrostat.simulation.mesh_error import WORTH_A_NOTE, estimate_stiffening
 from hydrostat.simulation.strain import find_overstrain, node_strains, node_stresses
 

@@ -9,10 +9,10 @@ from threading import RLock
 from typing import Any
 
 from hydrostat.closed_set import parse_choice
-from hydrostat.errors import HydrostatError, InputError
+from hydrostat.errors import HydrostatError, InputError, in_words
 from hydrostat.learning import load_model
 from hydrostat.project import open_note, save_work
-from hydrostat.robot import Contact, in_words
+from hydrostat.robot import Contact
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.designing.designer import Designer
 from hydrostat.studio.document import Document

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
-from hydrostat.robot import Point
+from hydrostat.given import Point
 from hydrostat.studio.view.things import RobotShape, Thing
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
-from hydrostat.robot import replace_file
+from hydrostat.files import replace_file
 from hydrostat.teleop.ridge import Ridge
 
 FORMAT = "hydrostat hand map 1"

@@ -10,7 +10,7 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.robot import replace_file
+from hydrostat.files import replace_file
 from hydrostat.teleop.ridge import Ridge, Table, fit_ridge, folded_error, left_out_error
 from hydrostat.version import install_command
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.robot import replace_file
+from hydrostat.files import replace_file
 
 COUNTS = ("num_timesteps", "_n_updates", "_episode_num")
 """Counters of a model of stable-baselines3 that its next step depends on."""

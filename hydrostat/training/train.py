@@ -14,8 +14,8 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import HydrostatError, InputError
+from hydrostat.files import replace_file
 from hydrostat.progress import Progress, no_progress
-from hydrostat.robot import replace_file
 from hydrostat.simulation import ContractionProfile
 from hydrostat.training.checkpoint import drop_others, name_damage, restore_checkpoint, save_checkpoint
 from hydrostat.training.goal_env import GoalEnv

@@ -8,8 +8,8 @@ import numpy as np
 
 from hydrostat.arrays import Float
 from hydrostat.errors import InputError
+from hydrostat.given import Point
 from hydrostat.learning import LearnedModel, LearnOptions, Samples, exact_steps, learn_model
-from hydrostat.robot import Point
 from hydrostat.simulation import Equilibrium, Simulation
 from hydrostat_lab.others import OTHERS
 from hydrostat_lab.thesis_network import Answers, train_thesis_network

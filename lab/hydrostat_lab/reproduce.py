@@ -213,8 +213,8 @@ def _over_seeds(rows: "Sequence[StudyRow]") -> list[str]:
 
 def _write(name: str, rows: "Sequence[StudyRow]", robots: "dict[str, Robot]", out: Path) -> None:
     """A table as CSV, a figure as PNG for each robot and draw."""
+    from hydrostat.files import replace_file
     from hydrostat.plot import save_png
-    from hydrostat.robot import replace_file
     from hydrostat_lab.learning_figures import draw_errors, draw_losses
 
     if name.startswith("table"):

@@ -29,8 +29,8 @@ def reproduce_reference(names: Sequence[str], out: Path, *, size: str, seeds: in
     """
     with trials_missing():
         from hydrostat_lab.reference import REFERENCES, run_reference
+    from hydrostat.files import replace_file
     from hydrostat.plot import save_png
-    from hydrostat.robot import replace_file
 
     many, epochs = _SIZES[size]
     count = many if seeds is None else seeds

@@ -70,8 +70,8 @@ def reproduce_trials(
     with trials_missing():
         from hydrostat_lab.experiments import EXPERIMENTS
         from hydrostat_lab.run_experiment import run_experiment
+    from hydrostat.files import replace_file
     from hydrostat.plot import save_png
-    from hydrostat.robot import replace_file
     from hydrostat.simulation import Simulation
 
     usual, progress = _SIZES[much.size], report_progress()
@@ -134,8 +134,8 @@ def _policies(
     table: str, networks: "LearnedModel", simulation: "Simulation", out: Path, *, seeds: int, usual: "_Trials"
 ) -> None:
     """Table and picture of ways to a policy of one action, over the equilibria that each has used."""
+    from hydrostat.files import replace_file
     from hydrostat.plot import save_png
-    from hydrostat.robot import replace_file
     from hydrostat_lab.learning_figures import draw_costs
     from hydrostat_lab.policies import PAIRS_ALONE, WAYS, Budget, drawn_pairs
     from hydrostat_lab.run_experiment import certified_distances, exact_distances, exact_goals, finger_pairs

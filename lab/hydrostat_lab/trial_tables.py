@@ -74,8 +74,8 @@ def drawn_runs(experiment: "Experiment", ran: "Mapping[str, Ran]") -> "Figure":
 
 def shared_table(name: str, compared: "Iterable[OfPairs]", out: Path, width: float) -> None:
     """Tell what each way leaves after so many pairs, which claims hold at the end, and draw it; size in mm."""
+    from hydrostat.files import replace_file
     from hydrostat.plot import save_png
-    from hydrostat.robot import replace_file
     from hydrostat_lab.learning_figures import draw_costs
     from hydrostat_lab.shared_data import ORDERS
     from hydrostat_lab.verdict import interquartile, verdict

@@ -21,7 +21,8 @@ from benchmark_bodies import sofa_robots
 from robustness import CountingSimulation
 
 import hydrostat as hs
-from hydrostat.robot import Point, Robot, gallery_folder
+from hydrostat.given import Point
+from hydrostat.robot import Robot, gallery_folder
 
 BEGIN = 0.02
 """Share of its travel that each winch has taken in where SciPy's solvers begin."""

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from hydrostat.robot import comments, find_risks, in_words, load_robot
+from hydrostat.errors import in_words
+from hydrostat.robot import comments, find_risks, load_robot
 
 Run = Callable[..., tuple[int, str, str]]
 WHALE = (

@@ -21,9 +21,10 @@ from builders import gallery_robot
 
 from hydrostat.cli.bounded import run_bounded
 from hydrostat.cli.folders import require_folder, result_folder
+from hydrostat.cli.new import _commented_text
 from hydrostat.errors import InputError
-from hydrostat.geometry import heal, read_drawing, read_stranger, read_surface, triangulate
-from hydrostat.robot import clear_unfinished, commented_text, replace_file, temporary_path
+from hydrostat.files import clear_unfinished, read_stranger, replace_file, temporary_path
+from hydrostat.geometry import heal, read_drawing, read_surface, triangulate
 
 Run = Callable[..., tuple[int, str, str]]
 START = "from hydrostat.cli.main import main; main()"
@@ -119,7 +120,7 @@ def test_a_page_without_a_size_is_refused(box: str) -> None:
 
 def test_the_name_of_a_file_stays_in_its_comment() -> None:
     """Oracle: tomllib; a name with an end of line wrote keys of its own into robot.toml."""
-    text = commented_text(gallery_robot("starfish"), 'a\ngravity = "down"\x1b[31m.svg')
+    text = _commented_text(gallery_robot("starfish"), 'a\ngravity = "down"\x1b[31m.svg')
     assert "gravity" not in tomllib.loads(text)
     assert text.splitlines()[0].startswith("# starfish, begun from a\\ngravity")
 

@@ -19,6 +19,7 @@ from builders import gallery_robot, strip_robot
 import hydrostat as hs
 from hydrostat.cli.main import app
 from hydrostat.errors import HydrostatError, InputError
+from hydrostat.files import temporary_path
 from hydrostat.learning import (
     SamplePlan,
     SamplingScheme,
@@ -32,7 +33,6 @@ from hydrostat.learning.sample_plan import contractions as drawn
 from hydrostat.learning.sample_plan import shared_numbers
 from hydrostat.learning.sample_shard import REASONS
 from hydrostat.learning.samples import SampleFolder
-from hydrostat.robot import temporary_path
 
 pytestmark = pytest.mark.usefixtures("unchecked")
 

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from robot_files import GOOD, edit, load, refusal
 
 from hydrostat.errors import InputError
+from hydrostat.given import check_name
 from hydrostat.robot import Cable, Robot, load_robot, robot_hash, robot_text, save_robot
 from hydrostat.robot.cable import given_names, name_cables
-from hydrostat.robot.checks import check_name
 from hydrostat.robot.merge import merged_text
 from hydrostat.robot.read import RobotReader
 

@@ -7,6 +7,7 @@ import pytest
 from robot_files import GOOD, edit, load
 
 from hydrostat.errors import InputError
+from hydrostat.given import LONGEST_NAME
 from hydrostat.robot import (
     Face,
     Robot,
@@ -17,7 +18,6 @@ from hydrostat.robot import (
     robot_text,
     sewn_robot,
 )
-from hydrostat.robot.checks import LONGEST_NAME
 from hydrostat.robot.merge import merged_text
 
 

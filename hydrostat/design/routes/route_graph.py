@@ -12,7 +12,8 @@ from hydrostat.design.region import Region
 from hydrostat.design.zone import Zone
 from hydrostat.errors import InputError
 from hydrostat.geometry import Anchors, locate
-from hydrostat.robot import Mount, Point, Robot
+from hydrostat.given import Point
+from hydrostat.robot import Mount, Robot
 
 Pairs = Int[np.ndarray, "_ 2"]
 

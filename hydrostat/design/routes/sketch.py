@@ -14,7 +14,7 @@ from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.line_choice import Line, LineChoice
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.refine import pushed_back
-from hydrostat.robot import Point
+from hydrostat.given import Point
 
 
 def sketches(

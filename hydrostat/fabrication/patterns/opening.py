@@ -11,7 +11,8 @@ from shapely.geometry.base import BaseGeometry
 from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patterns.pinholes import Pinhole
 from hydrostat.fabrication.patterns.shape import LaserLine, Layer, PatternPart, Place, Shape, trace
-from hydrostat.robot import Point, Robot
+from hydrostat.given import Point
+from hydrostat.robot import Robot
 
 ZIPPERS = (100, 150, 200, 250, 300, 350, 400, 450, 500)
 """Lengths in which zippers are sold [mm]; any can be cut shorter."""

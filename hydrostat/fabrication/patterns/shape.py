@@ -8,7 +8,7 @@ from typing import Self
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from hydrostat.robot import Point
+from hydrostat.given import Point
 
 Place = tuple[float, float]  # a place on a panel or sheet [mm]: x to the right, y up
 

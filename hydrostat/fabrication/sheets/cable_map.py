@@ -30,7 +30,8 @@ from hydrostat.fabrication.sheets.map_layout import (
     flat_rings,
 )
 from hydrostat.fabrication.winch_marks import winch_marks_of
-from hydrostat.robot import Mount, Point, Robot
+from hydrostat.given import Point
+from hydrostat.robot import Mount, Robot
 
 _MARGIN = 7.0  # room round the body for labels [mm]
 _HOLE = 0.65  # radius of a drawn hole [mm]

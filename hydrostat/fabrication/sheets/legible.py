@@ -4,8 +4,9 @@ import re
 from functools import cache
 from typing import Any
 
+from hydrostat.errors import in_words
 from hydrostat.fabrication.winch_marks import winch_marks_of
-from hydrostat.robot import Robot, in_words
+from hydrostat.robot import Robot
 
 FONTS = ("Libertinus Serif", "DejaVu Sans Mono")
 """Come with typst: Latin, Greek, Cyrillic, Hebrew, signs of mathematics."""

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 
 from hydrostat.errors import InputError
+from hydrostat.files import read_stranger
 from hydrostat.geometry.files.msh_file import read_msh
-from hydrostat.geometry.files.stranger import read_stranger
 from hydrostat.geometry.files.vtk_file import read_vtk
 from hydrostat.geometry.files.vtu_file import read_vtu
 from hydrostat.geometry.mesh import Mesh

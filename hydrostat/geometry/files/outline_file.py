@@ -7,15 +7,15 @@ import numpy as np
 from shapely.errors import GEOSException
 
 from hydrostat.errors import InputError, OutlineError
+from hydrostat.files import MOST_DRAWN_BYTES
 from hydrostat.geometry.files.drawing_body import Inner
 from hydrostat.geometry.files.rings import Drawing, Page, one_line
-from hydrostat.geometry.files.stranger import MOST_BYTES
 from hydrostat.geometry.outline import Outline
 
 LARGEST = 20.0
 """Longest side of a drawn body [m]; what is longer has the wrong unit."""
 
-OUTLINE_SUFFIXES = tuple(MOST_BYTES)  # names of files that outlines are read from end in one of these
+OUTLINE_SUFFIXES = tuple(MOST_DRAWN_BYTES)  # names of files that outlines are read from end in one of these
 
 
 def read_outline(
@@ -72,9 +72,10 @@ def _read_drawing(
         )
     if not content.strip():
         raise OutlineError(f"{name}: the file is empty: save it again")
-    if len(content) > MOST_BYTES[suffix]:
+    if len(content) > MOST_DRAWN_BYTES[suffix]:
         raise OutlineError(
-            f"{name}: the file has {len(content) / 1e6:.0f} MB, at most {MOST_BYTES[suffix] / 1e6:.0f} MB are read: "
+            f"{name}: the file has {len(content) / 1e6:.0f} MB, "
+            f"at most {MOST_DRAWN_BYTES[suffix] / 1e6:.0f} MB are read: "
             "save the outline alone, or a smaller picture"
         )
     if suffix == ".svg":

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.arrays import Vector
+from hydrostat.given import Point
 from hydrostat.ik.objectives.objective import (
     EquilibriumState,
     Objective,
@@ -16,7 +17,6 @@ from hydrostat.ik.objectives.objective import (
     not_negative,
     place,
 )
-from hydrostat.robot import Point
 from hydrostat.simulation import Simulation
 
 

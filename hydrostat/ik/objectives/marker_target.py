@@ -9,6 +9,7 @@ import numpy as np
 from hydrostat.arrays import Bool, Float, Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry import Anchors, locate
+from hydrostat.given import Point
 from hydrostat.ik.objectives.objective import (
     EquilibriumState,
     Objective,
@@ -21,7 +22,7 @@ from hydrostat.ik.objectives.objective import (
     not_negative,
     place,
 )
-from hydrostat.robot import Point, PoseTarget, Robot
+from hydrostat.robot import PoseTarget, Robot
 from hydrostat.simulation import Simulation
 
 

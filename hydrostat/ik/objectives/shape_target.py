@@ -9,18 +9,8 @@ import numpy as np
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.errors import InputError
-from hydrostat.geometry import (
-    Curve,
-    Mesh,
-    Nearest,
-    Outline,
-    Shell,
-    Surface,
-    outline_shell,
-    read_drawing,
-    read_outline,
-    read_stranger,
-)
+from hydrostat.files import read_stranger
+from hydrostat.geometry import Curve, Mesh, Nearest, Outline, Shell, Surface, outline_shell, read_drawing, read_outline
 from hydrostat.given import path_of
 from hydrostat.ik.objectives.objective import (
     EquilibriumState,

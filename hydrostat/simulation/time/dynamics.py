@@ -9,7 +9,7 @@ import numpy as np
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.geometry import Anchors
-from hydrostat.given import check_type
+from hydrostat.given import check_not_negative, check_number, check_type
 from hydrostat.mechanics import (
     SCHEMES,
     Assembly,
@@ -23,7 +23,7 @@ from hydrostat.mechanics import (
     Stiffness,
     minimize,
 )
-from hydrostat.robot import Robot, check_not_negative, check_number
+from hydrostat.robot import Robot
 from hydrostat.simulation.body_physics import BodyPhysics
 from hydrostat.simulation.contraction_profile import ContractionProfile
 from hydrostat.simulation.statics.history_equilibrium import find_history_equilibrium

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 from hydrostat.design import Zone
 from hydrostat.errors import InputError
+from hydrostat.given import Point
 from hydrostat.project import Paint, moved_zone
-from hydrostat.robot import Point
 from hydrostat.studio.document import Document
 from hydrostat.studio.stage import Hit
 from hydrostat.studio.view.things import Area, Dot, Look, Strand, Stroke, Thing

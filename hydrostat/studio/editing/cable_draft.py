@@ -7,7 +7,8 @@ import numpy as np
 
 from hydrostat.drawing import Color, winch_colors
 from hydrostat.errors import InputError
-from hydrostat.robot import Point, Robot
+from hydrostat.given import Point
+from hydrostat.robot import Robot
 from hydrostat.studio.editing.part import Mirror
 from hydrostat.studio.editing.place import add_cable, add_winch
 from hydrostat.studio.view.things import Dot, Look, Strand, Stroke, Thing

@@ -8,6 +8,7 @@ import numpy as np
 
 from hydrostat import units
 from hydrostat.errors import InputError
+from hydrostat.given import check_name
 from hydrostat.robot import (
     Body,
     Cable,
@@ -15,7 +16,6 @@ from hydrostat.robot import (
     Mount,
     Robot,
     Source,
-    check_name,
     get_material,
     gravity_along,
     outline_body,

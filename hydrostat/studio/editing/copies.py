@@ -6,8 +6,9 @@ from dataclasses import replace
 import numpy as np
 
 from hydrostat.errors import InputError
+from hydrostat.given import Point
 from hydrostat.project import fresh_name
-from hydrostat.robot import Pin, Point, Robot
+from hydrostat.robot import Pin, Robot
 from hydrostat.studio.editing.part import Kind, Mirror, find_part, place_of
 from hydrostat.studio.editing.place import move
 

@@ -8,8 +8,9 @@ import numpy as np
 
 from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
+from hydrostat.given import Point
 from hydrostat.project import follow_robot
-from hydrostat.robot import Point, Robot
+from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.editing.cable_draft import CableDraft, begin_cable, end_cable, overlay

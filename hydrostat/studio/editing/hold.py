@@ -6,7 +6,8 @@ from typing import Self
 import numpy as np
 
 from hydrostat.geometry import locate, nearest_shares
-from hydrostat.robot import Body, Mount, Point, Robot
+from hydrostat.given import Point
+from hydrostat.robot import Body, Mount, Robot
 from hydrostat.studio.editing.part import Kind, Mirror, find_part, place_of
 from hydrostat.studio.editing.place import insert_via
 

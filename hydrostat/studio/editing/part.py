@@ -5,7 +5,8 @@ from enum import StrEnum
 
 import numpy as np
 
-from hydrostat.robot import Point, Robot
+from hydrostat.given import Point
+from hydrostat.robot import Robot
 
 
 class Kind(StrEnum):

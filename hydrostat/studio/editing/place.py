@@ -6,8 +6,9 @@ from dataclasses import replace
 import numpy as np
 
 from hydrostat.errors import InputError
+from hydrostat.given import Point
 from hydrostat.project import fresh_name
-from hydrostat.robot import Cable, Marker, Pin, Point, PoseTarget, Robot, Winch
+from hydrostat.robot import Cable, Marker, Pin, PoseTarget, Robot, Winch
 from hydrostat.studio.editing.part import Kind, Part, find_part, place_of
 
 

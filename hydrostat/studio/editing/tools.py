@@ -6,7 +6,8 @@ from enum import StrEnum
 import numpy as np
 
 from hydrostat.drawing import Color
-from hydrostat.robot import Point, Robot
+from hydrostat.given import Point
+from hydrostat.robot import Robot
 from hydrostat.studio.view.things import Dot, Look, Strand, Stroke, Thing
 
 

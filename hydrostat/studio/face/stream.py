@@ -9,7 +9,7 @@ from contextlib import suppress
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from hydrostat.errors import InputError
-from hydrostat.robot import Point
+from hydrostat.given import Point
 from hydrostat.studio.face.messages import LetGo, Pointer, Seen, read_message
 from hydrostat.studio.session import Session
 from hydrostat.studio.stage import Hit

@@ -11,9 +11,10 @@ from hydrostat.arrays import Nodes, Vector
 from hydrostat.design import FreePosing
 from hydrostat.errors import HydrostatError, InputError, NotConvergedError
 from hydrostat.geometry import locate
+from hydrostat.given import Point
 from hydrostat.ik import IKOptions, IKStatus, Limits, PointTarget, PoseRegularizer, Targets, Tracker, named_targets
 from hydrostat.learning import LearnedModel
-from hydrostat.robot import Marker, Point, Robot
+from hydrostat.robot import Marker, Robot
 from hydrostat.simulation import Equilibrium, Simulation, friction_hysteresis
 from hydrostat.studio.document import Document
 from hydrostat.studio.posing.pose_state import Anchored, HeldPoint, Mode

@@ -10,8 +10,9 @@ import numpy as np
 from hydrostat.arrays import Nodes, Points
 from hydrostat.errors import InputError
 from hydrostat.geometry import Anchors, Mesh, locate
+from hydrostat.given import Point, check_name
 from hydrostat.project import Wishes, Work, fresh_name
-from hydrostat.robot import Marker, Point, PoseTarget, Robot, check_name
+from hydrostat.robot import Marker, PoseTarget, Robot
 from hydrostat.studio.document import Document
 from hydrostat.studio.stage import Hit
 from hydrostat.studio.view.things import Ghost, RobotShape

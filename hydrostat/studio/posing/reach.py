@@ -6,7 +6,8 @@ import numpy as np
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.robot import Point, Robot
+from hydrostat.given import Point
+from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 from hydrostat.sobol import draw_sobol
 from hydrostat.studio.bell import Topic

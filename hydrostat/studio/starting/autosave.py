@@ -17,7 +17,7 @@ from threading import Lock, Thread
 from typing import IO
 
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.geometry import read_stranger
+from hydrostat.files import read_stranger
 from hydrostat.project import Work, open_work, save_work, text_of
 from hydrostat.studio.document import Document
 

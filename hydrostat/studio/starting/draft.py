@@ -6,7 +6,8 @@ from pathlib import PurePath
 
 from hydrostat.errors import InputError
 from hydrostat.geometry import OUTLINE_SUFFIXES, SURFACE_SUFFIXES, Inner
-from hydrostat.robot import Material, check_name, get_material
+from hydrostat.given import check_name
+from hydrostat.robot import Material, get_material
 from hydrostat.units import quote
 
 UPLOAD_SUFFIXES = (*OUTLINE_SUFFIXES, *SURFACE_SUFFIXES)  # endings of files that may be brought

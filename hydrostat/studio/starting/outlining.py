@@ -8,8 +8,9 @@ import numpy as np
 
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.geometry import read_drawing
+from hydrostat.given import Point
 from hydrostat.project import Work, follow_robot, moved_zone
-from hydrostat.robot import Body, BodyPart, Cable, Mount, Pin, Point, PoseTarget, Robot, outline_body
+from hydrostat.robot import Body, BodyPart, Cable, Mount, Pin, PoseTarget, Robot, outline_body
 from hydrostat.studio.starting.loops import Loop, LoopCorner, fit_loops, loops_svg, outline_of, read_loops
 from hydrostat.studio.starting.photo import Backdrop
 from hydrostat.units import plural

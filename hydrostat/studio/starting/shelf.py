@@ -14,8 +14,9 @@ from pathlib import Path
 from PIL import Image
 
 from hydrostat.errors import HydrostatError
+from hydrostat.files import replace_file
 from hydrostat.plot import draw_portrait, drawing
-from hydrostat.robot import Robot, gallery_folder, list_gallery, load_robot, replace_file
+from hydrostat.robot import Robot, gallery_folder, list_gallery, load_robot
 from hydrostat.units import plural
 
 PICTURES = Path(__file__).parent / "pictures"  # where the pictures are, as NAME.webp

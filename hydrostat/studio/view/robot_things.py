@@ -11,9 +11,11 @@ import numpy as np
 from hydrostat.arrays import Points, Vector
 from hydrostat.design import Diagnostic, Severity
 from hydrostat.drawing import Color, winch_colors
+from hydrostat.errors import in_words
 from hydrostat.fabrication import winch_marks_of
 from hydrostat.geometry import Mesh
-from hydrostat.robot import Cable, Mount, Pin, Point, Robot, Winch, in_words, obstacle_lines
+from hydrostat.given import Point
+from hydrostat.robot import Cable, Mount, Pin, Robot, Winch, obstacle_lines
 from hydrostat.simulation import obstacles_in_pose
 from hydrostat.studio.view.things import Cloud, Dot, Look, RobotShape, Strand, Stroke, Thing
 

@@ -7,7 +7,8 @@ from enum import StrEnum
 import numpy as np
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.robot import Point, Robot
+from hydrostat.given import Point
+from hydrostat.robot import Robot
 from hydrostat.simulation import ContactPatch
 
 

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from hydrostat.errors import InputError
+from hydrostat.given import Point
 from hydrostat.project import Work
-from hydrostat.robot import Body, Point, Robot
+from hydrostat.robot import Body, Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.editing.change import remesh

@@ -7,10 +7,10 @@ import pytest
 from builders import gallery_robot
 
 from hydrostat.control import Key, Timeline
-from hydrostat.errors import InputError
+from hydrostat.errors import InputError, in_words
 from hydrostat.geometry import locate
 from hydrostat.project import Wishes, Work, after_design, follow_robot
-from hydrostat.robot import Contact, Mount, Robot, find_risks, in_words
+from hydrostat.robot import Contact, Mount, Robot, find_risks
 from hydrostat.studio.editing.cable_draft import begin_cable, end_cable
 from hydrostat.studio.editing.change import change, remesh, rename, set_contact, set_gravity, sheathed_segments, sheaths
 from hydrostat.studio.editing.hold import below_skin, inside

@@ -8,9 +8,10 @@ import pytest
 
 from hydrostat.errors import InputError
 from hydrostat.geometry import locate
+from hydrostat.given import Point
 from hydrostat.ik import solve_ik
 from hydrostat.project import Wishes
-from hydrostat.robot import Point, Robot
+from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs

@@ -10,8 +10,9 @@ import pytest
 from model_cards import model_card
 
 from hydrostat.errors import InputError
+from hydrostat.given import Point
 from hydrostat.learning import LearnedModel, Perceptrons, save_model
-from hydrostat.robot import Point, Robot, load_robot, save_robot
+from hydrostat.robot import Robot, load_robot, save_robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.document import Document
 from hydrostat.studio.face.panels.pose_panel import prediction_words

@@ -5,7 +5,8 @@ from collections.abc import Callable
 from nicegui import ui
 
 from hydrostat.design import Diagnostic, Severity
-from hydrostat.robot import Robot, in_words
+from hydrostat.errors import in_words
+from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import WindowPage, pressable
 from hydrostat.studio.skins import SewnSkin

@@ -6,9 +6,9 @@ from typing import Any
 
 from nicegui import ui
 
-from hydrostat.errors import HydrostatError
+from hydrostat.errors import HydrostatError, in_words
 from hydrostat.geometry import Inner
-from hydrostat.robot import MATERIALS, in_words
+from hydrostat.robot import MATERIALS
 from hydrostat.studio.face.dialogs import may_leave
 from hydrostat.studio.face.messages import sent_number
 from hydrostat.studio.face.page import WindowPage

@@ -3,7 +3,9 @@
 import pytest
 from desk import Desk, at_desk
 
-from hydrostat.robot import Point, Robot, in_words
+from hydrostat.errors import in_words
+from hydrostat.given import Point
+from hydrostat.robot import Robot
 from hydrostat.studio.editing.editor import Tool
 from hydrostat.studio.editing.part import keys_of
 from hydrostat.studio.judge import QUIET

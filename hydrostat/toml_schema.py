@@ -1,0 +1,71 @@
+"""Quantities, names and coordinates in tables of TOML files, as types of pydantic that check them."""
+
+from collections.abc import Callable
+from decimal import Decimal
+from typing import Annotated
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, Strict
+
+from hydrostat import units
+from hydrostat.errors import InputError
+from hydrostat.given import check_name
+from hydrostat.units import quote
+
+LARGEST = 10**12  # no number of robot.toml is larger, whether bare or in SI
+
+
+def _quantity(dimension: units.Dimension) -> Callable[[object], float]:
+    def parse(text: object) -> float:
+        try:
+            value = units.parse_quantity(text, dimension)
+        except InputError as error:
+            raise ValueError(str(error)) from None
+        if abs(value) > LARGEST:
+            raise ValueError(f"{quote(text)} is too large")
+        return value
+
+    return parse
+
+
+def _number(value: object) -> Decimal:
+    """Bare number; tomllib hands over int or Decimal."""
+    if isinstance(value, bool) or not isinstance(value, int | Decimal):
+        raise ValueError(f"{quote(value)} is not a number")
+    if isinstance(value, Decimal) and not value.is_finite():
+        raise ValueError(f"{quote(value)} is not a finite number")
+    if abs(value) > LARGEST:
+        raise ValueError(f"{quote(value)} is too large; write a number between -1e12 and 1e12")
+    return Decimal(value)
+
+
+def _name(value: object) -> object:
+    try:
+        return check_name(value) if isinstance(value, str) else value
+    except InputError as error:
+        raise ValueError(str(error)) from None
+
+
+Length = Annotated[float, BeforeValidator(_quantity(units.LENGTH))]
+Pressure = Annotated[float, BeforeValidator(_quantity(units.PRESSURE))]
+Mass = Annotated[float, BeforeValidator(_quantity(units.MASS))]
+Density = Annotated[float, BeforeValidator(_quantity(units.DENSITY))]
+Stiffness = Annotated[float, BeforeValidator(_quantity(units.STIFFNESS))]
+Acceleration = Annotated[float, BeforeValidator(_quantity(units.ACCELERATION))]
+Viscosity = Annotated[float, BeforeValidator(_quantity(units.VISCOSITY))]
+Time = Annotated[float, BeforeValidator(_quantity(units.TIME))]
+Force = Annotated[float, BeforeValidator(_quantity(units.FORCE))]
+Torque = Annotated[float, BeforeValidator(_quantity(units.TORQUE))]
+BendingStiffness = Annotated[float, BeforeValidator(_quantity(units.BENDING))]
+Angle = Annotated[float, BeforeValidator(_quantity(units.ANGLE))]
+Number = Annotated[Decimal, BeforeValidator(_number)]
+Coordinates = Annotated[list[Number], Field(min_length=2, max_length=3)]
+Text = Annotated[str, Field(min_length=1, max_length=200)]
+Name = Annotated[str, BeforeValidator(_name)]
+Components = Annotated[list[Acceleration], Field(min_length=2, max_length=3)]
+Pair = Annotated[list[Annotated[int, Strict()]], Field(min_length=2, max_length=2)]
+
+
+class TomlTable(BaseModel):
+    """Table of the file; an unknown key is an error."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
