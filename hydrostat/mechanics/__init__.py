@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from hydrostat.mechanics.inertia import SCHEMES, InertiaEnergy
     from hydrostat.mechanics.neo_hookean import NeoHookean
     from hydrostat.mechanics.newton import minimize
-    from hydrostat.mechanics.newton_result import NewtonOptions, NewtonResult, Reason, RoundOff
+    from hydrostat.mechanics.newton_options import NewtonOptions
+    from hydrostat.mechanics.newton_result import NewtonResult, Reason, RoundOff
     from hydrostat.mechanics.nodal_energies import LoadEnergy, PinEnergy, WeightEnergy
     from hydrostat.mechanics.obstacle import ObstacleEnergy
     from hydrostat.mechanics.patch_volume import PATCH_SIZE, PatchVolume, grow_patches

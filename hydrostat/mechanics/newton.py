@@ -9,7 +9,8 @@ import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics.assembly import Assembly
-from hydrostat.mechanics.newton_result import NewtonOptions, NewtonResult, Reason, RoundOff
+from hydrostat.mechanics.newton_options import NewtonOptions
+from hydrostat.mechanics.newton_result import NewtonResult, Reason, RoundOff
 from hydrostat.mechanics.projection import Projection
 from hydrostat.mechanics.sliding_step import StepTrial, find_sliding_step
 from hydrostat.mechanics.stiffness import Stiffness, find_negative_curvature

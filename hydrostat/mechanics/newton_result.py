@@ -1,10 +1,8 @@
-"""`NewtonOptions`, `NewtonResult`: records of the Newton solver."""
+"""`NewtonResult`: result of the Newton solver, with the reason for stopping."""
 # Of the thesis (docs/thesis.md): M4
 
 from dataclasses import dataclass, field
 from enum import StrEnum
-
-import numpy as np
 
 from hydrostat.arrays import Nodes
 from hydrostat.mechanics.stiffness import Stiffness
@@ -19,33 +17,6 @@ class Reason(StrEnum):
     NO_DESCENT = "no step lowers the energy"
     BAD_START = "the start has an inverted element"
     NO_BALANCE = "friction and the tensions of cables found no balance"
-
-
-@dataclass(frozen=True, kw_only=True)
-class NewtonOptions:
-    """Convergence options for the Newton solver.
-
-    Attributes:
-        tolerance: largest residual nodal force, as a fraction of the largest applied force.
-        iterations: maximum number of iterations.
-        halvings: maximum number of halvings of one step.
-        whole: give up immediately, at no cost, if the first step cannot be taken whole.
-        deadline: latest time at which the solver stops [s], on the clock of `time.monotonic`.
-        accuracy: approximate distance of a node from equilibrium [m], estimated from the next step. The solver stops
-            there even if the residual force exceeds the tolerance. None: only the tolerance counts.
-        near: largest residual nodal force at which factors of the Hessian serve at the end of the step too, as a
-            fraction of the largest applied force.
-        known: True if those of the first step, known before, may also serve there.
-    """
-
-    tolerance: float = 1e-10
-    iterations: int = 200
-    halvings: int = 50
-    whole: bool = False
-    deadline: float = np.inf
-    accuracy: float | None = None
-    near: float = 1e-5
-    known: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
