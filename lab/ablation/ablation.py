@@ -22,7 +22,7 @@ from robustness import EXAMPLES, reaches
 
 import hydrostat as hs
 from hydrostat.arrays import Vector
-from hydrostat.mechanics import TensionLaw, newton
+from hydrostat.mechanics import TensionLaw
 from hydrostat.robot import Robot
 
 
@@ -50,8 +50,9 @@ def cold(simulation: hs.Simulation) -> Iterator[None]:
 
 
 @contextmanager
-def fresh(_simulation: hs.Simulation) -> Iterator[None]:
-    with patch.object(newton, "_NEAR", 0.0):
+def fresh(simulation: hs.Simulation) -> Iterator[None]:
+    options = replace(simulation.solver.options, near=0.0)
+    with patch.object(simulation, "solver", replace(simulation.solver, options=options)):
         yield
 
 
