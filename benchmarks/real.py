@@ -134,7 +134,7 @@ def run_trunk(folder: Path, samples: int, pictures: Path | None) -> None:
     for load in LOADS:
         places = asked[load].places[:, 2] / MM
         every = joined(list(known.values()))
-        inputs = [np.column_stack([one.commands[:, ::2] / MM, one.hung[:, 2]]) for one in (every, asked[load])]
+        inputs = [np.column_stack([one.commands[:, ::2] / MM, one.hung_masses[:, 2]]) for one in (every, asked[load])]
         more = f"{len(every.commands)}, 108"
         print(line(f"quadratic, {load} g", ridge(inputs[0], every.places[:, 2] / MM, inputs[1]), places, more))
     fitted, cost = identified(model, mixed)
@@ -176,7 +176,7 @@ def joined(parts: list[Measurements]) -> Measurements:
         commands=np.concatenate([part.commands for part in parts]),
         markers=parts[0].markers,
         places=np.concatenate([part.places for part in parts]),
-        masses=np.concatenate([part.hung for part in parts]),
+        masses=np.concatenate([part.hung_masses for part in parts]),
     )
 
 

@@ -271,10 +271,10 @@ def _simulate(robot: Robot, photos: Sequence[Photo]) -> list[Equilibrium | None]
     simulations: dict[object, Simulation] = {}
     solved: dict[object, Equilibrium | None] = {}
     for photo in photos:
-        if photo.hung not in simulations:
-            simulations[photo.hung] = Simulation(replace(robot, loads=(*robot.loads, *photo.hung)))
+        if photo.loads_of_pose not in simulations:
+            simulations[photo.loads_of_pose] = Simulation(replace(robot, loads=(*robot.loads, *photo.loads_of_pose)))
         if photo.pose not in solved:
-            pose = simulations[photo.hung].solve(dict(photo.contractions), strict=False)
+            pose = simulations[photo.loads_of_pose].solve(dict(photo.contractions), strict=False)
             solved[photo.pose] = pose if pose.result.converged else None
     return [solved[photo.pose] for photo in photos]
 

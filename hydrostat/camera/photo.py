@@ -53,10 +53,10 @@ class Photo:
     def pose(self) -> tuple[object, ...]:
         """Contractions and loads, which photographs of one pose share."""
         pulls = sorted((name, value) for name, value in self.contractions.items() if value)
-        return (*pulls, *self.hung)
+        return (*pulls, *self.loads_of_pose)
 
     @property
-    def hung(self) -> tuple[Load, ...]:
+    def loads_of_pose(self) -> tuple[Load, ...]:
         """All loads of the pose."""
         masses = sorted((name, mass) for name, mass in self.masses.items() if mass > 0)
         return (*(Load(name=f"measured {name}", marker=name, mass=mass) for name, mass in masses), *self.loads)

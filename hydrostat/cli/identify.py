@@ -146,7 +146,7 @@ def _write(path: Path, table: "Measurements", found: "IdentifiedRobot", out: Pat
             found.fitted.model.parameters,
             found.fitted.values.items(),
             found.fitted.intervals.values(),
-            found.fitted.shown.values(),
+            found.fitted.information_gains.values(),
             strict=True,
         )
     ]

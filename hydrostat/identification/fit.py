@@ -66,7 +66,7 @@ class FittedModel:
         }
 
     @property
-    def shown(self) -> dict[str, float]:
+    def information_gains(self) -> dict[str, float]:
         """Share of each guess's uncertainty that the measurements took away: 0 where they tell nothing, 1 for all."""
         kept = np.sqrt(np.diag(self.covariance))
         return {parameter.name: 1.0 - float(one) for parameter, one in zip(self.model.parameters, kept, strict=True)}
@@ -203,7 +203,7 @@ class _Fit:
         self._last = np.where(self._solved, np.abs(self._errors), self._last)
         self._jacobian = found.jacobian[self._measured]
         self._distances = np.linalg.norm(offsets, axis=2).ravel()
-        self.failed, self.count = int((~found.found).sum()), self.count + 1
+        self.failed, self.count = int((~found.has_equilibrium).sum()), self.count + 1
         self._asked = numbers.copy()
         if self._progress:
             self._progress(f"evaluation {self.count}: {1e3 * rms(self.distances):.2f} mm off (RMS)")

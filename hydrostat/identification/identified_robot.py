@@ -46,7 +46,7 @@ class IdentifiedRobot:
     @property
     def unknown(self) -> tuple[str, ...]:
         """Parameters that the measurements do not show; they stay near where they began."""
-        return tuple(name for name, share in self.fitted.shown.items() if share < UNKNOWN)
+        return tuple(name for name, share in self.fitted.information_gains.items() if share < UNKNOWN)
 
 
 def identify(

@@ -30,7 +30,7 @@ class MarkerPrediction:
     jacobian: Float[np.ndarray, "rows markers dim parameters"] | None
 
     @property
-    def found(self) -> Bool[np.ndarray, " rows"]:
+    def has_equilibrium(self) -> Bool[np.ndarray, " rows"]:
         """Rows with an equilibrium."""
         return np.array([bool(np.isfinite(row).all()) for row in self.places])
 
@@ -62,7 +62,7 @@ class MarkerPredictor:
         places = np.full((rows, len(markers), robot.body.mesh.dim), np.nan)
         jacobian = np.zeros((*places.shape, len(numbers))) if slopes else None
         changes = [_Change.of(self, numbers, index, robot) for index in range(len(numbers) if slopes else 0)]
-        loaded, loads = np.unique(self.measurements.hung, axis=0, return_inverse=True)
+        loaded, loads = np.unique(self.measurements.hung_masses, axis=0, return_inverse=True)
         simulations = [Simulation(_with_masses(robot, markers, masses)) for masses in loaded]
         for row, (contraction, load) in enumerate(zip(contractions, loads.ravel(), strict=True)):
             simulation = simulations[load]

@@ -41,7 +41,7 @@ class Measurements:
             raise InputError("masses must be 0 or more [kg], a row for each pose, a column for each marker")
 
     @property
-    def hung(self) -> Float[np.ndarray, "rows markers"]:
+    def hung_masses(self) -> Float[np.ndarray, "rows markers"]:
         """Mass hung at each marker [kg]."""
         return np.zeros(self.places.shape[:2]) if self.masses is None else self.masses
 

@@ -82,7 +82,7 @@ def suggest_measurements(
         row
         for row, pose in enumerate(predictor.poses)
         if pose is not None
-        and found.found[row]
+        and found.has_equilibrium[row]
         and pose.tensions.max(initial=0.0) <= tension
         and not str(find_crossings(robot.body.mesh, pose.nodes))
     ]

@@ -48,15 +48,15 @@ class Compliance:
     @cached_property
     def moves(self) -> LowRankBasis:
         """K^-1 G [m/N]."""
-        return self._factors.expand(self._reduced)
+        return self._factors.expand(self._reduced_columns)
 
     @cached_property
     def compliance(self) -> RankMatrix:
         """G^T K^-1 G [m/N]."""
-        return self._factors.inner(self._reduced, self._reduced)
+        return self._factors.inner(self._reduced_columns, self._reduced_columns)
 
     @cached_property
-    def _reduced(self) -> np.ndarray:
+    def _reduced_columns(self) -> np.ndarray:
         return self._factors.reduce(self._columns)
 
 

@@ -89,14 +89,14 @@ class Stiffness:
         return signs
 
     @cached_property
-    def _reduced(self) -> LowRankBasis:
+    def _reduced_columns(self) -> LowRankBasis:
         """Forward half of Z."""
         return self.factors.reduce(self.columns) if self.columns.size else self.columns
 
     @cached_property
     def compliance(self) -> RankMatrix:
         """M [m/N]."""
-        return self.factors.inner(self._reduced, self._reduced)
+        return self.factors.inner(self._reduced_columns, self._reduced_columns)
 
     @property
     def _correction(self) -> RankMatrix:
@@ -117,7 +117,7 @@ class Stiffness:
     @cached_property
     def moves(self) -> LowRankBasis:
         """Z [m/N]: displacement of the nodes per newton of extra cable force."""
-        return self.factors.expand(self._reduced) if self.columns.size else self.columns
+        return self.factors.expand(self._reduced_columns) if self.columns.size else self.columns
 
     def compliance_to(self, columns: LowRankBasis) -> Compliance:
         """Compliance of the body without the springs to forces along some columns."""
@@ -142,9 +142,9 @@ class Stiffness:
         """
         assert coupling.law is not None
         free = self.factors.reduce(forces)
-        elongations = coupling.elongations + self.factors.inner(self._reduced, free)
+        elongations = coupling.elongations + self.factors.inner(self._reduced_columns, free)
         tensions = coupling.law.solve_slack_complementarity(elongations, self.compliance)
-        return None if tensions is None else self.factors.expand(free - self._reduced @ tensions)
+        return None if tensions is None else self.factors.expand(free - self._reduced_columns @ tensions)
 
     def push(
         self, columns: LowRankBasis, elongations: Float[np.ndarray, " rank"], law: Law
@@ -159,10 +159,10 @@ class Stiffness:
         reduced = self.factors.reduce(columns)
         compliance = self.factors.inner(reduced, reduced)
         if self._pulling:
-            across = self.factors.inner(self._reduced, reduced)
+            across = self.factors.inner(self._reduced_columns, reduced)
             pulls = self._correction @ across
             compliance -= across.T @ pulls
-            reduced = reduced - self._reduced @ pulls
+            reduced = reduced - self._reduced_columns @ pulls
         tensions = law.solve_slack_complementarity(elongations, np.ascontiguousarray(compliance))
         return None if tensions is None else -self.factors.expand(reduced @ tensions)
 
@@ -171,8 +171,8 @@ class Stiffness:
         if not self._pulling:
             return self.factors.solve(right)
         free = self.factors.reduce(right)
-        pulls = self._correction @ self.factors.inner(self._reduced, free)
-        return self.factors.expand(free - self._reduced @ pulls)
+        pulls = self._correction @ self.factors.inner(self._reduced_columns, free)
+        return self.factors.expand(free - self._reduced_columns @ pulls)
 
 
 def _square_root(weights: RankMatrix) -> RankMatrix:

@@ -111,7 +111,7 @@ def _weld(surface: Surface) -> Surface:
 def _bad_edges(surface: Surface) -> Int[np.ndarray, "edges 2"]:
     """Edges that are not shared by two triangles which run along them in opposite directions."""
     sides = sides_of(surface.triangles)
-    return sides.ends[(sides.counts != 2) | sides.twisted]
+    return sides.ends[(sides.counts != 2) | sides.is_misoriented]
 
 
 def _both_sides(spots: Spots, triangles: Int[np.ndarray, "triangles 3"], pixel: float, camera: Camera) -> Render:

@@ -41,7 +41,7 @@ def _healed(surface: Surface, resolution: float = _FINE) -> Healing:
     triangles = healing.surface.triangles
     sides = sides_of(triangles)
     assert (sides.counts == 2).all()
-    assert not sides.twisted.any()
+    assert not sides.is_misoriented.any()
     assert np.all(igl.is_vertex_manifold(triangles))
     assert len(np.unique(triangles)) == len(healing.surface.vertices)
     assert not len(crossing_pairs(healing.surface))

@@ -108,7 +108,7 @@ def test_hidden_parameters_of_a_heavy_strip_are_found() -> None:
     inside = [low <= truth[name] <= high for name, (low, high) in found.intervals.items()]
     assert sum(inside) >= len(inside) - 1
     assert found.values["body.young"] == pytest.approx(truth["body.young"], rel=0.1)
-    assert found.shown["body.young"] > 0.5
+    assert found.information_gains["body.young"] > 0.5
 
 
 def test_what_measurements_do_not_show_is_said() -> None:

@@ -47,13 +47,13 @@ class TileGrid:
     tiles: tuple[Tile, ...]  # row by row; without shapes where the tiles before it show all that is on it
 
     @property
-    def printed(self) -> tuple[Tile, ...]:
+    def filled_tiles(self) -> tuple[Tile, ...]:
         """Tiles that are not empty."""
         return tuple(tile for tile in self.tiles if tile.shapes)
 
     def at(self, column: int, row: int) -> Tile | None:
         """The tile of a column and row; None beyond the edge, or where nothing is printed."""
-        for tile in self.printed:
+        for tile in self.filled_tiles:
             if (tile.column, tile.row) == (column, row):
                 return tile
         return None
@@ -142,7 +142,7 @@ def tiled_pdf(pattern: Pattern, paper: Paper) -> bytes:
         f"#set document(title: {_text(f'{legible(pattern.name)} - pattern')}, date: none)",
         f"#set page(width: {width}mm, height: {height}mm, margin: 0mm)",
         _overview(pattern, grid, paper),
-        *(f"#pagebreak()\n{_page(pattern, grid, tile)}" for tile in grid.printed),
+        *(f"#pagebreak()\n{_page(pattern, grid, tile)}" for tile in grid.filled_tiles),
     ]
     return _compile("\n".join(pages))
 
@@ -197,7 +197,7 @@ def _foot(pattern: Pattern, grid: TileGrid, name: str) -> list[str]:
 def _overview(pattern: Pattern, grid: TileGrid, paper: Paper) -> str:
     """The first page: what the lines are, how to join the tiles, the sheet in small with its tiles."""
     page_width, _ = PAPERS[paper]
-    pages, empty = len(grid.printed), [tile.name for tile in grid.tiles if not tile.shapes]
+    pages, empty = len(grid.filled_tiles), [tile.name for tile in grid.tiles if not tile.shapes]
     said = [
         f"{legible(pattern.name)}: a sheet of {pattern.width:.0f} x {pattern.height:.0f} mm on {pages} "
         f"page{'s' if pages > 1 else ''} after this one, tiles A1 to {grid.tiles[-1].name}.{_left_out(empty)}",

@@ -141,7 +141,7 @@ def clipped_lines(elements: Iterable[tuple[Mapping[str, str], list[DrawnLine]]])
     made = []
     for names, lines in drawn:
         for name in names:
-            lines = list(_cut(lines, areas[name])) if name in areas else lines
+            lines = list(_clip_lines(lines, areas[name])) if name in areas else lines
         made += lines
     return made
 
@@ -154,7 +154,7 @@ def _window(lines: list[DrawnLine]) -> BaseGeometry:
     return painted_area(lines)
 
 
-def _cut(lines: list[DrawnLine], window: BaseGeometry) -> Iterator[DrawnLine]:
+def _clip_lines(lines: list[DrawnLine], window: BaseGeometry) -> Iterator[DrawnLine]:
     """Lines of an element within a window; unchanged where they lie in it."""
     if all(window.covers(LineString(line.points)) for line in lines):
         yield from lines

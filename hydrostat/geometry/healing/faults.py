@@ -173,6 +173,7 @@ def describe_faults(
     are pairs of triangles.
     """
     sides = sides_of(surface.triangles)
+    crowded, turned = int(sides.is_non_manifold.sum()), int(sides.is_misoriented.sum())
     longest = 1e3 * holes.length.max(initial=0.0)
     roles = shells.roles
     most = "at least " if len(crossing) >= MOST_PAIRS else ""
@@ -182,9 +183,9 @@ def describe_faults(
         (welded.repeated, plural(welded.repeated, "triangle") + " that stand there twice"),
         (welded.walls, plural(welded.walls, "triangle") + " back to back in walls inside"),
         (len(holes), f"{plural(len(holes), 'hole')}, the longest {longest:.3g} mm around"),
-        (sides.crowded.sum(), plural(int(sides.crowded.sum()), "edge") + " with more than two triangles"),
+        (crowded, plural(crowded, "edge") + " with more than two triangles"),
         (flipped, plural(flipped, "flipped triangle")),
-        (sides.twisted.sum(), plural(int(sides.twisted.sum()), "edge") + " where inside and outside change sides"),
+        (turned, plural(turned, "edge") + " where inside and outside change sides"),
         (shells.inside_out.sum(), plural(int(shells.inside_out.sum()), "part") + " inside out"),
         (len(crossing), f"{most}{plural(len(crossing), 'pair')} of triangles that run through each other"),
         (len(roles) > 1, f"{len(roles)} parts that are not joined"),

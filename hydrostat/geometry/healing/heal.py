@@ -128,7 +128,7 @@ def _is_closed(surface: Surface) -> bool:
 
     sides = sides_of(surface.triangles)
     return bool(
-        (sides.counts == 2).all() and not sides.twisted.any() and np.all(igl.is_vertex_manifold(sides.triangles))
+        (sides.counts == 2).all() and not sides.is_misoriented.any() and np.all(igl.is_vertex_manifold(sides.triangles))
     )
 
 

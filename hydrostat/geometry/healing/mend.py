@@ -36,12 +36,12 @@ class Sides:
         return self.counts == 1
 
     @property
-    def crowded(self) -> Bool[np.ndarray, " edges"]:
+    def is_non_manifold(self) -> Bool[np.ndarray, " edges"]:
         """Edges with more than two triangles."""
         return self.counts > 2
 
     @property
-    def twisted(self) -> Bool[np.ndarray, " edges"]:
+    def is_misoriented(self) -> Bool[np.ndarray, " edges"]:
         """Edges of two triangles that run along it the same way."""
         return (self.counts == 2) & (self.turns != 0)
 
@@ -138,7 +138,7 @@ def _without_copies(triangles: Int[np.ndarray, "triangles 3"]) -> tuple[Bool[np.
     both = np.flatnonzero((evens > 0) & (evens < counts))
     if len(both):
         sides = sides_of(triangles[first])
-        crowded = sides.crowded[sides.of[both]].any(axis=1)
+        crowded = sides.is_non_manifold[sides.of[both]].any(axis=1)
         patch = sides_of(triangles[first[both]])
         patches = patch.groups(patch.counts > 1)
         gone = both[np.isin(patches, patches[crowded])]

@@ -80,7 +80,7 @@ def _boxes_of_parts(vertices: np.ndarray, triangles: np.ndarray, label: np.ndarr
 
 def _whole_parts(sides: Sides, label: np.ndarray) -> Bool[np.ndarray, " parts"]:
     """Parts of which every edge has two triangles that run along it in opposite ways."""
-    bad = ((sides.counts != 2) | sides.twisted)[sides.of].any(axis=1)
+    bad = ((sides.counts != 2) | sides.is_misoriented)[sides.of].any(axis=1)
     return np.bincount(label, bad) == 0
 
 

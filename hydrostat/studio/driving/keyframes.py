@@ -33,7 +33,7 @@ class Keyframes:
         return self._document.work.timeline
 
     @property
-    def chosen(self) -> int | None:
+    def chosen_index(self) -> int | None:
         """Number of the key that is selected; it follows the knobs, and is one of this robot."""
         chosen = self._chosen
         if chosen is None or chosen[0] is not self._document.robot:
@@ -52,7 +52,7 @@ class Keyframes:
 
     def adjust(self, contractions: Mapping[str, float]) -> None:
         """Let the key that is selected have other contractions; changes in a row are one."""
-        if (index := self.chosen) is not None:
+        if (index := self.chosen_index) is not None:
             key = replace(self._key(index), contractions=dict(contractions))
             self._document.change(
                 f"change keyframe at {key.time:.2f} s",
@@ -87,7 +87,7 @@ class Keyframes:
 
     def duplicate(self) -> float:
         """Copy the selected key to the next free time [s]; select and return that (InputError: no key or place)."""
-        key = self._key(self.chosen)
+        key = self._key(self.chosen_index)
         apart = 0.5  # a copy of a key is put so much later [s]
         time = key.time + apart
         while self.timeline.index_at(time) is not None:
@@ -100,9 +100,9 @@ class Keyframes:
 
     def delete(self) -> None:
         """Remove the key that is selected (InputError: none is)."""
-        key = self._key(self.chosen)
-        assert self.chosen is not None
-        self._document.change(f"delete keyframe at {key.time:.2f} s", timeline=self.timeline.without(self.chosen))
+        key = self._key(self.chosen_index)
+        assert self.chosen_index is not None
+        self._document.change(f"delete keyframe at {key.time:.2f} s", timeline=self.timeline.without(self.chosen_index))
         self._chosen = None
 
     def replace_all(self, timeline: Timeline, label: str) -> None:

@@ -198,7 +198,7 @@ class Machine:
         timeline = self._keyframes.timeline
         if timeline is not self._timeline:  # undone, done again: a selected key shows what it is now
             self._timeline = timeline
-            if (index := self._keyframes.chosen) is not None:
+            if (index := self._keyframes.chosen_index) is not None:
                 self._ask(timeline.keys[index].time)
         if self.player.playing:
             self.player.advance(now, timeline.seconds)

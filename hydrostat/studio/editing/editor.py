@@ -48,7 +48,7 @@ class Editor(Stage):
         self._counted: tuple[Robot, Findings] | None = None
 
     @property
-    def chosen(self) -> str:
+    def selected_key(self) -> str:
         """Key of the part that was selected last; "" for none."""
         return next(reversed(self.selection), "")
 
@@ -134,7 +134,7 @@ class Editor(Stage):
             way = np.zeros(self._document.robot.body.mesh.dim)
             way[axis] = step
             robot = shift_parts(self._document.robot, self.selection, way.tolist(), self.mirror)
-            words = title_of(self.chosen) if len(self.selection) == 1 else plural(len(self.selection), "part")
+            words = title_of(self.selected_key) if len(self.selection) == 1 else plural(len(self.selection), "part")
             self._document.change(f"nudge {words}", robot=robot, merge=f"nudge {' '.join(self.selection)}")
 
     def set_snap(self, step: float) -> None:

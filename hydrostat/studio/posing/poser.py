@@ -87,7 +87,7 @@ class Poser(Stage):
         return self._fit().targets.mode
 
     @property
-    def held(self) -> Mapping[str, HeldPoint]:
+    def held_points(self) -> Mapping[str, HeldPoint]:
         """Held points with their targets, by name."""
         return self._fit().targets.held
 
@@ -97,7 +97,7 @@ class Poser(Stage):
         return bool(self._armed)
 
     @property
-    def chosen(self) -> str:
+    def chosen_name(self) -> str:
         """Name of the held point or marker that is chosen; "" if none is."""
         return self._chosen
 
@@ -187,7 +187,7 @@ class Poser(Stage):
         """Heed r: rest; delete: let go of what is chosen; g: the next click or drag moves it; escape: choose none."""
         if name == "r":
             self.rest()
-        elif name == "delete" and self._chosen in self.held:
+        elif name == "delete" and self._chosen in self.held_points:
             self.clear(self._chosen)
         elif name == "g" and self._chosen:
             self._armed = self._chosen

@@ -126,7 +126,7 @@ def test_neighbors_show_the_same_in_their_overlap(pattern, tmp_path):
 def test_pages_have_the_size_of_the_paper(paper, size, pattern):
     """Oracle: pypdf: a map and one page for each tile, exactly as large as the paper."""
     pages = read(tiled_pdf(pattern, paper)).pages
-    assert len(pages) == 1 + len(tile_grid(pattern, paper).printed)
+    assert len(pages) == 1 + len(tile_grid(pattern, paper).filled_tiles)
     for page in pages:
         assert [25.4 / 72 * float(x) for x in page.mediabox[2:]] == pytest.approx(size, abs=0.01)
 
@@ -207,13 +207,13 @@ def test_no_line_is_lost(seed):
     places = np.random.default_rng(seed).uniform(10, 690, size=(9, 2))
     rings = [Circle(layer=Layer.CUT, part=PatternPart.EDGE, center=(float(x), float(y)), radius=8.0) for x, y in places]
     sheet = Pattern(name="rings", panels=(), shapes=tuple(rings), width=700.0, height=700.0)
-    assert lost(sheet, tile_grid(sheet, Paper.LETTER).printed) < 1e-6
+    assert lost(sheet, tile_grid(sheet, Paper.LETTER).filled_tiles) < 1e-6
 
 
 def test_the_check_of_lost_lines_can_fail():
     """Oracle: one page torn out."""
     sheet = two_spots(500.0, 700.0)
-    assert lost(sheet, tile_grid(sheet, Paper.A4).printed[1:]) > 1
+    assert lost(sheet, tile_grid(sheet, Paper.A4).filled_tiles[1:]) > 1
 
 
 def lost(sheet: Pattern, tiles: tuple[Tile, ...]) -> float:
@@ -229,11 +229,11 @@ def test_a_page_with_nothing_of_its_own_is_saved():
     ring = Circle(layer=Layer.CUT, part=PatternPart.EDGE, center=(185.0, 100.0), radius=4.0)
     bar = LaserLine(layer=Layer.MARK, part=PatternPart.RULER, points=((1.0, 1.0), (101.0, 1.0)))
     sheet = Pattern(name="ring", panels=(), shapes=(ring, bar), width=370.0, height=200.0)
-    assert [tile.name for tile in tile_grid(sheet, Paper.A4).printed] == ["A1"]
+    assert [tile.name for tile in tile_grid(sheet, Paper.A4).filled_tiles] == ["A1"]
 
 
 def test_a_line_across_tiles_is_on_each_of_them(pattern):
     """Oracle: a line from corner to corner of a sheet of three columns."""
     line = LaserLine(layer=Layer.CUT, part=PatternPart.EDGE, points=((1.0, 100.0), (499.0, 100.0)))
     grid = tile_grid(replace(pattern, panels=(), shapes=(line,), width=500.0, height=200.0), Paper.A4)
-    assert [tile.name for tile in grid.printed] == ["A1", "B1", "C1"]
+    assert [tile.name for tile in grid.filled_tiles] == ["A1", "B1", "C1"]

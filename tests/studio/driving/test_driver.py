@@ -320,7 +320,7 @@ def test_a_cable_that_bears_too_much_is_told(driver: Driver, document: Document)
 def test_keys_are_added_selected_turned_and_undone(driver: Driver, document: Document) -> None:
     driver.turn("left", 0.01)
     driver.add_key()
-    assert driver.keyframes.chosen == 0
+    assert driver.keyframes.chosen_index == 0
     for contraction in (0.02, 0.03, 0.04):
         driver.turn("feet", contraction)
     driver.let_go()
@@ -331,7 +331,7 @@ def test_keys_are_added_selected_turned_and_undone(driver: Driver, document: Doc
     assert driver.commands()["feet"] == 0.0  # the knobs show the key as it is now
     document.undo()
     assert document.work.timeline.keys == ()
-    assert driver.keyframes.chosen is None
+    assert driver.keyframes.chosen_index is None
 
 
 def test_without_a_selected_key_knobs_change_none(driver: Driver, document: Document) -> None:
@@ -352,7 +352,7 @@ def test_a_drag_of_a_key_is_one_change(driver: Driver, document: Document) -> No
     for time in (2.5, 3.0, 3.5, 99.0):  # over the next key, which stays
         driver.move_key(1, time)
     assert [key.time for key in document.work.timeline.keys] == [0.0, 3.0, 4.0]
-    assert driver.keyframes.chosen == 2
+    assert driver.keyframes.chosen_index == 2
     driver.drop_key()
     driver.move_key(2, 1.0)
     driver.drop_key()
@@ -392,7 +392,7 @@ def test_a_selected_key_is_one_of_this_robot(driver: Driver, document: Document,
     put_keys(driver, (0.0, {}), (2.0, {"left": 0.02}))
     driver.choose(1)
     document.open(Work(robot=replace(starfish, name="other"), timeline=Timeline(keys=keys)))
-    assert driver.keyframes.chosen is None
+    assert driver.keyframes.chosen_index is None
     driver.turn("left", 0.03)
     assert driver.keyframes.timeline.keys == keys
 
@@ -402,7 +402,7 @@ def test_keys_are_copied_and_deleted(driver: Driver, document: Document) -> None
     driver.choose(0)
     driver.duplicate_key()
     assert document.work.timeline.keys[2] == Key(time=1.0, contractions={"left": 0.02})
-    assert driver.keyframes.chosen == 2
+    assert driver.keyframes.chosen_index == 2
     driver.key("delete")
     assert len(document.work.timeline.keys) == 2
     with pytest.raises(InputError, match="no keyframe selected"):

@@ -53,7 +53,7 @@ def test_a_drag_is_one_step_back(editor: Editor, document: Document, starfish: R
     drag(editor, document, "marker:top", (0.012, 0.115), (0.012, 0.11), start=(0.011, 0.121))
     assert document.robot.markers[0].at == (0.012, 0.11)
     assert document.undo_label == "move marker top"
-    assert editor.chosen == "marker:top"
+    assert editor.selected_key == "marker:top"
     document.undo()
     assert document.robot is starfish
 
@@ -92,7 +92,7 @@ def test_a_via_point_is_drawn_out_of_a_cable_in_one_step(editor: Editor, documen
     document.seal()
     assert len(document.robot.cables[0].points) == len(starfish.cables[0].points) + 1
     assert document.robot.cables[0].points[3] == pytest.approx(goal, abs=1e-4)
-    assert editor.chosen == "via:0:3"
+    assert editor.selected_key == "via:0:3"
     document.undo()
     assert document.robot is starfish
 
@@ -109,13 +109,13 @@ def test_tools_place_parts(editor: Editor, document: Document, starfish: Robot, 
     editor.click(on((0.03, 0.015)))
     assert count(document.robot) == count(starfish) + 1 + mirrored
     assert document.undo_label == f"add {tool}"
-    assert editor.chosen.startswith(tool)
+    assert editor.selected_key.startswith(tool)
     editor.click(on((0.001, 0.03)))
     assert count(document.robot) == count(starfish) + 2 + mirrored
     document.undo()
     document.undo()
     assert document.robot is starfish
-    assert editor.chosen == ""
+    assert editor.selected_key == ""
     with pytest.raises(InputError, match=f"place a {tool}"):
         editor.click(beside((0.5, 0.5)))
 
@@ -137,7 +137,7 @@ def test_a_cable_is_laid_click_by_click(editor: Editor, document: Document, star
         assert editor.key(end)
     assert document.robot.cables[-1].points == drawn[-1].points
     assert document.undo_label == "add cable"
-    assert editor.chosen == f"cable:{len(starfish.cables)}"
+    assert editor.selected_key == f"cable:{len(starfish.cables)}"
     assert editor.draft is None
     document.undo()
     assert document.robot is starfish
@@ -223,7 +223,7 @@ def test_what_is_refused_changes_nothing(editor: Editor, document: Document, sta
 
 def test_the_panel_changes_what_it_says(editor: Editor, document: Document, starfish: Robot) -> None:
     editor.rename("winch:left", "west")
-    assert editor.chosen == "winch:west"
+    assert editor.selected_key == "winch:west"
     editor.place("marker:top", (0.01, 0.12))
     editor.set("cable:0", slack=0.003, friction=0.1)
     editor.set_gravity("-y")

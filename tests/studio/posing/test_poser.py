@@ -91,12 +91,12 @@ def test_any_point_of_the_body_can_be_dragged_and_stays_held(starfish: Robot, po
     poser.set_mode(mode)
     at = tuple((0.9 * np.array(at_of(starfish, starfish.markers[0].name))).tolist())
     assert poser.grab(Hit(key="body", rest=at, world=at))
-    assert not poser.held, "a grab alone holds nothing"
+    assert not poser.held_points, "a grab alone holds nothing"
     target = (at[0] + 0.02, at[1] - 0.005)
     poser.drag(Hit(key="body", world=target))
     poser.release()
     settle(poser)
-    (name,) = poser.held
+    (name,) = poser.held_points
     assert name == "point_1"
     miss = np.linalg.norm(place(starfish, poser, at) - target)
     assert poser.shape().errors == {"point_1": pytest.approx(miss, abs=1e-9)}
@@ -176,13 +176,13 @@ def test_storing_makes_markers_of_plain_points_in_one_undo_step(
     assert np.abs(poser.shape().nodes - shape.nodes).max() < 1e-4, "the body stays where it was"
     assert document.undo()
     assert document.robot is starfish
-    assert set(poser.held) == {"point_1"}
+    assert set(poser.held_points) == {"point_1"}
 
 
 def test_poses_are_chosen_renamed_and_deleted(starfish: Robot, document: Document, poser: Poser) -> None:
     poser.show_pose("wave")
     settle(poser)
-    assert {name: held.target for name, held in poser.held.items()} == dict(starfish.poses["wave"].targets)
+    assert {name: held.target for name, held in poser.held_points.items()} == dict(starfish.poses["wave"].targets)
     assert set(poser.shape().errors) == set(starfish.poses["wave"].targets)
     order = list(starfish.poses)
     poser.rename_pose("wave", "hello")
@@ -255,16 +255,16 @@ def test_rubbing_cables_are_posed_as_they_rub_and_the_band_is_told(
 def test_keys(starfish: Robot, poser: Poser) -> None:
     marker = starfish.markers[0]
     poser.click(Hit(key=f"marker:{marker.name}", world=marker.at))
-    assert poser.chosen == marker.name
+    assert poser.chosen_name == marker.name
     assert poser.key("g")
     target = tuple((np.array(marker.at) + 0.01).tolist())
     poser.click(Hit(world=target))
-    assert poser.held[marker.name].target == pytest.approx(target)
+    assert poser.held_points[marker.name].target == pytest.approx(target)
     assert poser.key("delete")
-    assert not poser.held
+    assert not poser.held_points
     poser.show_pose("wave")
     assert poser.key("r")
-    assert not poser.held
+    assert not poser.held_points
     assert poser.key("escape")
     assert not poser.key("space")
 
@@ -272,32 +272,32 @@ def test_keys(starfish: Robot, poser: Poser) -> None:
 def test_a_pointer_beside_the_body_holds_nothing(poser: Poser) -> None:
     assert not poser.grab(Hit(world=(1.0, 1.0)))
     poser.drag(Hit(world=(0.0, 0.0)))
-    assert not poser.held
+    assert not poser.held_points
 
 
 def test_drags_are_undone_between_the_changes_of_the_robot(starfish: Robot, document: Document, poser: Poser) -> None:
     """Oracle: what was held at each moment."""
     tip = starfish.markers[0].name
     drag_marker(starfish, poser, tip, (0.1, 0.02), moves=3)
-    first = dict(poser.held)
+    first = dict(poser.held_points)
     assert poser.undo_label == f"drag {tip}"
     poser.store("wave")
     assert not poser.undo_label, "the stored pose has to be undone first"
     drag_marker(starfish, poser, tip, (0.08, 0.04), moves=3)
-    second = dict(poser.held)
+    second = dict(poser.held_points)
     poser.undo()
-    assert (poser.held, poser.undo_label, poser.redo_label) == (first, "", f"drag {tip}")
+    assert (poser.held_points, poser.undo_label, poser.redo_label) == (first, "", f"drag {tip}")
     poser.redo()
-    assert poser.held == second
+    assert poser.held_points == second
     poser.undo()
     assert document.undo()
     poser.undo()
-    assert poser.held == {}
+    assert poser.held_points == {}
     settle(poser)
     assert np.abs(poser.shape().nodes - starfish.body.mesh.nodes).max() < 1e-6
     poser.redo()
-    assert poser.held == first
+    assert poser.held_points == first
     poser.rest()
     assert poser.undo_label == "rest"
     poser.undo()
-    assert poser.held == first
+    assert poser.held_points == first

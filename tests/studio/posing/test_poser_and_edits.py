@@ -92,14 +92,14 @@ def test_what_was_chosen_may_be_gone_when_it_should_move(
     assert poser.is_armed
     document.change("edit", robot=change(starfish, marker.name))  # type: ignore[operator]
     poser.click(Hit(world=(0.5, 0.5)))
-    assert marker.name not in poser.held
-    assert poser.chosen in ("", "other")
+    assert marker.name not in poser.held_points
+    assert poser.chosen_name in ("", "other")
 
 
 @pytest.mark.parametrize("way", ["clear", "show", "stale"])
 def test_a_click_after_g_never_fails(starfish: Robot, poser: Poser, way: str) -> None:
     hold(poser, "body", tuple((0.8 * np.array(starfish.markers[0].at)).tolist()))
-    assert poser.chosen == "point_1"
+    assert poser.chosen_name == "point_1"
     if way == "stale":
         poser.click(Hit(key="marker:gone", world=(0.0, 0.0)))
     poser.key("g")
@@ -109,7 +109,7 @@ def test_a_click_after_g_never_fails(starfish: Robot, poser: Poser, way: str) ->
         poser.show_pose("wave")
     poser.click(Hit(world=(0.5, 0.5)))
     poser.grab(Hit(world=(0.5, 0.5)))
-    assert set(poser.held) <= {"point_1", *starfish.poses["wave"].targets}
+    assert set(poser.held_points) <= {"point_1", *starfish.poses["wave"].targets}
 
 
 def test_a_held_marker_that_is_gone_is_held_no_more(starfish: Robot, document: Document, poser: Poser) -> None:
@@ -117,7 +117,7 @@ def test_a_held_marker_that_is_gone_is_held_no_more(starfish: Robot, document: D
     hold(poser, f"marker:{marker.name}", marker.at)
     hold(poser, f"marker:{other.name}", other.at)
     document.change("remove", robot=without(starfish, marker.name))
-    assert set(poser.held) == {other.name}
+    assert set(poser.held_points) == {other.name}
     poser.store("left")
     assert {own.name for own in document.robot.markers} == {own.name for own in starfish.markers} - {marker.name}
 
@@ -125,10 +125,10 @@ def test_a_held_marker_that_is_gone_is_held_no_more(starfish: Robot, document: D
 def test_a_held_marker_keeps_its_target_under_its_new_name(starfish: Robot, document: Document, poser: Poser) -> None:
     marker = starfish.markers[0]
     hold(poser, f"marker:{marker.name}", marker.at)
-    target = poser.held[marker.name].target
+    target = poser.held_points[marker.name].target
     document.change("rename", robot=named(starfish, marker.name, "other"))
-    assert {name: held.target for name, held in poser.held.items()} == {"other": target}
-    assert poser.chosen == "other"
+    assert {name: held.target for name, held in poser.held_points.items()} == {"other": target}
+    assert poser.chosen_name == "other"
     poser.store("kept")
     assert len(document.robot.markers) == len(starfish.markers), "no second marker at the same place"
 
@@ -137,12 +137,12 @@ def test_a_stored_point_follows_its_marker_and_outlives_it(starfish: Robot, docu
     hold(poser, "body", tuple((0.8 * np.array(starfish.markers[0].at)).tolist()))
     poser.store("stored")
     document.change("rename", robot=named(document.robot, "point_1", "knuckle"))
-    assert set(poser.held) == {"knuckle"}
+    assert set(poser.held_points) == {"knuckle"}
     document.undo()
-    assert set(poser.held) == {"point_1"}
+    assert set(poser.held_points) == {"point_1"}
     document.undo()
     assert document.robot is starfish
-    assert set(poser.held) == {"point_1"}
+    assert set(poser.held_points) == {"point_1"}
 
 
 def test_a_drag_goes_on_under_the_new_name_or_ends(starfish: Robot, document: Document, poser: Poser) -> None:
@@ -150,15 +150,15 @@ def test_a_drag_goes_on_under_the_new_name_or_ends(starfish: Robot, document: Do
     assert poser.grab(Hit(key=f"marker:{marker.name}", rest=marker.at, world=marker.at))
     document.change("remove", robot=without(starfish, marker.name))
     poser.drag(Hit(world=(0.0, 0.0)))
-    assert not poser.held
+    assert not poser.held_points
 
 
 def test_a_cable_over_the_body_is_the_body(starfish: Robot, poser: Poser) -> None:
     middle = tuple(np.mean(starfish.cables[0].points[:2], axis=0).tolist())
     assert poser.grab(Hit(key="cable:0", rest=middle, world=middle))
     poser.drag(Hit(world=(middle[0] + 0.01, *middle[1:])))
-    assert poser.held["point_1"].at == pytest.approx(middle, abs=1e-6)
-    assert poser.held["point_1"].target == pytest.approx((middle[0] + 0.01, *middle[1:]))
+    assert poser.held_points["point_1"].at == pytest.approx(middle, abs=1e-6)
+    assert poser.held_points["point_1"].target == pytest.approx((middle[0] + 0.01, *middle[1:]))
     poser.rest()
     assert not poser.grab(Hit(key="cable:0", rest=None, world=middle)), "beside the body there is nothing to hold"
 
@@ -188,5 +188,5 @@ def test_what_is_shown_is_of_one_robot(starfish: Robot, document: Document, monk
     things = poser.things()
     assert seen == [(len(starfish.body.mesh.nodes), set(starfish.poses["wave"].targets))]
     assert {thing.key for thing in things if isinstance(thing, Dot)} >= {f"marker:{own.name}" for own in tail.markers}
-    assert not poser.held
+    assert not poser.held_points
     jobs.close()

@@ -116,7 +116,7 @@ def test_networks_are_not_asked_for_plain_points(poser: Poser, starfish: Robot, 
     poser.grab(Hit(key="", rest=at, world=at))
     poser.drag(Hit(world=tuple((np.array(at) + 0.005).tolist())))
     poser.step(0.0)
-    assert poser.held
+    assert poser.held_points
     assert model.asked == []
     assert poser.shape().prediction is None
 

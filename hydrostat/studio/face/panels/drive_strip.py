@@ -96,7 +96,7 @@ def _keys(page: WindowPage) -> None:
     release_focus(smooth).on_value_change(lambda event: page.act(driver.keyframes.set_smooth, bool(event.value)))
 
     def show() -> None:
-        chosen = driver.keyframes.chosen is not None
+        chosen = driver.keyframes.chosen_index is not None
         copy.set_enabled(chosen)
         delete.set_enabled(chosen)
         smooth.set_value(driver.keyframes.timeline.smooth)
@@ -220,7 +220,7 @@ def _timeline(page: WindowPage) -> None:
     view.on_word("add", add, "time")
 
     def show() -> None:
-        view.show_keys(document.robot, driver.keyframes.timeline, driver.keyframes.chosen)
+        view.show_keys(document.robot, driver.keyframes.timeline, driver.keyframes.chosen_index)
         view.show_player(driver.player)
 
     page.on((Topic.ROBOT, Topic.DRIVE), show)

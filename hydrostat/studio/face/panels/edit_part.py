@@ -79,7 +79,7 @@ def part_card(page: WindowPage) -> None:
     built: list[str] = []
 
     def show() -> None:
-        key, robot = editor.chosen, document.robot
+        key, robot = editor.selected_key, document.robot
         part = find_part(robot, key)
         card.set_visibility(part is not None)
         if part is None:
@@ -153,7 +153,7 @@ def _name(page: WindowPage, key: str) -> Show:
         typed = (box.value or "").strip()
         if typed:
             page.act(page.session.editor.rename, key, typed)
-        if page.session.editor.chosen == key:
+        if page.session.editor.selected_key == key:
             show(document.robot)
 
     def show(robot: Robot, _: Part | None = None) -> None:

@@ -96,9 +96,9 @@ def held_card(page: WindowPage) -> None:
 
     def build() -> None:
         figures.clear()
-        empty.set_visibility(not poser.held)
-        for name in poser.held:
-            figures[name] = _held_row(page, name, poser.chosen == name)
+        empty.set_visibility(not poser.held_points)
+        for name in poser.held_points:
+            figures[name] = _held_row(page, name, poser.chosen_name == name)
 
     def show() -> None:
         shape = poser.shape()
@@ -115,7 +115,7 @@ def held_card(page: WindowPage) -> None:
         notes.set_text(words)
         notes.set_visibility(bool(words))
 
-    page.on_new((Topic.THINGS, Topic.SHAPE), lambda: (tuple(poser.held), poser.chosen), rows, build)
+    page.on_new((Topic.THINGS, Topic.SHAPE), lambda: (tuple(poser.held_points), poser.chosen_name), rows, build)
     page.on((Topic.THINGS, Topic.SHAPE), show)
 
 
@@ -248,7 +248,7 @@ def poses_card(page: WindowPage) -> None:
             _pose_row(page, own)
 
     def ready() -> None:
-        button.set_enabled(bool(poser.held))
+        button.set_enabled(bool(poser.held_points))
 
     button.on_click(store)
     name.on("keydown.enter", store)

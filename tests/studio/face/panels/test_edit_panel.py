@@ -21,13 +21,13 @@ def test_parts_are_listed_chosen_moved_named_and_deleted(starfish: Robot) -> Non
         desk.go(StageName.EDIT)
         assert [key for key in keys_of(starfish) if not desk.all(f"part-{key}")] == []
         await desk.press("part-marker:top")
-        assert desk.session.editor.chosen == "marker:top"
+        assert desk.session.editor.selected_key == "marker:top"
         at = place(starfish, "top")
         assert [desk.one(f"edit-{axis}").value for axis in "xy"] == pytest.approx([1e3 * value for value in at])
         await desk.type("edit-y", 1e3 * at[1] - 5.0)
         assert place(desk.robot, "top") == pytest.approx((at[0], at[1] - 0.005))
         await desk.type("edit-name", "tip")
-        assert desk.session.editor.chosen == "marker:tip"
+        assert desk.session.editor.selected_key == "marker:tip"
         assert desk.all("part-marker:tip")
         await desk.press("edit-delete")
         assert "tip" not in {marker.name for marker in desk.robot.markers}

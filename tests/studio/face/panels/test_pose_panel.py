@@ -21,7 +21,7 @@ def test_what_is_held_is_listed_stored_and_let_go(starfish: Robot) -> None:
         assert "No targets yet. Drag a point to add one." not in desk.words
         await desk.choose("pose-name", "hello")
         await desk.press("pose-store")
-        assert desk.robot.poses["hello"].targets == {"top": poser.held["top"].target}
+        assert desk.robot.poses["hello"].targets == {"top": poser.held_points["top"].target}
         assert desk.one("pose-name").value == ""
         assert desk.told == []
         await desk.choose("pose-name", "again")
@@ -29,11 +29,11 @@ def test_what_is_held_is_listed_stored_and_let_go(starfish: Robot) -> None:
         assert desk.told == ["pose again stored. It equals pose hello"]
         await desk.press("Delete again")
         await desk.press("Release top")
-        assert dict(poser.held) == {}
+        assert dict(poser.held_points) == {}
         await desk.press("pose-show-hello")
-        assert set(poser.held) == {"top"}
+        assert set(poser.held_points) == {"top"}
         await desk.press("pose-rest")
-        assert dict(poser.held) == {}
+        assert dict(poser.held_points) == {}
         await desk.press("Delete hello")
         assert "hello" not in desk.robot.poses
         assert not desk.all("pose-show-hello")
