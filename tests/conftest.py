@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 _HERE = Path(__file__).parent
-sys.path[:0] = [str(_HERE), str(_HERE / "fabrication"), str(_HERE.parent / "benchmarks")]
+sys.path[:0] = [str(_HERE), str(_HERE / "fabrication"), str(_HERE.parent / "benchmarks"), str(_HERE.parent / "docs")]
 
 from run_setup import pytest_runtest_setup, unchecked  # noqa: E402, F401, I001 - before NumPy is imported
 

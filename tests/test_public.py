@@ -13,7 +13,7 @@ from hydrostat.errors import InputError
 from hydrostat.robot import gallery_folder, load_robot
 
 ROOMS = ["control", "design", "drawing", "fabrication", "geometry", "grasp", "ik", "learning", "mechanics", "plot"]
-ROOMS += ["robot", "shapes", "simulation", "studio", "teleop", "testing"]
+ROOMS += ["robot", "simulation", "studio", "teleop", "testing"]
 
 
 def test_every_public_name_exists() -> None:

@@ -2,8 +2,10 @@
 
 from functools import partial
 
+from bodies.field import Place
+from bodies.gripper_shape import BASE, caging_gripper
+from bodies.limb import Limb
 from bodies.sheet import Line, Play, Sheet
-from hydrostat.shapes import BASE, Limb, Place, caging_gripper
 
 EDGES = {"a": 1, "b": -1}
 """The two cables of a finger, one along each edge of its inner side."""

@@ -2,8 +2,10 @@
 
 from functools import partial
 
+from bodies.field import Place
+from bodies.hand_shape import FOREARM, cupping_hand, extended_hand
+from bodies.limb import Limb, Shape
 from bodies.sheet import Line, Play, Sheet
-from hydrostat.shapes import FOREARM, Limb, Place, Shape, cupping_hand, extended_hand
 
 FINGERS = ("index", "middle", "ring", "little")
 COLUMNS = {"thumb": 34e-3, "index": 17e-3, "middle": 0.0, "ring": -17e-3, "little": -34e-3}

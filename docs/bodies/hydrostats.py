@@ -5,8 +5,10 @@ from functools import partial
 
 import numpy as np
 
+from bodies.field import Place
+from bodies.hydrostat_shapes import fish_tail, octopus_arm, tongue, trunk
+from bodies.limb import Limb
 from bodies.sheet import Line, Play, Sheet
-from hydrostat.shapes import Limb, Place, fish_tail, octopus_arm, tongue, trunk
 
 MOTORS = 'motors stand beside the held end, outside the foam, so they stay where they are (mount = "world").'
 

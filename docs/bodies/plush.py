@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
+from bodies.field import Place
 from bodies.sheet import Line, Play, Sheet
 from hydrostat.geometry import Surface, inflate, read_outline
-from hydrostat.shapes import Place
 
 OUTLINE = Path(__file__).with_name("bear.svg")
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
+from bodies.field import Place
 from hydrostat.geometry import Surface
-from hydrostat.shapes import Place
 
 POSES = Path(__file__).parent / "poses.json"
 """Where the markers of each robot are in its poses [mm], as simulated."""

@@ -4,9 +4,12 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from bodies.gripper_shape import caging_gripper
+from bodies.hand_shape import cupping_hand, extended_hand
+from bodies.hydrostat_shapes import fish_tail, octopus_arm, tongue, trunk
+from bodies.limb import Shape
 
 from hydrostat.geometry import Surface, contour
-from hydrostat.shapes import Shape, caging_gripper, cupping_hand, extended_hand, fish_tail, octopus_arm, tongue, trunk
 
 SHAPES = [cupping_hand, extended_hand, caging_gripper, trunk, octopus_arm, tongue, fish_tail]
 

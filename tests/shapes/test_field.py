@@ -2,10 +2,7 @@
 
 import numpy as np
 import pytest
-
-from hydrostat.errors import InputError
-from hydrostat.geometry import contour
-from hydrostat.shapes.field import (
+from bodies.field import (
     chain,
     ellipsoid,
     half_space,
@@ -16,6 +13,9 @@ from hydrostat.shapes.field import (
     turn_about,
     union,
 )
+
+from hydrostat.errors import InputError
+from hydrostat.geometry import contour
 
 BOX = np.array([[-0.1, -0.1, -0.1], [0.1, 0.1, 0.1]])
 

@@ -4,9 +4,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-
-from hydrostat.shapes import Shape, hand
-from hydrostat.shapes.hand import (
+from bodies.hand_shape import (
     CUPPING,
     EXTENDED,
     FINGERS,
@@ -21,7 +19,9 @@ from hydrostat.shapes.hand import (
     THUMB_BREADTH,
     THUMB_THICKNESS,
     HandPosture,
+    hand,
 )
+from bodies.limb import Shape
 
 POSTURES = {
     "cupping": CUPPING,

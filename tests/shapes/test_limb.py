@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from bodies.field import round_cone
+from bodies.limb import limb
 
 from hydrostat.geometry import contour
-from hydrostat.shapes.field import round_cone
-from hydrostat.shapes.limb import limb
 
 STRAIGHT = [(0, 0, 0), (0, 0, 0.04), (0, 0, 0.1)]
 

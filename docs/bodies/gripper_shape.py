@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from hydrostat.shapes.field import half_space, intersection, turn_about, union
-from hydrostat.shapes.limb import Limb, Shape, limb
+from bodies.field import half_space, intersection, turn_about, union
+from bodies.limb import Limb, Shape, limb
 
 SIDES = {"right": 0, "back": 90, "left": 180, "front": 270}
 """Fingers and their directions about z [degrees]; x runs to the right, y to the back."""

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from bodies.field import Field, half_space, intersection, round_cone, union
+from bodies.limb import Limb, Shape, limb
 from hydrostat.arrays import Float
-from hydrostat.shapes.field import Field, half_space, intersection, round_cone, union
-from hydrostat.shapes.limb import Limb, Shape, limb
 
 
 def trunk() -> Shape:

@@ -18,9 +18,9 @@ from types import MappingProxyType
 
 import numpy as np
 
+from bodies.field import Field, Place, chain, half_space, intersection, turn_about, union
+from bodies.limb import Limb, Shape, limb
 from hydrostat.arrays import Float
-from hydrostat.shapes.field import Field, Place, chain, half_space, intersection, turn_about, union
-from hydrostat.shapes.limb import Limb, Shape, limb
 
 FINGERS = ("thumb", "index", "middle", "ring", "little")  # names in the order of the rays
 

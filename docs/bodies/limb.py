@@ -7,9 +7,9 @@ from itertools import pairwise
 
 import numpy as np
 
+from bodies.field import Field, Place, ellipsoidal
 from hydrostat.arrays import Float, Int, Points, Vector
 from hydrostat.geometry import Surface, contour
-from hydrostat.shapes.field import Field, Place, ellipsoidal
 
 
 @dataclass(frozen=True, eq=False)
