@@ -24,8 +24,7 @@ if TYPE_CHECKING:
     from hydrostat.plot.photo_overlay import draw_photo_overlay
     from hydrostat.plot.picture_file import drawing, inline_svg, save_png
     from hydrostat.plot.report import write_report
-    from hydrostat.plot.report_chapters import REACHED, body_part, network_part, reached_part, target_chapter
-    from hydrostat.plot.report_tables import Chapter, cable_table, fact, page, section, table
+    from hydrostat.plot.report_tables import cable_table, table
     from hydrostat.plot.robot_figures import (
         draw_network,
         draw_portrait,
@@ -34,17 +33,16 @@ if TYPE_CHECKING:
         draw_rest,
         reached_title,
     )
+    from hydrostat.plot.robot_report import robot_report
     from hydrostat.plot.scene import save_glb
     from hydrostat.plot.sheet import MILLIMETERS, WIDTH, new_figure
     from hydrostat.plot.skin import FlatSkin, outer_points
 
 __all__ = [
     "MILLIMETERS",
-    "REACHED",
     "WIDTH",
     "WIDTHS",
     "Attachments",
-    "Chapter",
     "DrawnBody",
     "Film",
     "FlatSkin",
@@ -53,7 +51,6 @@ __all__ = [
     "LivePage",
     "Picture",
     "Stop",
-    "body_part",
     "cable_table",
     "draw_activation",
     "draw_branches",
@@ -71,29 +68,24 @@ __all__ = [
     "draw_rest",
     "draw_trajectory",
     "drawing",
-    "fact",
     "film",
     "find_ffmpeg",
     "inline_svg",
-    "network_part",
     "new_chart",
     "new_figure",
     "outer_points",
-    "page",
     "plain_axes",
     "pose_stops",
     "pull_frames",
     "reach",
-    "reached_part",
     "reached_title",
+    "robot_report",
     "save_gif",
     "save_glb",
     "save_mp4",
     "save_png",
-    "section",
     "short_number",
     "table",
-    "target_chapter",
     "trajectory_frames",
     "upright",
     "winch_stops",

@@ -5,36 +5,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-import numpy as np
 from matplotlib.figure import Figure
 
-from hydrostat.drawing import Color, Html, tag
+from hydrostat.drawing import Color
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.ik import IKResult, solve_ik
-from hydrostat.plot import (
-    MILLIMETERS,
-    REACHED,
-    Chapter,
-    body_part,
-    draw_network,
-    draw_portrait,
-    draw_reached,
-    draw_rest,
-    drawing,
-    fact,
-    network_part,
-    page,
-    reached_part,
-    save_png,
-    section,
-    table,
-    target_chapter,
-)
-from hydrostat.robot import Robot, find_risks, robot_hash
+from hydrostat.plot import draw_network, draw_portrait, draw_reached, draw_rest, drawing, robot_report, save_png
+from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.exporting.download import Download, file_name
 from hydrostat.studio.jobs import Report
-from hydrostat.units import plural
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -105,80 +85,6 @@ def make_report(report: Report, robot: Robot) -> Download:
     """The report of a robot as an HTML file."""
     solved = solve_poses(report, robot)
     report.progress("Pages", 0, 1)
-    text = robot_report(solved)
+    text = robot_report(robot, solved.reached, solved.missed)
     name = f"{file_name(robot.name)}_report.html"
     return Download(name=name, content=text.encode(errors="replace"), title="Report")
-
-
-def robot_report(solved: SolvedPoses) -> str:
-    """The page as text; it needs no other file and no network."""
-    robot = solved.robot
-    targets = [target_chapter(robot, robot.poses.values())] if robot.poses else []
-    chapters = [_body(robot), *targets, *_network(robot), *_pose_chapters(solved)]
-    sections = [section(number, chapter) for number, chapter in enumerate(chapters, start=1)]
-    return page(robot.name, _hero(solved), *sections, _footer(robot))
-
-
-def _hero(solved: SolvedPoses) -> Html:
-    robot = solved.robot
-    parts = (
-        f"A soft body, {plural(len(robot.winches), 'winch')} and {plural(len(robot.cables), 'cable')}, "
-        f"{plural(len(robot.poses), 'pose')}. This page describes the robot and its poses."
-    )
-    steps: list[Html] = []
-    if solved.reached:
-        errors = np.concatenate([list(reached.errors.values()) for reached in solved.reached])
-        error = float(np.sqrt(np.mean(errors**2)))
-        tension = max(float(np.max(reached.pose.tensions)) for reached in solved.reached)
-        share = f"{100 * error / robot.body.mesh.size:.1f} % of the body's size"
-        steps.append(fact(f"{MILLIMETERS * error:.1f}", "mm rms", f"of all markers in all poses: {share}", best=True))
-        steps.append(fact(f"{tension:.1f}", "N", "maximum cable tension in these poses"))
-    return tag(
-        "div",
-        tag("p", "hydrostat \N{MIDDLE DOT} robot report", class_="eyebrow"),
-        tag("h1", robot.name),
-        tag("p", parts),
-        tag("ol", *steps, class_="path") if steps else "",
-        class_="hero",
-    )
-
-
-def _body(robot: Robot) -> Chapter:
-    words = (
-        f"{robot.body.file} as soft material. Hatched areas are fixed. White dots are the markers, the tracked points."
-    )
-    risks = [tag("div", tag("b", "Warning: "), risk, class_="note") for risk in find_risks(robot)]
-    return Chapter("The body", words, [body_part(robot), *risks])
-
-
-def _network(robot: Robot) -> list[Chapter]:
-    if not robot.cables:
-        return []
-    words = (
-        "All cables of one winch share its contraction, each by the radius of its spool. A bar marks the stopper at "
-        "the end of a cable, a pale pipe a sheath."
-    )
-    return [Chapter("Winches and cables", words, [network_part(robot, ": cables by number")])]
-
-
-def _pose_chapters(solved: SolvedPoses) -> list[Chapter]:
-    if not solved.reached and not solved.missed:
-        return []
-    poses = []
-    for index, reached in enumerate(solved.reached):
-        held = [tag("div", tag("b", "Limit: "), words, class_="note") for words in reached.active_limits]
-        poses.append(reached_part(solved.robot, reached, index, *held))
-    missed = [tag("div", tag("b", "Not solved: "), line, class_="note") for line in solved.missed]
-    return [Chapter(*REACHED, [*poses, *missed])]
-
-
-def _footer(robot: Robot) -> Html:
-    from hydrostat.version import __version__
-
-    facts = {"hydrostat version": __version__, "robot hash (SHA-256)": robot_hash(robot)}
-    rows = [(name, tag("code", value)) for name, value in facts.items()]
-    words = (
-        "An error is the distance from a marker to its target in the body's equilibrium, solved by finite elements; "
-        "rms is the root of the mean of the squared errors."
-    )
-    return tag("footer", tag("h2", "Methods"), tag("p", words), table(("", ""), rows))
