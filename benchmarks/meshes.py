@@ -24,12 +24,10 @@ from hydrostat.geometry import (
     Mesh,
     Solid,
     Surface,
-    dihedral_angles,
     fit,
     heal,
     read_surface,
     size_for,
-    smallest_angle,
     tetrahedralize,
 )
 from hydrostat.robot import Body, gallery_folder, list_gallery, load_robot
@@ -65,7 +63,7 @@ def quality(mesh: Mesh, surface: Surface, element_size: float) -> Quality:
     return Quality(
         len(mesh.nodes),
         len(mesh.elements),
-        float(dihedral_angles(mesh.nodes, mesh.elements).min()),
+        float(mesh.dihedral_angles().min()),
         found.volume,
         found.largest / element_size,
         bool((np.unique(sides, axis=0, return_counts=True)[1] == 2).all()),
@@ -82,7 +80,7 @@ def flat_quality(body: Body) -> Quality:
     return Quality(
         len(mesh.nodes),
         len(mesh.elements),
-        smallest_angle(mesh),
+        mesh.smallest_angle(),
         float(mesh.volumes.sum()) / outline.area,
         float(rim.hausdorff_distance(ring)) / body.element_size,
         True,

@@ -169,17 +169,15 @@ def _full_contractions(robot: "Robot") -> list[Any]:
 
 def _body_lines(body: "Body") -> list[str]:
     """Material with mass and volume; thickness of nine tenths of the body, and the worst angle of its mesh."""
-    from hydrostat.geometry import dihedral_angles, smallest_angle
-
     mesh, material = body.mesh, body.material
     own = body.element_materials == 0
     volume = float(mesh.volumes[own].sum()) * (body.thickness or 1.0)
     thickness = body.measured_thickness
     (thin, few), (thick, many) = thickness.part(0.05), thickness.part(0.95)
     if mesh.dim == 2:
-        angle = f"smallest angle {smallest_angle(mesh):.0f}°"
+        angle = f"smallest angle {mesh.smallest_angle():.0f}°"
     else:
-        angle = f"smallest angle between faces {dihedral_angles(mesh.nodes, mesh.elements).min():.2g}°"
+        angle = f"smallest angle between faces {mesh.dihedral_angles().min():.2g}°"
     name = material.name or "custom material"
     return [
         f"{name}: {_mass_text(float(body.element_masses[own].sum()))}, {_volume_text(volume)}",

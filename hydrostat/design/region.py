@@ -12,7 +12,7 @@ from shapely.ops import nearest_points
 from hydrostat.arrays import Bool, Float, Points, Vector
 from hydrostat.design.polyline import Route, least_along
 from hydrostat.errors import InputError
-from hydrostat.geometry import Nearest, Shell, outline_shell
+from hydrostat.geometry import Nearest, Shell
 from hydrostat.robot import Body
 
 MARGIN = 1.02  # points are pushed so many clearances deep, so that rounding takes none out again
@@ -117,7 +117,7 @@ class FlatRegion(Region):
 def flat_region(body: Body, clearance: float) -> FlatRegion | None:
     """The region of a flat body; None if it is too thin everywhere."""
     if body.outline is not None:
-        whole, shell = body.outline.polygon, outline_shell(body.outline)
+        whole, shell = body.outline.polygon, Shell.of_outline(body.outline)
     else:
         mesh = body.mesh
         rings = polygonize(list(np.asarray(linestrings(mesh.nodes[mesh.boundary]))))

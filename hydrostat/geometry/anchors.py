@@ -47,6 +47,16 @@ class Anchors:
         """Mask of the points inside the body; a distance of 1e-9 of an element counts as inside."""
         return self.distances == 0.0
 
+    @staticmethod
+    def at_nodes(mesh: Mesh, chosen: Int[np.ndarray, " points"]) -> "Anchors":
+        """Anchors at nodes of a mesh, given by number: each held by the first element that has it, with weight one."""
+        first = np.full(len(mesh.nodes), len(mesh.elements))
+        np.minimum.at(first, mesh.elements, np.arange(len(mesh.elements))[:, None])
+        if (first[chosen] == len(mesh.elements)).any():  # a node of no element is a point like any other
+            return locate(mesh, mesh.nodes[chosen])
+        stencils = mesh.elements[first[chosen]]
+        return Anchors(stencils, (stencils == chosen[:, None]).astype(float), np.zeros(len(chosen)))
+
 
 def locate(mesh: Mesh, points: Points) -> Anchors:
     """Stick points to the rest shape of a mesh.
@@ -65,16 +75,6 @@ def locate(mesh: Mesh, points: Points) -> Anchors:
         held[outside], weights[outside], distances[outside] = _nearest(mesh, points[outside])
     weights = np.clip(weights, 0.0, None)
     return Anchors(mesh.elements[held], weights / weights.sum(axis=1, keepdims=True), distances)
-
-
-def anchor_nodes(mesh: Mesh, chosen: Int[np.ndarray, " points"]) -> Anchors:
-    """Anchors at nodes of a mesh, given by number: each held by the first element that has it, with weight one."""
-    first = np.full(len(mesh.nodes), len(mesh.elements))
-    np.minimum.at(first, mesh.elements, np.arange(len(mesh.elements))[:, None])
-    if (first[chosen] == len(mesh.elements)).any():  # a node of no element is a point like any other
-        return locate(mesh, mesh.nodes[chosen])
-    stencils = mesh.elements[first[chosen]]
-    return Anchors(stencils, (stencils == chosen[:, None]).astype(float), np.zeros(len(chosen)))
 
 
 def _spans(corners: Float[np.ndarray, "simplices corners dim"]) -> Float[np.ndarray, "simplices sides dim"]:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hydrostat.arrays import Float, Int, Nodes, Vector
+from hydrostat.arrays import Float, Int, Nodes
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.kernel import native
 
@@ -141,18 +141,6 @@ class BoundaryTree:
     @property
     def _parts(self) -> tuple[np.ndarray, ...]:
         return self.children, self.facets, self.points, self.edges
-
-
-def facet_areas(mesh: Mesh) -> tuple[Vector, Vector]:
-    """Area (length, in the plane) of each boundary facet at rest, and of each node's share of it [m^dim-1]."""
-    corners = mesh.nodes[mesh.boundary]
-    spans = corners[:, 1:] - corners[:, :1]
-    if mesh.dim == 2:
-        areas = np.linalg.norm(spans[:, 0], axis=1)
-    else:
-        areas = 0.5 * np.linalg.norm(np.cross(spans[:, 0], spans[:, 1]), axis=1)
-    shares = np.repeat(areas / mesh.dim, mesh.dim)
-    return areas, np.bincount(mesh.boundary.ravel(), shares, len(mesh.nodes))
 
 
 def _assign_features(features: Int[np.ndarray, "facets each corners"]) -> Int[np.ndarray, "facets each corners"]:

@@ -45,35 +45,35 @@ class DistanceField:
         """Distances alone [m]."""
         return self.whole(points).values if self.lean is None else self.lean(points)
 
+    @staticmethod
+    def box(at: Vector, to: Vector) -> "DistanceField":
+        """Distance from a box with two opposite corners [m]; a rectangle in the plane."""
+        middle, half = 0.5 * (at + to), 0.5 * np.abs(to - at)
+        return DistanceField(partial(_from_box, middle, half), partial(_box_values, middle, half))
 
-def plane_field(at: Vector, normal: Vector) -> DistanceField:
-    """Distance from all that lies behind a plane through a point [m]."""
-    unit = normal / np.linalg.norm(normal)
-    return DistanceField(partial(_from_plane, at, unit), partial(_plane_values, at, unit))
+    @staticmethod
+    def capsule(at: Vector, to: Vector, radius: float) -> "DistanceField":
+        """Signed distance from a capsule: all points within a radius of a segment [m]."""
+        length = float(np.linalg.norm(to - at))
+        axis = (to - at) / length
+        return DistanceField(partial(_from_capsule, at, axis, length, radius))
 
+    @staticmethod
+    def cylinder(at: Vector, to: Vector, radius: float) -> "DistanceField":
+        """Distance from a cylinder with flat ends, in space [m]."""
+        length = float(np.linalg.norm(to - at))
+        return DistanceField(partial(_from_cylinder, 0.5 * (at + to), (to - at) / length, length, radius))
 
-def sphere_field(at: Vector, radius: float) -> DistanceField:
-    """Distance from a ball; a disc in the plane [m]."""
-    return DistanceField(partial(_from_sphere, at, radius), partial(_sphere_values, at, radius))
+    @staticmethod
+    def plane(at: Vector, normal: Vector) -> "DistanceField":
+        """Distance from all that lies behind a plane through a point [m]."""
+        unit = normal / np.linalg.norm(normal)
+        return DistanceField(partial(_from_plane, at, unit), partial(_plane_values, at, unit))
 
-
-def capsule_field(at: Vector, to: Vector, radius: float) -> DistanceField:
-    """Signed distance from a capsule: all points within a radius of a segment [m]."""
-    length = float(np.linalg.norm(to - at))
-    axis = (to - at) / length
-    return DistanceField(partial(_from_capsule, at, axis, length, radius))
-
-
-def cylinder_field(at: Vector, to: Vector, radius: float) -> DistanceField:
-    """Distance from a cylinder with flat ends, in space [m]."""
-    length = float(np.linalg.norm(to - at))
-    return DistanceField(partial(_from_cylinder, 0.5 * (at + to), (to - at) / length, length, radius))
-
-
-def box_field(at: Vector, to: Vector) -> DistanceField:
-    """Distance from a box with two opposite corners [m]; a rectangle in the plane."""
-    middle, half = 0.5 * (at + to), 0.5 * np.abs(to - at)
-    return DistanceField(partial(_from_box, middle, half), partial(_box_values, middle, half))
+    @staticmethod
+    def sphere(at: Vector, radius: float) -> "DistanceField":
+        """Distance from a ball; a disc in the plane [m]."""
+        return DistanceField(partial(_from_sphere, at, radius), partial(_sphere_values, at, radius))
 
 
 def _from_plane(at: Vector, unit: Vector, points: Points) -> Distances:

@@ -6,7 +6,7 @@ from itertools import combinations, product
 
 import numpy as np
 
-from hydrostat.arrays import Elements, Float, Int, Nodes, Points
+from hydrostat.arrays import Elements, Float, Int, Nodes, Points, Vector
 from hydrostat.errors import InputError
 
 
@@ -229,6 +229,32 @@ class Mesh:
         """Length of each edge at rest [m]."""
         return np.linalg.norm(np.diff(self.nodes[self.edges], axis=1)[:, 0], axis=1)
 
+    def smallest_angle(self) -> float:
+        """Smallest angle of any triangle [degrees]; 60 at best (InputError: the mesh is not flat)."""
+        if self.dim != 2:
+            raise InputError(f"angles are those of a flat mesh, this one has dimension {self.dim}")
+        return float(angles(self.nodes, self.elements).min())
+
+    @property
+    def spacings(self) -> Float[np.ndarray, " elements"]:
+        """Edge [m] of the regular triangle or tetrahedron that is as large as each element."""
+        return (_REGULAR[self.dim] * self.volumes) ** (1 / self.dim)
+
+    def dihedral_angles(self) -> Float[np.ndarray, " elements"]:
+        """Smallest angle between two faces of each tetrahedron [degrees]: 70.5 at best, 0 where it is flat."""
+        return dihedral_angles(self.nodes, self.elements)
+
+    def facet_areas(self) -> tuple[Vector, Vector]:
+        """Area (length, in the plane) of each boundary facet at rest, and of each node's share of it [m^dim-1]."""
+        corners = self.nodes[self.boundary]
+        spans = corners[:, 1:] - corners[:, :1]
+        if self.dim == 2:
+            areas = np.linalg.norm(spans[:, 0], axis=1)
+        else:
+            areas = 0.5 * np.linalg.norm(np.cross(spans[:, 0], spans[:, 1]), axis=1)
+        shares = np.repeat(areas / self.dim, self.dim)
+        return areas, np.bincount(self.boundary.ravel(), shares, len(self.nodes))
+
 
 def _angles_seen(corners: Float[np.ndarray, "facets dim dim"]) -> Float[np.ndarray, " facets"]:
     """Share of the full angle under which facets are seen from the origin (van Oosterom and Strackee 1983)."""
@@ -264,13 +290,6 @@ def _about(diagonal: tuple[int, int], ring: tuple[int, ...]) -> list[tuple[int, 
     return [(*diagonal, one, two) for one, two in zip(ring, ring[1:] + ring[:1], strict=True)]
 
 
-def smallest_angle(mesh: Mesh) -> float:
-    """Smallest angle of any triangle [degrees]; 60 at best (InputError: the mesh is not flat)."""
-    if mesh.dim != 2:
-        raise InputError(f"angles are those of a flat mesh, this one has dimension {mesh.dim}")
-    return float(angles(mesh.nodes, mesh.elements).min())
-
-
 def angles(points: Points, triangles: Elements) -> Float[np.ndarray, " triangles"]:
     """Smallest angle of each triangle [degrees]."""
     corners = points[triangles]
@@ -291,3 +310,6 @@ def dihedral_angles(nodes: Nodes, elements: Elements) -> Float[np.ndarray, " ele
     cosines = [-(normals[:, :, one] * normals[:, :, two]).sum(axis=1) for one, two in combinations(range(4), 2)]
     angles = np.degrees(np.arccos(np.clip(np.max(cosines, axis=0), -1.0, 1.0)))
     return np.where(upright, angles, 0.0)
+
+
+_REGULAR = {2: 4 / 3**0.5, 3: 6 * 2**0.5}  # (Edge of a regular simplex)^dim over its size

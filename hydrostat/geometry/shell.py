@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from hydrostat.arrays import Float, Int, Nodes, Points, Vector
-from hydrostat.geometry.distance_field import DistanceField, Distances, box_field
+from hydrostat.geometry.distance_field import DistanceField, Distances
 from hydrostat.geometry.outline import Outline
 
 Facets = Int[np.ndarray, "facets dim"]
@@ -142,18 +142,25 @@ class Shell:
         tree.init(_in_space(self.nodes), self.facets)
         return tree
 
+    def field(self) -> DistanceField:
+        """Signed distance from a closed shell [m]; far away it may be too small by a quarter of the shell's size."""
+        own = Shell(self.nodes, self.facets)
+        return DistanceField(partial(_from_shell, own), partial(_shell_values, own))
 
-def shell_field(shell: Shell) -> DistanceField:
-    """Signed distance from a closed shell [m]; far away it may be too small by up to a quarter of the shell's size."""
-    own = Shell(shell.nodes, shell.facets)
-    return DistanceField(partial(_from_shell, own), partial(_shell_values, own))
+    @staticmethod
+    def of_outline(outline: Outline) -> "Shell":
+        """Rings of an outline."""
+        counts = [len(ring) for ring in outline.rings]
+        starts = np.concatenate([[0], np.cumsum(counts)[:-1]])
+        ends = [np.roll(np.arange(start, start + count), -1) for start, count in zip(starts, counts, strict=True)]
+        return Shell(np.concatenate(outline.rings), np.column_stack([np.arange(sum(counts)), np.concatenate(ends)]))
 
 
 def _box_about(shell: Shell) -> tuple[DistanceField, float]:
     """Distance from the box about a shell, and up to which distance from it those from the shell are exact [m]."""
     low, high = shell.nodes.min(axis=0), shell.nodes.max(axis=0)
     room = 0.25  # Distances below this share of the diagonal of the box about a shell are exact
-    return box_field(low, high), room * float(np.linalg.norm(high - low))
+    return DistanceField.box(low, high), room * float(np.linalg.norm(high - low))
 
 
 def _shell_values(shell: Shell, points: Points) -> Vector:
@@ -195,14 +202,6 @@ def _curvatures(shell: Shell, found: Nearest) -> Float[np.ndarray, "points dim d
 
 _TOUCHING = 1e-12
 """A point this near, as a fraction of the coordinates, has no direction to its nearest place but the normal there."""
-
-
-def outline_shell(outline: Outline) -> Shell:
-    """Rings of an outline."""
-    counts = [len(ring) for ring in outline.rings]
-    starts = np.concatenate([[0], np.cumsum(counts)[:-1]])
-    ends = [np.roll(np.arange(start, start + count), -1) for start, count in zip(starts, counts, strict=True)]
-    return Shell(np.concatenate(outline.rings), np.column_stack([np.arange(sum(counts)), np.concatenate(ends)]))
 
 
 def _in_space(points: Points) -> Float[np.ndarray, "points 3"]:

@@ -1,4 +1,4 @@
-"""`measure_thickness`: thickness of a body everywhere on its boundary, and the number of elements across."""
+"""`Thickness`: thickness of a body everywhere on its boundary, and the number of elements across."""
 
 from dataclasses import dataclass
 
@@ -7,8 +7,6 @@ import numpy as np
 from hydrostat.arrays import Float, Int, Points
 from hydrostat.geometry.mesh import Mesh, joined_groups
 from hydrostat.geometry.point_tree import build_point_tree
-
-_REGULAR = {2: 4 / 3**0.5, 3: 6 * 2**0.5}  # (Edge of a regular simplex)^dim over its size
 
 _ASIDE = (0.011, -0.007, -0.004)
 """Offset of a ray's start from the center of its facet, as weights: from there it hits edges in regular meshes."""
@@ -42,20 +40,42 @@ class Thickness:
             found.append(float(values[order][np.searchsorted(np.cumsum(weights[order]), share)]))
         return found[0], found[1]
 
+    def thin_parts(self, least: float) -> list["ThinPart"]:
+        """Limbs and sheets with fewer than `least` elements across, thinnest first.
 
-def spacings(mesh: Mesh) -> Float[np.ndarray, " elements"]:
-    """Edge [m] of the regular triangle or tetrahedron that is as large as each element."""
-    return (_REGULAR[mesh.dim] * mesh.volumes) ** (1 / mesh.dim)
+        Tips, corners and notches are no limbs: what is not longer than `_SLENDER` times its thickness is left out.
+        """
+        thin = np.flatnonzero(self.across < least)
+        if not len(thin):
+            return []
+        middles = self.middles[thin]
+        reach = _NEAR * float(np.median(self.spacing[thin]))
+        neighbors = 20  # as many of them are looked at: in a mesh with fine and coarse places more would be near
+        gaps, near = build_point_tree(middles).query(middles, k=min(neighbors, len(thin)), distance_upper_bound=reach)
+        gaps, near = gaps.reshape(len(thin), -1), near.reshape(len(thin), -1)
+        one, two = np.nonzero(np.isfinite(gaps))[0], near[np.isfinite(gaps)]
+        labels = joined_groups(np.stack([one, two]), len(thin))
+        found = []
+        for part in range(labels.max() + 1):
+            members = thin[labels == part]
+            spread = self.middles[members] - self.middles[members].mean(axis=0)
+            axis = np.linalg.svd(spread, full_matrices=False)[2][0]
+            length = float(np.ptp(spread @ axis))
+            at = members[np.argsort(self.across[members])[3 * len(members) // 4]]
+            chord, across = float(self.chords[at]), float(self.across[at])
+            if length > _SLENDER * chord:
+                found.append(ThinPart(chord, across, self.middles[at], length))
+        return sorted(found, key=lambda part: part.across)
 
-
-def measure_thickness(mesh: Mesh) -> Thickness:
-    """Rays from every facet of the boundary, along its normal through the body, from element to element."""
-    corners = mesh.nodes[mesh.boundary]
-    weights = np.full(mesh.dim, 1 / mesh.dim) + _ASIDE[: mesh.dim] - np.mean(_ASIDE[: mesh.dim])
-    starts = np.einsum("c,fcd->fd", weights, corners)
-    inward, areas = _normals(corners)
-    chords = _march(mesh, mesh.boundary_elements, starts, inward)
-    return Thickness(chords, starts + 0.5 * chords[:, None] * inward, _smooth_spacing(mesh), areas)
+    @staticmethod
+    def measure(mesh: Mesh) -> "Thickness":
+        """Rays from every facet of the boundary, along its normal through the body, from element to element."""
+        corners = mesh.nodes[mesh.boundary]
+        weights = np.full(mesh.dim, 1 / mesh.dim) + _ASIDE[: mesh.dim] - np.mean(_ASIDE[: mesh.dim])
+        starts = np.einsum("c,fcd->fd", weights, corners)
+        inward, areas = _normals(corners)
+        chords = _march(mesh, mesh.boundary_elements, starts, inward)
+        return Thickness(chords, starts + 0.5 * chords[:, None] * inward, _smooth_spacing(mesh), areas)
 
 
 def _normals(corners: Float[np.ndarray, "facets corners dim"]) -> tuple[Points, Float[np.ndarray, " facets"]]:
@@ -73,7 +93,7 @@ def _normals(corners: Float[np.ndarray, "facets corners dim"]) -> tuple[Points, 
 def _smooth_spacing(mesh: Mesh) -> Float[np.ndarray, " facets"]:
     """Mean spacing of the elements about the nodes of each facet, for those at the boundary alone may be cut small."""
     total, count = np.zeros(len(mesh.nodes)), np.zeros(len(mesh.nodes))
-    each = np.repeat(spacings(mesh)[:, None], mesh.dim + 1, axis=1)
+    each = np.repeat(mesh.spacings[:, None], mesh.dim + 1, axis=1)
     np.add.at(total, mesh.elements, each)
     np.add.at(count, mesh.elements, 1.0)
     return (total[mesh.boundary] / count[mesh.boundary]).mean(axis=1)
@@ -129,31 +149,3 @@ class ThinPart:
     across: float  # number of elements across
     place: Float[np.ndarray, " dim"]  # middle of the body there [m]
     length: float  # length of the part [m]
-
-
-def thin_parts(thickness: Thickness, least: float) -> list[ThinPart]:
-    """Limbs and sheets with fewer than `least` elements across, thinnest first.
-
-    Tips, corners and notches are no limbs: what is not longer than `_SLENDER` times its thickness is left out.
-    """
-    thin = np.flatnonzero(thickness.across < least)
-    if not len(thin):
-        return []
-    middles = thickness.middles[thin]
-    reach = _NEAR * float(np.median(thickness.spacing[thin]))
-    neighbors = 20  # as many of them are looked at: in a mesh with fine and coarse places more would be near
-    gaps, near = build_point_tree(middles).query(middles, k=min(neighbors, len(thin)), distance_upper_bound=reach)
-    gaps, near = gaps.reshape(len(thin), -1), near.reshape(len(thin), -1)
-    one, two = np.nonzero(np.isfinite(gaps))[0], near[np.isfinite(gaps)]
-    labels = joined_groups(np.stack([one, two]), len(thin))
-    found = []
-    for part in range(labels.max() + 1):
-        members = thin[labels == part]
-        spread = thickness.middles[members] - thickness.middles[members].mean(axis=0)
-        axis = np.linalg.svd(spread, full_matrices=False)[2][0]
-        length = float(np.ptp(spread @ axis))
-        at = members[np.argsort(thickness.across[members])[3 * len(members) // 4]]
-        chord, across = float(thickness.chords[at]), float(thickness.across[at])
-        if length > _SLENDER * chord:
-            found.append(ThinPart(chord, across, thickness.middles[at], length))
-    return sorted(found, key=lambda part: part.across)

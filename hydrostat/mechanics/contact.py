@@ -9,7 +9,7 @@ from typing import ClassVar, NamedTuple, Self
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.geometry import BoundaryTree, Mesh, Pairs, facet_areas
+from hydrostat.geometry import BoundaryTree, Mesh, Pairs
 from hydrostat.kernel import native
 from hydrostat.mechanics.energy import Blocks, ContactForces, Energy, Gaps, HessianBlocks, ScatterMap, Stencils
 
@@ -109,7 +109,7 @@ class ContactEnergy(Energy):
             rest: all unknowns at rest [m], if there are more than the nodes of the mesh.
         """
         rest = mesh.nodes if rest is None else rest
-        areas = facet_areas(mesh)[1] * (thickness or 1.0)
+        areas = mesh.facet_areas()[1] * (thickness or 1.0)
         skin = ContactSurface(tree=BoundaryTree(mesh), rest=rest, distance=distance, stiffness=young, areas=areas)
         return cls(skin, Pairs(np.empty((0, mesh.dim + 1), np.int64), np.empty(0, np.bool_)))
 

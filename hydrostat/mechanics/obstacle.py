@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from hydrostat.arrays import Float, Nodes, Points, Vector
-from hydrostat.geometry import DistanceField, Distances, Mesh, facet_areas, lengths_of
+from hydrostat.geometry import DistanceField, Distances, Mesh
 from hydrostat.kernel import native
 from hydrostat.mechanics.energy import (
     Blocks,
@@ -288,13 +288,13 @@ class ObstacleEnergy(Energy):
         """Bound of each sample's displacement in the obstacle's frame for a straight move of the unknowns [m]."""
         way = self._points(move)
         if self.carriage is None:
-            return lengths_of(way)
+            return _lengths(way)
         begin, end = self.carriage.axes(nodes), self.carriage.axes(nodes + move)
         largest = max(np.linalg.norm(begin, 2), np.linalg.norm(end, 2))
         spans = self._points(nodes) - self.carriage.place(nodes)
         way = way - move[self.carriage.row]
-        reach = np.maximum(lengths_of(spans), lengths_of(spans + way))
-        return largest * lengths_of(way) + np.linalg.norm(end - begin, 2) * reach
+        reach = np.maximum(_lengths(spans), _lengths(spans + way))
+        return largest * _lengths(way) + np.linalg.norm(end - begin, 2) * reach
 
     def _on_the_way(self, nodes: Nodes, move: Nodes, some: np.ndarray, shares: Vector) -> Points:
         """Positions of some samples in the obstacle's frame, each after its own share of a straight move [m]."""
@@ -353,7 +353,7 @@ def _samples(mesh: Mesh) -> tuple[Stencils, Float[np.ndarray, "terms corners"], 
 
     Areas are the weights of Simpson's rule in the plane, and of the rule of seven points of degree 3 in space.
     """
-    dim, areas = mesh.dim, facet_areas(mesh)[0]
+    dim, areas = mesh.dim, mesh.facet_areas()[0]
     rules = [(np.eye(dim), 1 / 6 if dim == 2 else 1 / 20)]
     if dim == 3:
         rules.append((0.5 * (1 - np.eye(3)), 2 / 15))
@@ -370,3 +370,7 @@ def _samples(mesh: Mesh) -> tuple[Stencils, Float[np.ndarray, "terms corners"], 
 
 _HALF_WAY = 4.329
 """Force of the barrier at half its distance, where its factor and distance are 1: 2 phi'(1/4) x 1/2, phi' its slope."""
+
+
+def _lengths(vectors: Points) -> Vector:
+    return np.sqrt(np.einsum("pd,pd->p", vectors, vectors))

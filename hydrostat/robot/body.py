@@ -13,7 +13,7 @@ import numpy as np
 from hydrostat.arrays import Float, Int, Points
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError, OutlineError, SurfaceError
-from hydrostat.geometry import Anchors, Healing, Inner, Mesh, Outline, Solid, Thickness, locate, measure_thickness
+from hydrostat.geometry import Anchors, Healing, Inner, Mesh, Outline, Solid, Thickness, locate
 from hydrostat.given import check_positive
 from hydrostat.robot.body_cache import Arrays, keep_body
 from hydrostat.robot.element_kind import ElementKind, Plane, Volume
@@ -183,7 +183,7 @@ class Body:
     @cached_property
     def measured_thickness(self) -> Thickness:
         """Thickness of the body along the inward normal of each facet of its boundary."""
-        return measure_thickness(self.mesh)
+        return Thickness.measure(self.mesh)
 
     def distances(self, points: Points) -> Float[np.ndarray, " points"]:
         """Distance of points outside the body [m], 0 inside its drawing, its surface or its mesh."""

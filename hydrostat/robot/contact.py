@@ -9,18 +9,7 @@ import numpy as np
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
-from hydrostat.geometry import (
-    DistanceField,
-    Shell,
-    Surface,
-    box_field,
-    capsule_field,
-    cylinder_field,
-    plane_field,
-    read_surface,
-    shell_field,
-    sphere_field,
-)
+from hydrostat.geometry import DistanceField, Shell, Surface, read_surface
 from hydrostat.given import Point, check_name, check_number, check_point, check_positive
 
 
@@ -287,12 +276,12 @@ _NEEDED = {
     ObstacleShape.MESH: ("mesh",),
 }
 _FIELDS: dict[ObstacleShape, Callable[[Obstacle], DistanceField]] = {
-    ObstacleShape.PLANE: lambda one: plane_field(np.array(one.at), np.array(one.normal)),
-    ObstacleShape.SPHERE: lambda one: sphere_field(np.array(one.at), one.radius or 0.0),
-    ObstacleShape.CAPSULE: lambda one: capsule_field(np.array(one.at), np.array(one.to), one.radius or 0.0),
-    ObstacleShape.CYLINDER: lambda one: cylinder_field(np.array(one.at), np.array(one.to), one.radius or 0.0),
-    ObstacleShape.BOX: lambda one: box_field(np.array(one.at), np.array(one.to)),
-    ObstacleShape.MESH: lambda one: shell_field(_mesh_at(one).shell),
+    ObstacleShape.PLANE: lambda one: DistanceField.plane(np.array(one.at), np.array(one.normal)),
+    ObstacleShape.SPHERE: lambda one: DistanceField.sphere(np.array(one.at), one.radius or 0.0),
+    ObstacleShape.CAPSULE: lambda one: DistanceField.capsule(np.array(one.at), np.array(one.to), one.radius or 0.0),
+    ObstacleShape.CYLINDER: lambda one: DistanceField.cylinder(np.array(one.at), np.array(one.to), one.radius or 0.0),
+    ObstacleShape.BOX: lambda one: DistanceField.box(np.array(one.at), np.array(one.to)),
+    ObstacleShape.MESH: lambda one: _mesh_at(one).shell.field(),
 }
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.geometry import Anchors, Mesh, anchor_nodes, locate
+from hydrostat.geometry import Anchors, Mesh, locate
 from hydrostat.given import Point, check_not_negative, check_point, check_positive
 
 
@@ -87,7 +87,7 @@ class Pin:
         """Find the nodes that the pin holds (InputError: the pin lies outside the body and holds nothing)."""
         held = np.flatnonzero(self.holds(mesh))
         if len(held) > 0:
-            anchors = anchor_nodes(mesh, held)
+            anchors = Anchors.at_nodes(mesh, held)
         else:
             middle = self.at if self.box is None else np.mean(self.box, axis=0)
             anchors = locate(mesh, np.array([middle], dtype=float))

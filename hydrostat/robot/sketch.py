@@ -4,7 +4,7 @@ from functools import partial
 
 import numpy as np
 
-from hydrostat.geometry import Inner, Outline, read_drawing, size_for, thin_parts, triangulate
+from hydrostat.geometry import Inner, Outline, read_drawing, size_for, triangulate
 from hydrostat.robot.body import Body, outline_body
 from hydrostat.robot.marker import Marker, Pin, PoseTarget
 from hydrostat.robot.materials import get_material
@@ -18,7 +18,7 @@ def finer_size(body: Body, most: int) -> float | None:
     None where they have, where the body is a ready mesh, or where it would have more nodes than `most`.
     """
     least, dim = LEAST_ACROSS[body.mesh.dim], body.mesh.dim
-    parts = thin_parts(body.measured_thickness, least) if body.element_size else []
+    parts = body.measured_thickness.thin_parts(least) if body.element_size else []
     if not parts or body.element_size is None:
         return None
     few = min(part.across for part in parts)

@@ -14,7 +14,7 @@ import numpy as np
 from benchmark_bodies import ELEMENT_SIZE, hand_robot
 from machine import machine
 
-from hydrostat.geometry import measure_thickness, thin_parts
+from hydrostat.geometry import Thickness
 from hydrostat.robot import LEAST_ACROSS, Robot, Source, gallery_folder, list_gallery, load_robot, outline_body
 from hydrostat.simulation import Simulation
 
@@ -57,7 +57,7 @@ def pose(robot: Robot) -> tuple[np.ndarray, float]:
 def row(name: str, make: Callable[[float], Robot], finenesses: tuple[float, ...]) -> str:
     robots = [make(finer) for finer in finenesses]
     mesh = robots[0].body.mesh
-    parts = thin_parts(measure_thickness(mesh), 5.0)
+    parts = Thickness.measure(mesh).thin_parts(5.0)
     places, tensions = zip(*map(pose, robots), strict=True)
     rest = np.array([marker.at for marker in robots[0].markers])
     moved = np.linalg.norm(places[-1] - rest, axis=1).max()
@@ -65,7 +65,7 @@ def row(name: str, make: Callable[[float], Robot], finenesses: tuple[float, ...]
     return (
         f"| {name} | {' / '.join(str(len(robot.body.mesh.nodes)) for robot in robots)} "
         f"| {f'{parts[0].across:.1f}' if parts else '5 or more'} "
-        f"| {'yes' if thin_parts(measure_thickness(mesh), LEAST_ACROSS[mesh.dim]) else 'no'} | {1e3 * moved:.1f} "
+        f"| {'yes' if Thickness.measure(mesh).thin_parts(LEAST_ACROSS[mesh.dim]) else 'no'} | {1e3 * moved:.1f} "
         f"| {' / '.join(f'{1e3 * far:.1f}' for far in off)} | {' / '.join(f'{tension:.2f}' for tension in tensions)} |"
     )
 

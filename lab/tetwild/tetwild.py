@@ -21,7 +21,7 @@ import numpy as np  # isort: skip
 from meshes import quality
 
 from hydrostat.errors import HydrostatError
-from hydrostat.geometry import Mesh, Surface, contour, heal, tetrahedralize, turned_outward
+from hydrostat.geometry import Mesh, Surface, contour, heal, tetrahedralize
 from hydrostat.robot import gallery_folder, load_robot
 
 sys.path.append(str(Path(__file__).parents[2] / "tests" / "geometry"))
@@ -83,7 +83,9 @@ def wild(*, wide: bool) -> Callable[[Surface, float], Mesh]:
             np.array(surface.vertices), surface.triangles.astype(np.int32), edge_length_abs=element_size,
             epsilon=0.1 * element_size / diagonal if wide else 1e-3, num_threads=1, quiet=True,
         )  # fmt: skip
-        return Mesh(nodes, turned_outward(nodes, elements.astype(np.int64)))
+        corners = nodes[elements]
+        is_inverted = np.linalg.det(corners[:, 1:] - corners[:, :1]) < 0
+        return Mesh(nodes, np.where(is_inverted[:, None], elements[:, [1, 0, 2, 3]], elements).astype(np.int64))
 
     return make
 

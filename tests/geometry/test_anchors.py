@@ -11,7 +11,7 @@ from shapely import Polygon, distance, points, union_all
 from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh, locate, triangulate
 from hydrostat.geometry import anchors as module
-from hydrostat.geometry.anchors import anchor_nodes
+from hydrostat.geometry.anchors import Anchors
 
 
 @cache
@@ -171,7 +171,7 @@ def test_of_two_equally_deep_the_first() -> None:
 def test_nodes_by_number(mesh: Mesh) -> None:
     """Oracle: the nodes themselves, to the last bit, each in the first element that has it."""
     chosen = np.unique(mesh.elements)[::3]
-    anchors = anchor_nodes(mesh, chosen)
+    anchors = Anchors.at_nodes(mesh, chosen)
     assert np.array_equal(anchors.positions(mesh.nodes), mesh.nodes[chosen])
     assert anchors.inside.all()
     for node, stencil in zip(chosen, anchors.stencils, strict=True):
@@ -182,6 +182,6 @@ def test_a_node_of_no_element() -> None:
     """Oracle: `locate`, for such a node is a point like any other."""
     corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.25, 0.25], [2.0, 0.0]])
     mesh = Mesh(corners, np.array([[0, 1, 2]]))
-    anchors = anchor_nodes(mesh, np.array([1, 3, 4]))
+    anchors = Anchors.at_nodes(mesh, np.array([1, 3, 4]))
     assert np.allclose(anchors.weights, [[0, 1, 0], [0.5, 0.25, 0.25], [0, 1, 0]])
     assert np.array_equal(anchors.distances, [0, 0, 1])

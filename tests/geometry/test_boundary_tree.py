@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from touching import fork_mesh
 
-from hydrostat.geometry.boundary_tree import BoundaryTree, facet_areas
+from hydrostat.geometry.boundary_tree import BoundaryTree
 from hydrostat.geometry.mesh import Mesh
 from hydrostat.kernel import native
 
@@ -142,7 +142,7 @@ def test_pairs_that_touch_at_rest_may_move() -> None:
 @pytest.mark.parametrize("dim", [2, 3])
 def test_areas_are_those_of_the_boundary(dim: int) -> None:
     """The box less its slot, counted by hand [mm]."""
-    areas, around = facet_areas(fork_mesh(dim))
+    areas, around = fork_mesh(dim).facet_areas()
     slot, rim = 2 * 90 + 40 / 3, 2 * (120 + 40) - 40 / 3
     plate = (120 * 40 - 90 * 40 / 3) * 2e-6
     wanted = 1e-3 * (slot + rim) if dim == 2 else 1e-3 * (slot + rim) * 0.02 + plate

@@ -5,22 +5,15 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from hydrostat.geometry.distance_field import (
-    DistanceField,
-    box_field,
-    capsule_field,
-    cylinder_field,
-    plane_field,
-    sphere_field,
-)
+from hydrostat.geometry.distance_field import DistanceField
 
 A, B = np.array([0.1, -0.2, 0.3]), np.array([0.6, 0.5, -0.1])
 FIELDS: dict[str, Callable[[int], DistanceField]] = {
-    "plane": lambda dim: plane_field(A[:dim], B[:dim]),
-    "sphere": lambda dim: sphere_field(A[:dim], 0.3),
-    "capsule": lambda dim: capsule_field(A[:dim], B[:dim], 0.2),
-    "cylinder": lambda dim: cylinder_field(A[:dim], B[:dim], 0.2),
-    "box": lambda dim: box_field(A[:dim], B[:dim]),
+    "plane": lambda dim: DistanceField.plane(A[:dim], B[:dim]),
+    "sphere": lambda dim: DistanceField.sphere(A[:dim], 0.3),
+    "capsule": lambda dim: DistanceField.capsule(A[:dim], B[:dim], 0.2),
+    "cylinder": lambda dim: DistanceField.cylinder(A[:dim], B[:dim], 0.2),
+    "box": lambda dim: DistanceField.box(A[:dim], B[:dim]),
 }
 INSIDE: dict[str, Callable[[np.ndarray, int], np.ndarray]] = {
     "plane": lambda x, d: (x - A[:d]) @ B[:d] < 0,

@@ -7,7 +7,7 @@ from builders import box_mesh, strip_mesh
 from shapely import Point
 
 from hydrostat.geometry.outline import Outline
-from hydrostat.geometry.shell import Shell, outline_shell
+from hydrostat.geometry.shell import Shell
 from hydrostat.geometry.surface import Solid, Surface
 
 ANGLES = np.linspace(0, 2 * np.pi, 10, endpoint=False)
@@ -28,7 +28,7 @@ def thorn() -> Surface:
 def test_distances_in_the_plane_are_those_of_shapely() -> None:
     points = np.random.default_rng(0).uniform(-0.08, 0.08, (500, 2))
     points = np.concatenate([points, 1.1 * STAR.exterior, 0.9 * STAR.exterior])
-    found = outline_shell(STAR).nearest(points)
+    found = Shell.of_outline(STAR).nearest(points)
     boundary = STAR.polygon.boundary
     expected = [
         boundary.distance(Point(point)) * (-1 if STAR.polygon.contains(Point(point)) else 1) for point in points
@@ -44,7 +44,7 @@ def test_distances_in_space_are_those_of_the_solid() -> None:
     np.testing.assert_allclose(found.distances, Solid(surface).distances(points), atol=1e-9)
 
 
-@pytest.mark.parametrize("shell", [outline_shell(STAR), Shell(thorn().vertices, thorn().triangles)], ids=["2", "3"])
+@pytest.mark.parametrize("shell", [Shell.of_outline(STAR), Shell(thorn().vertices, thorn().triangles)], ids=["2", "3"])
 def test_derivatives_are_those_of_differences(shell: Shell) -> None:
     """By the point, and by the nodes of the facet; all but the few points whose nearest place jumps agree."""
     random, dim = np.random.default_rng(1), shell.nodes.shape[1]
@@ -77,4 +77,4 @@ def test_the_boundary_of_a_mesh_is_a_closed_shell_with_the_body_inside(mesh) -> 
 
 def test_places_that_are_no_numbers_are_refused() -> None:
     with pytest.raises(ValueError, match="finite"):
-        outline_shell(STAR).nearest(np.array([[np.nan, 0.0]]))
+        Shell.of_outline(STAR).nearest(np.array([[np.nan, 0.0]]))

@@ -10,7 +10,7 @@ from shapely import MultiLineString, box, distance, get_coordinates, points
 from shapely.affinity import rotate
 
 from hydrostat.errors import InputError, OutlineError
-from hydrostat.geometry import Mesh, Outline, read_outline, smallest_angle, triangulate
+from hydrostat.geometry import Mesh, Outline, read_outline, triangulate
 
 
 def boundary_distance(shape: Outline, mesh: Mesh) -> float:
@@ -27,7 +27,7 @@ def _reach(one: MultiLineString, other: MultiLineString) -> float:
 
 def check(shape: Outline, mesh: Mesh, element_size: float, least_angle: float) -> None:
     """Angles, boundary, topology (Euler: nodes - edges + elements = 1 - holes), nodes all used, edges of the size."""
-    assert smallest_angle(mesh) >= least_angle
+    assert mesh.smallest_angle() >= least_angle
     assert boundary_distance(shape, mesh) <= element_size / 5
     assert len(mesh.nodes) - len(mesh.edges) + len(mesh.elements) == 1 - len(shape.holes)
     assert np.array_equal(np.unique(mesh.elements), np.arange(len(mesh.nodes)))
@@ -123,7 +123,7 @@ def test_the_angle_check_can_fail() -> None:
     """Oracle: a right triangle with legs 1 and sqrt(3) has 30 degrees, one with legs 1 and 10 has atan(0.1)."""
     for side, expected in ((3**0.5, 30.0), (10.0, np.degrees(np.arctan(0.1)))):
         mesh = Mesh(np.array([[0.0, 0.0], [side, 0.0], [0.0, 1.0]]), np.array([[0, 1, 2]]))
-        assert smallest_angle(mesh) == pytest.approx(expected)
+        assert mesh.smallest_angle() == pytest.approx(expected)
 
 
 EXAMPLES = [

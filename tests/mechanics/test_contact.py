@@ -8,7 +8,7 @@ import pytest
 from builders import box_mesh, strip_mesh
 from touching import DISTANCE, fork_robot
 
-from hydrostat.geometry import Pairs, plane_field, sphere_field
+from hydrostat.geometry import DistanceField, Pairs
 from hydrostat.kernel import native
 from hydrostat.mechanics import (
     Assembly,
@@ -148,7 +148,9 @@ def test_an_obstacle(dim: int) -> None:
     """A ball next to the upper prong, some of which it touches."""
     robot = fork_robot(dim)
     mesh, at = robot.body.mesh, np.array([0.06, 0.0307, 0.011][:dim])
-    energy = ObstacleEnergy(mesh, sphere_field(at, 0.01), distance=DISTANCE, young=3e4, thickness=robot.body.thickness)
+    energy = ObstacleEnergy(
+        mesh, DistanceField.sphere(at, 0.01), distance=DISTANCE, young=3e4, thickness=robot.body.thickness
+    )
     nodes = mesh.nodes + 1e-4 * np.sin(40 * mesh.nodes)
     assert energy.value(nodes, IDLE) > 0
     check_energy(energy, nodes, IDLE)
@@ -166,7 +168,7 @@ def test_an_obstacle(dim: int) -> None:
 def test_samples_stand_for_the_whole_boundary(dim: int) -> None:
     """Their weights are those of an exact rule: the integral of a square over the boundary, by many more points."""
     mesh = fork_robot(dim).body.mesh
-    energy = ObstacleEnergy(mesh, sphere_field(np.ones(dim), 0.1), distance=1.0, young=4.329)
+    energy = ObstacleEnergy(mesh, DistanceField.sphere(np.ones(dim), 0.1), distance=1.0, young=4.329)
     squares = (energy.places(mesh.nodes) ** 2).sum(axis=1)
     corners = mesh.nodes[mesh.boundary]
     if dim == 2:
@@ -188,7 +190,9 @@ def test_a_block_pressed_against_a_plane(dim: int) -> None:
         stencils=held[:, None], weights=np.ones((len(held), 1)), targets=rest[held], stiffness=np.full(len(held), 1e7)
     )
     far, back = np.eye(dim)[0] * (length + 1e-4), -np.eye(dim)[0]
-    wall = ObstacleEnergy(mesh, plane_field(far, back), distance=1e-4, young=3e4, thickness=depth if dim == 2 else None)
+    wall = ObstacleEnergy(
+        mesh, DistanceField.plane(far, back), distance=1e-4, young=3e4, thickness=depth if dim == 2 else None
+    )
     body = NeoHookean(rest, mesh.elements, mu=mu, lame=0.0, thickness=depth)
     pushed = pin.with_supports_moved(np.tile(0.004 * np.eye(dim)[0], (len(held), 1)))
     whole = Assembly([body, pushed, wall], rest=rest, control_count=0)

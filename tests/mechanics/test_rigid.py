@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from builders import box_mesh, strip_mesh
 
-from hydrostat.geometry import DistanceField, Mesh, box_field, sphere_field
+from hydrostat.geometry import DistanceField, Mesh
 from hydrostat.mechanics import ObstacleEnergy
 from hydrostat.mechanics.rigid import CarriedWarp, GuideEnergy, RigidBodyDofs, RigidEnergy
 from hydrostat.testing import check_energy
@@ -29,7 +29,10 @@ def scene(dim: int, *, up: float = 0.0) -> tuple[Mesh, RigidBodyDofs, np.ndarray
 
 def shapes(dim: int) -> dict[str, tuple[DistanceField, float]]:
     corner = np.full(dim, 0.02)
-    return {"sphere": (sphere_field(np.zeros(dim), 0.02), 0.0), "box": (box_field(-corner, corner), 3e-3)}
+    return {
+        "sphere": (DistanceField.sphere(np.zeros(dim), 0.02), 0.0),
+        "box": (DistanceField.box(-corner, corner), 3e-3),
+    }
 
 
 def met(dim: int, shape: str, friction: float) -> tuple[ObstacleEnergy, np.ndarray]:

@@ -10,7 +10,7 @@ import numpy as np
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.files import read_stranger
-from hydrostat.geometry import Curve, Mesh, Nearest, Outline, Shell, Surface, outline_shell, read_drawing, read_outline
+from hydrostat.geometry import Curve, Mesh, Nearest, Outline, Shell, Surface, read_drawing, read_outline
 from hydrostat.given import path_of
 from hydrostat.ik.objectives.objective import (
     EquilibriumState,
@@ -85,7 +85,7 @@ class ShapeTarget(Objective):
                 raise InputError(
                     f"outline must be an Outline [m], not {describe(self.outline)}; drawn_pose(robot, file) reads one"
                 )
-            return "outline", outline_shell(self.outline)
+            return "outline", Shell.of_outline(self.outline)
         assert self.surface is not None
         if mesh.dim != 3:
             raise InputError("a surface is a goal for bodies in space; this one is flat, give an outline")

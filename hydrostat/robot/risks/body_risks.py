@@ -10,12 +10,9 @@ from hydrostat.geometry import (
     BoundaryTree,
     Mesh,
     Solid,
-    dihedral_angles,
     euler,
     find_crossings,
     fit,
-    smallest_angle,
-    thin_parts,
 )
 from hydrostat.kernel import native
 from hydrostat.robot.body import Body
@@ -58,8 +55,8 @@ def body_risks(robot: Robot) -> Iterator[str]:
 
 def _flat_angles(mesh: Mesh) -> Iterator[str]:
     least_angle = 20.0  # triangles with a smaller angle [degrees] make the simulation less exact
-    if smallest_angle(mesh) < least_angle:
-        yield f"body: the mesh has an angle of {smallest_angle(mesh):.0f} degrees; try another element_size"
+    if mesh.smallest_angle() < least_angle:
+        yield f"body: the mesh has an angle of {mesh.smallest_angle():.0f} degrees; try another element_size"
 
 
 def _crossing(mesh: Mesh) -> Iterator[str]:
@@ -88,7 +85,7 @@ def _touching(mesh: Mesh) -> Points:
 
 
 def _slivers(mesh: Mesh) -> Iterator[str]:
-    angles = dihedral_angles(mesh.nodes, mesh.elements)
+    angles = mesh.dihedral_angles()
     least_dihedral = 10.0  # tetrahedra with a smaller angle between two faces [degrees] do so, too
     count = int((angles < least_dihedral).sum())
     if count:
@@ -135,7 +132,7 @@ def _locking(body: Body) -> Iterator[str]:
 
 def _thin(body: Body) -> Iterator[str]:
     dim, quadratic = body.mesh.dim, body.mesh.quadratic is not None
-    parts = thin_parts(body.measured_thickness, 2 * LEAST_QUADRATIC if quadratic else LEAST_ACROSS[dim])
+    parts = body.measured_thickness.thin_parts(2 * LEAST_QUADRATIC if quadratic else LEAST_ACROSS[dim])
     if not parts:
         return
     thinnest = parts[0]

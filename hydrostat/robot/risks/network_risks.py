@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from hydrostat.arrays import Float, Points
-from hydrostat.geometry import clearance, locate, spacings
+from hydrostat.geometry import clearance, locate
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.risks.words import Risk, known_up_to, mm, place, told_together
@@ -134,7 +134,7 @@ def _leaving(robot: Robot) -> Iterator[Risk]:
         if robot.body.outline is None:
             out = locate(robot.body.mesh, places).distances
             sewn = cover(robot.body, inside).max() <= SEWN_DEPTH
-            leaves = out.max() > max(corner * float(np.median(spacings(robot.body.mesh))), spans if sewn else 0.0)
+            leaves = out.max() > max(corner * float(np.median(robot.body.mesh.spacings)), spans if sewn else 0.0)
         else:
             from shapely import LineString, distance, points
 

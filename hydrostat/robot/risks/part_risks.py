@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hydrostat.geometry import clearance, spacings
+from hydrostat.geometry import clearance
 from hydrostat.robot.risks.words import Risk, mm, place, told_together
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.rod import sample_rod
@@ -37,7 +37,7 @@ def _judge_parts(robot: Robot) -> Iterator[tuple[bool, Risk]]:
         own = grid[part.holds(grid)]
         gaps = body.distances(own)
         far, share = float(gaps.max()), float((gaps > 0).mean())
-        if part.is_rigid and share > LEAST_OUTSIDE and far > 0.1 * float(np.median(spacings(body.mesh))):
+        if part.is_rigid and share > LEAST_OUTSIDE and far > 0.1 * float(np.median(body.mesh.spacings)):
             yield (
                 True,
                 Risk(

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from hydrostat.arrays import Float, Points
-from hydrostat.geometry import Mesh, locate, spacings
+from hydrostat.geometry import Mesh, locate
 from hydrostat.robot.risks.words import Risk, known_up_to, mm, told_together
 from hydrostat.robot.robot import Robot
 from hydrostat.units import plural
@@ -17,7 +17,7 @@ def pin_risks(robot: Robot) -> Iterator[str]:
     held = [pin.holds(mesh) for pin in robot.pins]
     if np.any(held, axis=0).all():
         yield "pin: every node of the body is held, nothing can move; make a radius or a box smaller"
-    reach = 1.5 * float(np.median(spacings(mesh)))
+    reach = 1.5 * float(np.median(mesh.spacings))
     found = []
     for index, nodes in enumerate(held):
         count = int(nodes.sum())
@@ -41,7 +41,7 @@ def marker_risks(robot: Robot) -> Iterator[str]:
         Risk(f"marker[{index}] {robot.markers[index].name}", 0.0, "held by a pin, cannot move")
         for index in np.flatnonzero(stuck)
     )
-    usual = float(np.median(spacings(mesh)))
+    usual = float(np.median(mesh.spacings))
     gaps = np.linalg.norm(mesh.nodes[None] - places[:, None], axis=2).min(axis=1)
     far = 1.5  # a marker is far from any node at this many times the usual length of an element
     yield from told_together(
@@ -84,7 +84,7 @@ def _stretching(robot: Robot) -> Iterator[Risk]:
         return
     places = np.array([marker.at for marker in robot.markers], dtype=float)
     rows = {marker.name: row for row, marker in enumerate(robot.markers)}
-    short = 2.0 * float(np.median(spacings(mesh)))  # ways of fewer elements than this tell nothing of a stretch
+    short = 2.0 * float(np.median(mesh.spacings))  # ways of fewer elements than this tell nothing of a stretch
     direct = np.maximum(np.linalg.norm(mesh.nodes[held] - places[:, None], axis=2), short)  # no way is shorter
     most = max(
         (
