@@ -1,6 +1,5 @@
 """`hydrostat calibrate`."""
 
-import signal
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -79,7 +78,7 @@ def calibrate(
         return np.array([load[place] for load, place in zip(loads, places, strict=True)])
 
     truth = control.add_cable_layers(calibration.assume_zeros()) if port == control.EMULATED else calibration
-    with one_interrupt(f"{kind}: stopped", signals=(signal.SIGINT, signal.SIGTERM)):
+    with one_interrupt(f"{kind}: stopped"):
         bus = control.open_bus(port, loaded, truth, tensions)
         try:
             found, constants = _take_up(kind, bus, folder / file, calibration, model)

@@ -1,7 +1,6 @@
 """`hydrostat design`."""
 
 import math
-import signal
 import sys
 import time
 from pathlib import Path
@@ -26,7 +25,6 @@ if TYPE_CHECKING:
     from hydrostat.fabrication import Kit
     from hydrostat.robot import Robot
 
-_ENDING = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 _CLEARLY = 0.95  # a network with so many times the error of the last that was told is told
 STOPPING = "stopping: solving and writing the best network so far ..."  # said when Ctrl-C ends a search
 
@@ -170,9 +168,9 @@ def design(
     """Design the winches and cable routes that reach given poses.
 
     Writes a robot folder, report.html with pictures of every stage, score.json, and alternatives as robot folders.
-    Ctrl-C, SIGTERM and --time end the search and keep the best network so far. A constraints file has lines such as
-    clearance = "4 mm", tension = "15 N", locked_cables = ["left 1"], and tables [[keep_out]], [[still]] and
-    [[winch_zone]] with at and radius, box, or outline.
+    Ctrl-C, SIGTERM, a closed terminal and --time end the search and keep the best network so far. A constraints file
+    has lines such as clearance = "4 mm", tension = "15 N", locked_cables = ["left 1"], and tables [[keep_out]],
+    [[still]] and [[winch_zone]] with at and radius, box, or outline.
 
     Example: hydrostat design gallery:starfish --pose wave --winches 2 --cables 6 --out build/starfish
     """
@@ -213,7 +211,7 @@ def design(
     request = parse_request(source, typed)
     for reason in body_refusals(source):
         print(f"warning: no kit can be made of this body: {in_words(reason)}", file=sys.stderr, flush=True)
-    with one_interrupt(STOPPING, signals=_ENDING, interrupt=True) as pass_over:
+    with one_interrupt(STOPPING, interrupt=True) as pass_over:
         network = _search(source, request)
         pass_over()
         printed = print_poses(network, time.perf_counter() - began)

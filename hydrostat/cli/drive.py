@@ -1,7 +1,6 @@
 """`hydrostat drive`."""
 
 import shutil
-import signal
 import sys
 import time
 from math import inf
@@ -53,7 +52,7 @@ def drive(
 
     Without --motors the motors are simulated, and every line starts with "simulated". With --motors, winch limits, a
     watchdog and a tension guard protect the robot. Motors hold when the input is lost, and stop at the end, on Ctrl-C,
-    on SIGTERM and on any error.
+    on SIGTERM, when the terminal closes and on any error.
 
     With --tips you move markers, and inverse kinematics computes the contractions while you drive.
 
@@ -73,7 +72,7 @@ def drive(
     learned = None if known is None else teleop.HandMap.open(known)
     simulation, kind = prepare_physics(loaded), "simulated" if port is None else port.partition(":")[0]
     way = _way(simulation, networks, tips=tips, guarded=port is not None)
-    with one_interrupt("", signals=(signal.SIGINT, signal.SIGTERM)):  # arming turns motors, too
+    with one_interrupt(""):  # arming turns motors, too
         asked: DriveSource | None = None
         motors: Motors | None = None
         try:

@@ -66,13 +66,13 @@ def learn(
         if chosen != {"members": None, "steps": None}:
             raise InputError("--fine-tune: not available with --members or --steps. Remove them.")
         known = load_model(start)
-        with one_interrupt("stopping: saving the best model so far ..."):
+        with one_interrupt("stopping: saving the best model so far ...", interrupt=True):
             model = correct_model(known, samples, progress=report_progress())
             save_model(model, out)
         print(f"expected marker error {1e3 * model.card.error:.3f} mm ({len(samples)} samples)")
         _end(model, out)
         return
-    with one_interrupt("stopping: saving the best model so far ..."):
+    with one_interrupt("stopping: saving the best model so far ...", interrupt=True):
         model = learn_model(samples, options=options, progress=report_progress())
         save_model(model, out)
     moved, error = 1e3 * model.card.displacement, 1e3 * model.card.error

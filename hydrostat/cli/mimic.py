@@ -1,7 +1,6 @@
 """`hydrostat mimic`."""
 
 import select
-import signal
 import sys
 import time
 from pathlib import Path
@@ -65,7 +64,7 @@ def mimic(
         lesson = _lesson(simulation, hand, out, tips=tips)
         show = wearer.person.mimic if emulated else lambda _: None
         with (
-            one_interrupt("", signals=(signal.SIGINT, signal.SIGTERM)),  # arming turns motors, too
+            one_interrupt(""),  # arming turns motors, too
             _Session(folder_of(robot), simulation, port, hand) as session,
         ):
             session.say(lesson.summary())

@@ -1,7 +1,6 @@
 """`hydrostat play`."""
 
 import shutil
-import signal
 import sys
 import time
 from collections.abc import Callable
@@ -38,8 +37,8 @@ def play(
     """Play a table of contractions on the motors in real time.
 
     Without --motors the motors are simulated, and every line starts with "simulated". `hydrostat trajectory` and the
-    studio write such tables. Motors stop at the end, on Ctrl-C, on SIGTERM and on any error. With --motors they also
-    stop if a cable tension is far above the simulated one, or missing.
+    studio write such tables. Motors stop at the end, on Ctrl-C, on SIGTERM, when the terminal closes and on
+    any error. With --motors they also stop if a cable tension is far above the simulated one, or missing.
 
     Example: hydrostat play gallery:starfish build/dance/trajectory.csv --repeat 3
     """
@@ -66,7 +65,7 @@ def play(
     motors = control.Motors(loaded.winches, control.SimulatedLink(np.zeros(len(loaded.winches))), fastest=fastest)
     motors.check(table, speed=speed)  # before anything turns
     pulls = None if port is None else control.tensions_along(loaded, table.profile)
-    with one_interrupt("", signals=(signal.SIGINT, signal.SIGTERM)):  # arming turns motors, too
+    with one_interrupt(""):  # arming turns motors, too
         if port is not None and pulls is not None:
             motors = control.arm_motors(folder_of(robot), loaded, port, pulls, log=lambda line: print(line, flush=True))
         try:

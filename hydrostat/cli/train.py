@@ -170,7 +170,7 @@ def train(
     def tell(point: "CurvePoint") -> None:
         _row(f"{_line(point, word, factor)}   {time.process_time() - began:.0f} s")
 
-    with one_interrupt("stopping: --resume continues from the last row above"):
+    with one_interrupt("stopping: --resume continues from the last row above", interrupt=True):
         more = {"resume": resume, "processes": processes}
         listener = training.Listener(point=tell, progress=progress)
         trained, curve = training.train(env, wanted, options, out, judge_in=judged, listener=listener, **more)

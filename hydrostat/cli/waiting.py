@@ -1,5 +1,6 @@
 """While a person waits: what takes long, how far it is, and what Ctrl-C does."""
 
+import os
 import signal
 import sys
 import time
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
     from hydrostat.simulation import Simulation
 
 PATIENCE = 3.0  # seconds after which a person is told what takes so long
+STOP_SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
+"""Signals that end work and keep what it has: Ctrl-C, a polite kill, a terminal that closes."""
 
 
 @contextmanager
@@ -142,20 +145,29 @@ def _lines() -> Progress:
 
 @contextmanager
 def one_interrupt(
-    words: str, *, signals: Sequence[int] = (signal.SIGINT,), interrupt: bool = False
+    words: str, *, signals: Sequence[int] = STOP_SIGNALS, interrupt: bool = False
 ) -> Iterator[Callable[[], None]]:
     """Let the first Ctrl-C stop the work, and no later one spoil how it ends; some words, if any, are printed then.
 
     The first signal raises KeyboardInterrupt, or SystemExit for another signal than SIGINT unless `interrupt`; every
     later one is passed over until the block ends. Then signals do again what they did before, whatever that was. A
     handler that was not set from Python cannot be put back by it, so where there is such a one it stays, and answers.
+    A SIGHUP that came ignored, as under nohup, stays ignored; one that comes with a closed terminal ends what is
+    printed there, and not the work that is still to be kept.
 
     Gives what to call where the work is over: from there on every signal is passed over, so that results are whole.
     """
     before = {number: signal.getsignal(number) for number in signals}
-    ours = [number for number, handler in before.items() if handler is not None]
+    hangup = getattr(signal, "SIGHUP", None)
+    ours = [
+        number
+        for number, handler in before.items()
+        if handler is not None and not (number == hangup and handler == signal.SIG_IGN)
+    ]
     if current_thread() is not main_thread():  # where no signal arrives
         ours = []
+
+    terminals = [stream for stream in (1, 2) if os.isatty(stream)]
 
     def pass_over() -> None:
         for number in ours:
@@ -164,6 +176,8 @@ def one_interrupt(
     def stop(number: int, frame: FrameType | None) -> None:
         del frame
         pass_over()
+        if number == hangup:
+            _send_nowhere(terminals)
         if words:
             print(words, file=sys.stderr, flush=True)
         raise KeyboardInterrupt if interrupt or number == signal.SIGINT else SystemExit(128 + number)
@@ -175,6 +189,14 @@ def one_interrupt(
     finally:
         for number in ours:
             signal.signal(number, before[number])
+
+
+def _send_nowhere(streams: Sequence[int]) -> None:
+    """Drop all later output of file descriptors, as writing to a closed terminal fails."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    for stream in streams:
+        os.dup2(nowhere, stream)
+    os.close(nowhere)
 
 
 def heed_interrupts() -> None:

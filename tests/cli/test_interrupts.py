@@ -1,6 +1,7 @@
 """What signals do. Oracle: real signals in processes of their own, which begin with SIGINT as usual, or ignored."""
 
 import os
+import pty
 import signal
 import subprocess
 import sys
@@ -140,6 +141,39 @@ def test_a_command_that_is_interrupted_says_so(begun: Callable[[], object], tmp_
     assert work.returncode == 130
     assert beside == "hydrostat: interrupted; files written so far are complete\n"
     assert "Wrote" not in printed
+
+
+CLOSING = """
+import signal, sys, time
+from pathlib import Path
+from hydrostat.cli.waiting import one_interrupt
+with one_interrupt("stopping", interrupt=True):
+    try:
+        print("begun", flush=True)
+        time.sleep(60)
+    except KeyboardInterrupt:
+        print("kept", flush=True)
+        Path(sys.argv[1]).write_text("kept")
+"""
+
+
+@pytest.mark.parametrize("ignored", [False, True], ids=["usual", "nohup"])
+def test_a_closed_terminal_stops_work_and_keeps_it(tmp_path: Path, ignored: bool) -> None:
+    """Oracle: a terminal whose other end is closed; a program under nohup is not stopped by it."""
+    kept = tmp_path / "kept"
+    child, terminal = pty.fork()
+    if child == 0:
+        if ignored:
+            signal.signal(signal.SIGHUP, signal.SIG_IGN)
+        os.execv(sys.executable, [sys.executable, "-c", CLOSING, str(kept)])
+    assert b"begun" in os.read(terminal, 100)
+    os.close(terminal)
+    if ignored:
+        os.kill(child, signal.SIGHUP)
+        assert os.waitpid(child, os.WNOHANG) == (0, 0)
+        os.kill(child, signal.SIGTERM)
+    os.waitpid(child, 0)
+    assert kept.exists() != ignored
 
 
 def test_another_signal_ends_a_search_as_an_interrupt_does() -> None:

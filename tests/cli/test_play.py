@@ -90,9 +90,15 @@ def test_on_a_terminal_one_line_is_updated(starfish: Path, wave: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)], ids=["interrupt", "terminate"]
+    ("number", "code", "ignored"),
+    [
+        (signal.SIGINT, 130, False),
+        (signal.SIGINT, 130, True),
+        (signal.SIGTERM, 143, False),
+        (signal.SIGHUP, 129, False),
+    ],
+    ids=["interrupt", "in the background", "terminate", "hang up"],
 )
-@pytest.mark.parametrize("ignored", [False, True])
 @pytest.mark.slow
 def test_a_signal_stops_the_motors(starfish: Path, wave: Path, number: int, code: int, ignored: bool) -> None:
     """Also in the background of a script, where SIGINT comes ignored."""

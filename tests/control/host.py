@@ -4,7 +4,6 @@ Its last argument says how many times slower than the clock its time passes, as 
 """
 
 import itertools
-import signal
 import sys
 import time
 from typing import cast
@@ -52,7 +51,7 @@ def main(path: str, kind: str, event: str) -> None:
     far = 0.0096 if event == "clock jumps" else 0.03  # goals far ahead, which the link must not pass on as they are
     profile = ContractionProfile(times=np.array([0.0, 0.2]), values=np.full((2, 3), far))
     try:
-        with one_interrupt("", signals=(signal.SIGINT, signal.SIGTERM)):
+        with one_interrupt(""):
             play(motors, profile, player, tell=tell)
     finally:
         link.close()

@@ -55,7 +55,7 @@ def happens(event: str, process: subprocess.Popen[str], line: EmulatedLine) -> N
     """Let it happen."""
     if event == "unplugged":
         line.unplug()
-    elif event in ("SIGINT", "SIGTERM", "SIGKILL", "SIGSTOP"):
+    elif event in ("SIGINT", "SIGTERM", "SIGHUP", "SIGKILL", "SIGSTOP"):
         os.kill(process.pid, getattr(signal, event))
 
 
@@ -63,6 +63,7 @@ TOLD = {
     "SIGKILL": (-9, ""),
     "SIGINT": (-2, "KeyboardInterrupt"),
     "SIGTERM": (143, ""),
+    "SIGHUP": (129, ""),
     "SIGSTOP": (1, "told nothing for"),
     "crash": (1, "ZeroDivisionError"),
     "unplugged": (1, "the line to the motors is gone"),
