@@ -31,6 +31,8 @@ def check(
     Without options nothing is simulated: mesh, parts, rods, cables, winches and fit of the kit are checked. `hydrostat
     fabricate` also checks the motor and line loads of the poses.
 
+    Exit code 1 if there is an error, 0 with warnings and notes alone.
+
     Example: hydrostat check gallery:starfish --thorough
     """
     from hydrostat.robot import describe_cable_side
@@ -66,10 +68,11 @@ def check(
 
 def _print_judgement(robot: "Robot") -> None:
     """Print the design review of a robot, as the studio does, regardless of the motor loads in its poses."""
-    from hydrostat.design import Constraints, Diagnostic, Severity, find_no_room, review_robot
+    from hydrostat.design import NO_KIT, Constraints, Diagnostic, Severity, find_no_room, review_robot
     from hydrostat.errors import in_words
 
-    found = [Diagnostic(text=text, weight=Severity.REFUSED, places=()) for text in print_sewing(robot.body)]
+    weight, before = (Severity.REFUSED, "") if robot.cables else (Severity.MIND, NO_KIT)
+    found = [Diagnostic(text=before + text, weight=weight, places=()) for text in print_sewing(robot.body)]
     found += review_robot(robot, constraints=Constraints())
     if not robot.cables and (words := find_no_room(robot)):
         found.append(Diagnostic(text=words, weight=Severity.MIND, places=()))
@@ -78,6 +81,8 @@ def _print_judgement(robot: "Robot") -> None:
     refused, risky = (sum(one.weight is weight for one in found) for weight in (Severity.REFUSED, Severity.MIND))
     missing = "" if robot.cables else " (body only: no cables yet)"
     print(f"{'' if refused else 'OK: '}{plural(refused, 'error')}, {plural(risky, 'warning')}{missing}.")
+    if refused:
+        raise typer.Exit(1)
 
 
 def print_sewing(body: "Body") -> tuple[str, ...]:

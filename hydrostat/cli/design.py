@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from hydrostat.cli.check import print_sewing
 from hydrostat.cli.design_results import STALE, print_front, print_poses, write_kit, write_results
 from hydrostat.cli.design_wishes import DesignArguments, parse_request
 from hydrostat.cli.fabricate import print_kit
@@ -204,13 +205,11 @@ def design(
         lock_cable=lock_cable or [],
     )
     from hydrostat.design import kit_fits
-    from hydrostat.errors import in_words
 
     began = time.perf_counter()
     source = read_robot(robot)
     request = parse_request(source, typed)
-    for reason in body_refusals(source):
-        print(f"warning: no kit can be made of this body: {in_words(reason)}", file=sys.stderr, flush=True)
+    _refuse_body(source, request)
     with one_interrupt(STOPPING, interrupt=True) as pass_over:
         network = _search(source, request)
         pass_over()
@@ -230,6 +229,19 @@ def design(
     if not fits:
         print("hydrostat: error: the kit of this network would be rejected", file=sys.stderr)
         raise typer.Exit(1)
+
+
+def _refuse_body(source: "Robot", request: "DesignRequest") -> None:
+    """Stop before the search if no kit can be made of the body (InputError), or warn where none is asked for."""
+    from hydrostat.design import NO_KIT
+    from hydrostat.errors import InputError, in_words
+
+    reasons = [NO_KIT + in_words(reason) for reason in (*print_sewing(source.body), *body_refusals(source))]
+    if reasons and request.constraints.built_in and not request.method.grows_trees:
+        more = f" ({len(reasons) - 1} more: hydrostat check)" if len(reasons) > 1 else ""
+        raise InputError(f"{reasons[0]}{more}. To design without a kit: built_in = false in a file for --constraints.")
+    for reason in reasons:
+        print(f"warning: {reason}", file=sys.stderr, flush=True)
 
 
 def _search(source: "Robot", request: "DesignRequest") -> "Network":

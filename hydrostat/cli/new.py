@@ -285,6 +285,7 @@ def _draw(folder: Path) -> "Robot":
 
 def _print_made(made: "Robot", name: Path, lines: list[str], *, chosen: bool) -> None:
     """Say what there is now, and what to do next."""
+    from hydrostat.design import NO_KIT
     from hydrostat.errors import in_words
     from hydrostat.robot import find_risks
 
@@ -296,11 +297,9 @@ def _print_made(made: "Robot", name: Path, lines: list[str], *, chosen: bool) ->
         lines.append(f"{'note: coarse for speed' if mild else 'warning'}: {in_words(risk)}")
     for line in lines:
         print(line)
-    for reason in print_sewing(made.body):
-        print(f"{FINDINGS['mind']}: {reason}")
-    if not made.cables:
-        for reason in body_refusals(made):
-            print(f"warning: no kit can be made of this body: {in_words(reason)}")
+    sewing = print_sewing(made.body)
+    for reason in (*sewing, *(() if made.cables else body_refusals(made))):
+        print(f"{FINDINGS['mind']}: {NO_KIT}{in_words(reason)}")
     scaled = made.body.size is not None
     origin = (
         "from the center of the drawing" if flat else "in the scaled body" if scaled else "as in the file of the body"

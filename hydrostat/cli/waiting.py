@@ -131,14 +131,13 @@ def search_told(title: str) -> Iterator[Callable[[int, float], None]]:
 
 
 def _lines() -> Progress:
+    """Print each stage when it begins, once, however often it comes again."""
     seen: set[str] = set()
 
-    def tell(stage: str, done: int, total: int) -> None:
+    def tell(stage: str, _done: int, _total: int) -> None:
         if stage not in seen:
             seen.add(stage)
             print(f"{stage} ...", file=sys.stderr, flush=True)
-        if done == total:
-            print(f"{stage}: {total} of {total}", file=sys.stderr, flush=True)
 
     return tell
 

@@ -11,6 +11,8 @@ from hydrostat.design.skin_region import cable_region
 from hydrostat.fabrication import Demand, KitOptions, find_refusals
 from hydrostat.robot import Robot, find_risks
 
+NO_KIT = "no kit can be made of this body: "  # before a reason that holds whatever its winches and cables are
+
 
 def review_robot(
     robot: Robot,
@@ -31,7 +33,7 @@ def review_robot(
     """
     refused = find_refusals(robot, demand, options=options)
     weight = Severity.REFUSED if robot.cables else Severity.MIND
-    before = "" if robot.cables else "no kit can be made of this body: "
+    before = "" if robot.cables else NO_KIT
     limits = _limits(robot, constraints) if constraints is not None and robot.cables else ()
     return (
         *(Diagnostic(text=before + text, weight=weight, places=places_in(text, robot)) for text in refused),

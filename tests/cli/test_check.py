@@ -136,3 +136,25 @@ def test_reach_is_left_out_of_large_bodies(check: Check, monkeypatch: pytest.Mon
     monkeypatch.setattr("hydrostat.simulation.is_filled_motion_fast", lambda *_: False)
     lines = [line for line in check(gallery_folder("starfish")) if line.startswith("workspace")]
     assert lines == [f"workspace: skipped ({nodes} nodes, maximum {nodes - 1}). Use larger elements"]
+
+
+def test_an_error_ends_with_1_and_warnings_with_0(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """Oracle: exit code 1 exactly where a line begins with "error"; two winches at one place share their room."""
+    robot = load_robot(gallery_folder("starfish"))
+    one, two, *rest = robot.winches
+    cables = [
+        replace(cable, points=(one.at, *cable.points[1:])) if cable.winch == two.name else cable
+        for cable in robot.cables
+    ]
+    met = replace(robot, winches=(one, replace(two, at=one.at), *rest), cables=tuple(cables))
+    save_robot(met, tmp_path / "met")
+    for folder, code in ((tmp_path / "met", 1), (gallery_folder("squid"), 0)):
+        monkeypatch.setattr(sys, "argv", ["hydrostat", "check", str(folder)])
+        with pytest.raises(SystemExit) as stop:
+            main()
+        told = capsys.readouterr().out.splitlines()
+        assert (stop.value.code or 0) == code
+        assert any(line.startswith("error: ") for line in told) is bool(code)
+        assert any(line.startswith("warning: ") for line in told) or code

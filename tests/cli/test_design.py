@@ -168,7 +168,16 @@ def test_a_body_without_a_kit_is_reported_before_the_search(
     search.answer = replace(plain, source=posed)
     monkeypatch.setattr("hydrostat.design.kit_fits", lambda network: False)
     code, told, err = run("design", tmp_path / "holed", "--out", tmp_path / "out")
+    assert (code, told, search.asked, (tmp_path / "out").exists()) == (2, "", None, False)
+    assert err.startswith("hydrostat: error: no kit can be made of this body: hole 1 of the outline")
+    assert err.count("\n") == 1
+    assert "To design without a kit: built_in = false" in err
+    (tmp_path / "limits.toml").write_text("built_in = false\n")
+    code, told, err = run(
+        "design", tmp_path / "holed", "--constraints", tmp_path / "limits.toml", "--out", tmp_path / "out"
+    )
     assert code == 1
+    assert search.asked is not None
     assert "warning: no kit can be made of this body: hole 1 of the outline" in err
     assert f"Try: hydrostat check {tmp_path / 'holed'}" in told
     told = run("check", tmp_path / "holed")[1]

@@ -5,7 +5,7 @@ import time
 import pytest
 
 from hydrostat.cli import waiting
-from hydrostat.cli.waiting import patiently, report_progress
+from hydrostat.cli.waiting import patiently, progress_bar, report_progress
 
 
 def test_what_takes_long_is_told_and_what_is_quick_is_not(
@@ -34,3 +34,11 @@ def test_a_stage_that_comes_again_has_a_clock_of_its_own(
         tell("poses", done, 10)
     assert "poses: 10 of 10, 1/s" in (words := capsys.readouterr().err)
     assert words.endswith("poses: 10 of 10, 0.476/s\n")
+
+
+def test_a_log_has_one_line_for_each_stage(capsys: pytest.CaptureFixture[str]) -> None:
+    """Oracle: two stages, one of which comes three times."""
+    with progress_bar() as progress:
+        for stage, done in (("Drawing", 0), ("Drawing", 2), ("Refining", 1), ("Drawing", 0), ("Drawing", 2)):
+            progress(stage, done, 2)
+    assert capsys.readouterr().err == "Drawing ...\nRefining ...\n"

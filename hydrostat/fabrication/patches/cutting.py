@@ -301,7 +301,7 @@ def patch_problems(
         lengths = " and ".join(f"{length:.0f} mm" for length in worst.lengths)
         problems.append(
             f"the seam between patches {one} and {other} is {lengths} long on them, {worst.mismatch:.0%} apart. You "
-            f"cannot ease in more than {MOST_EASE:.0%}"
+            f"cannot ease in more than {MOST_EASE:.0%}. Cast this body in a mould or simplify its shape"
         )
     return tuple(problems)
 
