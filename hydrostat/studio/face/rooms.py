@@ -3,6 +3,7 @@
 import re
 import time
 from base64 import urlsafe_b64encode
+from collections import Counter
 from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
@@ -18,7 +19,13 @@ from hydrostat.studio.session import Session
 MOST = 48  # so many rooms are open at a time
 IDLE = 120.0  # a room that nobody looked at for so long [s] may be closed for another; its work is kept
 
+RETRY = 30  # a page that found no room asks again after so long [s]
+
 _KEY = re.compile(r"[A-Za-z0-9_-]{16,64}")
+
+
+class RoomsFullError(InputError):
+    """All rooms are in use."""
 
 
 @dataclass(eq=False)
@@ -27,9 +34,11 @@ class Room:
 
     key: str  # who knows it may work here
     session: Session  # the robot and all that can be done with it
+    address: str = ""  # of the computer that first asked for it
     stream: Stream = field(init=False)  # to the screens in it
     pulse: Pulse = field(init=False)  # its threads
     seen: float = 0.0  # when somebody came in last, by a clock that only grows [s]
+    visited: bool = False  # whether a page of it has connected; a bare request takes no room from others
 
     def __post_init__(self) -> None:
         self.stream = Stream(self.session)
@@ -82,8 +91,18 @@ class Rooms:
         for room in rooms:
             room.close()
 
-    def enter(self, key: str = "") -> Room:
-        """The room of a key, made where there is none yet (InputError: no key, or the studio is full)."""
+    def enter(self, key: str = "", *, address: str = "", visit: bool = False) -> Room:
+        """The room of a key, made where there is none yet.
+
+        Args:
+            key: of the room.
+            address: of the computer that asks; the one with most rooms that no page visited loses one first.
+            visit: true for a page that has loaded and connects.
+
+        Raises:
+            InputError: the key is none.
+            RoomsFullError: all rooms are in use.
+        """
         if self._only is not None:
             return self._only
         if not _KEY.fullmatch(key):
@@ -91,11 +110,11 @@ class Rooms:
         with self._lock:
             room = self._rooms.get(key)
             if room is None:
-                self._make_way()
-                room = self._rooms[key] = Room(key, self._session(key))
+                self._make_way(address)
+                room = self._rooms[key] = Room(key, self._session(key), address)
                 if self._open:
                     room.pulse.start()
-            room.seen = time.monotonic()
+            room.seen, room.visited = time.monotonic(), room.visited or visit
         return room
 
     def find_watched(self, key: str) -> Room | None:
@@ -112,14 +131,16 @@ class Rooms:
             session.go("pose")
         return session
 
-    def _make_way(self) -> None:
-        """Close the room that nobody has looked at for longest, if there are too many."""
+    def _make_way(self, address: str) -> None:
+        """Close a room that no page visited, or that nobody has looked at for longest, if there are too many."""
         if len(self._rooms) < MOST:
             return
+        bare = Counter(room.address for room in self._rooms.values() if not room.visited)
+        bare[address] += 1
         idle = [room for room in self._rooms.values() if not room.stream.screens]
-        oldest = min(idle, key=lambda room: room.seen, default=None)
-        if oldest is None or time.monotonic() - oldest.seen < IDLE:
-            raise InputError(f"all {MOST} rooms of this studio are in use. Try again later")
+        oldest = min(idle, key=lambda room: (room.visited, -bare[room.address], room.seen), default=None)
+        if oldest is None or (oldest.visited and time.monotonic() - oldest.seen < IDLE):
+            raise RoomsFullError(f"all {MOST} rooms of this studio are in use. Try again in a minute")
         del self._rooms[oldest.key]
         Thread(target=oldest.close, name="closing a room", daemon=True).start()
 

@@ -11,8 +11,8 @@ from urllib.parse import quote
 import uvicorn
 from fastapi import FastAPI
 from nicegui import ui
-from starlette.requests import Request
-from starlette.responses import PlainTextResponse, RedirectResponse, Response
+from starlette.requests import HTTPConnection, Request
+from starlette.responses import HTMLResponse, PlainTextResponse, RedirectResponse, Response
 from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
@@ -20,7 +20,7 @@ from hydrostat.errors import InputError
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.guard import LOOPBACK, Guard
 from hydrostat.studio.face.page import HEARTBEAT, Toasts, WindowPage
-from hydrostat.studio.face.rooms import Room, Rooms, new_key
+from hydrostat.studio.face.rooms import RETRY, Room, Rooms, RoomsFullError, new_key
 from hydrostat.studio.face.share import Links
 from hydrostat.studio.face.tour import STAGES
 from hydrostat.studio.face.view_bar import view_bar
@@ -63,7 +63,7 @@ def _add_streams(app: FastAPI, rooms: Rooms) -> None:
     @app.websocket("/stream/{key}")
     async def connect(socket: WebSocket, key: str = "") -> None:
         try:
-            room = rooms.enter(key)
+            room = rooms.enter(key, address=_address(socket), visit=True)
         except InputError:
             await socket.close(1008)
         else:
@@ -101,7 +101,9 @@ def _add_pages(rooms: Rooms, token: str | None, cookie: str) -> None:
     @ui.page("/room/{key}", title=TITLE, language="en-US")
     def window(request: Request, key: str) -> Response | None:
         try:
-            build(request, rooms.enter(key))
+            build(request, rooms.enter(key, address=_address(request)))
+        except RoomsFullError as error:
+            return _full(str(error))
         except InputError as error:
             return PlainTextResponse(f"hydrostat: {error}\n", status_code=404)
         return None
@@ -114,6 +116,20 @@ def _add_pages(rooms: Rooms, token: str | None, cookie: str) -> None:
         page = build_watch(room.session, f"/watched/{key}")
         ui.context.client.on_delete(page.close)
         return None
+
+
+def _address(connection: HTTPConnection) -> str:
+    """Address of the computer at the other end; empty where it is not known."""
+    return "" if connection.client is None else connection.client.host
+
+
+def _full(words: str) -> Response:
+    """Page that says why there is no room, and asks again by itself."""
+    head = f'<meta charset="utf-8"><meta http-equiv="refresh" content="{RETRY}"><title>{TITLE}</title>'
+    style = "font: 18px system-ui, sans-serif; max-width: 30em; margin: 20vh auto; padding: 0 1em; color: #2b2833"
+    text = f"{words[0].upper()}{words[1:]}: this page asks again every {RETRY} seconds."
+    page = f'<!doctype html><html lang="en">{head}<p style="{style}">{text}</p></html>'
+    return HTMLResponse(page, status_code=503, headers={"retry-after": str(RETRY)})
 
 
 def serve(

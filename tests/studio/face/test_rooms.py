@@ -19,7 +19,7 @@ from websockets.sync.client import ClientConnection, connect
 from hydrostat.errors import InputError
 from hydrostat.robot import gallery_folder
 from hydrostat.studio.face import rooms as rooms_module
-from hydrostat.studio.face.rooms import Room, Rooms, new_key
+from hydrostat.studio.face.rooms import Room, Rooms, RoomsFullError, new_key
 from hydrostat.studio.jobs import Jobs, Slots
 from hydrostat.studio.posing.cable_proposals import CableProposals
 from hydrostat.studio.session import Session
@@ -69,13 +69,25 @@ def test_a_guest_reads_and_writes_no_folder(rooms: Rooms, tmp_path: Path) -> Non
 
 def test_the_room_that_nobody_sees_makes_way(rooms: Rooms, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(rooms_module, "MOST", 2)
-    one, two = (rooms.enter(new_key()) for _ in range(2))
-    with pytest.raises(InputError, match="all 2 rooms of this studio are in use"):
+    one, two = (rooms.enter(new_key(), visit=True) for _ in range(2))
+    with pytest.raises(RoomsFullError, match="all 2 rooms of this studio are in use"):
         rooms.enter(new_key())
     one.seen = two.seen = time.monotonic() - 2 * rooms_module.IDLE
     one.seen -= 1.0
     rooms.enter(new_key())
     assert (rooms.find_watched(one.watch_key), rooms.find_watched(two.watch_key)) == (None, two)
+
+
+def test_bare_requests_take_no_room_from_a_class(rooms: Rooms, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Oracle: rooms that a page visited stay; of the others the address that asked for most loses its oldest."""
+    monkeypatch.setattr(rooms_module, "MOST", 4)
+    pupil = rooms.enter(new_key(), address="pupil", visit=True)
+    loading = rooms.enter(new_key(), address="next pupil")
+    attacks = [rooms.enter(new_key(), address="attacker") for _ in range(6)]
+    late = rooms.enter(new_key(), address="late pupil")
+    left = [rooms.find_watched(room.watch_key) for room in (pupil, loading, attacks[-1], late)]
+    assert left == [pupil, loading, attacks[-1], late]
+    assert not any(rooms.find_watched(room.watch_key) for room in attacks[:-1])
 
 
 def test_long_work_stands_in_line() -> None:
