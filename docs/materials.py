@@ -1,8 +1,9 @@
 """Print docs/materials.md from the table of materials: python docs/materials.py."""
 
+from math import log
 from pathlib import Path
 
-from hydrostat.robot import MATERIALS
+from hydrostat.robot import FOAMS, MATERIALS, Material
 
 PAGE = Path(__file__).with_suffix(".md")
 
@@ -12,11 +13,11 @@ INTRODUCTION = """\
 Printed by `python docs/materials.py` from `hydrostat/robot/materials.py`; `hydrostat materials` shows the same in a
 terminal. Any of the names goes into robot.toml as `material = "ecoflex 00-30"`.
 
-**What the numbers are.** hydrostat's body is Neo-Hookean, with Young's modulus and Poisson's ratio at small strain.
-Rubbers are given so that the stress at twice the length is that of the data sheet: E = 3 / 1.75 of the 100 % modulus.
-The 100 % modulus itself is *not* Young's modulus, though it is often taken for it. Foams are stiff for 5 to 10 % of
-squeeze, then their walls buckle; one modulus cannot say that. The range is how far the numbers are believed, in percent
-of the length: squeezed to stretched.
+**What the numbers are.** Without `law = "foam"` the body is Neo-Hookean, with Young's modulus and Poisson's ratio at
+small strain. Rubbers are given so that the stress at twice the length is that of the data sheet: E = 3 / 1.75 of the
+100 % modulus. The 100 % modulus itself is *not* Young's modulus, though it is often taken for it. Foams are stiff for 5
+to 10 % of squeeze, then their walls buckle; one modulus cannot say that, a [foam law](#foam-laws) can. The range is how
+far the numbers are believed, in percent of the length: squeezed to stretched.
 
 **What they decide.** Where cables lead the body follows from lengths and hardly from stiffness, if nothing but cables
 pull; tensions are proportional to Young's modulus, and sag under weight is inversely so. A factor of two is a common
@@ -29,10 +30,27 @@ difference between two sources for the same material. Measure a sample before be
 abstracts of the papers on PDMS and on Poisson's ratio of foam. At second hand, from public programs that quote them:
 the 100 % moduli and densities of the silicones, the fit to flexfoam-it v and Allard's foam. Quoted without the source
 at hand: elongations at break, NinjaFlex, the density of Mold Max 30, Gent's and Gibson's laws, how the maker names its
-foams. What is assumed is called so.
+foams, van Wyk's law. What is assumed is called so.
 
 "The thesis" is [this one](thesis.md).
 """
+
+FOAM = """\
+## Foam laws
+
+Write `material = {{ name = "polyurethane foam", law = "foam" }}` for a body that is squeezed by more than 20 %, or give
+terms of your own ([robot.toml](robot_toml.md#foam-laws)). Young's modulus and Poisson's ratio are those of the law.
+
+{table}
+
+{sources}
+
+Stress in kPa at a squeeze, sides free, by the foam law and Neo-Hookean with the numbers of the first table:
+
+{stresses}
+"""
+
+SQUEEZES = 0.1, 0.25, 0.4, 0.6
 
 
 def page() -> str:
@@ -46,7 +64,46 @@ def page() -> str:
     sources = "\n".join(
         f"- **{material.name}**: {material.source}. {material.note}".rstrip() for material in MATERIALS.values()
     )
-    return f"{INTRODUCTION}\n{table}\n\n## Where the numbers come from, and who disagrees\n\n{sources}\n"
+    return (
+        f"{INTRODUCTION}\n{table}\n\n## Where the numbers come from, and who disagrees\n\n{sources}\n\n{foam_chapter()}"
+    )
+
+
+def foam_chapter() -> str:
+    """Chapter on materials with a foam law."""
+    rows = [
+        f"| {foam.name} | {foam.young_text} | {foam.poisson:.2f} "
+        f"| {', '.join(f'{term.share:g}: {term.exponent:g}' for term in foam.foam)} |"
+        for foam in FOAMS.values()
+    ]
+    table = "\n".join(["| name | Young | Poisson | share: exponent |", "|---|---|---|---|", *rows])
+    sources = "\n".join(f"- **{foam.name}**: {foam.source}." for foam in FOAMS.values())
+    head = " | ".join(f"{100 * squeeze:.0f} %" for squeeze in SQUEEZES)
+    stresses = [f"| name | {head} |", "|---" * (1 + len(SQUEEZES)) + "|"]
+    for name, foam in FOAMS.items():
+        pairs = [
+            f"{foam_stress(foam, 1 - squeeze) / 1e3:.3g} / {rubber_stress(MATERIALS[name], 1 - squeeze) / 1e3:.3g}"
+            for squeeze in SQUEEZES
+        ]
+        stresses.append(f"| {name} | {' | '.join(pairs)} |")
+    return FOAM.format(table=table, sources=sources, stresses="\n".join(stresses))
+
+
+def foam_stress(material: Material, stretch: float) -> float:
+    """Pressure that squeezes foam to a stretch, sides free, over the area at rest [Pa]."""
+    mu, nu = material.lame[0], material.poisson
+    terms = [(2 * mu * term.share / term.exponent, term.exponent) for term in material.foam]
+    return sum(scale * (stretch ** (-1 - alpha * nu) - stretch ** (alpha - 1)) for scale, alpha in terms)
+
+
+def rubber_stress(material: Material, stretch: float) -> float:
+    """Pressure that squeezes a Neo-Hookean material likewise [Pa]."""
+    mu, lame = material.lame
+    low, side, high = 0.5, 1.0, 3.0
+    for _ in range(60):  # bisection for the stretch sideways that leaves no stress there
+        side = 0.5 * (low + high)
+        low, high = (low, side) if mu * (side**2 - 1) + lame * log(stretch * side**2) > 0 else (side, high)
+    return mu * (1 / stretch - stretch) - lame * log(stretch * side**2) / stretch
 
 
 if __name__ == "__main__":

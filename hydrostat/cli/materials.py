@@ -15,10 +15,13 @@ def materials(
 
     Example: hydrostat materials "ecoflex 00-30"
     """
-    from hydrostat.robot import MATERIALS, get_material
+    from hydrostat.robot import FOAMS, MATERIALS, get_material
 
     if name is not None:
-        _print_one(get_material(name))
+        found = get_material(name)
+        _print_one(found)
+        if found.name in FOAMS:
+            _print_foam(FOAMS[found.name])
         return
     width = max(map(len, MATERIALS))
     print(f"{'':<{width}}  {'kg/m^3':>7}  {'Young':>9}  {'Poisson':>7}  range")
@@ -31,12 +34,24 @@ def materials(
 
 
 def _print_one(material: "Material") -> None:
-    from textwrap import fill
-
     print(material.name)
     print(f"  density          {material.density:.0f} kg/m^3")
     print(f"  Young's modulus  {material.young_text}")
     print(f"  Poisson's ratio  {material.poisson:.2f}")
     print(f"  range            {material.range_text}")
-    for title, text in (("source", material.source), ("note", material.note)):
+    _print_texts(("source", material.source), ("note", material.note))
+
+
+def _print_foam(material: "Material") -> None:
+    print(f'with law = "foam": {{ name = "{material.name}", law = "foam" }}')
+    print(f"  Young's modulus  {material.young_text}")
+    print(f"  Poisson's ratio  {material.poisson:.2f}")
+    print(f"  exponents        {', '.join(f'{term.exponent:g} ({100 * term.share:.0f} %)' for term in material.foam)}")
+    _print_texts(("source", material.source))
+
+
+def _print_texts(*texts: tuple[str, str]) -> None:
+    from textwrap import fill
+
+    for title, text in texts:
         print(fill(text, width=100, initial_indent=f"  {title:<17}", subsequent_indent=" " * 19))

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from hydrostat.mechanics.energy import ContactForces, Energy, LowRankStiffness, Stencils
     from hydrostat.mechanics.factorization import Analysis, Backend, Factorization
     from hydrostat.mechanics.fibre import FibreEnergy
+    from hydrostat.mechanics.foam_solid import FoamLaw, FoamSolid
     from hydrostat.mechanics.inertia import SCHEMES, InertiaEnergy
     from hydrostat.mechanics.neo_hookean import NeoHookean
     from hydrostat.mechanics.newton import minimize
@@ -50,6 +51,8 @@ __all__ = [
     "Energy",
     "Factorization",
     "FibreEnergy",
+    "FoamLaw",
+    "FoamSolid",
     "FrictionCableEnergy",
     "GuideEnergy",
     "InertiaEnergy",

@@ -112,9 +112,10 @@ class NeoHookean(Energy):
         one, none = np.ones(len(self.stencils)), np.zeros(len(self.stencils))
         shear = self._work(nodes, field, one, none)
         squeeze = self._work(nodes, field, none, one) if self.volumetric else none
-        works = {"mu": np.bincount(self.materials, shear)}
+        own = self.mu > 0  # other energies stand for elements without moduli
+        works = {"mu": np.bincount(self.materials, own * shear)}
         if self.volumetric:
-            works["lame"] = np.bincount(self.materials, squeeze)
+            works["lame"] = np.bincount(self.materials, own * squeeze)
         return {**works, "thickness": np.array([float(self.mu @ shear + self.lame @ squeeze)])}
 
     def _work(self, nodes: Nodes, field: Nodes, mu: Vector, lame: Vector) -> Vector:

@@ -132,9 +132,10 @@ class QuadraticSolid(Energy):
         shear, points, mean = apart
         by_mu = shear + np.where(split, most * (points - mean), 0.0)
         by_lame = np.where(split, mean, points)
-        works = {"mu": np.bincount(self.materials, by_mu)}
+        own = self.mu > 0  # other energies stand for elements without moduli
+        works = {"mu": np.bincount(self.materials, own * by_mu)}
         if self.volumetric:
-            works["lame"] = np.bincount(self.materials, by_lame)
+            works["lame"] = np.bincount(self.materials, own * by_lame)
         return {**works, "thickness": np.array([float(self.mu @ by_mu + self.lame @ by_lame)])}
 
     def _work(self, nodes: Nodes, field: Nodes, mu: Vector, points: Vector, mean: Vector) -> Vector:

@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     from hydrostat.robot.inflated import describe_cable_side, inflated_robot, sewn_robot, sewn_sides
     from hydrostat.robot.load import Load
     from hydrostat.robot.marker import Marker, Pin, PoseTarget
-    from hydrostat.robot.materials import MATERIALS, Material, Relaxation, get_material
+    from hydrostat.robot.material import FoamTerm, Material, Relaxation
+    from hydrostat.robot.materials import FOAMS, MATERIALS, get_material
     from hydrostat.robot.merge import comments, lost_comments, merged_text
     from hydrostat.robot.obstacle_lines import obstacle_lines, rims
     from hydrostat.robot.part import BodyPart
@@ -41,6 +42,7 @@ __all__ = [
     "DIRECTIONS",
     "DISTANCE",
     "FILE",
+    "FOAMS",
     "GALLERY",
     "LARGEST_STEP",
     "LEAST_ACROSS",
@@ -54,6 +56,7 @@ __all__ = [
     "Contact",
     "ElementKind",
     "Face",
+    "FoamTerm",
     "Load",
     "Marker",
     "Material",

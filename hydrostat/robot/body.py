@@ -17,7 +17,8 @@ from hydrostat.geometry import Anchors, Healing, Inner, Mesh, Outline, Solid, Th
 from hydrostat.given import check_positive
 from hydrostat.robot.body_cache import Arrays, keep_body
 from hydrostat.robot.element_kind import ElementKind, Plane, Volume
-from hydrostat.robot.materials import Material, get_material
+from hydrostat.robot.material import Material
+from hydrostat.robot.materials import get_material
 from hydrostat.robot.part import BodyPart
 from hydrostat.robot.part_elements import find_part_elements
 
@@ -139,6 +140,11 @@ class Body:
         """Mass of each element [kg]."""
         densities = np.array([material.density for material in self.materials])
         return densities[self.element_materials] * (self.thickness or 1.0) * self.mesh.volumes
+
+    @cached_property
+    def element_foams(self) -> np.ndarray:
+        """Mask of the elements whose material has a foam law, (elements,)."""
+        return np.array([bool(material.foam) for material in self.materials])[self.element_materials]
 
     @property
     def mass(self) -> float:

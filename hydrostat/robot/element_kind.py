@@ -28,3 +28,10 @@ class ElementKind(StrEnum):
 
     LINEAR = "linear"
     QUADRATIC = "quadratic"
+
+
+class MaterialLaw(StrEnum):
+    """Elastic law of a material; also its key in robot.toml."""
+
+    NEO_HOOKEAN = "neo-hookean"
+    FOAM = "foam"  # Ogden and Storakers, a sum of terms

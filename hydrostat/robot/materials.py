@@ -1,4 +1,4 @@
-"""`Material`, and the table of named materials, each with its source.
+"""`MATERIALS`, the table of named materials, each with its source, and `FOAMS`, those with a foam law.
 
 Rubbers are given by their 100 % modulus, as data sheets are: Young's modulus is such that a Neo-Hookean material has
 that stress at twice its length. Foams are given by what is known of them, which is little. docs/materials.md is printed
@@ -7,112 +7,15 @@ from this table.
 
 # Of the thesis (docs/thesis.md): R22, E9, M1, N5, N6, E30, R52
 
-import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from types import MappingProxyType
-from typing import Self
 
+from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
-from hydrostat.given import check_not_negative, check_number, check_positive, check_type
+from hydrostat.given import check_type
+from hydrostat.robot.element_kind import MaterialLaw
+from hydrostat.robot.material import FoamTerm, Material
 from hydrostat.units import quote
-
-SOFTEST = 100.0  # Young's modulus of a material is at least so much [Pa]: less was meant in another unit
-MOST_BRANCHES = 10  # a material has at most this many branches
-
-
-@dataclass(frozen=True, kw_only=True)
-class Relaxation:
-    """Maxwell branch, one term of a Prony series: spring and dashpot in series, parallel to the elastic material.
-
-    After a sudden shear the branch carries modulus * exp(-t / time) of its stress, so the material begins stiffer by
-    `modulus` and settles to the elastic material alone.
-
-    Raises InputError: a number that is not finite and above 0.
-    """
-
-    modulus: float  # shear modulus of the branch [Pa]
-    time: float  # relaxation time, after which its stress has fallen to 1/e [s]
-
-    def __post_init__(self) -> None:
-        check_positive("modulus", self.modulus, "Pa")
-        check_positive("time", self.time, "s")
-
-
-@dataclass(frozen=True, kw_only=True)
-class Material:
-    """Isotropic material: elastic, and optionally viscous.
-
-    Attributes:
-        young: Young's modulus [Pa].
-        poisson: Poisson's ratio.
-        density: mass density [kg/m^3].
-        viscosity: shear viscosity of a dashpot parallel to the elastic material (Kelvin-Voigt) [Pa s].
-        relaxation: Maxwell branches parallel to the elastic material, together a Prony series.
-        largest_stretch: maximum stretch (length / rest length) for which the values are valid; None: unknown.
-        largest_squeeze: maximum compression, as a share of the length, for which the values are valid, for a foam until
-            its walls touch; None: unknown.
-        name: name in the material table; empty for a material given by its values.
-        source: source of the values.
-        note: limits of the values, and sources that disagree.
-
-    Raises:
-        InputError: a number out of its range.
-    """
-
-    young: float
-    poisson: float
-    density: float
-    viscosity: float = 0.0
-    relaxation: tuple[Relaxation, ...] = ()
-    largest_stretch: float | None = None
-    largest_squeeze: float | None = None
-    name: str = ""
-    source: str = ""
-    note: str = ""
-
-    def __post_init__(self) -> None:
-        check_positive("young", self.young, "Pa")
-        check_number("poisson", self.poisson, "")
-        if not 0 <= self.poisson < 0.5:
-            raise InputError(
-                f"poisson must be at least 0 and below 0.5, not {self.poisson:g}; nearly incompressible is 0.45"
-            )
-        check_positive("density", self.density, "kg/m^3")
-        check_not_negative("viscosity", self.viscosity, "Pa s")
-        if len(self.relaxation) > MOST_BRANCHES:
-            raise InputError(f"relaxation must have at most {MOST_BRANCHES} branches, not {len(self.relaxation)}")
-        if self.largest_stretch is not None and not 1 < self.largest_stretch < math.inf:
-            raise InputError(f"largest_stretch must be above 1 (twice the length is 2), not {self.largest_stretch:g}")
-        if self.largest_squeeze is not None and not 0 < self.largest_squeeze < 1:
-            raise InputError(f"largest_squeeze must be above 0 and below 1, not {self.largest_squeeze:g}")
-        if self.young < SOFTEST:
-            raise InputError(
-                f"young = {self.young:g} Pa is too small (minimum {SOFTEST:g} Pa). Units are Pa: for 30 kPa write 30e3."
-            )
-
-    @property
-    def elastic(self) -> Self:
-        """Return the same material without viscosity and relaxation: its long-term behavior."""
-        return replace(self, viscosity=0.0, relaxation=())
-
-    @property
-    def lame(self) -> tuple[float, float]:
-        """Lame's parameters mu and lambda [Pa]."""
-        mu = self.young / (2 * (1 + self.poisson))
-        return mu, self.young * self.poisson / ((1 + self.poisson) * (1 - 2 * self.poisson))
-
-    @property
-    def young_text(self) -> str:
-        """Young's modulus to three digits, such as "30 kPa"."""
-        return f"{self.young / 1e6:.3g} MPa" if self.young >= 1e6 else f"{self.young / 1e3:.3g} kPa"
-
-    @property
-    def range_text(self) -> str:
-        """Valid range of the length, in percent: compression and extension, such as "-30 to +50 %"."""
-        squeeze = "" if self.largest_squeeze is None else f"{-100 * self.largest_squeeze:.0f}"
-        stretch = "" if self.largest_stretch is None else f"{100 * (self.largest_stretch - 1):+.0f}"
-        return f"{squeeze or '?'} to {stretch or '?'} %"
-
 
 PSI = 6894.757  # pascals in a pound per square inch: data sheets give stresses in these
 POUND_PER_CUBIC_FOOT = 16.01846  # [kg/m^3]: castable foams are named after their density in these
@@ -331,9 +234,62 @@ _TABLE = (
 
 MATERIALS = MappingProxyType({material.name: material for material in _TABLE})  # materials by name
 
+_CUSHION = (FoamTerm(share=1.0, exponent=8.0),)
 
-def get_material(name: str) -> Material:
-    """Material of the table; capitals do not matter (InputError: no material has this name)."""
+
+def _foam(name: str, terms: tuple[FoamTerm, ...], source: str, *, poisson: float = 0.0, young: float = 0.0) -> Material:
+    """Return the material of a name with a foam law, of its own Young's modulus if given [Pa]."""
+    known = MATERIALS[name]
+    return replace(known, young=young or known.young, poisson=poisson, foam=terms, source=source, note="")
+
+
+_FOAM_TABLE = (
+    _foam(
+        "polyester fibre",
+        (FoamTerm(share=2 / 3, exponent=-2.0), FoamTerm(share=1 / 3, exponent=1.0)),
+        "Young's modulus assumed as above; the terms make the pressure of loose fibres rise as 1 / s^3 - 1 with their"
+        " thickness s, as C. M. van Wyk found for wool (J. Textile Inst. 37, T285, 1946); Poisson's ratio assumed",
+    ),
+    _foam(
+        "polyurethane foam",
+        _CUSHION,
+        "3.5 kPa at 40 % squeeze, of a cushion's hardness; exponent 8 assumed, so Young's modulus is 17 kPa. The 40 kPa"
+        " above would take exponent 19, which is seven times too stiff at 20 % of stretch. Poisson's ratio assumed, as"
+        " it falls to 0 under squeeze (R. D. Widdle et al., 2008)",
+        young=17e3,
+    ),
+    _foam(
+        "polyethylene foam",
+        (FoamTerm(share=1.0, exponent=1.256),),
+        "fitted to both stresses of the data sheet of Plastazote LD33: 40 kPa at 25 % squeeze, 115 kPa at 50 %;"
+        " Poisson's ratio assumed",
+        young=124e3,
+    ),
+    *(
+        _foam(
+            f"flexfoam-it {numeral}",
+            _CUSHION,
+            "Young's modulus as above; exponent that of polyurethane foam, Poisson's ratio that of flexfoam-it v; no"
+            " compression curve was found",
+            poisson=0.10,
+        )
+        for numeral in ("iii", "v", "vii", "x")
+    ),
+)
+
+FOAMS = MappingProxyType({material.name: material for material in _FOAM_TABLE})  # materials with a foam law by name
+
+
+def get_material(name: str, law: MaterialLaw | str | None = None) -> Material:
+    """Material of the table; capitals do not matter (InputError: no material has this name).
+
+    Args:
+        name: name of the material.
+        law: "foam" for its foam law, "neo-hookean" by default.
+
+    Raises:
+        InputError: no material has this name, or no such law.
+    """
     check_type(name, str, 'a material is found by its name, such as "flexfoam-it x"')
     material = MATERIALS.get(name.lower())
     if material is None:
@@ -345,4 +301,10 @@ def get_material(name: str) -> Material:
             f"unknown material {quote(name)}; {hint}`hydrostat materials` lists all {len(MATERIALS)}; "
             f"or give its young, poisson and density"
         )
-    return material
+    if law is None or parse_choice(MaterialLaw, law, what="law") is MaterialLaw.NEO_HOOKEAN:
+        return material
+    if material.name not in FOAMS:
+        raise InputError(
+            f"{quote(material.name)} has no foam law; those with one: {', '.join(FOAMS)}. Or give its terms."
+        )
+    return FOAMS[material.name]

@@ -11,7 +11,8 @@ from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
 from hydrostat.given import Point, check_name, check_point, check_positive
 from hydrostat.robot.contact import ClosedMesh, Obstacle
-from hydrostat.robot.materials import Material, get_material
+from hydrostat.robot.material import Material
+from hydrostat.robot.materials import get_material
 
 RIGID_RATIO = 1e4
 """Young's modulus of a rigid part over that of the body; it is then rigid to about 1e-4."""

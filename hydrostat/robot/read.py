@@ -14,10 +14,12 @@ from hydrostat.files import read_stranger, read_text
 from hydrostat.robot.body import Body, Source, mesh_body, outline_body, surface_body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.contact import ClosedMesh, Contact, Obstacle, closed_mesh
+from hydrostat.robot.element_kind import MaterialLaw
 from hydrostat.robot.gravity import gravity_along
 from hydrostat.robot.load import Load
 from hydrostat.robot.marker import Marker, Pin, PoseTarget
-from hydrostat.robot.materials import Material, Relaxation, get_material
+from hydrostat.robot.material import FoamTerm, Material, Relaxation
+from hydrostat.robot.materials import get_material
 from hydrostat.robot.part import BodyPart, PartShape
 from hydrostat.robot.pin_drive import PinDrive, parse_drive_value
 from hydrostat.robot.robot import Robot
@@ -269,9 +271,28 @@ def read_material(entry: Any) -> Material:
     viscous = _given_keys(entry, "viscosity")
     if entry.relaxation is not None:
         viscous["relaxation"] = tuple(_branch(index, branch) for index, branch in enumerate(entry.relaxation))
+    terms = _foam_terms(entry)
     if hasattr(entry, "name"):
-        return replace(get_material(entry.name), **viscous)
-    return Material(young=entry.young, poisson=float(entry.poisson), density=entry.density, **viscous)
+        known = get_material(entry.name, None if terms else entry.law)
+        return replace(known, **viscous, **({"foam": terms} if terms else {}))
+    if entry.law is MaterialLaw.FOAM and not terms:
+        raise InputError("terms are missing; a foam law needs them: terms = [{ share = 1, exponent = 8 }]")
+    return Material(young=entry.young, poisson=float(entry.poisson), density=entry.density, foam=terms, **viscous)
+
+
+def _foam_terms(entry: Any) -> tuple[FoamTerm, ...]:
+    if entry.terms is None:
+        return ()
+    if entry.law is not MaterialLaw.FOAM:
+        raise InputError('terms are those of a foam law; write law = "foam" with them, or remove them')
+    return tuple(_foam_term(index, term) for index, term in enumerate(entry.terms))
+
+
+def _foam_term(index: int, entry: Any) -> FoamTerm:
+    try:
+        return FoamTerm(share=float(entry.share), exponent=float(entry.exponent))
+    except InputError as error:
+        raise InputError(f"terms[{index}].{error}") from None
 
 
 def _branch(index: int, entry: Any) -> Relaxation:

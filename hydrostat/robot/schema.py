@@ -14,9 +14,9 @@ from pydantic import (
 from hydrostat.geometry import Inner
 from hydrostat.robot.cable_side import Face
 from hydrostat.robot.contact import ObstacleShape
-from hydrostat.robot.element_kind import ElementKind, Plane, Volume
+from hydrostat.robot.element_kind import ElementKind, MaterialLaw, Plane, Volume
 from hydrostat.robot.gravity import DIRECTIONS
-from hydrostat.robot.materials import MOST_BRANCHES
+from hydrostat.robot.material import MOST_BRANCHES, MOST_TERMS
 from hydrostat.robot.part import PartShape
 from hydrostat.robot.winch import Mount
 from hydrostat.toml_schema import (
@@ -68,10 +68,22 @@ class RelaxationTable(TomlTable):
 Branches = Annotated[list[RelaxationTable], Field(max_length=MOST_BRANCHES)]
 
 
+class FoamTermTable(TomlTable):
+    """Term of a foam law."""
+
+    share: Number
+    exponent: Number
+
+
+Terms = Annotated[list[FoamTermTable], Field(min_length=1, max_length=MOST_TERMS)]
+
+
 class NamedMaterialTable(TomlTable):
-    """Material by name, with its viscosity."""
+    """Material by name, with its law and viscosity."""
 
     name: Text
+    law: MaterialLaw | None = None
+    terms: Terms | None = None
     viscosity: Viscosity | None = None
     relaxation: Branches | None = None
 
@@ -82,6 +94,8 @@ class MaterialTable(TomlTable):
     young: Pressure
     poisson: Number
     density: Density
+    law: MaterialLaw | None = None
+    terms: Terms | None = None
     viscosity: Viscosity | None = None
     relaxation: Branches | None = None
 

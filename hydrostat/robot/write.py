@@ -3,6 +3,7 @@
 import hashlib
 import math
 from collections.abc import Iterable
+from dataclasses import replace
 from decimal import Decimal
 from pathlib import Path
 from typing import Any
@@ -15,11 +16,12 @@ from hydrostat.given import Point, check_name, check_type, path_of
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.contact import Contact, Obstacle
-from hydrostat.robot.element_kind import ElementKind, Plane, Volume
+from hydrostat.robot.element_kind import ElementKind, MaterialLaw, Plane, Volume
 from hydrostat.robot.gravity import direction_of
 from hydrostat.robot.load import Load
 from hydrostat.robot.marker import DEFAULT_STIFFNESS, Pin
-from hydrostat.robot.materials import MATERIALS, Material, Relaxation
+from hydrostat.robot.material import FoamTerm, Material, Relaxation
+from hydrostat.robot.materials import FOAMS, MATERIALS
 from hydrostat.robot.part import BodyPart
 from hydrostat.robot.pin_drive import PinDrive
 from hydrostat.robot.robot import Robot
@@ -186,16 +188,26 @@ class _Writer:
         if MATERIALS.get(material.name) == material:
             return material.name
         table = self._toml.inline_table()
-        if MATERIALS.get(material.name) == material.elastic:
+        elastic, known = material.elastic, FOAMS.get(material.name)
+        if elastic == known or replace(elastic, foam=()) == MATERIALS.get(material.name):
             table["name"] = material.name
         else:
             table["young"] = units.format_quantity(material.young, units.PRESSURE)
             table["poisson"] = material.poisson
             table["density"] = units.format_quantity(material.density, units.DENSITY)
+        if material.foam:
+            table["law"] = str(MaterialLaw.FOAM)
+            if elastic != known:
+                table["terms"] = self._array(map(self.foam_term, material.foam))
         if material.viscosity:
             table["viscosity"] = units.format_quantity(material.viscosity, units.VISCOSITY)
         if material.relaxation:
             table["relaxation"] = self.relaxation(material.relaxation)
+        return table
+
+    def foam_term(self, term: FoamTerm) -> Any:
+        table = self._toml.inline_table()
+        table["share"], table["exponent"] = term.share, term.exponent
         return table
 
     def relaxation(self, branches: Iterable[Relaxation]) -> Any:

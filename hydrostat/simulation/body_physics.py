@@ -17,6 +17,7 @@ from hydrostat.mechanics import (
     ContactEnergy,
     Energy,
     Factorization,
+    FoamSolid,
     GuideEnergy,
     LoadEnergy,
     NeoHookean,
@@ -74,12 +75,12 @@ class BodyPhysics:
         body = robot.body
         self._given = body, robot.pins, robot.gravity, robot.contact, robot.obstacles, robot.loads, robot.rods
         self.material, self.thickness = body.material, body.thickness
-        mesh, thickness, (_, lame) = body.mesh, body.thickness or 1.0, body.lame()
+        mesh, thickness, solid = body.mesh, body.thickness or 1.0, ~body.element_foams
+        lame = np.where(solid, body.lame()[1], 0.0)
         self.carriages = _carriages(robot, in_time=in_time)
         moving = [carriage.unknowns(*_begin(robot.obstacles[index])) for index, carriage in self.carriages.items()]
         self.rest_unknowns = np.concatenate([mesh.nodes, *moving]) if moving else mesh.nodes
         patched, thin = body.volume is Volume.PATCH, body.plane is Plane.STRESS
-        kinds = {"thickness": thickness, "materials": body.element_materials}
         self.elastic = _elastic(robot, self.rest_unknowns, None if patched or thin else lame)
         self.pins = _pins(robot)
         carried = [_obstacle_masses(robot.obstacles[index], carriage) for index, carriage in self.carriages.items()]
@@ -87,11 +88,14 @@ class BodyPhysics:
         self.masses, self._hung = own + hung, hung
         self.inertias = np.concatenate([self.masses, *carried]) if carried else self.masses
         energies: list[Energy] = [self.elastic, self.pins]
-        if patched:
-            patches = grow_patches(mesh.elements, PATCH_SIZE[mesh.dim], body.element_materials)
-            energies.append(PatchVolume(self.rest_unknowns, mesh.elements, patches, lame=lame, **kinds))
-        if thin:
+        if patched and solid.any():
+            elements, kinds = mesh.elements[solid], body.element_materials[solid]
+            patches = grow_patches(elements, PATCH_SIZE[mesh.dim], kinds)
+            given = {"lame": lame[solid], "thickness": thickness, "materials": kinds}
+            energies.append(PatchVolume(self.rest_unknowns, elements, patches, **given))
+        if thin and solid.any():
             energies.append(_plane_stress(self.elastic, self.rest_unknowns, lame))
+        energies += _foams(robot, self.elastic, self.rest_unknowns)
         if robot.gravity is not None:
             energies.append(WeightEnergy(self.rest_unknowns, self._heavy[:, None] * np.array(robot.gravity)))
         self.rods = [_rod_energy(robot, rod, self.rest_unknowns) for rod in robot.rods]
@@ -254,9 +258,9 @@ def _spring_rates(body: Body, chosen: np.ndarray) -> Vector:
 
 
 def _elastic(robot: Robot, rest: Nodes, lame: Vector | None) -> NeoHookean | QuadraticSolid:
-    """Elastic energy of the body; without resistance to a change of volume if `lame` is None."""
+    """Elastic energy of the body but for foams; without resistance to a change of volume if `lame` is None."""
     body = robot.body
-    mesh, (mu, _) = body.mesh, body.lame()
+    mesh, mu = body.mesh, np.where(body.element_foams, 0.0, body.lame()[0])
     kinds = {"thickness": body.thickness or 1.0, "materials": body.element_materials}
     if mesh.quadratic is None:
         return NeoHookean(rest, mesh.elements, mu=mu, lame=lame, **kinds)
@@ -270,11 +274,30 @@ def _plane_stress(elastic: NeoHookean | QuadraticSolid, rest: Nodes, lame: Vecto
     """Resistance of a flat body to a change of area, at each point of quadrature of its elements."""
     points = len(elastic.volumes) // len(elastic.stencils)
     parts = len(lame) // len(elastic.stencils)  # of an element in the mesh
+    own = np.repeat(elastic.mu > 0, points)  # foams have a law of their own
     stencils, mu, squeeze, materials = (
-        np.repeat(each, points, axis=0) for each in (elastic.stencils, elastic.mu, lame[::parts], elastic.materials)
+        np.repeat(each, points, axis=0)[own]
+        for each in (elastic.stencils, elastic.mu, lame[::parts], elastic.materials)
     )
     given = {"mu": mu, "lame": squeeze, "materials": materials}
-    return PlaneStress(rest, stencils, gradients=elastic.point_gradients, volumes=elastic.volumes, **given)
+    return PlaneStress(rest, stencils, gradients=elastic.point_gradients[own], volumes=elastic.volumes[own], **given)
+
+
+def _foams(robot: Robot, elastic: NeoHookean | QuadraticSolid, rest: Nodes) -> list[FoamSolid]:
+    """Elastic energy of each material with a foam law."""
+    found, body, count = [], robot.body, len(elastic.stencils)
+    gradients, volumes = (
+        each.reshape(count, -1, *each.shape[1:]) for each in (elastic.point_gradients, elastic.volumes)
+    )
+    for index, material in enumerate(body.materials):
+        own = elastic.materials == index
+        if not material.foam or not own.any():
+            continue
+        terms = tuple((term.share, term.exponent) for term in material.foam)
+        given = {"lame": material.lame, "terms": terms, "material": index, "is_free_across": body.plane is Plane.STRESS}
+        points = {"gradients": gradients[own], "volumes": volumes[own]}
+        found.append(FoamSolid(rest, elastic.stencils[own], **points, **given))
+    return found
 
 
 def _contact_parameters(robot: Robot) -> dict[str, Any]:

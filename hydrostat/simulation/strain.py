@@ -7,8 +7,8 @@ import numpy as np
 
 from hydrostat.arrays import Float, Int, Nodes, Vector
 from hydrostat.geometry import Mesh
-from hydrostat.mechanics import solve_thickening
-from hydrostat.robot import Body, Plane, Robot
+from hydrostat.mechanics import FoamLaw, solve_thickening
+from hydrostat.robot import Body, Material, Plane, Robot
 
 
 def node_strains(robot: Robot, nodes: Nodes) -> Vector:
@@ -23,15 +23,29 @@ def node_strains(robot: Robot, nodes: Nodes) -> Vector:
 
 
 def node_stresses(robot: Robot, nodes: Nodes) -> Vector:
-    """Von Mises stress of the Neo-Hookean body [Pa], of the elements around each node by their volumes.
+    """Von Mises stress of the body [Pa], of the elements around each node by their volumes.
 
-    Cauchy's stress is mu/J (B - I) + lambda/J ln J I (Bonet 1998 and `NeoHookean`), so only B's deviator counts: it is
-    mu/J sqrt(3/2) |dev B|.
+    Cauchy's stress of a Neo-Hookean material is mu/J (B - I) + lambda/J ln J I (Bonet 1998 and `NeoHookean`), so only
+    B's deviator counts: it is mu/J sqrt(3/2) |dev B|. That of foam is the slope of `FoamLaw` over J.
     """
     grid = _operators(robot.body.mesh)
     shape = _Stretch(grid, nodes, robot.body)
     mu, _ = robot.body.lame()
-    return grid.average(mu * np.sqrt(1.5 * shape.deviation) / shape.volume)
+    stresses = mu * np.sqrt(1.5 * shape.deviation) / shape.volume
+    for index, material in enumerate(robot.body.materials):
+        own = robot.body.element_materials == index
+        if material.foam and own.any():
+            stresses[own] = _foam_stresses(material, shape.squares(own))
+    return grid.average(stresses)
+
+
+def _foam_stresses(material: Material, squares: Float[np.ndarray, "elements 3 3"]) -> Vector:
+    """Von Mises stress of foam [Pa] by C of its elements."""
+    logs = 0.5 * np.log(np.maximum(np.linalg.eigvalsh(squares), 1e-300))
+    mu, lame = material.lame
+    shares, exponents = np.array([(term.share, term.exponent) for term in material.foam]).T
+    stress = mu * FoamLaw(shares, exponents, lame / (2 * mu)).slopes(logs) * np.exp(-logs.sum(axis=1, keepdims=True))
+    return np.sqrt(1.5 * ((stress - stress.mean(axis=1, keepdims=True)) ** 2).sum(axis=1))
 
 
 MANY = 0.02
@@ -105,7 +119,7 @@ class _Stretch:
         stretch = np.zeros((3, 3, len(slopes)))
         stretch[2, 2] = 1.0
         if body.plane is Plane.STRESS:
-            stretch[2, 2] += solve_thickening(np.linalg.det(slopes) - 1.0, *body.lame())
+            stretch[2, 2] += _thickening(body, np.linalg.det(slopes) - 1.0)
         for i in range(dim):
             for j in range(i, dim):
                 stretch[i, j] = stretch[j, i] = np.einsum("ek,ek->e", rows[i], rows[j])
@@ -115,6 +129,10 @@ class _Stretch:
         self._off = stretch
         self.deviation: Float[np.ndarray, " elements"] = np.einsum("ije,ije->e", stretch, stretch)
         self.volume = np.sqrt(np.maximum(_determinant(stretch, self.mean), 1e-300))
+
+    def squares(self, chosen: np.ndarray) -> Float[np.ndarray, "elements 3 3"]:
+        """C of some elements."""
+        return np.moveaxis(self._off[:, :, chosen], -1, 0) + self.mean[chosen, None, None] * np.eye(3)
 
     def largest(self) -> Float[np.ndarray, " elements"]:
         """Largest eigenvalue of C."""
@@ -130,6 +148,14 @@ class _Stretch:
         cube = np.maximum(spread**3, 1e-300)
         turned = np.clip(0.5 * _determinant(self._off, 0.0 * self.mean) / cube, -1.0, 1.0)
         return self.mean + 2.0 * spread * np.cos(np.arccos(turned) / 3.0 + turn)
+
+
+def _thickening(body: Body, change: Vector) -> Vector:
+    """Return s^2 - 1 of the stretch s across a body in plane stress, at a change of area J - 1."""
+    mu, lame = body.lame()
+    ratios = lame / (2 * mu + lame)  # nu / (1 - nu)
+    foam = np.expm1(-2 * ratios * np.log1p(np.maximum(change, -1.0 + 1e-12)))
+    return np.where(body.element_foams, foam, solve_thickening(change, mu, lame))
 
 
 def _determinant(off: Float[np.ndarray, "3 3 elements"], shift: Vector) -> Vector:

@@ -13,6 +13,7 @@ from hydrostat.mechanics import (
     DriveEnergy,
     Energy,
     FibreEnergy,
+    FoamSolid,
     NeoHookean,
     PinEnergy,
     PressureEnergy,
@@ -71,6 +72,22 @@ def neo_hookean(dim: int, random: np.random.Generator) -> State:
     mesh = rough_mesh(dim, random)
     thickness = 0.03 if dim == 2 else 1.0
     energy = NeoHookean(mesh.nodes, mesh.elements, mu=11e3, lame=17e3, thickness=thickness)
+    return State(energy, deform(mesh, random), np.zeros(CONTROLS))
+
+
+def foam(dim: int, random: np.random.Generator, *, poisson: float, is_free_across: bool = False) -> State:
+    """A foam of a plateau and a term that stiffens in compression."""
+    mesh, lame = rough_mesh(dim, random), 2 * 11e3 * poisson / (1 - 2 * poisson)
+    shape = NeoHookean(mesh.nodes, mesh.elements, mu=0.0, lame=0.0, thickness=0.03 if dim == 2 else 1.0)
+    energy = FoamSolid(
+        mesh.nodes,
+        mesh.elements,
+        gradients=shape.shape_gradients[:, None],
+        volumes=shape.volumes[:, None],
+        lame=(11e3, lame),
+        terms=((0.8, 6.0), (0.2, -3.0)),
+        is_free_across=is_free_across and dim == 2,
+    )
     return State(energy, deform(mesh, random), np.zeros(CONTROLS))
 
 
@@ -186,6 +203,9 @@ def element_fibres(dim: int, random: np.random.Generator) -> State:
 _EPS = float(LAW.smoothing[0])
 ENERGIES: dict[str, Callable[[int, np.random.Generator], State]] = {
     "neo-hookean": neo_hookean,
+    "foam": lambda dim, random: foam(dim, random, poisson=0.25),
+    "foam without effect sideways": lambda dim, random: foam(dim, random, poisson=0.0),
+    "foam in plane stress": lambda dim, random: foam(dim, random, poisson=0.4, is_free_across=True),
     "pins": pins,
     "drives": drives,
     "weight": weight,

@@ -11,7 +11,17 @@ from robot_files import GOOD, edit, load
 
 from hydrostat.cli.main import main
 from hydrostat.errors import InputError
-from hydrostat.robot import MATERIALS, Material, Volume, get_material, robot_text
+from hydrostat.robot import (
+    FOAMS,
+    MATERIALS,
+    FoamTerm,
+    Material,
+    Volume,
+    get_material,
+    load_robot,
+    robot_text,
+    save_robot,
+)
 from hydrostat.simulation import Simulation
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -136,3 +146,64 @@ def test_command(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyP
     one = run("Polyester Fibre")
     for words in ("30 kPa", "40 kg/m^3", "0.30", "-60 to +50 %", "assumed: loosely stuffed toy filling"):
         assert words in one
+
+
+NUMBERS = '{ young = "30 kPa", poisson = 0.3, density = "40 kg/m^3", '
+
+
+@pytest.mark.parametrize(
+    ("material", "foam"),
+    [
+        ('{ name = "polyurethane foam", law = "foam" }', FOAMS["polyurethane foam"]),
+        ('{ name = "polyurethane foam", law = "neo-hookean" }', MATERIALS["polyurethane foam"]),
+        (
+            '{ name = "flexfoam-it x", law = "foam", terms = [{ share = 1, exponent = -2 }] }',
+            replace(MATERIALS["flexfoam-it x"], foam=(FoamTerm(share=1.0, exponent=-2.0),)),
+        ),
+        (
+            NUMBERS + 'law = "foam", terms = [{ share = 0.25, exponent = 8 }, { share = 0.75, exponent = -1.5 }] }',
+            Material(
+                young=30e3,
+                poisson=0.3,
+                density=40,
+                foam=(FoamTerm(share=0.25, exponent=8.0), FoamTerm(share=0.75, exponent=-1.5)),
+            ),
+        ),
+    ],
+)
+def test_foam_laws_in_files(material: str, foam: Material, tmp_path: Path) -> None:
+    """Oracle: what was written, read, saved and read again."""
+    robot = load(tmp_path / "a", edit(GOOD, '"polyester fibre"', material))
+    assert robot.body.material == foam
+    save_robot(robot, tmp_path / "b")
+    assert load_robot(tmp_path / "b") == robot
+
+
+@pytest.mark.parametrize(
+    ("material", "told"),
+    [
+        (
+            '{ name = "ecoflex 00-30", law = "foam" }',
+            '"ecoflex 00-30" has no foam law; those with one: polyester',
+        ),
+        (NUMBERS + 'law = "foam" }', r"terms are missing; a foam law needs them: terms = \[\{ share = 1, exponent = 8"),
+        (NUMBERS + "terms = [{ share = 1, exponent = 8 }] }", 'terms are those of a foam law; write law = "foam"'),
+        (NUMBERS + 'law = "foam", terms = [{ share = 0.5, exponent = 8 }] }', "their shares add up to 0.5, not to 1"),
+        (
+            NUMBERS + 'law = "foam", terms = [{ share = 1, exponent = 0 }] }',
+            r"terms\[0\].exponent must be from -50",
+        ),
+        (NUMBERS + 'law = "foam", terms = [{ share = -1, exponent = 2 }] }', r"terms\[0\].share must be"),
+        (
+            NUMBERS.replace("0.3", "0.46") + 'law = "foam", terms = [{ share = 1, exponent = 8 }] }',
+            r"poisson = 0.46 is too large for a foam law \(maximum 0.45\)",
+        ),
+        ('{ name = "polyurethane foam", law = "rubber" }', "law.*neo-hookean"),
+        (NUMBERS + 'law = "foam", terms = [] }', "terms"),
+    ],
+)
+def test_foam_laws_that_are_wrong(material: str, told: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=told) as caught:
+        load(tmp_path, edit(GOOD, '"polyester fibre"', material))
+    assert "\n" not in str(caught.value)
+    assert "body.material" in str(caught.value)

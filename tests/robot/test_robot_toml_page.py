@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from hydrostat.robot import load_robot
+from hydrostat.robot import FoamTerm, Material, load_robot
 from hydrostat.robot.schema import RobotTable
 from hydrostat.robot.schema_errors import allowed_keys
 
@@ -15,7 +15,7 @@ PAGE = (ROOT / "docs" / "robot_toml.md").read_text(encoding="utf-8")
 
 def test_robot_toml_of_its_page_is_read(tmp_path: Path) -> None:
     """Oracle: the numbers of its lines."""
-    first, viscous = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
+    first, foam, viscous = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
     (tmp_path / "starfish.svg").write_text((ROOT / "examples" / "starfish" / "starfish.svg").read_text())
     (tmp_path / "robot.toml").write_text(first)
     robot = load_robot(tmp_path)
@@ -25,10 +25,15 @@ def test_robot_toml_of_its_page_is_read(tmp_path: Path) -> None:
     assert robot.contact.friction == 0.4
     assert robot.obstacles[0].friction == 0.6
     lines = [line for line in first.splitlines() if not line.startswith("material")]
-    (tmp_path / "robot.toml").write_text("\n".join(lines).replace("[[pin]]", f"{viscous}\n[[pin]]", 1))
-    material = load_robot(tmp_path).body.material
+
+    def read(table: str) -> Material:
+        (tmp_path / "robot.toml").write_text("\n".join(lines).replace("[[pin]]", f"{table}\n[[pin]]", 1))
+        return load_robot(tmp_path).body.material
+
+    material = read(viscous)
     assert material.viscosity == 40.0
     assert len(material.relaxation) == 1
+    assert read(foam).foam == (FoamTerm(share=1.0, exponent=8.0),)
 
 
 def test_every_key_of_robot_toml_is_on_its_page() -> None:

@@ -12,7 +12,21 @@ from builders import FOAM, box_mesh, mesh_body, strip_mesh
 from hydrostat.errors import InputError
 from hydrostat.geometry import Outline, locate
 from hydrostat.mechanics import NewtonOptions
-from hydrostat.robot import BodyPart, Cable, Load, Marker, Material, Mount, Pin, Robot, Rod, Volume, Winch
+from hydrostat.robot import (
+    BodyPart,
+    Cable,
+    FoamTerm,
+    Load,
+    Marker,
+    Material,
+    Mount,
+    Pin,
+    Plane,
+    Robot,
+    Rod,
+    Volume,
+    Winch,
+)
 from hydrostat.simulation import Simulation
 from hydrostat.simulation.route_points import route_points
 from hydrostat.simulation.sensitivities.adjoint import Sensitivity, sensitivity
@@ -88,7 +102,19 @@ def in_parts(robot: Robot) -> Robot:
     return replace(heavy, body=replace(heavy.body, parts=parts))
 
 
+def with_foam(robot: Robot) -> Robot:
+    """The same with a foam part, in plane stress."""
+    foam = Material(young=40e3, poisson=0.2, density=90.0, foam=(FoamTerm(share=0.9, exponent=6), SOFT_TERM))
+    heavy = in_parts(robot)
+    stiff, end = heavy.body.parts
+    assert stiff.material is not None
+    padded = replace(stiff, material=foam)
+    return replace(heavy, body=replace(heavy.body, volume=Volume.ELEMENT, plane=Plane.STRESS, parts=(padded, end)))
+
+
+SOFT_TERM = FoamTerm(share=0.1, exponent=-2)
 CASES = {
+    "foam part": (with_foam(strip()), [0.02, 0.009]),
     "parts": (in_parts(strip()), [0.02, 0.009]),
     "taut": (strip(), [0.02, 0.009]),
     "large": (strip(), [0.05, 0.0095]),
@@ -227,8 +253,9 @@ def test_by_body_and_pins(loss: Loss) -> None:
         assert slopes.thickness == pytest.approx(found, rel=1e-6)
 
 
-def test_by_numbers_of_parts(unchecked: None) -> None:
-    loss = Loss(in_parts(strip()), np.array([0.02, 0.009]))
+@pytest.mark.parametrize("make", [in_parts, with_foam])
+def test_by_numbers_of_parts(make: Callable[[Robot], Robot], unchecked: None) -> None:
+    loss = Loss(make(strip()), np.array([0.02, 0.009]))
     slopes, (stiff, end) = loss.slopes(), loss.robot.body.parts
     material = stiff.material
     assert material is not None

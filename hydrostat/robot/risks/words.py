@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.arrays import Float
-from hydrostat.robot.materials import Material
+from hydrostat.robot.material import Material
 
 
 @dataclass(frozen=True)

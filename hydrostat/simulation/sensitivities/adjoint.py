@@ -176,15 +176,11 @@ def _check_shape(name: str, given: np.ndarray, shape: tuple[int, ...]) -> np.nda
 
 def by_body(body: BodyPhysics, pose: Equilibrium, field: Nodes) -> dict[str, Any]:
     """Sensitivities by materials, thickness and stiffness of pins, by their names in `Sensitivity`."""
-    works: dict[str, Vector] = {}
-    for energy in body.assembly.energies:
-        for name, work in energy.parameter_work(pose.nodes, field).items():
-            works[name] = works[name] + work if name in works else work
+    works = _parameter_works(body, pose.nodes, field)
     for moved in drive_energies(pose.robot, body.pins):
         works["support_stiffness"] = works["support_stiffness"] + moved.support_work(field, pose.controls)
     materials = pose.robot.body.materials
-    none = np.zeros(len(materials))
-    shear, squeeze = (np.resize(works.get(name, none), len(materials)) for name in ("mu", "lame"))
+    shear, squeeze = (_add(np.zeros(len(materials)), works.get(name, np.zeros(0))) for name in ("mu", "lame"))
     slopes = np.array([_lame_slopes(material) for material in materials])  # (materials, young and poisson, mu and lame)
     young, poisson = -(slopes[:, :, 0] * shear[:, None] + slopes[:, :, 1] * squeeze[:, None]).T
     density = _density_slopes(pose.robot, field)
@@ -205,6 +201,23 @@ def by_body(body: BodyPhysics, pose: Equilibrium, field: Nodes) -> dict[str, Any
         "rod_axial": -rods[:, 0],
         "rod_bending": -rods[:, 1],
     }
+
+
+def _parameter_works(body: BodyPhysics, nodes: Nodes, field: Nodes) -> dict[str, Vector]:
+    """Sums of the works of all energies by names of parameters."""
+    works: dict[str, Vector] = {}
+    for energy in body.assembly.energies:
+        for name, work in energy.parameter_work(nodes, field).items():
+            works[name] = _add(works.get(name, np.zeros(0)), work)
+    return works
+
+
+def _add(one: Vector, other: Vector) -> Vector:
+    """Sum of vectors, the shorter one filled up with zeros: the last materials may be those of other energies."""
+    total = np.zeros(max(len(one), len(other)))
+    total[: len(one)] += one
+    total[: len(other)] += other
+    return total
 
 
 def _density_slopes(robot: Robot, field: Nodes) -> Vector:

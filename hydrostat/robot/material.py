@@ -1,0 +1,144 @@
+"""`Material`: an isotropic material, elastic or viscous, as rubber or as foam."""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Self
+
+from hydrostat.errors import InputError
+from hydrostat.given import check_not_negative, check_number, check_positive
+
+SOFTEST = 100.0  # Young's modulus of a material is at least so much [Pa]: less was meant in another unit
+MOST_BRANCHES = 10  # a material has at most this many branches
+MOST_TERMS = 6  # a foam law has at most this many terms
+STEEPEST = 50.0  # largest exponent of a term, up or down
+FOAM_POISSON_LIMIT = 0.45  # Poisson's ratio of a foam law is at most this: foams change their volume
+
+
+@dataclass(frozen=True, kw_only=True)
+class Relaxation:
+    """Maxwell branch, one term of a Prony series: spring and dashpot in series, parallel to the elastic material.
+
+    After a sudden shear the branch carries modulus * exp(-t / time) of its stress, so the material begins stiffer by
+    `modulus` and settles to the elastic material alone.
+
+    Raises InputError: a number that is not finite and above 0.
+    """
+
+    modulus: float  # shear modulus of the branch [Pa]
+    time: float  # relaxation time, after which its stress has fallen to 1/e [s]
+
+    def __post_init__(self) -> None:
+        check_positive("modulus", self.modulus, "Pa")
+        check_positive("time", self.time, "s")
+
+
+@dataclass(frozen=True, kw_only=True)
+class FoamTerm:
+    """Term of a foam law (Ogden and Storakers, "hyperfoam").
+
+    An exponent above 2 makes a plateau in compression and stiffens in tension; one below 0 stiffens in compression.
+
+    Raises InputError: a share that is not above 0, or an exponent of 0 or out of its range.
+    """
+
+    share: float  # share of the shear modulus; those of all terms add up to 1
+    exponent: float  # power of the principal stretches
+
+    def __post_init__(self) -> None:
+        check_positive("share", self.share, "")
+        check_number("exponent", self.exponent, "")
+        if not 0 < abs(self.exponent) <= STEEPEST:
+            raise InputError(
+                f"exponent must be from {-STEEPEST:g} to {STEEPEST:g} and not 0, not {self.exponent:g}; 8 is soft foam"
+            )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Material:
+    """Isotropic material: elastic, and optionally viscous.
+
+    Stretched along one axis, foam has the stress sum of 2 mu share / alpha (s^(alpha - 1) - s^(-1 - alpha nu)).
+
+    Attributes:
+        young: Young's modulus [Pa].
+        poisson: Poisson's ratio.
+        density: mass density [kg/m^3].
+        viscosity: shear viscosity of a dashpot parallel to the elastic material (Kelvin-Voigt) [Pa s].
+        relaxation: Maxwell branches parallel to the elastic material, together a Prony series.
+        foam: terms of the foam law; empty for a Neo-Hookean material.
+        largest_stretch: maximum stretch (length / rest length) for which the values are valid; None: unknown.
+        largest_squeeze: maximum compression, as a share of the length, for which the values are valid, for a foam until
+            its walls touch; None: unknown.
+        name: name in the material table; empty for a material given by its values.
+        source: source of the values.
+        note: limits of the values, and sources that disagree.
+
+    Raises:
+        InputError: a number out of its range.
+    """
+
+    young: float
+    poisson: float
+    density: float
+    viscosity: float = 0.0
+    relaxation: tuple[Relaxation, ...] = ()
+    foam: tuple[FoamTerm, ...] = ()
+    largest_stretch: float | None = None
+    largest_squeeze: float | None = None
+    name: str = ""
+    source: str = ""
+    note: str = ""
+
+    def __post_init__(self) -> None:
+        check_positive("young", self.young, "Pa")
+        check_number("poisson", self.poisson, "")
+        if not 0 <= self.poisson < 0.5:
+            raise InputError(
+                f"poisson must be at least 0 and below 0.5, not {self.poisson:g}; nearly incompressible is 0.45"
+            )
+        check_positive("density", self.density, "kg/m^3")
+        check_not_negative("viscosity", self.viscosity, "Pa s")
+        if len(self.relaxation) > MOST_BRANCHES:
+            raise InputError(f"relaxation must have at most {MOST_BRANCHES} branches, not {len(self.relaxation)}")
+        if self.foam:
+            self._check_foam()
+        if self.largest_stretch is not None and not 1 < self.largest_stretch < math.inf:
+            raise InputError(f"largest_stretch must be above 1 (twice the length is 2), not {self.largest_stretch:g}")
+        if self.largest_squeeze is not None and not 0 < self.largest_squeeze < 1:
+            raise InputError(f"largest_squeeze must be above 0 and below 1, not {self.largest_squeeze:g}")
+        if self.young < SOFTEST:
+            raise InputError(
+                f"young = {self.young:g} Pa is too small (minimum {SOFTEST:g} Pa). Units are Pa: for 30 kPa write 30e3."
+            )
+
+    def _check_foam(self) -> None:
+        total = sum(term.share for term in self.foam)
+        if len(self.foam) > MOST_TERMS:
+            raise InputError(f"terms: a foam law has at most {MOST_TERMS}, not {len(self.foam)}")
+        if abs(total - 1) > 1e-6:
+            raise InputError(f"terms: their shares add up to {total:g}, not to 1; divide each by {total:g}")
+        if self.poisson > FOAM_POISSON_LIMIT:
+            raise InputError(f"poisson = {self.poisson:g} is too large for a foam law (maximum {FOAM_POISSON_LIMIT:g})")
+
+    @property
+    def elastic(self) -> Self:
+        """Return the same material without viscosity and relaxation: its long-term behavior."""
+        return replace(self, viscosity=0.0, relaxation=())
+
+    @property
+    def lame(self) -> tuple[float, float]:
+        """Lame's parameters mu and lambda [Pa]."""
+        mu = self.young / (2 * (1 + self.poisson))
+        return mu, self.young * self.poisson / ((1 + self.poisson) * (1 - 2 * self.poisson))
+
+    @property
+    def young_text(self) -> str:
+        """Young's modulus to three digits, such as "30 kPa"."""
+        return f"{self.young / 1e6:.3g} MPa" if self.young >= 1e6 else f"{self.young / 1e3:.3g} kPa"
+
+    @property
+    def range_text(self) -> str:
+        """Valid range of the length, in percent: compression and extension, such as "-30 to +50 %"."""
+        squeeze = "" if self.largest_squeeze is None else f"{-100 * self.largest_squeeze:.0f}"
+        stretch = "" if self.largest_stretch is None else f"{100 * (self.largest_stretch - 1):+.0f}"
+        return f"{squeeze or '?'} to {stretch or '?'} %"
