@@ -1,7 +1,7 @@
 """`Demand`: what the poses of a robot ask of its motors and cables."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -63,12 +63,18 @@ def find_demand(
 
 def demand_of(robot: Robot, reached: Sequence[IKResult]) -> Demand:
     """The loads of poses that are solved already, as a design has them."""
-    rest = np.zeros((1, len(robot.cables)))
-    tensions = np.concatenate([rest, *(pose.pose.tensions[None] for pose in reached)])
-    taken = np.array([np.zeros(len(robot.winches)), *(pose.pose.contractions for pose in reached)])
+    rest = (np.zeros(len(robot.winches)), np.zeros(len(robot.cables)))
+    solved = [(each.pose.contractions, each.pose.tensions) for each in reached]
+    names = [f'pose "{each.target.name}"' if each.target else "pose" for each in reached]
+    return _sum_up(robot, names, [rest, *solved])
+
+
+def _sum_up(robot: Robot, poses: Sequence[str], loads: Sequence[tuple[Vector, Vector]]) -> Demand:
+    """Largest loads, from contractions [m] and tensions [N] at rest and in poses."""
+    taken, tensions = np.array([one for one, _ in loads]), [one for _, one in loads]
     return Demand(
-        poses=tuple(f'pose "{pose.target.name}"' if pose.target else "pose" for pose in reached),
-        tensions=tensions.max(axis=0),
+        poses=tuple(poses),
+        tensions=np.max(tensions, axis=0),
         torques=np.max([shaft_torques(robot, each) for each in tensions], axis=0),
         taken=np.stack([taken.min(axis=0), taken.max(axis=0)], axis=1),
     )
@@ -110,15 +116,8 @@ class _PoseLoads:
     def demand(self) -> Demand:
         """The largest of all, those at rest among them."""
         poses = [self._simulation.rest, *self.solved.values()]
-        taken = np.array([pose.contractions for pose in poses])
-        return Demand(
-            poses=tuple(self.solved),
-            tensions=np.max([pose.tensions for pose in poses], axis=0),
-            torques=np.max([shaft_torques(self._robot, pose.tensions) for pose in poses], axis=0),
-            taken=np.stack([taken.min(axis=0), taken.max(axis=0)], axis=1),
-            missed=tuple(self._missed),
-            far=tuple(self._far),
-        )
+        found = _sum_up(self._robot, tuple(self.solved), [(pose.contractions, pose.tensions) for pose in poses])
+        return replace(found, missed=tuple(self._missed), far=tuple(self._far))
 
 
 def shaft_torques(robot: Robot, tensions: Vector) -> Vector:
