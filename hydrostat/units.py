@@ -9,6 +9,12 @@ from typing import Any
 
 from hydrostat.errors import InputError
 
+MM = 1e-3
+"""One millimeter [m]."""
+
+MILLIMETERS = 1e3
+"""Millimeters in a meter."""
+
 
 @dataclass(frozen=True)
 class Dimension:

@@ -19,8 +19,8 @@ from hydrostat.camera.tags import (
 from hydrostat.errors import InputError
 from hydrostat.fabrication import PAPERS, Paper
 from hydrostat.robot import Robot
+from hydrostat.units import MILLIMETERS
 
-MM = 1e3
 MARGIN = 12.0
 """White edge of a page [mm]."""
 
@@ -57,7 +57,8 @@ def tags_pdf(robot: Robot, paper: Paper = Paper.A4, side: float = MARKER_SIDE) -
 def tags_source(robot: Robot, paper: Paper, side: float) -> str:
     """Pages as typst reads them."""
     if not SMALLEST <= side <= LARGEST_SIDE:
-        raise InputError(f"--tag {MM * side:g} mm: must be {MM * SMALLEST:g} to {MM * LARGEST_SIDE:g} mm")
+        low, high = MILLIMETERS * SMALLEST, MILLIMETERS * LARGEST_SIDE
+        raise InputError(f"--tag {MILLIMETERS * side:g} mm: must be {low:g} to {high:g} mm")
     width, height = PAPERS[paper]
     sheets = count_sheets(robot)
     pages = [_board_page(robot, sheet, sheets, (width, height)) for sheet in range(sheets)]
@@ -82,8 +83,8 @@ def _board_page(robot: Robot, sheet: int, sheets: int, paper: tuple[float, float
     middle = np.array([width / 2, height / 2])
     paths = []
     for index in range(ON_SHEET):
-        corner = middle + MM * board_corners(sheet * ON_SHEET + index)[0] * [1, -1]
-        paths.append(_tag_path(sheet * ON_SHEET + index, (float(corner[0]), float(corner[1])), MM * SIDE))
+        corner = middle + MILLIMETERS * board_corners(sheet * ON_SHEET + index)[0] * [1, -1]
+        paths.append(_tag_path(sheet * ON_SHEET + index, (float(corner[0]), float(corner[1])), MILLIMETERS * SIDE))
     title = f"{robot.name}: board, sheet {sheet + 1} of {sheets}"
     return "\n".join(
         [_picture(paths, paper), f"#at({MARGIN}, 7, text(size: 10pt)[#{json.dumps(title)}])", *_bar(width, height)]
@@ -106,7 +107,7 @@ def _marker_pages(robot: Robot, side: float, paper: tuple[float, float]) -> Iter
     """Pages with the tags of all markers, the steps on the first."""
     tags = list(marker_tags(robot).items())
     places = {marker.name: marker.at for marker in robot.markers}
-    label = MM * side * (CELLS + 2) / CELLS
+    label = MILLIMETERS * side * (CELLS + 2) / CELLS
     step_x, step_y = max(label, 24.0) + GAP, label + NAME + GAP + 4.0
     top = MARGIN + 38.0
     columns = max(1, math.floor((paper[0] - 2 * MARGIN + GAP) / step_x))
@@ -116,17 +117,17 @@ def _marker_pages(robot: Robot, side: float, paper: tuple[float, float]) -> Iter
         for index, (name, number) in enumerate(tags[start : start + columns * rows]):
             row, column = divmod(index, columns)
             x, y = MARGIN + column * step_x, top + row * step_y
-            cell = MM * side / CELLS
-            paths.append(_tag_path(number, (x + cell, y + cell), MM * side))
+            cell = MILLIMETERS * side / CELLS
+            paths.append(_tag_path(number, (x + cell, y + cell), MILLIMETERS * side))
             frame = f"rect(width: {label}mm, height: {label + NAME}mm, stroke: 0.1mm + luma(150))"
-            at = ", ".join(f"{MM * value:.0f}" for value in places[name])
+            at = ", ".join(f"{MILLIMETERS * value:.0f}" for value in places[name])
             lines += [
                 f"#at({x}, {y}, {frame})",
                 f"#at({x}, {y + label - 0.6}, box(width: {label}mm, height: {NAME}mm, clip: true, align(center + "
                 f"horizon, text(size: 8pt)[#{json.dumps(name)}])))",
                 f"#at({x}, {y + label + NAME + 1}, text(size: 6.5pt, fill: luma(90))[at #{json.dumps(at)} mm])",
             ]
-        title = f"{robot.name}: tags of markers, {MM * side:g} mm"
+        title = f"{robot.name}: tags of markers, {MILLIMETERS * side:g} mm"
         steps = "".join(f"+ #{json.dumps(step)}\n" for step in STEPS)
         lines += [
             f'#at({MARGIN}, {MARGIN - 2}, text(size: 14pt, weight: "bold")[#{json.dumps(title)}])',

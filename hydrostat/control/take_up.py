@@ -12,26 +12,49 @@ from hydrostat.control.calibration import WinchMotor
 from hydrostat.control.model_tensions import WinchPull
 from hydrostat.errors import HydrostatError
 
-GENTLE = 0.12
-"""Motors may draw so much while slack is taken up, at most [A]."""
-FELT, PULLED = 0.012, 0.05
-"""A cable is felt, and pulled at enough, where its motor draws so much more than while it runs free [A]."""
-DEEP = 0.012
-"""A soft body is pulled at enough when so much cable was taken in since a measurement began [m]."""
-SEARCH, FINE, BACK, LEAST = 0.03, 5e-4, 2e-3, 2e-3
-"""Speed of search [m/s]; step of a measurement; how far before the edge it begins; cable let out at first [m]."""
-TURN = 0.012
-"""From one command to the next [s]."""
-STABLE, PASSES = 3, 2
-"""Readings of a motor that stands at each step; measurements of each edge."""
-APART = 8e-4
-"""Two measurements of an edge may differ by so much [m]."""
-LAG = 4e-3
-"""A motor this far behind its goal that feels nothing does not follow [m]."""
-LATE, AGAIN = 0.08, 20
-"""Motors that were told nothing for so long [s] are armed again where they stand, at most so many times."""
-OLD = 0.2
-"""A reading so old is an error [s]."""
+
+@dataclass(frozen=True, kw_only=True)
+class TakeUpRules:
+    """Currents, lengths and times of the search for slack.
+
+    Attributes:
+        max_current: maximum current while slack is taken up [A].
+        touch_current: excess over the current of a free motor at which a cable begins to pull [A].
+        pull_current: excess at which it pulls enough [A].
+        max_depth: cable taken in since a measurement began at which a soft body is pulled enough [m].
+        search_speed: speed of the search [m/s].
+        step: step of a measurement [m].
+        back: distance before the edge at which a measurement begins [m].
+        first_release: cable let out at first [m].
+        interval: time between two commands [s].
+        num_readings: readings of a standing motor at each step.
+        num_passes: measurements of each edge.
+        max_difference: maximum difference of two measurements of an edge [m].
+        max_lag: distance behind its goal at which a motor without load does not follow [m].
+        silence: silence after which motors are armed again where they stand [s].
+        max_rearmed: maximum number of these times.
+        max_age: age at which a reading is an error [s].
+    """
+
+    max_current: float = 0.12
+    touch_current: float = 0.012
+    pull_current: float = 0.05
+    max_depth: float = 0.012
+    search_speed: float = 0.03
+    step: float = 5e-4
+    back: float = 2e-3
+    first_release: float = 2e-3
+    interval: float = 0.012
+    num_readings: int = 3
+    num_passes: int = 2
+    max_difference: float = 8e-4
+    max_lag: float = 4e-3
+    silence: float = 0.08
+    max_rearmed: int = 20
+    max_age: float = 0.2
+
+
+RULES = TakeUpRules()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -129,7 +152,7 @@ class _Taker:
         wait: Callable[[float], None],
     ) -> None:
         self._bus, self._motors, self._most, self._clock, self._wait = bus, tuple(motors), most, clock, wait
-        self._goals, self._told, self._again = np.zeros(len(motors)), np.inf, AGAIN
+        self._goals, self._told, self._again = np.zeros(len(motors)), np.inf, RULES.max_rearmed
 
     def begin(self) -> None:
         """Note where they stand, and arm them."""
@@ -145,14 +168,14 @@ class _Taker:
         floor = self._free(index)
         self._search(index, floor)
         edges, gains, places, currents, level = [], [], np.zeros(0), np.zeros(0), floor
-        for _ in range(PASSES):
+        for _ in range(RULES.num_passes):
             self._let_out(index, floor)
             places, currents = self._measure(index, floor)
             edge, gain, level = find_edge(places, currents, model)
             edges.append(edge)
             gains.append(gain)
         apart, edge = max(edges) - min(edges), float(np.mean(edges))
-        if apart > APART:
+        if apart > RULES.max_difference:
             raise HydrostatError(
                 f"{self._name(index)}: its cable begins to pull {1e3 * apart:.1f} mm apart in two measurements; "
                 "see that it runs freely and that its spool is fast on its motor, then begin again"
@@ -160,7 +183,7 @@ class _Taker:
         origin = self._from[index]
         place = replace(origin, zero=0.0, turns=1)
         turned = place.angle(edge) - place.angle(model.taut)
-        self._go(index, edge - model.taut, SEARCH)
+        self._go(index, edge - model.taut, RULES.search_speed)
         return SlackCalibration(
             motor=replace(origin, zero=float((origin.zero or 0.0) + origin.turns * turned)),
             slack=edge,
@@ -174,11 +197,11 @@ class _Taker:
 
     def _free(self, index: int) -> float:
         """Let cable out until the motor feels nothing more; returns what it draws then [A]."""
-        before = self._currents(index, 2 * STABLE)
+        before = self._currents(index, 2 * RULES.num_readings)
         while self._goals[index] > -self._most:
-            self._go(index, self._goals[index] - LEAST, SEARCH)
-            now = self._currents(index, 2 * STABLE)
-            if abs(before.mean() - now.mean()) < FELT / 4:
+            self._go(index, self._goals[index] - RULES.first_release, RULES.search_speed)
+            now = self._currents(index, 2 * RULES.num_readings)
+            if abs(before.mean() - now.mean()) < RULES.touch_current / 4:
                 return float(now.mean())
             before = now
         raise HydrostatError(
@@ -189,37 +212,37 @@ class _Taker:
     def _search(self, index: int, floor: float) -> None:
         """Take cable in until it is felt."""
         felt = 0
-        while felt < STABLE:
+        while felt < RULES.num_readings:
             if self._goals[index] > self._most:
                 raise HydrostatError(
                     f"{self._name(index)}: no pull is felt after {1e3 * self._most:.0f} mm were taken in; its cable is "
                     f"broken, off its spool, or its motor turns the other way (turns = {-self._motors[index].turns})"
                 )
-            current = self._turn(index, self._goals[index] + SEARCH * TURN)
-            if current < floor + FELT:
+            current = self._turn(index, self._goals[index] + RULES.search_speed * RULES.interval)
+            if current < floor + RULES.touch_current:
                 self._follows(index)
-            felt = felt + 1 if current > floor + FELT else 0
+            felt = felt + 1 if current > floor + RULES.touch_current else 0
 
     def _let_out(self, index: int, floor: float) -> None:
         """Let out until nothing is felt, and a little more."""
-        while self._currents(index, STABLE).mean() > floor + FELT / 6:
+        while self._currents(index, RULES.num_readings).mean() > floor + RULES.touch_current / 6:
             if self._goals[index] < -self._most:
                 raise HydrostatError(f"{self._name(index)}: still pulls when its cable is let out; is it jammed?")
-            self._go(index, self._goals[index] - 1e-3, SEARCH)
+            self._go(index, self._goals[index] - 1e-3, RULES.search_speed)
             self._follows(index)
-        self._go(index, self._goals[index] - BACK, SEARCH)
+        self._go(index, self._goals[index] - RULES.back, RULES.search_speed)
 
     def _measure(self, index: int, floor: float) -> tuple[Vector, Vector]:
         """Take cable in step by step until the motor pulls enough; the place and the current of each reading."""
         places, currents, begin = [], [], self._goals[index]
         while self._goals[index] < begin + self._most:
-            self._turn(index, self._goals[index] + FINE)
-            for _ in range(STABLE):
+            self._turn(index, self._goals[index] + RULES.step)
+            for _ in range(RULES.num_readings):
                 currents.append(self._turn(index, self._goals[index]))
                 places.append(self._place(index))
-            felt = float(np.mean(currents[-STABLE:])) - floor
-            deep = felt > FELT and self._goals[index] > begin + DEEP
-            if felt > PULLED or deep or places[-1] < self._goals[index] - 2 * FINE:
+            felt = float(np.mean(currents[-RULES.num_readings :])) - floor
+            deep = felt > RULES.touch_current and self._goals[index] > begin + RULES.max_depth
+            if felt > RULES.pull_current or deep or places[-1] < self._goals[index] - 2 * RULES.step:
                 return np.array(places), np.array(currents)
         raise HydrostatError(f"{self._name(index)}: what its cable pulls at is too soft to be felt, or it slips")
 
@@ -230,23 +253,24 @@ class _Taker:
             raise HydrostatError(
                 "this computer is too busy: the motors were told nothing for too long, again and again"
             )
-        self._bus.arm(np.array([min(motor.current, GENTLE) for motor in self._motors]))
+        self._bus.arm(np.array([min(motor.current, RULES.max_current) for motor in self._motors]))
         self._told = np.inf
 
     def _follows(self, index: int) -> None:
         """Raise that a motor is far from its goal though no cable holds it."""
-        if abs(self._goals[index] - self._place(index)) > LAG:
+        if abs(self._goals[index] - self._place(index)) > RULES.max_lag:
             raise HydrostatError(f"{self._name(index)}: its motor does not follow; it is stuck or has lost its power")
 
     def _go(self, index: int, goal: float, speed: float) -> None:
         """Move a motor there, in small steps, and let it come to rest."""
         while abs(step := goal - self._goals[index]) > 1e-9:
-            self._turn(index, self._goals[index] + float(np.clip(step, -speed * TURN, speed * TURN)))
+            most = speed * RULES.interval
+            self._turn(index, self._goals[index] + float(np.clip(step, -most, most)))
         self._turn(index, goal)
 
     def _turn(self, index: int, goal: float) -> float:
         """Tell all motors their goals, wait a turn, and give the current of one [A]."""
-        if self._clock() - self._told > LATE:  # this computer was busy, and their own watchdogs have stopped them
+        if self._clock() - self._told > RULES.silence:  # this computer was busy: their own watchdogs have stopped them
             self._arm()
             self._goals = np.array(
                 [
@@ -258,9 +282,9 @@ class _Taker:
         self._goals[index] = goal
         angles = np.array([motor.angle(place) for motor, place in zip(self._from, self._goals.tolist(), strict=True)])
         radii = np.array([motor.reach(place) for motor, place in zip(self._from, self._goals.tolist(), strict=True)])
-        self._bus.write(angles, 2 * SEARCH / radii)
+        self._bus.write(angles, 2 * RULES.search_speed / radii)
         self._told = self._clock()
-        self._wait(TURN)
+        self._wait(RULES.interval)
         reading = self._heard()
         self._last = float(reading.angles[index])
         current = float(reading.currents[index]) * self._motors[index].turns
@@ -280,7 +304,7 @@ class _Taker:
         for index, (stamp, fault) in enumerate(zip(reading.stamps.tolist(), reading.faults, strict=True)):
             if fault:
                 raise HydrostatError(f"the motor of {self._name(index)} reports: {fault}")
-            if now - stamp > OLD:
+            if now - stamp > RULES.max_age:
                 raise HydrostatError(f"the motor of {self._name(index)} does not answer; look at its power and cable")
         return reading
 

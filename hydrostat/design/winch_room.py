@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -60,7 +60,7 @@ def find_holding_torque(robot: Robot, reached: Sequence[IKResult]) -> float | No
 
 def _torque_to_hold(motor: Motor) -> float:
     """Torque that poses may ask of a motor for long [N m], with room for solvers that end near it."""
-    return largest_torque(motor) / _NEAR
+    return largest_torque(motor) / _RULES.torque_margin
 
 
 def find_no_room(robot: Robot) -> str | None:
@@ -120,8 +120,8 @@ def _find_taken_parts(robot: Robot, around: float) -> BaseGeometry:
             parts.append(shapely.box(left, bottom, right, top))
         elif pin.at is not None:
             parts.append(shapely.Point(1e3 * np.array(pin.at[:2])).buffer(1e3 * pin.radius))
-    closed = [line for line in robot.body.marks if len(line) > 3 and np.linalg.norm(line[0] - line[-1]) < _SAME]
-    small = [line for line in closed if np.ptp(line, axis=0).max() < _EYE * robot.body.mesh.size]
+    closed = [line for line in robot.body.marks if len(line) > 3 and np.linalg.norm(line[0] - line[-1]) < _RULES.closed]
+    small = [line for line in closed if np.ptp(line, axis=0).max() < _RULES.max_eye * robot.body.mesh.size]
     parts += [shapely.Polygon(1e3 * line).buffer(1e3 * around) for line in small]
     return shapely.union_all(parts)
 
@@ -131,9 +131,9 @@ def _grid(room: BaseGeometry) -> Points:
     if room.is_empty:
         return np.zeros((0, 2))
     left, bottom, right, top = room.bounds
-    x, y = np.meshgrid(np.arange(left, right, _APART), np.arange(bottom, top, _APART))
+    x, y = np.meshgrid(np.arange(left, right, _RULES.spacing), np.arange(bottom, top, _RULES.spacing))
     inside = shapely.contains_xy(room, x, y)
-    rim = shapely.get_coordinates(shapely.segmentize(room, _APART))
+    rim = shapely.get_coordinates(shapely.segmentize(room, _RULES.spacing))
     return 1e-3 * np.concatenate([np.column_stack([x[inside], y[inside]]), rim])
 
 
@@ -148,12 +148,12 @@ def _pocket_zones(robot: Robot, constraints: Constraints, box: Cuboid, winches: 
     points, radii = pocket_room(robot).places(box)
     if constraints.winch_zones and len(points):
         inside = -np.min([zone.distances(points) for zone in constraints.winch_zones], axis=0)
-        points, radii = points[inside >= 0], np.minimum(radii, np.maximum(inside, _POINT))[inside >= 0]
+        points, radii = points[inside >= 0], np.minimum(radii, np.maximum(inside, _RULES.zone_radius))[inside >= 0]
     if not _has_room_for(points, winches, _width(box)):
         return ()
     zones: list[Zone] = []
     left = np.ones(len(points), dtype=bool)
-    while left.any() and len(zones) < _BALLS:
+    while left.any() and len(zones) < _RULES.num_balls:
         number = int(np.argmax(np.where(left, radii, -1.0)))
         middle = points[number]
         zones.append(Zone(at=tuple(middle.round(5).tolist()), radius=round(float(radii[number]), 5)))
@@ -203,7 +203,7 @@ def _least_scale(fits: Callable[[float], bool]) -> float:
     low, high = 1.0, 1.25
     while not fits(high):
         low, high = high, 1.25 * high
-    while high - low > _CLOSE * low:
+    while high - low > _RULES.precision * low:
         middle = 0.5 * (low + high)
         low, high = (low, middle) if fits(middle) else (middle, high)
     return high
@@ -231,7 +231,7 @@ def _room(body: Body, box: Cuboid, scale: float = 1.0) -> BaseGeometry:
     """Places of the unit's middle at which it is within the seam of a scaled body some way round [mm]."""
     thickness = scale * 1e3 * float(body.thickness or 0.0)
     seam = affinity.scale(seam_of(body), scale, scale, origin=(0.0, 0.0))
-    seam = shapely.simplify(seam.buffer(-_ROUGH), _ROUGH)
+    seam = shapely.simplify(seam.buffer(-_RULES.simplification), _RULES.simplification)
     sides = []
     if box.size[2] <= (1 + GIVES) * thickness:
         sides.append((box.low[:2], box.high[:2]))
@@ -239,7 +239,7 @@ def _room(body: Body, box: Cuboid, scale: float = 1.0) -> BaseGeometry:
         middle = box.high[2] / 2
         low, high = box.low[2] - middle, box.high[2] - middle
         sides += [((low, box.low[1]), (high, box.high[1])), ((-high, box.low[1]), (-low, box.high[1]))]
-    found = [_erode(seam, low, high, math.radians(turn)) for low, high in sides for turn in range(0, 360, _HOUR)]
+    found = [_erode(seam, low, high, math.radians(turn)) for low, high in sides for turn in range(0, 360, _RULES.turn)]
     return shapely.union_all(found) if found else shapely.Polygon()
 
 
@@ -250,7 +250,7 @@ def _erode(seam: BaseGeometry, low: tuple[float, ...], high: tuple[float, ...], 
     corners = corners[:, :1] * right + corners[:, 1:] * up
     room = seam
     for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-        count = max(1, math.ceil(float(np.linalg.norm(end - start)) / _APART))
+        count = max(1, math.ceil(float(np.linalg.norm(end - start)) / _RULES.spacing))
         for share in np.arange(count) / count:
             x, y = start + share * (end - start)
             room = room.intersection(affinity.translate(seam, -x, -y))
@@ -271,18 +271,18 @@ def _shape(zone: Zone) -> BaseGeometry:
 
 def _zones(room: BaseGeometry) -> tuple[Zone, ...]:
     """The parts of a room that are worth standing in [m]; those with holes as parts without that overlap."""
-    parts = shapely.get_parts(shapely.simplify(room, _ROUGH))
+    parts = shapely.get_parts(shapely.simplify(room, _RULES.simplification))
     kept = [piece for part in parts if isinstance(part, shapely.Polygon) for piece in _without_holes(part)]
     return tuple(
         Zone(outline=tuple((float(x), float(y)) for x, y in 1e-3 * np.array(part.exterior.coords)[:-1]))
         for part in sorted(kept, key=lambda part: -part.area)
-        if part.area >= _LEAST
+        if part.area >= _RULES.min_area
     )
 
 
 def _without_holes(part: shapely.Polygon) -> list[shapely.Polygon]:
     """The part itself, or what lies left, right, below and above of its largest hole; small holes are filled."""
-    holes = [shapely.Polygon(ring) for ring in part.interiors if shapely.Polygon(ring).area >= _HOLE]
+    holes = [shapely.Polygon(ring) for ring in part.interiors if shapely.Polygon(ring).area >= _RULES.min_hole]
     if not holes:
         return [shapely.Polygon(part.exterior)]
     left, bottom, right, top = max(holes, key=lambda hole: hole.area).bounds
@@ -302,14 +302,35 @@ def _without_holes(part: shapely.Polygon) -> list[shapely.Polygon]:
     ]
 
 
-_NEAR = 1.002  # torques may end so many times above their limit, or half of that
-_HOUR = 30  # between the turns that are tried [degrees]
-_APART = 5.0  # between the places of a rim that are looked at [mm]
-_ROUGH = 0.2  # by so much may the seam be drawn simpler [mm]
-_LEAST = 4.0  # smaller rooms are none [mm^2]
-_HOLE = 100.0  # holes of a room that are smaller are none [mm^2]
-_EYE = 0.2  # closed shapes drawn on a body that are larger than this share of it are no eyes
-_SAME = 1e-6  # ends of a closed line are so near to each other [m]
-_POINT = 1e-4  # radius of a zone that is hardly more than a point [m]
-_BALLS = 24  # balls that tell where pockets have room
-_CLOSE = 0.02  # precision of the scale
+@dataclass(frozen=True, kw_only=True)
+class _RoomRules:
+    """Tolerances and sizes of the search for room.
+
+    Attributes:
+        torque_margin: factor by which torques may end above their limit, or half of that.
+        turn: angle between the turns that are tried [degrees].
+        spacing: distance of the places of a rim that are examined [mm].
+        simplification: maximum error of the simplified seam [mm].
+        min_area: area below which rooms are left out [mm^2].
+        min_hole: area below which holes of a room are left out [mm^2].
+        max_eye: share of the body above which a closed shape drawn on it is no eye.
+        closed: distance of the ends of a closed line [m].
+        zone_radius: radius of a zone that stands for a point [m].
+        num_balls: number of balls that show where pockets have room.
+        precision: precision of the scale.
+    """
+
+    torque_margin: float = 1.002
+    turn: int = 30
+    spacing: float = 5.0
+    simplification: float = 0.2
+    min_area: float = 4.0
+    min_hole: float = 100.0
+    max_eye: float = 0.2
+    closed: float = 1e-6
+    zone_radius: float = 1e-4
+    num_balls: int = 24
+    precision: float = 0.02
+
+
+_RULES = _RoomRules()

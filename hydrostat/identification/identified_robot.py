@@ -11,8 +11,8 @@ from hydrostat.identification.kinds import named_model
 from hydrostat.identification.measurements import Measurements
 from hydrostat.identification.model import IdentificationModel
 from hydrostat.robot import Robot, require_no_drives
+from hydrostat.units import MM
 
-MM = 1e-3
 UNKNOWN = 0.3
 """Share of the uncertainty of a guess that measurements must take away to be said to show a parameter."""
 

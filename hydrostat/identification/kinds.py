@@ -9,8 +9,8 @@ import numpy as np
 from hydrostat.errors import InputError
 from hydrostat.identification.model import IdentificationModel, Parameter, Values
 from hydrostat.robot import Robot
+from hydrostat.units import MM
 
-MM = 1e-3
 NARROW = 1e-6
 """Distance that a fitted Poisson's ratio keeps from 0.5."""
 

@@ -12,8 +12,8 @@ from hydrostat.errors import InputError
 from hydrostat.files import read_stranger
 from hydrostat.identification.measurements import Measurements
 from hydrostat.robot import Robot
+from hydrostat.units import MM
 
-MM = 1e-3
 LARGEST = 20_000_000
 """Bytes that a table may have."""
 

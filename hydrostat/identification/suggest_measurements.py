@@ -12,8 +12,8 @@ from hydrostat.identification.kinds import named_model
 from hydrostat.identification.marker_predictor import MarkerPredictor
 from hydrostat.identification.measurements import Measurements
 from hydrostat.robot import Robot
+from hydrostat.units import MM
 
-MM = 1e-3
 NOISE = 0.01
 """Standard deviation of a measured coordinate about a good model, as a share of the body's size."""
 

@@ -35,11 +35,10 @@ if TYPE_CHECKING:
     )
     from hydrostat.plot.robot_report import robot_report
     from hydrostat.plot.scene import save_glb
-    from hydrostat.plot.sheet import MILLIMETERS, WIDTH, new_figure
+    from hydrostat.plot.sheet import WIDTH, new_figure
     from hydrostat.plot.skin import FlatSkin, outer_points
 
 __all__ = [
-    "MILLIMETERS",
     "WIDTH",
     "WIDTHS",
     "Attachments",

@@ -13,11 +13,11 @@ from hydrostat.plot.drawn_body import DrawnBody
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import Pane
-from hydrostat.plot.sheet import MILLIMETERS, WIDTH, PictureSheet, Spread
+from hydrostat.plot.sheet import WIDTH, PictureSheet, Spread
 from hydrostat.plot.targets import draw_misses, target_places, target_points
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import Robot
-from hydrostat.units import plural
+from hydrostat.units import MILLIMETERS, plural
 
 PALE = 0.62  # how far felt fades behind muscles
 

@@ -15,10 +15,10 @@ from hydrostat.plot.chart import plain_axes
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import Pane
-from hydrostat.plot.sheet import MILLIMETERS, WIDTH, PictureSheet, Spread
+from hydrostat.plot.sheet import WIDTH, PictureSheet, Spread
 from hydrostat.robot import Robot
 from hydrostat.simulation import Branch, Equilibrium, Multistability
-from hydrostat.units import plural
+from hydrostat.units import MILLIMETERS, plural
 
 TOLD = 0.25  # markers that differ less, or move less, than this share of the first have no chart
 ROW = 2.3  # height of a row of charts [inch]

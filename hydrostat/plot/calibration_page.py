@@ -12,8 +12,8 @@ from hydrostat.drawing import Color, Html, tag
 from hydrostat.files import replace_file
 from hydrostat.plot.chart import new_chart
 from hydrostat.plot.report_tables import NARROW, grid, number, page, picture, table
-from hydrostat.plot.sheet import MILLIMETERS
 from hydrostat.robot import Robot
+from hydrostat.units import MILLIMETERS
 
 
 def write_calibration_page(

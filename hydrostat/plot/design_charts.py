@@ -12,8 +12,8 @@ from hydrostat.drawing import Color
 from hydrostat.plot.chart import new_chart
 from hydrostat.plot.labels import HALO
 from hydrostat.plot.report_tables import millimeters
-from hydrostat.plot.sheet import MILLIMETERS, WIDTH
-from hydrostat.units import plural
+from hydrostat.plot.sheet import WIDTH
+from hydrostat.units import MILLIMETERS, plural
 
 
 def draw_growth(

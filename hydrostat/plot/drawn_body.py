@@ -6,7 +6,8 @@ import numpy as np
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.drawing import Camera, Render
-from hydrostat.plot.sheet import MILLIMETERS, Place, Places, Spread
+from hydrostat.plot.sheet import Place, Places, Spread
+from hydrostat.units import MILLIMETERS
 
 LEVELS = 8  # steps from what is just covered to what is deep inside
 

@@ -11,10 +11,10 @@ from hydrostat.errors import InputError
 from hydrostat.ik import IKResult, KeyPose, Trajectory
 from hydrostat.plot.frame import Frame
 from hydrostat.plot.labels import shorten
-from hydrostat.plot.sheet import MILLIMETERS
 from hydrostat.progress import Progress
 from hydrostat.robot import PoseTarget, Robot, require_no_drives
 from hydrostat.simulation import Equilibrium, Simulation
+from hydrostat.units import MILLIMETERS
 
 STILL = 0.25  # share of the time from one stop to the next in which the robot stays there
 

@@ -12,8 +12,9 @@ from hydrostat.plot.frame import Attachments, Frame
 from hydrostat.plot.labels import shorten
 from hydrostat.plot.picture_file import figure_pixels
 from hydrostat.plot.robot_figures import draw_portrait
-from hydrostat.plot.sheet import MILLIMETERS, WIDTH, new_figure
+from hydrostat.plot.sheet import WIDTH, new_figure
 from hydrostat.robot import Robot, rims
+from hydrostat.units import MILLIMETERS
 
 
 def draw_pull(

@@ -11,8 +11,9 @@ from hydrostat.plot.drawn_body import DrawnBody, DrawnCable
 from hydrostat.plot.frame import Attachments
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.pane import Pane
-from hydrostat.plot.sheet import MILLIMETERS, PictureSheet, Place, Places, join_lines
+from hydrostat.plot.sheet import PictureSheet, Place, Places, join_lines
 from hydrostat.robot import Mount, Robot, Winch, obstacle_lines
+from hydrostat.units import MILLIMETERS
 
 SHARES = np.linspace(0.3, 0.9, 13)  # shares of a cable's length where its number may stand
 

@@ -11,7 +11,8 @@ from hydrostat.arrays import Float, Int, Points
 from hydrostat.drawing import Camera, Color, Render, Spots, channels, render, three_quarter
 from hydrostat.geometry import Surface, sides_of
 from hydrostat.plot.pane import fit_pixel, lay_image
-from hydrostat.plot.sheet import MILLIMETERS, TALLEST, WIDTH, PictureSheet, Place, new_sheet, round_step
+from hydrostat.plot.sheet import TALLEST, WIDTH, PictureSheet, Place, new_sheet, round_step
+from hydrostat.units import MILLIMETERS
 
 LINE, HEAD, LETTERS = 11.0, 28.0, 92  # height of a line of notes and of what is above the views [pt]; letters of a line
 

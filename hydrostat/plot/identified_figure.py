@@ -7,8 +7,8 @@ from matplotlib.figure import Figure
 from hydrostat.drawing import Color
 from hydrostat.identification import IdentifiedRobot, Measurements, rms
 from hydrostat.plot.chart import plain_axes
+from hydrostat.units import MILLIMETERS
 
-MM = 1e3
 FITTED, ASSUMED = Color.WINCHES[0], "#b9b4c0"
 
 
@@ -21,13 +21,12 @@ def draw_identified(measurements: Measurements, found: IdentifiedRobot) -> Figur
     figure = Figure(figsize=(4.6 * len(views), 4.6), dpi=130, layout="constrained")
     for index, view in enumerate(views):
         axes = figure.add_subplot(1, len(views), index + 1)
-        _draw_view(axes, [MM * places[..., view].reshape(-1, 2) for places in (seen, before, after)])
+        _draw_view(axes, [MILLIMETERS * places[..., view].reshape(-1, 2) for places in (seen, before, after)])
         axes.set(xlabel=f"{'xyz'[view[0]]} [mm]", ylabel=f"{'xyz'[view[1]]} [mm]", aspect="equal")
         axes.margins(0.08)
     figure.axes[0].legend(frameon=False, fontsize=8, loc="best")
-    figure.suptitle(
-        f"rms error {MM * rms(found.before):.2f} mm as assumed, {MM * rms(found.after):.2f} mm fitted", fontsize=10
-    )
+    assumed, fitted = MILLIMETERS * rms(found.before), MILLIMETERS * rms(found.after)
+    figure.suptitle(f"rms error {assumed:.2f} mm as assumed, {fitted:.2f} mm fitted", fontsize=10)
     return figure
 
 

@@ -8,10 +8,11 @@ from hydrostat.arrays import Nodes, Vector
 from hydrostat.drawing import NAMESPACE, Color, Html, mix, path, shape, tag, winch_colors
 from hydrostat.plot.frame import Attachments
 from hydrostat.plot.hardware import spool_size, stopper_bar
-from hydrostat.plot.sheet import MILLIMETERS, Places, frame_points
+from hydrostat.plot.sheet import Places, frame_points
 from hydrostat.plot.skin import FlatSkin
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
+from hydrostat.units import MILLIMETERS
 
 STEPS = 6  # equilibria from rest to a pose
 SCALE = 0.7  # millimeters to a point in this picture: it shows true millimeters, about so large on a page

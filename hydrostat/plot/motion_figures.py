@@ -15,9 +15,10 @@ from hydrostat.plot.frame import Attachments
 from hydrostat.plot.labels import shorten
 from hydrostat.plot.picture_file import figure_pixels
 from hydrostat.plot.robot_figures import draw_portrait
-from hydrostat.plot.sheet import MILLIMETERS, WIDTH, new_figure
+from hydrostat.plot.sheet import WIDTH, new_figure
 from hydrostat.robot import Robot
 from hydrostat.simulation import Equilibrium, MotionTable
+from hydrostat.units import MILLIMETERS
 
 
 def draw_motion(robot: Robot, table: MotionTable, *, title: str | None = None, width: float = WIDTH) -> Figure:

@@ -8,9 +8,10 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.drawing import Camera, Color, along_an_axis, three_quarter
 from hydrostat.plot.pane import FlatPane, Pane, SpacePane
-from hydrostat.plot.sheet import MILLIMETERS, TALLEST, WIDTH, PictureSheet, Place, Spread, new_sheet, round_step
+from hydrostat.plot.sheet import TALLEST, WIDTH, PictureSheet, Place, Spread, new_sheet, round_step
 from hydrostat.plot.skin import FlatSkin
 from hydrostat.robot import ObstacleShape, Robot
+from hydrostat.units import MILLIMETERS
 
 
 def open_sheet(

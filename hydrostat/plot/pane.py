@@ -10,9 +10,10 @@ import shapely
 from hydrostat.arrays import Int, Nodes, Points, Vector
 from hydrostat.drawing import Camera, Color, Render, Spots, mix, render, silhouette
 from hydrostat.plot.drawn_body import DrawnBody
-from hydrostat.plot.sheet import BODY, MILLIMETERS, PictureSheet, Place, Places
+from hydrostat.plot.sheet import BODY, PictureSheet, Place, Places
 from hydrostat.plot.skin import FlatSkin
 from hydrostat.robot import Obstacle, ObstacleShape, Robot, rims
+from hydrostat.units import MILLIMETERS
 
 Surface = tuple[Points, Int[np.ndarray, "triangles 3"]]  # places of its corners [m], and triangles seen from outside
 

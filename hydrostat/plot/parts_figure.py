@@ -8,7 +8,8 @@ from shapely import Polygon, maximum_inscribed_circle
 
 from hydrostat.arrays import Float
 from hydrostat.drawing import Color
-from hydrostat.plot.sheet import MILLIMETERS, WIDTH, new_sheet
+from hydrostat.plot.sheet import WIDTH, new_sheet
+from hydrostat.units import MILLIMETERS
 
 
 def draw_parts(parts: Mapping[int, Float[np.ndarray, "_ 2"]], *, title: str = "", width: float = WIDTH) -> Figure:

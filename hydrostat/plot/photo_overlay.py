@@ -8,8 +8,8 @@ from matplotlib.patheffects import withStroke
 
 from hydrostat.camera import PhotoMeasurements, read_colors
 from hydrostat.simulation import Equilibrium
+from hydrostat.units import MILLIMETERS
 
-MM = 1e3
 WIDTH = 1600
 """Width of the picture [pixels]."""
 
@@ -56,7 +56,7 @@ def _draw_markers(axes: Axes, found: PhotoMeasurements, index: int, pose: Equili
             seen = found.project(index, measured.places[name][None])[0]
             axes.plot(*np.array([seen, spot]).T, color=SIMULATED, linewidth=2.0, zorder=3)
             axes.plot(*seen, "o", markersize=13, markerfacecolor="none", markeredgecolor=MEASURED, markeredgewidth=2.0)
-            words = f"{name} {MM * measured.errors[name]:.1f} mm"
+            words = f"{name} {MILLIMETERS * measured.errors[name]:.1f} mm"
         axes.annotate(
             words, spot, xytext=(11, 9), textcoords="offset points", color="white", size=14, path_effects=halo, zorder=5
         )

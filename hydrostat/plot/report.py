@@ -15,10 +15,10 @@ from hydrostat.plot.picture_file import inline_svg
 from hydrostat.plot.report_chapters import chapters
 from hydrostat.plot.report_tables import add_caption, fact, footer, millimeters, page
 from hydrostat.plot.robot_figures import draw_portrait
-from hydrostat.plot.sheet import MILLIMETERS, Spread
+from hydrostat.plot.sheet import Spread
 from hydrostat.plot.skin import outer_points
 from hydrostat.robot import Robot
-from hydrostat.units import plural
+from hydrostat.units import MILLIMETERS, plural
 
 
 def write_report(

@@ -40,10 +40,9 @@ from hydrostat.plot.report_tables import (
     winch_table,
 )
 from hydrostat.plot.robot_figures import draw_network, draw_reached, draw_rest, draw_stage, draw_target, stage_frame
-from hydrostat.plot.sheet import MILLIMETERS
 from hydrostat.robot import PoseTarget, Robot, Source, describe_cable_side
 from hydrostat.simulation import Simulation, filled_motion, is_filled_motion_fast
-from hydrostat.units import plural
+from hydrostat.units import MILLIMETERS, plural
 
 HEAD = "Once it is filled"
 

@@ -11,10 +11,10 @@ from hydrostat.design import Network, TreeTrace
 from hydrostat.drawing import Html, tag, winch_colors
 from hydrostat.ik import IKResult
 from hydrostat.plot.picture_file import inline_svg
-from hydrostat.plot.sheet import MILLIMETERS
 from hydrostat.plot.targets import rest_errors
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import BodyPart, Robot, robot_hash
+from hydrostat.units import MILLIMETERS
 
 NARROW = 4.9  # width of pictures that stand side by side [inch]: the narrower, the larger their letters
 

@@ -17,7 +17,7 @@ from hydrostat.plot.hardware import DrawnRobot, draw_hardware, draw_numbers, nam
 from hydrostat.plot.labels import HALO, Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import Pane
-from hydrostat.plot.sheet import MILLIMETERS, WIDTH, PictureSheet, Place, Places, Spread
+from hydrostat.plot.sheet import WIDTH, PictureSheet, Place, Places, Spread
 from hydrostat.plot.skin import outer_points
 from hydrostat.plot.targets import (
     draw_arrows,
@@ -31,7 +31,7 @@ from hydrostat.plot.targets import (
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import Load, Obstacle, PoseTarget, Robot
 from hydrostat.simulation import Equilibrium, check_pose, obstacles_in_pose
-from hydrostat.units import plural
+from hydrostat.units import MILLIMETERS, plural
 
 
 def draw_rest(robot: Robot, *, title: str | None = None, width: float = WIDTH) -> Figure:

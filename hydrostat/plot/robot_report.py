@@ -8,9 +8,8 @@ from hydrostat.drawing import Html, tag
 from hydrostat.ik import IKResult
 from hydrostat.plot.report_chapters import REACHED, body_part, network_part, reached_part, target_chapter
 from hydrostat.plot.report_tables import Chapter, fact, page, section, table
-from hydrostat.plot.sheet import MILLIMETERS
 from hydrostat.robot import Robot, find_risks, robot_hash
-from hydrostat.units import plural
+from hydrostat.units import MILLIMETERS, plural
 from hydrostat.version import __version__
 
 

@@ -16,7 +16,6 @@ from hydrostat.drawing import Color
 Place = Float[np.ndarray, " 2"]  # one place, in millimeters unless its function says otherwise
 Places = Float[np.ndarray, "_ 2"]  # places, one row each, in millimeters unless their function says otherwise
 Spread = Float[np.ndarray, "_ dim"]  # points or nodes of a robot [m], any number of them in one call
-MILLIMETERS = 1e3  # pictures are drawn in millimeters
 WIDTH = 6.4  # width of a picture [inch]
 BODY = "body"  # label of an image of a body in space, by which it is known when the picture is written
 TALLEST = 1.15  # greatest height of a picture, as a multiple of its width

@@ -11,7 +11,6 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from hydrostat.arrays import Float, Nodes
 from hydrostat.drawing import Color
 from hydrostat.plot import (
-    MILLIMETERS,
     WIDTH,
     Attachments,
     draw_portrait,
@@ -22,6 +21,7 @@ from hydrostat.plot import (
     short_number,
 )
 from hydrostat.robot import Robot
+from hydrostat.units import MILLIMETERS
 from hydrostat_lab.compare import STEP, way_of
 from hydrostat_lab.study import StudyRow
 

@@ -7,7 +7,7 @@ from hydrostat.control.calibration import WinchMotor
 from hydrostat.control.dynamixel_bus import DynamixelBus
 from hydrostat.control.emulated_servos import EmulatedChain, EmulatedServo, InjectedFaults
 from hydrostat.control.model_tensions import WinchPull
-from hydrostat.control.take_up import APART, GENTLE, SlackCalibration, find_edge, take_up_slack
+from hydrostat.control.take_up import RULES, SlackCalibration, find_edge, take_up_slack
 from hydrostat.errors import HydrostatError
 
 RADIUS, CONSTANT = 0.008, 0.35  # [m], [N m/A]
@@ -65,7 +65,7 @@ def test_ten_hidden_slacks_are_found_to_half_a_millimeter_within_a_minute() -> N
     assert np.abs(errors).max() < 5e-4
     assert [each.slack for each in taken] == pytest.approx(winches.slacks, abs=5e-4)
     assert winches.chain.now < 60.0
-    assert winches.hardest < CONSTANT * (GENTLE + 0.01) / RADIUS + 1.5  # as far as a step goes beyond the bound
+    assert winches.hardest < CONSTANT * (RULES.max_current + 0.01) / RADIUS + 1.5  # a step goes so far beyond it
     gains = [each.gain for each in taken]
     assert gains == pytest.approx(winches.pulls / 100 * RADIUS / CONSTANT, rel=0.25)
     stands = np.array([servo.angle for servo in winches.servos])
@@ -168,7 +168,7 @@ def test_a_spool_that_slips_is_told() -> None:
         return CONSTANT * pull
 
     winches.servos[0].load = slips
-    assert RADIUS * 0.25 > 2 * APART
+    assert 2 * RULES.max_difference < RADIUS * 0.25
     with pytest.raises(HydrostatError, match="mm apart in two measurements"):
         winches.take_up()
 

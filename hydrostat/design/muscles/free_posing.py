@@ -66,7 +66,7 @@ class FreePosing:
 
     def rest(self) -> None:
         """Let go of everything at once: no muscle pulls."""
-        self._radius = _LARGEST
+        self._radius = _RULES.max_step
         self._settle(self._resting, np.zeros(len(self.fibres)))
 
     def update(self, held: Anchors, goals: Points, calm: Anchors | None = None) -> bool:
@@ -79,16 +79,16 @@ class FreePosing:
         change = wanted - self.tensions
         farthest = self._farthest(change)
         before = self._objective(self.nodes, self.tensions, aims, rho)
-        for _ in range(_TRIES):
+        for _ in range(_RULES.num_tries):
             length = min(1.0, self._radius / farthest) if farthest > 0 else 1.0
             tensions = self.tensions + length * change
-            found = self._relax(tensions, _ITERATIONS)
+            found = self._relax(tensions, _RULES.iterations)
             if self._objective(found.nodes, tensions, aims, rho) <= before:
-                self._radius = min(2.0 * self._radius, _LARGEST)
+                self._radius = min(2.0 * self._radius, _RULES.max_step)
                 return self._settle(found, tensions)
-            self._radius = max(0.25 * length * farthest, _SMALLEST)
+            self._radius = max(0.25 * length * farthest, _RULES.min_step)
         # The body may be so far from rest that nothing can be predicted: first let it settle as it is pulled now.
-        return self._settle(self._relax(self.tensions, _PATIENT), self.tensions)
+        return self._settle(self._relax(self.tensions, _RULES.far_iterations), self.tensions)
 
     def _begin(self) -> NewtonResult:
         """Return the equilibrium at rest, from a start with all of the weight."""
@@ -110,16 +110,16 @@ class FreePosing:
         if stiffness is None or not stiffness.definite:
             stiffness = self._assembly.stiffness(found.nodes, tensions, projection=1.0)
         if not stiffness.definite:
-            stiffness = self._assembly.stiffness(found.nodes, tensions, projection=1.0, shift=_SHIFT)
+            stiffness = self._assembly.stiffness(found.nodes, tensions, projection=1.0, shift=_RULES.shift)
         self._stiffness = stiffness
-        return moved > _STILL * self._size
+        return moved > _RULES.still * self._size
 
     def _aims(self, held: Anchors, goals: Points, calm: Anchors | None) -> list["_Aim"]:
         """Pinned nodes, then nodes that should stay; none have to stay while none are pinned."""
         aims = [_Aim(held, goals, 1.0)]
         if calm is not None and len(goals):
             missed = float(np.linalg.norm(held.positions(self.nodes) - goals))
-            weight = max(_CALM, np.sqrt(0.5 * missed / self._size))
+            weight = max(_RULES.calm_weight, np.sqrt(0.5 * missed / self._size))
             aims.append(_Aim(calm, calm.positions(self._resting.nodes), weight))
         return aims
 
@@ -138,9 +138,9 @@ class FreePosing:
         goal = missed + adjoint.T @ gradient + jacobian @ self.tensions
         most = self._most()
         wanted = least_effort(jacobian, goal, rho, most=most)
-        for _ in range(_SOFTENINGS):
+        for _ in range(_RULES.num_softenings):
             asked = float((jacobian.T @ (goal - jacobian @ wanted)).max(initial=0.0)) / rho
-            if asked <= (1.0 + _SOFT) * self.strength:
+            if asked <= (1.0 + _RULES.overload) * self.strength:
                 break
             rho *= asked / self.strength
             wanted = least_effort(jacobian, goal, rho, most=most)
@@ -149,13 +149,13 @@ class FreePosing:
     def _most(self) -> Vector:
         """Return the largest tension of each fibre at its present length [N]: full at rest, 0 when fully shortened."""
         shares = self._energy.lengths(self.nodes) / self._lengths
-        return self.strength * np.clip((shares - _SHORTEST) / (1.0 - _SHORTEST), 0.0, 1.0)
+        return self.strength * np.clip((shares - _RULES.min_length) / (1.0 - _RULES.min_length), 0.0, 1.0)
 
     def _weight(self, rows: Float[np.ndarray, "dofs rows"]) -> float:
         """Rho, by what the strongest fibre can do to these points at rest; not less for points that are pinned."""
         moves = self._resting_pulls.T @ self._resting_stiffness.solve(rows)
         able = float((moves**2).sum(axis=1).max(initial=0.0))
-        return self._effort * max(able, _LEAST_ABLE * self._able)
+        return self._effort * max(able, _RULES.min_mobility * self._able)
 
     def _farthest(self, change: Vector) -> float:
         """Return the largest displacement of a node by a change of tensions, to first order, in sizes of the body."""
@@ -172,7 +172,7 @@ class FreePosing:
             self.nodes,
             tensions,
             round_off=self._noise,
-            options=NewtonOptions(tolerance=_LOOSE, iterations=iterations),
+            options=NewtonOptions(tolerance=_RULES.force_tolerance, iterations=iterations),
             warp=self._warp,
             stiffness=self._stiffness,
         )
@@ -183,7 +183,7 @@ class FreePosing:
 
     def _largest_move(self) -> float:
         """The square of how far the strongest fibre moves a node along an axis at rest [m^2/N^2], of some nodes."""
-        nodes = np.linspace(0, len(self.nodes) - 1, _SAMPLES).astype(int)
+        nodes = np.linspace(0, len(self.nodes) - 1, _RULES.num_samples).astype(int)
         rows = np.zeros((self.nodes.size, len(nodes)))
         rows[nodes * self.nodes.shape[1], np.arange(len(nodes))] = 1.0
         return float(((self._resting_pulls.T @ self._resting_stiffness.solve(rows)) ** 2).max())
@@ -198,19 +198,42 @@ class _Aim:
     weight: float
 
 
-_CALM = 0.03  # what a meter of a point that should rather stay counts beside one of a point that is held
-_SHORTEST = 0.4
-"""A muscle that is so short, as a share of its length at rest, cannot pull: the force falls with the length."""
+@dataclass(frozen=True, kw_only=True)
+class _FreePosingRules:
+    """Weights and limits of an update.
 
-_LARGEST = 0.15  # no update moves a node farther, in sizes of the body
-_SMALLEST = 1e-4  # steps become no shorter; a goal that moves on asks for longer ones again
-_STILL = 2e-5  # a step that moves no node farther counts as none, in sizes of the body
-_TRIES = 3  # steps tried in one update before the body stays where it is
-_SOFTENINGS = 8  # times that the weight of the effort is raised in one update
-_SOFT = 0.05  # a fibre may be asked for so much more than it can pull
-_ITERATIONS = 1  # steps of Newton in an update: what they leave over, the next one takes in
-_PATIENT = 4  # steps of Newton where a body is far from rest
-_LOOSE = 1e-5  # force left over that counts as none, as a share of the largest tension
-_LEAST_ABLE = 1e-2  # points that hardly move are not pulled at harder than if they moved a tenth as far as the freest
-_SAMPLES = 24  # nodes by which that is measured
-_SHIFT = 1e-6  # added to the diagonal of a Hessian that cannot be solved with, as a share of its largest entry
+    Attributes:
+        calm_weight: weight of a meter of a calm point, next to one of a held point.
+        min_length: length, as a share of that at rest, at which a muscle cannot pull: the force falls with the length.
+        max_step: maximum motion of a node in an update, in sizes of the body.
+        min_step: minimum step; a goal that moves on asks for longer ones again.
+        still: motion of all nodes below which a step counts as none, in sizes of the body.
+        num_tries: steps tried in one update before the body stays where it is.
+        num_softenings: times that the weight of the effort is raised in one update.
+        overload: share by which a fibre may be asked for more than it can pull.
+        iterations: Newton steps in an update; the next update removes the remaining force.
+        far_iterations: Newton steps where a body is far from rest.
+        force_tolerance: residual force that counts as none, as a share of the largest tension.
+        min_mobility: floor of mobility: points that hardly move are pulled as if they moved a tenth as far as the
+            freest.
+        num_samples: number of nodes by which that is measured.
+        shift: share of the largest entry that is added to the diagonal of a singular Hessian.
+    """
+
+    calm_weight: float = 0.03
+    min_length: float = 0.4
+    max_step: float = 0.15
+    min_step: float = 1e-4
+    still: float = 2e-5
+    num_tries: int = 3
+    num_softenings: int = 8
+    overload: float = 0.05
+    iterations: int = 1
+    far_iterations: int = 4
+    force_tolerance: float = 1e-5
+    min_mobility: float = 1e-2
+    num_samples: int = 24
+    shift: float = 1e-6
+
+
+_RULES = _FreePosingRules()

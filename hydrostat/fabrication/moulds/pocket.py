@@ -12,10 +12,10 @@ from hydrostat.errors import InputError
 from hydrostat.fabrication.moulds.release import FineSurface, axes_along
 from hydrostat.fabrication.moulds.solids import join_solids, rod
 from hydrostat.fabrication.moulds.stance import MoldOrientation
-from hydrostat.fabrication.solids.body_solid import MILLIMETERS
 from hydrostat.fabrication.solids.construct import Cuboid, Sides, sides_text
 from hydrostat.geometry import Solid, Surface
 from hydrostat.robot import Mount, Robot
+from hydrostat.units import MILLIMETERS
 
 
 @dataclass(frozen=True, kw_only=True)

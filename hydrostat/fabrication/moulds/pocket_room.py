@@ -13,9 +13,9 @@ from hydrostat.fabrication.kit_options import MoldOptions
 from hydrostat.fabrication.moulds.pocket import LEAST_SKIN, LyingWinch, WinchRoom, ways_to_turn
 from hydrostat.fabrication.moulds.setting import mold_setting
 from hydrostat.fabrication.moulds.stance import MoldOrientation
-from hydrostat.fabrication.solids.body_solid import MILLIMETERS
 from hydrostat.fabrication.solids.construct import Cuboid
 from hydrostat.robot import Robot
+from hydrostat.units import MILLIMETERS
 
 Number3 = tuple[int, int, int]
 
@@ -40,8 +40,8 @@ class PocketRoom:
         if not fits.any():
             return np.zeros((0, 3)), np.zeros(0)
         away = np.asarray(distance_transform_edt(np.pad(fits, 1)))[1:-1, 1:-1, 1:-1]
-        radii = np.maximum(away[fits] - 0.5, 0.5) * _STRIDE * self.step
-        spots = self._low + self.step * (_STRIDE * np.argwhere(fits) + 0.5)
+        radii = np.maximum(away[fits] - 0.5, 0.5) * _RULES.stride * self.step
+        spots = self._low + self.step * (_RULES.stride * np.argwhere(fits) + 0.5)
         spots = (spots + np.array([0.0, 0.0, self.stance.height])) @ self.stance.axes
         return scale * spots / MILLIMETERS, scale * radii / MILLIMETERS
 
@@ -49,7 +49,7 @@ class PocketRoom:
     def step(self) -> float:
         """Side of a cube [mm]."""
         low, high = np.reshape(self.body.bounding_box(), (2, 3))
-        return max(float((high - low).max()) / _CUBES, _FINEST)
+        return max(float((high - low).max()) / _RULES.num_cubes, _RULES.min_cube)
 
     @cached_property
     def _low(self) -> Vector:
@@ -71,11 +71,11 @@ class PocketRoom:
 
     def _fits(self, room: Cuboid, scale: float) -> Bool[np.ndarray, "x y z"]:
         """Places on a coarser grid at which the pocket has room in the body, scaled by a factor."""
-        shape = tuple((count - 2) // _STRIDE + 1 for count in self._sums.shape)
+        shape = tuple((count - 2) // _RULES.stride + 1 for count in self._sums.shape)
         found = np.zeros(shape, dtype=bool)
         for way in ways_to_turn(WinchRoom(low=room.low, high=room.high)):
             within, total = self._count(way, scale, 0.0, None)
-            inside = within >= _INSIDE * total
+            inside = within >= _RULES.min_inside * total
             for sign in (1.0, -1.0) if inside.any() else ():
                 found |= inside & self._has_skin(way, scale, sign)
         return found
@@ -84,7 +84,7 @@ class PocketRoom:
         """Places at which a pocket open to one half has foam on its other five sides."""
         outer, total = self._count(way, scale, LEAST_SKIN, sign)
         straight, hole = self._count(way, scale, 0.0, sign)
-        return outer - straight >= _COVERED * (total - hole)
+        return outer - straight >= _RULES.min_cover * (total - hole)
 
     def _count(
         self, way: LyingWinch, scale: float, more: float, sign: float | None
@@ -109,7 +109,7 @@ class PocketRoom:
         """Cubes inside between two offsets along each axis, from each place of the coarser grid."""
         found: Int[np.ndarray, "x y z"] | int = 0
         picks = [
-            [np.clip(np.arange(0, count - 1, _STRIDE) + end, 0, count - 1) for end in pair]
+            [np.clip(np.arange(0, count - 1, _RULES.stride) + end, 0, count - 1) for end in pair]
             for count, pair in zip(self._sums.shape, ends, strict=True)
         ]
         for corner in _corners():
@@ -123,11 +123,26 @@ def _corners() -> Iterator[Number3]:
     yield from ((a, b, c) for a in (0, 1) for b in (0, 1) for c in (0, 1))
 
 
-_CUBES = 200  # cubes along the longest side of the body
-_FINEST = 0.8  # least side of a cube [mm]
-_STRIDE = 2  # cubes between two places
-_INSIDE = 0.985  # share of the box that must be in the body: of the kit's 98 %, the rest for the size of cubes
-_COVERED = 0.93  # share of the foam round it that must be there: of the kit's 90 %
+@dataclass(frozen=True, kw_only=True)
+class _PocketRules:
+    """Grid and shares of the search for pockets.
+
+    Attributes:
+        num_cubes: number of cubes along the longest side of the body.
+        min_cube: minimum side of a cube [mm].
+        stride: number of cubes between two places.
+        min_inside: minimum share of the box in the body: the kit asks for 98 %, the rest is for the size of cubes.
+        min_cover: minimum share of the foam around it that is there: the kit asks for 90 %.
+    """
+
+    num_cubes: int = 200
+    min_cube: float = 0.8
+    stride: int = 2
+    min_inside: float = 0.985
+    min_cover: float = 0.93
+
+
+_RULES = _PocketRules()
 
 
 def pocket_room(robot: Robot, options: MoldOptions | None = None) -> PocketRoom:

@@ -9,8 +9,9 @@ from manifold3d import Manifold
 from hydrostat.arrays import Float
 from hydrostat.fabrication.moulds.pull import Pull, find_pull
 from hydrostat.fabrication.moulds.stance import MoldOrientation, find_stance
-from hydrostat.fabrication.solids.body_solid import MILLIMETERS, body_solid
+from hydrostat.fabrication.solids.body_solid import body_solid
 from hydrostat.robot import Body, Pin, Robot
+from hydrostat.units import MILLIMETERS
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -19,21 +19,51 @@ from hydrostat.arrays import Float
 from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.base_plan import POST, post
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
-from hydrostat.fabrication.solids.body_solid import MILLIMETERS, body_solid
+from hydrostat.fabrication.solids.body_solid import body_solid
 from hydrostat.fabrication.solids.construct import Construction, Corner, Cylinder, Prism, sides_text
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Mount, Pin, Robot
+from hydrostat.units import MILLIMETERS
 
-_WALL, _FLOOR, _PLATE = 2.4, 4.0, 8.0  # thickness of the cup, its floor and the plate [mm]
-_LIP = 1.5  # height of the plate above the end of a tube [mm]
-_MARGIN, _INSET = 11.0, 5.5  # flange round the cup, and how far its screws are from its corner [mm]
-_BEYOND = 14.0  # plate beyond the flange, for the legs [mm]
-_SCREW = 3.4  # hole for a screw M3 [mm]
-_TIE, _TIES_EVERY = 3.0, 30.0  # hole for a thread or cable tie, and about how far apart [mm]
-_UNDER = 70.0  # room below the plate, where tubes bend away [mm]
-_SHORTEST = 28.0  # post that takes a screw at both ends [mm]
-_LEVEL = 1.0  # maximum difference in height of the cables' first points [mm]
-_WIDER = 1.3  # maximum ratio of the cup's area to the pinned area
+
+@dataclass(frozen=True, kw_only=True)
+class _SeatSizes:
+    """Sizes of a seat in millimeters.
+
+    Attributes:
+        wall: thickness of the cup.
+        floor: thickness of its floor.
+        plate: thickness of the plate.
+        lip: height of the plate above the end of a tube.
+        flange: width of the flange round the cup.
+        inset: distance of its screws from its corner.
+        beyond: width of the plate beyond the flange, for the legs.
+        screw_hole: hole for a screw M3.
+        tie_hole: hole for a thread or cable tie.
+        tie_spacing: approximate distance of these holes.
+        under: room below the plate, where tubes bend away.
+        min_post: shortest post that takes a screw at both ends.
+        level: maximum difference in height of the first points of cables.
+        max_wider: maximum ratio of the area of the cup to the pinned area.
+    """
+
+    wall: float = 2.4
+    floor: float = 4.0
+    plate: float = 8.0
+    lip: float = 1.5
+    flange: float = 11.0
+    inset: float = 5.5
+    beyond: float = 14.0
+    screw_hole: float = 3.4
+    tie_hole: float = 3.0
+    tie_spacing: float = 30.0
+    under: float = 70.0
+    min_post: float = 28.0
+    level: float = 1.0
+    max_wider: float = 1.3
+
+
+_SIZES = _SeatSizes()
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -78,7 +108,7 @@ class _SeatPlan:
 
     def seat(self, name: str, options: PartOptions, bed: tuple[float, float, float]) -> BodySeat:
         """All parts of it."""
-        plate, legs = self._plate(options), post(_UNDER)
+        plate, legs = self._plate(options), post(_SIZES.under)
         solids = (
             Printed.of(self._cup(options), name="seat_cup", title="Cup of the seat", note="Floor down, no support."),
             Printed.of(plate, name="seat_plate", title="Plate of the seat", note="Narrow holes up, no support."),
@@ -101,17 +131,17 @@ class _SeatPlan:
     @property
     def _tall(self) -> float:
         """Height of the posts."""
-        return self.below - _LIP - _FLOOR
+        return self.below - _SIZES.lip - _SIZES.floor
 
     @property
     def _posts(self) -> tuple[Corner, ...]:
-        return _corners(self.flange.buffer(-_INSET, join_style="mitre"))
+        return _corners(self.flange.buffer(-_SIZES.inset, join_style="mitre"))
 
     @property
     def _board(self) -> Polygon:
         """The plate: as large as the flange and all tubes, and the legs beyond."""
         tubes = [Point(line[0, :2]).buffer(6.0) for line in self.lines]
-        return box(*unary_union([self.flange, *tubes]).bounds).buffer(_BEYOND, join_style="mitre")
+        return box(*unary_union([self.flange, *tubes]).bounds).buffer(_SIZES.beyond, join_style="mitre")
 
     @property
     def _legs(self) -> tuple[Corner, ...]:
@@ -119,58 +149,58 @@ class _SeatPlan:
 
     def _cup(self, options: PartOptions) -> Construction:
         """Flange and cup, with room for the cables and holes for the thread that holds the body; its floor at z = 0."""
-        around = Polygon(self.cavity.buffer(_WALL).simplify(0.1).exterior)  # type: ignore[attr-defined]
-        made = Prism(_ring(self.flange), _FLOOR) + Prism(_ring(around), _FLOOR + self.depth)
-        made = made - Prism(_ring(self.cavity), self.depth + 1).move(z=_FLOOR)
+        around = Polygon(self.cavity.buffer(_SIZES.wall).simplify(0.1).exterior)  # type: ignore[attr-defined]
+        made = Prism(_ring(self.flange), _SIZES.floor) + Prism(_ring(around), _SIZES.floor + self.depth)
+        made = made - Prism(_ring(self.cavity), self.depth + 1).move(z=_SIZES.floor)
         for spot, turn in self._ties():
-            hole = Cylinder(3 * _WALL, _TIE / 2).rotate(y=90, z=turn)
-            made = made - hole.move(*spot, _FLOOR + self.depth / 2)
+            hole = Cylinder(3 * _SIZES.wall, _SIZES.tie_hole / 2).rotate(y=90, z=turn)
+            made = made - hole.move(*spot, _SIZES.floor + self.depth / 2)
         for x, y in self._posts:
-            made = made - Cylinder(_FLOOR + 2, _SCREW / 2).move(x, y, -1)
+            made = made - Cylinder(_SIZES.floor + 2, _SIZES.screw_hole / 2).move(x, y, -1)
         for line in self.lines:
-            made = made - _way(line, options.tube / 2 + 0.75).move(z=_FLOOR)
+            made = made - _way(line, options.tube / 2 + 0.75).move(z=_SIZES.floor)
         return made
 
     def _ties(self) -> list[tuple[Corner, float]]:
         """Holes through the wall: where each begins outside of it, and its direction inwards [degrees]."""
         rim, found = self.cavity.exterior, []
-        count = max(4, round(rim.length / _TIES_EVERY))
+        count = max(4, round(rim.length / _SIZES.tie_spacing))
         for place in (np.arange(count) + 0.5) / count:
             one, other = (np.array(rim.interpolate(place + step, normalized=True).coords[0]) for step in (-0.01, 0.01))
             along = (other - one) / np.linalg.norm(other - one)
             inward = np.array([-along[1], along[0]])  # the rim runs counter-clockwise
-            x, y = (one + other) / 2 - 2 * _WALL * inward
+            x, y = (one + other) / 2 - 2 * _SIZES.wall * inward
             found.append(((float(x), float(y)), math.degrees(math.atan2(inward[1], inward[0]))))
         return found
 
     def _plate(self, options: PartOptions) -> Construction:
         """The plate, its upper side at z = 0; a tube that ends in it stops below a lip, any other goes through."""
-        made: Construction = Prism(_ring(self._board), _PLATE).move(z=-_PLATE)
+        made: Construction = Prism(_ring(self._board), _SIZES.plate).move(z=-_SIZES.plate)
         for line, stops in zip(self.lines, self.ends, strict=True):
             x, y = line[0, :2]
-            top, play = (-_LIP, 0.05) if stops else (1.0, 0.25)
-            made = made - Cylinder(_PLATE + 1 + top, options.tube / 2 + play).move(x, y, -_PLATE - 1)
-            made = made - Cylinder(_PLATE, options.cable + 0.2).move(x, y, -_PLATE + 1)
+            top, play = (-_SIZES.lip, 0.05) if stops else (1.0, 0.25)
+            made = made - Cylinder(_SIZES.plate + 1 + top, options.tube / 2 + play).move(x, y, -_SIZES.plate - 1)
+            made = made - Cylinder(_SIZES.plate, options.cable + 0.2).move(x, y, -_SIZES.plate + 1)
         for x, y in (*self._posts, *self._legs):
-            made = made - Cylinder(_PLATE + 2, _SCREW / 2).move(x, y, -_PLATE - 1)
-        return made.move(z=_PLATE)
+            made = made - Cylinder(_SIZES.plate + 2, _SIZES.screw_hole / 2).move(x, y, -_SIZES.plate - 1)
+        return made.move(z=_SIZES.plate)
 
     def _assembly(self, name: str, solids: Sequence[Printed]) -> PartAssembly:
         cup, plate, posts, legs = solids
-        top = -self.below + _LIP
+        top = -self.below + _SIZES.lip
         pieces = [
             Placed(name="body", title="End of the body", solid=self.end, pulled=(0, 0, 25 + self.depth), printed=False),
-            Placed(name=cup.name, title=cup.title, solid=cup.solid.translate((0, 0, -_FLOOR))),
+            Placed(name=cup.name, title=cup.title, solid=cup.solid.translate((0, 0, -_SIZES.floor))),
             Placed(
                 name=plate.name,
                 title=plate.title,
-                solid=plate.solid.translate((0, 0, top - _PLATE)),
+                solid=plate.solid.translate((0, 0, top - _SIZES.plate)),
                 pulled=(0, 0, -60),
             ),
         ]
         for part, spots, low, pulled in (
             (posts, self._posts, top, -30.0),
-            (legs, self._legs, top - _PLATE - _UNDER, -90.0),
+            (legs, self._legs, top - _SIZES.plate - _SIZES.under, -90.0),
         ):
             pieces += [
                 Placed(
@@ -202,12 +232,13 @@ def _plan(robot: Robot, cables: Sequence[int], options: PartOptions) -> "_SeatPl
     pinned = robot.pins[0].holds(robot.body.mesh)
     own = Polygon(box(*_bounds(MILLIMETERS * robot.body.mesh.nodes[pinned] @ turn.T)))
     cavity = _outline(body, top, options)
-    if cavity is None or cavity.area > _WIDER * own.buffer(5.0).area:
+    if cavity is None or cavity.area > _SIZES.max_wider * own.buffer(5.0).area:
         return "another part of it is next to the pinned end"
     below = float(np.median(-lines[:, 0, 2]))
-    level = [place for place in range(len(cables)) if abs(-lines[place, 0, 2] - below) <= _LEVEL]
-    if below - _LIP - _FLOOR < _SHORTEST:
-        return f"its cables begin {below:.0f} mm behind it, and {_SHORTEST + _LIP + _FLOOR:.0f} mm are needed"
+    level = [place for place in range(len(cables)) if abs(-lines[place, 0, 2] - below) <= _SIZES.level]
+    needed = _SIZES.min_post + _SIZES.lip + _SIZES.floor
+    if below < needed:
+        return f"its cables begin {below:.0f} mm behind it, and {needed:.0f} mm are needed"
     held = tuple(lines[place] for place in level)
     return _SeatPlan(
         end=body.trim_by_plane((0, 0, -1), -(top + 12.0)),
@@ -250,8 +281,8 @@ def _flange(cavity: Polygon, lines: Sequence[Line], options: PartOptions) -> Pol
     ways = [LineString(line[:, :2]).buffer(options.tube / 2 + 1.0) for line in lines]
     flange = cavity
     for more in range(0, 60, 2):
-        flange = box(*cavity.buffer(_WALL + _MARGIN + more, join_style="mitre").bounds)
-        posts = _corners(flange.buffer(-_INSET, join_style="mitre"))
+        flange = box(*cavity.buffer(_SIZES.wall + _SIZES.flange + more, join_style="mitre").bounds)
+        posts = _corners(flange.buffer(-_SIZES.inset, join_style="mitre"))
         if not any(box(*Point(spot).buffer(POST / 2).bounds).intersects(way) for spot in posts for way in ways):
             break
     return flange

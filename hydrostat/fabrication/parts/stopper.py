@@ -16,27 +16,43 @@ K = 0.3 in plastic, of which creep of PLA takes a third. Measured on none, check
 FRICTION = 0.1
 """Friction coefficient of braided polyethylene on plastic: the lower end of 0.1 to 0.2 for UHMWPE. Not measured."""
 
-_POST = 2.4
-_KEY = 2.2
-_FLAT = 1.5
-"""Radius of the post that the cable goes round, of the key above it, and how far the flat of the key is from the axis
-[mm]."""
 
-_ROOM = 0.8  # excess width of the holes and the track over the cable [mm]
+@dataclass(frozen=True, kw_only=True)
+class _StopperSizes:
+    """Sizes of a stopper in millimeters.
 
-_LID = 2.6
-_KEY_HEIGHT = 1.2
-_RIM = 1.0
-_RIB = 0.8  # thickness of the lid, height of the key in it, width of the rim behind the track, width of a rib [mm]
+    Attributes:
+        post: radius of the post that the cable goes round.
+        key: radius of the key on the post.
+        flat: distance of the flat of the key from the axis.
+        room: excess width of the holes and the track over the cable.
+        lid: thickness of the lid.
+        key_height: height of the key in the lid.
+        rim: width of the rim behind the track.
+        rib: width of a rib.
+        floor: thickness of the floor.
+        tip: plastic and air below the point of the screw.
+        chamfer: chamfer of edges that lie on the cloth or that a hand touches.
+        off_center: distance of the middle of the button from the screw towards the cable, so that it is pulled flat.
+        exit: angle where the cable leaves, round the post from where it comes up [degrees].
+    """
 
-_FLOOR = 0.8
-_TIP = 0.4  # below the point of the screw: plastic, and air [mm]
-_SMOOTH = 0.6  # chamfer of what lies on the cloth and of what a hand feels [mm]
+    post: float = 2.4
+    key: float = 2.2
+    flat: float = 1.5
+    room: float = 0.8
+    lid: float = 2.6
+    key_height: float = 1.2
+    rim: float = 1.0
+    rib: float = 0.8
+    floor: float = 0.8
+    tip: float = 0.4
+    chamfer: float = 0.6
+    off_center: float = 0.8
+    exit: float = 300.0
 
-_OFF_CENTER = 0.8
-"""Distance of the middle of the button from the screw towards the cable, so that it is pulled flat [mm]."""
 
-_EXIT = 300.0  # angle where the cable leaves, round the post from where it comes up [degrees]
+_SIZES = _StopperSizes()
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -73,7 +89,7 @@ def stopper(options: PartOptions) -> Stopper:
             note="Flat side on the bed, no support, 0.12 mm layers, all walls (100 % infill).",
         ),
         Printed.of(
-            lid.rotate(x=180).move(0, 0, _LID),
+            lid.rotate(x=180).move(0, 0, _SIZES.lid),
             name="stopper_lid",
             title="Stopper lid",
             note="Outer side on the bed, ribs up, no support, 0.12 mm layers, all walls (100 % infill).",
@@ -85,7 +101,7 @@ def stopper(options: PartOptions) -> Stopper:
         Placed(
             name="stopper_screw",
             title=M2X6.title,
-            solid=solid_of(M2X6.envelope.move(0, 0, closed + _LID)),
+            solid=solid_of(M2X6.envelope.move(0, 0, closed + _SIZES.lid)),
             pulled=(0, 0, 14),
             printed=False,
         ),
@@ -95,7 +111,9 @@ def stopper(options: PartOptions) -> Stopper:
     )
 
 
-def holding_force(preload: float = PRELOAD, friction: float = FRICTION, *, wrap: float = math.radians(_EXIT)) -> float:
+def holding_force(
+    preload: float = PRELOAD, friction: float = FRICTION, *, wrap: float = math.radians(_SIZES.exit)
+) -> float:
     """Tension at which a cable begins to slip [N].
 
     Along the wrap [rad] both faces rub with friction times the pressure q of the screw, and the post as a capstan does:
@@ -108,32 +126,32 @@ def holding_force(preload: float = PRELOAD, friction: float = FRICTION, *, wrap:
 
 def _deck() -> float:
     """Height of the floor of the track above the cloth [mm]."""
-    return _FLOOR + _TIP + M2X6.length - _LID - 0.4
+    return _SIZES.floor + _SIZES.tip + M2X6.length - _SIZES.lid - 0.4
 
 
 def _track(options: PartOptions) -> float:
     """Outer radius of the track [mm]."""
-    return _POST + options.cable + 1.0
+    return _SIZES.post + options.cable + 1.0
 
 
 def _button(options: PartOptions, height: float) -> Construction:
     """The outline of both pieces: a disc about a point between the screw and the cable, its lower edge smooth."""
-    radius = _OFF_CENTER + _track(options) + _RIM
-    side = ((0, 0), (radius - _SMOOTH, 0), (radius, _SMOOTH), (radius, height), (0, height))
-    return Revolve(side).move(_OFF_CENTER, 0, 0)
+    radius = _SIZES.off_center + _track(options) + _SIZES.rim
+    side = ((0, 0), (radius - _SIZES.chamfer, 0), (radius, _SIZES.chamfer), (radius, height), (0, height))
+    return Revolve(side).move(_SIZES.off_center, 0, 0)
 
 
 def _rib_angles(options: PartOptions) -> list[float]:
     """Angles of the ribs [degrees]; those of base and lid take turns, with room for the cable between them."""
-    apart = (_RIB + 1.3 * options.cable) / (_POST + options.cable / 2)
-    first, last = 45.0, _EXIT - 30
+    apart = (_SIZES.rib + 1.3 * options.cable) / (_SIZES.post + options.cable / 2)
+    first, last = 45.0, _SIZES.exit - 30
     count = max(2, math.floor(math.radians(last - first) / apart))
     return [first + (last - first) * k / count for k in range(count + 1)]
 
 
 def _rib(angle: float, height: float, inside: float, outside: float) -> Construction:
     """A wall across the track at an angle [degrees], between two distances from the axis."""
-    return Box((outside - inside, _RIB, height)).move(inside, -_RIB / 2, 0).rotate(z=angle)
+    return Box((outside - inside, _SIZES.rib, height)).move(inside, -_SIZES.rib / 2, 0).rotate(z=angle)
 
 
 def _key(radius: float, flat: float, height: float) -> Construction:
@@ -145,22 +163,22 @@ def _base(options: PartOptions, rib: float) -> Construction:
     deck, track = _deck(), _track(options)
     body: Construction = _button(options, deck + rib) - Cylinder(rib + 1, track).move(0, 0, deck)
     for angle in _rib_angles(options)[::2]:
-        body = body + _rib(angle, rib + 0.2, _POST - 0.2, track + 0.2).move(0, 0, deck - 0.2)
-    body = body + Cylinder(rib + options.cable / 4 + 0.2, _POST).move(0, 0, deck - 0.2)
-    body = body + _key(_KEY, _FLAT, rib + _KEY_HEIGHT).move(0, 0, deck - 0.2)
-    body = body - Cylinder(20, M2X6.pilot / 2).move(0, 0, _FLOOR)
+        body = body + _rib(angle, rib + 0.2, _SIZES.post - 0.2, track + 0.2).move(0, 0, deck - 0.2)
+    body = body + Cylinder(rib + options.cable / 4 + 0.2, _SIZES.post).move(0, 0, deck - 0.2)
+    body = body + _key(_SIZES.key, _SIZES.flat, rib + _SIZES.key_height).move(0, 0, deck - 0.2)
+    body = body - Cylinder(20, M2X6.pilot / 2).move(0, 0, _SIZES.floor)
     body = body - _way_up(options)
-    notch = Box((20, options.cable + _ROOM, 20)).move(_POST, -(options.cable + _ROOM) / 2, deck)
-    return body - notch.rotate(z=_EXIT)
+    notch = Box((20, options.cable + _SIZES.room, 20)).move(_SIZES.post, -(options.cable + _SIZES.room) / 2, deck)
+    return body - notch.rotate(z=_SIZES.exit)
 
 
 def _way_up(options: PartOptions) -> Construction:
     """Channel of the cable next to the post: a hole with chamfers, and the slot by which it is laid in."""
-    deck, radius = _deck(), (options.cable + _ROOM) / 2
-    x, slot = _POST + radius, options.cable + 0.4
+    deck, radius = _deck(), (options.cable + _SIZES.room) / 2
+    x, slot = _SIZES.post + radius, options.cable + 0.4
     below = Cylinder(0.7, radius + 0.7, radius).move(x, 0, -0.1)
     above = Cylinder(0.5, radius, radius + 0.5).move(x, 0, deck - 0.4)
-    track = Cylinder(20, _track(options)) - Cylinder(20, _POST)
+    track = Cylinder(20, _track(options)) - Cylinder(20, _SIZES.post)
     sides = Box((20, slot, 30)).move(x, -slot / 2, -1)
     return Cylinder(20, radius).move(x, 0, -1) + below + (above & track) + sides
 
@@ -168,10 +186,10 @@ def _way_up(options: PartOptions) -> Construction:
 def _lid(options: PartOptions, rib: float) -> Construction:
     """Lid with its lower face at z = 0, as it lies on the base; ribs hang below."""
     free = options.fit
-    body: Construction = _button(options, _LID).rotate(x=180).move(0, 0, _LID)
+    body: Construction = _button(options, _SIZES.lid).rotate(x=180).move(0, 0, _SIZES.lid)
     for angle in _rib_angles(options)[1::2]:
-        body = body + _rib(angle, rib + 0.2, _POST + free, _track(options) - 0.2).move(0, 0, -rib)
-    body = body - _key(_KEY + free, _FLAT + free, _KEY_HEIGHT + 1).move(0, 0, -1)
+        body = body + _rib(angle, rib + 0.2, _SIZES.post + free, _track(options) - 0.2).move(0, 0, -rib)
+    body = body - _key(_SIZES.key + free, _SIZES.flat + free, _SIZES.key_height + 1).move(0, 0, -1)
     body = body - Cylinder(20, M2X6.passage / 2).move(0, 0, -1)
     sunk = (M2X6.head - M2X6.passage) / 2 + 0.1
-    return body - Cylinder(sunk + 0.1, M2X6.passage / 2, M2X6.head / 2 + 0.2).move(0, 0, _LID - sunk)
+    return body - Cylinder(sunk + 0.1, M2X6.passage / 2, M2X6.head / 2 + 0.2).move(0, 0, _SIZES.lid - sunk)

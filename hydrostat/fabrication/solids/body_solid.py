@@ -7,8 +7,7 @@ from hydrostat.arrays import Float, Int
 from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh
 from hydrostat.robot import Body
-
-MILLIMETERS = 1e3  # in a meter
+from hydrostat.units import MILLIMETERS
 
 
 def body_solid(body: Body) -> Manifold:
