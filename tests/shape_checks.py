@@ -15,7 +15,7 @@ from functools import partial, wraps
 from importlib.abc import MetaPathFinder
 from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
 from importlib.util import cache_from_source, decode_source
-from types import ModuleType
+from types import FunctionType, ModuleType
 from typing import Any
 from unittest.mock import patch
 
@@ -32,8 +32,8 @@ jaxtyping._decorator._tb_flag = False  # otherwise jaxtyped imports JAX to short
 _beartype = beartype(conf=BeartypeConf(is_pep484_tower=True))
 """An int is a float, as PEP 484 says."""
 
-_tests = 0
-"""Number of tests that have begun."""
+_counting: list["_Counter"] = []
+"""Counters of the functions that this test has called."""
 
 
 def install(package: str) -> None:
@@ -43,28 +43,56 @@ def install(package: str) -> None:
 
 def begin_test() -> None:
     """Check the first calls of each function again."""
-    global _tests
-    _tests += 1
+    for counter in _counting:
+        counter.begin()
+    _counting.clear()
 
 
 def checked(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Check the first calls of a function in each test, then call it with nothing between but a counter."""
-    checking: Callable[..., Any] | None = None
-    test, calls = -1, 0
+    """Check the first calls of a function in each test. Later calls run its own code, as if it were not wrapped.
 
-    @wraps(function)
-    def call(*args: Any, **kwargs: Any) -> Any:
-        nonlocal checking, test, calls
-        if test != _tests:
-            test, calls = _tests, 0
-        calls += 1
-        if calls > CALLS or config.jaxtyping_disable:
-            return function(*args, **kwargs)
-        if checking is None:
-            checking = jaxtyped(function, typechecker=_typechecker)
-        return checking(*args, **kwargs)
+    The result is a copy of the function whose code object is exchanged, which costs the later calls nothing.
+    """
+    assert isinstance(function, FunctionType)
+    code = function.__code__
+    public = FunctionType(code, function.__globals__, function.__name__, function.__defaults__, function.__closure__)
+    public.__kwdefaults__ = function.__kwdefaults__
+    wraps(function)(public)
+    counter = _Counter(function, public)
+    public.__code__ = counter.code
+    return public
 
-    return call
+
+def _count_call(*args: Any, **kwargs: Any) -> Any:
+    counter = "counter"
+    return counter(*args, **kwargs)  # type: ignore[operator]  # the counter of a function replaces this constant
+
+
+class _Counter:
+    """Calls of a function in a test, of which it checks the first."""
+
+    def __init__(self, function: Callable[..., Any], public: FunctionType) -> None:
+        self._function, self._public = function, public
+        self._checking: Callable[..., Any] | None = None
+        self.calls = 0
+        constants = tuple(self if constant == "counter" else constant for constant in _count_call.__code__.co_consts)
+        self.code = _count_call.__code__.replace(co_consts=constants, co_freevars=public.__code__.co_freevars)
+
+    def __call__(self, *args: Any, **kwargs: Any) -> Any:
+        if not self.calls:
+            _counting.append(self)
+        self.calls += 1
+        if self.calls >= CALLS:
+            self._public.__code__ = self._function.__code__
+        if self.calls > CALLS or config.jaxtyping_disable:
+            return self._function(*args, **kwargs)
+        if self._checking is None:
+            self._checking = jaxtyped(self._function, typechecker=_typechecker)
+        return self._checking(*args, **kwargs)
+
+    def begin(self) -> None:
+        """Check the first calls again."""
+        self.calls, self._public.__code__ = 0, self.code
 
 
 def checked_public(made: Any) -> Any:
