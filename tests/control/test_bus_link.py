@@ -219,3 +219,18 @@ def test_the_log_tells_each_state_once() -> None:
         "stopped",
         "closed",
     ]
+
+
+def test_no_motor_is_told_a_speed_above_the_limit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Oracle: the limit of the link over the radius of the spools, for a command ten times as fast."""
+    rig, told = Rig(), [0.0]
+    rig.begin()
+    write = rig.bus.write
+
+    def note(angles: np.ndarray, speeds: np.ndarray) -> None:
+        told.append(float(max(speeds)))
+        write(angles, speeds)
+
+    monkeypatch.setattr(rig.bus, "write", note)
+    rig.go(0.03, 0.4, speed=10 * rig.link.limits.speed)
+    assert max(told) == pytest.approx(rig.link.limits.speed / 0.008)
