@@ -62,14 +62,14 @@ def grasp(
     Example: hydrostat grasp gallery:caging_gripper --pose close --object sphere:65mm --direction +z --out build/grasp
     """
     from hydrostat.files import replace_file
-    from hydrostat.grasp import PullOptions, pull_bands, pull_out, read_thing
+    from hydrostat.grasp import PullOptions, pull_bands, pull_out, read_object
     from hydrostat.plot import draw_pull, pull_frames, save_gif, save_png
     from hydrostat.units import LENGTH, MASS
 
     require_folder(out)
     weight, stride = positive("--mass", mass, MASS), positive("--increment", step, LENGTH)
     loaded = _feeling(read_robot(robot))
-    held = read_thing(thing, loaded.body.mesh.dim, mass=weight, friction=friction)
+    held = read_object(thing, loaded.body.mesh.dim, mass=weight, friction=friction)
     options = PullOptions(direction=_direction(direction, loaded.body.mesh.dim), step=stride)
     with progress_bar() as progress:
         closing, closed = _close_robot(loaded, pose, contractions(loaded, contract))
@@ -96,7 +96,7 @@ def _feeling(robot: "Robot") -> "Robot":
 
 
 def _close_robot(robot: "Robot", name: str | None, given: dict[str, float]) -> "tuple[Vector, Points]":
-    """Contractions that close the robot [m], and where its markers then are without the thing [m]."""
+    """Contractions that close the robot [m], and where its markers then are without the object [m]."""
     import numpy as np
 
     from hydrostat.simulation import Simulation
@@ -125,12 +125,12 @@ def _reach_pose(simulation: "Simulation", name: str) -> "Equilibrium":
 
 
 def _place_object(robot: "Robot", thing: "Obstacle", at: str | None, closed: "Points") -> "Obstacle":
-    """The thing where it shall lie."""
-    from hydrostat.grasp import moved_thing, place_thing
+    """The object where it shall lie."""
+    from hydrostat.grasp import move_object, place_object
 
     if at is None:
-        return place_thing(robot, thing, closed)
-    return moved_thing(thing, middle(at, robot.body.mesh.dim))
+        return place_object(robot, thing, closed)
+    return move_object(thing, middle(at, robot.body.mesh.dim))
 
 
 def _direction(text: str, dim: int) -> tuple[float, ...]:

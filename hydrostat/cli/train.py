@@ -191,12 +191,12 @@ def train(
 def _thing(robot: "Robot", text: str, at: str | None, mass: str, friction: float | None) -> "Obstacle":
     """Return the object to push or turn, at its position."""
     from hydrostat.cli.options import middle, positive
-    from hydrostat.grasp import moved_thing, read_thing
+    from hydrostat.grasp import move_object, read_object
     from hydrostat.units import MASS
 
     dim = robot.body.mesh.dim
-    thing = read_thing(text, dim, mass=positive("--mass", mass, MASS), friction=0.8 if friction is None else friction)
-    return thing if at is None else moved_thing(thing, middle(at, dim))
+    thing = read_object(text, dim, mass=positive("--mass", mass, MASS), friction=0.8 if friction is None else friction)
+    return thing if at is None else move_object(thing, middle(at, dim))
 
 
 def _row(text: str) -> None:

@@ -5,18 +5,18 @@ from typing import TYPE_CHECKING
 from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
+    from hydrostat.grasp.grasped_object import move_object, place_object, read_object
     from hydrostat.grasp.pull_out import PullCase, PullOptions, PullOut, pull_bands, pull_out
-    from hydrostat.grasp.thing import moved_thing, place_thing, read_thing
 
 __all__ = [
     "PullCase",
     "PullOptions",
     "PullOut",
-    "moved_thing",
-    "place_thing",
+    "move_object",
+    "place_object",
     "pull_bands",
     "pull_out",
-    "read_thing",
+    "read_object",
 ]
 
 open_package(__name__)

@@ -7,7 +7,7 @@ import numpy as np
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import HydrostatError, InputError, NotConvergedError
-from hydrostat.grasp.thing import moved_thing
+from hydrostat.grasp.grasped_object import move_object
 from hydrostat.mechanics import GuideEnergy
 from hydrostat.progress import Progress
 from hydrostat.robot import Obstacle, Robot
@@ -95,11 +95,11 @@ class PullOut:
         done = 0.5 * (self.forces[1:] + self.forces[:-1]) * np.diff(self.moved)
         return float(np.cumsum(done).max(initial=0.0))
 
-    def thing_at(self, row: int) -> Obstacle:
+    def object_at(self, row: int) -> Obstacle:
         """Return the object at its position in a row; its rotation, hardly visible, is left out."""
         pose = self.poses[row]
         assert pose.carried is not None
-        return moved_thing(self.robot.obstacles[-1], pose.carried[-1 - pose.carried.shape[1]])
+        return move_object(self.robot.obstacles[-1], pose.carried[-1 - pose.carried.shape[1]])
 
 
 def pull_out(
@@ -112,7 +112,7 @@ def pull_out(
 ) -> PullOut:
     """Close a robot on a held object, let the object find its equilibrium, then pull it away in small steps.
 
-    The thing is held by springs so stiff that the force may fall after its peak. Friction remembers the way, so the
+    The object is held by springs so stiff that the force may fall after its peak. Friction remembers the way, so the
     answer does not depend on the steps.
 
     Args:
@@ -123,7 +123,7 @@ def pull_out(
         progress: callback for progress.
 
     Raises:
-        InputError: a thing that stands in the body, has no mass, or is never touched.
+        InputError: an object that stands in the body, has no mass, or is never touched.
         NotConvergedError: the robot could not be closed.
     """
     if thing.mass is None:
@@ -182,7 +182,7 @@ def pull_out(
 def _find_settled(simulation: Simulation, contractions: Contractions, pose: Equilibrium) -> Equilibrium | None:
     """Return the equilibrium that a released robot reaches in time; None if it does not.
 
-    Masses tell what a balance of forces alone leaves open: which way a thing slips that could slip either way.
+    Masses tell what a balance of forces alone leaves open: which way an object slips that could slip either way.
     """
     motion = simulation.motion_at_rest(pose)
     # Steps in time [s] in search of rest, the most of them, and what counts as rest [m/s]
@@ -262,4 +262,4 @@ def _cases(robot: Robot, thing: Obstacle) -> Iterator[tuple[str, Robot, Obstacle
     for axis in range(len(place)):
         for sign in (-1.0, 1.0):
             aside = place + sign * ASIDE * np.eye(len(place))[axis]
-            yield f"{'xyz'[axis]} {1e3 * sign * ASIDE:+.0f} mm", robot, moved_thing(thing, aside)
+            yield f"{'xyz'[axis]} {1e3 * sign * ASIDE:+.0f} mm", robot, move_object(thing, aside)

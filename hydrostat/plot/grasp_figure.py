@@ -1,4 +1,4 @@
-"""`draw_pull`: force against way of a thing that is pulled out of a grasp; `pull_frames`: the same for a film."""
+"""`draw_pull`: force against way of an object that is pulled out of a grasp; `pull_frames`: the same for a film."""
 
 from collections.abc import Sequence
 
@@ -20,12 +20,12 @@ from hydrostat.units import MILLIMETERS
 def draw_pull(
     robot: Robot, pull: PullOut, cases: Sequence[PullCase] = (), *, title: str | None = None, width: float = WIDTH
 ) -> Figure:
-    """The grasp, where the pull is hardest, and its end; below, the force against the way of the thing.
+    """The grasp, where the pull is hardest, and its end; below, the force against the way of the object.
 
     Cases that were tried beside it are thin lines, the one without friction dashed.
 
     Args:
-        robot: without the thing.
+        robot: without the object.
         pull: result of the pull.
         cases: with one thing changed each.
         title: name of the robot if left out.
@@ -56,7 +56,7 @@ def draw_pull(
     axes.plot(MILLIMETERS * pull.moved, pull.forces, color=Color.WINCHES[0], linewidth=2.0)
     axes.plot(MILLIMETERS * pull.moved[hardest], pull.peak, "o", color=Color.ERROR, markersize=4)
     axes.axhline(0.0, color=Color.MUTED, linewidth=0.8)
-    axes.set_xlabel("way of the thing along the pull [mm]", color=Color.INK, fontsize=8.5)
+    axes.set_xlabel("way of the object along the pull [mm]", color=Color.INK, fontsize=8.5)
     axes.set_ylabel("force [N]", color=Color.INK, fontsize=8.5)
     return figure
 
@@ -68,7 +68,7 @@ def pull_frames(pull: PullOut, count: int = 30) -> list[Frame]:
         Frame.of(
             pull.poses[row],
             words=f"{pull.forces[row]:.2f} N, moved {MILLIMETERS * pull.moved[row]:.0f} mm",
-            things=[pull.thing_at(int(row))],
+            things=[pull.object_at(int(row))],
         )
         for row in rows
     ]
@@ -78,7 +78,7 @@ def _portraits(robot: Robot, pull: PullOut, rows: Sequence[int]) -> list[np.ndar
     """Pictures of some rows, all in one frame, without the border that is empty in all."""
     carried = Attachments(robot)
     shapes = [pull.poses[row].nodes for row in rows]
-    things = [pull.thing_at(row) for row in rows]
+    things = [pull.object_at(row) for row in rows]
     lines = [rims(thing, robot) for thing in things]
     beside = [part for nodes in shapes for part in (*carried.cables(nodes), carried.winches(nodes))]
     frame = np.concatenate([*shapes, *beside, *(line for each in lines for line in each)])

@@ -11,12 +11,12 @@ from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
     from hydrostat.training.goal_env import GoalEnv, TaskOptions
+    from hydrostat.training.manipulation_env import ManipulationOptions
+    from hydrostat.training.manipulation_tasks import PushEnv, PushOptions, TwistEnv, TwistOptions
+    from hydrostat.training.manipulation_world import ManipulationPhysics
     from hydrostat.training.portable import policy_of, portable_policy
     from hydrostat.training.reach_env import BEYOND, HysteresisEnv, ReachEnv, ReachOptions
     from hydrostat.training.tasks import TASKS, task_of
-    from hydrostat.training.thing_env import ThingOptions
-    from hydrostat.training.thing_tasks import PushEnv, PushOptions, TwistEnv, TwistOptions
-    from hydrostat.training.thing_world import ThingPhysics
     from hydrostat.training.train import (
         CurvePoint,
         Listener,
@@ -39,14 +39,14 @@ __all__ = [
     "GoalEnv",
     "HysteresisEnv",
     "Listener",
+    "ManipulationOptions",
+    "ManipulationPhysics",
     "MixedWorld",
     "PushEnv",
     "PushOptions",
     "ReachEnv",
     "ReachOptions",
     "TaskOptions",
-    "ThingOptions",
-    "ThingPhysics",
     "TrainMethod",
     "TrainOptions",
     "TwistEnv",

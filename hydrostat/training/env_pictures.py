@@ -9,7 +9,7 @@ from hydrostat.arrays import Vector
 from hydrostat.plot import Frame, FramePictures, Picture
 from hydrostat.robot import Obstacle, ObstacleShape, PoseTarget, Robot
 from hydrostat.simulation import Equilibrium, Motion, Simulation
-from hydrostat.training.thing_world import ThingWorld
+from hydrostat.training.manipulation_world import ManipulationWorld
 
 
 class _EnvPictures:
@@ -45,7 +45,7 @@ class ReachPictures(_EnvPictures):
         return self._pictures.draw(frame)
 
 
-class ThingPictures(_EnvPictures):
+class ManipulationPictures(_EnvPictures):
     """Pictures of a robot with its object."""
 
     def __init__(self, robot: Robot, thing: Obstacle) -> None:
@@ -55,7 +55,7 @@ class ThingPictures(_EnvPictures):
         tensions = Simulation(alone).solve(taken, strict=False).tensions
         super().__init__(alone, tensions, robot, thing, things=(thing,))
 
-    def draw(self, world: ThingWorld, words: str) -> Picture:
+    def draw(self, world: ManipulationWorld, words: str) -> Picture:
         """Draw robot and object where they are, with words below the name of the robot."""
         return self._pictures.draw(Frame.of(world.motion, words=words, things=world.visible_obstacles()))
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 from hydrostat.errors import InputError
 from hydrostat.training.goal_env import GoalEnv
+from hydrostat.training.manipulation_tasks import PushEnv, TwistEnv
 from hydrostat.training.reach_env import HysteresisEnv, ReachEnv
-from hydrostat.training.thing_tasks import PushEnv, TwistEnv
 from hydrostat.training.walk_env import WalkEnv
 
 

@@ -26,7 +26,7 @@ import numpy as np  # isort: skip
 
 import hydrostat as hs
 from hydrostat.errors import HydrostatError
-from hydrostat.grasp import PullOptions, moved_thing, pull_bands, pull_out, read_thing
+from hydrostat.grasp import PullOptions, move_object, pull_bands, pull_out, read_object
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 GRASPS = {
@@ -41,7 +41,7 @@ def study(name: str, step: float, closings: list[float], *, bands: bool) -> None
     """Print the rows of one robot."""
     pose, at, direction, thesis = GRASPS[name]
     robot = replace(hs.load_robot(EXAMPLES / name), contact=hs.Contact())
-    ball = moved_thing(read_thing("sphere:67mm", 3, mass=0.058, friction=0.5), 1e-3 * np.array(at))
+    ball = move_object(read_object("sphere:67mm", 3, mass=0.058, friction=0.5), 1e-3 * np.array(at))
     options = PullOptions(direction=direction, step=step)
     travel = np.array([winch.travel for winch in robot.winches])
     closed = hs.solve_ik(hs.Simulation(robot), robot.pose(pose)).pose.contractions

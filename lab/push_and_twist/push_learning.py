@@ -23,9 +23,9 @@ import numpy as np  # isort: skip
 from hydrostat.robot import Robot
 from hydrostat.training import (
     Listener,
+    ManipulationPhysics,
     PushEnv,
     PushOptions,
-    ThingPhysics,
     TrainMethod,
     TrainOptions,
     held_out_goals,
@@ -67,7 +67,7 @@ def pushers() -> Robot:
 
 def made(far: float) -> PushEnv:
     """The task, with goals so far away at most [m]."""
-    return PushEnv(pushers(), options=PushOptions(steps=KEYFRAMES, far=far, physics=ThingPhysics(drag=DRAG)))
+    return PushEnv(pushers(), options=PushOptions(steps=KEYFRAMES, far=far, physics=ManipulationPhysics(drag=DRAG)))
 
 
 def pushed(env: PushEnv, act: Act, draw: dict[str, Any]) -> np.ndarray:

@@ -26,7 +26,7 @@ import hydrostat as hs
 from hydrostat.robot import Obstacle
 from hydrostat.training import (
     Listener,
-    ThingPhysics,
+    ManipulationPhysics,
     TrainMethod,
     TrainOptions,
     TwistEnv,
@@ -74,8 +74,8 @@ def made(body: str, steps: int, kind: type[TwistEnv] = TwistEnv, **more: Any) ->
     """The task on a body, with so many keyframes in a cycle."""
     options: dict[str, Any] = {"steps": steps, "tied": TIED, "travel": TRAVEL, **more}
     if body == "flat":
-        return kind(flat_gripper(), options=TwistOptions(**options, physics=ThingPhysics(drag=DRAG)))
-    physics = ThingPhysics(hold=100.0)
+        return kind(flat_gripper(), options=TwistOptions(**options, physics=ManipulationPhysics(drag=DRAG)))
+    physics = ManipulationPhysics(hold=100.0)
     robot = hs.load_robot(f"gallery:{body}")
     return kind(robot, thing=BALL, options=TwistOptions(**options, physics=physics), contact=True)
 

@@ -8,7 +8,7 @@ import pytest
 from builders import gallery_robot, strip_robot
 
 from hydrostat.errors import InputError
-from hydrostat.grasp import PullOptions, PullOut, moved_thing, place_thing, pull_bands, pull_out, read_thing
+from hydrostat.grasp import PullOptions, PullOut, move_object, place_object, pull_bands, pull_out, read_object
 from hydrostat.mechanics import ObstacleEnergy
 from hydrostat.robot import Contact, Obstacle, Robot
 
@@ -106,20 +106,20 @@ def test_a_wrong_pull_is_told(wrong: dict) -> None:
 
 def test_things_are_read_from_words() -> None:
     known = {"mass": 0.058, "friction": 0.5}
-    assert read_thing("sphere:65mm", 3, **known).radius == pytest.approx(0.0325)
-    assert read_thing("box:4cm,40mm,60mm", 3, **known).to == pytest.approx((0.02, 0.02, 0.03))
-    rod = read_thing("capsule:40mm,120mm", 3, **known)
+    assert read_object("sphere:65mm", 3, **known).radius == pytest.approx(0.0325)
+    assert read_object("box:4cm,40mm,60mm", 3, **known).to == pytest.approx((0.02, 0.02, 0.03))
+    rod = read_object("capsule:40mm,120mm", 3, **known)
     assert (rod.to, rod.radius) == (pytest.approx((0, 0, 0.04)), pytest.approx(0.02))
     for wrong, words in (("cone:3mm", "unknown object"), ("sphere:3mm,4mm", "has 1 sizes"), ("sphere:3", "no unit")):
         with pytest.raises(InputError, match=words):
-            read_thing(wrong, 3, **known)
+            read_object(wrong, 3, **known)
 
 
 def test_a_place_near_the_closed_markers_is_clear_of_the_body() -> None:
     robot = gallery_robot("caging_gripper")
-    ball = read_thing("sphere:65mm", 3, mass=0.058, friction=0.5)
+    ball = read_object("sphere:65mm", 3, mass=0.058, friction=0.5)
     closed = np.array([[0.0, 0.0, 0.0], [0.01, 0.0, 0.02]])
-    placed = place_thing(robot, ball, closed)
+    placed = place_object(robot, ball, closed)
     skin = robot.body.mesh.nodes[np.unique(robot.body.mesh.boundary)]
     assert placed.field()(skin).values.min() >= 2 * robot.contact_distance - 1e-12
-    assert moved_thing(placed, np.zeros(3)).at == pytest.approx((0.0, 0.0, 0.0))
+    assert move_object(placed, np.zeros(3)).at == pytest.approx((0.0, 0.0, 0.0))

@@ -14,21 +14,21 @@ from hydrostat.robot import Contact, Obstacle, Pin, Robot
 gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed")
 
 from hydrostat.training import (  # noqa: E402
+    ManipulationOptions,
+    ManipulationPhysics,
     PushEnv,
     PushOptions,
     TaskOptions,
-    ThingOptions,
-    ThingPhysics,
     TwistEnv,
     TwistOptions,
     held_out_goals,
     judge,
 )
-from hydrostat.training.thing_world import ThingWorld  # noqa: E402
+from hydrostat.training.manipulation_world import ManipulationWorld  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures("unchecked")
 BALL = Obstacle(name="ball", shape="sphere", at=(0.12, 0.045), radius=0.015, mass=0.05, friction=0.5)
-QUICK = ThingPhysics(seconds=0.1, beats=1, drag=20.0)
+QUICK = ManipulationPhysics(seconds=0.1, beats=1, drag=20.0)
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +38,7 @@ def robot() -> Robot:
 
 
 @pytest.mark.parametrize(("name", "options"), [("Push", PushOptions), ("Twist", TwistOptions)])
-def test_checkers_of_both_libraries_pass(robot: Robot, name: str, options: type[ThingOptions]) -> None:
+def test_checkers_of_both_libraries_pass(robot: Robot, name: str, options: type[ManipulationOptions]) -> None:
     from gymnasium.utils.env_checker import check_env
 
     made = gymnasium.make(f"hydrostat/{name}-v0", robot=robot, options=options(steps=2, physics=QUICK, travel=2e-3))
@@ -61,7 +61,7 @@ def test_what_rolls_without_slip_turns_by_way_over_radius() -> None:
         obstacles=(replace(disc, friction=1.0),),
         gravity=(0.0, -9.81),
     )
-    world = ThingWorld(pad, pad.obstacles[0], np.array([0.0, 0.0, 1.0]), ThingPhysics(hold=3e4, drag=2.0))
+    world = ManipulationWorld(pad, pad.obstacles[0], np.array([0.0, 0.0, 1.0]), ManipulationPhysics(hold=3e4, drag=2.0))
     simulation, way, motion = world.simulation, 0.0, world.motion
     for _ in range(6):
         way += 1e-3
@@ -75,7 +75,7 @@ def test_the_turn_is_that_about_the_axis_and_counts_on() -> None:
     """Beside rotations by hand: a disc beyond half a turn; a ball that swings besides."""
     from scipy.spatial.transform import Rotation
 
-    from hydrostat.training.thing_world import angle_about
+    from hydrostat.training.manipulation_world import angle_about
 
     axis = np.array([0.0, 0.6, 0.8])
     for angle in (-2.0, 0.3, 3.0):
@@ -101,7 +101,7 @@ def test_rewards_by_hand(robot: Robot) -> None:
 
 def test_a_strip_pushes_the_ball_away_and_time_steps_are_counted(robot: Robot) -> None:
     """Beside what is seen in the simulation: the ball is where the goal was put, within nothing."""
-    options = PushOptions(steps=2, physics=ThingPhysics(seconds=0.2, beats=4, drag=20.0), travel=30e-3)
+    options = PushOptions(steps=2, physics=ManipulationPhysics(seconds=0.2, beats=4, drag=20.0), travel=30e-3)
     env = PushEnv(robot, options=options)
     up, still = np.array([1.0, -1.0]), -np.ones(2)
     assert env.contractions(up) == pytest.approx([30e-3, -robot.winches[1].release])
@@ -168,7 +168,7 @@ def test_each_episode_has_a_thing_of_its_own(robot: Robot) -> None:
 
 def test_a_gripper_turns_its_disc() -> None:
     """Fingers that press, shorten and lift leave a turn; with no friction they leave none."""
-    physics = ThingPhysics(beats=5, drag=DRAG)
+    physics = ManipulationPhysics(beats=5, drag=DRAG)
     env = TwistEnv(
         flat_gripper(), options=TwistOptions(steps=3, tied=(" a", " b"), physics=physics), render_mode="rgb_array"
     )

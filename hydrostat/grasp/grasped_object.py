@@ -1,4 +1,4 @@
-"""`read_thing`, `place_thing`: a grasped object from a text, and its position."""
+"""`read_object`, `place_object`: a grasped object from a text, and its position."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -16,7 +16,7 @@ FORMS = ("sphere:65mm", "cylinder:40mm,120mm", "capsule:40mm,120mm", "box:40mm,4
 """Forms of an object: a diameter, a diameter and a length along the last axis, the sides, or a surface file in mm."""
 
 
-def read_thing(text: str, dim: int, *, mass: float, friction: float) -> Obstacle:
+def read_object(text: str, dim: int, *, mass: float, friction: float) -> Obstacle:
     """Create an object from a text as in `FORMS`, at the origin.
 
     Args:
@@ -61,7 +61,7 @@ def _from_file(text: str, dim: int, *, mass: float, friction: float) -> Obstacle
     return Obstacle(name="thing", shape="mesh", at=tuple(-mesh.masses()[1]), mesh=mesh, mass=mass, friction=friction)
 
 
-def moved_thing(thing: Obstacle, place: Vector) -> Obstacle:
+def move_object(thing: Obstacle, place: Vector) -> Obstacle:
     """Return the same object with its center at a position [m]."""
     shift = np.asarray(place) - thing.frame()[0]
     ends = (None if end is None else tuple((np.array(end) + shift).tolist()) for end in (thing.at, thing.to))
@@ -69,7 +69,7 @@ def moved_thing(thing: Obstacle, place: Vector) -> Obstacle:
     return replace(thing, at=at or (), to=to)
 
 
-def place_thing(robot: Robot, thing: Obstacle, closed: Points) -> Obstacle:
+def place_object(robot: Robot, thing: Obstacle, closed: Points) -> Obstacle:
     """Place an object amid the markers of the closed robot, moved out of the body at rest.
 
     Args:
@@ -85,7 +85,7 @@ def place_thing(robot: Robot, thing: Obstacle, closed: Points) -> Obstacle:
     trials = 400
     some = 0.25  # Moves in search of a place, and how far each goes, as a share of what is needed
     for _ in range(trials):
-        tried = moved_thing(thing, place)
+        tried = move_object(thing, place)
         found = tried.field()(skin)
         lacks = np.maximum(room - found.values, 0.0)
         inside = locate(mesh, tried.spine()).inside.any()
@@ -95,4 +95,4 @@ def place_thing(robot: Robot, thing: Obstacle, closed: Points) -> Obstacle:
         if inside or not way.any():
             way = place - mesh.nodes.mean(axis=0)
         place = place + (lacks.max() * some + 0.1 * room) * way / max(float(np.linalg.norm(way)), 1e-12)
-    raise InputError("no place for the thing was found near the markers of the pose; say where by --at")
+    raise InputError("no place for the object was found near the markers of the pose; say where by --at")

@@ -1,4 +1,4 @@
-"""`ThingWorld`: a robot and a free thing that it pushes and turns, in time."""
+"""`ManipulationWorld`: a robot and a free thing that it pushes and turns, in time."""
 
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -7,21 +7,21 @@ import numpy as np
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError, NotConvergedError
-from hydrostat.grasp import moved_thing
+from hydrostat.grasp import move_object
 from hydrostat.mechanics import GuideEnergy, NewtonOptions
 from hydrostat.robot import Obstacle, Robot
 from hydrostat.simulation import BodyPhysics, Motion, Simulation, StepOptions
 
 
 @dataclass(frozen=True, kw_only=True)
-class ThingPhysics:
+class ManipulationPhysics:
     """Options of the motion of an object in time.
 
     Attributes:
         seconds: from one action to the next [s].
         beats: time steps of an action; winches speed up and slow down in between.
         drag: against all motion, per mass and velocity [1/s].
-        hold: spring that keeps the thing about where it begins, in place of a palm under it [N/m]; 0: none.
+        hold: spring that keeps the object about where it begins, in place of a palm under it [N/m]; 0: none.
         viscosity: viscosity of the body, if its material has none [Pa s].
 
     Raises:
@@ -44,12 +44,12 @@ class ThingPhysics:
                 raise InputError(f"{name} must be 0 or more, not {getattr(self, name):g}")
 
 
-class ThingState(NamedTuple):
+class ObjectState(NamedTuple):
     """Properties of an object that are unknown before it is tried.
 
     Attributes:
         friction: times its own.
-        radius: times its own; of a thing without a radius, its sides; of a mesh, nothing.
+        radius: times its own; of an object without a radius, its sides; of a mesh, nothing.
         start: distance from its usual place [m].
     """
 
@@ -58,7 +58,7 @@ class ThingState(NamedTuple):
     start: tuple[float, ...] = ()
 
 
-class ThingWorld:
+class ManipulationWorld:
     """A robot and a free thing in dynamics, from keyframe to keyframe.
 
     Attributes:
@@ -68,17 +68,17 @@ class ThingWorld:
         motion: present motion of both.
         start: start of the object [m].
         time_steps: number of time steps of the exact simulator.
-        turned: by which angle the thing has turned about the axis [rad]; more than a turn is counted on.
+        turned: by which angle the object has turned about the axis [rad]; more than a turn is counted on.
     """
 
-    def __init__(self, robot: Robot, thing: Obstacle, axis: Vector, physics: ThingPhysics) -> None:
-        """A robot, the thing as it usually is, the axis of turns (a unit vector; in the plane (0, 0, 1))."""
+    def __init__(self, robot: Robot, thing: Obstacle, axis: Vector, physics: ManipulationPhysics) -> None:
+        """A robot, the object as it usually is, the axis of turns (a unit vector; in the plane (0, 0, 1))."""
         self._given, self._usual, self._axis, self._physics = robot, thing, axis, physics
         self.time_steps = 0
-        self.begin(ThingState())
+        self.begin(ObjectState())
 
-    def begin(self, state: ThingState) -> None:
-        """Begin at rest, with the thing in a state."""
+    def begin(self, state: ObjectState) -> None:
+        """Begin at rest, with the object in a state."""
         self.thing = as_drawn(self._usual, state)
         others = [each for each in self._given.obstacles if each.name != self._usual.name]
         material = self._given.body.material
@@ -115,7 +115,7 @@ class ThingWorld:
         return motions
 
     def follow(self, motion: Motion) -> None:
-        """Go on from a motion that a step of `simulation` led to; the thing turns less than half a turn in a step."""
+        """Go on from a motion that a step of `simulation` led to; the object turns less than half a turn in a step."""
         self.motion = motion
         change = angle_about(self.axes, self._begun, self._axis) - self.turned
         self.turned += (change + np.pi) % (2 * np.pi) - np.pi
@@ -147,8 +147,8 @@ class ThingWorld:
         return (self.thing.with_frame(self.place, axes), *made)
 
 
-def as_drawn(thing: Obstacle, state: ThingState) -> Obstacle:
-    """A thing in a state: its friction, its radius or sides, its place."""
+def as_drawn(thing: Obstacle, state: ObjectState) -> Obstacle:
+    """An object in a state: its friction, its radius or sides, its place."""
     middle, factor = thing.frame()[0], state.radius
     changed = replace(thing, friction=state.friction * (thing.friction or 0.0))
     if thing.radius is not None:
@@ -156,7 +156,7 @@ def as_drawn(thing: Obstacle, state: ThingState) -> Obstacle:
     elif thing.to is not None:
         at, to = (tuple((middle + factor * (np.array(end) - middle)).tolist()) for end in (thing.at, thing.to))
         changed = replace(changed, at=at, to=to)
-    return moved_thing(changed, middle + np.array(state.start)) if state.start else changed
+    return move_object(changed, middle + np.array(state.start)) if state.start else changed
 
 
 def is_clear(robot: Robot, thing: Obstacle) -> bool:

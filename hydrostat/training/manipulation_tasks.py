@@ -10,19 +10,19 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.robot import Obstacle, Robot
 from hydrostat.training.goal_env import TaskOptions, prepare_robot
-from hydrostat.training.thing_env import ThingEnv, ThingOptions
-from hydrostat.training.thing_world import ThingPhysics
+from hydrostat.training.manipulation_env import ManipulationEnv, ManipulationOptions
+from hydrostat.training.manipulation_world import ManipulationPhysics
 
 
 @dataclass(frozen=True, kw_only=True)
-class PushOptions(ThingOptions):
+class PushOptions(ManipulationOptions):
     """Options of the task of pushing an object.
 
     Attributes:
-        far: goals are drawn within this of the usual place of the thing [m].
+        far: goals are drawn within this of the usual place of the object [m].
 
     Raises:
-        InputError: as for `ThingOptions`, or nothing to go.
+        InputError: as for `ManipulationOptions`, or nothing to go.
     """
 
     far: float = 20e-3
@@ -33,8 +33,8 @@ class PushOptions(ThingOptions):
             raise InputError(f"far must be above 0 m, not {self.far:g}")
 
 
-class PushEnv(ThingEnv):
-    """`ThingEnv` where goals are places of the middle of the thing, drawn evenly in a disc or ball about the usual one.
+class PushEnv(ManipulationEnv):
+    """`ManipulationEnv` whose goals are places of the object's middle, drawn in a disc or ball about the usual one.
 
     Goals are counted from there, in sizes of the body. Not every one need be within reach of the fingers.
     """
@@ -50,7 +50,7 @@ class PushEnv(ThingEnv):
         contact: bool = False,
         render_mode: str | None = None,
     ) -> None:
-        """A robot that pushes; arguments and errors as for `ThingEnv`."""
+        """A robot that pushes; arguments and errors as for `ManipulationEnv`."""
         made = options or PushOptions()
         super().__init__(robot, thing=thing, options=made, contact=contact, render_mode=render_mode)
         self.unit = self._size
@@ -58,7 +58,7 @@ class PushEnv(ThingEnv):
     @classmethod
     def for_task(cls, robot: Robot | str, given: TaskOptions) -> Self:
         """Push as the command line asks for it."""
-        return cls._for_thing(robot, given, PushOptions(**given.select_given("steps", "tolerance", "shaped", "tied")))
+        return cls._for_object(robot, given, PushOptions(**given.select_given("steps", "tolerance", "shaped", "tied")))
 
     @property
     def goal_size(self) -> int:
@@ -85,7 +85,7 @@ class PushEnv(ThingEnv):
 
 
 @dataclass(frozen=True, kw_only=True)
-class TwistOptions(ThingOptions):
+class TwistOptions(ManipulationOptions):
     """Options of the task of turning an object.
 
     Attributes:
@@ -93,7 +93,7 @@ class TwistOptions(ThingOptions):
         tolerance: largest remaining turn of a success [rad].
 
     Raises:
-        InputError: as for `ThingOptions`, or angles of two signs.
+        InputError: as for `ManipulationOptions`, or angles of two signs.
     """
 
     turn: tuple[float, float] = (0.5 * np.pi, 0.5 * np.pi)
@@ -105,10 +105,10 @@ class TwistOptions(ThingOptions):
             raise InputError(f"turns that are asked for go one way: give two angles of one sign, not {self.turn}")
 
 
-class TwistEnv(ThingEnv):
-    """`ThingEnv` where goals are turns about an axis, in half turns; to turn further is no miss.
+class TwistEnv(ManipulationEnv):
+    """`ManipulationEnv` where goals are turns about an axis, in half turns; to turn further is no miss.
 
-    In space a spring keeps the thing about where it begins, unless `options` say otherwise. The turn about the axis is
+    In space a spring keeps the object about where it begins, unless `options` say otherwise. The turn about the axis is
     the twist of its rotation, whatever way it swings besides.
     """
 
@@ -125,7 +125,7 @@ class TwistEnv(ThingEnv):
         contact: bool = False,
         render_mode: str | None = None,
     ) -> None:
-        """A robot that turns a thing; arguments and errors as for `ThingEnv`."""
+        """A robot that turns an object; arguments and errors as for `ManipulationEnv`."""
         made = prepare_robot(robot, contact)
         options = options or TwistOptions(physics=_physics(made))
         super().__init__(made, thing=thing, options=options, axis=axis, render_mode=render_mode)
@@ -137,7 +137,7 @@ class TwistEnv(ThingEnv):
         made = prepare_robot(robot)
         options = TwistOptions(**given.select_given("steps", "shaped", "tied"), physics=_physics(made))
         given.refuse("tolerance")
-        return cls._for_thing(made, given, options)
+        return cls._for_object(made, given, options)
 
     @property
     def goal_size(self) -> int:
@@ -162,7 +162,7 @@ class TwistEnv(ThingEnv):
         return f"turned by {np.rad2deg(self.world.turned):.0f} of {180 * self._goal[0]:.0f} degrees"
 
 
-def _physics(robot: Robot) -> ThingPhysics:
+def _physics(robot: Robot) -> ManipulationPhysics:
     """A palm in space, none in the plane."""
-    hold = 100.0  # Spring in place of a palm under a thing in space [N/m]
-    return ThingPhysics(hold=hold if robot.body.mesh.dim == 3 else 0.0)
+    hold = 100.0  # Spring in place of a palm under an object in space [N/m]
+    return ManipulationPhysics(hold=hold if robot.body.mesh.dim == 3 else 0.0)

@@ -1,4 +1,4 @@
-"""`ThingEnv`: a robot moves a free thing by keyframes (gymnasium, goal-based): what Push and Twist share."""
+"""`ManipulationEnv`: a robot moves a free thing by keyframes (gymnasium, goal-based): what Push and Twist share."""
 
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
@@ -11,13 +11,19 @@ from gymnasium import spaces
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.robot import Obstacle, Robot
-from hydrostat.training.env_pictures import ThingPictures
+from hydrostat.training.env_pictures import ManipulationPictures
 from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, finite_numbers, prepare_robot
-from hydrostat.training.thing_world import ThingPhysics, ThingState, ThingWorld, as_drawn, is_clear
+from hydrostat.training.manipulation_world import (
+    ManipulationPhysics,
+    ManipulationWorld,
+    ObjectState,
+    as_drawn,
+    is_clear,
+)
 
 
 @dataclass(frozen=True, kw_only=True)
-class ThingOptions:
+class ManipulationOptions:
     """Options of the tasks of moving an object.
 
     Attributes:
@@ -26,7 +32,7 @@ class ThingOptions:
         travel: most that an action takes in [m]; that of the winch if None.
         tolerance: largest distance that is a success, in the unit of the task.
         shaped: reward is minus the distance in units of the tolerance; else 0 for success and -1.
-        friction: the thing's is drawn within this share of its own, up and down.
+        friction: the object's is drawn within this share of its own, up and down.
         radius: its radius, likewise.
         start: along each axis it begins within this of its place [m].
         physics: options of the motion in time.
@@ -43,7 +49,7 @@ class ThingOptions:
     friction: float = 0.3
     radius: float = 0.05
     start: float = 5e-3
-    physics: ThingPhysics = field(default_factory=ThingPhysics)
+    physics: ManipulationPhysics = field(default_factory=ManipulationPhysics)
 
     def __post_init__(self) -> None:
         if self.steps < 1:
@@ -59,15 +65,15 @@ class ThingOptions:
             raise InputError(f"start must be 0 m or more, not {self.start:g}")
 
 
-class ThingEnv(GoalEnv):
+class ManipulationEnv(GoalEnv):
     """Goal-based environment in time: actions are keyframes, contractions that winches go to; then the hand opens.
 
-    Each episode has a thing of its own: friction, radius and start are drawn, and the policy does not see them, but for
-    where the thing is. Observations hold the contractions (from -1 to 1), where the middle of the thing is, counted
+    Each episode has an object of its own: friction, radius and start are drawn, and the policy sees none of them but
+    where the object is. Observations hold the contractions (from -1 to 1), where the middle of the object is, counted
     from its usual place in sizes of the body, how far it has turned in half turns, and the share of the keyframes that
     are done. Where the simulator finds no time step, nothing counts as achieved in that episode. Cost is counted in
-    time steps of the exact simulator that were asked for, `ThingPhysics.beats` for each keyframe and as many to open
-    the hand.
+    time steps of the exact simulator that were asked for, `ManipulationPhysics.beats` for each keyframe and as many to
+    open the hand.
 
     Attributes:
         options: options of the task.
@@ -82,12 +88,12 @@ class ThingEnv(GoalEnv):
         robot: Robot | str,
         *,
         thing: Obstacle | None = None,
-        options: ThingOptions,
+        options: ManipulationOptions,
         axis: Sequence[float] = (0.0, 0.0, 1.0),
         contact: bool = False,
         render_mode: str | None = None,
     ) -> None:
-        """A robot that moves a thing.
+        """A robot that moves an object.
 
         Args:
             robot: itself, its folder, or a name such as gallery:caging_gripper.
@@ -98,17 +104,17 @@ class ThingEnv(GoalEnv):
             render_mode: "rgb_array", "human" or None.
 
         Raises:
-            InputError: a robot without winches, no thing, one that is in the body or has no mass.
+            InputError: a robot without winches, no object, one that is in the body or has no mass.
         """
         self.robot = prepare_robot(robot, contact)
         if not self.robot.winches:
-            raise InputError(f"robot {self.robot.name!r} needs a winch to move a thing by")
+            raise InputError(f"robot {self.robot.name!r} needs a winch to move an object by")
         self.options, self.render_mode = options, render_mode
-        self.thing = _thing(self.robot, thing)
+        self.thing = _find_object(self.robot, thing)
         if not np.any(axis):
             raise InputError("the axis of turns must not be 0 along every axis")
         unit = np.array(axis, dtype=float) / np.linalg.norm(axis)
-        self.world = ThingWorld(self.robot, self.thing, unit, options.physics)
+        self.world = ManipulationWorld(self.robot, self.thing, unit, options.physics)
         self.steps, self.tolerance, self._pictures = options.steps, options.tolerance, None
         self._groups = _group_winches(self.robot, options.tied)
         self._low = np.array([-winch.release for winch in self.robot.winches], dtype=float)
@@ -151,7 +157,7 @@ class ThingEnv(GoalEnv):
     def sample_episode(self, random: np.random.Generator) -> dict[str, Any] | None:
         """Draw a goal and an object: factors of its friction and radius, its start [m]; None: in the body."""
         options, pick = self.options, random.uniform
-        state = ThingState(
+        state = ObjectState(
             friction=1 + options.friction * pick(-1, 1),
             radius=1 + options.radius * pick(-1, 1),
             start=tuple((options.start * pick(-1, 1, self._dim)).tolist()),
@@ -175,7 +181,7 @@ class ThingEnv(GoalEnv):
         if len(start) not in (0, self._dim):
             raise InputError(f"a start has {self._dim} coordinates, not {len(start)}")
         self._goal, self.taken_steps = goal, 0
-        self.world.begin(ThingState(float(given.get("friction", 1.0)), float(given.get("radius", 1.0)), start))
+        self.world.begin(ObjectState(float(given.get("friction", 1.0)), float(given.get("radius", 1.0)), start))
         self.moves = [(0.0, self.world.motion.contractions)]
         self._stuck, self._begun = False, self.get_achieved()
         self.show()
@@ -216,7 +222,7 @@ class ThingEnv(GoalEnv):
     def picture(self) -> np.ndarray:
         """Picture of the robot and the object, with dots on it that show its rotation."""
         if self._pictures is None:
-            self._pictures = ThingPictures(self.robot, self.thing)
+            self._pictures = ManipulationPictures(self.robot, self.thing)
         return self._pictures.draw(self.world, f"{self.words()}, after keyframe {self.taken_steps} of {self.steps}")
 
     def _go(self, contractions: Vector) -> None:
@@ -247,11 +253,11 @@ class ThingEnv(GoalEnv):
         }
 
     @classmethod
-    def _for_thing(cls, robot: Robot | str, given: TaskOptions, options: ThingOptions, **more: Any) -> Self:
-        """One with a thing as the command line asks for it."""
+    def _for_object(cls, robot: Robot | str, given: TaskOptions, options: ManipulationOptions, **more: Any) -> Self:
+        """One with an object as the command line asks for it."""
         given.refuse("markers", "pairs", "incremental", "actions")
         made, thing = prepare_robot(robot), given.thing
-        thing = thing if thing is not None or given.friction is None else _thing(made, None)
+        thing = thing if thing is not None or given.friction is None else _find_object(made, None)
         return cls(made, thing=_rubbing(thing, given.friction), options=options, contact=given.contact, **more)
 
 
@@ -259,12 +265,12 @@ def _rubbing(thing: Obstacle | None, friction: float | None) -> Obstacle | None:
     return thing if thing is None or friction is None else replace(thing, friction=friction)
 
 
-def _thing(robot: Robot, given: Obstacle | None) -> Obstacle:
+def _find_object(robot: Robot, given: Obstacle | None) -> Obstacle:
     """Object that is moved, with a friction of its own (InputError: none, or one that cannot be moved)."""
     free = [each for each in robot.obstacles if each.mass is not None]
     if given is None and not free:
         raise InputError(
-            f"robot {robot.name!r} has nothing to move: give an [[obstacle]] a mass, or give a thing (--object)"
+            f"robot {robot.name!r} has nothing to move: give an [[obstacle]] a mass, or give an object (--object)"
         )
     thing = given or free[0]
     if thing.mass is None:
