@@ -95,9 +95,9 @@ class Rooms:
         """The room of a key, made where there is none yet.
 
         Args:
-            key: of the room.
-            address: of the computer that asks; the one with most rooms that no page visited loses one first.
-            visit: true for a page that has loaded and connects.
+            key: name of the room.
+            address: address of the client; the one with most unvisited rooms loses one first.
+            visit: True for a page that has loaded and connects.
 
         Raises:
             InputError: the key is none.
