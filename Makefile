@@ -5,9 +5,6 @@ BIN := $(VENV)/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 # Benchmarks that need other simulators.
 NEED_MORE := real
-# Studies that need other simulators, fTetWild, PyTorch and stable-baselines3, or a robot, samples or a model.
-STUDIES_NEED_MORE := peers tetwild floor hysteresis walk_learned push_learning learned_doubt learned_drag learned_finer learned_ik learned_speed learned_steps learned_tensions learned_thesis sample_starts spool_layers
-STUDIES := $(filter-out lab/tests/% lab/hydrostat_lab/%,$(wildcard lab/*/*.py))
 # Small dense matrices: more threads of the linear algebra library only wait for each other.
 export OPENBLAS_NUM_THREADS ?= 1
 # Tests start the package some forty times: it is compiled once, even where bytecode is not to be written (empty: it is).
@@ -24,7 +21,7 @@ help:
 	@echo "make check     lint, types, import layers, tests"
 	@echo "make fix       format and repair what ruff can repair"
 	@echo "make bench     timings and figures of quality; prints tables ($(NEED_MORE), which need more, run by hand)"
-	@echo "make studies   studies in lab/; prints tables (those that need a model or PyTorch run by hand: lab/README.md)"
+	@echo "make studies   studies in lab/ in small sizes, about 6 minutes; prints tables (the others run by hand: lab/README.md)"
 	@echo "make pictures  draw the pictures of the README again"
 	@echo "make wheels    build a wheel for Linux into dist/"
 	@echo "make wheels-arm  build a wheel for Linux on ARM by a cross-compiler, and solve a robot with it in an emulator"
@@ -68,7 +65,7 @@ bench: $(VENV)/test.installed
 	for file in $(filter-out $(NEED_MORE:%=benchmarks/%.py),$(wildcard benchmarks/*.py)); do $(BIN)/python $$file || exit 1; done
 
 studies: $(VENV)/lab.installed
-	for file in $(filter-out $(foreach name,$(STUDIES_NEED_MORE),%/$(name).py),$(STUDIES)); do $(BIN)/python $$file || exit 1; done
+	$(BIN)/python lab/run_studies.py
 
 pictures: $(VENV)/demo.installed
 	$(BIN)/python docs/pictures.py
