@@ -173,12 +173,15 @@ def _full_contractions(robot: "Robot") -> list[Any]:
 
 
 def _body_lines(body: "Body") -> list[str]:
-    """Material with mass and volume; thickness of nine tenths of the body, and the worst angle of its mesh."""
+    """Material with mass and volume; width or thickness of nine tenths of the body, worst angle of its mesh."""
     mesh, material = body.mesh, body.material
     own = body.element_materials == 0
     volume = float(mesh.volumes[own].sum()) * (body.thickness or 1.0)
     thickness = body.measured_thickness
     (thin, few), (thick, many) = thickness.part(0.05), thickness.part(0.95)
+    across, flat = "thickness", ""
+    if body.thickness is not None:
+        across, flat = "width", f", thickness {1e3 * body.thickness:.3g} mm"
     if mesh.dim == 2:
         angle = f"smallest angle {mesh.smallest_angle():.0f}°"
     else:
@@ -188,7 +191,7 @@ def _body_lines(body: "Body") -> list[str]:
         f"{name}: {_mass_text(float(body.element_masses[own].sum()))}, {_volume_text(volume)}",
         *(_part_line(body, index) for index in range(len(body.parts))),
         *([f"body with its parts: {_mass_text(body.mass)}"] if body.parts else []),
-        f"thickness {1e3 * thin:.0f} to {1e3 * thick:.0f} mm ({few:.1f} to {many:.0f} elements across); {angle}",
+        f"{across} {1e3 * thin:.0f} to {1e3 * thick:.0f} mm ({few:.1f} to {many:.0f} elements across){flat}; {angle}",
         *_plane_lines(body, thick),
     ]
 

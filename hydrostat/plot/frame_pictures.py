@@ -14,6 +14,7 @@ from hydrostat.plot.labels import shorten
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import SpacePane, fit_pixel
 from hydrostat.plot.picture_file import figure_pixels
+from hydrostat.plot.robot_figures import draw_loads, draw_rods, load_reach
 from hydrostat.plot.sheet import Spread
 from hydrostat.plot.skin import outer_points
 from hydrostat.plot.targets import draw_misses, target_places, target_points
@@ -80,6 +81,8 @@ class FramePictures:
         colors = [self._scale.color(float(tension)) for tension in frame.tensions]
         look = {"colors": colors, "width": 2.6, "contractions": frame.contractions}
         draw_hardware(sheet, pane, surface, carried, frame.nodes, **look)
+        draw_rods(sheet, pane, robot, frame.nodes)
+        draw_loads(sheet, pane, robot, frame.nodes)
         names = [marker.name for marker in robot.markers]
         markers = dict(zip(names, carried.markers(frame.nodes), strict=True))
         draw_misses(sheet, [pane], markers, {} if frame.target is None else target_places(frame.target))
@@ -91,6 +94,7 @@ def _visible_points(robot: Robot, carried: Attachments, frames: Sequence[Frame])
     parts = outer_points(robot.body, shapes)
     parts += [part for nodes in shapes for part in (*carried.cables(nodes), carried.winches(nodes))]
     parts += [line for frame in frames for thing in frame.things for line in rims(thing, robot)]
+    parts += [load_reach(robot, nodes) for nodes in shapes]
     parts += [target_points(frame.target) for frame in frames if frame.target is not None]
     return np.concatenate(parts)
 

@@ -48,6 +48,7 @@ def motion_svg(robot: Robot, frames: Sequence[Nodes], *, label: str) -> Html:
         _moving(
             seams, seconds, fill=Color.FELT_LIGHT, stroke=Color.STITCH, stroke_width="1.1", stroke_dasharray="3 2.4"
         ),
+        *_marks(robot, frames, seconds),
         *_cables(robot, frames, seconds),
         *_winches(robot, frames, seconds),
     ]
@@ -62,6 +63,15 @@ def motion_svg(robot: Robot, frames: Sequence[Nodes], *, label: str) -> Html:
         role="img",
         aria_label=label,
     )
+
+
+def _marks(robot: Robot, frames: Sequence[Nodes], seconds: float) -> list[Html]:
+    """Lines drawn on the body, such as eyes and a mouth."""
+    look = {"fill": "none", "stroke": Color.INK, "stroke_width": "1.1", "stroke_linecap": "round"}
+    return [
+        _moving([_outline([anchors.positions(nodes)], closed=False) for nodes in frames], seconds, **look)
+        for anchors in robot.body.mark_anchors
+    ]
 
 
 def _cables(robot: Robot, frames: Sequence[Nodes], seconds: float) -> list[Html]:

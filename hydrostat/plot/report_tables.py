@@ -226,6 +226,6 @@ def number(value: float, digits: int) -> str:
 
 
 def millimeters(error: float) -> str:
-    """An error [m] in millimeters: to a hundredth, below a tenth of a millimeter to two digits."""
+    """An error [m] in millimeters: to a hundredth, below a tenth to two digits, below a thousandth 0.00."""
     value = MILLIMETERS * error
-    return f"{value:.2f}" if value >= 0.1 or value == 0 else f"{value:.2g}"
+    return f"{value:.2f}" if value >= 0.1 or value < 1e-3 else f"{value:.2g}"

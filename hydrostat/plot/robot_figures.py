@@ -216,11 +216,13 @@ def draw_reached(
 
 
 def _reached_note(reached: IKResult, names: list[str]) -> str:
-    """Errors in words: of the markers together, of each other goal by its name."""
+    """Errors of the markers together and of each other goal by its name, then the value of each drive."""
     markers = [reached.errors[name] for name in names]
     parts = [f"marker error {MILLIMETERS * float(np.sqrt(np.mean(np.square(markers)))):.2f} mm rms"] if markers else []
     others = {name: error for name, error in reached.errors.items() if name not in names}
     parts += [f"{shorten(name)} error {MILLIMETERS * error:.2f} mm" for name, error in others.items()]
+    drives = zip(reached.pose.robot.drives, reached.pose.drives, strict=True)
+    parts += [f"{shorten(drive.name)} {drive.format_value(value)}" for drive, value in drives]
     return ", ".join(parts) or str(reached.status)
 
 

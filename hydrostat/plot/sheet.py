@@ -129,8 +129,11 @@ def _rule(sheet: PictureSheet) -> None:
     axes.set_axisbelow(True)
     for spine in axes.spines.values():
         spine.set_visible(False)
+    first = axes.get_xticklabels()[0].get_text() if len(axes.get_xticks()) else ""
+    room = (axes.get_xticks()[0] - sheet.low[0]) / sheet.scale if first else np.inf
+    left = max(4.0, 2.5 * len(first) + 2 - room)  # beside half of the first number [pt]
     axes.annotate(
-        "mm", (0, 0), xycoords="axes fraction", xytext=(-4, -4), textcoords="offset points", fontsize=7,
+        "mm", (0, 0), xycoords="axes fraction", xytext=(-left, -4), textcoords="offset points", fontsize=7,
         color=Color.MUTED, ha="right", va="top",
     )  # fmt: skip
 

@@ -75,7 +75,8 @@ def test_flat_body(check: Check, tmp_path: Path) -> None:
     lines = check(tmp_path)
     assert lines[0].startswith("flat: 60 mm, ")
     assert lines[1] == "polyester fibre: 1.92 g, 48 cm³"
-    few = float(lines[2].removeprefix("thickness 40 to 60 mm (").split(" to ")[0])
+    few = float(lines[2].removeprefix("width 40 to 60 mm (").split(" to ")[0])
+    assert "elements across), thickness 20 mm; " in lines[2]
     assert few == pytest.approx(40 / 12, rel=0.15)
     assert "smallest angle" in lines[2]
     words = 'plane strain: as thick everywhere as at rest; plane = "stress" would bend with 9 % less force'

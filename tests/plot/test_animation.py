@@ -16,7 +16,7 @@ from hydrostat.errors import HydrostatError, InputError
 from hydrostat.plot import Frame, film, save_gif, save_mp4, winch_stops
 from hydrostat.plot.animation import gif_bytes
 from hydrostat.plot.frame_pictures import FramePictures
-from hydrostat.robot import Robot
+from hydrostat.robot import Load, Robot
 from hydrostat.simulation import Simulation
 
 FILMS = {"space": space_film, "flat": flat_film}
@@ -127,6 +127,15 @@ def test_targets_are_shown_while_a_pose_is_approached_and_errors_are_red() -> No
         off = np.abs(pictures.draw(frame).astype(int) - red).max(axis=2)
         counts[frame.target is not None] = int((off < 40).sum())
     assert counts[True] > counts[False] + 5  # the scale of tension has a few of about that color
+
+
+def test_loads_are_shown() -> None:
+    """Oracle: the picture of the robot without its load, which differs."""
+    robot, made = flat_film()
+    node = robot.body.mesh.nodes[int(np.argmax(robot.body.mesh.nodes[:, 0]))]
+    loaded = replace(robot, loads=(Load(name="weight", at=tuple(node.tolist()), force=(0.0, 1e-9)),))
+    plain, arrow = (FramePictures(one, made.frames[:1], width=200).draw(made.frames[0]) for one in (robot, loaded))
+    assert plain.shape != arrow.shape or not np.array_equal(plain, arrow)
 
 
 def test_a_frame_is_drawn_alike_whatever_was_drawn_before() -> None:

@@ -1,3 +1,4 @@
+import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -173,6 +174,23 @@ def test_motion_begins_and_ends_at_rest() -> None:
     root = ElementTree.fromstring(motion_svg(robot, frames, label=SCRIPT))
     values = [len(element.get("values", "").split(";")) for element in root.iter() if element.get("values")]
     assert set(values) == {len(frames)}
+
+
+def test_what_is_drawn_on_a_body_moves_with_it() -> None:
+    """Oracle: a line between two nodes is drawn between their places, in millimeters."""
+    robot = hostile_robot()
+    nodes = robot.body.mesh.nodes
+    marked = replace(robot, body=replace(robot.body, marks=(nodes[[3, 7]],)))
+    moved = nodes + np.array([0.01, 0.02])
+    root = ElementTree.fromstring(motion_svg(marked, [nodes, moved], label=SCRIPT))
+    wanted = [[1e3 * one[index] * [1, -1] for index in (3, 7)] for one in (nodes, moved)]
+    shown = [
+        np.array(re.findall(r"-?[\d.]+", value), dtype=float).reshape(-1, 2)
+        for element in root.iter()
+        for value in element.get("values", "").split(";")
+        if element.get("attributeName") == "d" and len(re.findall(r"-?[\d.]+", value)) == 4
+    ]
+    assert all(any(np.allclose(one, two, atol=0.06) for one in shown) for two in wanted)
 
 
 @pytest.mark.parametrize(

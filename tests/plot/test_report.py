@@ -111,7 +111,7 @@ def test_a_title_that_is_no_valid_text(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("error", "words"),
-    [(0.0123456, "12.35"), (1e-4, "0.10"), (9.87e-5, "0.099"), (1.234e-6, "0.0012"), (0.0, "0.00")],
+    [(0.0123456, "12.35"), (1e-4, "0.10"), (9.87e-5, "0.099"), (1.234e-6, "0.0012"), (5.7e-11, "0.00"), (0.0, "0.00")],
 )
 def test_millimeters(error: float, words: str) -> None:
     """Oracle: by hand."""

@@ -17,6 +17,7 @@ from hydrostat.fabrication.patches.space_pattern import SpacePattern
 from hydrostat.fabrication.patterns.pattern import Pattern
 from hydrostat.fabrication.patterns.shape import Layer, Panel, PatternPart
 from hydrostat.robot import Mount, Robot, sewn_sides
+from hydrostat.units import plural
 
 _SVG = "{http://www.w3.org/2000/svg}"
 
@@ -205,7 +206,7 @@ def _crosses(robot: Robot, pattern: SpacePattern, svg: SeenSvg) -> Check:
 def _seams(pattern: SpacePattern) -> Check:
     worst = max((seam.mismatch for seam in pattern.seams), default=0.0)
     return Check(
-        what=f"both sides of each of {len(pattern.seams)} seams are equally long",
+        what=f"equally long sides of {plural(len(pattern.seams), 'seam')}",
         measured=f"at most {worst:.1%} apart, beyond half a millimeter",
         allowed=f"{MOST_EASE:.0%}, eased in",
         passed=worst <= MOST_EASE,

@@ -12,6 +12,7 @@ from hydrostat.fabrication.solids.assembly import LEAST, PartAssembly, interfere
 from hydrostat.fabrication.solids.construct import sides_text
 from hydrostat.fabrication.solids.printed import Printed, loose_edges, number_groups
 from hydrostat.robot import Robot
+from hydrostat.units import plural
 
 
 def watertight_problems(printed: Printed) -> tuple[str, ...]:
@@ -83,7 +84,7 @@ def solid_checks(printed: Iterable[Printed], assemblies: Iterable[PartAssembly])
             passed=not faults,
         ),
         Check(
-            what=f"the {pieces} pieces of {len(assemblies)} assemblies do not overlap",
+            what=f"no overlap among {plural(pieces, 'piece')} of {plural(len(assemblies), 'unit')}",
             measured="; ".join(clashes) or "nothing shared",
             allowed=f"a film of {1e3 * LEAST:g} micrometer",
             passed=not clashes,
@@ -110,7 +111,7 @@ def spool_checks(robot: Robot, units: Iterable[WinchUnit]) -> tuple[Check, ...]:
     radius = 0.1  # maximum error of the radius at which a cable is wound [mm]
     return (
         Check(
-            what=f"the {len(gaps)} grooves of the printed spools have the radius that was simulated",
+            what=f"radius of {plural(len(gaps), 'groove')} of the printed spools as simulated",
             measured=f"at most {worst:.3f} mm off",
             allowed=f"{radius:g} mm",
             passed=worst <= radius,

@@ -39,7 +39,8 @@ def _name(robot: Robot, index: int) -> str:
 
 def _cable_name(robot: Robot, index: int) -> str:
     """Number of a cable in its file, with its name if one was given."""
-    return f"cable[{index}] {robot.given_cable_names[index]}".rstrip()
+    name = robot.given_cable_names[index]
+    return f"cable[{index}]" + (f' "{name}"' if name else "")
 
 
 def _idle(robot: Robot) -> Iterator[Risk]:
