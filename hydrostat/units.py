@@ -60,7 +60,7 @@ COMMON = {
         FORCE: {"N": "1"},
         SPEED: {"m/s": "1", "mm/s": "0.001"},
         BENDING: {"N m^2": "1", "N mm^2": "0.000001"},
-        TORQUE: {"N m": "1", "N mm": "0.001"},
+        TORQUE: {"N m": "1", "N mm": "0.001", "Nm": "1", "Nmm": "0.001"},
         ANGLE: {"deg": "1"},
     }.items()
     for unit, factor in factors.items()

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from string import ascii_letters
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -56,7 +56,8 @@ AddedLoads = Annotated[
     typer.Option(
         "--load",
         metavar="MARKER=FORCE",
-        help='Force along each axis at a marker, e.g. "tip=0,0,-1N", or a hung mass, e.g. tip=100g. Repeatable.',
+        help='Force along each axis at a marker, e.g. "tip=0,0,-1N", a hung mass, e.g. tip=100g, or a moment, e.g. '
+        '"tip=moment 0.01Nm" (in space one about each axis). Repeatable.',
     ),
 ]
 Pulls = Annotated[
@@ -227,7 +228,10 @@ def moves(robot: "Robot", texts: Sequence[str] | None) -> dict[str, float]:
 
 
 def loads(robot: "Robot", texts: Sequence[str] | None) -> "Robot":
-    """Robot with more loads at its markers, from texts such as "tip=0,0,-1N" or "tip=100g" (InputError: it is none)."""
+    """Robot with more loads at its markers, from texts such as "tip=0,0,-1N", "tip=100g" or "tip=moment 0.01Nm".
+
+    Raises InputError: no marker, force, mass or moment.
+    """
     from hydrostat.robot import Load
 
     for number, text in enumerate(texts or [], start=1):
@@ -237,28 +241,44 @@ def loads(robot: "Robot", texts: Sequence[str] | None) -> "Robot":
         numbers = [each.strip() for each in value.split(",")]
         try:
             robot.marker(marker)
-            single = len(numbers) == 1
-            force = None if single else _forces(numbers, robot.body.mesh.dim, form)
-            mass = _hung_mass(value, form) if single else None
-            load = Load(name=f"given load {number}", marker=marker, force=force, mass=mass)
+            given = _given_load(numbers, robot.body.mesh.dim, marker, form)
+            load = Load(name=f"given load {number}", marker=marker, **given)
             robot = replace(robot, loads=(*robot.loads, load))
         except InputError as error:
             raise InputError(f"--load {text}: {str(error).removeprefix(f'load[{len(robot.loads)}].')}") from None
     return robot
 
 
-def _forces(numbers: Sequence[str], dim: int, form: str) -> tuple[float, ...]:
-    """Force along each axis [N]; the unit of the last number counts for those without one."""
-    from hydrostat.units import FORCE, parse_quantity
+def _given_load(numbers: Sequence[str], dim: int, marker: str, form: str) -> dict[str, Any]:
+    """Force, mass or moment of a load, by its name in `Load`."""
+    from hydrostat.units import FORCE, TORQUE
 
-    if len(numbers) != dim:
-        raise InputError(f"{len(numbers)} values for a body with {dim} axes. {form}.")
+    if numbers[0].split()[:1] == [_MOMENT]:
+        axes = 1 if dim == 2 else 3
+        example = f'Write "{marker}={_MOMENT} {",".join("0" * (axes - 1))}{"," * (axes > 1)}0.01Nm"'
+        values = [numbers[0].removeprefix(_MOMENT).strip(), *numbers[1:]]
+        return {"moment": _components(values, axes, TORQUE, f"a moment with {plural(axes, 'component')}. {example}")}
+    if len(numbers) == 1:
+        return {"mass": _hung_mass(numbers[0], form)}
+    return {"force": _components(numbers, dim, FORCE, f"a body with {dim} axes. {form}")}
+
+
+_MOMENT = "moment"
+
+
+def _components(numbers: Sequence[str], count: int, kind: "Dimension", form: str) -> tuple[float, ...]:
+    """Quantity along each axis; the unit of the last number counts for those without one."""
+    from hydrostat.units import parse_quantity
+
+    form = form.partition(". ")[2] if len(numbers) == count else form
+    if len(numbers) != count:
+        raise InputError(f"{len(numbers)} values for {form}.")
     unit = numbers[-1][len(numbers[-1].rstrip(ascii_letters)) :]
     if not unit:
         raise InputError(f"missing unit. {form}.")
     bare = [each if each[-1:].isalpha() else f"{each} {unit}" for each in numbers]
     try:
-        return tuple(parse_quantity(each, FORCE) for each in bare)
+        return tuple(parse_quantity(each, kind) for each in bare)
     except InputError as error:
         raise InputError(f"{str(error).partition(';')[0]}. {form}.") from None
 

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from hydrostat.mechanics.fibre import FibreEnergy
     from hydrostat.mechanics.foam_solid import FoamLaw, FoamSolid
     from hydrostat.mechanics.inertia import SCHEMES, InertiaEnergy
+    from hydrostat.mechanics.moment_energy import MomentEnergy
     from hydrostat.mechanics.neo_hookean import NeoHookean
     from hydrostat.mechanics.newton import minimize
     from hydrostat.mechanics.newton_options import NewtonOptions
@@ -60,6 +61,7 @@ __all__ = [
     "LowRankStiffness",
     "MaxwellBranches",
     "Metrics",
+    "MomentEnergy",
     "NeoHookean",
     "NewtonOptions",
     "NewtonResult",

@@ -347,6 +347,8 @@ def draw_loads(sheet: PictureSheet, pane: Pane, robot: Robot, nodes: Nodes) -> d
     for load, at, force in zip(robot.loads, places, forces, strict=True):
         if load.pressure is not None:
             _draw_pressure(sheet, pane, robot, nodes, load)
+        if load.moment is not None:
+            drawn[load.name] = _draw_moment(sheet, pane.places(at[None])[0], load)
         size = float(np.linalg.norm(force))
         if size == 0.0:
             continue
@@ -370,8 +372,26 @@ def _draw_pressure(sheet: PictureSheet, pane: Pane, robot: Robot, nodes: Nodes, 
     sheet.text((float(x), float(y)), words, zorder=30, **style)
 
 
+def _draw_moment(sheet: PictureSheet, at: Place, load: Load) -> tuple[Place, Place]:
+    """Draw an arrow around a place, counterclockwise if the moment turns from x to y; return the place and its top."""
+    ahead, reach = (load.moment or (0.0,))[-1] >= 0, 14 * sheet.scale
+    angles = np.radians(np.linspace(-140, 110, 41) * (1 if ahead else -1) + (0 if ahead else 180))
+    line = np.array(at) + reach * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    sheet.curve(line[:-3], color=Color.ERROR, linewidth=1.8, zorder=17.5)
+    arrow = FancyArrowPatch(
+        tuple(line[-5]), tuple(line[-1]), arrowstyle="-|>,head_length=5,head_width=2.5", shrinkA=0, shrinkB=0,
+        color=Color.ERROR, linewidth=0.5, zorder=17.5, clip_on=False,
+    )  # fmt: skip
+    sheet.axes.add_patch(arrow)
+    return at, (float(at[0] + 0.7 * reach), float(at[1] + 0.7 * reach))
+
+
 def name_loads(labels: Labels, robot: Robot, arrows: Mapping[str, tuple[Place, Place]]) -> None:
-    """Write newtons next to the head of each arrow."""
-    sizes = dict(zip((load.name for load in robot.loads), np.linalg.norm(robot.load_forces(), axis=1), strict=True))
+    """Write the size of each force and moment next to its arrow."""
+    forces = zip(robot.loads, np.linalg.norm(robot.load_forces(), axis=1), strict=True)
+    sizes = {
+        load.name: f"{force:.3g} N" if load.moment is None else f"{np.linalg.norm(load.moment):.3g} N m"
+        for load, force in forces
+    }
     for name, (_, end) in arrows.items():
-        labels.place(end, f"{sizes[name]:.3g} N", size=7, weight="bold", outside=0.1, color=Color.ERROR)
+        labels.place(end, sizes[name], size=7, weight="bold", outside=0.1, color=Color.ERROR)

@@ -142,7 +142,8 @@ _HEIGHTS = {
 
 def _lift_load(load: Load) -> Load:
     at = None if load.at is None else _raise_place(load.at)
-    return replace(load, at=at, force=None if load.force is None else (*load.force, 0.0))
+    moment = None if load.moment is None else (0.0, 0.0, *load.moment)
+    return replace(load, at=at, force=None if load.force is None else (*load.force, 0.0), moment=moment)
 
 
 def _raise_place(place: Point) -> Point:

@@ -1,5 +1,6 @@
-"""`Load`: a force at a point of the body, or a mass that hangs there."""
+"""`Load`: a force or moment at a point of the body, a mass that hangs there, or a pressure in a cavity."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +13,7 @@ from hydrostat.given import Point, check_name, check_number, check_point, check_
 
 @dataclass(frozen=True, kw_only=True)
 class Load:
-    """Force with a constant direction or weight of a hung mass at a marker or point, or pressure in a closed cavity.
+    """Force or moment about a constant axis, or weight of a hung mass at a marker or point; or pressure in a cavity.
 
     Attributes:
         name: name, unique in the robot.
@@ -21,9 +22,11 @@ class Load:
         force: force along each axis [N]; None for others.
         mass: point mass [kg]: gravity pulls at it, and it has inertia in motion; None for others.
         pressure: pressure in the hole around `at` that the body closes [Pa], below 0 for a vacuum.
+        moment: moment on the elements there [N m]: one number in the plane, from x to y, or one about each axis.
 
     Raises:
-        InputError: not one of `at` and `marker`, not one of `force`, `mass` and `pressure`, or a number out of range.
+        InputError: not one of `at` and `marker`, not one of `force`, `mass`, `pressure` and `moment`, or a number out
+            of range.
     """
 
     name: str
@@ -32,13 +35,18 @@ class Load:
     force: tuple[float, ...] | None = None
     mass: float | None = None
     pressure: float | None = None
+    moment: tuple[float, ...] | None = None
 
     def __post_init__(self) -> None:
         check_name(self.name)
         if (self.at is None) == (self.marker is None):
             raise InputError("give either marker, or at (a point of the body)")
-        if sum(value is not None for value in (self.force, self.mass, self.pressure)) != 1:
-            raise InputError("give either force, or mass (which hangs there), or pressure (in the hole around at)")
+        if sum(value is not None for value in (self.force, self.mass, self.pressure, self.moment)) != 1:
+            raise InputError(
+                "give either force, or mass (which hangs there), or pressure (in the hole around at), or moment"
+            )
+        if self.moment is not None:
+            self._check_moment(self.moment)
         if self.pressure is not None:
             if self.at is None:
                 raise InputError("pressure needs at, a point in the hole of the body that it fills")
@@ -49,6 +57,14 @@ class Load:
             check_point("force", self.force)
         if self.mass is not None:
             check_positive("mass", self.mass, "kg")
+
+    def _check_moment(self, moment: tuple[float, ...]) -> None:
+        for index, value in enumerate(moment):
+            check_number(f"moment[{index}]", value, "N m")
+            if not math.isfinite(value):
+                raise InputError(f"moment[{index}] must be finite, not {value:g} N m")
+        if not any(moment):
+            raise InputError("moment must not be 0; remove this load")
 
     @property
     def body_points(self) -> tuple[Point, ...]:
@@ -72,3 +88,13 @@ def check_cavity(index: int, load: Load, mesh: Mesh) -> None:
         raise InputError(
             f"load[{index}].at: a pressure fills a hole that the body closes, and this point is in none; move it there"
         )
+
+
+def check_axes(index: int, load: Load, dim: int) -> None:
+    """Reject a force or moment with entries for another number of axes (InputError)."""
+    if load.force is not None and (count := len(load.force)) != dim:
+        raise InputError(f"load[{index}].force has {count} entries, but the body has {dim} axes")
+    axes = 1 if dim == 2 else 3
+    if load.moment is not None and (count := len(load.moment)) != axes:
+        allowed = 'one in the plane: moment = "0.01 N m"' if axes == 1 else "one about each of x, y and z"
+        raise InputError(f"load[{index}].moment has {count} entries; this body needs {allowed}")

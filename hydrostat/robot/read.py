@@ -170,6 +170,8 @@ class RobotReader(TablesFile):
     def _load(self, entry: Any) -> Load:
         at = {} if entry.at is None else {"at": self.point(entry.at)}
         force = {} if entry.force is None else {"force": tuple(entry.force)}
+        if entry.moment is not None:
+            force["moment"] = tuple(entry.moment) if isinstance(entry.moment, list) else (entry.moment,)
         return Load(name=entry.name, **at, **force, **_given_keys(entry, "marker", "mass", "pressure"))
 
     def _rod(self, entry: Any) -> Rod:

@@ -18,7 +18,7 @@ from hydrostat.robot.cable import Cable, given_names, name_cables
 from hydrostat.robot.cable_side import Face
 from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape
 from hydrostat.robot.gravity import check_gravity, gravity_along
-from hydrostat.robot.load import Load, check_cavity
+from hydrostat.robot.load import Load, check_axes, check_cavity
 from hydrostat.robot.marker import Marker, Pin, PoseTarget
 from hydrostat.robot.material import Material
 from hydrostat.robot.materials import get_material
@@ -313,8 +313,7 @@ class Robot:
             if load.mass is not None and self.gravity is None:
                 raise InputError(f'load[{index}].mass weighs nothing without gravity; add gravity = "-y", or a force')
             check_cavity(index, load, self.body.mesh)
-            if load.force is not None and (count := len(load.force)) != self.body.mesh.dim:
-                raise InputError(f"load[{index}].force has {count} entries, but the body has {self.body.mesh.dim} axes")
+            check_axes(index, load, self.body.mesh.dim)
         check_unique("rod", [rod.name for rod in self.rods])
         self._check_inside([(key, point) for key, point in self._points() if key.startswith(("load", "rod"))])
         check_rods_inside(self.rods, self.body, self._text)
@@ -326,7 +325,7 @@ class Robot:
         return np.array(points, dtype=float).reshape(-1, self.body.mesh.dim)
 
     def load_forces(self) -> Points:
-        """Force of each load [N], (loads, dim)."""
+        """Force of each load [N], (loads, dim); 0 for a pressure or a moment."""
         dim = self.body.mesh.dim
         return np.array([load.force_under(self.gravity, dim) for load in self.loads]).reshape(-1, dim)
 

@@ -35,6 +35,7 @@ from hydrostat.toml_schema import (
     Text,
     Time,
     TomlTable,
+    Torque,
     Viscosity,
 )
 from hydrostat.units import quote
@@ -255,6 +256,7 @@ class LoadTable(TomlTable):
     force: Annotated[list[Force], Field(min_length=2, max_length=3)] | None = None
     mass: Mass | None = None
     pressure: Pressure | None = None
+    moment: Torque | Annotated[list[Torque], Field(min_length=3, max_length=3)] | None = None
 
 
 class RodTable(TomlTable):

@@ -265,6 +265,9 @@ class _Writer:
             entry["mass"] = units.format_quantity(load.mass, units.MASS)
         if load.pressure is not None:
             entry["pressure"] = units.format_quantity(load.pressure, units.PRESSURE)
+        if load.moment is not None:
+            moment = [units.format_quantity(value, units.TORQUE) for value in load.moment]
+            entry["moment"] = moment if len(moment) > 1 else moment[0]
         return entry
 
     def rod(self, rod: Rod) -> dict[str, Any]:

@@ -19,13 +19,11 @@ from hydrostat.mechanics import (
     Factorization,
     FoamSolid,
     GuideEnergy,
-    LoadEnergy,
     NeoHookean,
     ObstacleEnergy,
     PatchVolume,
     PinEnergy,
     PlaneStress,
-    PressureEnergy,
     QuadraticSolid,
     RigidBodyDofs,
     RigidEnergy,
@@ -38,6 +36,7 @@ from hydrostat.mechanics import (
     rod_points,
 )
 from hydrostat.robot import Body, Obstacle, Plane, Robot, Rod, Volume
+from hydrostat.simulation.load_energies import hung_masses, make_load_energies
 
 
 class BodyPhysics:
@@ -84,7 +83,7 @@ class BodyPhysics:
         self.elastic = _elastic(robot, self.rest_unknowns, None if patched or thin else lame)
         self.pins = _pins(robot)
         carried = [_obstacle_masses(robot.obstacles[index], carriage) for index, carriage in self.carriages.items()]
-        own, hung = _masses(robot), _hung_masses(robot)
+        own, hung = _masses(robot), hung_masses(robot)
         self.masses, self._hung = own + hung, hung
         self.inertias = np.concatenate([self.masses, *carried]) if carried else self.masses
         energies: list[Energy] = [self.elastic, self.pins]
@@ -100,13 +99,7 @@ class BodyPhysics:
             energies.append(WeightEnergy(self.rest_unknowns, self._heavy[:, None] * np.array(robot.gravity)))
         self.rods = [_rod_energy(robot, rod, self.rest_unknowns) for rod in robot.rods]
         energies += self.rods
-        if robot.loads:
-            energies.append(LoadEnergy(self.rest_unknowns, self._load_forces(robot)))
-        energies += [
-            PressureEnergy(self.rest_unknowns, mesh.cavity(np.array(load.at)), load.pressure, thickness)
-            for load in robot.loads
-            if load.pressure is not None
-        ]
+        energies += make_load_energies(robot, self.rest_unknowns)
         self.own_contact = None if robot.contact is None else len(energies)
         if robot.contact is not None:
             own = ContactEnergy.of(mesh, **_contact_parameters(robot), rest=self.rest_unknowns)
@@ -179,12 +172,6 @@ class BodyPhysics:
                 "no pin holds the robot: where it comes to rest on the ground depends on how it gets there, so let it "
                 "move (`hydrostat simulate --dynamic`, or `Simulation.play`), or pin it"
             )
-
-    def _load_forces(self, robot: Robot) -> Points:
-        """Force of the loads on each unknown [N]."""
-        forces, anchors = np.zeros_like(self.rest_unknowns), locate(robot.body.mesh, robot.load_points())
-        np.add.at(forces, anchors.stencils, anchors.weights[:, :, None] * robot.load_forces()[:, None])
-        return forces
 
     def _obstacle_energies(self, robot: Robot, obstacle: Obstacle, carriage: RigidBodyDofs | None) -> list[Energy]:
         """Return the contact energy of an obstacle and the energy that keeps a moving one rigid or on its path."""
@@ -343,15 +330,6 @@ def _rod_energy(robot: Robot, rod: Rod, rest: Nodes) -> RodEnergy:
     mesh, (axial, bending) = robot.body.mesh, rod.stiffnesses
     anchors = locate(mesh, rod_points(mesh, np.array(rod.points)))
     return RodEnergy(rest, anchors, axial_stiffness=axial, bending_stiffness=bending)
-
-
-def _hung_masses(robot: Robot) -> Float[np.ndarray, " nodes"]:
-    """Mass of the loads at each node [kg]."""
-    masses = np.zeros(len(robot.body.mesh.nodes))
-    if robot.loads:
-        anchors, hung = locate(robot.body.mesh, robot.load_points()), [load.mass or 0.0 for load in robot.loads]
-        np.add.at(masses, anchors.stencils, anchors.weights * np.array(hung)[:, None])
-    return masses
 
 
 def _pins(robot: Robot) -> PinEnergy:

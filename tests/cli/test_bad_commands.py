@@ -137,6 +137,22 @@ def test_a_load_that_is_none_is_told_with_its_right_form(text: str, told: str) -
     assert str(caught.value) == f"--load {text}: {told}. {right}"
 
 
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("tip=moment", 'missing unit. Write "tip=moment 0.01Nm".'),
+        ("tip=moment 0,0,1Nm", '3 values for a moment with 1 component. Write "tip=moment 0.01Nm".'),
+        ("tip=moment 1N", '"N" does not measure a torque. Write "tip=moment 0.01Nm".'),
+        ("tip=moment 0Nm", "moment must not be 0; remove this load"),
+    ],
+)
+def test_a_moment_that_is_none(text: str, told: str) -> None:
+    with pytest.raises(InputError) as caught:
+        loads(strip_robot(), [text])
+    assert str(caught.value) == f"--load {text}: {told}"
+
+
 def test_loads_are_read_in_their_units() -> None:
-    robot = loads(strip_robot(), ["tip=0,-300mN", "tip=1e-1,0N", "tip=1 N,-200 mN"])
-    assert [load.force for load in robot.loads] == [(0.0, -0.3), (0.1, 0.0), (1.0, -0.2)]
+    robot = loads(strip_robot(), ["tip=0,-300mN", "tip=1e-1,0N", "tip=1 N,-200 mN", "tip=moment -10Nmm"])
+    assert [load.force for load in robot.loads] == [(0.0, -0.3), (0.1, 0.0), (1.0, -0.2), None]
+    assert robot.loads[-1].moment == (-0.01,)

@@ -14,6 +14,7 @@ from hydrostat.mechanics import (
     Energy,
     FibreEnergy,
     FoamSolid,
+    MomentEnergy,
     NeoHookean,
     PinEnergy,
     PressureEnergy,
@@ -187,6 +188,12 @@ def pressure(dim: int, random: np.random.Generator) -> State:
     return State(PressureEnergy(mesh.nodes, mesh.boundary, 2e4, 0.03), deform(mesh, random), np.zeros(CONTROLS))
 
 
+def moment(dim: int, random: np.random.Generator) -> State:
+    mesh = rough_mesh(dim, random)
+    energy = MomentEnergy(mesh.nodes, mesh.elements[2:6], random.standard_normal(1 if dim == 2 else 3))
+    return State(energy, deform(mesh, random), np.zeros(CONTROLS))
+
+
 def edge_fibres(dim: int, random: np.random.Generator) -> State:
     mesh = rough_mesh(dim, random)
     energy = FibreEnergy(stencils=mesh.edges, weights=np.tile([-1.0, 1.0], (len(mesh.edges), 1)))
@@ -210,6 +217,7 @@ ENERGIES: dict[str, Callable[[int, np.random.Generator], State]] = {
     "drives": drives,
     "weight": weight,
     "pressure": pressure,
+    "moment": moment,
     "rod": lambda dim, random: rod(dim, random, bent=False),
     "rod that is bent at rest": lambda dim, random: rod(dim, random, bent=True),
     "fibres on edges": edge_fibres,

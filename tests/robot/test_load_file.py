@@ -12,6 +12,7 @@ from hydrostat.robot import inflated_robot, load_robot, merged_text, save_robot,
 HUNG = '[[load]]\nname = "weight"\nmarker = "tip"\nmass = "20 g"\n'
 PUSH = '[[load]]\nname = "push"\nat = [0, 0]\nforce = ["0.5 N", "-1 N"]\n'
 BLOWN = '[[load]]\nname = "air"\nat = [0, 0]\npressure = "2 kPa"\n'
+TURNED = '[[load]]\nname = "turn"\nmarker = "tip"\nmoment = "-5 N mm"\n'
 HEAVY = 'gravity = "-y"\n'
 
 
@@ -20,16 +21,19 @@ def text(*tables: str, gravity: str = HEAVY) -> str:
 
 
 def test_what_is_written_is_read(tmp_path: Path) -> None:
-    robot = load(tmp_path / "a", text(HUNG, PUSH))
-    assert robot.load_forces() == pytest.approx(np.array([[0.0, -0.02 * 9.80665], [0.5, -1.0]]))
+    robot = load(tmp_path / "a", text(HUNG, PUSH, TURNED))
+    assert robot.load_forces() == pytest.approx(np.array([[0.0, -0.02 * 9.80665], [0.5, -1.0], [0.0, 0.0]]))
+    assert robot.loads[2].moment == (-5e-3,)
     save_robot(robot, tmp_path / "b")
     assert load_robot(tmp_path / "b") == robot
-    assert merged_text(text(HUNG, "# mine\n" + PUSH), robot) == text(HUNG, "# mine\n" + PUSH)
+    assert merged_text(text(HUNG, "# mine\n" + PUSH, TURNED), robot) == text(HUNG, "# mine\n" + PUSH, TURNED)
 
 
 def test_loads_go_along(tmp_path: Path) -> None:
-    robot = load(tmp_path, text(HUNG, PUSH))
-    assert inflated_robot(robot).load_forces().shape == (2, 3)
+    robot = load(tmp_path, text(HUNG, PUSH, TURNED))
+    lifted = inflated_robot(robot)
+    assert lifted.load_forces().shape == (3, 3)
+    assert lifted.loads[2].moment == (0.0, 0.0, -5e-3)
     shift = scaled_robot(robot, 2.0).load_points()
     assert shift == pytest.approx(2 * robot.load_points())
 
@@ -50,6 +54,11 @@ def test_loads_go_along(tmp_path: Path) -> None:
             r"load\[0\].*pressure needs at",
         ),
         (BLOWN.replace("2 kPa", "2 N"), r"load\[0\].pressure: .* does not measure a pressure"),
+        (
+            TURNED.replace('"-5 N mm"', '["1 N m", "1 N m", "1 N m"]'),
+            r"load\[0\].moment has 3 entries; this body",
+        ),
+        (TURNED.replace("N mm", "N"), r"load\[0\].moment.* does not measure a torque"),
         (PUSH + PUSH, r'load\[1\].name: there are two of the name "push"'),
     ],
 )

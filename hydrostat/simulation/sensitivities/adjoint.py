@@ -69,7 +69,8 @@ class Sensitivity:
         part_poisson: derivative by Poisson's ratio of each part [-], (parts,); 0 for rigid ones.
         part_density: derivative by the density of each part [m^3/kg], (parts,).
         thickness: derivative by the thickness of a flat body [1/m]; None in space.
-        loads: derivative by the force of each load along each axis [1/N], (loads, dim); 0 for a pressure.
+        loads: derivative by the force of each load along each axis [1/N], (loads, dim); 0 for a pressure or moment.
+        moments: derivative by the size of the moment of each load [1/(N m)], (loads,); 0 for other loads.
         gravity: derivative by each component of gravity [s^2/m], (dim,), with hung masses.
         rod_axial: derivative by EA of each rod [1/N], (rods,).
         rod_bending: derivative by EI of each rod [1/(N m^2)], (rods,).
@@ -89,6 +90,7 @@ class Sensitivity:
     part_density: Vector
     thickness: float | None
     loads: Points
+    moments: Vector
     gravity: Vector
     rod_axial: Vector
     rod_bending: Vector
@@ -196,6 +198,7 @@ def by_body(body: BodyPhysics, pose: Equilibrium, field: Nodes) -> dict[str, Any
         "part_density": density[1:],
         "thickness": None if body.thickness is None else -float(works["thickness"][0]) / body.thickness,
         "loads": _load_slopes(pose, field),
+        "moments": -_add(np.zeros(len(pose.robot.loads)), works.get("moment", np.zeros(0))),
         "pin_stiffness": -works["support_stiffness"],
         "gravity": body.heavy_masses @ field,
         "rod_axial": -rods[:, 0],
@@ -273,7 +276,7 @@ def by_routes(
 
 
 def _load_slopes(pose: Equilibrium, field: Nodes) -> Points:
-    """Derivatives by the forces of loads; a pressure is no force at a point, so its row is 0."""
+    """Derivatives by the forces of loads; a pressure or moment is no force at a point, so its row is 0."""
     slopes = locate(pose.robot.body.mesh, pose.robot.load_points()).positions(field[: len(pose.nodes)])
-    slopes[[load.pressure is not None for load in pose.robot.loads]] = 0.0
+    slopes[[load.force is None and load.mass is None for load in pose.robot.loads]] = 0.0
     return slopes
