@@ -5,9 +5,13 @@ import platform
 import re
 import shutil
 import stat
+import sys
+import tempfile
 import threading
 from contextlib import suppress
+from hashlib import sha256
 from pathlib import Path
+from typing import IO
 
 from hydrostat import units
 from hydrostat.errors import InputError
@@ -96,6 +100,47 @@ def clear_unfinished(folder: Path) -> None:
                 shutil.rmtree(entry.path, ignore_errors=True)
             else:
                 os.unlink(entry.path)
+
+
+_HELD: dict[Path, IO[bytes]] = {}
+
+
+def hold_folder(folder: Path) -> None:
+    """Hold a folder that this process writes to until the process ends; it need not exist yet.
+
+    The lock is a file in this user's temporary folder; where it cannot be made, nothing is held.
+
+    Raises:
+        InputError: another process holds it.
+    """
+    folder = folder.absolute()
+    if folder in _HELD:
+        return
+    name = sha256(str(folder.resolve()).encode()).hexdigest()[:32]
+    locks = Path(tempfile.gettempdir()) / f"hydrostat-{getattr(os, 'getuid', int)()}"
+    try:
+        locks.mkdir(mode=0o700, exist_ok=True)
+        file = (locks / name).open("wb")
+    except OSError:
+        return
+    try:
+        lock_file(file)
+    except OSError:
+        file.close()
+        raise InputError(f"{folder}: another hydrostat writes there. Wait for it, or name another folder.") from None
+    _HELD[folder] = file
+
+
+def lock_file(file: IO[bytes]) -> None:
+    """Lock a file until it is closed (OSError: another has locked it)."""
+    if sys.platform == "win32":
+        import msvcrt
+
+        msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+    else:
+        import fcntl
+
+        fcntl.flock(file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
 def _lives(process: int) -> bool:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
+from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result_folder
 from hydrostat.cli.options import Contract, contractions
 from hydrostat.cli.waiting import prepare_physics, progress_bar, read_robot
 from hydrostat.errors import InputError
@@ -42,11 +42,12 @@ def branches(
     with progress_bar() as progress:
         found = find_equilibria(simulation, given, count=starts, seed=seed, progress=progress)
     followed = _follow(simulation, found)
-    files = _write(simulation, found, followed, out)
+    with result_folder(out) as folder:
+        files = _write(simulation, found, followed, folder)
     print(*found.lines(), sep="\n")
     for name, branch in followed:
         print(f"{name}: " + "\n  ".join(branch.lines()))
-    print("Wrote " + ", ".join(str(file) for file in files))
+    print("Wrote " + ", ".join(str(out / file.relative_to(folder)) for file in files))
     if not found.poses:
         raise typer.Exit(1)
 
@@ -74,7 +75,6 @@ def _write(
     from hydrostat.robot import robot_hash
     from hydrostat.version import __version__
 
-    out.mkdir(parents=True, exist_ok=True)
     winches = [winch.name for winch in simulation.robot.winches]
     facts = {
         "version": __version__,

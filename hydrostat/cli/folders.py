@@ -46,13 +46,14 @@ def folder_of(robot: Path) -> Path:
     return robot if robot.is_dir() else robot.parent
 
 
-def require_folder(out: Path) -> None:
+def require_folder(out: Path, *, shared: bool = False) -> None:
     """Before long work begins: the results can go there, and what killed runs left unfinished there is cleared.
 
     Raises:
-        InputError: something that is no folder is in the way, or nothing can be written there.
+        InputError: something that is no folder is in the way, nothing can be written there, or, unless it is shared,
+            another process writes there.
     """
-    from hydrostat.files import clear_unfinished
+    from hydrostat.files import clear_unfinished, hold_folder
 
     for folder in (out, out.parent):
         clear_unfinished(folder)
@@ -60,6 +61,8 @@ def require_folder(out: Path) -> None:
         if folder.exists() and not folder.is_dir():
             raise InputError(f"--out {out}: {'' if folder == out else f'{folder} '}is a file. Name a folder.")
     require_writable(out, f"--out {out}")
+    if not shared:
+        hold_folder(out)
 
 
 def require_writable(folder: Path, what: str) -> None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
+from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result_folder
 from hydrostat.cli.options import Contract, contractions, middle, positive
 from hydrostat.cli.waiting import progress_bar, read_robot
 from hydrostat.errors import InputError
@@ -76,14 +76,14 @@ def grasp(
         placed = _place_object(loaded, held, at, closed)
         found = pull_out(loaded, placed, closing, options, progress=progress)
         cases = pull_bands(loaded, placed, closing, options, progress=progress) if bands else ()
-        out.mkdir(parents=True, exist_ok=True)
-        files = [replace_file(out / "pull.csv", _table(found).encode())]
-        files.append(save_png(draw_pull(loaded, found, cases), out / "pull.png"))
-        files.append(save_gif(loaded, pull_frames(found), out / "pull.gif", step=0.1, progress=progress))
-        if cases:
-            files.append(replace_file(out / "bands.csv", _bands(cases).encode()))
+        with result_folder(out) as folder:
+            files = [replace_file(folder / "pull.csv", _table(found).encode())]
+            files.append(save_png(draw_pull(loaded, found, cases), folder / "pull.png"))
+            files.append(save_gif(loaded, pull_frames(found), folder / "pull.gif", step=0.1, progress=progress))
+            if cases:
+                files.append(replace_file(folder / "bands.csv", _bands(cases).encode()))
     _print(found, placed, cases)
-    print("Wrote " + ", ".join(str(file) for file in files))
+    print("Wrote " + ", ".join(str(out / file.relative_to(folder)) for file in files))
 
 
 def _feeling(robot: "Robot") -> "Robot":

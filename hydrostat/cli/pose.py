@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
+from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result_folder
 from hydrostat.cli.learned import learned_start, read_model
 from hydrostat.cli.limits import print_exceeded
 from hydrostat.cli.options import EqualWinches, MostTension, MostTorque, parse_optional, pose_limits
@@ -137,11 +137,12 @@ def _write(
         "torque_limit": limits.torque,
         "equal": [list(group) for group in limits.equal],
     }
-    write_pose(simulation, reached.pose, folder, extra=extra, jacobian=jacobian)
     taken = _contraction_facts(simulation.robot, reached)
-    replace_file(folder / "contractions.json", (json.dumps(taken, indent=2) + "\n").encode())
     figure = draw_reached(simulation.robot, reached, title=reached_title(reached, title), outline=outline)
-    save_png(figure, folder / "pose.png")
+    with result_folder(folder) as made:
+        write_pose(simulation, reached.pose, made, extra=extra, jacobian=jacobian)
+        replace_file(made / "contractions.json", (json.dumps(taken, indent=2) + "\n").encode())
+        save_png(figure, made / "pose.png")
 
 
 def _print_reached(loaded: "Robot", reached: "IKResult", title: str, seconds: float) -> None:

@@ -68,7 +68,7 @@ def sample(
     )
     from hydrostat.units import FORCE
 
-    require_folder(out)
+    require_folder(out, shared=True)  # shards of one plan write side by side
     if export is not None:
         check_export(export)
     part = _part(shard)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
+from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result_folder
 from hydrostat.cli.limits import print_exceeded
 from hydrostat.cli.options import (
     AddedLoads,
@@ -99,9 +99,9 @@ def simulate(
     with print_profile(profile, "preparing"):
         simulation = prepare_physics(loaded)
     if dynamic:
-        with print_profile(profile, "simulating"):
-            files = _move(simulation, given, out, duration=duration, step=step, ramp=ramp, play=play)
-        print("Wrote " + ", ".join(str(file) for file in files))
+        with print_profile(profile, "simulating"), result_folder(out) as folder:
+            files = _move(simulation, given, folder, duration=duration, step=step, ramp=ramp, play=play)
+        print("Wrote " + ", ".join(str(out / file.relative_to(folder)) for file in files))
         return
     began = time.process_time()
     with print_profile(profile, "solving"):
@@ -114,14 +114,16 @@ def simulate(
     print(f"{pose.result.reason} after {plural(pose.result.iterations, 'iteration')}, {1e3 * seconds:.0f} ms")
     _print_notes(simulation, pose)
     sys.stdout.flush()  # the answer is there before the picture is drawn
-    files = write_pose(simulation, pose, out, extra={"seconds": seconds, "version": __version__}, jacobian=jacobian)
     load_matplotlib()
     from hydrostat.plot import draw_pose, save_png
 
-    files.append(save_png(draw_pose(loaded, pose), out / "pose.png"))
+    facts = {"seconds": seconds, "version": __version__}
+    with result_folder(out) as folder:
+        files = write_pose(simulation, pose, folder, extra=facts, jacobian=jacobian)
+        files.append(save_png(draw_pose(loaded, pose), folder / "pose.png"))
     for note in pose.notes:
         print(f"note: {note}")
-    print("Wrote " + ", ".join(str(file) for file in files))
+    print("Wrote " + ", ".join(str(out / file.relative_to(folder)) for file in files))
     if not pose.result.converged:
         raise typer.Exit(1)
 

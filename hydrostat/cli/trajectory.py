@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
+from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result_folder
 from hydrostat.cli.options import (
     EqualWinches,
     MostTension,
@@ -101,9 +101,10 @@ def trajectory(
             progress=progress,
         )
         facts = _facts(simulation, made, limits, time.process_time() - began)
-        files = _write(simulation, made, facts, out, width, progress)
+        with result_folder(out) as folder:
+            files = _write(simulation, made, facts, folder, width, progress)
     print(*made.lines(), sep="\n")
-    print("Wrote " + ", ".join(str(file) for file in files))
+    print("Wrote " + ", ".join(str(out / file.relative_to(folder)) for file in files))
     stuck = (IKStatus.ITERATION_LIMIT, IKStatus.NO_EQUILIBRIUM)
     if any(key.found is not None and key.found.status in stuck for key in made.keyframes):
         raise typer.Exit(1)
@@ -143,7 +144,6 @@ def _write(
     from hydrostat.plot import draw_trajectory, save_gif, save_png, trajectory_frames
     from hydrostat.simulation import write_profile
 
-    out.mkdir(parents=True, exist_ok=True)
     robot = simulation.robot
     frames, step = trajectory_frames(made)
     return [

@@ -335,3 +335,40 @@ def test_a_closed_pipe_and_a_full_disk_end_without_a_trace() -> None:
 def test_the_files_of_the_benchmark_are_all_there() -> None:
     """Oracle: those of the first attack, and of the second."""
     assert len(strangers.FILES) == 20 + 4
+
+
+HOLDER = (
+    "import sys; from pathlib import Path; from hydrostat.files import hold_folder; "
+    "hold_folder(Path(sys.argv[1])); print('held', flush=True); input()"
+)
+
+
+def test_a_second_process_is_told_that_another_writes_there(run: Run, starfish: Path, tmp_path: Path) -> None:
+    """Oracle: a process that holds the folder; when it is killed the folder is free."""
+    out = tmp_path / "out"
+    holder = subprocess.Popen(
+        [sys.executable, "-c", HOLDER, str(out)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
+    assert holder.stdout is not None
+    assert holder.stdout.readline() == "held\n"
+    code, _, err = run("simulate", starfish, "--out", out)
+    words = f"hydrostat: error: {out}: another hydrostat writes there. Wait for it, or name another folder.\n"
+    assert (code, err, out.exists()) == (2, words, False)
+    holder.kill()
+    holder.communicate()
+    assert run("simulate", starfish, "--out", out)[0] == 0
+
+
+def test_a_picture_that_cannot_be_written_leaves_no_folder(
+    run: Run, starfish: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Oracle: a full disk, played by a PNG writer that has no space."""
+
+    def full(path: Path, _: bytes) -> Path:
+        raise InputError(f"{path}: cannot be written (No space left on device)")
+
+    monkeypatch.setattr("hydrostat.plot.picture_file.replace_file", full)
+    out = tmp_path / "out"
+    code, _, err = run("simulate", starfish, "--out", out)
+    assert (code, err) == (2, f"hydrostat: error: {out}/pose.png: cannot be written (No space left on device)\n")
+    assert list(tmp_path.iterdir()) == []

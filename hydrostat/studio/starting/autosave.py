@@ -7,7 +7,6 @@ both cases what was done while a copy is written.
 import json
 import logging
 import os
-import sys
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -17,7 +16,7 @@ from threading import Lock, Thread
 from typing import IO
 
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.files import read_stranger
+from hydrostat.files import lock_file, read_stranger
 from hydrostat.project import Work, open_work, save_work, text_of
 from hydrostat.studio.document import Document
 
@@ -33,7 +32,7 @@ class HeldFolder:
         self.path = parent / f"{os.getpid()}-{token_hex(4)}"  # of the folder
         self.path.mkdir(parents=True)
         self._file: IO[bytes] = (self.path / LOCK).open("wb")
-        _lock(self._file)
+        lock_file(self._file)
 
     def remove(self) -> None:
         """Remove the folder with all that is in it."""
@@ -49,24 +48,12 @@ def is_held(folder: Path) -> bool:
     """Tell whether a process that lives holds a folder."""
     try:
         with (folder / LOCK).open("r+b") as file:
-            _lock(file)
+            lock_file(file)
     except FileNotFoundError:
         return False
     except OSError:
         return True
     return False
-
-
-def _lock(file: IO[bytes]) -> None:
-    """Lock a file until it is closed (OSError: another has locked it)."""
-    if sys.platform == "win32":
-        import msvcrt
-
-        msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
-    else:
-        import fcntl
-
-        fcntl.flock(file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
 PATIENCE = 2.0  # work is kept when nothing has changed for so long [s]
