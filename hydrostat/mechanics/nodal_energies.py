@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from copy import copy
+from typing import Self
 
 import numpy as np
 
@@ -32,8 +33,10 @@ class WeightEnergy(Energy):
     def largest_force(self, nodes: Nodes, controls: Vector) -> float:
         return float(np.abs(self.forces).max(initial=0.0))
 
-    def with_load(self, share: float) -> "WeightEnergy":
-        return WeightEnergy(self._rest, share * self.forces)
+    def with_load(self, share: float) -> Self:
+        other = copy(self)
+        other.forces = share * self.forces
+        return other
 
     def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
         work = np.array([float((self.gradient(nodes, np.zeros(0)) * field[self.stencils]).sum())])
@@ -42,9 +45,6 @@ class WeightEnergy(Energy):
 
 class LoadEnergy(WeightEnergy):
     """`WeightEnergy` of given forces, which do not grow with the thickness of the body."""
-
-    def with_load(self, share: float) -> "LoadEnergy":
-        return LoadEnergy(self._rest, share * self.forces)
 
     def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
         return {}

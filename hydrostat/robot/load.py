@@ -23,6 +23,8 @@ class Load:
         mass: point mass [kg]: gravity pulls at it, and it has inertia in motion; None for others.
         pressure: pressure in the hole around `at` that the body closes [Pa], below 0 for a vacuum.
         moment: moment on the elements there [N m]: one number in the plane, from x to y, or one about each axis.
+        path: keyframes of a motion: times [s] and the share of the load then, linear between them, constant before and
+            after. Without a path, and in statics, all of it acts.
 
     Raises:
         InputError: not one of `at` and `marker`, not one of `force`, `mass`, `pressure` and `moment`, or a number out
@@ -36,6 +38,7 @@ class Load:
     mass: float | None = None
     pressure: float | None = None
     moment: tuple[float, ...] | None = None
+    path: tuple[tuple[float, float], ...] = ()
 
     def __post_init__(self) -> None:
         check_name(self.name)
@@ -47,6 +50,8 @@ class Load:
             )
         if self.moment is not None:
             self._check_moment(self.moment)
+        if self.path:
+            self._check_path()
         if self.pressure is not None:
             if self.at is None:
                 raise InputError("pressure needs at, a point in the hole of the body that it fills")
@@ -65,6 +70,26 @@ class Load:
                 raise InputError(f"moment[{index}] must be finite, not {value:g} N m")
         if not any(moment):
             raise InputError("moment must not be 0; remove this load")
+
+    def _check_path(self) -> None:
+        if self.mass is not None:
+            raise InputError("path: a hung mass is always there; give its weight as a force, or remove path")
+        before = -math.inf
+        for instant, share in self.path:
+            check_number("path", instant, "s")
+            check_number("path", share, "")
+            if not (math.isfinite(instant) and math.isfinite(share)):
+                raise InputError(f"path: its times and shares must be finite, not {instant:g} s and {share:g}")
+            if not (instant >= 0 and instant > before):
+                after = "" if before < 0 else f" after {before:g} s"
+                raise InputError(f"path: its times must rise from 0 s; {instant:g} s comes{after or ' first'}")
+            before = instant
+
+    def share_at(self, instant: float) -> float:
+        """Share of the load that acts at an instant of a motion [s]."""
+        if not self.path:
+            return 1.0
+        return float(np.interp(instant, [time for time, _ in self.path], [share for _, share in self.path]))
 
     @property
     def body_points(self) -> tuple[Point, ...]:

@@ -172,7 +172,8 @@ class RobotReader(TablesFile):
         force = {} if entry.force is None else {"force": tuple(entry.force)}
         if entry.moment is not None:
             force["moment"] = tuple(entry.moment) if isinstance(entry.moment, list) else (entry.moment,)
-        return Load(name=entry.name, **at, **force, **_given_keys(entry, "marker", "mass", "pressure"))
+        path = tuple((key.time, float(key.share)) for key in entry.path)
+        return Load(name=entry.name, **at, **force, path=path, **_given_keys(entry, "marker", "mass", "pressure"))
 
     def _rod(self, entry: Any) -> Rod:
         given = _given_keys(entry, "diameter", "young", "axial_stiffness", "bending_stiffness")

@@ -247,6 +247,13 @@ class ObstacleTable(TomlTable):
     file: Text | None = None
 
 
+class LoadKeyframeTable(TomlTable):
+    """Entry of path of [[load]]."""
+
+    time: Time
+    share: Number
+
+
 class LoadTable(TomlTable):
     """[[load]]."""
 
@@ -257,6 +264,7 @@ class LoadTable(TomlTable):
     mass: Mass | None = None
     pressure: Pressure | None = None
     moment: Torque | Annotated[list[Torque], Field(min_length=3, max_length=3)] | None = None
+    path: list[LoadKeyframeTable] = Field([])
 
 
 class RodTable(TomlTable):

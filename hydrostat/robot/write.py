@@ -253,6 +253,11 @@ class _Writer:
             )
         return entry
 
+    def load_keyframe(self, keyframe: tuple[float, float]) -> Any:
+        table = self._toml.inline_table()
+        table["time"], table["share"] = units.format_quantity(keyframe[0], units.TIME), keyframe[1]
+        return table
+
     def load(self, load: Load) -> dict[str, Any]:
         entry: dict[str, Any] = {"name": load.name}
         if load.at is not None:
@@ -268,6 +273,8 @@ class _Writer:
         if load.moment is not None:
             moment = [units.format_quantity(value, units.TORQUE) for value in load.moment]
             entry["moment"] = moment if len(moment) > 1 else moment[0]
+        if load.path:
+            entry["path"] = self._array(map(self.load_keyframe, load.path))
         return entry
 
     def rod(self, rod: Rod) -> dict[str, Any]:

@@ -57,6 +57,7 @@ class BodyPhysics:
         inertias: mass of each unknown in motion [kg], (rows,).
         carriages: rows of the unknowns of moving obstacles, by index of the obstacle.
         guides: index of each energy that keeps an obstacle on its path, with the obstacle.
+        load_paths: index of each energy of a load that varies in time, with the load.
         own_contact: index of the self-contact energy among all energies of a simulation; None if self-contact is
             disabled.
         obstacles: indices of the energies of the obstacles.
@@ -99,7 +100,9 @@ class BodyPhysics:
             energies.append(WeightEnergy(self.rest_unknowns, self._heavy[:, None] * np.array(robot.gravity)))
         self.rods = [_rod_energy(robot, rod, self.rest_unknowns) for rod in robot.rods]
         energies += self.rods
-        energies += make_load_energies(robot, self.rest_unknowns)
+        loads, paths = make_load_energies(robot, self.rest_unknowns)
+        self.load_paths = {len(energies) + index: load for index, load in paths.items()}
+        energies += loads
         self.own_contact = None if robot.contact is None else len(energies)
         if robot.contact is not None:
             own = ContactEnergy.of(mesh, **_contact_parameters(robot), rest=self.rest_unknowns)

@@ -13,6 +13,7 @@ HUNG = '[[load]]\nname = "weight"\nmarker = "tip"\nmass = "20 g"\n'
 PUSH = '[[load]]\nname = "push"\nat = [0, 0]\nforce = ["0.5 N", "-1 N"]\n'
 BLOWN = '[[load]]\nname = "air"\nat = [0, 0]\npressure = "2 kPa"\n'
 TURNED = '[[load]]\nname = "turn"\nmarker = "tip"\nmoment = "-5 N mm"\n'
+PATH = 'path = [{ time = "0 s", share = 0 }, { time = "0.5 s", share = 1.5 }]\n'
 HEAVY = 'gravity = "-y"\n'
 
 
@@ -21,12 +22,15 @@ def text(*tables: str, gravity: str = HEAVY) -> str:
 
 
 def test_what_is_written_is_read(tmp_path: Path) -> None:
-    robot = load(tmp_path / "a", text(HUNG, PUSH, TURNED))
+    robot = load(tmp_path / "a", text(HUNG, PUSH, TURNED + PATH))
     assert robot.load_forces() == pytest.approx(np.array([[0.0, -0.02 * 9.80665], [0.5, -1.0], [0.0, 0.0]]))
     assert robot.loads[2].moment == (-5e-3,)
+    assert [robot.loads[2].share_at(instant) for instant in (0.0, 0.25, 2.0)] == [0.0, 0.75, 1.5]
     save_robot(robot, tmp_path / "b")
     assert load_robot(tmp_path / "b") == robot
-    assert merged_text(text(HUNG, "# mine\n" + PUSH, TURNED), robot) == text(HUNG, "# mine\n" + PUSH, TURNED)
+    assert merged_text(text(HUNG, "# mine\n" + PUSH, TURNED + PATH), robot) == text(
+        HUNG, "# mine\n" + PUSH, TURNED + PATH
+    )
 
 
 def test_loads_go_along(tmp_path: Path) -> None:
@@ -59,6 +63,9 @@ def test_loads_go_along(tmp_path: Path) -> None:
             r"load\[0\].moment has 3 entries; this body",
         ),
         (TURNED.replace("N mm", "N"), r"load\[0\].moment.* does not measure a torque"),
+        (HUNG + PATH, r"load\[0\].path: a hung mass is always there; give its weight as a force"),
+        (PUSH + PATH.replace("0.5 s", "0 s"), r"load\[0\].path: its times must rise from 0 s; 0 s comes after 0 s"),
+        (PUSH + PATH.replace("0.5 s", "5 N"), r"load\[0\].path\[1\].time.* does not measure a time"),
         (PUSH + PUSH, r'load\[1\].name: there are two of the name "push"'),
     ],
 )

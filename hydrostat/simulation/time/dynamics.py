@@ -93,7 +93,7 @@ class Dynamics:
         material = robot.body.material
         self.robot, self.masses = robot, body.inertias
         self._statics, self._tensions, self._markers, self._options = statics, tensions, markers, options
-        self._guides, self._begin = body.guides, body.rest_unknowns
+        self._guides, self._load_paths, self._begin = body.guides, body.load_paths, body.rest_unknowns
         branches = [(branch.modulus * branch.time, branch.time) for branch in material.relaxation]
         branches += [(material.viscosity, 0.0)] if material.viscosity else []
         viscosities, times = np.array(branches).reshape(-1, 2).T.copy()
@@ -209,12 +209,14 @@ class Dynamics:
     def _remembering(
         self, history: Vector, nodes: Nodes, contractions: Vector, shifts: Points, instant: float
     ) -> list[Energy]:
-        """Energies of statics at an instant [s], with pins and guides at their positions, after the given `history`."""
+        """Energies of statics at an instant [s], with pins, guides and loads as then, after the given `history`."""
         statics = self._statics.with_history(history, nodes, contractions) if len(history) else self._statics
         energies = list(statics.energies)
         for slot, obstacle in self._guides.items():
             place, axes = obstacle.shift(instant), np.eye(len(obstacle.at))
             energies[slot] = energies[slot].with_target(place, axes)  # type: ignore[attr-defined]
+        for slot, load in self._load_paths.items():
+            energies[slot] = energies[slot].with_load(load.share_at(instant))
         return [energy.with_supports_moved(shifts) for energy in energies] if shifts.any() else energies
 
     def _energies(self, base: _MotionState, step: float, drag: float, statics: list[Energy]) -> list[Energy]:
