@@ -122,11 +122,13 @@ def installed(peer: Peer, folder: Path) -> tuple[Path, str]:
     if stamp.is_file() and stamp.read_text() == "\n".join(peer.packages):
         return python, ""
     try:
-        venv.create(home, with_pip=True, clear=True)
+        venv.create(home, clear=True)  # without a pip of its own, which takes seconds: ours installs
         command = [
-            str(python),
+            sys.executable,
             "-m",
             "pip",
+            "--python",
+            str(python),
             "install",
             "--quiet",
             "--no-compile",
