@@ -1,5 +1,6 @@
 """The public face: names, light imports, and the layers."""
 
+import re
 import subprocess
 import sys
 from importlib import import_module
@@ -87,3 +88,13 @@ def test_a_command_loads_what_it_needs(command: str, heavy: str, tmp_path: Path)
     code += f"print('loaded:', *[name for name in {names} if name in sys.modules])"
     run = subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, check=True, cwd=tmp_path)
     assert run.stdout.splitlines()[-1].split() == ["loaded:"]
+
+
+def test_the_modules_of_igl_under_other_licenses_are_never_imported() -> None:
+    """Oracle: the text of the package, and what `import igl` loads."""
+    import igl
+
+    assert igl.__name__ == "igl"
+    assert not {"igl.copyleft", "igl.triangle"} & set(sys.modules)
+    texts = [file.read_text(encoding="utf-8") for file in Path(hs.__file__).parent.rglob("*.py")]
+    assert not [text for text in texts if re.search(r"igl\.(copyleft|triangle)|from igl\b", text)]
