@@ -44,6 +44,9 @@ class NotConvergedError(HydrostatError):
         self.result = result
 
 
+NO_KIT = "no kit can be made of this body: "
+"""Before a reason that holds whatever the winches and cables of a robot are."""
+
 _NAMED = re.compile(r"\b(winch|marker)\[\d+\](?= )")
 _POINT = re.compile(r"\bcable\[(\d+)\]\.points\[(\d+)\]")
 _RUN = re.compile(r"\bcable\[(\d+)\] between points (\d+) and (\d+)")

@@ -68,8 +68,8 @@ def check(
 
 def _print_judgement(robot: "Robot") -> None:
     """Print the design review of a robot, as the studio does, regardless of the motor loads in its poses."""
-    from hydrostat.design import NO_KIT, Constraints, Diagnostic, Severity, find_no_room, review_robot
-    from hydrostat.errors import in_words
+    from hydrostat.design import Constraints, Diagnostic, Severity, find_no_room, review_robot
+    from hydrostat.errors import NO_KIT, in_words
 
     weight, before = (Severity.REFUSED, "") if robot.cables else (Severity.MIND, NO_KIT)
     found = [Diagnostic(text=before + text, weight=weight, places=()) for text in print_sewing(robot.body)]

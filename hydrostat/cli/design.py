@@ -233,8 +233,7 @@ def design(
 
 def _refuse_body(source: "Robot", request: "DesignRequest") -> None:
     """Stop before the search if no kit can be made of the body (InputError), or warn where none is asked for."""
-    from hydrostat.design import NO_KIT
-    from hydrostat.errors import InputError, in_words
+    from hydrostat.errors import NO_KIT, InputError, in_words
 
     reasons = [NO_KIT + in_words(reason) for reason in (*print_sewing(source.body), *body_refusals(source))]
     if reasons and request.constraints.built_in and not request.method.grows_trees:

@@ -285,8 +285,7 @@ def _draw(folder: Path) -> "Robot":
 
 def _print_made(made: "Robot", name: Path, lines: list[str], *, chosen: bool) -> None:
     """Say what there is now, and what to do next."""
-    from hydrostat.design import NO_KIT
-    from hydrostat.errors import in_words
+    from hydrostat.errors import NO_KIT, in_words
     from hydrostat.robot import find_risks
 
     mesh, flat = made.body.mesh, made.body.mesh.dim == 2

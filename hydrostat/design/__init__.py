@@ -43,7 +43,7 @@ if TYPE_CHECKING:
         TreeKnobs,
         TreeOptions,
     )
-    from hydrostat.design.review_robot import NO_KIT, review_robot
+    from hydrostat.design.review_robot import review_robot
     from hydrostat.design.routes.finalists import kit_fits
     from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
     from hydrostat.design.routes.price import PricedPath
@@ -60,7 +60,6 @@ __all__ = [
     "AUTO",
     "COUNTS",
     "KNOB_RANGES",
-    "NO_KIT",
     "RANGES",
     "ROUTE_RANGES",
     "STEPPED",

@@ -8,10 +8,9 @@ from hydrostat.design.checks.winches import standing_violations
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.finding import Diagnostic, Severity, places_in
 from hydrostat.design.skin_region import cable_region
+from hydrostat.errors import NO_KIT
 from hydrostat.fabrication import Demand, KitOptions, find_refusals
 from hydrostat.robot import Robot, find_risks
-
-NO_KIT = "no kit can be made of this body: "  # before a reason that holds whatever its winches and cables are
 
 
 def review_robot(
