@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from hydrostat.design.design_cables import design_cables, find_network
     from hydrostat.design.filled_reach import FilledReach, out_of_plane
     from hydrostat.design.finding import Diagnostic, Severity, places_in
+    from hydrostat.design.lifts import find_lifts
     from hydrostat.design.muscles.activation import Activation, FibreKind, activate, edge_fibres
     from hydrostat.design.muscles.free_posing import FreePosing
     from hydrostat.design.network import (
@@ -105,6 +106,7 @@ __all__ = [
     "design_cables",
     "edge_fibres",
     "expected_error",
+    "find_lifts",
     "find_network",
     "find_no_room",
     "front",

@@ -82,7 +82,7 @@ def sketch_robot(
     within = body.mesh.nodes[np.setdiff1d(np.arange(len(body.mesh.nodes)), body.mesh.boundary_nodes)]
     tip = within[int(np.argmax(np.linalg.norm(within - center, axis=1)))]
     arm = tip - center
-    turned = center + 0.9 * (np.cos(0.5) * arm + np.sin(0.5) * np.array([-arm[1], arm[0]]))
+    turned = center + 0.96 * (np.cos(_BEND) * arm + np.sin(_BEND) * np.array([-arm[1], arm[0]]))
     return Robot(
         name=name,
         body=body,
@@ -90,6 +90,9 @@ def sketch_robot(
         markers=(Marker(name="tip", at=_point(tip)),),
         poses={"bend": PoseTarget(name="bend", targets={"tip": _point(turned)})},
     )
+
+
+_BEND = 0.3  # turn of the first pose about the pin [rad]: at 0.5 a fish with a narrow tail passes through itself
 
 
 def _element_size(outline: Outline, nodes: int | None) -> float:

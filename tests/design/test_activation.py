@@ -7,8 +7,9 @@ from scipy.optimize import nnls
 
 from hydrostat.design import activate, edge_fibres
 from hydrostat.design.muscles.activation import _Activation, element_fibres, least_effort, wanted_directions
+from hydrostat.geometry import find_crossings
 from hydrostat.mechanics import NewtonOptions, minimize
-from hydrostat.robot import PoseTarget
+from hydrostat.robot import PoseTarget, sketch_robot
 from hydrostat.simulation import BodyPhysics
 
 BENT = PoseTarget(name="bent", targets={"tip": (0.18, 0.06)})
@@ -90,3 +91,22 @@ def test_the_jacobian_by_the_adjoint() -> None:
         ahead, behind = (run.anchors.positions(rest(tensions + side * shift, nodes)) for side in (1, -1))
         expected = (ahead - behind).ravel() / (2 * step)
         assert jacobian[:, fibre] == pytest.approx(expected, abs=1e-6 * np.abs(jacobian).max())
+
+
+FISH = "M10,60 C40,10 110,10 140,52 L185,20 C175,45 175,75 185,100 L140,68 C110,110 40,110 10,60Z"
+BELL = "M10,20 H80 V55 H120 V20 H190 V100 H120 V65 H80 V100 H10Z"
+
+
+@pytest.mark.parametrize("path", [FISH, BELL], ids=["fish", "bell"])
+def test_the_first_pose_of_a_drawing_is_within_the_squeeze_of_its_material(path: str) -> None:
+    """Oracle: muscles everywhere; no self-intersection, and no edge squeezed by more than half of what is known."""
+    size = 'width="200mm" height="120mm" viewBox="0 0 200 120"'
+    drawing = f'<svg xmlns="http://www.w3.org/2000/svg" {size}><path d="{path}"/></svg>'
+    robot = sketch_robot(drawing.encode(), file="body.svg", name="body")
+    mesh = robot.body.mesh
+    bent = activate(robot, robot.pose("bend"), edge_fibres(mesh))
+    assert not str(find_crossings(mesh, bent.nodes))
+    lengths = [np.linalg.norm(np.diff(nodes[mesh.edges], axis=1), axis=2) for nodes in (mesh.nodes, bent.nodes)]
+    squeeze = 1 - float((lengths[1] / lengths[0]).min())
+    assert robot.body.material.largest_squeeze is not None
+    assert squeeze < 0.5 * robot.body.material.largest_squeeze

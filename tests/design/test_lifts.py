@@ -1,0 +1,45 @@
+"""What would leave less error. Oracle: proposals made by hand, of which some are clearly better and can be built."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import pytest
+from plot.designs import plain_network
+
+from hydrostat.design import DesignRequest, find_lifts
+from hydrostat.design.routes.quick_search import RouteProposal
+from hydrostat.errors import HydrostatError
+from hydrostat.robot import Robot
+
+
+def test_clear_gains_that_can_be_built_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    plain = plain_network()
+    poses = (*plain.request.poses, replace(plain.request.poses[0], name="again"))
+    network = replace(plain, request=replace(plain.request, poses=poses, winches=1, cables=3))
+    asked = []
+
+    def answer(more: float, both: float, *, fits: bool = True) -> None:
+        def propose(robot: Robot, request: DesignRequest) -> Iterator[RouteProposal]:
+            asked.append((request.winches, request.cables, request.constraints.two_way))
+            built = network.built * (both if request.constraints.two_way else more)
+            yield RouteProposal(robot=robot, error=0.0, built=0.1 * built, is_refined=False, is_buildable=False)
+            yield RouteProposal(robot=robot, error=0.0, built=built, is_refined=True, is_buildable=fits)
+
+        monkeypatch.setattr("hydrostat.design.lifts.propose_routes", propose)
+
+    answer(0.5, 0.9)
+    (lift,) = find_lifts(network)
+    assert (lift.words, lift.built) == ("--winches 2 --cables 4", 0.5 * network.built)
+    assert asked == [(2, 4, False), (1, 3, True)]
+    answer(0.9, 0.5)
+    assert [lift.words for lift in find_lifts(network)] == ["--two-way"]
+    answer(0.5, 0.5, fits=False)
+    assert find_lifts(network) == ()
+    answer(0.5, 0.5)
+    assert find_lifts(replace(network, request=replace(network.request, winches=len(poses)))) == ()
+    monkeypatch.setattr("hydrostat.design.lifts.propose_routes", refuse)
+    assert find_lifts(network) == ()
+
+
+def refuse(*_: object) -> None:
+    raise HydrostatError("no room for 2 motors")
