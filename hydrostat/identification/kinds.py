@@ -8,7 +8,7 @@ import numpy as np
 
 from hydrostat.errors import InputError
 from hydrostat.identification.model import IdentificationModel, Parameter, Values
-from hydrostat.robot import Robot
+from hydrostat.robot import FOAM_POISSON_LIMIT, Robot
 from hydrostat.units import MM
 
 NARROW = 1e-6
@@ -77,7 +77,7 @@ def _material(robot: Robot, key: str, spread: float, limits: tuple[float, float]
             unit=unit,
             log=key != "poisson",
             low=low,
-            high=high,
+            high=min(high, FOAM_POISSON_LIMIT) if key == "poisson" and material.foam else high,
         )
         for owner, material in owners
     ]

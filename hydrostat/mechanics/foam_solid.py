@@ -118,6 +118,7 @@ class FoamSolid(Energy):
         self._gradients = gradients.reshape(-1, *gradients.shape[2:])
         self._volumes, self._points = volumes.ravel(), gradients.shape[1]
         self._pairs = np.triu_indices(self._dim, 1)
+        self._last: tuple[Nodes, _Frame | None] = (nodes[:0], None)
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
         """Computed from the displacement gradient, so that little is lost to rounding near rest."""
@@ -125,7 +126,7 @@ class FoamSolid(Energy):
         if not (np.linalg.det(np.eye(self._dim) + slopes) > 0.0).all():
             return np.inf
         with np.errstate(over="ignore", invalid="ignore"):
-            stored = self.mu * float(self._volumes @ self.law.density(_logs(slopes)[0]))
+            stored = self.mu * float(self._volumes @ self.law.density(self._frame(nodes, slopes).logs))
         return stored if np.isfinite(stored) else np.inf
 
     def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
@@ -145,9 +146,9 @@ class FoamSolid(Energy):
             scaling = (vectors * values[:, None, :]) @ np.swapaxes(vectors, 1, 2)
             flips, twists = (part + share * (np.maximum(part, 0.0) - part) for part in (flips, twists))
         count, corners = len(self._gradients), self.stencils.shape[1]
-        turned = np.einsum("pia,pcb->pabci", frame.left, self._gradients @ frame.right).reshape(
-            count, dim, dim, corners * dim
-        )
+        across = np.swapaxes(self._gradients @ frame.right, 1, 2)
+        turned = np.swapaxes(frame.left, 1, 2)[:, :, None, None] * across[:, None, :, :, None]
+        turned = turned.reshape(count, dim, dim, corners * dim)
         axes, (one, two) = np.arange(dim), self._pairs
         straight, across, back = turned[:, axes, axes], turned[:, one, two], turned[:, two, one]
         weights = (self.mu * self._volumes)[:, None, None]
@@ -188,11 +189,17 @@ class FoamSolid(Energy):
         moved = np.repeat(moved - moved[:, :1], self._points, axis=0)
         return np.swapaxes(moved, 1, 2) @ self._gradients
 
-    def _frame(self, nodes: Nodes) -> "_Frame":
-        slopes = self._slopes(nodes)
+    def _frame(self, nodes: Nodes, slopes: Square | None = None) -> "_Frame":
+        """Principal axes at `nodes`; the last ones are kept, as value, forces and Hessian follow one another."""
+        last, kept = self._last
+        if kept is not None and np.array_equal(last, nodes):
+            return kept
+        slopes = self._slopes(nodes) if slopes is None else slopes
         logs, right = _logs(slopes)
         left = (right + slopes @ right) * np.exp(-logs)[:, None, :]
-        return _Frame(logs, left, right)
+        frame = _Frame(logs, left, right)
+        self._last = nodes.copy(), frame  # in one assignment, so that threads may share the energy
+        return frame
 
     def _forces(self, frame: "_Frame", kirchhoff: Principal) -> Blocks:
         """Forces on the nodes of each element by principal stresses of Kirchhoff [Pa]."""

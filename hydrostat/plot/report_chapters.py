@@ -23,6 +23,7 @@ from hydrostat.ik import IKResult, find_reach, unconstrained_motion
 from hydrostat.plot.activation_figures import draw_activation, draw_candidates, draw_trees
 from hydrostat.plot.design_charts import draw_front, draw_growth, stage_runs
 from hydrostat.plot.reach_figure import draw_reach
+from hydrostat.plot.report_sensitivities import sensitivity_table
 from hydrostat.plot.report_tables import (
     NARROW,
     Chapter,
@@ -183,6 +184,8 @@ def reached_part(robot: Robot, reached: IKResult, index: int, *notes: Html) -> H
         "Winches": contraction_table(robot, reached),
         "Cables": tension_table(robot, reached),
     }
+    if reached.pose.result.converged and reached.pose_target.targets:
+        tables["What it depends on"] = sensitivity_table(reached)
     numbers = [part for head, rows in tables.items() for part in (tag("h3", head), rows)]
     shown = picture(figure, f"reached-{index}", reached.pose_target.name, note)
     minded = filter(None, (*reached.pose.warnings, unconstrained_motion(reached)))

@@ -161,12 +161,14 @@ def _body(robot: Robot) -> str:
 def body_table(robot: Robot) -> Html:
     """Size, thickness and material."""
     body, material = robot.body, robot.body.material
+    foam = ", ".join(f"{term.exponent:g}" for term in material.foam)
     rows = [
         ("size", f"{MILLIMETERS * body.mesh.size:.0f} mm"),
         *([("thickness", f"{MILLIMETERS * body.thickness:.3g} mm")] if body.thickness else []),
         ("material", material.name or "by its numbers"),
         ("Young's modulus", f"{material.young / 1e3:.3g} kPa"),
         ("Poisson's ratio", f"{material.poisson:g}"),
+        *([("foam law", f"exponents {foam}")] if foam else []),
         *((f"part {part.name}", part_text(part)) for part in body.parts),
         ("mesh", f"{len(body.mesh.nodes)} nodes, {len(body.mesh.elements)} elements"),
     ]
