@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING
 from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
-    from hydrostat.learning.certify import exact_steps, solve_exactly, verify
     from hydrostat.learning.export import check_export, export_samples
     from hydrostat.learning.learn_model import correct_model, learn_model
     from hydrostat.learning.learn_options import LearnOptions
@@ -27,6 +26,7 @@ if TYPE_CHECKING:
     from hydrostat.learning.samples import Samples, read_samples
     from hydrostat.learning.train import answer, tensors_of, train_forward
     from hydrostat.learning.training_set import LEAST, TrainingSet, linear_map, make_training_set
+    from hydrostat.learning.verify import exact_steps, solve_exactly, verify
 
 __all__ = [
     "LEAST",

@@ -29,9 +29,9 @@ from hydrostat.learning import (
     solve_exactly,
     verify,
 )
-from hydrostat.learning.certify import exact_steps
 from hydrostat.learning.learned_model import Tier
 from hydrostat.learning.training_set import linear_map
+from hydrostat.learning.verify import exact_steps
 from hydrostat.mechanics import Reason
 from hydrostat.robot import Robot
 

@@ -1,4 +1,4 @@
-"""`verify`: what the simulator says of a learned answer, and how much nearer exact steps bring it."""
+"""`verify`: error of a learned answer in the simulator; `exact_steps`, `solve_exactly`: steps that reduce it."""
 
 from collections.abc import Mapping
 from dataclasses import replace
