@@ -118,7 +118,7 @@ def _take_up(
             words += f"; zero moved {1e3 * abs(before.contraction(taken.motor.zero or 0.0)):.1f} mm since the last run"
         print(f"{kind}: {taken.motor.winch}: {words}", flush=True)
 
-    found = control.take_up_slack(bus, calibration.motors, model, save)
+    found = control.find_cable_zeros(bus, calibration.motors, model, save)
     bus.mark()
     return found, np.array([fact.constant for fact in facts])
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from hydrostat.control.open_bus import EMULATED, add_cable_layers, check_port, open_bus, open_line
     from hydrostat.control.player import Player, play
     from hydrostat.control.spool_curve import SpoolCurve, fit_spool, measure_spool
-    from hydrostat.control.take_up import SlackCalibration, take_up_slack
+    from hydrostat.control.take_up import SlackCalibration, find_cable_zeros
     from hydrostat.control.timeline import LONGEST, Key, Timeline, read_timeline, timeline_table
 
 __all__ = [
@@ -72,6 +72,7 @@ __all__ = [
     "check_port",
     "check_ports",
     "emulated_calibration",
+    "find_cable_zeros",
     "fit_spool",
     "flash",
     "flash_command",
@@ -84,7 +85,6 @@ __all__ = [
     "read_calibration",
     "read_timeline",
     "steady",
-    "take_up_slack",
     "tensions_along",
     "timeline_table",
     "usual_calibration",

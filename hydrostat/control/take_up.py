@@ -1,4 +1,4 @@
-"""`take_up_slack`: where the cables of each winch begin to pull, felt by the current of its motor at low current."""
+"""`find_cable_zeros`: where the cables of each winch begin to pull, felt by the current of its motor at low current."""
 
 import time
 from collections.abc import Callable, Sequence
@@ -82,7 +82,7 @@ class SlackCalibration:
     seconds: float
 
 
-def take_up_slack(
+def find_cable_zeros(
     bus: Bus,
     motors: Sequence[WinchMotor],
     model: Sequence[WinchPull],

@@ -18,7 +18,7 @@ from hydrostat.units import MILLIMETERS
 Surface = tuple[Points, Int[np.ndarray, "triangles 3"]]  # places of its corners [m], and triangles seen from outside
 
 
-def thing_surface(thing: Obstacle) -> Surface:
+def object_surface(thing: Obstacle) -> Surface:
     """The surface of a thing that has an end, as a hull of points."""
     from scipy.spatial import ConvexHull
 
@@ -178,7 +178,7 @@ class SpacePane(Pane):
         spots = self.camera.see(MILLIMETERS * nodes)
         held = np.any([np.zeros(len(nodes)), *(pin.holds(body) for pin in self.robot.pins)], axis=0)
         held &= pins
-        for places, triangles in map(thing_surface, things):
+        for places, triangles in map(object_surface, things):
             facets.append(triangles + len(spots))
             spots = np.concatenate([spots, self.camera.see(MILLIMETERS * places)])
             held = np.append(held, np.ones(len(places), dtype=bool))

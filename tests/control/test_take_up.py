@@ -7,7 +7,7 @@ from hydrostat.control.calibration import WinchMotor
 from hydrostat.control.dynamixel_bus import DynamixelBus
 from hydrostat.control.emulated_servos import EmulatedChain, EmulatedServo, InjectedFaults
 from hydrostat.control.model_tensions import WinchPull
-from hydrostat.control.take_up import RULES, SlackCalibration, find_edge, take_up_slack
+from hydrostat.control.take_up import RULES, SlackCalibration, find_cable_zeros, find_edge
 from hydrostat.errors import HydrostatError
 
 RADIUS, CONSTANT = 0.008, 0.35  # [m], [N m/A]
@@ -52,7 +52,7 @@ class Winches:
         taut = np.zeros(len(self.motors)) if taut is None else taut
         model = [straight(float(place)) for place in taut]
         clock, wait = self.chain.clock, self.chain.wait
-        return take_up_slack(self.bus, self.motors, model, self.found.append, clock=clock, wait=wait)
+        return find_cable_zeros(self.bus, self.motors, model, self.found.append, clock=clock, wait=wait)
 
     def zeros(self) -> np.ndarray:
         return self.begin + self.slacks / RADIUS
@@ -119,7 +119,7 @@ def test_a_motor_that_is_unplugged_midway_is_told_and_what_was_found_is_kept() -
     winches.bus.identify()
     clock, wait = winches.chain.clock, winches.chain.wait
     with pytest.raises(HydrostatError, match="motor of winch 3 does not answer"):
-        take_up_slack(winches.bus, winches.motors, [straight()] * 3, found, clock=clock, wait=wait)
+        find_cable_zeros(winches.bus, winches.motors, [straight()] * 3, found, clock=clock, wait=wait)
     assert [each.motor.winch for each in winches.found] == ["winch 1"]
 
 
@@ -134,7 +134,7 @@ def test_a_body_that_stiffens_is_no_later_edge() -> None:
     model = WinchPull(taut=0.0, places=places, pulls=1.7 * np.array([curve(place) for place in places.tolist()]))
     winches.bus.identify()
     clock, wait = winches.chain.clock, winches.chain.wait
-    (taken,) = take_up_slack(winches.bus, winches.motors, [model], winches.found.append, clock=clock, wait=wait)
+    (taken,) = find_cable_zeros(winches.bus, winches.motors, [model], winches.found.append, clock=clock, wait=wait)
     assert taken.slack == pytest.approx(0.006, abs=3e-4)
     assert taken.gain == pytest.approx(RADIUS / CONSTANT / 1.7, rel=0.1)
 
@@ -149,12 +149,12 @@ def test_a_busy_computer_only_takes_longer() -> None:
         winches.chain.wait(0.4 if turns[0] in (40, 90) else seconds)
 
     clock = winches.chain.clock
-    (taken,) = take_up_slack(winches.bus, winches.motors, [straight()], winches.found.append, clock=clock, wait=wait)
+    (taken,) = find_cable_zeros(winches.bus, winches.motors, [straight()], winches.found.append, clock=clock, wait=wait)
     assert turns[0] > 90
     assert taken.slack == pytest.approx(0.006, abs=4e-4)
     slow = lambda _: winches.chain.wait(0.2)  # noqa: E731
     with pytest.raises(HydrostatError, match="too busy"):
-        take_up_slack(winches.bus, winches.motors, [straight()], winches.found.append, clock=clock, wait=slow)
+        find_cable_zeros(winches.bus, winches.motors, [straight()], winches.found.append, clock=clock, wait=slow)
 
 
 def test_a_spool_that_slips_is_told() -> None:

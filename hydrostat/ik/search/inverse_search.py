@@ -255,7 +255,7 @@ class StepRules:
     far: float  # share by which a step may exceed a tension limit, for the next one to correct
 
 
-class StepTried(NamedTuple):
+class StepOutcome(NamedTuple):
     """Outcome of a trial step."""
 
     trial: InverseState | None  # state after the step; None without an equilibrium
@@ -280,19 +280,19 @@ def try_step(
     weight: float,
     move: Callable[[InverseState, Vector], InverseState | None],
     rules: StepRules,
-) -> StepTried:
+) -> StepOutcome:
     """Try a trust-region step of the linear model from a state, with a weight of the effort, and judge it by the rules.
 
     The move finds the state at other contractions, if there is one.
     """
     trial = move(state, step.values)
     if trial is None:
-        return StepTried(None, -np.inf, False)
+        return StepOutcome(None, -np.inf, False)
     gain = problem.objective(state, weight) - problem.objective(trial, weight)
     ratio = gain / step.promise if step.promise > 0 else -np.inf
     if state.excess > EXCESS:
-        return StepTried(trial, ratio, trial.excess < rules.excess_share * state.excess)
-    return StepTried(trial, ratio, gain > 0 and trial.excess <= rules.far)
+        return StepOutcome(trial, ratio, trial.excess < rules.excess_share * state.excess)
+    return StepOutcome(trial, ratio, gain > 0 and trial.excess <= rules.far)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

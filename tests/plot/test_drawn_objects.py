@@ -1,4 +1,4 @@
-"""Things drawn with the body that holds them. Oracles: their distance fields, their volumes, what hides what."""
+"""Objects drawn with the body that holds them. Oracles: their distance fields, their volumes, what hides what."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ from builders import box_robot, gallery_robot
 
 from hydrostat.plot import draw_portrait
 from hydrostat.plot.open_sheet import open_sheet
-from hydrostat.plot.pane import SpacePane, thing_surface
+from hydrostat.plot.pane import SpacePane, object_surface
 from hydrostat.plot.picture_file import figure_pixels
 from hydrostat.robot import Obstacle, rims
 from hydrostat.simulation import with_obstacles
@@ -27,7 +27,7 @@ VOLUMES = {
 @pytest.mark.parametrize("shape", VOLUMES)
 def test_a_surface_lies_on_the_thing_and_looks_outward(shape: str) -> None:
     thing, volume = VOLUMES[shape]
-    places, triangles = thing_surface(thing)
+    places, triangles = object_surface(thing)
     used = places[np.unique(triangles)]
     assert np.abs(thing.field()(used).values).max() < 1e-4  # a capsule has corners on both balls, some a hair inside
     assert np.linalg.det(places[triangles]).sum() / 6 == pytest.approx(volume, rel=0.015)
