@@ -73,7 +73,7 @@ def foam_chapter() -> str:
     """Chapter on materials with a foam law."""
     rows = [
         f"| {foam.name} | {foam.young_text} | {foam.poisson:.2f} "
-        f"| {', '.join(f'{term.share:g}: {term.exponent:g}' for term in foam.foam)} |"
+        f"| {', '.join(f'{100 * term.share:.3g} %: {term.exponent:g}' for term in foam.foam)} |"
         for foam in FOAMS.values()
     ]
     table = "\n".join(["| name | Young | Poisson | share: exponent |", "|---|---|---|---|", *rows])

@@ -46,7 +46,7 @@ def _print_foam(material: "Material") -> None:
     print(f'with law = "foam": {{ name = "{material.name}", law = "foam" }}')
     print(f"  Young's modulus  {material.young_text}")
     print(f"  Poisson's ratio  {material.poisson:.2f}")
-    print(f"  exponents        {', '.join(f'{term.exponent:g} ({100 * term.share:.0f} %)' for term in material.foam)}")
+    print(f"  exponents        {', '.join(f'{term.exponent:g} ({100 * term.share:.3g} %)' for term in material.foam)}")
     _print_texts(("source", material.source))
 
 

@@ -234,7 +234,7 @@ _TABLE = (
 
 MATERIALS = MappingProxyType({material.name: material for material in _TABLE})  # materials by name
 
-_CUSHION = (FoamTerm(share=1.0, exponent=8.0),)
+_CUSHION = (FoamTerm(share=0.995, exponent=8.0), FoamTerm(share=0.005, exponent=-4.0))
 
 
 def _foam(name: str, terms: tuple[FoamTerm, ...], source: str, *, poisson: float = 0.0, young: float = 0.0) -> Material:
@@ -253,10 +253,11 @@ _FOAM_TABLE = (
     _foam(
         "polyurethane foam",
         _CUSHION,
-        "3.5 kPa at 40 % squeeze, of a cushion's hardness; exponent 8 assumed, so Young's modulus is 17 kPa. The 40 kPa"
-        " above would take exponent 19, which is seven times too stiff at 20 % of stretch. Poisson's ratio assumed, as"
-        " it falls to 0 under squeeze (R. D. Widdle et al., 2008)",
-        young=17e3,
+        "3.5 kPa at 40 % squeeze, of a cushion's hardness; exponent 8 assumed, so Young's modulus is 16 kPa. The 40 kPa"
+        " above would take exponent 19, which is seven times too stiff at 20 % of stretch. The term of exponent -4,"
+        " assumed, makes it stiff again beyond 60 %, where the walls touch. Poisson's ratio assumed, as it falls to 0"
+        " under squeeze (R. D. Widdle et al., 2008)",
+        young=16e3,
     ),
     _foam(
         "polyethylene foam",
@@ -269,7 +270,7 @@ _FOAM_TABLE = (
         _foam(
             f"flexfoam-it {numeral}",
             _CUSHION,
-            "Young's modulus as above; exponent that of polyurethane foam, Poisson's ratio that of flexfoam-it v; no"
+            "Young's modulus as above; exponents those of polyurethane foam, Poisson's ratio that of flexfoam-it v; no"
             " compression curve was found",
             poisson=0.10,
         )
