@@ -15,8 +15,9 @@ from hydrostat.design.network import Network
 from hydrostat.design.request import DesignMethod, DesignRequest, RouteOptions, TreeOptions
 from hydrostat.design.routes.design_fewest import design_fewest
 from hydrostat.design.routes.design_routes import design_routes
+from hydrostat.design.routes.finalists import kit_fits
 from hydrostat.design.trees.design_trees import design_trees
-from hydrostat.design.watch import Watch, unseen
+from hydrostat.design.watch import Better, Watch, unseen
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.given import check_type
 from hydrostat.progress import Progress, no_progress
@@ -93,7 +94,7 @@ def find_network(
     fitted = request.fit_robot(stated)
     if fitted.filled:
         check_filled(stated)  # told before the search
-    found = _search(stated, fitted, told, watch or unseen)
+    found = _search(stated, fitted, told, Better(watch or unseen))
     return replace(evaluate_stuffed(found, progress=told) if fitted.filled else found, source=robot)
 
 
@@ -103,7 +104,33 @@ def _search(robot: Robot, request: DesignRequest, told: Progress, seen: Watch) -
         return design_trees(robot, request, progress=told, watch=seen)
     if not isinstance(request.winches, int):
         return design_fewest(robot, request, progress=told, watch=seen)
+    found = _design_routes(robot, request, told, seen)
+    return _search_with_fewer(robot, request, found, told, seen) if _may_gain_by_fewer(request, found) else found
+
+
+def _design_routes(robot: Robot, request: DesignRequest, told: Progress, seen: Watch) -> Network:
     return design_routes(robot, request, progress=told, watch=seen, hints=lambda body: _trees(robot, request, body))
+
+
+def _may_gain_by_fewer(request: DesignRequest, found: Network) -> bool:
+    """True if each winch got one cable where more were allowed: units for more cables may have had too little room."""
+    fewest = len(found.robot.cables) == len(found.robot.winches) < request.cables
+    return found.complete and fewest and request.seconds is None and not request.improve
+
+
+def _search_with_fewer(robot: Robot, request: DesignRequest, found: Network, told: Progress, seen: Watch) -> Network:
+    """The better of a network and of one from a search with no more cables than it has."""
+    winches, cables = len(found.robot.winches), len(found.robot.cables)
+    try:
+        other = _design_routes(robot, replace(request, winches=winches, cables=cables), told, seen)
+    except HydrostatError:  # none can be built
+        return found
+    except KeyboardInterrupt:
+        return replace(found, complete=False)
+    better = other.built < found.built and (kit_fits(other) or not kit_fits(found))
+    return replace(
+        other if better else found, request=found.request, tried=found.tried + other.tried, complete=other.complete
+    )
 
 
 def _trees(robot: Robot, request: DesignRequest, body: BodyPhysics) -> list[Robot]:
