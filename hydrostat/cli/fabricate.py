@@ -39,7 +39,9 @@ def fabricate(
     method: Annotated[
         str | None,
         typer.Option(
-            metavar="plush|foam", help="Build method.", show_default="plush for flat or stuffed bodies, else foam"
+            metavar="plush|foam|print",
+            help="Build method.",
+            show_default="print for TPU, foam for what is poured, plush for flat or stuffed bodies",
         ),
     ] = None,
     motor: Annotated[

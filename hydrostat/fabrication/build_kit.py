@@ -14,6 +14,7 @@ from hydrostat.fabrication.parts.rigid_parts import RigidParts, rigid_parts
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.pattern import cut_sheet
 from hydrostat.fabrication.patterns.svg_writer import pattern_svg
+from hydrostat.fabrication.print_work import print_work
 from hydrostat.fabrication.refusals import find_motor, find_refusals
 from hydrostat.fabrication.sheets.assembly_sheet import assembly_sheet
 from hydrostat.fabrication.solids.print_files import stl_bytes, three_mf_plates
@@ -137,6 +138,9 @@ def _parts_and_body(
         work = plush_work(drawn, options)
         return rigid(work.holes), work
     parts = rigid(0)
+    if options.method_for(robot.body) is Method.PRINT:
+        tell("Body")
+        return parts, print_work(drawn, options)
     tell("Mold")
     return parts, foam_work(robot, options, parts.units)
 
@@ -180,7 +184,7 @@ def _files(plan: KitPlan, lists: Lists, findings: KitFindings) -> dict[str, byte
     return {
         **work.files,
         **_solid_files("parts", name, rigid.printed, plan.options),
-        **_solid_files("mould", name, work.printed, plan.options),
+        **_solid_files("body" if plan.method is Method.PRINT else "mould", name, work.printed, plan.options),
         **_solid_files("positive", name, work.spare, plan.options),
         **_base_files(name, rigid),
         **{f"lists/{table.name}.csv": table.csv for table in lists.tables},

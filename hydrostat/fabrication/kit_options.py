@@ -10,6 +10,8 @@ from hydrostat.errors import InputError
 from hydrostat.given import check_number
 from hydrostat.robot import Body
 
+PRINTED = ("tpu 85a",)  # materials of filament: a body of them is printed in one piece
+CASTABLE = ("flexfoam-it", "ecoflex", "dragon skin")  # beginnings of names of materials that are poured
 STUFFINGS = ("polyester fibre",)  # materials that are stuffed into cloth: a body of them is plush, in space too
 
 
@@ -32,6 +34,7 @@ class Method(StrEnum):
 
     PLUSH = "plush"
     FOAM = "foam"
+    PRINT = "print"
 
 
 class Paper(StrEnum):
@@ -171,7 +174,7 @@ class KitOptions:
     """Options for the kit of a robot.
 
     Attributes:
-        method: fabrication method. None: plush for a flat or stuffed body, foam for others.
+        method: fabrication method. None: print for filament, foam for what is poured, plush for a flat or stuffed body.
         motor: key of a motor in the table, or "auto": the first that is strong enough.
         tension: maximum cable tension in its poses [N], for the choice of motors and lines. None: the limit of its
             winches. A designed robot keeps to the limit of its design.
@@ -212,8 +215,13 @@ class KitOptions:
 
     def method_for(self, body: Body) -> Method:
         """Method by which a body is made."""
-        stuffed = body.mesh.dim == 2 or body.material.name in STUFFINGS
-        return self.method or (Method.PLUSH if stuffed else Method.FOAM)
+        if self.method is not None:
+            return self.method
+        name = body.material.name
+        if name in PRINTED:
+            return Method.PRINT
+        flat = body.mesh.dim == 2 and not name.startswith(CASTABLE)
+        return Method.PLUSH if flat or name in STUFFINGS else Method.FOAM
 
     def sews_skin(self, body: Body) -> bool:
         """Return True if the kit sews a skin that is cut and flattened: for a stuffed body in space."""

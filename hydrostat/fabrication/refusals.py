@@ -13,6 +13,7 @@ from hydrostat.fabrication.moulds.setting import mold_setting
 from hydrostat.fabrication.parts.motor import MOTORS, Motor, choose_motor, largest_torque
 from hydrostat.fabrication.parts.winch_unit import unit_problems, unit_rooms
 from hydrostat.fabrication.patterns.pattern import pattern_problems
+from hydrostat.fabrication.print_work import print_problems
 from hydrostat.fabrication.weak_lines import share_tensions
 from hydrostat.robot import Mount, Robot, sewn_robot
 
@@ -86,7 +87,10 @@ def pocket_problems(robot: Robot, options: KitOptions, motor: Motor) -> tuple[st
 
 
 def _of_body(robot: Robot, options: KitOptions) -> tuple[str, ...]:
-    if options.method_for(robot.body) is Method.FOAM:
+    method = options.method_for(robot.body)
+    if method is Method.PRINT:
+        return print_problems(robot, options.parts)
+    if method is Method.FOAM:
         return channel_problems(robot, options.parts)
     if robot.body.mesh.dim == 3:
         return stuffing_problems(robot)

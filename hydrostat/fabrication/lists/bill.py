@@ -92,6 +92,7 @@ PRICES = MappingProxyType(
         "pla": Price(
             amount=19.99, unit="kg", month="2023-05", source="parts list of SCUTTLE mini (D. Malawey): filament, 1 kg"
         ),
+        "flexible filament": Price(amount=50.0, unit="kg"),
         "foam": Price(amount=40.0, unit="kg", pack=0.5),
         "silicone": Price(amount=SILICONE_PRICE, unit="kg"),
         "release": Price(amount=15.0, unit="can"),

@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 
 from hydrostat.fabrication.inserts import Insert, InsertKind, filling_volume
+from hydrostat.fabrication.kit_options import Method
 from hydrostat.fabrication.kit_plan import Cloth, FoamNeeds, KitPlan
 from hydrostat.fabrication.lists.bill import NO_SOURCE, PRICES, BillGroup, Item, Price
 from hydrostat.fabrication.lists.cuts import CableCut, SheathCut
@@ -29,6 +30,8 @@ def all_needs(
         items += _plush(plan, plan.work.cloth)
     if plan.work.foam is not None:
         items += _foam(plan, plan.work.foam)
+    if plan.method is Method.PRINT:
+        items.append(_filament(plan))
     items += [
         *(_insert_item(insert) for insert in plan.inserts),
         *_cables(plan, line, cuts, tubes),
@@ -89,6 +92,14 @@ def _foam(plan: KitPlan, foam: FoamNeeds) -> list[Item]:
         _item(BillGroup.BODY, "spray glue", "3M Super 77, between foam and skin", 1.0, "glue"),
         _NEEDLES,
     ]
+
+
+def _filament(plan: KitPlan) -> Item:
+    """Filament of a printed body, solid."""
+    material = plan.robot.body.material
+    mass = 1e-6 * material.density * sum(part.volume for part in plan.work.printed)
+    name = f"{material.name or 'as the robot file says'}, solid"
+    return _item(BillGroup.BODY, "filament for the body", name, 1e-3 * mass, "flexible filament", mass)
 
 
 def _insert_item(insert: Insert) -> Item:

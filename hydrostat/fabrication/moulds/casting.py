@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass
 
+from hydrostat.fabrication.kit_options import CASTABLE
 from hydrostat.robot import MATERIALS, Material
 
 SILICONE_PRICE = 40.0  # price of a kilogram of Mold Max 30 [USD]: not measured, check yours
-_EQUAL = ("flexfoam-it", "ecoflex", "dragon skin")  # beginnings of names of castable materials that come as two parts
 _PLATINUM = ("ecoflex", "dragon skin")  # silicones that are cured by platinum
 
 # R52, N2, N5
@@ -85,7 +85,7 @@ def _inhibition_problem(material: Material, *, silicone: bool) -> tuple[str, ...
 
 def _castable(material: Material) -> tuple[Material, tuple[str, ...]]:
     """Return the casting material and problems: the body's own if it comes as two parts, else the default foam."""
-    if material.name.startswith(_EQUAL):
+    if material.name.startswith(CASTABLE):
         return material, ()
     foam = MATERIALS["flexfoam-it x"]
     name = f'"{material.name}"' if material.name else "the body's material, given by its numbers,"

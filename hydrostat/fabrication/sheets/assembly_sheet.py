@@ -24,14 +24,14 @@ _TEMPLATES = ("blocks.typ", "overview.typ", "assembly_sheet.typ", "words.typ")
 
 
 def assembly_sheet(plan: KitPlan, lists: Lists, findings: KitFindings) -> bytes:
-    """A PDF: two pages for a robot of plush, four for one of foam, one of wires. The same robot gives the same bytes.
+    """A PDF: two pages for plush, four for foam, three for a printed body, one of wires; always the same bytes.
 
     All words of the user reach the template as data, so that none of them is taken for markup.
     """
     import typst
 
     room = files("hydrostat.fabrication.sheets")
-    pages = "plush_pages.typ" if plan.method is Method.PLUSH else "foam_pages.typ"
+    pages = "plush_pages.typ" if plan.method is Method.PLUSH else "foam_pages.typ"  # a printed body has no mold page
     source = b"\n".join((room / name).read_bytes() for name in (*_TEMPLATES, pages, "wiring.typ"))
     robot = plan.robot
     views = best_views(robot, body_solid(robot)) if robot.body.mesh.dim == 3 else ()
@@ -51,6 +51,9 @@ def assembly_sheet(plan: KitPlan, lists: Lists, findings: KitFindings) -> bytes:
 def _picture_facts(canvas: Canvas) -> PictureFacts:
     return {"svg": canvas.svg, "width": canvas.width}
 
+
+_SURFACES = {Method.PLUSH: "cloth", Method.FOAM: "skin", Method.PRINT: "body"}
+"""Surface on which a stopper rests."""
 
 WIDE, HALF = 182.0, 88.0  # widths of a page and of half a page without its margins [mm]; both fit both papers
 
@@ -74,12 +77,10 @@ def sheet_pictures(
         pictures["map"] = space_map(robot, width=112.0, height=119.0 - (tight + boxed) / 2, views=views[:1])
         pictures["map_both"] = space_map(robot, width=WIDE, height=112.0 - tight / 2, views=views[1:])
     else:
-        if plan.method is Method.FOAM:
+        if plan.method is not Method.PLUSH:
             pictures["map_both"] = flat_map(robot, (), width=WIDE, height=112.0 - tight / 2)
         pictures["map"] = flat_map(robot, stitches, width=112.0, height=119.0 - (tight + boxed) / 2)
-    pictures["calibration"] = stopper_scheme(
-        cloth="cloth" if plan.method is Method.PLUSH else "skin", width=HALF, height=26.0
-    )
+    pictures["calibration"] = stopper_scheme(cloth=_SURFACES[plan.method], width=HALF, height=26.0)
     left = 195.0 - tight - boxed - pictures["map"].height
     if lists.power is not None:
         marks = winch_marks_of(robot)
@@ -89,8 +90,8 @@ def sheet_pictures(
 
 
 def _single_maps(plan: KitPlan, views: Sequence[Camera]) -> list[Canvas]:
-    """Pages of maps with one cable each; none for a robot of foam."""
-    if not plan.robot.cables or plan.method is Method.FOAM:
+    """Pages of maps with one cable each; only for a plush robot."""
+    if not plan.robot.cables or plan.method is not Method.PLUSH:
         return []
     height, view = 235.0 - _shorter(plan.options.paper), views[0] if views else None
     return single_maps(plan.robot, plan.work.stitches, width=WIDE, height=height, view=view)

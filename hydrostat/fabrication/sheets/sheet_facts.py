@@ -21,12 +21,14 @@ from hydrostat.fabrication.sheets.foam_steps import (
 )
 from hydrostat.fabrication.sheets.legible import note_lines, sentence, shorten_text
 from hydrostat.fabrication.sheets.list_facts import bill_facts, cost_text, piece_facts, power_facts, winch_files
+from hydrostat.fabrication.sheets.print_steps import print_steps
 from hydrostat.fabrication.sheets.steps import AssemblyStep, minutes_text, plush_steps
 from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.units import plural
 
 _NAME, _SHORT = 60, 26  # longest name of the robot, of a winch, in letters
 
+_KINDS = {Method.PLUSH: "Plush robot", Method.FOAM: "Foam robot", Method.PRINT: "Printed robot"}
 _POURS = ("first", "second")
 
 _CABLES = {"cable": "cable", "cut": "cut to", "slack": "slack", "spool_mark": "spool mark"}
@@ -40,7 +42,6 @@ _PLACES = {AT_BODY: "body"}  # short names of places for the sheet, which has le
 
 def sheet_facts(plan: KitPlan, lists: Lists, findings: KitFindings, *, letters: str = "") -> SheetFacts:
     """All words and numbers, long ones shortened; `letters`: a sentence on letters that cannot be printed."""
-    plush = plan.method is Method.PLUSH
     steps, mould, stitches = _all_steps(plan, lists), plan.work.mould, shown_stitches(plan)
     told = (*((letters,) if letters else ()), *findings.warnings, *findings.notes)
     return {
@@ -50,7 +51,7 @@ def sheet_facts(plan: KitPlan, lists: Lists, findings: KitFindings, *, letters: 
         "pairs": plan.pairs,
         "inserts": bool(plan.inserts),
         "flat": plan.robot.body.mesh.dim == 2,
-        "kind": "Plush robot" if plush else "Foam robot",
+        "kind": _KINDS[plan.method],
         "facts": _about(plan, lists, steps),
         "mind": note_lines(findings.problems, told, plan.robot),
         "forced": bool(findings.problems),
@@ -85,6 +86,8 @@ def _all_steps(plan: KitPlan, lists: Lists) -> list[tuple[AssemblyStep, ...]]:
     """The steps, page by page."""
     if plan.method is Method.PLUSH:
         return [plush_steps(plan)]
+    if plan.method is Method.PRINT:
+        return [print_steps(plan)]
     mould = plan.work.mould
     before = [mold_steps(plan, lists, mould)] if mould is not None else []
     return [*before, skin_steps(plan, lists)]

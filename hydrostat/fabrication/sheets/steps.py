@@ -136,7 +136,7 @@ def winch_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
         )
     if plan.rigid.seat_assembly is not None:
         steps.append(_seat_step(plan.robot))
-    elif (held := held_text(plan.robot)) and plan.method is Method.FOAM:
+    elif (held := held_text(plan.robot)) and plan.method is not Method.PLUSH:
         steps.append(AssemblyStep("Hold it", 5, held))
     return tuple(steps)
 

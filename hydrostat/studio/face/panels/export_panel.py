@@ -185,7 +185,7 @@ def _card(title: str, words: str) -> ui.column:
     return card
 
 
-METHODS = {"": "Auto", Method.PLUSH.value: "Plush", Method.FOAM.value: "Foam"}
+METHODS = {"": "Auto", Method.PLUSH.value: "Plush", Method.FOAM.value: "Foam", Method.PRINT.value: "Print"}
 
 PAPERS = {Paper.A4.value: "A4", Paper.LETTER.value: "Letter"}
 
