@@ -1,6 +1,6 @@
-"""Write the robots in space of the gallery: python docs/gallery.py [NAME ...] [--poses].
+"""Write the gallery robots that are made by formulas: python docs/gallery.py [NAME ...] [--poses].
 
-Each is a folder in examples/ with robot.toml and the surface of its body. With --poses the poses are simulated again:
+Each is a folder in examples/ with robot.toml and the file of its body. With --poses the poses are simulated again:
 the winches take in what the sheet of the robot says, and where its markers come to rest, in whole millimeters, is kept
 in docs/bodies/poses.json. In none of them does a body feel itself: they are the same with `[contact]` and without.
 """
@@ -14,8 +14,8 @@ from bodies.gripper import caging
 from bodies.hands import cupping, extended
 from bodies.hydrostats import arm_of_octopus, elephant_trunk, tail_of_fish, tongue_of_foam
 from bodies.plush import bear
-from bodies.ply import decimated, ply_bytes
 from bodies.sheet import POSES, Sheet
+from bodies.tendons import spine, spiral, tendon_finger
 
 import hydrostat as hs
 
@@ -33,12 +33,18 @@ SHEETS: Mapping[str, Callable[[], Sheet]] = {
 }
 """What is written, by the names of the robots."""
 
+TENDON_SHEETS: Mapping[str, Callable[[], Sheet]] = {"spiral": spiral, "finger": tendon_finger, "spine": spine}
+"""Robots whose body is a drawing or a mesh, with hinges, bones or disks."""
+
+ALL = {**SHEETS, **TENDON_SHEETS}
+
 
 def write_robot(sheet: Sheet, examples: Path = EXAMPLES) -> Path:
-    """The folder of a robot, with its robot.toml and its surface."""
+    """The folder of a robot, with its robot.toml and the file of its body."""
     folder = examples / sheet.name
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / f"{sheet.name}.ply").write_bytes(ply_bytes(decimated(sheet.surface(), sheet.faces)))
+    for name, content in sheet.files().items():
+        (folder / name).write_bytes(content)
     (folder / "robot.toml").write_text(sheet.text(), encoding="utf-8")
     return folder
 
@@ -66,8 +72,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("names", nargs="*", metavar="NAME", help="robots to write; all if left out")
     parser.add_argument("--poses", action="store_true", help="simulate the poses again")
     options = parser.parse_args(arguments)
-    for name in options.names or SHEETS:
-        sheet = SHEETS[name]()
+    for name in options.names or ALL:
+        sheet = ALL[name]()
         folder = write_robot(sheet)
         if options.poses:
             keep_poses(name, simulate_poses(sheet, folder))

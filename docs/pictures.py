@@ -35,7 +35,9 @@ from hydrostat.studio import page_pictures
 from hydrostat.version import __version__
 
 sys.path.append(str(Path(__file__).parents[1] / "benchmarks"))
+sys.path.append(str(Path(__file__).parent))
 from benchmark_bodies import hand_robot
+from gallery import TENDON_SHEETS
 
 HERE = Path(__file__).parent / "pictures"
 PORTRAIT = 3.2
@@ -49,10 +51,14 @@ DEMO_PICTURES = ("activation.png", "network.png", "reached.png", "kit.png")
 
 
 def main() -> None:
-    """Draw all of them, or those of the demo."""
+    """Draw all of them, or those of the demo, or robots of hinges, bones and disks."""
+    if sys.argv[1:] == ["tendons"]:
+        draw_tendons()
+        return
     draw_demo()
     if sys.argv[1:] == ["demo"]:
         return
+    draw_tendons()
     draw_dance()
     draw_gallery()
     draw_bodies()
@@ -168,9 +174,25 @@ def draw_bodies() -> None:
     save_png(_contact_sheet(rows, side=1.9, names=names), HERE / "bodies.png", dpi=90)
 
 
+def draw_tendons() -> None:
+    """Gallery robots of hinges, bones and disks, a row each: at rest, then in poses, by the pulls of their sheets."""
+    rows, names = [], []
+    for name, sheet in TENDON_SHEETS.items():
+        simulation = hs.Simulation(hs.load_robot(gallery_folder(name)))
+        robot, plays = simulation.robot, sheet().plays
+        states = [robot.body.mesh.nodes]
+        for play in plays.values():
+            pulls = {winch: 1e-3 * length for winch, length in play.contractions.items()}
+            states.append(simulation.solve(pulls).nodes)
+        frame = np.concatenate([*states, [winch.at for winch in robot.winches]])
+        rows.append([draw_portrait(robot, nodes, frame=frame, width=PORTRAIT) for nodes in states])
+        names.append([name, *plays])
+    save_png(_contact_sheet(rows, side=2.2, names=names), HERE / "tendons.png", dpi=110)
+
+
 def _gallery(*, dim: int) -> list[hs.Robot]:
     """The robots of the gallery that are flat (2) or in space (3)."""
-    robots = [hs.load_robot(gallery_folder(name)) for name in list_gallery()]
+    robots = [hs.load_robot(gallery_folder(name)) for name in list_gallery() if name not in TENDON_SHEETS]
     return [robot for robot in robots if robot.body.mesh.dim == dim]
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from bodies.field import Place
+from bodies.ply import decimated, ply_bytes
 from hydrostat.geometry import Surface
 
 POSES = Path(__file__).parent / "poses.json"
@@ -29,6 +30,8 @@ class Line:
         sheath: index of the point up to which the cable runs in a tube; 0 if there is none.
         travel: the most the winch can take in [mm]; if left out as much as foam can be squeezed along the cable.
         mount: where the winch sits, "world" or "body".
+        stiffness: of the cable [N/mm]; if left out that of `Cable`.
+        release: the most the winch can pay out beyond the rest length [mm].
     """
 
     name: str
@@ -37,6 +40,8 @@ class Line:
     sheath: int = 1
     travel: float | None = None
     mount: str = "world"
+    stiffness: float | None = None
+    release: float = 0.0
 
     @property
     def most(self) -> float:
@@ -51,7 +56,7 @@ class Play:
 
     Attributes:
         words: what it looks like.
-        contractions: of some winches [mm]; the others stay at rest.
+        contractions: of some winches [mm], below 0 for payout; the others stay at rest.
     """
 
     words: str
@@ -65,7 +70,7 @@ class Sheet:
     Attributes:
         name: of the robot and of its folder.
         words: what the file begins with.
-        surface: makes that of the body [m].
+        surface: makes that of the body [m]; None for another kind of body.
         faces: triangles that are kept of it.
         material: a name of the table.
         volume: how its change is measured, for materials that keep it.
@@ -80,11 +85,11 @@ class Sheet:
 
     name: str
     words: str
-    surface: Callable[[], Surface]
+    surface: Callable[[], Surface] | None = None
     faces: int = 7000
     material: str = "flexfoam-it x"
     volume: str | None = None
-    element_size: float
+    element_size: float = 10.0
     held: tuple[str, Sequence[float], Sequence[float]]
     winch_words: str
     lines: Sequence[Line]
@@ -92,35 +97,42 @@ class Sheet:
     marker_words: str
     plays: Mapping[str, Play]
 
+    def files(self) -> dict[str, bytes]:
+        """Files of the folder next to robot.toml."""
+        return {} if self.surface is None else {f"{self.name}.ply": ply_bytes(decimated(self.surface(), self.faces))}
+
     def text(self) -> str:
         """The whole robot.toml."""
-        blocks = [self._body(), self._pin(), *self._winches(), *self._cables(), *self._markers(), *self._poses()]
+        blocks = [*self._body(), self._pin(), *self._winches(), *self._cables(), *self._markers(), *self._poses()]
         return "\n\n".join(blocks) + "\n"
 
-    def _body(self) -> str:
-        return (
-            f'{_comment(self.words)}\nformat = 1\nname = "{self.name}"\n\n'
+    def _body(self) -> list[str]:
+        return [
+            f'{comment(self.words)}\nformat = 1\nname = "{self.name}"',
             "# The body: a closed surface, filled with tetrahedra. A smaller element_size is finer but slower.\n"
             f'[body]\nsurface = "{self.name}.ply"\nelement_size = "{_number(self.element_size)} mm"\n'
-            f'material = "{self.material}"' + (f'\nvolume = "{self.volume}"' if self.volume else "")
-        )
+            f'material = "{self.material}"' + (f'\nvolume = "{self.volume}"' if self.volume else ""),
+        ]
 
     def _pin(self) -> str:
         words, low, high = self.held
-        return f"{_comment(f'Where you hold it: {words}')}\n[[pin]]\nbox = [{_row(low)}, {_row(high)}]"
+        return f"{comment(f'Where you hold it: {words}')}\n[[pin]]\nbox = [{_row(low)}, {_row(high)}]"
 
     def _winches(self) -> list[str]:
         first, *rest = [
             f'[[winch]]\nname = "{line.name}"\nat = {_point(line.points[0])}\nspool_radius = "6 mm"\n'
-            f'travel = "{_number(line.most)} mm"' + ('\nmount = "world"' if line.mount == "world" else "")
+            f'travel = "{_number(line.most)} mm"'
+            + (f'\nrelease = "{_number(line.release)} mm"' if line.release else "")
+            + ('\nmount = "world"' if line.mount == "world" else "")
             for line in {line.name: line for line in reversed(self.lines)}.values()
         ][::-1]
-        return [f"{_comment(f'The winches: {self.winch_words}')}\n{first}", *rest]
+        return [f"{comment(f'The winches: {self.winch_words}')}\n{first}", *rest]
 
     def _cables(self) -> list[str]:
         first, *rest = [
             f'[[cable]]                       # {line.words}\nwinch = "{line.name}"\n'
             f"points = [{', '.join(map(_point, line.points))}]"
+            + (f'\nstiffness = "{_number(line.stiffness)} N/mm"' if line.stiffness else "")
             + (f"\nsheathed = [[0, {line.sheath}]]" if line.sheath else "")
             for line in self.lines
         ]
@@ -133,11 +145,11 @@ class Sheet:
             f"The cables: from the winch (first point) to a stopper (last point).{tube} "
             f"{'the' if tube else 'The'} body bends towards the side on which a cable runs."
         )
-        return [f"{_comment(opening)}\n{first}", *rest]
+        return [f"{comment(opening)}\n{first}", *rest]
 
     def _markers(self) -> list[str]:
         first, *rest = [f'[[marker]]\nname = "{name}"\nat = {_point(place)}' for name, place in self.markers.items()]
-        return [f"{_comment(f'The markers: {self.marker_words}')}\n{first}", *rest]
+        return [f"{comment(f'The markers: {self.marker_words}')}\n{first}", *rest]
 
     def _poses(self) -> list[str]:
         targets = json.loads(POSES.read_text(encoding="utf-8")).get(self.name, {}) if POSES.exists() else {}
@@ -151,7 +163,8 @@ class Sheet:
         return blocks
 
 
-def _comment(words: str) -> str:
+def comment(words: str) -> str:
+    """Words as lines of comment."""
     return "\n".join(textwrap.wrap(words, 120, initial_indent="# ", subsequent_indent="# "))
 
 

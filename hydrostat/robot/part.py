@@ -141,12 +141,20 @@ class BodyPart:
             corners = self.mesh.surface.vertices + np.array(self.at)
         else:
             corners = np.array([point for point in (self.at, self.to, *self.points) if point is not None])
-        far = self.radius or 0.0
+        far = self._reach()
         low, high = corners.min(axis=0) - far, corners.max(axis=0) + far
         steps = round(count ** (1 / self.dim)) | 1
         low, high = low + 1e-9 * (high - low), high - 1e-9 * (high - low)  # or rounding puts its sides outside
         lines = [np.linspace(*ends, steps) for ends in zip(low, high, strict=True)]
         return np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, self.dim)
+
+    def _reach(self) -> Vector | float:
+        """Distance along each axis by which the region reaches beyond its points [m]."""
+        radius = self.radius or 0.0
+        if self.shape is not PartShape.CYLINDER or self.at is None or self.to is None:
+            return radius
+        axis = np.subtract(self.to, self.at)
+        return radius * np.sqrt(np.maximum(1.0 - (axis / np.linalg.norm(axis)) ** 2, 0.0))
 
     def with_transform(self, move: Callable[[Point], Point], scale: float = 1.0) -> "BodyPart":
         """Return the same part with every point moved, and its radius scaled; a mesh is only shifted."""

@@ -11,7 +11,7 @@ import pytest
 from builders import gallery_robot
 
 import hydrostat as hs
-from hydrostat.geometry import find_crossings
+from hydrostat.geometry import find_crossings, locate
 from hydrostat.robot import Mount, Robot, find_risks, gallery_folder
 
 TOP = Path(__file__).parents[2]
@@ -47,7 +47,7 @@ def test_bodies(name: str) -> None:
     assert len(body.content) < 150_000
 
 
-@pytest.mark.parametrize("name", gallery.SHEETS)
+@pytest.mark.parametrize("name", gallery.ALL)
 @pytest.mark.slow
 def test_poses(name: str) -> None:
     """Oracle: at least two poses; each target far from rest for some marker, and with whole millimeters."""
@@ -94,20 +94,20 @@ def test_poses_are_reached(name: str, pose: str) -> None:
     assert max(reached.errors.values()) < 3**0.5 / 2 * 1e-3
 
 
-@pytest.mark.parametrize("name", gallery.SHEETS)
+@pytest.mark.parametrize("name", gallery.ALL)
 def test_no_pose_touches(name: str) -> None:
     """What the winches of each pose lead to neither crosses nor feels itself: it is the same with contact."""
     felt = hs.Simulation(replace(robot(name), contact=hs.Contact()))
-    for play in gallery.SHEETS[name]().plays.values():
+    for play in gallery.ALL[name]().plays.values():
         pose = felt.solve({winch: 1e-3 * length for winch, length in play.contractions.items()})
         assert hs.find_contacts(felt, pose) == ()
         assert not len(find_crossings(felt.robot.body.mesh, pose.nodes))
 
 
-@pytest.mark.parametrize("name", gallery.SHEETS)
+@pytest.mark.parametrize("name", gallery.ALL)
 def test_the_scripts_write_the_files(name: str) -> None:
     """Oracle: the committed robot.toml, letter by letter."""
-    assert gallery.SHEETS[name]().text() == (gallery_folder(name) / "robot.toml").read_text(encoding="utf-8")
+    assert gallery.ALL[name]().text() == (gallery_folder(name) / "robot.toml").read_text(encoding="utf-8")
 
 
 def test_the_script_writes_the_surface(tmp_path: Path) -> None:
@@ -119,3 +119,43 @@ def test_the_script_writes_the_surface(tmp_path: Path) -> None:
         assert other.volume == pytest.approx(body.volume, rel=1e-4)
         assert other.area == pytest.approx(body.area, rel=1e-4)
         assert other.box == pytest.approx(body.box, abs=1e-4)
+
+
+@pytest.mark.parametrize("name", gallery.TENDON_SHEETS)
+def test_bodies_of_hinges_bones_and_disks(name: str) -> None:
+    """Oracle: committed file, byte by byte; in one piece; no risk but cables that cross the slits."""
+    sheet, body = gallery.ALL[name](), robot(name).body
+    for file, content in sheet.files().items():
+        assert (gallery_folder(name) / file).read_bytes() == content
+    assert (euler_of_plane(body.mesh.elements) if body.mesh.dim == 2 else characteristic(body.mesh.boundary) / 2) == 1
+    assert [risk for risk in find_risks(robot(name)) if "unless it crosses a slit" not in risk] == []
+
+
+def euler_of_plane(triangles: np.ndarray) -> int:
+    """Vertices - edges + triangles: 1 for a disc."""
+    edges = np.unique(np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0)
+    return len(np.unique(triangles)) - len(edges) + len(triangles)
+
+
+def test_the_spiral_is_logarithmic() -> None:
+    """Oracle: turns of all hinges under one tension are alike, as their sizes are chosen for."""
+    pose = hs.Simulation(robot("spiral")).solve({"left": 0.02, "right": -0.04})
+    route = np.array(robot("spiral").cables[0].points)[2:-1].reshape(-1, 2, 2)  # both faces of each slit
+    units = np.concatenate([route[:-1, 1], route[1:, 0]], axis=1).reshape(-1, 2, 2)  # both ends of each hole
+    ends = locate(robot("spiral").body.mesh, units.reshape(-1, 2)).positions(pose.nodes).reshape(-1, 2, 2)
+    ways = ends[:, 1] - ends[:, 0]
+    turns = np.diff(np.unwrap(np.arctan2(ways[:, 1], ways[:, 0])))
+    assert len(turns) == 11
+    assert turns.mean() > np.radians(8)
+    assert turns == pytest.approx(turns.mean(), rel=0.2)
+
+
+def test_bones_and_disks_stay_rigid() -> None:
+    """Oracle: singular values of the best affine map of each rigid part are 1."""
+    for name, pull in (("finger", {"flex": 0.012, "extend": -0.016}), ("spine", {"a1": 0.005, "b1": 0.009})):
+        body, pose = robot(name).body, hs.Simulation(robot(name)).solve(pull)
+        for index in range(1, len(body.parts) + 1):
+            own = np.unique(body.mesh.elements[body.element_materials == index])
+            rest, now = (places[own] - places[own].mean(axis=0) for places in (body.mesh.nodes, pose.nodes))
+            stretch = np.linalg.svd(np.linalg.lstsq(rest, now, rcond=None)[0], compute_uv=False)
+            assert stretch == pytest.approx(1.0, abs=4e-3)

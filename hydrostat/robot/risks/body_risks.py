@@ -1,6 +1,7 @@
 """Risks of the body's mesh."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -132,7 +133,18 @@ def _locking(body: Body) -> Iterator[str]:
 
 def _thin(body: Body) -> Iterator[str]:
     dim, quadratic = body.mesh.dim, body.mesh.quadratic is not None
-    parts = body.measured_thickness.thin_parts(2 * LEAST_QUADRATIC if quadratic else LEAST_ACROSS[dim])
+    thickness = body.measured_thickness
+    rigid = np.array([False, *(part.is_rigid for part in body.parts)])
+    if rigid.any():  # rigid parts do not bend
+        bends = ~rigid[body.element_materials[body.mesh.boundary_elements]]
+        thickness = replace(
+            thickness,
+            chords=thickness.chords[bends],
+            middles=thickness.middles[bends],
+            spacing=thickness.spacing[bends],
+            areas=thickness.areas[bends],
+        )
+    parts = thickness.thin_parts(2 * LEAST_QUADRATIC if quadratic else LEAST_ACROSS[dim])
     if not parts:
         return
     thinnest = parts[0]

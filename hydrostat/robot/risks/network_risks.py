@@ -146,7 +146,8 @@ def _leaving(robot: Robot) -> Iterator[Risk]:
             out = np.asarray(distance(drawing, points(places)))
         if leaves:
             where = place(places[np.argmax(out)])
-            text = f"leaves the body by {mm(float(out.max()))} at {where}; add a point to lead it round"
+            way = "add a point to lead it round, unless it crosses a slit"
+            text = f"leaves the body by {mm(float(out.max()))} at {where}; {way}"
             yield Risk(_cable_name(robot, index), float(out.max()), text)
 
 
