@@ -364,10 +364,10 @@ def test_a_picture_that_cannot_be_written_leaves_no_folder(
 ) -> None:
     """Oracle: a full disk, played by a PNG writer that has no space."""
 
-    def full(path: Path, _: bytes) -> Path:
+    def full(_: object, path: Path) -> Path:
         raise InputError(f"{path}: cannot be written (No space left on device)")
 
-    monkeypatch.setattr("hydrostat.plot.picture_file.replace_file", full)
+    monkeypatch.setattr("hydrostat.plot.save_png", full)
     out = tmp_path / "out"
     code, _, err = run("simulate", starfish, "--out", out)
     assert (code, err) == (2, f"hydrostat: error: {out}/pose.png: cannot be written (No space left on device)\n")
