@@ -1,11 +1,12 @@
 """How soon a search for cable routes has a network, and how good it is as time goes on.
 
-    python benchmarks/design_speed.py [--bodies starfish,puppy] [--copies 9] [--plot build/design_speed.png]
+    HYDROSTAT_THREADS=1 python benchmarks/design_speed.py [--bodies starfish,puppy] [--copies 9] [--plot build/speed.png]
 
 Columns: CPU seconds of one thread until the first network and to the end, the error expected as built [mm] of the
 first network, after 2 and 5 s, and of the network that is returned, and its counts. `--copies` designs each body so
 many times more with its nodes moved by 1e-9 of its size, and prints the median and the worst of their errors as
-built: a search whose choices turn on rounding shows there. Another checkout is measured by PYTHONPATH.
+built: a search whose choices turn on rounding shows there. Another checkout is measured by PYTHONPATH. The variable
+keeps the search in one process: the times of networks on the way leave out those of a second one.
 """
 
 import argparse

@@ -1,21 +1,26 @@
 """`Bench`: what a network in the making does to every pose."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.routes.layout import Layout
+from hydrostat.design.routes.shared_work import map_in_order
 from hydrostat.design.spread import Columns, spread_columns
 from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.ik import IKOptions, IKResult, Limits, reach_extent, solve_ik, spool_arms, usable_spans
 from hydrostat.robot import PoseTarget, Robot
 from hydrostat.simulation import BodyPhysics, CableSensitivities, Equilibrium, Simulation, cable_sensitivities
+
+Item = TypeVar("Item")
+Result = TypeVar("Result")
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,8 +60,43 @@ class Bench:
     body: BodyPhysics | None = None  # physics of the body, which all layouts share; each has its own if left out
     reach: float = 0.0  # what reach beyond the poses is worth: see `RouteOptions`
     solves: int = field(default=0)  # layouts tried
+    cores: int = 1  # that independent layouts are shared by
     look: Callable[[], None] = lambda: None  # called before each pose is solved; what it raises ends the search
     time_left: Callable[[], float | None] = lambda: None  # seconds that a solve may take; None for no limit
+
+    def map(
+        self, work: Callable[[Item], Result], items: Sequence[Item], *, known: Sequence[object] = ()
+    ) -> Generator[Result, None, None]:
+        """Yield the results of work on independent items in their order, shared by the cores.
+
+        `known` are large objects that results refer to, in addition to those of the body.
+        """
+
+        def count(item: Item) -> tuple[Result, int]:
+            before = self.solves
+            result = work(item)
+            return result, self.solves - before
+
+        results = map_in_order(count, items, cores=self.cores, known=[*self._known, *known])
+        try:
+            while True:
+                before = self.solves
+                result, solves = next(results)
+                self.solves = before + solves
+                yield result
+        except StopIteration:
+            return
+        finally:
+            results.close()
+
+    @cached_property
+    def _known(self) -> list[object]:
+        """Large objects that trials refer to."""
+        if self.body is None:
+            return [self.source, self.source.body, self.source.body.mesh]
+        assembly, mesh = self.body.assembly, self.source.body.mesh
+        pattern = assembly.pattern
+        return [self.source, self.source.body, mesh, self.constraints, self.body, assembly, *assembly.energies, pattern]
 
     @cached_property
     def markers(self) -> list[list[int]]:

@@ -1,6 +1,6 @@
 """`Exchanges`: cables taken out of a network, for good or for a better one."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from hydrostat.design.routes.bench import Trial
 from hydrostat.design.routes.growth import Growth, predict_cost, without
@@ -14,6 +14,8 @@ class Exchanges:
 
     growth: Growth
     winches: int  # of a whole network
+    _trial: Trial | None = None  # network that `_known` belongs to
+    _known: dict[int, Trial | None] = field(default_factory=dict)  # it without each of its cables, where that is solved
 
     def exchange_cables(self, trial: Trial, most: int) -> Trial:
         """Exchange cables, those first whose loss costs least, where prices promise enough; `most` are tried.
@@ -23,8 +25,7 @@ class Exchanges:
         failed, order = 0, self._by_loss(trial)
         while order and most > 0 and failed < _FAILURES:
             number, needed = order.pop(0), (1 - _WORTH) * trial.cost
-            rest = self._rest(trial, number)
-            before = None if rest is None else self._reach(rest, trial)
+            before = self._without(trial, number)
             if before is None:
                 continue
             missing = len(trial.layout.routes) - len(before.layout.routes)
@@ -48,8 +49,9 @@ class Exchanges:
             if rest is None:
                 continue
             allowed = max((1 + self._worth(trial, rest)) * trial.cost, self.growth.enough_error)
-            found = self._reach(rest, trial, worst=allowed)
-            found = found and self.growth.bench.reach_poses(rest, None, worst=allowed)
+            found = self._without(trial, number, worst=allowed)
+            hopeful = found is not None and found.cost <= allowed
+            found = self.growth.bench.reach_poses(rest, None, worst=allowed) if hopeful else None
             if found is not None and found.cost <= allowed:
                 trial = found
                 self.growth.note("a cable that does nothing left out", trial)
@@ -57,13 +59,12 @@ class Exchanges:
 
     def _by_loss(self, trial: Trial) -> list[int]:
         """Cables that may be exchanged, by the cost without them."""
-        found = []
-        for number in range(len(trial.layout.routes)):
-            rest = self._rest(trial, number)
-            before = None if rest is None else self._reach(rest, trial)
-            if before is not None:
-                found.append((before.cost, number))
-        return [number for _, number in sorted(found)]
+        numbers = range(len(trial.layout.routes))
+        rests = [(number, rest) for number in numbers if (rest := self._rest(trial, number)) is not None]
+        solved = list(self.growth.bench.map(lambda pair: self._reach(pair[1], trial), rests))
+        self._trial = trial
+        self._known = {number: before for (number, _), before in zip(rests, solved, strict=True)}
+        return [number for _, number in sorted((one.cost, number) for number, one in self._known.items() if one)]
 
     def _exchange(self, before: Trial, additions: Additions, worst: float) -> Trial | None:
         """The best network with another cable, from rest; None if its cost is not below `worst` [m]."""
@@ -85,6 +86,23 @@ class Exchanges:
             return None
         return without(trial.layout, number)
 
+    def _without(self, trial: Trial, number: int, worst: float = float("inf")) -> Trial | None:
+        """A network without a cable, its poses sought from those with it; each is solved once.
+
+        None where it has no equilibrium, or an error above `worst` [m] if it was not solved before.
+        """
+        if trial is not self._trial:
+            self._trial, self._known = trial, {}
+        if number in self._known:
+            return self._known[number]
+        rest = self._rest(trial, number)
+        if rest is None:
+            return None
+        found = self._reach(rest, trial, worst)
+        if found is not None or worst == float("inf"):
+            self._known[number] = found
+        return found
+
     def _reach(self, rest: Layout, trial: Trial, worst: float = float("inf")) -> Trial | None:
         """A network without a cable, its poses sought from those with it."""
         places = {site.winch.name: number for number, site in enumerate(trial.layout.sites)}
@@ -98,7 +116,7 @@ class Exchanges:
 
 
 _STEPS = 8  # of inverse kinematics from the poses of the network with the cable
-_FAILURES = 2  # exchanges in a row that do not help end the round
+_FAILURES = 1  # exchanges in a row that do not help end the round
 _HOPE = 0.03  # an exchange is tried if prices promise to lower the cost by this share
 _WORTH = 0.01  # an exchange must gain so much
 _CABLE = 0.02  # a cable whose loss costs less than this share does not earn its place

@@ -76,11 +76,14 @@ class FinalJudgement:
             layout = layout_of(network.robot, bench.constraints)
             trial = bench.reach_poses(layout, None)
             finalists = replace(self.finalists, constraints=bench.constraints)
-            held = None if trial is None else finalists.judge(self.growth.refine(trial).layout)
+            allowed = (1 + _WORTH) * network.built
+            refined = None if trial is None else self.growth.refine(trial, wanted=allowed)
+            hopeful = refined is not None and refined.cost < _AWAY * allowed
+            held = finalists.judge(refined.layout) if refined is not None and hopeful else None
         except BaseException:
             bench.constraints = usual
             raise
-        if held is not None and kit_fits(held) and held.built < (1 + _WORTH) * network.built:
+        if held is not None and kit_fits(held) and held.built < allowed:
             self.finalists = finalists
             return held
         bench.constraints = usual
@@ -98,6 +101,7 @@ class FinalJudgement:
 
 
 _WORSE = 0.05  # a simpler network is told of where those that are simpler still have so much larger errors
+_AWAY = 1.1  # a network with so many times the allowed cost is not judged: judging it changes less
 _WORTH = 0.1  # errors may be so much larger where motors hold poses for long
 _LOOKED_AT = 12  # networks on the way that are judged where no refined one can be built
 _LOOKED_AT_LATE = 4  # where the search was ended before

@@ -46,7 +46,13 @@ class Finalists:
         limits = self.constraints.limits
         try:
             options = IKOptions(restarts=self.restarts if restarts is None else restarts)
-            reached = [reach_from_rest(simulation, pose, limits, options) for pose in self.request.poses]
+            reached = list(
+                self.bench.map(
+                    lambda pose: reach_from_rest(simulation, pose, limits, options),
+                    self.request.poses,
+                    known=(simulation, robot, simulation.assembly, simulation.assembly.token),
+                )
+            )
         except NotConvergedError:
             return None
         if pulls(robot, reached, self.constraints):

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -51,7 +52,7 @@ class Growth:
         It ends when enough is reached, when no price promises to help, or after some cables in a row that do not.
         """
         grown = [trial for trial in begun if trial.layout.routes]
-        waiting = [one for trial in begun if (one := self._price_next(trial, winches, cables))]
+        waiting = self._price_each(begun, winches, cables)
         idle, patience = 0, _PATIENCE * self.proposals.options.starts
         while waiting and idle < patience:
             least = self._least(grown, winches)
@@ -63,17 +64,22 @@ class Growth:
                 break
             more = self._add_cable(best, winches)
             grown += more
-            waiting += [one for trial in more if (one := self._price_next(trial, winches, cables))]
+            waiting += self._price_each(more, winches, cables)
             idle = 0 if self._least(more, winches) < (1 - _HELPS) * least or least == np.inf else idle + 1
         return self._refine_grown(grown, winches)
 
-    def _price_next(self, trial: Trial, winches: int, cables: int) -> "_Promise | None":
-        """The promise of one more cable; None where there is no room or no path."""
-        needed = cables - len(trial.layout.routes)
-        if needed <= 0:
-            return None
-        additions = self.price(trial, winches, needed, best=1)
-        return _Promise(trial, additions, predict_cost(trial, additions.gain)) if additions.paths else None
+    def _price_each(self, trials: Sequence[Trial], winches: int, cables: int) -> "list[_Promise]":
+        """Promises of one more cable, of those networks that have room and a path for one."""
+        roomy = [trial for trial in trials if cables > len(trial.layout.routes)]
+
+        def price(trial: Trial) -> Additions:
+            return self.price(trial, winches, cables - len(trial.layout.routes), best=1)
+
+        return [
+            _Promise(trial, additions, predict_cost(trial, additions.gain))
+            for trial, additions in zip(roomy, self.bench.map(price, roomy), strict=True)
+            if additions.paths
+        ]
 
     def _add_cable(self, promise: "_Promise", winches: int) -> list[Trial]:
         """Networks with one cable more, roughly refined, noted where they are better than before."""
@@ -81,9 +87,9 @@ class Growth:
         best = _LIKELY if trial.layout.routes else _SEEDS
         layouts = self.build(trial, promise.additions, winches, best=best)
         solved = self.solve_layouts(trial, layouts, best=best)
-        rough = unlike([self.refine_briefly(one, directions=0, steps=_FIRST) for one in solved], best, self._rate)
+        rough = unlike(self.refine_each(solved, directions=0, steps=_FIRST), best, self._rate)
         kept = rough[: 1 if trial.layout.routes else _SEEDS]
-        more = [self.refine_briefly(one, directions=0, steps=_SECOND) for one in kept]
+        more = self.refine_each(kept, directions=0, steps=_SECOND)
         for one in more:
             self.note(_words(one), one)
         return more
@@ -92,7 +98,7 @@ class Growth:
         """The networks, the best few refined with the build tolerances, the best first."""
         whole = [trial for trial in grown if len(trial.layout.sites) >= winches] or grown
         likely = unlike(whole, _FINAL)
-        refined = [self.refine_briefly(trial) for trial in likely if trial.cost < _FAR * likely[0].cost]
+        refined = self.refine_each([trial for trial in likely if trial.cost < _FAR * likely[0].cost])
         for trial in refined:
             self.note(_words(trial), trial)
         return sorted([*refined, *(trial for trial in grown if trial not in likely[: len(refined)])], key=_cost)
@@ -102,8 +108,11 @@ class Growth:
         """The least cost of networks with all their winches [m]; infinite if there are none."""
         return min((trial.cost for trial in trials if len(trial.layout.sites) >= winches), default=np.inf)
 
-    def refine(self, trial: Trial) -> Trial:
-        """Refine a network in rounds, each of which must hold from rest on."""
+    def refine(self, trial: Trial, *, wanted: float = np.inf) -> Trial:
+        """Refine a network in rounds, each of which must hold from rest on.
+
+        It ends early where a round gained less than what is left to a `wanted` cost [m]: later rounds gain less still.
+        """
         steps = self.proposals.options.polish
         best = trial if trial.from_rest else self.resolve_from_rest(trial)
         effort, round_size = 1.0, _ROUND
@@ -118,7 +127,8 @@ class Growth:
             if found.cost < best.cost:
                 gain = 1.0 - found.cost / best.cost
                 best = found
-                if gain < _IDLE or best.built_error <= options.enough:
+                hopeless = (1.0 - gain) * best.cost > wanted
+                if gain < _IDLE or hopeless or best.built_error <= options.enough:
                     break
             else:
                 effort, round_size, failed = 4.0 * effort, max(round_size // 2, 1), failed + 1
@@ -178,6 +188,10 @@ class Growth:
         asked = self.proposals.options.steps
         options = replace(self._options(asked if steps is None else min(steps, asked)), directions=directions)
         return refine(self.bench, self.proposals.graph.region, trial, options)
+
+    def refine_each(self, trials: Sequence[Trial], *, directions: int = 2, steps: int | None = None) -> list[Trial]:
+        """Refine some networks by a few steps each, shared by the cores."""
+        return list(self.bench.map(partial(self.refine_briefly, directions=directions, steps=steps), trials))
 
     def _options(self, steps: int) -> RefineOptions:
         return RefineOptions(iterations=steps, enough=self.enough_error)

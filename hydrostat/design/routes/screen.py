@@ -1,6 +1,7 @@
 """`screen_sketches`: sketches refined in rounds, each for fewer of them."""
 
 from collections.abc import Callable, Sequence
+from contextlib import closing
 
 from hydrostat.design.routes.bench import Trial
 from hydrostat.design.routes.growth import Growth, unlike
@@ -15,21 +16,25 @@ def screen_sketches(
     Sketches come in the order of the linear model. Those that are left are not solved after several in a row were no
     better than the best by a few percent. `found` receives each network that is solved.
     """
+
+    def solve(layout: Layout) -> Trial | None:
+        trial = growth.bench.reach_poses(layout, None, iterations=_GLANCE, rough=True)
+        return trial and growth.refine_briefly(trial, directions=0, steps=_FIRST)
+
     rough: list[Trial] = []
     least, idle = float("inf"), 0
-    for layout in drawn:
-        trial = growth.bench.reach_poses(layout, None, iterations=_GLANCE, rough=True)
-        if trial is None:
-            continue
-        trial = growth.refine_briefly(trial, directions=0, steps=_FIRST)
-        rough.append(trial)
-        found(trial)
-        idle = 0 if trial.cost < (1 - _BETTER) * least else idle + 1
-        least = min(least, trial.cost)
-        if idle >= _PATIENCE:
-            break
+    with closing(growth.bench.map(solve, drawn)) as trials:
+        for trial in trials:
+            if trial is None:
+                continue
+            rough.append(trial)
+            found(trial)
+            idle = 0 if trial.cost < (1 - _BETTER) * least else idle + 1
+            least = min(least, trial.cost)
+            if idle >= _PATIENCE:
+                break
     kept = unlike(rough, count)
-    better = [growth.refine_briefly(trial, directions=0, steps=_SECOND) for trial in kept[:_KEPT]]
+    better = growth.refine_each(kept[:_KEPT], directions=0, steps=_SECOND)
     for trial in better:
         found(trial)
     return [*better, *kept[_KEPT:]]
