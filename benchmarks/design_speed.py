@@ -1,6 +1,6 @@
 """How soon a search for cable routes has a network, and how good it is as time goes on.
 
-    HYDROSTAT_THREADS=1 python benchmarks/design_speed.py [--bodies starfish,puppy] [--copies 9] [--plot build/speed.png]
+    HYDROSTAT_THREADS=1 python benchmarks/design_speed.py [--bodies starfish,puppy] [--copies 9] [--plot speed.png]
 
 Columns: CPU seconds of one thread until the first network and to the end, the error expected as built [mm] of the
 first network, after 2 and 5 s, and of the network that is returned, and its counts. `--copies` designs each body so

@@ -11,6 +11,7 @@ import numpy as np
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.routes.layout import Layout
+from hydrostat.design.routes.search_rules import RULES
 from hydrostat.design.routes.shared_work import map_in_order
 from hydrostat.design.spread import Columns, spread_columns
 from hydrostat.design.uncertainty import BuildTolerances
@@ -123,7 +124,7 @@ class Bench:
         """
         dim, weights = self.source.body.mesh.dim, []
         for pose, markers in zip(self.targets, self.markers, strict=True):
-            shares = np.where(np.arange(len(markers)) < len(pose.targets), 1.0, _STAYS)
+            shares = np.where(np.arange(len(markers)) < len(pose.targets), 1.0, RULES.free_marker_weight)
             weights.append(np.repeat(shares, dim) / np.sqrt(len(self.targets) * len(pose.targets)))
         return weights
 
@@ -168,7 +169,7 @@ class Bench:
                     left = self.time_left()
                     pose = solve_ik(simulation, target, start=start, limits=limits, options=options, seconds=left).pose
                 if hoped is not None and self._pose_error(simulation, index, pose) > self._short_of(hoped, index):
-                    more = replace(options, restarts=_RESTARTS)
+                    more = replace(options, restarts=RULES.pose_restarts)
                     with suppress(NotConvergedError):  # then the first one stands
                         pose = reach_from_rest(
                             simulation, target, limits, more, start=start, seconds=self.time_left
@@ -189,7 +190,9 @@ class Bench:
         for winch in layout.two_way if begin is None else ():
             ranges = layout.sites[winch].winch
             turned = best.contractions.copy()
-            turned[winch] = -_TURN * ranges.release if turned[winch] > 0 else _TURN * ranges.travel
+            turned[winch] = (
+                -RULES.opposite_turn * ranges.release if turned[winch] > 0 else RULES.opposite_turn * ranges.travel
+            )
             with suppress(NotConvergedError):
                 start = simulation.solve(turned)
                 found = reach_from_rest(simulation, target, limits, options, start=start).pose
@@ -247,7 +250,7 @@ class Bench:
 
     def _short_of(self, hoped: Trial, index: int) -> float:
         """Error that a pose may have to be as good as in another trial, but for a share of the error of all [m]."""
-        return self._pose_error(hoped.simulation, index, hoped.poses[index]) + _SHORT * hoped.error
+        return self._pose_error(hoped.simulation, index, hoped.poses[index]) + RULES.pose_shortfall * hoped.error
 
     def _relax_start(
         self, simulation: Simulation, before: Trial, index: int, kept: Sequence[int] | None
@@ -294,7 +297,7 @@ class Bench:
         for one in slopes:
             moves, pulls = np.split(one.contractions, [len(one.contractions) - len(robot.cables)])
             spans = usable_spans(pulls, ranges, limit)
-            lengths.append(reach_extent(moves, spans, dim=mesh.dim, floor=_NO_REACH * mesh.size))
+            lengths.append(reach_extent(moves, spans, dim=mesh.dim, floor=RULES.min_reach * mesh.size))
         return max(mesh.size / float(np.exp(np.mean(np.log(lengths)))), 1.0) ** self.reach
 
     def _error(self, simulation: Simulation, poses: Sequence[Equilibrium]) -> float:
@@ -318,21 +321,12 @@ def reach_from_rest(
     begins again where that leads, a few times. Raises NotConvergedError where there is no equilibrium on the way.
     """
     found = solve_ik(simulation, target, start=start, limits=limits, options=options, seconds=seconds())
-    for _ in range(_REPLAYS):
+    for _ in range(RULES.max_replays):
         played = simulation.solve(found.pose.contractions)
         apart = max(float(np.linalg.norm(played.markers[name] - place)) for name, place in found.pose.markers.items())
-        if apart <= _SAME * simulation.robot.body.mesh.size:
+        if apart <= RULES.same_pose * simulation.robot.body.mesh.size:
             return found
         found = solve_ik(simulation, target, start=played, limits=limits, options=options, seconds=seconds())
     played = simulation.solve(found.pose.contractions)
     errors = {name: float(np.linalg.norm(played.markers[name] - place)) for name, place in target.targets.items()}
     return replace(found, pose=played, errors=errors)
-
-
-_REPLAYS = 2  # so often is a pose sought that is also what its contractions lead to from rest
-_SAME = 1e-3  # markers nearer than this share of the body's size are at the same place
-_TURN = 0.2  # share of its range that a winch is turned the other way where a search begins again
-_STAYS = 0.1  # what a meter of a marker that a pose does not name counts beside one of a marker that it names
-_RESTARTS = 1  # from where the first search ended, as rest leads to it at once
-_NO_REACH = 0.01  # a marker that moves less than this share of the body's size is not brought anywhere
-_SHORT = 0.05  # a pose that misses more than hoped by this share of the whole error is sought again

@@ -10,6 +10,7 @@ from hydrostat.design.network import Certificate
 from hydrostat.design.routes.bench import Trial
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.refine import linear_model
+from hydrostat.design.routes.search_rules import RULES
 
 
 def certify(proposals: Proposals, trial: Trial) -> Certificate:
@@ -21,11 +22,11 @@ def certify(proposals: Proposals, trial: Trial) -> Certificate:
     unbiased = replace(proposals, options=replace(proposals.options, lead_penalty=0.0))
     paths = unbiased.price_paths(trial, count=1)
     gain = paths[0].gain if paths else 0.0
-    model = linear_model(proposals.bench, proposals.graph.region, trial, effort=0.0, reach=_HOLDS)
+    model = linear_model(proposals.bench, proposals.graph.region, trial, effort=0.0, reach=RULES.holding_margin)
     return Certificate(
         further=float(np.sqrt(max(trial.error**2 - 2 * gain, 0.0))),
         paths=len(proposals.graph.edges) * 2 * proposals.options.hops,
-        slope=_slope(model.matrix, model.right, model.rows[model.left <= _HOLDS], trial.error),
+        slope=_slope(model.matrix, model.right, model.rows[model.left <= RULES.holding_margin], trial.error),
     )
 
 
@@ -39,6 +40,3 @@ def _slope(matrix: np.ndarray, right: Vector, limits: np.ndarray, error: float) 
     if len(limits):
         gradient = gradient + limits.T @ nnls(limits.T, -gradient)[0]
     return float(np.abs(gradient).max(initial=0.0))
-
-
-_HOLDS = 1e-4  # a limit with a smaller margin than this [m] holds

@@ -6,6 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Self
 
+from hydrostat.design.routes.search_rules import RULES
+
 
 class TimeUpError(Exception):
     """The time of a search is up."""
@@ -35,7 +37,4 @@ class Deadline:
 
     def with_grace(self) -> Self:
         """The deadline of the judgement that follows the search: a second later, or from now if it is over."""
-        return type(self)(max(self.end, self.clock()) + _GRACE, self.clock)
-
-
-_GRACE = 1.0  # time that the judgement of networks may take after the first of them is judged [s]
+        return type(self)(max(self.end, self.clock()) + RULES.grace, self.clock)

@@ -8,6 +8,7 @@ from hydrostat.design.request import COUNTS, DesignRequest
 from hydrostat.design.routes.deadline import Deadline
 from hydrostat.design.routes.design_routes import Hints, RouteSearch
 from hydrostat.design.routes.finalists import kit_fits
+from hydrostat.design.routes.search_rules import RULES
 from hydrostat.design.watch import Better, Watch, unseen
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.progress import Progress
@@ -31,8 +32,8 @@ def design_fewest(
     """
     size = robot.body.mesh.size
     constraints, options, cables = request.constraints, request.route_options, request.cables
-    tolerance = _SHARE * size if options.tolerance is None else options.tolerance
-    sought = replace(options, enough=max(options.enough, _SAFE * tolerance / size))
+    tolerance = RULES.usual_tolerance * size if options.tolerance is None else options.tolerance
+    sought = replace(options, enough=max(options.enough, RULES.safe_tolerance * tolerance / size))
     found: list[Network] = []
     body, better = BodyPhysics(robot), Better(watch)
     front: dict[Size, Alternative] = {}
@@ -103,7 +104,3 @@ def _worth(network: Alternative | Network) -> tuple[bool, float]:
 
 def _all(network: Network) -> tuple[Alternative, ...]:
     return Alternative(robot=network.robot, reached=network.reached, built=network.built), *network.alternatives
-
-
-_SHARE = 0.01  # the tolerance where none is given, as a share of the body's size
-_SAFE = 0.6  # share of the tolerance at which no more cables are added: the mean over poses hides the worst

@@ -24,6 +24,7 @@ from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.refine import pushed_back
 from hydrostat.design.routes.route_graph import route_graph
 from hydrostat.design.routes.screen import screen_sketches
+from hydrostat.design.routes.search_rules import RULES
 from hydrostat.design.routes.sketch import sketches
 from hydrostat.design.routes.thin import remove_via_points
 from hydrostat.design.skin_region import cable_region
@@ -103,7 +104,7 @@ class RouteSearch:
         )
         self.bench.look, self.bench.time_left = self._look, self._time_left
         if robot.contact is None and not robot.obstacles:  # parts that touch are remembered, and not sent
-            self.bench.cores = min(THREADS, _PROCESSES)
+            self.bench.cores = min(THREADS, RULES.processes)
         self.stages: list[DesignStage] = []
         self.passed: list[tuple[float, Layout]] = []
         self.found: list[Trial] = []
@@ -158,7 +159,7 @@ class RouteSearch:
     def _time_left(self) -> float | None:
         """Return the seconds that are left once there is a network; None for no limit."""
         left = self.deadline.left
-        return None if self.best is None or left == math.inf else max(left, _LEAST)
+        return None if self.best is None or left == math.inf else max(left, RULES.min_seconds)
 
     def _judgement(self, complete: bool) -> FinalJudgement:
         found = self.found if complete else [trial for trial in (self.best,) if trial is not None]
@@ -204,9 +205,9 @@ class RouteSearch:
 
     def _sketch_networks(self, growth: Growth, bare: Trial) -> list[Trial]:
         """Draw networks along the limbs, and grow the best of them by further cables that help."""
-        count = _DRAWN * (self.options.starts + 1)
+        count = RULES.sketches_each * (self.options.starts + 1)
         drawn = sketches(self.proposals, bare, winches=self.winches, cables=self.cables, count=count)
-        worse = (1 - _HELPS) * bare.cost
+        worse = (1 - RULES.sketch_gain) * bare.cost
 
         def note(trial: Trial) -> None:
             self.progress("Drawing networks", min(len(self.stages), count), count)
@@ -216,7 +217,7 @@ class RouteSearch:
         screened: list[Trial] = []  # reversed cables gain by refinement only: they are screened by themselves
         for back in (False, True):
             own = [layout for layout in drawn if any(route.ratio < 0 for route in layout.routes) == back]
-            screened += screen_sketches(growth, own, found=note, count=self.options.starts + _SPARE)
+            screened += screen_sketches(growth, own, found=note, count=self.options.starts + RULES.spare_sketches)
         screened.sort(key=lambda trial: trial.cost)
         self.progress("Drawing networks", count, count)
         helpful = [trial for trial in screened if trial.cost < worse]
@@ -226,20 +227,20 @@ class RouteSearch:
         """Refine the best networks to the end, and the next only if it is nearly as good from rest."""
         grown.sort(key=lambda trial: trial.cost)
         whole = [trial for trial in grown if len(trial.layout.sites) >= self.winches] or grown
-        rested = list(self.bench.map(growth.resolve_from_rest, whole[: _REFINED + 1]))
+        rested = list(self.bench.map(growth.resolve_from_rest, whole[: RULES.refined + 1]))
         rested.sort(key=lambda trial: trial.cost)
         refined: list[Trial] = []
-        for rank, trial in enumerate(rested[:_REFINED]):
-            if refined and trial.cost > _NEARLY * refined[0].cost:
+        for rank, trial in enumerate(rested[: RULES.refined]):
+            if refined and trial.cost > RULES.second_refined * refined[0].cost:
                 break
-            self.progress("Refining", rank, _REFINED)
+            self.progress("Refining", rank, RULES.refined)
             refined.append(growth.refine(trial))
             self._note_network("via points moved", refined[-1])
         return sorted([*refined, *rested[len(refined) :]], key=lambda trial: trial.cost)
 
     def _by_force(self, growth: Growth, begun: Trial) -> list[Trial]:
         """Networks grown along stronger paths, where none can be drawn."""
-        strong = Growth(replace(growth.proposals, effort=_STRONG), self._note_network)
+        strong = Growth(replace(growth.proposals, effort=RULES.strong_effort), self._note_network)
         return strong.grow_networks([begun], winches=self.winches, cables=self.cables)
 
     def _refine_hints(self, growth: Growth) -> list[Trial]:
@@ -267,7 +268,7 @@ class RouteSearch:
         if thinner is trial:
             return trial
         thinner = growth.refine(growth.resolve_from_rest(thinner))
-        return thinner if thinner.cost < (1 + _LOOSER) * trial.cost else trial
+        return thinner if thinner.cost < (1 + RULES.thinner_cost) * trial.cost else trial
 
     @cached_property
     def finalists(self) -> Finalists:
@@ -348,14 +349,3 @@ class RouteSearch:
 def _measure_cpu_time() -> float:
     """CPU time of this process and of those that shared its work [s]."""
     return sum(os.times()[:4])
-
-
-_PROCESSES = 2  # that share independent networks
-_LOOSER = 0.02  # fewer holes may cost so much
-_HELPS = 0.02  # a sketch that lowers the cost by less than this share is none
-_STRONG = 0.1  # what the effort of stronger paths counts
-_DRAWN = 9  # sketches that are solved for each network that is grown, and for one more
-_SPARE = 8  # more of them than are grown get further cables priced
-_REFINED = 2  # networks that are refined to the end
-_NEARLY = 1.03  # the second one only if its error is below this multiple of that of the first
-_LEAST = 1e-3  # time limit of a solve that begins when the time is up [s]

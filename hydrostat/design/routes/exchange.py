@@ -6,6 +6,7 @@ from hydrostat.design.routes.bench import Trial
 from hydrostat.design.routes.growth import Growth, predict_cost, without
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.propose import Additions
+from hydrostat.design.routes.search_rules import RULES
 
 
 @dataclass(eq=False)
@@ -23,14 +24,14 @@ class Exchanges:
         It ends after two exchanges in a row that do not help.
         """
         failed, order = 0, self._by_loss(trial)
-        while order and most > 0 and failed < _FAILURES:
-            number, needed = order.pop(0), (1 - _WORTH) * trial.cost
+        while order and most > 0 and failed < RULES.exchange_failures:
+            number, needed = order.pop(0), (1 - RULES.exchange_gain) * trial.cost
             before = self._without(trial, number)
             if before is None:
                 continue
             missing = len(trial.layout.routes) - len(before.layout.routes)
             additions = self.growth.price(before, self.winches, missing, best=1)
-            if predict_cost(before, additions.gain) > (1 - _HOPE) * trial.cost:
+            if predict_cost(before, additions.gain) > (1 - RULES.exchange_promise) * trial.cost:
                 continue
             most -= 1
             better = self._exchange(before, additions, needed)
@@ -107,17 +108,9 @@ class Exchanges:
         """A network without a cable, its poses sought from those with it."""
         places = {site.winch.name: number for number, site in enumerate(trial.layout.sites)}
         kept = [places[site.winch.name] for site in rest.sites]
-        return self.growth.bench.reach_poses(rest, trial, iterations=_STEPS, kept=kept, worst=worst)
+        return self.growth.bench.reach_poses(rest, trial, iterations=RULES.exchange_ik_steps, kept=kept, worst=worst)
 
     def _worth(self, trial: Trial, rest: Layout) -> float:
         """The share of the cost that a cable must save to be kept, more where its winch goes too."""
         winch = len(rest.sites) < len(trial.layout.sites)
-        return self.growth.proposals.options.simplicity * (_MOTOR if winch else _CABLE)
-
-
-_STEPS = 8  # of inverse kinematics from the poses of the network with the cable
-_FAILURES = 1  # exchanges in a row that do not help end the round
-_HOPE = 0.03  # an exchange is tried if prices promise to lower the cost by this share
-_WORTH = 0.01  # an exchange must gain so much
-_CABLE = 0.02  # a cable whose loss costs less than this share does not earn its place
-_MOTOR = 0.04  # nor a winch whose loss does
+        return self.growth.proposals.options.simplicity * (RULES.winch_worth if winch else RULES.cable_worth)

@@ -10,6 +10,7 @@ from hydrostat.design.routes.deadline import TimeUpError
 from hydrostat.design.routes.finalists import Finalists, kit_fits
 from hydrostat.design.routes.growth import Growth
 from hydrostat.design.routes.layout import Layout
+from hydrostat.design.routes.search_rules import RULES
 from hydrostat.design.winch_room import find_holding_torque
 from hydrostat.errors import HydrostatError
 
@@ -49,7 +50,7 @@ class FinalJudgement:
             judged += finalists.with_room(self.found[1:], self.growth.refine_briefly)
             known = [trial.layout for trial in self.found]
             others = [pair for pair in self.passed if not any(pair[1] is layout for layout in known)]
-            judged += finalists.first_to_fit(others, _LOOKED_AT if self.complete else _LOOKED_AT_LATE)
+            judged += finalists.first_to_fit(others, RULES.judged_on_the_way if self.complete else RULES.judged_late)
         judged += finalists.judge_all(self._simpler() if self.complete else [], thorough=False)
         if not judged:
             raise HydrostatError(
@@ -76,9 +77,9 @@ class FinalJudgement:
             layout = layout_of(network.robot, bench.constraints)
             trial = bench.reach_poses(layout, None)
             finalists = replace(self.finalists, constraints=bench.constraints)
-            allowed = (1 + _WORTH) * network.built
+            allowed = (1 + RULES.holding_cost) * network.built
             refined = None if trial is None else self.growth.refine(trial, wanted=allowed)
-            hopeful = refined is not None and refined.cost < _AWAY * allowed
+            hopeful = refined is not None and refined.cost < RULES.unjudged_cost * allowed
             held = finalists.judge(refined.layout) if refined is not None and hopeful else None
         except BaseException:
             bench.constraints = usual
@@ -95,13 +96,6 @@ class FinalJudgement:
         for winches, cables in sorted(self.sizes, key=lambda size: size[1]):
             trial = self.sizes[winches, cables]
             fewer = cables < len(self.found[0].layout.routes)
-            if fewer and all(trial.cost < (1 - _WORSE) * other.cost for other in kept):
+            if fewer and all(trial.cost < (1 - RULES.simpler_cost) * other.cost for other in kept):
                 kept.append(trial)
         return kept
-
-
-_WORSE = 0.05  # a simpler network is told of where those that are simpler still have so much larger errors
-_AWAY = 1.1  # a network with so many times the allowed cost is not judged: judging it changes less
-_WORTH = 0.1  # errors may be so much larger where motors hold poses for long
-_LOOKED_AT = 12  # networks on the way that are judged where no refined one can be built
-_LOOKED_AT_LATE = 4  # where the search was ended before

@@ -15,6 +15,7 @@ from hydrostat.design.request import DesignRequest
 from hydrostat.design.routes.bench import Bench, Trial, reach_from_rest
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.refine import pushed_back
+from hydrostat.design.routes.search_rules import RULES
 from hydrostat.errors import NotConvergedError
 from hydrostat.fabrication import demand_of, find_refusals
 from hydrostat.ik import IKOptions
@@ -101,7 +102,7 @@ class Finalists:
 
     def with_room(self, trials: Iterable[Trial | None], refined: Callable[[Trial], Trial]) -> list[Alternative]:
         """The first of some networks that a kit can be made of once its winches stand farther apart."""
-        for times in _APART:
+        for times in RULES.winch_distances:
             for trial in trials:
                 pushed = None if trial is None else self._push_apart(trial.layout, times)
                 moved = self.bench.reach_poses(pushed, trial) if pushed else None
@@ -135,4 +136,3 @@ def kit_fits(network: Alternative | Network) -> bool:
 
 
 _EXAMINED: WeakKeyDictionary[Alternative | Network, bool] = WeakKeyDictionary()
-_APART = (1.2, 1.5)  # multiples of their distance to which winches move whose units meet

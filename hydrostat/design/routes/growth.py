@@ -11,6 +11,7 @@ from hydrostat.design.routes.bench import Bench, Trial
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.propose import Additions, Proposals
 from hydrostat.design.routes.refine import RefineOptions, refine
+from hydrostat.design.routes.search_rules import RULES
 from hydrostat.robot import Mount
 from hydrostat.simulation import Simulation
 
@@ -53,19 +54,19 @@ class Growth:
         """
         grown = [trial for trial in begun if trial.layout.routes]
         waiting = self._price_each(begun, winches, cables)
-        idle, patience = 0, _PATIENCE * self.proposals.options.starts
+        idle, patience = 0, RULES.growth_patience * self.proposals.options.starts
         while waiting and idle < patience:
             least = self._least(grown, winches)
             if least <= self.enough_error:
                 break
             waiting.sort(key=lambda one: one.cost)
             best = waiting.pop(0)
-            if best.cost > (1 - _HOPE) * least:
+            if best.cost > (1 - RULES.growth_promise) * least:
                 break
             more = self._add_cable(best, winches)
             grown += more
             waiting += self._price_each(more, winches, cables)
-            idle = 0 if self._least(more, winches) < (1 - _HELPS) * least or least == np.inf else idle + 1
+            idle = 0 if self._least(more, winches) < (1 - RULES.growth_gain) * least or least == np.inf else idle + 1
         return self._refine_grown(grown, winches)
 
     def _price_each(self, trials: Sequence[Trial], winches: int, cables: int) -> "list[_Promise]":
@@ -84,12 +85,12 @@ class Growth:
     def _add_cable(self, promise: "_Promise", winches: int) -> list[Trial]:
         """Networks with one cable more, roughly refined, noted where they are better than before."""
         trial = promise.trial
-        best = _LIKELY if trial.layout.routes else _SEEDS
+        best = RULES.growth_candidates if trial.layout.routes else RULES.first_candidates
         layouts = self.build(trial, promise.additions, winches, best=best)
         solved = self.solve_layouts(trial, layouts, best=best)
-        rough = unlike(self.refine_each(solved, directions=0, steps=_FIRST), best, self._rate)
-        kept = rough[: 1 if trial.layout.routes else _SEEDS]
-        more = self.refine_each(kept, directions=0, steps=_SECOND)
+        rough = unlike(self.refine_each(solved, directions=0, steps=RULES.growth_steps), best, self._rate)
+        kept = rough[: 1 if trial.layout.routes else RULES.first_candidates]
+        more = self.refine_each(kept, directions=0, steps=RULES.growth_more_steps)
         for one in more:
             self.note(_words(one), one)
         return more
@@ -97,8 +98,8 @@ class Growth:
     def _refine_grown(self, grown: Sequence[Trial], winches: int) -> list[Trial]:
         """The networks, the best few refined with the build tolerances, the best first."""
         whole = [trial for trial in grown if len(trial.layout.sites) >= winches] or grown
-        likely = unlike(whole, _FINAL)
-        refined = self.refine_each([trial for trial in likely if trial.cost < _FAR * likely[0].cost])
+        likely = unlike(whole, RULES.growth_final)
+        refined = self.refine_each([trial for trial in likely if trial.cost < RULES.growth_far * likely[0].cost])
         for trial in refined:
             self.note(_words(trial), trial)
         return sorted([*refined, *(trial for trial in grown if trial not in likely[: len(refined)])], key=_cost)
@@ -115,9 +116,9 @@ class Growth:
         """
         steps = self.proposals.options.polish
         best = trial if trial.from_rest else self.resolve_from_rest(trial)
-        effort, round_size = 1.0, _ROUND
+        effort, round_size = 1.0, RULES.round_steps
         done = failed = 0
-        while done < steps and failed < _FAILURES and best.cost > self.enough_error:
+        while done < steps and failed < RULES.round_failures and best.cost > self.enough_error:
             size = min(round_size, steps - done)
             options = replace(self._options(size), effort=effort * self._options(size).effort)
             found = self.resolve_from_rest(
@@ -128,7 +129,7 @@ class Growth:
                 gain = 1.0 - found.cost / best.cost
                 best = found
                 hopeless = (1.0 - gain) * best.cost > wanted
-                if gain < _IDLE or hopeless or best.built_error <= options.enough:
+                if gain < RULES.round_gain or hopeless or best.built_error <= options.enough:
                     break
             else:
                 effort, round_size, failed = 4.0 * effort, max(round_size // 2, 1), failed + 1
@@ -150,7 +151,7 @@ class Growth:
 
     def price(self, trial: Trial, winches: int, needed: int, *, best: int) -> Additions:
         """Paths for one cable more, some to spare for those that cannot be built."""
-        count = _SPARE * max(self.proposals.options.trials, best)
+        count = RULES.spare_paths * max(self.proposals.options.trials, best)
         return self.proposals.price_additions(trial, winches=winches, needed=needed, count=count)
 
     def build(self, trial: Trial, additions: Additions, winches: int, *, best: int) -> list[Layout]:
@@ -166,7 +167,7 @@ class Growth:
         kept: list[Trial] = []
         for layout in layouts:
             worst = self._rate(kept[-1]) / self._effort_factor(layout) if len(kept) == best else np.inf
-            found = self.bench.reach_poses(layout, trial, iterations=_GLANCE, worst=worst)
+            found = self.bench.reach_poses(layout, trial, iterations=RULES.growth_ik_steps, worst=worst)
             if found is not None:
                 kept = sorted([*kept, found], key=self._rate)[:best]
         return kept
@@ -181,7 +182,7 @@ class Growth:
         depths = self.proposals.graph.region.depths(np.array(inner)) if inner else np.zeros(0)
         shallow = np.maximum(1.0 - depths / self.proposals.deepest, 0.0).mean() if inner else 0.0
         turned = np.mean([turns(route.points).sum() for route in layout.routes])
-        return 1.0 + _SHALLOW * float(shallow) + _TURNED * float(turned)
+        return 1.0 + RULES.shallow_cost * float(shallow) + RULES.turn_cost * float(turned)
 
     def refine_briefly(self, trial: Trial, *, directions: int = 2, steps: int | None = None) -> Trial:
         """Refine a network by a few steps: `steps`, or those of the options."""
@@ -210,7 +211,7 @@ def unlike(
 
 def _are_alike(one: Trial, other: Trial) -> bool:
     costs, spreads = abs(one.cost - other.cost), abs(one.spread - other.spread)
-    return max(costs, spreads) <= _ALIKE * one.cost
+    return max(costs, spreads) <= RULES.alike * one.cost
 
 
 def predict_cost(trial: Trial, gain: float) -> float:
@@ -253,22 +254,3 @@ def _words(trial: Trial) -> str:
     layout = trial.layout
     name = layout.sites[layout.routes[-1].winch].winch.name
     return f"cable {len(layout.routes)}, pulled by {name}"
-
-
-_ALIKE = 1e-3  # costs and spreads that differ by less than this share of the cost are of the same network
-_FAR = 1.15  # networks so much worse than the best are not refined with the build tolerances
-_SPARE = 4  # times as many paths are priced as networks are solved: some cannot be built
-_PATIENCE = 3  # cables in a row without gain after which the growth ends
-_FIRST = 2  # steps of refinement of each cable that is tried
-_SECOND = 3  # more steps of the best of them
-_HELPS = 0.02  # a cable that lowers the cost by less than this share does not help
-_HOPE = 0.03  # a cable is tried if prices promise to lower the cost by this share
-_FINAL = 3  # networks that are refined with the build tolerances at the end
-_LIKELY = 2  # cables that are refined before one is added
-_SEEDS = 3  # first cables that are tried
-_GLANCE = 5  # steps of inverse kinematics that tell which of several networks is the best
-_ROUND = 8  # steps of refinement before the poses are found from rest again
-_FAILURES = 2  # rounds that do not hold from rest end the refinement
-_IDLE = 0.02  # a round that gains less ends the refinement
-_SHALLOW = 0.5  # how much more a network costs whose winches are at the edge
-_TURNED = 0.2  # how much more a network costs whose cables turn by 1 rad

@@ -15,6 +15,7 @@ from hydrostat.arrays import Bool, Vector
 from hydrostat.design.polyline import Route, resample
 from hydrostat.design.routes.bench import Trial
 from hydrostat.design.routes.propose import Proposals
+from hydrostat.design.routes.search_rules import RULES
 from hydrostat.geometry import locate
 from hydrostat.kernel import native
 from hydrostat.robot import Cable
@@ -38,8 +39,8 @@ class LineChoice:
         bench, simulation = proposals.bench, bare.simulation
         slopes = csc_array(hstack([csc_array(self._pull(line)[:, None]) for line in lines]))
         self.gives = np.eye(len(lines)) / Cable.stiffness  # contraction of each line by the tension of each [m/N]
-        for first in range(0, len(lines), _AT_ONCE):
-            some = slice(first, first + _AT_ONCE)
+        for first in range(0, len(lines), RULES.lines_at_once):
+            some = slice(first, first + RULES.lines_at_once)
             self.gives[:, some] += slopes.T @ simulation.response(bare.poses[0], slopes[:, some].toarray())
         missed = [bench.residual(simulation, index, pose.nodes) for index, pose in enumerate(bare.poses)]
         self.moves: list[np.ndarray] = []  # of the markers by the tension of each line, of each pose [m/N]
@@ -50,7 +51,7 @@ class LineChoice:
         self._grams = np.array([move.T @ move for move in self.moves])
         self._aims = np.array([move.T @ miss for move, miss in zip(self.moves, missed, strict=True)])
         self._squares = np.array([float(miss @ miss) for miss in missed])
-        self._ridges = _EFFORT * np.sqrt(self._squares) / bench.constraints.tension_limit
+        self._ridges = RULES.line_effort * np.sqrt(self._squares) / bench.constraints.tension_limit
         self._places = np.array([line.place for line in lines], dtype=np.int64)
         self._reverse = np.zeros(len(lines), dtype=bool)
         self._turned = 0  # maximum number of winches whose ways are all tried
@@ -99,12 +100,12 @@ class LineChoice:
             for kept in self._one_way_sets(sets):
                 for pose in range(len(self.moves)):
                     one = (self.gives, *(part[pose : pose + 1] for part in model[1:]), pulled)
-                    native.line_errors(*one, kept, _SLACK, errors)
+                    native.line_errors(*one, kept, RULES.slack_rounds, errors)
                     squares[:, pose] = np.minimum(squares[:, pose], errors**2)
             errors = np.sqrt(squares.sum(axis=1))
         else:
-            native.line_errors(*model, pulled, np.ascontiguousarray(sets), _SLACK, errors)
-        return errors * (1.0 + _SIMPLE * sets.shape[1])
+            native.line_errors(*model, pulled, np.ascontiguousarray(sets), RULES.slack_rounds, errors)
+        return errors * (1.0 + RULES.line_gain * sets.shape[1])
 
     def _one_way_sets(self, sets: np.ndarray) -> Iterator[np.ndarray]:
         """Yield the same sets, each winch turning one of its ways: lines that this leaves slack are -1, at the end."""
@@ -124,9 +125,9 @@ class LineChoice:
         known = sorted({line.place for line in self.lines})
         chance = np.random.default_rng(0)
         count = min(self.winches, len(known))
-        if math.comb(len(known), count) <= _SETS:
+        if math.comb(len(known), count) <= RULES.winch_sets:
             return list(combinations(known, count))
-        return [tuple(chance.choice(known, count, replace=False).tolist()) for _ in range(_SETS)]
+        return [tuple(chance.choice(known, count, replace=False).tolist()) for _ in range(RULES.winch_sets)]
 
     def fill_set(self, chosen: list[int], places: Collection[int] | None = None) -> list[int]:
         """With one line more after the other, of winches at some places, while that helps."""
@@ -141,7 +142,7 @@ class LineChoice:
     def exchange_lines(self, chosen: list[int]) -> list[int]:
         """With lines exchanged for others, while that helps."""
         cost = self.cost(chosen)
-        for _ in range(_EXCHANGES):
+        for _ in range(RULES.line_exchanges):
             before = cost
             for number in range(len(chosen)):
                 rest = [index for index in chosen if index != chosen[number]] if number < len(chosen) else chosen
@@ -194,7 +195,7 @@ class LineChoice:
     def _meets(self) -> Bool[np.ndarray, "lines lines"]:
         """Lines that come too near to one another, but about a winch that both have."""
         constraints, graph = self.proposals.bench.constraints, self.proposals.graph
-        near = _MEETS * constraints.cable_gap
+        near = RULES.meeting_gap * constraints.cable_gap
         meets = np.zeros((len(self.lines),) * 2, dtype=bool)
         if near == 0.0:
             return meets
@@ -204,7 +205,7 @@ class LineChoice:
         away = np.linalg.norm(points - graph.points[places], axis=1)
         tree = KDTree(points)
         one, other = tree.query_pairs(np.nextafter(near, 0.0), output_type="ndarray").T
-        beside = _ROOM * constraints.spool_radius
+        beside = RULES.meeting_radii * constraints.spool_radius
         both = (places[one] == places[other]) & ((away[one] < beside) | (away[other] < beside))
         meets[owners[one[~both]], owners[other[~both]]] = True
         for place in np.unique(self._places[~graph.world[self._places]]):  # a winch needs room
@@ -214,13 +215,3 @@ class LineChoice:
         meets |= meets.T
         np.fill_diagonal(meets, val=False)
         return meets
-
-
-_SETS = 100  # sets of winch places that are tried
-_EFFORT = 0.5  # share of the residual that the tension limit is worth
-_SIMPLE = 0.01  # what each line more must gain
-_SLACK = 6  # rounds in which slack cables are left out
-_EXCHANGES = 3  # rounds
-_AT_ONCE = 64  # lines whose response is found at a time, so that large bodies need little memory
-_MEETS = 0.6  # share of the gap between cables at which they meet; what is nearer than the gap is pushed apart
-_ROOM = 2.5  # within so many spool radii of a winch its cables may meet

@@ -9,6 +9,7 @@ import numpy as np
 
 from hydrostat.arrays import Bool, Float, Int, Vector
 from hydrostat.design.routes.route_graph import RouteGraph
+from hydrostat.design.routes.search_rules import RULES
 from hydrostat.kernel import native
 
 MarkerJacobian = Float[np.ndarray, "edges rows"]
@@ -87,10 +88,6 @@ def price_paths(
     return [search.price_path(paths[order[index]], lead, float(gains[order[index]])) for index, lead in picked]
 
 
-_ALIKE = 0.7  # two paths that share more than this part of their edges are variants of one
-_SOME = 4  # at most one path in so many, and at least two, stand in one region of winches while there are others
-_LOST = 1e-4  # share of the squared moves of all edges, across the residual, that may be left out
-_CAPPED = 10.0  # multiple of the median move of an edge that counts at most
 _LANES = 4  # numbers that a vector register holds
 
 
@@ -220,12 +217,12 @@ def _pick(
 ) -> list[tuple[int, tuple[int, ...]]]:
     """Numbers and leads of the first paths that are unlike one another; of like ones only if there are not enough."""
     reach = 2.0 * float(np.median(graph.lengths))
-    quota = max(2, -(-count // _SOME))
+    quota = max(2, -(-count // RULES.region_share))
     picked: dict[int, tuple[int, ...]] = {}
     stands = graph.points[starts.winches(paths)]
     near = np.zeros(len(paths), dtype=np.int64)  # picked ones in the region of winches of each
     usable = np.ones(len(paths), dtype=bool)
-    for alike, crowd in ((_ALIKE, quota), (_ALIKE, count), (1.0, count)):
+    for alike, crowd in ((RULES.shared_edges, quota), (RULES.shared_edges, count), (1.0, count)):
         index = -1
         while len(picked) < count:
             others = paths[list(picked)]
@@ -258,9 +255,9 @@ def _compress_rows(missed: Missed) -> tuple[MarkerJacobian, Vector, Int[np.ndarr
         pulls = own @ along
         rest = own - pulls[:, None] * along
         norms = np.linalg.norm(own, axis=1)
-        capped = np.minimum(1.0, _CAPPED * np.median(norms) / np.maximum(norms, 1e-300))[:, None] * rest
+        capped = np.minimum(1.0, RULES.capped_moves * np.median(norms) / np.maximum(norms, 1e-300))[:, None] * rest
         powers, axes = np.linalg.eigh(capped.T @ capped)
-        kept = axes[:, np.cumsum(powers) > _LOST * float(powers.sum())]
+        kept = axes[:, np.cumsum(powers) > RULES.lost_moves * float(powers.sum())]
         if kept.shape[1] + 1 < own.shape[1]:
             own, residual = np.column_stack([pulls, rest @ kept]), np.append(size, np.zeros(kept.shape[1]))
         moves.append(own)

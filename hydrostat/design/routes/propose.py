@@ -16,6 +16,7 @@ from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
 from hydrostat.design.routes.price import Missed, PathLimits, PricedPath, price_paths
 from hydrostat.design.routes.refine import pushed_back
 from hydrostat.design.routes.route_graph import RouteGraph
+from hydrostat.design.routes.search_rules import RULES
 from hydrostat.robot import Mount, Winch
 
 
@@ -79,7 +80,7 @@ class Proposals:
             residuals.append(residual - known @ (known.T @ residual))
             owners.append(np.full(rows, index))
             if graph.still.any():
-                moves.append(_NEVER * np.abs(moves[-1]).max(initial=1e-12) * graph.still[:, None])
+                moves.append(RULES.forbidden_moves * np.abs(moves[-1]).max(initial=1e-12) * graph.still[:, None])
                 residuals.append(np.zeros(1))
                 owners.append(np.array([index]))
             ridges.append((self.effort * float(np.linalg.norm(residual)) / bench.constraints.tension_limit) ** 2)
@@ -87,8 +88,8 @@ class Proposals:
         pulled = np.ones(len(ridges))
         way = -1.0 if reverse else 1.0
         taken = np.array([0.0 if shared is None else way * float(pose.contractions[shared]) for pose in trial.poses])
-        idle, taken = taken > -_STILL, np.maximum(taken, 0.0)
-        follows = float(taken.max()) > _STILL
+        idle, taken = taken > -RULES.idle_contraction, np.maximum(taken, 0.0)
+        follows = float(taken.max()) > RULES.idle_contraction
         if follows:
             pulled = taken / taken.max()
             ridges = [float((pulled**2 * ridges).sum())]
@@ -115,7 +116,7 @@ class Proposals:
     def _turn(self) -> float:
         """The sharpest turn that via points at their spacing may have [degrees]."""
         constraints = self.bench.constraints
-        turn = max(constraints.turn, _COARSE)
+        turn = max(constraints.turn, RULES.coarse_turn)
         if constraints.bend_radius == 0.0:
             return turn
         return min(turn, float(np.degrees(2 * np.arctan(0.5 * self.spacing / constraints.bend_radius))))
@@ -136,7 +137,7 @@ class Proposals:
                 share, other = nearest_shares(runs[near], own)
                 here = runs[near, 0] + share[:, None] * (runs[near, 1] - runs[near, 0])
                 there = start + other[:, None] * (end - start)
-                beside = np.linalg.norm(there - winch.at, axis=1) <= _BESIDE * winch.spool_radius
+                beside = np.linalg.norm(there - winch.at, axis=1) <= RULES.crowded_radii * winch.spool_radius
                 free[near] = beside | (np.linalg.norm(here - there, axis=1) >= gap)
         return replace(self.graph, edges=self.graph.edges[free], still=self.graph.still[free])
 
@@ -146,7 +147,7 @@ class Proposals:
         if mirror is None:
             return np.ones(len(runs), dtype=bool)
         off = runs[:, :, "xyz".index(mirror)]
-        return (off.min(axis=1) > -_ON_MIRROR) & (off.max(axis=1) > 0.5 * gap)
+        return (off.min(axis=1) > -RULES.on_mirror) & (off.max(axis=1) > 0.5 * gap)
 
     @staticmethod
     def _reaches(runs: np.ndarray, start: Vector, end: Vector, gap: float) -> np.ndarray:
@@ -165,7 +166,9 @@ class Proposals:
         found = []
         if missing > 0:
             places = self._vacant(layout, alone=missing == 1)
-            paths = self.price_paths(trial, count=_CHOICE * count, winches=places, free=free) if places else []
+            paths = (
+                self.price_paths(trial, count=RULES.priced_paths * count, winches=places, free=free) if places else []
+            )
             deep = sorted(paths, key=lambda path: -path.gain * self._depth(path.winch))[:count]
             others = [path for path in paths if path not in deep][: count // 2]
             found += [(path, None, False) for path in (*deep, *others)]
@@ -206,7 +209,7 @@ class Proposals:
         if self.graph.world[place]:
             return 1.0
         depth = float(self.graph.region.depths(self.graph.points[place : place + 1])[0])
-        return _EDGE + (1 - _EDGE) * min(depth / self.deepest, 1.0)
+        return RULES.edge_gain + (1 - RULES.edge_gain) * min(depth / self.deepest, 1.0)
 
     def _has_room(self, layout: Layout, winch: int) -> bool:
         return sum(route.winch == winch for route in layout.routes) < layout.constraints.cables_per_winch
@@ -244,12 +247,14 @@ class Proposals:
             if image is None:
                 return None
             added = image
-        return pushed_back(added, self.graph.region, _REACH * self.graph.size)
+        return pushed_back(added, self.graph.region, RULES.path_reach * self.graph.size)
 
     def with_line(self, layout: Layout, place: int, points: Route, *, reverse: bool = False) -> Layout:
         """A layout with a cable along given points [m], of the winch at a graph point, made if there is none."""
         at = self.graph.points[place]
-        there = [number for number, site in enumerate(layout.sites) if np.linalg.norm(at - site.winch.at) < _SAME]
+        there = [
+            number for number, site in enumerate(layout.sites) if np.linalg.norm(at - site.winch.at) < RULES.same_winch
+        ]
         winch = there[0] if there else len(layout.sites)
         sites = layout.sites if there else (*layout.sites, self._new_site(layout, place))
         route = CableRoute(winch, points, ratio=-1.0 if reverse else 1.0)
@@ -279,22 +284,7 @@ def _span(moves: np.ndarray) -> np.ndarray:
     if not moves.size:
         return np.zeros((len(moves), 0))
     left, values, _ = np.linalg.svd(moves, full_matrices=False)
-    return left[:, values > _WEAK * max(values.max(initial=0.0), 1e-12)]
-
-
-_CHOICE = 4  # so many paths are priced for each that is tried, for the winches of some are deeper in the body
-_EDGE = 0.1  # what the gain of a path counts whose winch is at the edge of the body
-_WEAK = 0.02  # winches that move the rows less than this share of the strongest are not counted on
-
-
-# runs of the graph go few ways: so sharply may a path turn that is smoothed afterwards [degrees]
-_COARSE = 60.0
-_ON_MIRROR = 1e-3  # so near to the mirror a point stands in it [m]
-_SAME = 1e-9  # winches nearer than this [m] are one
-_STILL = 1e-6  # a winch that takes in less [m] in every pose is as good as a new one
-_BESIDE = 2.5  # within so many spool radii of its winch a cable may be near another, which may be of the same winch
-_NEVER = 1e5  # so many times the largest move of an edge
-_REACH = 0.03  # what is farther than this share of the body's size from a limit does not feel it
+    return left[:, values > RULES.weak_winch * max(values.max(initial=0.0), 1e-12)]
 
 
 def route_along(path: PricedPath, graph: RouteGraph, *, winch: int, place: Vector, spacing: float) -> CableRoute | None:

@@ -18,6 +18,7 @@ from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.line_choice import Line
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.route_graph import RouteGraph, route_graph
+from hydrostat.design.routes.search_rules import RULES
 from hydrostat.design.routes.sketch import draw_lines, sketches
 from hydrostat.design.skin_region import cable_region
 from hydrostat.design.uncertainty import BuildTolerances
@@ -93,16 +94,16 @@ class QuickSearch:
         lines = self._draw_lines(proposals)
         count = self._count(len(poses))
         drawn = sketches(proposals, bare, winches=self.winches, cables=self.cables, count=count, lines=lines)
-        first = _solve(bench, drawn[:_FIRST])
+        first = _solve(bench, drawn[: RULES.quick_first])
         refined = [growth.refine_briefly(trial, directions=0) for trial in first[:1]]
         for trial in (*refined, *first):
             sketch = self._propose_trial(finalists, trial)
             if sketch is not None:
                 yield sketch
                 break
-        others = sorted([*first[1:], *_solve(bench, drawn[_FIRST:])], key=_cost)
+        others = sorted([*first[1:], *_solve(bench, drawn[RULES.quick_first :])], key=_cost)
         refined += [growth.refine_briefly(trial, directions=0) for trial in others[: count - 1]]
-        last = self._judge_best(growth, finalists, sorted(refined, key=_cost)[:_LAST])
+        last = self._judge_best(growth, finalists, sorted(refined, key=_cost)[: RULES.quick_last])
         if last is not None:
             yield last
 
@@ -130,13 +131,13 @@ class QuickSearch:
 
     def _count(self, poses: int) -> int:
         """Number of sketches to refine: fewer on bodies that take longer."""
-        return int(np.clip(_WORK // (self.robot.body.mesh.nodes.size * poses), *_COUNTS))
+        return int(np.clip(RULES.quick_work // (self.robot.body.mesh.nodes.size * poses), *RULES.quick_sketches))
 
     def _propose_trial(self, finalists: Finalists, trial: Trial) -> RouteProposal | None:
         """A first network, with poses as they were solved; None if it breaks a constraint."""
         robot = finalists.safe_robot(trial.layout)
         travels = np.array([winch.travel for winch in robot.winches])
-        beyond = any((pose.contractions > travels + _CLOSE).any() for pose in trial.poses)
+        beyond = any((pose.contractions > travels + RULES.travel_precision).any() for pose in trial.poses)
         if beyond or violations(robot, self.constraints, self.region):
             return None
         return RouteProposal(
@@ -163,17 +164,9 @@ class QuickSearch:
 
 def _solve(bench: Bench, layouts: Sequence[Layout]) -> list[Trial]:
     """Networks with their poses roughly solved, the best first."""
-    found = [bench.reach_poses(layout, None, iterations=_GLANCE) for layout in layouts]
+    found = [bench.reach_poses(layout, None, iterations=RULES.quick_ik_steps) for layout in layouts]
     return sorted((trial for trial in found if trial is not None), key=_cost)
 
 
 def _cost(trial: Trial) -> float:
     return trial.cost
-
-
-_FIRST = 3  # sketches that are solved before the first answer
-_LAST = 2  # networks that are refined with the build tolerances
-_COUNTS = (2, 6)  # fewest and most sketches that are refined
-_WORK = 4000  # coordinates of nodes, times poses, times sketches that are refined
-_GLANCE = 5  # steps of inverse kinematics that tell how good a sketch is
-_CLOSE = 1e-5  # contractions may exceed a travel by rounding [m]

@@ -10,6 +10,7 @@ from hydrostat.design.region import Region
 from hydrostat.design.routes.bench import Bench, Trial
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.margins import margins
+from hydrostat.design.routes.search_rules import RULES
 from hydrostat.ik import least_squares, spool_arms
 
 
@@ -52,8 +53,8 @@ class _Refinement:
     def __init__(self, bench: Bench, region: Region, options: RefineOptions) -> None:
         self.bench, self.region, self.options = bench, region, options
         self.limit = bench.constraints.tension_limit
-        self.reach = _REACH * bench.source.body.mesh.size
-        self.damping = _DAMPING
+        self.reach = RULES.point_step * bench.source.body.mesh.size
+        self.damping = RULES.first_damping
 
     def run(self, trial: Trial) -> Trial:
         idle = 0
@@ -81,7 +82,9 @@ class _Refinement:
         total = trial.built_error**2 + float(((bend * turns(trial.layout)) ** 2).sum())
         for pose in trial.poses:
             over = self._excess(trial, pose.tensions)
-            total += float((effort**2) * (pose.tensions**2).sum() + (_OVER * effort) ** 2 * (over**2).sum())
+            total += float(
+                (effort**2) * (pose.tensions**2).sum() + (RULES.excess_weight * effort) ** 2 * (over**2).sum()
+            )
         return total
 
     def _excess(self, trial: Trial, tensions: Vector) -> Vector:
@@ -99,26 +102,26 @@ class _Refinement:
             directions=self.options.directions,
         )  # fmt: skip
         before = self._merit(trial, effort, bend)
-        for _ in range(_TRIES):
+        for _ in range(RULES.step_tries):
             step = self._solve_damped(model)
             found = None if step is None else self._try_step(trial, step, model.free, (before, bend))
             if step is not None and found is not None and (after := self._merit(found, effort, bend)) < before:
                 promised = before - float(((model.right + model.matrix @ step) ** 2).sum())
                 kept = (before - after) / max(promised, 1e-300)
-                self.damping *= 0.3 if kept > _GOOD else 1.0 if kept > _POOR else 3.0
-                self.damping = max(self.damping, _LEAST)
+                self.damping *= 0.3 if kept > RULES.good_step else 1.0 if kept > RULES.poor_step else 3.0
+                self.damping = max(self.damping, RULES.min_damping)
                 return found
-            self.damping = max(4 * self.damping, _LEAST)
-            if self.damping > _STIFF:
+            self.damping = max(4 * self.damping, RULES.min_damping)
+            if self.damping > RULES.max_damping:
                 break
-        self.damping = _DAMPING
+        self.damping = RULES.first_damping
         return None
 
     def _solve_damped(self, model: Model) -> Vector | None:
         matrix = model.matrix * model.scale
         damping = self.damping * float(np.linalg.norm(matrix[:, : model.free], axis=0).max(initial=1e-12))
         ridge = np.full(len(model.scale), damping)
-        ridge[model.free :] *= _LIGHT
+        ridge[model.free :] *= RULES.contraction_damping
         stacked = np.vstack([matrix, np.diag(np.maximum(ridge, 1e-9))])
         aim = np.concatenate([-model.right, np.zeros(len(ridge))])
         rows = model.rows * model.scale
@@ -133,7 +136,9 @@ class _Refinement:
         longest = np.abs(layout.ties @ step[:free])[: layout.starts[-2]].max(initial=0.0)
         if longest > 2 * self.reach:
             step = step * (2 * self.reach / longest)
-        moved = pushed_back(layout.at(layout.numbers + layout.ties @ step[:free]), self.region, _NEAR * self.reach)
+        moved = pushed_back(
+            layout.at(layout.numbers + layout.ties @ step[:free]), self.region, RULES.felt_limits * self.reach
+        )
         if moved is None:
             return None
         changes = step[free:].reshape(len(trial.poses), -1)
@@ -213,7 +218,7 @@ def linear_model(
     geometry = margins(layout, region, reach=reach)
     tied = np.zeros((len(geometry.rows), count))
     tied[:, :free] = geometry.rows @ layout.ties
-    scale = np.full(count, _TRAVEL * bench.constraints.travel)
+    scale = np.full(count, RULES.contraction_step * bench.constraints.travel)
     scale[:free] = _scales(layout, reach)
     return Model(
         np.vstack(matrix), np.concatenate(right), np.vstack([*rows, tied]),
@@ -237,7 +242,7 @@ def _solve_variations(
         return
     columns = weight[:, None] * trial.columns[index][:, which]
     _, values, right = np.linalg.svd(columns, full_matrices=False)
-    most = _SCATTERED * trial.built_error
+    most = RULES.min_spread * trial.built_error
     for direction in range(min(most_directions, int((values > most).sum()))):
         numbers = layout.numbers.copy()
         numbers[:places] += bench.uncertainty.sewing * right[direction, :places]
@@ -302,9 +307,9 @@ def _scales(layout: Layout, reach: float) -> Vector:
 def pushed_back(layout: Layout, region: Region, reach: float) -> Layout | None:
     """The nearest layout that can be built, by steps of least length; None if that is not found."""
     ties = layout.ties
-    for _ in range(_PUSHES):
+    for _ in range(RULES.max_pushes):
         limits = margins(layout, region, reach=reach)
-        if not len(limits.left) or limits.left.min() >= -_CLOSE:
+        if not len(limits.left) or limits.left.min() >= -RULES.limit_precision:
             return layout
         rows = limits.rows @ ties
         step = least_squares(np.eye(ties.shape[1]), np.zeros(ties.shape[1]), rows, limits.left)
@@ -315,7 +320,7 @@ def pushed_back(layout: Layout, region: Region, reach: float) -> Layout | None:
             return None
         layout = layout.at(layout.numbers + moved)
     limits = margins(layout, region, reach=0.0)
-    return layout if not len(limits.left) or limits.left.min() >= -_CLOSE else None
+    return layout if not len(limits.left) or limits.left.min() >= -RULES.limit_precision else None
 
 
 def moves_of(trial: Trial, pose: int) -> tuple[np.ndarray, np.ndarray]:
@@ -337,21 +342,3 @@ def _by_numbers(layout: Layout, slopes) -> np.ndarray:
     full[:, slacks:ratios] = slopes.slack
     full[:, ratios:] = slopes.ratios
     return full
-
-
-_REACH = 0.03  # a large step of a via point, as a share of the body's size
-_TRAVEL = 0.2  # a large step of a contraction, as a share of the travel
-_NEAR = 0.3  # share of a large step within which limits are felt when a layout is pushed back
-_DAMPING = 0.1  # where the damping begins, as a share of the largest slope
-_LEAST, _STIFF = 1e-4, 1e3  # between these the damping stays
-_GOOD, _POOR = 0.6, 0.2  # shares of what a step promised, above which the damping falls and below which it rises
-
-_TRIES = 5
-_LIGHT = 0.1  # damping of contractions against that of the numbers of the layout
-_OVER = 30.0  # how much more the part of a tension beyond its limit weighs
-
-_PUSHES = 8
-
-_SCATTERED = 0.1  # those that add less than this share of the error are not
-
-_CLOSE = 2e-5  # what may be left of a limit [m]

@@ -6,6 +6,7 @@ from contextlib import closing
 from hydrostat.design.routes.bench import Trial
 from hydrostat.design.routes.growth import Growth, unlike
 from hydrostat.design.routes.layout import Layout
+from hydrostat.design.routes.search_rules import RULES
 
 
 def screen_sketches(
@@ -18,8 +19,8 @@ def screen_sketches(
     """
 
     def solve(layout: Layout) -> Trial | None:
-        trial = growth.bench.reach_poses(layout, None, iterations=_GLANCE, rough=True)
-        return trial and growth.refine_briefly(trial, directions=0, steps=_FIRST)
+        trial = growth.bench.reach_poses(layout, None, iterations=RULES.screen_ik_steps, rough=True)
+        return trial and growth.refine_briefly(trial, directions=0, steps=RULES.screen_steps)
 
     rough: list[Trial] = []
     least, idle = float("inf"), 0
@@ -29,20 +30,12 @@ def screen_sketches(
                 continue
             rough.append(trial)
             found(trial)
-            idle = 0 if trial.cost < (1 - _BETTER) * least else idle + 1
+            idle = 0 if trial.cost < (1 - RULES.screen_gain) * least else idle + 1
             least = min(least, trial.cost)
-            if idle >= _PATIENCE:
+            if idle >= RULES.screen_patience:
                 break
     kept = unlike(rough, count)
-    better = growth.refine_each(kept[:_KEPT], directions=0, steps=_SECOND)
+    better = growth.refine_each(kept[: RULES.screen_kept], directions=0, steps=RULES.screen_more_steps)
     for trial in better:
         found(trial)
-    return [*better, *kept[_KEPT:]]
-
-
-_GLANCE = 5  # steps of inverse kinematics before a sketch is refined
-_FIRST = 3  # steps of refinement of each
-_SECOND = 2  # more steps of the best ones
-_KEPT = 4  # sketches that get them
-_PATIENCE = 6  # sketches in a row that are no better end the screening
-_BETTER = 0.02  # a sketch that lowers the cost by less than this share is no better
+    return [*better, *kept[RULES.screen_kept :]]

@@ -14,6 +14,7 @@ from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.line_choice import Line, LineChoice
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.refine import pushed_back
+from hydrostat.design.routes.search_rules import RULES
 from hydrostat.given import Point
 
 
@@ -36,7 +37,9 @@ def sketches(
     choice = LineChoice(proposals, bare, lines, winches, cables)
     found = _choose(choice, bare, count)
     if bare.layout.constraints.two_way:  # a rough model finds other beginnings than one that knows the ways of winches
-        found += [layout for turned in _TURNED for layout in _choose(choice.with_reversed(turned), bare, count // 2)]
+        found += [
+            layout for turned in RULES.tried_ways for layout in _choose(choice.with_reversed(turned), bare, count // 2)
+        ]
     return found
 
 
@@ -44,7 +47,7 @@ def _choose(choice: LineChoice, bare: Trial, count: int) -> list[Layout]:
     """Layouts of the best sets of lines."""
     begun = sorted((choice.fill_set([], places) for places in choice.place_sets()), key=choice.cost)
     found: dict[tuple[int, ...], float] = {}
-    for chosen in begun[: _BEGUN * count]:
+    for chosen in begun[: RULES.improved_sets * count]:
         better = choice.exchange_lines(chosen)
         found[tuple(sorted(better))] = choice.cost(better)
     layouts = []
@@ -53,7 +56,7 @@ def _choose(choice: LineChoice, bare: Trial, count: int) -> list[Layout]:
     def rank(chosen: tuple[int, ...]) -> float:
         places = tuple(sorted({choice.lines[index].place for index in chosen}))
         seen[places] = seen.get(places, 0) + 1
-        return found[chosen] * (1.0 + _AGAIN * (seen[places] - 1))
+        return found[chosen] * (1.0 + RULES.same_place_penalty * (seen[places] - 1))
 
     ranks = {chosen: rank(chosen) for chosen in sorted(found, key=lambda one: found[one])}
     for chosen in sorted(ranks, key=lambda one: ranks[one]):
@@ -66,13 +69,13 @@ def _layout(proposals: Proposals, layout: Layout, lines: Sequence[Line]) -> Layo
     """A layout with these lines; None if they cannot be built."""
     for line in lines:
         layout = proposals.with_line(layout, line.place, line.points, reverse=line.reverse)
-    return pushed_back(layout, proposals.graph.region, _REACH * proposals.graph.size)
+    return pushed_back(layout, proposals.graph.region, RULES.sketch_reach * proposals.graph.size)
 
 
 def draw_lines(proposals: Proposals, ends: Sequence[Point]) -> Iterator[Line]:
     """Draw lines from each of a few winch places to each end [m], on each side."""
     graph = proposals.graph
-    places = _spread_points(graph.points[graph.winch_places], _PLACES)
+    places = _spread_points(graph.points[graph.winch_places], RULES.winch_places)
     costs = csr_array(
         (np.tile(graph.lengths * _shallow(proposals), 2), (np.append(*graph.edges.T), np.append(*graph.edges.T[::-1]))),
         shape=(len(graph.points),) * 2,
@@ -99,7 +102,9 @@ def _shallow(proposals: Proposals) -> Vector:
     depths = np.zeros(len(graph.points))
     depths[~graph.world] = graph.region.depths(graph.points[~graph.world])
     ends = np.maximum(depths[graph.edges].min(axis=1), 0.0)
-    return 1.0 + _INWARD * np.maximum(1.0 - ends / proposals.deepest, 0.0) ** 2 + _STILL * graph.still
+    return (
+        1.0 + RULES.rim_factor * np.maximum(1.0 - ends / proposals.deepest, 0.0) ** 2 + RULES.still_factor * graph.still
+    )
 
 
 def _spread_points(points: Points, count: int) -> Int[np.ndarray, " chosen"]:
@@ -119,13 +124,13 @@ def _beside(path: Route, proposals: Proposals, *, world: bool) -> Iterator[Route
     middle = _smooth(resample(inner, 0.5 * spacing))
     along = np.gradient(middle, axis=0)
     along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-12)
-    ramp = np.minimum(0.5 * np.arange(len(middle)), _FULL) * spacing
+    ramp = np.minimum(0.5 * np.arange(len(middle)), RULES.max_side_spacings) * spacing
     for side in _sides(along):
         reach = _reach(middle, side, ramp, proposals.graph.region)
-        wide = np.flatnonzero(reach >= _BESIDE * proposals.bench.constraints.cable_gap)
+        wide = np.flatnonzero(reach >= RULES.side_gaps * proposals.bench.constraints.cable_gap)
         # At the thin end of a limb the lines of both sides would meet: they end before it.
         end = wide[-1] + 1 if len(wide) and wide[-1] > 1 else len(middle)
-        for share, apart in _WAYS:
+        for share, apart in RULES.sides:
             moved = (middle + (share * reach)[:, None] * side)[:end]
             points = _inside(resample(moved, apart * spacing), proposals.graph.region)
             if points is not None:
@@ -145,7 +150,7 @@ def _reach(middle: Route, side: Route, ramp: Vector, region: Region) -> Vector:
 def _smooth(route: Route) -> Route:
     """A polyline, its ends kept, after some rounds of means of neighbors."""
     route = route.copy()
-    for _ in range(_ROUNDS):
+    for _ in range(RULES.smoothing_rounds):
         route[1:-1] = 0.25 * route[:-2] + 0.5 * route[1:-1] + 0.25 * route[2:]
     return route
 
@@ -154,7 +159,7 @@ def _inside(points: Route, region: Region) -> Route | None:
     """A line pushed to the clearance but for its first point; None where it cuts a corner or is too short."""
     points[1:] = region.push_inside(points[1:])
     apart = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    return points if len(apart) and apart.min() > _SHORT and region.holds(points) else None
+    return points if len(apart) and apart.min() > RULES.same_point and region.holds(points) else None
 
 
 def _sides(along: Route) -> list[Route]:
@@ -170,18 +175,3 @@ def _sides(along: Route) -> list[Route]:
         first[index] = across
     second = np.cross(along, first)
     return [first, -first, second, -second]
-
-
-_TURNED = (0, 3)  # winches whose ways are all tried while sets of reversed lines are chosen
-_PLACES = 24  # places where winches are thought of
-_BEGUN = 5  # sets that are gone over for each that is wanted
-_AGAIN = 0.2  # share by which each further set of lines from the same winch places counts as worse
-_INWARD = 3.0  # how much longer an edge at the rim counts
-_STILL = 100.0  # how much longer one in a still zone
-_ROUNDS = 6  # of smoothing
-_BESIDE = 0.7  # gaps between cables that a line is at least beside the middle where it ends
-_FULL = 2.0  # spacings that a line is moved beside the middle at most
-_SHORT = 1e-6  # points nearer than this [m] are one
-# shares of the way to the clearance, and of the spacing, the first of which does: finer where a corner is cut
-_WAYS = ((0.85, 1.0), (0.85, 0.5), (0.4, 0.5))
-_REACH = 0.03  # what is farther than this share of the body's size from a limit does not feel it

@@ -9,6 +9,7 @@ from hydrostat.design.routes.bench import Trial
 from hydrostat.design.routes.growth import Growth
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.refine import moves_of, pushed_back
+from hydrostat.design.routes.search_rules import RULES
 
 Hole = tuple[int, int]  # numbers of a cable and of a point of it
 
@@ -19,12 +20,12 @@ def remove_via_points(growth: Growth, trial: Trial) -> Trial:
     Each hole is sewn a little beside its mark, and each rubs: with fewer, less goes wrong. Holes are left out half of
     them at a time, fewer where that costs too much; one that fails alone is kept.
     """
-    worth = growth.proposals.options.simplicity * _HOLE
+    worth = growth.proposals.options.simplicity * RULES.hole_worth
     kept: set[bytes] = set()
     size: int | None = None
     while True:
         holes = [hole for hole in _by_cost(growth, trial, worth) if _key(trial.layout, hole) not in kept]
-        if not holes or len(kept) >= _FAILURES:
+        if not holes or len(kept) >= RULES.hole_failures:
             return trial
         size = -(-len(holes) // 2) if size is None else min(size, len(holes))
         chosen = holes[:size]
@@ -48,7 +49,7 @@ def _by_cost(growth: Growth, trial: Trial, worth: float) -> list[Hole]:
         if route.kept is not None or route.twin is not None or number in twins:
             continue
         for point in range(max(route.lead, 0) + 1, len(route.points) - 1):
-            if len(route.points) - 1 - route.lead < _FEWEST:
+            if len(route.points) - 1 - route.lead < RULES.min_points:
                 continue
             place, step = layout.place_of(number, point), _to_line(route.points[point - 1 : point + 2])
             square = trial.built_error**2
@@ -57,7 +58,7 @@ def _by_cost(growth: Growth, trial: Trial, worth: float) -> list[Hole]:
                 after = own - weight * (moves[:, place] @ step)
                 change = after - free @ (free.T @ (after - own))
                 square += float(change @ change - own @ own) - float(((weight[:, None] * columns[:, place]) ** 2).sum())
-            if square < ((1 + _HOPED * worth) * trial.built_error) ** 2:
+            if square < ((1 + RULES.hole_promise * worth) * trial.built_error) ** 2:
                 found.append((square, number, point))
     return [(number, point) for _, number, point in sorted(found)]
 
@@ -76,13 +77,15 @@ def _without(growth: Growth, trial: Trial, holes: Sequence[Hole], allowed: float
         route = routes[number]
         left = np.setdiff1d(np.arange(len(route.points)), [point for cable, point in holes if cable == number])
         points, new = route.points[left], np.flatnonzero(np.diff(left) > 1)
-        if len(points) - route.lead < _FEWEST or not region.sees(points[new], points[new + 1]).all():
+        if len(points) - route.lead < RULES.min_points or not region.sees(points[new], points[new + 1]).all():
             return None
         routes[number] = replace(route, points=points)
-    less = pushed_back(replace(trial.layout, routes=tuple(routes)), region, _NUDGE * growth.proposals.graph.size)
+    less = pushed_back(
+        replace(trial.layout, routes=tuple(routes)), region, RULES.hole_reach * growth.proposals.graph.size
+    )
     if less is None:
         return None
-    found = growth.bench.reach_poses(less, trial, iterations=_GLANCE, worst=allowed)
+    found = growth.bench.reach_poses(less, trial, iterations=RULES.hole_ik_steps, worst=allowed)
     return found if found is not None and found.cost <= allowed else None
 
 
@@ -90,11 +93,3 @@ def _key(layout: Layout, hole: Hole) -> bytes:
     """Mark of a hole that does not change where others of its cable go."""
     number, point = hole
     return number.to_bytes(2, "big") + layout.routes[number].points[point].tobytes()
-
-
-_GLANCE = 5  # steps of inverse kinematics that tell what a network without a hole misses
-_HOLE = 0.003  # a hole without which the cost is larger by less than this share does not earn its stitch
-_HOPED = 4.0  # holes that cost more than this multiple by the linear model are not tried
-_FAILURES = 4  # holes that had to be kept end it
-_FEWEST = 2  # points of the bare part of a cable
-_NUDGE = 0.005  # limits are felt within this share of the body's size where a hole was left out
