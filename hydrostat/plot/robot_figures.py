@@ -383,7 +383,7 @@ def _draw_moment(sheet: PictureSheet, at: Place, load: Load) -> tuple[Place, Pla
         color=Color.ERROR, linewidth=0.5, zorder=17.5, clip_on=False,
     )  # fmt: skip
     sheet.axes.add_patch(arrow)
-    return at, (float(at[0] + 0.7 * reach), float(at[1] + 0.7 * reach))
+    return at, np.array(at) + 0.7 * reach
 
 
 def name_loads(labels: Labels, robot: Robot, arrows: Mapping[str, tuple[Place, Place]]) -> None:
