@@ -17,20 +17,7 @@ import numpy as np
 from hydrostat.arrays import Float, Vector
 from hydrostat.geometry import Mesh, locate, read_mesh
 from hydrostat.given import Point
-from hydrostat.robot import (
-    Body,
-    Cable,
-    Marker,
-    Material,
-    Mount,
-    Pin,
-    Robot,
-    Source,
-    Winch,
-    gallery_folder,
-    load_robot,
-    surface_body,
-)
+from hydrostat.robot import Body, Cable, Marker, Material, Mount, Pin, Robot, Source, Winch, gallery_folder, load_robot
 
 HAND = "cupping_hand"
 
@@ -44,7 +31,7 @@ def hand_robot(element_size: float = ELEMENT_SIZE) -> Robot:
     if element_size == robot.body.element_size:
         return robot
     body = robot.body
-    finer = surface_body(
+    finer = Body.from_surface(
         body.content, file=body.file, unit=1e-3, material=body.material, element_size=element_size, volume=body.volume
     )
     return replace(robot, body=finer)

@@ -180,7 +180,7 @@ def print_check(element_size: float, repeats: int) -> None:
     from benchmark_bodies import hand_robot
 
     from hydrostat.geometry import Mesh, write_vtu
-    from hydrostat.robot import mesh_body, save_robot
+    from hydrostat.robot import Body, save_robot
 
     robot = hand_robot(element_size)
     mesh = robot.body.mesh
@@ -188,7 +188,7 @@ def print_check(element_size: float, repeats: int) -> None:
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "hand.vtu"
         file.write_bytes(write_vtu(Mesh(1e3 * mesh.nodes, mesh.elements), 1e3 * mesh.nodes, {}))
-        ready = mesh_body(file, unit=1e-3, material=robot.body.material, volume=robot.body.volume)
+        ready = Body.from_mesh(file, unit=1e-3, material=robot.body.material, volume=robot.body.volume)
         for name, saved in (("surface", robot), ("mesh", replace(robot, body=ready))):
             save_robot(saved, Path(folder) / name)
             kept = str(Path(folder) / "kept")

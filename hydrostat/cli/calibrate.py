@@ -66,10 +66,10 @@ def calibrate(
     chosen = _winch_indices(spools, loaded)
     file = control.EMULATED_CALIBRATION if port == control.EMULATED else control.CALIBRATION
     new = not (folder / file).exists()
-    calibration = control.usual_calibration(loaded) if new else control.read_calibration(folder, loaded, name=file)
+    calibration = control.Calibration.usual(loaded) if new else control.Calibration.read(folder, loaded, name=file)
     kind = port.partition(":")[0]
     with patiently(f"{kind}: computing expected tensions ..."):
-        model = control.winch_pulls(loaded)
+        model = control.WinchPull.of_robot(loaded)
 
     loads = [pull.at(np.arange(0.0, 0.1, 1e-4)).tolist() for pull in model]
 
@@ -112,7 +112,7 @@ def _take_up(
 
     def save(taken: "SlackCalibration") -> None:
         before, known[taken.motor.winch] = known[taken.motor.winch], taken.motor
-        control.write_calibration(file.parent, control.Calibration(tuple(known.values())), name=file.name)
+        control.Calibration(tuple(known.values())).write(file.parent, name=file.name)
         words = f"slack {1e3 * taken.slack:z.1f} mm, repeatability {1e3 * taken.apart:.2f} mm"
         if before.zero is not None:
             words += f"; zero moved {1e3 * abs(before.contraction(taken.motor.zero or 0.0)):.1f} mm since the last run"
@@ -131,7 +131,7 @@ def _measure(
 
     if not chosen:
         return []
-    calibration, curves = control.read_calibration(file.parent, robot, name=file.name), list["SpoolCurve"]()
+    calibration, curves = control.Calibration.read(file.parent, robot, name=file.name), list["SpoolCurve"]()
     link = control.BusLink(bus, robot.winches, calibration)
     try:
         link.identify()
@@ -148,11 +148,11 @@ def _measure(
                 print(f"{bus.kind}: {name}: {by_motor}, emulated ruler {1e3 * shown:z.1f} mm")
                 return shown
 
-            curves.append(control.measure_spool(link, motor, place, travel, read))
+            curves.append(control.SpoolCurve.measure(link, motor, place, travel, read))
             motors = [*calibration.motors]
             motors[place] = curves[-1].motor
             calibration = control.Calibration(tuple(motors))
-            control.write_calibration(file.parent, calibration, name=file.name)
+            calibration.write(file.parent, name=file.name)
             print(
                 f"{bus.kind}: {motor.winch}: spool radius {1e3 * curves[-1].motor.radius:.2f} mm at zero, "
                 f"max correction {1e3 * curves[-1].more:+.1f} mm, fit residual {1e3 * curves[-1].scatter:.2f} mm",

@@ -164,10 +164,10 @@ def _print_filled(robot: "Robot") -> None:
 def _full_contractions(robot: "Robot") -> list[Any]:
     """Contractions of all winches, for each pose."""
     from hydrostat.ik import IKOptions, solve_ik
-    from hydrostat.robot import require_no_drives
+    from hydrostat.robot import PinDrive
     from hydrostat.simulation import Simulation
 
-    require_no_drives(robot.drives, "stuffed bodies")
+    PinDrive.require_none(robot.drives, "stuffed bodies")
     simulation, once = Simulation(robot), IKOptions(restarts=0)
     return [solve_ik(simulation, pose, options=once).pose.contractions for pose in robot.poses.values()]
 

@@ -71,9 +71,9 @@ def firmware(
     if not loaded.winches:
         raise InputError(f"{robot}: no winches. Add winches and cables, or run `hydrostat design`.")
     if (folder / control.CALIBRATION).exists():
-        calibration = control.read_calibration(folder, loaded)
+        calibration = control.Calibration.read(folder, loaded)
     else:
-        calibration = control.usual_calibration(loaded)
+        calibration = control.Calibration.usual(loaded)
     chosen = known[motor or _motor_key(known, calibration)]
     usual, turns = chosen.counts if counts is None else counts, chosen.speed if rpm is None else rpm
     for name, value in (("counts", usual), ("rpm", turns)):
@@ -94,7 +94,7 @@ def firmware(
     print(f"{shown} counts per spool turn, no-load speed {turns:g} turns/min")
     images = control.build_images(loaded, given, boards, places, rpm=turns, stall=chosen.stall_current)
     if given != calibration:
-        print(f"Wrote {control.write_calibration(folder, given)}")
+        print(f"Wrote {given.write(folder)}")
     for number, (kind, image) in enumerate(zip(boards, images, strict=False), 1):
         _tell(kind, number, given)
         _flash(kind, image, ports[number - 1] if ports else None)

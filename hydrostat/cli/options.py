@@ -207,7 +207,7 @@ def moves(robot: "Robot", texts: Sequence[str] | None) -> dict[str, float]:
 
     A warning is printed for a drive beyond its limits.
     """
-    from hydrostat.robot import check_drive_values, parse_drive_value
+    from hydrostat.robot import PinDrive
 
     drives = {drive.name: drive for drive in robot.drives}
     found = {}
@@ -219,10 +219,10 @@ def moves(robot: "Robot", texts: Sequence[str] | None) -> dict[str, float]:
         if name in found:
             raise InputError(f'--move: "{name}" is given twice. Give each name once.')
         try:
-            found[name] = parse_drive_value(value, turns=drives[name].turns)
+            found[name] = PinDrive.parse_value(value, turns=drives[name].turns)
         except InputError as error:
             raise InputError(f"--move {text}: {error}") from None
-        for line in check_drive_values([drives[name]], [found[name]]):
+        for line in PinDrive.check_values([drives[name]], [found[name]]):
             print(f"warning: {line}")
     return found
 

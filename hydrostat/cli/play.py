@@ -82,8 +82,6 @@ def _play(kind: str, motors: "Motors", profile: "ContractionProfile", player: "P
     """Play, and say how it was stopped, if it was."""
     import numpy as np
 
-    from hydrostat import control
-
     back = float(np.abs(profile.values[-1] - profile.at(0.0)).max())
     if player.rounds != 1 and back > 1e-6:
         _say(
@@ -91,7 +89,7 @@ def _play(kind: str, motors: "Motors", profile: "ContractionProfile", player: "P
         )
     tell, newline = _progress(kind, motors, player, float(profile.times[-1]))
     try:
-        control.play(motors, profile, player, tell=tell)
+        player.run(motors, profile, tell=tell)
     except (KeyboardInterrupt, SystemExit) as stop:
         newline()
         _say(kind, f"stopped at {player.time:.2f} s; motors holding at {_places(motors)}")

@@ -209,14 +209,14 @@ def _move(
 def _profile(
     simulation: "Simulation", contractions: Mapping[str, float], ramp: str, play: Path | None
 ) -> "ContractionProfile":
-    from hydrostat.simulation import ContractionProfile, read_profile
+    from hydrostat.simulation import ContractionProfile
     from hydrostat.units import TIME
 
     if play is None:
         return ContractionProfile.ramp(simulation.as_contractions(contractions), positive("--ramp", ramp, TIME))
     if contractions:
         raise InputError("--play and --contract: mutually exclusive. Give one of them.")
-    profile = read_profile(play, simulation.robot)
+    profile = ContractionProfile.read(play, simulation.robot)
     for extreme in (profile.values.max(axis=0), profile.values.min(axis=0)):
         for winch, most in zip(simulation.robot.winches, extreme, strict=True):
             check_contraction(simulation.robot, winch.name, float(most), option=f"--play {play}:")

@@ -126,7 +126,6 @@ def train(
     except ModuleNotFoundError as error:
         raise HydrostatError(f"train: package {error.name} not found. Install it: {install_command('rl')}") from None
     from hydrostat.learning import load_model, save_model
-    from hydrostat.simulation import write_profile
     from hydrostat.units import LENGTH, parse_quantity, plural
 
     require_folder(out)
@@ -181,7 +180,7 @@ def train(
     policy = training.policy_of(trained, env, task=task, error=last.mean)
     print(f"Wrote {policy.save(out / 'actor.policy')} (runs without PyTorch)")
     moves = training.moves_of(judged, policy.act, wanted[0])
-    write_profile(out / "moves.csv", judged.robot, moves)
+    moves.write(out / "moves.csv", judged.robot)
     print(f"Wrote {out / 'moves.csv'}: motion for the first goal. Run it with hydrostat play")
     if networks is not None and env.portable:
         learned = training.portable_policy(trained, cast("ReachEnv", env), networks)

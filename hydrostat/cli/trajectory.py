@@ -142,12 +142,11 @@ def _write(
 ) -> list[Path]:
     from hydrostat.files import replace_file
     from hydrostat.plot import draw_trajectory, save_gif, save_png, trajectory_frames
-    from hydrostat.simulation import write_profile
 
     robot = simulation.robot
     frames, step = trajectory_frames(made)
     return [
-        write_profile(out / "trajectory.csv", robot, made.profile()),
+        made.profile().write(out / "trajectory.csv", robot),
         replace_file(out / "trajectory.json", (json.dumps(facts, indent=1) + "\n").encode()),
         save_png(draw_trajectory(robot, made), out / "trajectory.png"),
         save_gif(robot, frames, out / "trajectory.gif", step=step, width=width, progress=progress),

@@ -8,16 +8,7 @@ if TYPE_CHECKING:
     from hydrostat.control.arm_motors import arm_motors
     from hydrostat.control.bus import Bus, Port, steady
     from hydrostat.control.bus_link import BusLink, LinkLimits, LinkState
-    from hydrostat.control.calibration import (
-        CALIBRATION,
-        EMULATED_CALIBRATION,
-        Calibration,
-        WinchMotor,
-        emulated_calibration,
-        read_calibration,
-        usual_calibration,
-        write_calibration,
-    )
+    from hydrostat.control.calibration import CALIBRATION, EMULATED_CALIBRATION, Calibration, WinchMotor
     from hydrostat.control.dynamixel_bus import GOAL, TICK, DynamixelBus
     from hydrostat.control.emulated_feetech import EmulatedLine
     from hydrostat.control.emulated_servos import EmulatedChain, EmulatedServo, LiveChain
@@ -25,13 +16,13 @@ if TYPE_CHECKING:
     from hydrostat.control.firmware_build import board_kind, build_images, check_ports, flash, flash_command, on_boards
     from hydrostat.control.guard import TensionGuard, not_judged
     from hydrostat.control.link import Link, SimulatedLink
-    from hydrostat.control.model_tensions import TensionLookup, WinchPull, tensions_along, winch_pulls, winch_tensions
+    from hydrostat.control.model_tensions import TensionLookup, WinchPull, tensions_along, winch_tensions
     from hydrostat.control.motors import FASTEST, Motors
     from hydrostat.control.open_bus import EMULATED, add_cable_layers, check_port, open_bus, open_line
-    from hydrostat.control.player import Player, play
-    from hydrostat.control.spool_curve import SpoolCurve, fit_spool, measure_spool
+    from hydrostat.control.player import Player
+    from hydrostat.control.spool_curve import SpoolCurve
     from hydrostat.control.take_up import SlackCalibration, find_cable_zeros
-    from hydrostat.control.timeline import LONGEST, Key, Timeline, read_timeline, timeline_table
+    from hydrostat.control.timeline import LONGEST, Key, Timeline
 
 __all__ = [
     "CALIBRATION",
@@ -71,26 +62,16 @@ __all__ = [
     "build_images",
     "check_port",
     "check_ports",
-    "emulated_calibration",
     "find_cable_zeros",
-    "fit_spool",
     "flash",
     "flash_command",
-    "measure_spool",
     "not_judged",
     "on_boards",
     "open_bus",
     "open_line",
-    "play",
-    "read_calibration",
-    "read_timeline",
     "steady",
     "tensions_along",
-    "timeline_table",
-    "usual_calibration",
-    "winch_pulls",
     "winch_tensions",
-    "write_calibration",
 ]
 
 open_package(__name__)

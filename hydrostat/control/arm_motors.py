@@ -8,7 +8,7 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.control.bus_link import BusLink
-from hydrostat.control.calibration import emulated_calibration, read_calibration
+from hydrostat.control.calibration import Calibration
 from hydrostat.control.guard import TensionGuard
 from hydrostat.control.motors import Motors
 from hydrostat.control.open_bus import EMULATED, open_bus
@@ -40,7 +40,7 @@ def arm_motors(
         InputError: no such port or calibration.
         HydrostatError: a motor is silent, or wrong.
     """
-    found = emulated_calibration if port == EMULATED else read_calibration
+    found = Calibration.emulated if port == EMULATED else Calibration.read
     calibration = found(folder, robot)
     bus = open_bus(port, robot, calibration, pulls)
     link = BusLink(bus, robot.winches, calibration, log=log)

@@ -13,7 +13,7 @@ from hydrostat import units
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.files import read_stranger, replace_file
-from hydrostat.robot import Robot, require_no_drives
+from hydrostat.robot import PinDrive, Robot
 
 CALIBRATION = "motors.toml"
 EMULATED_CALIBRATION = "motors_emulated.toml"
@@ -124,7 +124,7 @@ class Calibration:
 
     def check(self, robot: Robot) -> None:
         """Check that these are the winches of a robot (InputError: another, one missing, a number twice, or drives)."""
-        require_no_drives(robot.drives, "motors")
+        PinDrive.require_none(robot.drives, "motors")
         wanted, given = [winch.name for winch in robot.winches], [spool.winch for spool in self.motors]
         for name in wanted:
             if name not in given:
@@ -154,74 +154,77 @@ class Calibration:
         """Radius at which each cable runs on [m]."""
         return np.array([spool.reach(taken) for spool, taken in zip(self.motors, contractions.tolist(), strict=True)])
 
+    @staticmethod
+    def read(folder: Path, robot: Robot, *, name: str = CALIBRATION) -> "Calibration":
+        """The motors of a robot folder (InputError: no such file, or a wrong one, with the line of what is wrong)."""
+        import tomllib
 
-def usual_calibration(robot: Robot) -> Calibration:
-    """Motors 1, 2, ... on the winches in their order, with the spools of robot.toml and zeros unknown."""
-    winches = enumerate(robot.winches, 1)
-    return Calibration(tuple(WinchMotor(winch=each.name, number=n, radius=each.spool_radius) for n, each in winches))
+        file = folder / name
+        if not file.exists():
+            raise InputError(f"{folder} has no {name}; `hydrostat calibrate` makes it")
+        try:
+            table = tomllib.loads(read_stranger(file, most=_MOST).decode())
+        except UnicodeDecodeError:
+            raise InputError(f"{file}: not UTF-8 text; save the file again as UTF-8") from None
+        except tomllib.TOMLDecodeError as error:
+            raise InputError(f"{file}: {error}") from None
+        except RecursionError:
+            raise InputError(f"{file}: brackets are nested too deep") from None
+        entries = table.get("motor")
+        if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
+            raise InputError(f"{file}: needs a [[motor]] for each winch")
+        motors = [_spool(entry, file) for entry in entries]
+        by_name = {spool.winch: spool for spool in motors}
+        for winch in by_name:
+            if sum(spool.winch == winch for spool in motors) > 1:
+                raise InputError(f'{file}: winch "{winch}" has more than one [[motor]]; keep one')
+        found = Calibration(tuple(by_name.values()))
+        found.check(robot)
+        return Calibration(tuple(by_name[winch.name] for winch in robot.winches))
 
+    @staticmethod
+    def usual(robot: Robot) -> "Calibration":
+        """Motors 1, 2, ... on the winches in their order, with the spools of robot.toml and zeros unknown."""
+        winches = enumerate(robot.winches, 1)
+        return Calibration(
+            tuple(WinchMotor(winch=each.name, number=n, radius=each.spool_radius) for n, each in winches)
+        )
 
-def emulated_calibration(folder: Path | None, robot: Robot) -> Calibration:
-    """Motors that are not there: as they were calibrated, or as motors.toml has them; without either they stand at 0.
+    @staticmethod
+    def emulated(folder: Path | None, robot: Robot) -> "Calibration":
+        """Emulated motors: as calibrated, or as in motors.toml; without either they stand at 0.
 
-    Raises:
-        InputError: a file that is wrong.
-    """
-    for name in (EMULATED_CALIBRATION, CALIBRATION):
-        if folder is not None and (folder / name).exists():
-            return read_calibration(folder, robot, name=name)
-    return usual_calibration(robot).assume_zeros()
+        Raises:
+            InputError: a file that is wrong.
+        """
+        for name in (EMULATED_CALIBRATION, CALIBRATION):
+            if folder is not None and (folder / name).exists():
+                return Calibration.read(folder, robot, name=name)
+        return Calibration.usual(robot).assume_zeros()
 
-
-def read_calibration(folder: Path, robot: Robot, *, name: str = CALIBRATION) -> Calibration:
-    """The motors of a robot folder (InputError: no such file, or a wrong one, with the line of what is wrong)."""
-    import tomllib
-
-    file = folder / name
-    if not file.exists():
-        raise InputError(f"{folder} has no {name}; `hydrostat calibrate` makes it")
-    try:
-        table = tomllib.loads(read_stranger(file, most=_MOST).decode())
-    except UnicodeDecodeError:
-        raise InputError(f"{file}: not UTF-8 text; save the file again as UTF-8") from None
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{file}: {error}") from None
-    except RecursionError:
-        raise InputError(f"{file}: brackets are nested too deep") from None
-    entries = table.get("motor")
-    if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
-        raise InputError(f"{file}: needs a [[motor]] for each winch")
-    motors = [_spool(entry, file) for entry in entries]
-    by_name = {spool.winch: spool for spool in motors}
-    for winch in by_name:
-        if sum(spool.winch == winch for spool in motors) > 1:
-            raise InputError(f'{file}: winch "{winch}" has more than one [[motor]]; keep one')
-    found = Calibration(tuple(by_name.values()))
-    found.check(robot)
-    return Calibration(tuple(by_name[winch.name] for winch in robot.winches))
-
-
-def write_calibration(folder: Path, calibration: Calibration, *, name: str = CALIBRATION) -> Path:
-    """Write the motors of a robot beside its robot.toml, whole or not at all; returns the path."""
-    known = any(spool.zero is not None for spool in calibration.motors)
-    told = "zero and curve are of this one robot" if known else "hydrostat calibrate finds where cables begin to pull"
-    lines = [f"# Which motor turns which winch; {told}.\n"]
-    for spool in calibration.motors:
-        lines += ["\n[[motor]]\n", f"winch = {json.dumps(spool.winch)}\n", f"number = {spool.number}\n"]
-        if spool.zero is not None:
-            lines.append(f"zero = {float(spool.zero)!r}  # angle with nothing taken in [rad]\n")
-        lines += [f"turns = {spool.turns}\n", f'radius = "{units.format_quantity(spool.radius, units.LENGTH)}"\n']
-        lines += [
-            f"current = {float(spool.current)!r}  # at most [A]\n",
-        ]
-        if spool.curve:
-            pairs = ", ".join(f"[{turned:.4f}, {taken:.6f}]" for turned, taken in spool.curve)
-            lines.append(f"curve = [{pairs}]  # angle turned [rad], cable taken in [m]\n")
-        if calibration.boards > 1:
-            lines.append(f"board = {spool.board}\n")
-        if spool.counts is not None:
-            lines.append(f"counts = {float(spool.counts)!r}  # of the encoder in a turn of the spool\n")
-    return replace_file(folder / name, "".join(lines).encode())
+    def write(self, folder: Path, *, name: str = CALIBRATION) -> Path:
+        """Write the motors of a robot beside its robot.toml, whole or not at all; returns the path."""
+        known = any(spool.zero is not None for spool in self.motors)
+        told = (
+            "zero and curve are of this one robot" if known else "hydrostat calibrate finds where cables begin to pull"
+        )
+        lines = [f"# Which motor turns which winch; {told}.\n"]
+        for spool in self.motors:
+            lines += ["\n[[motor]]\n", f"winch = {json.dumps(spool.winch)}\n", f"number = {spool.number}\n"]
+            if spool.zero is not None:
+                lines.append(f"zero = {float(spool.zero)!r}  # angle with nothing taken in [rad]\n")
+            lines += [f"turns = {spool.turns}\n", f'radius = "{units.format_quantity(spool.radius, units.LENGTH)}"\n']
+            lines += [
+                f"current = {float(spool.current)!r}  # at most [A]\n",
+            ]
+            if spool.curve:
+                pairs = ", ".join(f"[{turned:.4f}, {taken:.6f}]" for turned, taken in spool.curve)
+                lines.append(f"curve = [{pairs}]  # angle turned [rad], cable taken in [m]\n")
+            if self.boards > 1:
+                lines.append(f"board = {spool.board}\n")
+            if spool.counts is not None:
+                lines.append(f"counts = {float(spool.counts)!r}  # of the encoder in a turn of the spool\n")
+        return replace_file(folder / name, "".join(lines).encode())
 
 
 _MOST = 1_000_000

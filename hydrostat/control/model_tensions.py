@@ -1,4 +1,4 @@
-"""`TensionLookup`, `tensions_along`, `winch_pulls`: what motors should feel, by simulation."""
+"""`TensionLookup`, `tensions_along`, `WinchPull.of_robot`: what motors should feel, by simulation."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -38,6 +38,29 @@ class WinchPull:
     def stiffness(self, beyond: float) -> float:
         """Pull so far beyond where it is taut, by that way [N/m]."""
         return float(self.at(self.taut + beyond)) / beyond
+
+    @staticmethod
+    def of_robot(robot: Robot, most: float = 0.02) -> "tuple[WinchPull, ...]":
+        """Simulate each winch alone; return its tension curve up to `most` beyond the edge, where it goes taut [m]."""
+        simulation, found = Simulation(robot), []
+        for index, winch in enumerate(robot.winches):
+            slack = [
+                cable.slack / ratio
+                for cable, ratio in zip(robot.cables, robot.spool_ratios, strict=True)
+                if cable.winch == winch.name and ratio > 0
+            ]
+            taut, pose = min(slack, default=0.0), None
+            places, pulls = [-1.0, taut], [0.0, 0.0]
+            for taken in np.linspace(taut, min(taut + most, max(winch.travel, taut + 1e-3)), STEPS + 1)[1:].tolist():
+                contractions = np.zeros(len(robot.winches))
+                contractions[index] = taken
+                solved = simulation.solve(contractions, start=pose, strict=False)
+                if solved.result.converged:
+                    pose = solved
+                    places.append(taken)
+                    pulls.append(float(winch_tensions(robot, solved.tensions)[index]))
+            found.append(WinchPull(taut=taut, places=np.array(places), pulls=np.array(pulls)))
+        return tuple(found)
 
 
 class TensionLookup:
@@ -109,26 +132,3 @@ def winch_tensions(robot: Robot, tensions: Vector) -> Vector:
     for cable, ratio, tension in zip(robot.cables, robot.spool_ratios, tensions.tolist(), strict=True):
         pulls[cable.winch] += ratio * tension
     return np.array(list(pulls.values()))
-
-
-def winch_pulls(robot: Robot, most: float = 0.02) -> tuple[WinchPull, ...]:
-    """Simulate each winch alone; return its tension curve up to `most` beyond the edge, where it goes taut [m]."""
-    simulation, found = Simulation(robot), []
-    for index, winch in enumerate(robot.winches):
-        slack = [
-            cable.slack / ratio
-            for cable, ratio in zip(robot.cables, robot.spool_ratios, strict=True)
-            if cable.winch == winch.name and ratio > 0
-        ]
-        taut, pose = min(slack, default=0.0), None
-        places, pulls = [-1.0, taut], [0.0, 0.0]
-        for taken in np.linspace(taut, min(taut + most, max(winch.travel, taut + 1e-3)), STEPS + 1)[1:].tolist():
-            contractions = np.zeros(len(robot.winches))
-            contractions[index] = taken
-            solved = simulation.solve(contractions, start=pose, strict=False)
-            if solved.result.converged:
-                pose = solved
-                places.append(taken)
-                pulls.append(float(winch_tensions(robot, solved.tensions)[index]))
-        found.append(WinchPull(taut=taut, places=np.array(places), pulls=np.array(pulls)))
-    return tuple(found)

@@ -1,4 +1,4 @@
-"""`Player`: the playhead, and how it runs; `play`: contractions in time on motors, in real time."""
+"""`Player`: the playhead, and how it runs contractions in time on motors, in real time."""
 
 import time
 from collections.abc import Callable
@@ -64,56 +64,57 @@ class Player:
         else:
             self.time = self.time % seconds if seconds > 0 else 0.0
 
+    def run(
+        self,
+        motors: Motors,
+        profile: ContractionProfile,
+        *,
+        tell: Callable[[], None] = lambda: None,
+        clock: Callable[[], float] = time.monotonic,
+        wait: Callable[[float], None] = time.sleep,
+    ) -> None:
+        """Play contractions in time on motors, in real time; they hold at its end, on any error and when interrupted.
 
-def play(
-    motors: Motors,
-    profile: ContractionProfile,
-    player: Player,
-    *,
-    tell: Callable[[], None] = lambda: None,
-    clock: Callable[[], float] = time.monotonic,
-    wait: Callable[[float], None] = time.sleep,
-) -> None:
-    """Play contractions in time on motors, in real time; they hold at its end, on any error and when interrupted.
+        First they go to where the player begins, in a profile from 0 s to its last time. What the player is told
+        meanwhile counts at once: its speed, its rounds, to stop. `tell` is called after each command, the clock only
+        runs forward [s], `wait` lets so much time pass [s].
 
-    First they go to where the player begins, in a profile from 0 s to its last time. What the player is told meanwhile
-    counts at once: its speed, its rounds, to stop. `tell` is called after each command, the clock only runs forward
-    [s], `wait` lets so much time pass [s].
+        Raises:
+            InputError: a winch cannot take in what it should.
+            HydrostatError: of the link; or motors do not get to where they should be.
+        """
+        seconds = float(profile.times[-1])
 
-    Raises:
-        InputError: a winch cannot take in what it should.
-        HydrostatError: of the link; or motors do not get to where they should be.
-    """
-    seconds = float(profile.times[-1])
+        def drive(contractions: Vector) -> None:
+            if beyond := motors.ask(contractions):
+                raise InputError(beyond)
+            motors.drive(clock())
+            tell()
 
-    def drive(contractions: Vector) -> None:
-        if beyond := motors.ask(contractions):
-            raise InputError(beyond)
-        motors.drive(clock())
-        tell()
-
-    def arrive(contractions: Vector) -> None:
-        latest = (
-            clock() + float(np.abs(contractions - motors.places).max(initial=0.0)) / motors.fastest + ARRIVAL_TIMEOUT
-        )
-        drive(contractions)
-        while motors.is_moving:
-            if clock() > latest:
-                raise HydrostatError(f"{_slowest(motors)}; see what holds it")
-            wait(TICK)
+        def arrive(contractions: Vector) -> None:
+            latest = (
+                clock()
+                + float(np.abs(contractions - motors.places).max(initial=0.0)) / motors.fastest
+                + ARRIVAL_TIMEOUT
+            )
             drive(contractions)
+            while motors.is_moving:
+                if clock() > latest:
+                    raise HydrostatError(f"{_slowest(motors)}; see what holds it")
+                wait(TICK)
+                drive(contractions)
 
-    try:
-        player.play(seconds)
-        arrive(profile.at(player.time))
-        while player.playing:
-            player.advance(clock(), seconds)
-            drive(profile.at(player.time))
-            wait(TICK)
-        arrive(profile.at(player.time))
-    finally:
-        player.stop()
-        motors.hold()
+        try:
+            self.play(seconds)
+            arrive(profile.at(self.time))
+            while self.playing:
+                self.advance(clock(), seconds)
+                drive(profile.at(self.time))
+                wait(TICK)
+            arrive(profile.at(self.time))
+        finally:
+            self.stop()
+            motors.hold()
 
 
 def _slowest(motors: Motors) -> str:

@@ -1,4 +1,4 @@
-"""`measure_spool`: how much cable a spool takes in by its angle, by a mark on the cable and a ruler beside it."""
+"""`SpoolCurve.measure`: how much cable a spool takes in by its angle, by a mark on the cable and a ruler beside it."""
 
 import time
 from collections.abc import Callable
@@ -56,94 +56,97 @@ class SpoolCurve:
         apart = (self.fitted_lengths - self.fitted_lengths[0]) - (self.before - self.before[0])
         return float(apart[np.abs(apart).argmax()])
 
+    @staticmethod
+    def fit(motor: WinchMotor, turned: Vector, readings: Vector) -> "SpoolCurve":
+        """Fit a curve to readings of a ruler [m] at angles of a spool since its zero [rad].
 
-def measure_spool(
-    link: BusLink,
-    motor: WinchMotor,
-    place: int,
-    most: float,
-    read: Callable[[float], float],
-    *,
-    clock: Callable[[], float] = time.monotonic,
-    wait: Callable[[float], None] = time.sleep,
-) -> SpoolCurve:
-    """Let a winch take cable in step by step, and ask at each where the mark is; it then goes back to its zero.
+        The ruler may begin anywhere and count either way. Cable on cable lies further out, never further in: so the
+        curve is straight pieces between the angles, each at least as steep as the one before (least squares, none
+        negative).
 
-    Motors cannot measure this by themselves: they feel forces, and know no length. While somebody reads, motors stand
-    and are told nothing; each step is armed again.
+        Raises:
+            HydrostatError: readings that lie on no such curve, or on one far from the spool's radius.
+        """
+        from scipy.optimize import nnls
 
-    Args:
-        link: to all motors, identified and calibrated.
-        motor: calibrated motor of this winch.
-        place: index of the winch among the motors.
-        most: cable to take in at most [m], of the winch's travel.
-        read: given what the cable should have taken in [m], asks where the mark is on the ruler [m].
-        clock: monotonic clock [s].
-        wait: lets so much time pass [s].
-
-    Raises:
-        HydrostatError: of the link; a body so stiff that the motor takes too little in; or readings that are no curve.
-    """
-    turned, readings, taken = list[float](), list[float](), 0.0
-    try:
-        for goal in np.linspace(0.0, most, STOPS).tolist():
-            there = _go(link, place, goal, clock, wait)
-            taken = float(link.read(clock())[place])
-            assert link.reading is not None
-            turned.append(motor.turns * (float(link.reading.angles[place]) - (motor.zero or 0.0)))
-            readings.append(read(taken))
-            if not there:
-                break
-        _go(link, place, 0.0, clock, wait)
-    finally:
-        link.stop()
-    if len(turned) < LEAST:
-        raise HydrostatError(
-            f"{motor.winch}: its motor stood after {1e3 * taken:.0f} of {1e3 * most:.0f} mm; let its cable "
-            f"off the body, or allow more than {motor.current:g} A in motors.toml, and begin again"
+        taken = (readings - readings[0]) * np.sign(readings[-1] - readings[0])
+        begins = turned[1:-1]
+        table = np.stack([np.ones_like(turned), -np.ones_like(turned), turned], axis=1)
+        table = np.hstack([table, np.maximum(turned[:, None] - begins, 0.0)])
+        found = motor.radius * nnls(table, taken / motor.radius)[0]
+        steps, radius = found[3:], float(found[2])
+        if not LIKELY[0] <= radius / motor.radius <= LIKELY[1]:
+            raise HydrostatError(
+                f"{motor.winch}: by the ruler its spool has a radius of {1e3 * radius:.1f} mm, not of "
+                f"{1e3 * motor.radius:.1f} mm; write millimeters, and look that the mark is on the cable of this winch"
+            )
+        angles = [float(begin) for begin, step in zip(begins, steps, strict=True) if step > 1e-9 and begin > 0]
+        angles.append(float(turned[-1]))
+        lengths = [radius * angle + float(steps @ np.maximum(angle - begins, 0.0)) for angle in angles]
+        try:
+            fitted = replace(motor, radius=radius, curve=tuple(zip(angles, lengths, strict=True)))
+        except InputError as error:
+            raise HydrostatError(f"readings of {error}; read them again") from None
+        curve = SpoolCurve(
+            motor=fitted, turned=turned, readings=taken + (found[1] - found[0]), before=_cable_length(motor, turned)
         )
-    return fit_spool(motor, np.array(turned), np.array(readings))
+        beside = np.abs(curve.readings - curve.fitted_lengths)
+        if (worst := float(beside.max())) > WITHIN:
+            raise HydrostatError(
+                f"{motor.winch}: reading {int(beside.argmax()) + 1} of {len(turned)} is "
+                f"{1e3 * worst:.1f} mm beside every "
+                "curve that a spool can have; begin this winch again"
+            )
+        return curve
 
+    @staticmethod
+    def measure(
+        link: BusLink,
+        motor: WinchMotor,
+        place: int,
+        most: float,
+        read: Callable[[float], float],
+        *,
+        clock: Callable[[], float] = time.monotonic,
+        wait: Callable[[float], None] = time.sleep,
+    ) -> "SpoolCurve":
+        """Let a winch take cable in step by step, and ask at each where the mark is; it then goes back to its zero.
 
-def fit_spool(motor: WinchMotor, turned: Vector, readings: Vector) -> SpoolCurve:
-    """Fit a curve to readings of a ruler [m] at angles of a spool since its zero [rad].
+        Motors cannot measure this by themselves: they feel forces, and know no length. While somebody reads, motors
+        stand and are told nothing; each step is armed again.
 
-    The ruler may begin anywhere and count either way. Cable on cable lies further out, never further in: so the curve
-    is straight pieces between the angles, each at least as steep as the one before (least squares, none negative).
+        Args:
+            link: to all motors, identified and calibrated.
+            motor: calibrated motor of this winch.
+            place: index of the winch among the motors.
+            most: cable to take in at most [m], of the winch's travel.
+            read: given what the cable should have taken in [m], asks where the mark is on the ruler [m].
+            clock: monotonic clock [s].
+            wait: lets so much time pass [s].
 
-    Raises:
-        HydrostatError: readings that lie on no such curve, or on one far from the spool's radius.
-    """
-    from scipy.optimize import nnls
-
-    taken = (readings - readings[0]) * np.sign(readings[-1] - readings[0])
-    begins = turned[1:-1]
-    table = np.stack([np.ones_like(turned), -np.ones_like(turned), turned], axis=1)
-    table = np.hstack([table, np.maximum(turned[:, None] - begins, 0.0)])
-    found = motor.radius * nnls(table, taken / motor.radius)[0]
-    steps, radius = found[3:], float(found[2])
-    if not LIKELY[0] <= radius / motor.radius <= LIKELY[1]:
-        raise HydrostatError(
-            f"{motor.winch}: by the ruler its spool has a radius of {1e3 * radius:.1f} mm, not of "
-            f"{1e3 * motor.radius:.1f} mm; write millimeters, and look that the mark is on the cable of this winch"
-        )
-    angles = [float(begin) for begin, step in zip(begins, steps, strict=True) if step > 1e-9 and begin > 0]
-    angles.append(float(turned[-1]))
-    lengths = [radius * angle + float(steps @ np.maximum(angle - begins, 0.0)) for angle in angles]
-    try:
-        fitted = replace(motor, radius=radius, curve=tuple(zip(angles, lengths, strict=True)))
-    except InputError as error:
-        raise HydrostatError(f"readings of {error}; read them again") from None
-    curve = SpoolCurve(
-        motor=fitted, turned=turned, readings=taken + (found[1] - found[0]), before=_cable_length(motor, turned)
-    )
-    beside = np.abs(curve.readings - curve.fitted_lengths)
-    if (worst := float(beside.max())) > WITHIN:
-        raise HydrostatError(
-            f"{motor.winch}: reading {int(beside.argmax()) + 1} of {len(turned)} is {1e3 * worst:.1f} mm beside every "
-            "curve that a spool can have; begin this winch again"
-        )
-    return curve
+        Raises:
+            HydrostatError: of the link; a body so stiff that the motor takes too little in; or readings that are no
+            curve.
+        """
+        turned, readings, taken = list[float](), list[float](), 0.0
+        try:
+            for goal in np.linspace(0.0, most, STOPS).tolist():
+                there = _go(link, place, goal, clock, wait)
+                taken = float(link.read(clock())[place])
+                assert link.reading is not None
+                turned.append(motor.turns * (float(link.reading.angles[place]) - (motor.zero or 0.0)))
+                readings.append(read(taken))
+                if not there:
+                    break
+            _go(link, place, 0.0, clock, wait)
+        finally:
+            link.stop()
+        if len(turned) < LEAST:
+            raise HydrostatError(
+                f"{motor.winch}: its motor stood after {1e3 * taken:.0f} of {1e3 * most:.0f} mm; let its cable "
+                f"off the body, or allow more than {motor.current:g} A in motors.toml, and begin again"
+            )
+        return SpoolCurve.fit(motor, np.array(turned), np.array(readings))
 
 
 def _cable_length(motor: WinchMotor, turned: Vector) -> Vector:

@@ -11,7 +11,7 @@ import numpy as np
 
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
-from hydrostat.simulation import ContractionProfile, ProfileTable, profile_text
+from hydrostat.simulation import ContractionProfile, ProfileTable
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,6 +78,39 @@ class Timeline:
         """Return a timeline with one key at another time [s]; it replaces a key at that time."""
         return self.without(index).with_key(replace(self.keys[index], time=time))
 
+    @staticmethod
+    def read(robot: Robot, name: str, content: bytes) -> "Timeline":
+        """Read a timeline from the table of a named file, its times counted from its first row.
+
+        The InputError of one that is too large, or no such table, names the line.
+        """
+        if len(content) > LARGEST:
+            raise InputError(f"{name}: a table may have {LARGEST / 1e6:g} MB, not {len(content) / 1e6:.1f} MB")
+        shown = PurePath(name.replace("\\", "/")).name or "table"
+        profile = ProfileTable.read(content, robot, name=shown).profile
+        times = profile.times - profile.times[0]
+        if times[-1] > LONGEST:
+            raise InputError(f"{shown}: it lasts {times[-1]:.1f} s; a timeline may last {LONGEST:g} s")
+        names = [winch.name for winch in robot.winches]
+        kept = _essential_rows(times, profile.values)
+        keys = tuple(
+            Key(time=float(times[row]), contractions=dict(zip(names, profile.values[row].tolist(), strict=True)))
+            for row in kept
+        )
+        try:
+            timeline = Timeline(keys=keys)
+        except InputError as error:
+            raise InputError(f"{shown}: {error}") from None
+        return replace(timeline, length=max(float(times[-1]), SHORTEST)) if len(keys) > 1 else timeline
+
+    def table(self, robot: Robot) -> bytes:
+        """Contractions in time as a CSV of seconds and millimeters; see `ProfileTable` (InputError: no keyframes)."""
+        if not self.keys:
+            raise InputError("there are no keyframes to export; turn the knobs and press Add")
+        profile = self.profile([winch.name for winch in robot.winches])
+        times = _times(self)
+        return ContractionProfile(times=times, values=np.array([profile.at(time) for time in times])).text(robot)
+
 
 SHORTEST, LONGEST = 0.1, 600.0  # no timeline is shorter, none longer [s]
 SAME = 5e-3  # keys closer in time than this [s] are one
@@ -86,40 +119,6 @@ MOST_KEYS = 2000  # no timeline has more
 
 STEP = 0.02  # a table is read along lines, so a smooth timeline is written in steps of this time [s]
 LARGEST = 4_000_000  # no table has more bytes
-
-
-def timeline_table(robot: Robot, timeline: Timeline) -> bytes:
-    """Contractions in time as a CSV of seconds and millimeters; see `ProfileTable` (InputError: no keyframes)."""
-    if not timeline.keys:
-        raise InputError("there are no keyframes to export; turn the knobs and press Add")
-    profile = timeline.profile([winch.name for winch in robot.winches])
-    times = _times(timeline)
-    return profile_text(robot, ContractionProfile(times=times, values=np.array([profile.at(time) for time in times])))
-
-
-def read_timeline(robot: Robot, name: str, content: bytes) -> Timeline:
-    """Read a timeline from the table of a named file, its times counted from its first row.
-
-    The InputError of one that is too large, or no such table, names the line.
-    """
-    if len(content) > LARGEST:
-        raise InputError(f"{name}: a table may have {LARGEST / 1e6:g} MB, not {len(content) / 1e6:.1f} MB")
-    shown = PurePath(name.replace("\\", "/")).name or "table"
-    profile = ProfileTable.read(content, robot, name=shown).profile
-    times = profile.times - profile.times[0]
-    if times[-1] > LONGEST:
-        raise InputError(f"{shown}: it lasts {times[-1]:.1f} s; a timeline may last {LONGEST:g} s")
-    names = [winch.name for winch in robot.winches]
-    kept = _essential_rows(times, profile.values)
-    keys = tuple(
-        Key(time=float(times[row]), contractions=dict(zip(names, profile.values[row].tolist(), strict=True)))
-        for row in kept
-    )
-    try:
-        timeline = Timeline(keys=keys)
-    except InputError as error:
-        raise InputError(f"{shown}: {error}") from None
-    return replace(timeline, length=max(float(times[-1]), SHORTEST)) if len(keys) > 1 else timeline
 
 
 def _times(timeline: Timeline) -> np.ndarray:

@@ -21,7 +21,7 @@ from hydrostat.design.watch import Better, Watch, unseen
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.given import check_type
 from hydrostat.progress import Progress, no_progress
-from hydrostat.robot import PoseTarget, Robot, require_no_drives
+from hydrostat.robot import PinDrive, PoseTarget, Robot
 from hydrostat.simulation import BodyPhysics
 
 
@@ -89,7 +89,7 @@ def find_network(
     """
     if not isinstance(robot, Robot):
         raise InputError(f"a network is found for a Robot, such as load_robot gives, not for {robot!r:.60}")
-    require_no_drives(robot.drives, "cable design")
+    PinDrive.require_none(robot.drives, "cable design")
     stated, told = assign_cable_sides(robot), progress or no_progress
     fitted = request.fit_robot(stated)
     if fitted.filled:

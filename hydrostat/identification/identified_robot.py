@@ -10,7 +10,7 @@ from hydrostat.identification.fit import FittedModel, fit_model
 from hydrostat.identification.kinds import named_model
 from hydrostat.identification.measurements import Measurements
 from hydrostat.identification.model import IdentificationModel
-from hydrostat.robot import Robot, require_no_drives
+from hydrostat.robot import PinDrive, Robot
 from hydrostat.units import MM
 
 UNKNOWN = 0.3
@@ -67,7 +67,7 @@ def identify(
     Raises:
         InputError: a robot with drives, an unknown kind, or measurements that do not fit the robot.
     """
-    require_no_drives(robot.drives, "identification")
+    PinDrive.require_none(robot.drives, "identification")
     model, assumed = named_model(robot, fit), start_of(named_model(robot, ()))
     count = len(measurements.commands)
     held_out = np.arange(2, count, 5) if count >= 10 else np.zeros(0, dtype=int)

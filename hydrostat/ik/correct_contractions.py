@@ -13,7 +13,7 @@ from hydrostat.ik.objectives.marker_target import named_targets
 from hydrostat.ik.objectives.pose_regularizer import ClosenessKind, PoseRegularizer
 from hydrostat.ik.search.problem import IKOptions
 from hydrostat.ik.solve_ik import solve_ik
-from hydrostat.robot import require_no_drives
+from hydrostat.robot import PinDrive
 from hydrostat.simulation import Simulation
 
 CORRECTION_DAMPING = 0.35
@@ -55,7 +55,7 @@ def correct_contractions(
             )
         if np.shape(seen[name]) != np.shape(targets[name]) or not np.isfinite(seen[name]).all():
             raise InputError(f'marker "{name}": measured position must be {len(targets[name])} finite numbers [m]')
-    require_no_drives(simulation.robot.drives, "corrections")
+    PinDrive.require_none(simulation.robot.drives, "corrections")
     moved = {name: np.subtract(place, reached.pose.markers[name]) for name, place in seen.items()}
     wanted = {name: tuple(np.subtract(to, moved.get(name, 0.0)).tolist()) for name, to in targets.items()}
     near = PoseRegularizer(pose=reached.pose, of=ClosenessKind.CONTRACTIONS, weight=damping)

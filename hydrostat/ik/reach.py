@@ -8,7 +8,7 @@ import shapely
 
 from hydrostat.arrays import Float, Points, Vector
 from hydrostat.errors import InputError
-from hydrostat.robot import Robot, require_no_drives
+from hydrostat.robot import PinDrive, Robot
 from hydrostat.simulation import Simulation, without_contact_friction
 from hydrostat.sobol import draw_sobol
 
@@ -104,7 +104,7 @@ def find_reach(
         InputError: a robot with drives, or without markers or winches; no number of poses, or other physics that
             remember the way.
     """
-    require_no_drives(simulation.robot.drives, "workspaces")
+    PinDrive.require_none(simulation.robot.drives, "workspaces")
     robot = without_contact_friction(simulation.robot)
     if robot is not simulation.robot:
         simulation = Simulation(robot, options=simulation.options)

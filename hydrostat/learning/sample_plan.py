@@ -11,7 +11,7 @@ import numpy as np
 from hydrostat.arrays import Float, Int, Vector
 from hydrostat.errors import InputError
 from hydrostat.learning.known_contact import contact_facts
-from hydrostat.robot import Contact, Robot, require_no_drives, robot_hash
+from hydrostat.robot import Contact, PinDrive, Robot, robot_hash
 from hydrostat.simulation import Simulation
 from hydrostat.sobol import draw_sobol
 
@@ -130,7 +130,7 @@ class SamplePlan:
             raise InputError(f"seed must be 0 or more, not {self.seed}")
         if not self.draws:
             raise InputError(f"no sampling strategy. Available: {', '.join(SamplingScheme)}.")
-        require_no_drives(self.robot.drives, "samples")
+        PinDrive.require_none(self.robot.drives, "samples")
         if not self.robot.winches or not self.robot.markers:
             raise InputError(f"robot {self.robot.name!r} needs at least one winch and one marker")
         limited = self.tension is not None and isfinite(self.tension) and self.tension > 0

@@ -12,7 +12,7 @@ from hydrostat.ik import IKResult, KeyPose, Trajectory
 from hydrostat.plot.frame import Frame
 from hydrostat.plot.labels import shorten
 from hydrostat.progress import Progress
-from hydrostat.robot import PoseTarget, Robot, require_no_drives
+from hydrostat.robot import PinDrive, PoseTarget, Robot
 from hydrostat.simulation import Equilibrium, Simulation
 from hydrostat.units import MILLIMETERS
 
@@ -41,7 +41,7 @@ class Film:
 def pose_stops(reached: Sequence[IKResult]) -> list[Stop]:
     """A stop for each pose that inverse kinematics found (InputError: a robot with drives)."""
     for found in reached:
-        require_no_drives(found.pose.robot.drives, "films")
+        PinDrive.require_none(found.pose.robot.drives, "films")
     return [
         Stop(
             name=shorten(found.pose_target.name),

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
-    from hydrostat.robot.body import Body, Source, mesh_body, outline_body, surface_body
+    from hydrostat.robot.body import Body, Source
     from hydrostat.robot.cable import Cable
     from hydrostat.robot.cable_side import Face
     from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape, closed_mesh
@@ -19,13 +19,7 @@ if TYPE_CHECKING:
     from hydrostat.robot.merge import comments, lost_comments, merged_text
     from hydrostat.robot.obstacle_lines import obstacle_lines, rims
     from hydrostat.robot.part import BodyPart
-    from hydrostat.robot.pin_drive import (
-        PinDrive,
-        check_drive_values,
-        check_radians,
-        parse_drive_value,
-        require_no_drives,
-    )
+    from hydrostat.robot.pin_drive import PinDrive
     from hydrostat.robot.read import FILE, GALLERY, RobotReader, gallery_folder, is_of_gallery, list_gallery, load_robot
     from hydrostat.robot.risks import SEWN_DEPTH, find_risks, limit_travels
     from hydrostat.robot.risks.body_risks import LEAST_ACROSS, LOCKING
@@ -77,8 +71,6 @@ __all__ = [
     "TablesFile",
     "Volume",
     "Winch",
-    "check_drive_values",
-    "check_radians",
     "closed_mesh",
     "comments",
     "describe_cable_side",
@@ -95,11 +87,7 @@ __all__ = [
     "load_robot",
     "lost_comments",
     "merged_text",
-    "mesh_body",
     "obstacle_lines",
-    "outline_body",
-    "parse_drive_value",
-    "require_no_drives",
     "rims",
     "robot_hash",
     "robot_text",
@@ -110,7 +98,6 @@ __all__ = [
     "sketch_mesh",
     "sketch_robot",
     "sketch_surface",
-    "surface_body",
     "with_values",
 ]
 

@@ -205,6 +205,133 @@ class Body:
         distances[beyond] = distance(self.outline.polygon, shapely_points(points[beyond]))
         return distances
 
+    @staticmethod
+    def from_mesh(
+        path: Path,
+        *,
+        unit: float,
+        material: Material,
+        size: float | None = None,
+        thickness: float | None = None,
+        volume: Volume = Volume.ELEMENT,
+    ) -> "Body":
+        """Body from a ready mesh, in units of `unit` meters (InputError.
+
+        The file cannot be read or holds no such mesh).
+        """
+        from hydrostat.files import read_stranger
+        from hydrostat.geometry import read_mesh
+
+        _check_lengths(size=size, thickness=thickness)
+        return Body(
+            source=Source.MESH,
+            file=path.name,
+            content=read_stranger(path, name=path.name),
+            material=material,
+            size=size,
+            thickness=thickness,
+            volume=volume,
+            mesh=read_mesh(path, unit=unit, size=size),
+        )
+
+    @staticmethod
+    def from_outline(
+        content: bytes,
+        *,
+        file: str,
+        material: Material,
+        element_size: float,
+        thickness: float,
+        volume: Volume = Volume.ELEMENT,
+        **reading: Unpack["DrawingReading"],
+    ) -> "Body":
+        """Body from a drawing or picture, by its name (InputError: no closed outline, or a number is out of range)."""
+        size, inner, drawing_part = (
+            reading.get("size"),
+            Inner(reading.get("inner", "holes")),
+            reading.get("drawing_part"),
+        )
+        part = drawing_part or 1
+        _check_lengths(size=size, element_size=element_size)
+
+        def make() -> Arrays:
+            from hydrostat.geometry import read_drawing, triangulate
+
+            drawing = read_drawing(content, name=file, size=size, inner=inner, part=part)
+            with _blaming_the_element_size():
+                mesh = triangulate(drawing.outline, element_size)
+            rings, marks = drawing.outline.rings, drawing.marks
+            return _mesh_arrays(mesh) | _number("ring", rings) | _number("mark", marks)
+
+        kept = keep_body(("outline", Path(file).suffix, size, str(inner), part, element_size), content, make)
+        exterior, *holes = _numbered_arrays("ring", kept)
+        return Body(
+            source=Source.OUTLINE,
+            file=file,
+            content=content,
+            material=material,
+            size=size,
+            element_size=element_size,
+            thickness=thickness,
+            volume=volume,
+            inner=inner,
+            drawing_part=drawing_part,
+            mesh=Mesh(kept["nodes"], kept["elements"]),
+            outline=Outline(exterior, tuple(holes)),
+            marks=_numbered_arrays("mark", kept),
+        )
+
+    @staticmethod
+    def from_surface(
+        content: bytes,
+        *,
+        file: str,
+        unit: float,
+        material: Material,
+        element_size: float,
+        size: float | None = None,
+        thickness: float | None = None,
+        volume: Volume = Volume.ELEMENT,
+    ) -> "Body":
+        """Body in space from a scan or CAD model (STL, OBJ, PLY, OFF or 3MF, by its name), healed if need be.
+
+        Args:
+            content: bytes of the file.
+            file: its name.
+            unit: meters that a coordinate counts, if the file does not say.
+            material: material of the body.
+            element_size: mean length of a mesh edge [m].
+            size: longest side of the bounding box [m] to scale to; None: as the file says.
+            thickness: must be None; refused as bodies in space have none.
+            volume: measure of volume change.
+
+        Raises:
+            InputError: the file holds no surface, it encloses no body, or a number is out of its range.
+        """
+        _check_lengths(size=size, element_size=element_size, thickness=thickness)
+
+        def make() -> Arrays:
+            from hydrostat.geometry import heal, read_surface, tetrahedralize
+
+            healing = heal(read_surface(content, name=file, unit=unit, size=size), resolution=element_size / 4)
+            with _blaming_the_element_size():
+                mesh = tetrahedralize(healing.surface, element_size)
+            return _mesh_arrays(mesh) | healing.arrays()
+
+        kept = keep_body(("surface", Path(file).suffix, unit, size, element_size), content, make)
+        return Body(
+            source=Source.SURFACE,
+            file=file,
+            content=content,
+            material=material,
+            size=size,
+            element_size=element_size,
+            thickness=thickness,
+            volume=volume,
+            mesh=Mesh(kept["nodes"], kept["elements"]),
+            healing=Healing.of_arrays(kept),
+        )
+
 
 def _rings(edges: Int[np.ndarray, "edges 2"]) -> Iterator[Int[np.ndarray, " _"]]:
     """Closed chains of directed edges."""
@@ -253,49 +380,6 @@ class DrawingReading(TypedDict, total=False):
     drawing_part: int | None
 
 
-def outline_body(
-    content: bytes,
-    *,
-    file: str,
-    material: Material,
-    element_size: float,
-    thickness: float,
-    volume: Volume = Volume.ELEMENT,
-    **reading: Unpack[DrawingReading],
-) -> Body:
-    """Body from a drawing or picture, by its name (InputError: no closed outline, or a number is out of range)."""
-    size, inner, drawing_part = reading.get("size"), Inner(reading.get("inner", "holes")), reading.get("drawing_part")
-    part = drawing_part or 1
-    _check_lengths(size=size, element_size=element_size)
-
-    def make() -> Arrays:
-        from hydrostat.geometry import read_drawing, triangulate
-
-        drawing = read_drawing(content, name=file, size=size, inner=inner, part=part)
-        with _blaming_the_element_size():
-            mesh = triangulate(drawing.outline, element_size)
-        rings, marks = drawing.outline.rings, drawing.marks
-        return _mesh_arrays(mesh) | _number("ring", rings) | _number("mark", marks)
-
-    kept = keep_body(("outline", Path(file).suffix, size, str(inner), part, element_size), content, make)
-    exterior, *holes = _numbered_arrays("ring", kept)
-    return Body(
-        source=Source.OUTLINE,
-        file=file,
-        content=content,
-        material=material,
-        size=size,
-        element_size=element_size,
-        thickness=thickness,
-        volume=volume,
-        inner=inner,
-        drawing_part=drawing_part,
-        mesh=Mesh(kept["nodes"], kept["elements"]),
-        outline=Outline(exterior, tuple(holes)),
-        marks=_numbered_arrays("mark", kept),
-    )
-
-
 def _mesh_arrays(mesh: Mesh) -> dict[str, np.ndarray]:
     return {"nodes": mesh.nodes, "elements": mesh.elements}
 
@@ -308,80 +392,3 @@ def _number(name: str, arrays: Iterable[np.ndarray]) -> dict[str, np.ndarray]:
 def _numbered_arrays(name: str, kept: Arrays) -> tuple[np.ndarray, ...]:
     """Arrays of names with a number."""
     return tuple(kept[f"{name} {number}"] for number in range(sum(key.startswith(f"{name} ") for key in kept)))
-
-
-def surface_body(
-    content: bytes,
-    *,
-    file: str,
-    unit: float,
-    material: Material,
-    element_size: float,
-    size: float | None = None,
-    thickness: float | None = None,
-    volume: Volume = Volume.ELEMENT,
-) -> Body:
-    """Body in space from the bytes of a scan or CAD model (STL, OBJ, PLY, OFF or 3MF, by its name), healed if need be.
-
-    Args:
-        content: bytes of the file.
-        file: its name.
-        unit: meters that a coordinate counts, if the file does not say.
-        material: material of the body.
-        element_size: mean length of a mesh edge [m].
-        size: longest side of the bounding box [m] to scale to; None: as the file says.
-        thickness: must be None; refused as bodies in space have none.
-        volume: measure of volume change.
-
-    Raises:
-        InputError: the file holds no surface, it encloses no body, or a number is out of its range.
-    """
-    _check_lengths(size=size, element_size=element_size, thickness=thickness)
-
-    def make() -> Arrays:
-        from hydrostat.geometry import heal, read_surface, tetrahedralize
-
-        healing = heal(read_surface(content, name=file, unit=unit, size=size), resolution=element_size / 4)
-        with _blaming_the_element_size():
-            mesh = tetrahedralize(healing.surface, element_size)
-        return _mesh_arrays(mesh) | healing.arrays()
-
-    kept = keep_body(("surface", Path(file).suffix, unit, size, element_size), content, make)
-    return Body(
-        source=Source.SURFACE,
-        file=file,
-        content=content,
-        material=material,
-        size=size,
-        element_size=element_size,
-        thickness=thickness,
-        volume=volume,
-        mesh=Mesh(kept["nodes"], kept["elements"]),
-        healing=Healing.of_arrays(kept),
-    )
-
-
-def mesh_body(
-    path: Path,
-    *,
-    unit: float,
-    material: Material,
-    size: float | None = None,
-    thickness: float | None = None,
-    volume: Volume = Volume.ELEMENT,
-) -> Body:
-    """Body from a ready mesh, in units of `unit` meters (InputError: the file cannot be read or holds no such mesh)."""
-    from hydrostat.files import read_stranger
-    from hydrostat.geometry import read_mesh
-
-    _check_lengths(size=size, thickness=thickness)
-    return Body(
-        source=Source.MESH,
-        file=path.name,
-        content=read_stranger(path, name=path.name),
-        material=material,
-        size=size,
-        thickness=thickness,
-        volume=volume,
-        mesh=read_mesh(path, unit=unit, size=size),
-    )

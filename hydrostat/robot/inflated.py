@@ -8,7 +8,7 @@ import numpy as np
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.given import LONGEST_NAME, Point
-from hydrostat.robot.body import Body, surface_body
+from hydrostat.robot.body import Body
 from hydrostat.robot.body_cache import Arrays, keep_body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.cable_side import Face
@@ -100,7 +100,7 @@ def _blown_up(body: Body, element_size: float | None) -> Body:
     counts = [len(ring) for ring in outline.rings]
     content = b"".join(ring.tobytes() for ring in outline.rings)
     kept = keep_body(("inflated", counts, thickness, spacing), content, make)
-    inflated = surface_body(
+    inflated = Body.from_surface(
         write_ply(Surface(kept["vertices"], kept["triangles"])),
         file="inflated.ply",
         unit=1e-3,

@@ -112,6 +112,42 @@ class PinDrive:
         first = np.cross(axis, arms)
         return first, np.cross(axis, first)
 
+    @staticmethod
+    def require_none(drives: "Sequence[PinDrive]", what: str) -> None:
+        """Reject a robot with drives where only its winches are controls (InputError: it has one)."""
+        if drives:
+            raise InputError(f'drives, such as "{drives[0].name}", are not available in {what}. Remove them.')
+
+    @staticmethod
+    def check_values(drives: "Sequence[PinDrive]", values: Iterable[float]) -> list[str]:
+        """Drives out of their limits, in words; empty where none is."""
+        hair = 1e-9  # Tolerance for rounding errors [rad or m]
+        told = []
+        for drive, value in zip(drives, values, strict=True):
+            low, high = drive.limits
+            if not low - hair <= value <= high + hair:
+                between = f"{drive.format_value(low)} to {drive.format_value(high)}"
+                told.append(f"drive {drive.name}: {drive.format_value(value)} is outside its range ({between})")
+        return told
+
+    @staticmethod
+    def check_radians(drives: "Sequence[PinDrive]", values: Vector) -> None:
+        """Reject angles that are degrees (InputError: more than a turn)."""
+        for drive, value in zip(drives, values, strict=True):
+            if drive.turns and abs(value) > _LARGEST_TURN:
+                raise InputError(
+                    f'the angle of drive "{drive.name}", {value:g} rad, is more than a turn; angles are in radians: '
+                    "30 degrees are 0.5236"
+                )
+
+    @staticmethod
+    def parse_value(text: str, *, turns: bool) -> float:
+        """Angle [rad] or travel [m] of a text such as "30 deg" or "-5 mm" (InputError: it is none)."""
+        bare = text.strip()
+        sign = -1.0 if bare.startswith("-") else 1.0
+        value = units.parse_quantity(bare.removeprefix("-"), units.ANGLE if turns else units.LENGTH)
+        return sign * (math.radians(value) if turns else value)
+
 
 def check_drives(
     drives: Sequence[PinDrive], pins: Sequence[Pin], winches: Sequence[Winch], cables: Sequence[Cable], dim: int
@@ -136,49 +172,13 @@ def check_drives(
             raise InputError(f'drive[{index}]: moves no pin. Add drive = "{drive.name}" to a [[pin]].')
 
 
-def check_drive_values(drives: Sequence[PinDrive], values: Iterable[float]) -> list[str]:
-    """Drives out of their limits, in words; empty where none is."""
-    hair = 1e-9  # Tolerance for rounding errors [rad or m]
-    told = []
-    for drive, value in zip(drives, values, strict=True):
-        low, high = drive.limits
-        if not low - hair <= value <= high + hair:
-            between = f"{drive.format_value(low)} to {drive.format_value(high)}"
-            told.append(f"drive {drive.name}: {drive.format_value(value)} is outside its range ({between})")
-    return told
-
-
-def check_radians(drives: Sequence[PinDrive], values: Vector) -> None:
-    """Reject angles that are degrees (InputError: more than a turn)."""
-    for drive, value in zip(drives, values, strict=True):
-        if drive.turns and abs(value) > _LARGEST_TURN:
-            raise InputError(
-                f'the angle of drive "{drive.name}", {value:g} rad, is more than a turn; angles are in radians: '
-                "30 degrees are 0.5236"
-            )
-
-
-def require_no_drives(drives: Sequence[PinDrive], what: str) -> None:
-    """Reject a robot with drives where only its winches are controls (InputError: it has one)."""
-    if drives:
-        raise InputError(f'drives, such as "{drives[0].name}", are not available in {what}. Remove them.')
-
-
-def parse_drive_value(text: str, *, turns: bool) -> float:
-    """Angle [rad] or travel [m] of a text such as "30 deg" or "-5 mm" (InputError: it is none)."""
-    bare = text.strip()
-    sign = -1.0 if bare.startswith("-") else 1.0
-    value = units.parse_quantity(bare.removeprefix("-"), units.ANGLE if turns else units.LENGTH)
-    return sign * (math.radians(value) if turns else value)
-
-
 def _degrees(value: float) -> str:
     """Shortest text in degrees that reads back to an angle [rad]."""
     degrees = math.degrees(value)
     near = [degrees, math.nextafter(degrees, math.inf), math.nextafter(degrees, -math.inf)]
     tried = [f"{degrees:.{digits}g}" for digits in range(1, 18)] + [repr(each) for each in near]
     texts = [f"{units.plain(Decimal(each))} deg" for each in tried]
-    return next((text for text in texts if parse_drive_value(text, turns=True) == value), texts[-3])
+    return next((text for text in texts if PinDrive.parse_value(text, turns=True) == value), texts[-3])
 
 
 _LARGEST_TURN = 2 * math.pi

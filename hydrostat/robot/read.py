@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeGuard
 from hydrostat import units
 from hydrostat.errors import InputError
 from hydrostat.files import read_stranger, read_text
-from hydrostat.robot.body import Body, Source, mesh_body, outline_body, surface_body
+from hydrostat.robot.body import Body, Source
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.contact import ClosedMesh, Contact, Obstacle, closed_mesh
 from hydrostat.robot.element_kind import MaterialLaw
@@ -21,7 +21,7 @@ from hydrostat.robot.marker import Marker, Pin, PoseTarget
 from hydrostat.robot.material import FoamTerm, Material, Relaxation
 from hydrostat.robot.materials import get_material
 from hydrostat.robot.part import BodyPart, PartShape
-from hydrostat.robot.pin_drive import PinDrive, parse_drive_value
+from hydrostat.robot.pin_drive import PinDrive
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.rod import Rod
 from hydrostat.robot.tables_file import TablesFile
@@ -200,15 +200,15 @@ class RobotReader(TablesFile):
         if source is Source.MESH:
             if entry.element_size is not None:
                 self.fail("body.element_size", "a ready mesh has its own element size; remove the key")
-            make = partial(mesh_body, file, unit=unit)
+            make = partial(Body.from_mesh, file, unit=unit)
         else:
             self._need(entry, source)
             content = self.at(f"body.{source}", lambda: read_stranger(file, name=file.name))
             given = {"file": file.name, "element_size": entry.element_size}
             if source is Source.SURFACE:
-                make = partial(surface_body, content, unit=unit, **given)
+                make = partial(Body.from_surface, content, unit=unit, **given)
             else:
-                make = partial(outline_body, content, **given)
+                make = partial(Body.from_outline, content, **given)
         body = self.at(
             "body",
             lambda: make(
@@ -313,7 +313,7 @@ def _gravity(entry: Any, dim: int) -> tuple[float, ...] | None:
 
 def _drive_value(key: str, text: str, *, turns: bool) -> float:
     try:
-        return parse_drive_value(text, turns=turns)
+        return PinDrive.parse_value(text, turns=turns)
     except InputError as error:
         raise InputError(f"{key}: {error}") from None
 

@@ -7,7 +7,7 @@ from tempfile import TemporaryDirectory
 from hydrostat import units
 from hydrostat.errors import InputError
 from hydrostat.given import Point
-from hydrostat.robot.body import Body, Source, mesh_body, outline_body, surface_body
+from hydrostat.robot.body import Body, Source
 from hydrostat.robot.contact import Contact, Obstacle
 from hydrostat.robot.marker import Pin, PoseTarget
 from hydrostat.robot.part import BodyPart
@@ -104,7 +104,7 @@ def _mesh_scaled(robot: Robot, factor: float) -> Body:
     element_size = float(f"{factor * (body.element_size or 0.0):.12g}")
     thickness = None if body.thickness is None else float(f"{factor * body.thickness:.12g}")
     if body.source is Source.OUTLINE:
-        return outline_body(
+        return Body.from_outline(
             body.content,
             file=body.file,
             element_size=element_size,
@@ -115,11 +115,11 @@ def _mesh_scaled(robot: Robot, factor: float) -> Body:
         )
     unit = float(units.unit_factor(robot.length_unit, units.LENGTH))
     if body.source is Source.SURFACE:
-        return surface_body(body.content, file=body.file, unit=unit, element_size=element_size, **given)
+        return Body.from_surface(body.content, file=body.file, unit=unit, element_size=element_size, **given)
     with TemporaryDirectory() as folder:
         path = Path(folder) / body.file
         path.write_bytes(body.content)
-        return mesh_body(path, unit=unit, thickness=thickness, **given)
+        return Body.from_mesh(path, unit=unit, thickness=thickness, **given)
 
 
 def _drawn_size(body: Body) -> float:

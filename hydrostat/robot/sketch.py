@@ -5,7 +5,7 @@ from functools import partial
 import numpy as np
 
 from hydrostat.geometry import Inner, Outline, read_drawing, size_for, triangulate
-from hydrostat.robot.body import Body, outline_body
+from hydrostat.robot.body import Body
 from hydrostat.robot.marker import Marker, Pin, PoseTarget
 from hydrostat.robot.materials import get_material
 from hydrostat.robot.risks.body_risks import LEAST_ACROSS
@@ -69,7 +69,7 @@ def sketch_robot(
     outline, drawing_part = drawing.outline, drawing.part if drawing.part > 1 else None
     length, asked = element_size or _element_size(outline, nodes), bool(element_size or nodes)
     reading = {"size": size, "inner": inner, "drawing_part": drawing_part}
-    make = partial(outline_body, content, file=file, material=get_material(material), **reading)
+    make = partial(Body.from_outline, content, file=file, material=get_material(material), **reading)
     body = make(element_size=length, thickness=thickness or _round(outline.size / 7))
     most_nodes = 2000  # A sketch gets no more nodes than this for the sake of its thin limbs
     while not asked and (finer := finer_size(body, most_nodes)) is not None:

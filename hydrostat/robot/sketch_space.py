@@ -10,7 +10,7 @@ from hydrostat.arrays import Bool, Float, Int, Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry import Healing, Mesh, Outline, Solid, Surface, clearance, heal, locate, size_for
 from hydrostat.given import Point
-from hydrostat.robot.body import Body, Source, mesh_body
+from hydrostat.robot.body import Body, Source
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.marker import Marker, Pin, PoseTarget
 from hydrostat.robot.materials import get_material
@@ -105,7 +105,7 @@ def inflate_outline(outline: Outline, height: float) -> bytes:
 
 def sketch_mesh(path: Path, *, name: str, size: float | None = None, material: str = "flexfoam-it x") -> Robot:
     """Robot from a ready mesh of tetrahedra, in mm unless a size [m] is given (InputError: no mesh in space)."""
-    body = mesh_body(path, unit=1e-3, material=get_material(material), size=size)
+    body = Body.from_mesh(path, unit=1e-3, material=get_material(material), size=size)
     _check_scale(body.mesh.size, size)
     return _first_robot(body, name)
 

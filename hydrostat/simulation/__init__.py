@@ -11,14 +11,7 @@ if TYPE_CHECKING:
     from hydrostat.simulation.branches.find_equilibria import Multistability, find_equilibria
     from hydrostat.simulation.branches.loading_paths import friction_hysteresis
     from hydrostat.simulation.cable_sensitivities import CableSensitivities, cable_sensitivities
-    from hydrostat.simulation.contraction_profile import (
-        ContractionProfile,
-        ProfileTable,
-        csv_text,
-        profile_text,
-        read_profile,
-        write_profile,
-    )
+    from hydrostat.simulation.contraction_profile import ContractionProfile, ProfileTable, csv_text
     from hydrostat.simulation.controls import Contractions, contraction_values
     from hydrostat.simulation.equilibrium import Equilibrium, check_pose, largest_distance
     from hydrostat.simulation.filled import filled_motion, is_filled_motion_fast
@@ -72,8 +65,6 @@ __all__ = [
     "not_converged",
     "obstacle_forces",
     "obstacles_in_pose",
-    "profile_text",
-    "read_profile",
     "require_static_obstacles",
     "rests_at_first",
     "with_obstacles",
@@ -81,7 +72,6 @@ __all__ = [
     "without_contact_friction",
     "write_motion",
     "write_pose",
-    "write_profile",
 ]
 
 open_package(__name__)

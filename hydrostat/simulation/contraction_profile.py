@@ -68,6 +68,30 @@ class ContractionProfile:
             share = share * share * (3 - 2 * share)
         return (1 - share) * self.values[place] + share * self.values[place + 1]
 
+    @staticmethod
+    def read(path: Path, robot: Robot) -> "ContractionProfile":
+        """Read a profile from a `ProfileTable`.
+
+        Raises:
+            InputError: the file cannot be read, or is no such table; the text names the line.
+        """
+        return ProfileTable.open(path, robot).profile
+
+    def write(self, path: Path, robot: Robot) -> Path:
+        """Write a profile as `ContractionProfile.read` reads it, whole or not at all; returns its path.
+
+        A gentle one loses that.
+        """
+        return replace_file(path, self.text(robot))
+
+    def text(self, robot: Robot) -> bytes:
+        """Write a profile as the bytes of a `ProfileTable`; a gentle one becomes linear."""
+        rows = zip(self.times, 1e3 * self.values + 0.0, strict=True)
+        return csv_text(
+            [TIME, *(f"{winch.name}{MILLIMETERS}" for winch in robot.winches)],
+            ([f"{time:.15g}", *(f"{value:.9g}" for value in row)] for time, row in rows),
+        )
+
 
 def check_profile(profile: object, robot: Robot) -> None:
     """Check that a motion can be played by a profile (InputError: it is none, or one of another robot)."""
@@ -160,29 +184,6 @@ def _column(head: str, winches: Sequence[str]) -> str:
     """Winch that a column is of, if it is of one; else its head."""
     bare = head.removesuffix(MILLIMETERS)
     return bare if head not in winches and bare in winches else head
-
-
-def profile_text(robot: Robot, profile: ContractionProfile) -> bytes:
-    """Write a profile as the bytes of a `ProfileTable`; a gentle one becomes linear."""
-    rows = zip(profile.times, 1e3 * profile.values + 0.0, strict=True)
-    return csv_text(
-        [TIME, *(f"{winch.name}{MILLIMETERS}" for winch in robot.winches)],
-        ([f"{time:.15g}", *(f"{value:.9g}" for value in row)] for time, row in rows),
-    )
-
-
-def read_profile(path: Path, robot: Robot) -> ContractionProfile:
-    """Read a profile from a `ProfileTable`.
-
-    Raises:
-        InputError: the file cannot be read, or is no such table; the text names the line.
-    """
-    return ProfileTable.open(path, robot).profile
-
-
-def write_profile(path: Path, robot: Robot, profile: ContractionProfile) -> Path:
-    """Write a profile as `read_profile` reads it, whole or not at all; returns its path. A gentle one loses that."""
-    return replace_file(path, profile_text(robot, profile))
 
 
 def csv_text(head: Sequence[str], rows: Iterable[Iterable[str]]) -> bytes:

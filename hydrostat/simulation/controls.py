@@ -6,7 +6,7 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
-from hydrostat.robot import Robot, check_radians
+from hydrostat.robot import PinDrive, Robot
 from hydrostat.units import plural
 
 Contractions = Mapping[str, float] | Sequence[float] | Vector
@@ -53,7 +53,7 @@ def contraction_values(robot: Robot, given: Contractions) -> Vector:
     if not np.isfinite(values).all():
         raise InputError("a contraction is not a finite number")
     _check_meters(robot, values[: len(robot.winches)])
-    check_radians(robot.drives, values[len(robot.winches) :])
+    PinDrive.check_radians(robot.drives, values[len(robot.winches) :])
     return values
 
 

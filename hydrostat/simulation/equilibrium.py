@@ -11,7 +11,7 @@ from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh, find_crossings
 from hydrostat.mechanics import NewtonResult
 from hydrostat.painters import draw_record, html_repr
-from hydrostat.robot import Robot, check_drive_values
+from hydrostat.robot import PinDrive, Robot
 from hydrostat.simulation.mesh_error import WORTH_A_NOTE, estimate_stiffening
 from hydrostat.simulation.strain import find_overstrain, node_strains, node_stresses
 
@@ -57,7 +57,7 @@ class Equilibrium:
         told = []
         if not self.result.converged:
             told.append(f"no equilibrium: {self.result.reason}")
-        told += beyond_travel(self.robot, self.contractions) + check_drive_values(self.robot.drives, self.drives)
+        told += beyond_travel(self.robot, self.contractions) + PinDrive.check_values(self.robot.drives, self.drives)
         if self.result.buckled:
             told.append("buckled: a mirror-image pose is equally likely")
         if self.result.converged and not self.result.stable:

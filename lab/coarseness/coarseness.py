@@ -15,7 +15,7 @@ from benchmark_bodies import ELEMENT_SIZE, hand_robot
 from machine import machine
 
 from hydrostat.geometry import Thickness
-from hydrostat.robot import LEAST_ACROSS, Robot, Source, gallery_folder, list_gallery, load_robot, outline_body
+from hydrostat.robot import LEAST_ACROSS, Body, Robot, Source, gallery_folder, list_gallery, load_robot
 from hydrostat.simulation import Simulation
 
 TAKEN_IN = 0.015
@@ -28,7 +28,7 @@ def drawn(name: str, finer: float) -> Robot:
     body = robot.body
     assert body.element_size is not None
     assert body.thickness is not None
-    finer_body = outline_body(
+    finer_body = Body.from_outline(
         body.content,
         file=body.file,
         material=body.material,

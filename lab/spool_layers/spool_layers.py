@@ -14,7 +14,7 @@ import numpy as np
 from machine import machine
 
 import hydrostat as hs
-from hydrostat.control import Calibration, add_cable_layers, fit_spool, usual_calibration
+from hydrostat.control import Calibration, SpoolCurve, add_cable_layers
 
 STOPS, RULER = 7, 5e-4
 
@@ -25,7 +25,7 @@ def measured(known: Calibration, true: Calibration, travels: list[float]) -> Cal
     for motor, hidden, travel in zip(known.motors, true.motors, travels, strict=True):
         turned = np.array([motor.angle(goal) for goal in np.linspace(0.0, travel, STOPS).tolist()])
         read = np.array([RULER * round(hidden.contraction(angle) / RULER) for angle in turned.tolist()])
-        found.append(fit_spool(motor, turned, read).motor)
+        found.append(SpoolCurve.fit(motor, turned, read).motor)
     return Calibration(tuple(found))
 
 
@@ -35,7 +35,7 @@ def main() -> None:
     parser.add_argument("robot")
     folder = parser.parse_args().robot
     robot = hs.load_robot(folder)
-    known = usual_calibration(robot).assume_zeros()
+    known = Calibration.usual(robot).assume_zeros()
     true = add_cable_layers(known)
     curves = measured(known, true, [winch.travel for winch in robot.winches])
     simulation = hs.Simulation(robot)

@@ -37,6 +37,7 @@ from hydrostat.control import (
     GOAL,
     TICK,
     BusLink,
+    Calibration,
     DynamixelBus,
     EmulatedChain,
     EmulatedLine,
@@ -44,7 +45,6 @@ from hydrostat.control import (
     Motors,
     open_line,
 )
-from hydrostat.control import usual_calibration as usual
 from hydrostat.errors import HydrostatError
 from hydrostat.learning import load_model
 from hydrostat.robot import Contact, Robot
@@ -222,7 +222,7 @@ def measure(robot: Robot, way: CommandMapper, known: HandMap, given: argparse.Na
     )
     work.start()
     line, glove = ours.recv()
-    calibration = usual(robot).assume_zeros()
+    calibration = Calibration.usual(robot).assume_zeros()
     come_first()
     bus = DynamixelBus(open_line(line, baud), [motor.number for motor in calibration.motors])
     link = BusLink(bus, robot.winches, calibration)

@@ -1,7 +1,7 @@
 """A flat robot that cannot be sewn."""
 
 import hydrostat as hs
-from hydrostat.robot import MATERIALS, outline_body
+from hydrostat.robot import MATERIALS, Body
 
 _PAGE = (
     '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="100mm" viewBox="0 0 100 100">'
@@ -11,7 +11,7 @@ _PAGE = (
 
 def near_the_edge() -> hs.Robot:
     """A square of 100 mm with two cables whose last holes are half a millimeter from its edge."""
-    body = outline_body(
+    body = Body.from_outline(
         _PAGE.encode(), file="body.svg", material=MATERIALS["polyester fibre"], element_size=0.02, thickness=0.03
     )
     routes = (((-0.02, -0.01), (0.0495, 0.022)), ((-0.02, -0.01), (-0.0495, 0.02)))

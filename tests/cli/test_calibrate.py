@@ -9,16 +9,7 @@ import numpy as np
 import pytest
 from own_time import run_in_own_time
 
-from hydrostat.control import (
-    CALIBRATION,
-    EMULATED_CALIBRATION,
-    Calibration,
-    add_cable_layers,
-    emulated_calibration,
-    read_calibration,
-    usual_calibration,
-    write_calibration,
-)
+from hydrostat.control import CALIBRATION, EMULATED_CALIBRATION, Calibration, add_cable_layers
 from hydrostat.robot import load_robot
 
 Run = Callable[..., tuple[int, str, str]]
@@ -38,7 +29,7 @@ def test_emulated_motors_are_calibrated_and_saved(copy: Path) -> None:
     assert all(line.startswith("emulated: ") for line in lines)
     assert sum("repeatability" in line for line in lines) == 3
     assert not any("warning:" in line for line in lines)
-    motors = read_calibration(copy, load_robot(copy), name=EMULATED_CALIBRATION).motors
+    motors = Calibration.read(copy, load_robot(copy), name=EMULATED_CALIBRATION).motors
     assert not (copy / CALIBRATION).exists(), "what was measured on real motors is another file"
     assert [motor.zero for motor in motors] == pytest.approx([0.0] * 3, abs=5e-4 / 0.006)
     page = (copy / "calibration.html").read_text("utf-8")
@@ -46,7 +37,7 @@ def test_emulated_motors_are_calibrated_and_saved(copy: Path) -> None:
     assert "Nothing stands out." in page
     assert page.count("<svg") == 4
     assert [bool(motor.curve) for motor in motors] == [True, False, False]
-    known = usual_calibration(load_robot(copy)).assume_zeros()
+    known = Calibration.usual(load_robot(copy)).assume_zeros()
     true, ends = add_cable_layers(known).motors[0], np.linspace(0.0, 0.06, 50).tolist()
     beside = [[true.contraction(each.angle(end)) - end for end in ends] for each in (known.motors[0], motors[0])]
     told, measured = np.abs(beside).max(axis=1)
@@ -78,13 +69,13 @@ def test_ports_that_are_none_leave_nothing(run: Run, copy: Path, port: str, told
 def test_emulated_motors_keep_a_file_of_their_own(copy: Path) -> None:
     """Oracle: zeros that are written, one for motors that were measured, one for those that are not there."""
     robot = load_robot(copy)
-    usual = usual_calibration(robot)
+    usual = Calibration.usual(robot)
 
     def at(zero: float) -> Calibration:
         return Calibration(tuple(replace(motor, zero=zero) for motor in usual.motors))
 
-    assert emulated_calibration(None, robot) == emulated_calibration(copy, robot) == at(0.0)
-    write_calibration(copy, at(1.0))
-    assert emulated_calibration(copy, robot) == at(1.0), "as real ones, until they are calibrated themselves"
-    write_calibration(copy, at(2.0), name=EMULATED_CALIBRATION)
-    assert (read_calibration(copy, robot), emulated_calibration(copy, robot)) == (at(1.0), at(2.0))
+    assert Calibration.emulated(None, robot) == Calibration.emulated(copy, robot) == at(0.0)
+    at(1.0).write(copy)
+    assert Calibration.emulated(copy, robot) == at(1.0), "as real ones, until they are calibrated themselves"
+    at(2.0).write(copy, name=EMULATED_CALIBRATION)
+    assert (Calibration.read(copy, robot), Calibration.emulated(copy, robot)) == (at(1.0), at(2.0))

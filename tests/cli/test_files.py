@@ -76,11 +76,11 @@ def test_columns_of_moves_tell_their_unit(starfish: Path) -> None:
     """Written with it, read with and without."""
     import numpy as np
 
-    from hydrostat.simulation import ContractionProfile, ProfileTable, profile_text
+    from hydrostat.simulation import ContractionProfile, ProfileTable
 
     robot = load_robot(starfish)
     profile = ContractionProfile(times=np.array([0.0, 1.0]), values=np.array([[0.0, 0.0, 0.0], [0.01, 0.02, 0.0]]))
-    text = profile_text(robot, profile)
+    text = profile.text(robot)
     assert text.splitlines()[0] == b"time_s,right_mm,left_mm,feet_mm"
     for content in (text, text.replace(b"_mm", b"")):
         np.testing.assert_array_equal(ProfileTable.read(content, robot, name="a.csv").profile.values, profile.values)

@@ -11,7 +11,7 @@ from PIL import Image
 
 import hydrostat as hs
 from hydrostat.ik import IKOptions, IKStatus, TrajectoryOptions, solve_ik_trajectory
-from hydrostat.simulation import read_profile
+from hydrostat.simulation import ContractionProfile
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -38,7 +38,7 @@ def test_files_are_what_the_library_finds(run: Run, starfish: Path, tmp_path: Pa
     keyframes = [robot.poses["star_jump"], hs.Keyframe(target=simulation.rest, name="rest")]
     found = hs.solve_ik_trajectory(simulation, keyframes, speed=0.1, acceleration=0.5)
     assert found.lines()[-3] in out
-    profile = read_profile(tmp_path / "out" / "trajectory.csv", robot)
+    profile = ContractionProfile.read(tmp_path / "out" / "trajectory.csv", robot)
     assert profile.times == pytest.approx(found.times, rel=1e-8)
     assert profile.values == pytest.approx(found.contractions, abs=1e-9)
     facts = json.loads((tmp_path / "out" / "trajectory.json").read_text())
@@ -62,7 +62,7 @@ def test_the_profile_can_be_played(run: Run, starfish: Path, tmp_path: Path) -> 
     played = ("--dynamic", "--play", file, "--time-step", "50ms", "--duration", "0.2s")
     assert run("simulate", starfish, *played, "--out", tmp_path / "motion")[0] == 0
     facts = json.loads((tmp_path / "motion" / "pose.json").read_text())
-    values = read_profile(file, hs.load_robot(starfish)).at(0.2)
+    values = ContractionProfile.read(file, hs.load_robot(starfish)).at(0.2)
     assert list(facts["contractions"].values()) == pytest.approx(values.tolist(), abs=1e-9)
     limits = json.loads((tmp_path / "way" / "trajectory.json").read_text())["acceleration_limit"]
     assert limits == {"right": None, "left": None, "feet": None}

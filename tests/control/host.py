@@ -20,7 +20,7 @@ time.sleep = lambda seconds: _sleep(seconds * SLOW)
 from emulation import NAMES, RADIUS  # noqa: E402
 
 from hydrostat.cli import one_interrupt  # noqa: E402
-from hydrostat.control import BusLink, Calibration, DynamixelBus, FeetechBus, Motors, Player, Port, WinchMotor, play  # noqa: E402
+from hydrostat.control import BusLink, Calibration, DynamixelBus, FeetechBus, Motors, Player, Port, WinchMotor  # noqa: E402
 from hydrostat.errors import HydrostatError  # noqa: E402
 from hydrostat.robot import Winch  # noqa: E402
 from hydrostat.simulation import ContractionProfile  # noqa: E402
@@ -52,7 +52,7 @@ def main(path: str, kind: str, event: str) -> None:
     profile = ContractionProfile(times=np.array([0.0, 0.2]), values=np.full((2, 3), far))
     try:
         with one_interrupt(""):
-            play(motors, profile, player, tell=tell)
+            player.run(motors, profile, tell=tell)
     finally:
         link.close()
     sys.stdout.write("played\n")

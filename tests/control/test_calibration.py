@@ -6,8 +6,7 @@ from pathlib import Path
 import pytest
 from builders import strip_robot
 
-from hydrostat.control import BusLink, Calibration, open_bus, read_calibration, usual_calibration
-from hydrostat.control.calibration import write_calibration
+from hydrostat.control import BusLink, Calibration, open_bus
 from hydrostat.errors import HydrostatError
 
 
@@ -17,17 +16,17 @@ def test_names_of_winches_are_kept_whatever_is_in_them(name: str, tmp_path: Path
     winches = tuple(replace(winch, name=name) for winch in robot.winches[:1])
     cables = tuple(replace(cable, winch=name) for cable in robot.cables[:1])
     robot = replace(robot, winches=winches, cables=cables)
-    kept = Calibration(tuple(replace(motor, zero=0.25) for motor in usual_calibration(robot).motors))
-    write_calibration(tmp_path, kept)
-    assert read_calibration(tmp_path, robot) == kept
-    assert "of this one robot" in write_calibration(tmp_path, kept).read_text("utf-8").splitlines()[0]
-    unknown = write_calibration(tmp_path, usual_calibration(robot)).read_text("utf-8")
+    kept = Calibration(tuple(replace(motor, zero=0.25) for motor in Calibration.usual(robot).motors))
+    kept.write(tmp_path)
+    assert Calibration.read(tmp_path, robot) == kept
+    assert "of this one robot" in kept.write(tmp_path).read_text("utf-8").splitlines()[0]
+    unknown = Calibration.usual(robot).write(tmp_path).read_text("utf-8")
     assert "hydrostat calibrate finds where cables begin to pull" in unknown.splitlines()[0]
 
 
 def test_emulated_motors_of_a_calibration_that_was_cut_short_say_so() -> None:
     robot = strip_robot(columns=4, rows=1)
-    calibration = usual_calibration(robot)  # no zero is known
+    calibration = Calibration.usual(robot)  # no zero is known
     link = BusLink(open_bus("emulated", robot, calibration, lambda taken: 9.0 * taken), robot.winches, calibration)
     link.identify()
     with pytest.raises(HydrostatError, match="motors cannot be armed: first calibrate them"):
@@ -41,5 +40,5 @@ def test_a_number_of_400_digits_is_refused(tmp_path: Path) -> None:
         text = "".join(f"{name} = {value}\n" for name, value in values.items())
         (tmp_path / "motors.toml").write_text(f'[[motor]]\nwinch = "left"\nradius = "5 mm"\n{text}')
         with pytest.raises(HydrostatError, match=f"{key} cannot be 999") as told:
-            read_calibration(tmp_path, strip_robot(columns=4, rows=1))
+            Calibration.read(tmp_path, strip_robot(columns=4, rows=1))
         assert len(str(told.value)) < 300

@@ -11,7 +11,7 @@ from firmware_bench import FIRMWARE, Board
 from typer.testing import CliRunner
 
 from hydrostat.cli.main import app
-from hydrostat.control import BusLink, Calibration, LinkState, WinchMotor, read_calibration, usual_calibration
+from hydrostat.control import BusLink, Calibration, LinkState, WinchMotor
 from hydrostat.control.firmware_build import BOARDS, build_firmware, firmware_settings, robot_word
 from hydrostat.control.firmware_bus import FirmwareBus
 from hydrostat.errors import HydrostatError, InputError
@@ -32,7 +32,7 @@ def robot() -> Robot:
 @pytest.fixture
 def motors(robot: Robot) -> Calibration:
     """Motor 2 on the first winch, motor 1 on the second."""
-    usual = usual_calibration(robot).motors
+    usual = Calibration.usual(robot).motors
     return Calibration(tuple(replace(each, number=3 - each.number, counts=COUNTS) for each in usual))
 
 
@@ -139,7 +139,7 @@ def test_firmware_is_built_shown_and_flashed(robot: Robot, tmp_path: Path, monke
     assert shown.exit_code == 0, shown.output
     assert "avrdude -p atmega2560 -c wiring" in shown.output
     assert not noted.exists()
-    assert all(each.counts == 8245.92 for each in read_calibration(folder, robot_of(folder)).motors)
+    assert all(each.counts == 8245.92 for each in Calibration.read(folder, robot_of(folder)).motors)
     gone = run(app, [*given, "--flash", "/dev/ttyACM7"])  # avrdude would try it for ever
     assert "/dev/ttyACM7 is not there; look at the plug" in str(gone.exception)
     port, *others = (tmp_path / name for name in ("ttyACM7", "ttyACM8", "ttyACM9"))
@@ -158,11 +158,11 @@ def test_firmware_is_built_shown_and_flashed(robot: Robot, tmp_path: Path, monke
     assert "board 2, uno: 1 motor, wiring" in both.output
     written = [line.split("flash:w:")[1] for line in noted.read_text().splitlines()]
     assert written == [f"{tmp_path}/two/board_{number}/winches.hex:i" for number in (1, 2)]
-    assert [each.board for each in read_calibration(folder, robot_of(folder)).motors] == [1, 1, 2]
+    assert [each.board for each in Calibration.read(folder, robot_of(folder)).motors] == [1, 1, 2]
     small = run(app, [*given, "--motor", "n20"])
     assert "3575.04 counts per spool turn" in small.output
     assert "micro metal gearmotor" in run(app, given).output  # what motors.toml tells is not called another motor
-    assert all(each.counts == 3575.04 for each in read_calibration(folder, robot_of(folder)).motors)
+    assert all(each.counts == 3575.04 for each in Calibration.read(folder, robot_of(folder)).motors)
 
 
 def robot_of(folder: Path) -> Robot:

@@ -10,8 +10,7 @@ import pytest
 from builders import strip_robot
 from firmware_bench import Board
 
-from hydrostat.control import BusLink, Calibration, LinkState, open_bus, read_calibration, usual_calibration
-from hydrostat.control.calibration import write_calibration
+from hydrostat.control import BusLink, Calibration, LinkState, open_bus
 from hydrostat.control.firmware_build import firmware_settings, on_boards, robot_word
 from hydrostat.control.firmware_bus import FirmwareBus
 from hydrostat.control.joined_bus import JoinedBus
@@ -45,7 +44,7 @@ def robot() -> Robot:
 @pytest.fixture
 def motors(robot: Robot) -> Calibration:
     """Two on the first board, one on the second, at zero."""
-    spread = on_boards(usual_calibration(robot), ["uno", "uno"])
+    spread = on_boards(Calibration.usual(robot), ["uno", "uno"])
     return Calibration(tuple(replace(each, counts=COUNTS, zero=0.0) for each in spread.motors))
 
 
@@ -161,7 +160,7 @@ def test_boards_in_another_order_are_named(robot: Robot, motors: Calibration, bo
 
 def test_damaged_motors_are_told(robot: Robot, tmp_path: Path) -> None:
     """Of two entries for a winch the last one was taken without a word."""
-    file = write_calibration(tmp_path, usual_calibration(robot))
+    file = Calibration.usual(robot).write(tmp_path)
     whole, winch = file.read_bytes(), robot.winches[0].name
     for content, words in (
         (2 * whole, f'winch "{winch}" has more than one'),
@@ -171,7 +170,7 @@ def test_damaged_motors_are_told(robot: Robot, tmp_path: Path) -> None:
     ):
         file.write_bytes(content)
         with pytest.raises(InputError, match=words):
-            read_calibration(tmp_path, robot)
+            Calibration.read(tmp_path, robot)
 
 
 def test_motors_are_spread_and_kept(robot: Robot, motors: Calibration, tmp_path: Path) -> None:
@@ -181,9 +180,9 @@ def test_motors_are_spread_and_kept(robot: Robot, motors: Calibration, tmp_path:
     assert {each.board for each in on_boards(motors, ["mega"]).motors} == {1}
     assert all(each.zero is None for each in on_boards(motors, ["mega"]).motors)
     with pytest.raises(InputError, match="3 motors, and --board uno bears 2"):
-        on_boards(usual_calibration(robot), ["uno"])
-    write_calibration(tmp_path, motors)
-    assert read_calibration(tmp_path, robot) == motors
+        on_boards(Calibration.usual(robot), ["uno"])
+    motors.write(tmp_path)
+    assert Calibration.read(tmp_path, robot) == motors
     for port in ("firmware:/dev/none", "firmware:/dev/none,/dev/null,/dev/zero"):
         with pytest.raises(InputError, match="motors on 2 boards"):
             open_bus(port, robot, motors, lambda taken: taken)

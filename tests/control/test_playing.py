@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hydrostat.arrays import Vector
-from hydrostat.control import Link, Motors, Player, SimulatedLink, play
+from hydrostat.control import Link, Motors, Player, SimulatedLink
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Winch
 from hydrostat.simulation import ContractionProfile
@@ -54,7 +54,7 @@ def played(link: Link, clock: Clock, tell: Callable[[Motors, Player], None] | No
     motors, player = Motors(WINCHES, link), Player()
     player.rounds = settings.get("rounds", 1)
     player.set_speed(settings.get("speed", 1.0))
-    play(motors, TABLE, player, clock=clock, wait=clock.wait, tell=lambda: tell(motors, player) if tell else None)
+    player.run(motors, TABLE, clock=clock, wait=clock.wait, tell=lambda: tell(motors, player) if tell else None)
     return motors
 
 
@@ -153,7 +153,7 @@ def test_beyond_a_limit_nothing_is_sent() -> None:
     link, clock = Heard(), Clock()
     motors = Motors((WINCHES[0], Winch(name="feet", at=(0.0, 0.0), travel=0.01)), link)
     with pytest.raises(InputError, match=r"feet is at its limit of 10\.0 mm"):
-        play(motors, TABLE, Player(), clock=clock, wait=clock.wait)
+        Player().run(motors, TABLE, clock=clock, wait=clock.wait)
     assert max(command[1] for _, command in link.heard) <= 0.01
     assert link.stops == 1
 
@@ -163,11 +163,7 @@ def test_one_row_is_gone_to() -> None:
     motors = Motors(WINCHES, link)
     player = Player()
     player.rounds = 2
-    play(
-        motors,
-        ContractionProfile(times=np.zeros(1), values=np.array([[0.03, 0.0]])),
-        player,
-        clock=clock,
-        wait=clock.wait,
+    player.run(
+        motors, ContractionProfile(times=np.zeros(1), values=np.array([[0.03, 0.0]])), clock=clock, wait=clock.wait
     )
     assert motors.places == pytest.approx([0.03, 0.0])

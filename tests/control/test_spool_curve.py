@@ -9,7 +9,7 @@ from hydrostat.control.calibration import Calibration, WinchMotor
 from hydrostat.control.dynamixel_bus import DynamixelBus
 from hydrostat.control.emulated_servos import EmulatedChain, EmulatedServo
 from hydrostat.control.open_bus import add_cable_layers
-from hydrostat.control.spool_curve import LEAST, STOPS, SpoolCurve, fit_spool, measure_spool
+from hydrostat.control.spool_curve import LEAST, STOPS, SpoolCurve
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Winch
 
@@ -50,7 +50,7 @@ class Bench:
             return 0.12 - 5e-4 * round(self.taken(place) / 5e-4)  # a ruler that counts down
 
         clock, wait = self.chain.clock, self.chain.wait
-        return measure_spool(self.link, OLD.motors[place], place, TRAVEL, read, clock=clock, wait=wait)
+        return SpoolCurve.measure(self.link, OLD.motors[place], place, TRAVEL, read, clock=clock, wait=wait)
 
 
 def errors(motor: WinchMotor, true: WinchMotor) -> np.ndarray:
@@ -78,7 +78,7 @@ def test_a_fit_of_exact_readings_is_exact() -> None:
     """By hand: straight pieces that bend at readings; a ruler that begins anywhere."""
     turned = np.linspace(0.0, 12.0, 7)
     taken = 0.0081 * turned + 4e-4 * np.maximum(turned - 6.0, 0.0)
-    found = fit_spool(OLD.motors[0], turned, 0.03 + taken)
+    found = SpoolCurve.fit(OLD.motors[0], turned, 0.03 + taken)
     assert found.motor.radius == pytest.approx(0.0081, rel=1e-6)
     assert np.array(found.motor.curve) == pytest.approx(np.array([(6.0, 0.0486), (12.0, taken[-1])]), rel=1e-6)
     assert found.more == pytest.approx(taken[-1] - 0.096, rel=1e-6)
@@ -115,7 +115,7 @@ def test_a_body_that_holds_a_winch_ends_it_there(spring: float, stops: int) -> N
 )
 def test_readings_that_no_spool_gives_are_named(readings: np.ndarray, told: str) -> None:
     with pytest.raises(HydrostatError, match=told):
-        fit_spool(OLD.motors[0], np.linspace(0, 12, 7), readings)
+        SpoolCurve.fit(OLD.motors[0], np.linspace(0, 12, 7), readings)
 
 
 @pytest.mark.parametrize("curve", [((1.0, 0.01), (0.5, 0.02)), ((1.0, -0.01),), ((1.0, np.nan),), ((1.0, 0.6),)])

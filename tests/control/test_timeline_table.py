@@ -1,4 +1,4 @@
-"""Oracles: `read_profile`, which the command line plays with; and what was written, read again."""
+"""Oracles: `ContractionProfile.read`, which the command line plays with; and what was written, read again."""
 
 from pathlib import Path
 
@@ -7,10 +7,10 @@ import pytest
 from builders import gallery_robot
 
 from hydrostat.control import Key, Timeline
-from hydrostat.control.timeline import LARGEST, read_timeline, timeline_table
+from hydrostat.control.timeline import LARGEST
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
-from hydrostat.simulation import read_profile
+from hydrostat.simulation import ContractionProfile
 
 KEYS = (
     Key(time=0.5, contractions={"left": 0.01}),
@@ -28,8 +28,11 @@ def starfish() -> Robot:
 def test_the_command_line_plays_what_the_studio_plays(starfish: Robot, tmp_path: Path, smooth: bool) -> None:
     timeline = Timeline(keys=KEYS, smooth=smooth)
     path = tmp_path / "contractions.csv"
-    path.write_bytes(timeline_table(starfish, timeline))
-    played, shown = read_profile(path, starfish), timeline.profile([winch.name for winch in starfish.winches])
+    path.write_bytes(timeline.table(starfish))
+    played, shown = (
+        ContractionProfile.read(path, starfish),
+        timeline.profile([winch.name for winch in starfish.winches]),
+    )
     # a line of 20 ms in the place of 3 s^2 - 2 s^3 is off by at most h^2/8 times its curvature, 6 x 30 mm / s^2
     allowed = 0.02**2 / 8 * 6 * 0.03 + 1e-9
     for time in np.linspace(0.0, 4.0, 401):
@@ -38,7 +41,7 @@ def test_the_command_line_plays_what_the_studio_plays(starfish: Robot, tmp_path:
 
 
 def test_what_was_exported_is_imported(starfish: Robot) -> None:
-    timeline = read_timeline(starfish, "mine.csv", timeline_table(starfish, Timeline(keys=KEYS, length=3.0)))
+    timeline = Timeline.read(starfish, "mine.csv", Timeline(keys=KEYS, length=3.0).table(starfish))
     assert [key.time for key in timeline.keys] == pytest.approx([0.0, 1.0, 2.5])
     assert timeline.keys[1].contractions == pytest.approx({"right": 0.0, "left": 0.03, "feet": 0.02})
     assert timeline.seconds == pytest.approx(2.5)
@@ -46,7 +49,7 @@ def test_what_was_exported_is_imported(starfish: Robot) -> None:
 
 def test_rows_that_lie_on_lines_are_left_out(starfish: Robot) -> None:
     rows = [f"{time:g},{10 * min(time, 1.0):.6f}" for time in np.linspace(0, 2, 201)]
-    timeline = read_timeline(starfish, "dense.csv", "\n".join(["time_s,left", *rows]).encode())
+    timeline = Timeline.read(starfish, "dense.csv", "\n".join(["time_s,left", *rows]).encode())
     assert [key.time for key in timeline.keys] == pytest.approx([0.0, 1.0, 2.0])
 
 
@@ -65,15 +68,15 @@ def test_rows_that_lie_on_lines_are_left_out(starfish: Robot) -> None:
 )
 def test_a_wrong_table_is_refused_by_its_own_name(starfish: Robot, text: bytes, words: str) -> None:
     with pytest.raises(InputError) as caught:
-        read_timeline(starfish, "../../mine.csv", text)
+        Timeline.read(starfish, "../../mine.csv", text)
     assert str(caught.value).startswith(words)
 
 
 def test_a_huge_table_is_refused_unread(starfish: Robot) -> None:
     with pytest.raises(InputError, match="may have 4 MB"):
-        read_timeline(starfish, "huge.csv", b"0" * (LARGEST + 1))
+        Timeline.read(starfish, "huge.csv", b"0" * (LARGEST + 1))
 
 
 def test_nothing_to_export_is_told(starfish: Robot) -> None:
     with pytest.raises(InputError, match="no keyframes to export"):
-        timeline_table(starfish, Timeline())
+        Timeline().table(starfish)

@@ -2,7 +2,7 @@
 
 import math
 
-from hydrostat.robot import MATERIALS, Body, Cable, Marker, Pin, Robot, Winch, outline_body
+from hydrostat.robot import MATERIALS, Body, Cable, Marker, Pin, Robot, Winch
 
 SQUARE = "M0 0H100V100H0Z"
 HOLED = SQUARE + "M30 30H70V70H30Z"
@@ -13,7 +13,9 @@ def drawn_body(path: str, *, element_size: float = 0.02) -> Body:
     root = '<svg xmlns="http://www.w3.org/2000/svg" width="300mm" height="300mm" viewBox="0 0 300 300">'
     page = f'{root}<path d="{path}"/></svg>'
     material = MATERIALS["polyester fibre"]
-    return outline_body(page.encode(), file="body.svg", material=material, element_size=element_size, thickness=0.03)
+    return Body.from_outline(
+        page.encode(), file="body.svg", material=material, element_size=element_size, thickness=0.03
+    )
 
 
 def disc_path(radius: float, corners: int = 720) -> str:

@@ -16,7 +16,7 @@ from shapely import Polygon
 from hydrostat.errors import OutlineError, SeveralPartsError
 from hydrostat.geometry.files.outline_file import read_drawing
 from hydrostat.ik import new_robot
-from hydrostat.robot import get_material, load_robot, outline_body, save_robot
+from hydrostat.robot import Body, get_material, load_robot, save_robot
 
 FISH = "M12 45 L30 30 L60 28 L78 45 L60 62 L30 60 Z"
 TEAL, BLACK, RED = f'<path d="{FISH}" fill="teal"/>', f'<path d="{FISH}"/>', f'<path d="{FISH}" {{}} stroke="red"/>'
@@ -228,7 +228,7 @@ def test_the_choice_is_kept_and_a_robot_without_one_is_as_before(tmp_path: Path)
     assert (robot.body.drawing_part, robot.body.outline.size) == (2, pytest.approx(0.066))
     save_robot(robot, tmp_path / "fish")
     assert load_robot(tmp_path / "fish") == robot
-    body = outline_body((tmp_path / "a.svg").read_bytes(), file="a.svg", **BODY)
+    body = Body.from_outline((tmp_path / "a.svg").read_bytes(), file="a.svg", **BODY)
     assert body.outline.size == pytest.approx(0.09)
 
 

@@ -11,7 +11,7 @@ from hydrostat.errors import InputError, OutlineError
 from hydrostat.geometry import Outline
 from hydrostat.ik.objectives.objective import state_at, state_jacobian_at
 from hydrostat.ik.objectives.shape_target import ShapeTarget, load_target_outline
-from hydrostat.robot import Pin, Robot, outline_body
+from hydrostat.robot import Body, Pin, Robot
 from hydrostat.simulation import Simulation
 
 
@@ -24,7 +24,7 @@ def svg(x: float, y: float, length: float = 200.0, unit: float = 1.0, height: fl
 
 def drawn(size: float | None = None) -> Robot:
     content = svg(30, 40)
-    body = outline_body(
+    body = Body.from_outline(
         content, file="a.svg", material=FOAM, element_size=0.1 * (size or 0.2), thickness=0.03, size=size
     )
     return Robot(

@@ -22,7 +22,7 @@ from hydrostat.design import (
     edge_fibres,
 )
 from hydrostat.ik import IKResult, IKStatus
-from hydrostat.robot import Cable, Marker, Mount, Pin, PoseTarget, Robot, Winch, mesh_body
+from hydrostat.robot import Body, Cable, Marker, Mount, Pin, PoseTarget, Robot, Winch
 from hydrostat.simulation import Simulation
 
 SCRIPT = "<script>alert(1)</script>"
@@ -74,7 +74,7 @@ def written(robot: Robot) -> Robot:
     with TemporaryDirectory() as folder:
         path = Path(folder) / "made.vtk"
         meshio.Mesh(np.pad(1e3 * mesh.nodes, [(0, 0), (0, 3 - mesh.dim)]), {kind: mesh.elements}).write(path)
-        made = mesh_body(path, unit=1e-3, material=body.material, thickness=body.thickness)
+        made = Body.from_mesh(path, unit=1e-3, material=body.material, thickness=body.thickness)
     return replace(robot, body=made)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from builders import box_mesh, mesh_body, strip_mesh
 
-from hydrostat.control import usual_calibration
+from hydrostat.control import Calibration
 from hydrostat.errors import InputError
 from hydrostat.ik import find_reach
 from hydrostat.robot import Load, Marker, Material, Pin, PinDrive, Robot
@@ -114,7 +114,7 @@ def test_wrong_values_are_told_in_one_line() -> None:
         find_equilibria(simulation, [0.1])
     for refuse, what in (
         (find_reach, "workspaces"),
-        (lambda one: usual_calibration(one.robot).check(one.robot), "motors"),
+        (lambda one: Calibration.usual(one.robot).check(one.robot), "motors"),
     ):
         with pytest.raises(InputError, match=f'drives, such as "servo", are not available in {what}'):
             refuse(simulation)

@@ -7,7 +7,7 @@ import pytest
 from builders import strip_robot
 
 import hydrostat as hs
-from hydrostat.simulation import ProfileTable, read_profile, write_profile
+from hydrostat.simulation import ContractionProfile, ProfileTable
 
 
 def test_a_profile_goes_through_its_values() -> None:
@@ -34,7 +34,7 @@ def test_a_table_is_read(tmp_path: Path) -> None:
     """Oracle: the numbers that stand in it."""
     path = tmp_path / "wave.csv"
     path.write_text("time_s, down\n0, 0\n0.5, 12\n\n1.5, 4.5\n")
-    profile = read_profile(path, strip_robot(columns=4, rows=2))
+    profile = ContractionProfile.read(path, strip_robot(columns=4, rows=2))
     assert profile.times.tolist() == [0.0, 0.5, 1.5]
     assert profile.values == pytest.approx(np.array([[0, 0], [0, 0.012], [0, 0.0045]]))
 
@@ -62,10 +62,10 @@ def test_a_table_that_is_none_is_refused(tmp_path: Path, text: str, message: str
     path = tmp_path / "wave.csv"
     path.write_text(text)
     with pytest.raises(hs.InputError, match=message) as refused:
-        read_profile(path, strip_robot(columns=4, rows=2))
+        ContractionProfile.read(path, strip_robot(columns=4, rows=2))
     assert str(path) in str(refused.value)
     with pytest.raises(hs.InputError, match="there is no such file"):
-        read_profile(tmp_path / "none.csv", strip_robot(columns=4, rows=2))
+        ContractionProfile.read(tmp_path / "none.csv", strip_robot(columns=4, rows=2))
 
 
 def test_each_row_knows_its_line(tmp_path: Path) -> None:
@@ -82,8 +82,8 @@ def test_what_is_written_is_read_back(tmp_path: Path) -> None:
     profile = hs.ContractionProfile(
         times=np.array([0.0, 0.25, 1.0]), values=np.array([[0.0, 0.01], [0.0123456, -0.0], [0.02, 0.0]])
     )
-    path = write_profile(tmp_path / "way.csv", robot, profile)
+    path = profile.write(tmp_path / "way.csv", robot)
     assert path.read_text().splitlines()[:2] == ["time_s,up_mm,down_mm", "0,0,10"]
-    again = read_profile(path, robot)
+    again = ContractionProfile.read(path, robot)
     assert again.times == pytest.approx(profile.times)
     assert again.values == pytest.approx(profile.values, abs=1e-11)

@@ -8,7 +8,7 @@ import numpy as np
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError
 from hydrostat.mechanics import NewtonResult, Reason
-from hydrostat.robot import require_no_drives
+from hydrostat.robot import PinDrive
 from hydrostat.simulation.branches.bordered import Bordered, PathPoint, Tangent
 from hydrostat.simulation.branches.branch import Branch, BranchPoint, BranchReason, CriticalKind, CriticalPoint
 from hydrostat.simulation.controls import split_controls
@@ -91,7 +91,7 @@ def continue_branch(
             "compare ways by path_dependence"
         )
     require_static_obstacles(simulation.robot, "a branch of equilibria")
-    require_no_drives(simulation.robot.drives, "branches of equilibria")
+    PinDrive.require_none(simulation.robot.drives, "branches of equilibria")
     rest = simulation.robot.body.mesh.nodes
     check_pose(start, rest.shape, len(goal))
     return _Follower(simulation, start, goal, around_folds, options or BranchOptions()).run()

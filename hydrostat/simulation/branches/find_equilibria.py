@@ -12,7 +12,7 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.given import check_type
 from hydrostat.progress import Progress
-from hydrostat.robot import require_no_drives
+from hydrostat.robot import PinDrive
 from hydrostat.simulation.branches.loading_paths import Approach, follow_approach, loading_paths_to
 from hydrostat.simulation.equilibrium import Equilibrium, largest_distance
 from hydrostat.simulation.simulation import Contractions, Simulation
@@ -123,7 +123,7 @@ def find_equilibria(
     Raises:
         InputError: contractions that do not fit the robot, or no ways.
     """
-    require_no_drives(simulation.robot.drives, "a search for several equilibria")
+    PinDrive.require_none(simulation.robot.drives, "a search for several equilibria")
     goal = simulation.as_contractions(contractions)
     check_type(count, int, "count must be a whole number of at least 1")
     if count < 1:

@@ -6,7 +6,7 @@ from math import inf, isfinite
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.control import Link, Motors, SimulatedLink, read_timeline, timeline_table
+from hydrostat.control import Link, Motors, SimulatedLink, Timeline
 from hydrostat.errors import InputError
 from hydrostat.ik import solve_ik
 from hydrostat.studio.bell import Topic
@@ -252,12 +252,12 @@ class Driver(Stage):
         self._tell()
 
     def table(self) -> bytes:
-        """The timeline as a CSV; see `timeline_table`."""
-        return timeline_table(self._document.robot, self.keyframes.timeline)
+        """The timeline as a CSV; see `Timeline.table`."""
+        return self.keyframes.timeline.table(self._document.robot)
 
     def load_table(self, name: str, content: bytes) -> None:
-        """Put a CSV in place of the timeline; see `read_timeline`."""
-        timeline = read_timeline(self._document.robot, name, content)
+        """Put a CSV in place of the timeline; see `Timeline.read`."""
+        timeline = Timeline.read(self._document.robot, name, content)
         with self._lock:
             self._machine.halt()
             self.keyframes.replace_all(timeline, f"import {name}")

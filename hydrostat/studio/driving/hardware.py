@@ -17,10 +17,8 @@ from hydrostat.control import (
     LinkState,
     TensionGuard,
     check_port,
-    emulated_calibration,
     not_judged,
     open_bus,
-    read_calibration,
 )
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Robot
@@ -105,11 +103,11 @@ class Hardware:
         if not robot.winches:
             raise InputError("this robot has no winches. Press Design to find some")
         if port == EMULATED:
-            calibration = emulated_calibration(folder, robot)
+            calibration = Calibration.emulated(folder, robot)
         elif folder is None:
             raise InputError(f"save the robot first. {CALIBRATION} next to robot.toml assigns motors to winches")
         else:
-            calibration = read_calibration(folder, robot)
+            calibration = Calibration.read(folder, robot)
         with self._lock:
             self._robot, self._shown = robot, False
             self._goal = self._places = self._pulls = np.zeros(len(robot.winches))

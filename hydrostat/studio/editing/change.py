@@ -9,18 +9,7 @@ import numpy as np
 from hydrostat import units
 from hydrostat.errors import InputError
 from hydrostat.given import check_name
-from hydrostat.robot import (
-    Body,
-    Cable,
-    Contact,
-    Mount,
-    Robot,
-    Source,
-    get_material,
-    gravity_along,
-    outline_body,
-    surface_body,
-)
+from hydrostat.robot import Body, Cable, Contact, Mount, Robot, Source, get_material, gravity_along
 from hydrostat.studio.editing.part import Kind, find_part
 
 FIELDS = {  # what can be changed of a part
@@ -151,11 +140,11 @@ def remesh(
     if body.source is Source.SURFACE:
         unit = float(units.unit_factor(robot.length_unit, units.LENGTH))
         return (
-            surface_body(body.content, unit=unit, volume=body.volume, **given)
+            Body.from_surface(body.content, unit=unit, volume=body.volume, **given)
             .with_parts(body.parts)
             .with_elements(body.elements)
         )
     assert body.thickness is not None
     reading = {"inner": body.inner, "drawing_part": body.drawing_part}
-    drawn = outline_body(body.content, thickness=body.thickness, volume=body.volume, **reading, **given)
+    drawn = Body.from_outline(body.content, thickness=body.thickness, volume=body.volume, **reading, **given)
     return replace(drawn.with_parts(body.parts), plane=body.plane).with_elements(body.elements)

@@ -10,7 +10,7 @@ from hydrostat.errors import HydrostatError, InputError
 from hydrostat.geometry import read_drawing
 from hydrostat.given import Point
 from hydrostat.project import Work, follow_robot, moved_zone
-from hydrostat.robot import Body, BodyPart, Cable, Mount, Pin, PoseTarget, Robot, outline_body
+from hydrostat.robot import Body, BodyPart, Cable, Mount, Pin, PoseTarget, Robot
 from hydrostat.studio.starting.loops import Loop, LoopCorner, fit_loops, loops_svg, outline_of, read_loops
 from hydrostat.studio.starting.photo import Backdrop
 from hydrostat.units import plural
@@ -97,7 +97,7 @@ def reshape_outline(work: Work, drawing: bytes, corner: tuple[float, float]) -> 
     if old.thickness is None or old.element_size is None:
         raise InputError("only flat bodies have an outline that can be edited")
     file = old.file if old.file.lower().endswith(".svg") else "outline.svg"
-    body = outline_body(
+    body = Body.from_outline(
         drawing,
         file=file,
         material=old.material,
