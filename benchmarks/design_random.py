@@ -27,10 +27,8 @@ from hydrostat.design import (
     RouteGraph,
     RouteOptions,
     WinchSite,
-    body_region,
     rms_error,
     route_along,
-    route_graph,
     violations,
 )
 from hydrostat.errors import HydrostatError
@@ -75,8 +73,8 @@ def ground(robot: Robot, constraints: Constraints) -> Ground:
     """The same as routes are found on."""
     mesh = robot.body.mesh
     edge = float(mesh.edge_lengths.mean())
-    region = body_region(robot.body, constraints.clearance)
-    graph = route_graph(robot, region, constraints, spacing=edge)
+    region = Region.of_body(robot.body, constraints.clearance)
+    graph = RouteGraph.build(robot, region, constraints, spacing=edge)
     return Ground(robot, constraints, region, graph, RouteOptions().spacing * edge)
 
 

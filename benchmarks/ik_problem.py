@@ -12,7 +12,7 @@ from scipy.optimize import least_squares, minimize
 
 from hydrostat.arrays import Vector
 from hydrostat.given import Point
-from hydrostat.ik import MarkerTarget, state_at, state_jacobian_at
+from hydrostat.ik import EquilibriumState, MarkerTarget, StateJacobian
 from hydrostat.robot import Robot
 from hydrostat.simulation import Equilibrium, Simulation
 
@@ -157,13 +157,13 @@ class Problem:
         return len(self.targets) * self.simulation.robot.body.mesh.dim + len(self.low)
 
     def _rows_at(self, pose: Equilibrium) -> Vector:
-        missed = self._term.residual(state_at(self.simulation, pose))
+        missed = self._term.residual(EquilibriumState.at(self.simulation, pose))
         return np.concatenate([missed, self._effort * pose.contractions])
 
     def _matrix(self, shares: Vector) -> np.ndarray:
         self._residual(shares)
         slopes = self._term.jacobian(
-            state_at(self.simulation, self._pose), state_jacobian_at(self.simulation, self._pose)
+            EquilibriumState.at(self.simulation, self._pose), StateJacobian.at(self.simulation, self._pose)
         )
         return np.vstack([slopes, np.diag(self._effort)]) * (self.high - self.low)
 

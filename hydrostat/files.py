@@ -1,5 +1,6 @@
 """Files: reading of untrusted ones, whose size is checked first, and writing of complete ones or none."""
 
+import csv
 import os
 import platform
 import re
@@ -8,8 +9,10 @@ import stat
 import sys
 import tempfile
 import threading
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from hashlib import sha256
+from io import StringIO
 from pathlib import Path
 from typing import IO
 
@@ -167,3 +170,12 @@ def replace_file(path: Path, content: bytes) -> Path:
         with suppress(OSError):
             part.unlink(missing_ok=True)
     return path
+
+
+def csv_text(head: Sequence[str], rows: Iterable[Iterable[str]]) -> bytes:
+    """CSV in UTF-8, a line for the names of the columns and one for each row."""
+    text = StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(head)
+    writer.writerows(rows)
+    return text.getvalue().encode()

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from hydrostat.design import BuildTolerances, assign_cable_sides, expected_error
-from hydrostat.fabrication import demand_of, find_refusals
+from hydrostat.fabrication import Demand, find_refusals
 from hydrostat.ik import IKOptions, Limits, solve_ik
 from hydrostat.robot import Cable, Mount, Robot, Winch, gallery_folder, load_robot, robot_hash
 from hydrostat.simulation import Simulation
@@ -63,4 +63,4 @@ def test_the_network_of_the_pictures_has_the_figures_of_the_readme(record: dict[
     reached = solve_ik(simulation, pose, limits=limits, start=start, options=once)
     expected = expected_error(simulation, [reached], BuildTolerances.of(robot.body))
     assert expected == pytest.approx(record["rms_error_as_built"], rel=1e-3)
-    assert find_refusals(robot, demand_of(robot, [reached])) == ()
+    assert find_refusals(robot, Demand.of_results(robot, [reached])) == ()

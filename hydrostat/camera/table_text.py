@@ -3,8 +3,8 @@
 import numpy as np
 
 from hydrostat.camera.measure_photos import PhotoMeasurements
+from hydrostat.files import csv_text
 from hydrostat.robot import Robot
-from hydrostat.simulation import csv_text
 
 
 def table_text(robot: Robot, found: PhotoMeasurements) -> bytes:

@@ -88,17 +88,17 @@ def animate(
 def _stops(simulation: "Simulation", names: list[str], progress: Progress) -> "list[Stop]":
     """Find what the winches reach of each pose; without poses one winch after the other."""
     from hydrostat.ik import solve_ik
-    from hydrostat.plot import pose_stops, winch_stops
+    from hydrostat.plot import Stop
 
     if not names:
-        return winch_stops(simulation.robot)
+        return Stop.for_winches(simulation.robot)
     reached = []
     for index, pose in enumerate(names):
         reached.append(solve_ik(simulation, simulation.robot.pose(pose)))
         progress("solving poses", index + 1, len(names))
     for found in reached:
         print(f"{found.pose_target.name}: rms error {1e3 * found.rms_error:.2f} mm; {found.status}")
-    return pose_stops(reached)
+    return Stop.for_poses(reached)
 
 
 def _write(simulation: "Simulation", made: "Film", out: Path, kind: Format, width: int, progress: Progress) -> Path:

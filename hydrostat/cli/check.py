@@ -50,9 +50,9 @@ def check(
     if words := describe_cable_side(found):
         print(f"cables: {words}")
     if found.cables:
-        from hydrostat.design import build_effort
+        from hydrostat.design import Craft
 
-        print(f"build: {build_effort(found, ())}; more if poses need stronger motors")
+        print(f"build: {Craft.of_robot(found, ())}; more if poses need stronger motors")
     if filled:
         _print_filled(found)
     elif words and thorough:

@@ -257,14 +257,14 @@ def _search(source: "Robot", request: "DesignRequest") -> "Network":
 
 def _write(network: "Network", out: Path, *, kit: bool) -> "Kit | None":
     """Write the results, with the kit if wanted, and print the seconds that this took."""
-    from hydrostat.fabrication import forget_files
+    from hydrostat.fabrication import Kit
 
     began = time.perf_counter()
     with progress_bar() as progress:
         progress("Writing results", 0, 1)
         with result_folder(out, stale=STALE) as folder:
             write_results(network, folder)
-        forget_files(out / "kit")
+        Kit.forget_files(out / "kit")
         made = write_kit(network, out / "kit") if kit else None
         progress("Writing results", 1, 1)
     print(f"results written in {time.perf_counter() - began:.1f} s", file=sys.stderr, flush=True)

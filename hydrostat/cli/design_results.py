@@ -73,14 +73,14 @@ def _design_limit(robot: "Robot", folder: Path, name: str) -> float | None:
 
 def _wished_tension(robot: "Robot", folder: Path) -> float | None:
     """Tension limit of the project file [N]; None where there is no such file (InputError: it cannot be read)."""
-    from hydrostat.project import PROJECT_FILE, read_project_file, wished_constraints
+    from hydrostat.project import PROJECT_FILE, read_project_file
 
     home = folder.parent if folder.suffix == ".toml" else folder
     if not (home / PROJECT_FILE).is_file():
         return None
 
     try:
-        return wished_constraints(robot, read_project_file(home)[1]).tension_limit
+        return read_project_file(home)[1].to_constraints(robot).tension_limit
     except InputError as error:
         raise InputError(f"{error}. Fix the file, or set the limit with --tension") from None
 
@@ -90,7 +90,7 @@ def print_poses(network: "Network", seconds: float) -> tuple[str, ...]:
     from rich.console import Console
     from rich.table import Table
 
-    from hydrostat.design import build_effort, corrected_error, rest_error
+    from hydrostat.design import Craft, corrected_error
     from hydrostat.geometry import find_crossings
     from hydrostat.ik import unconstrained_motion
     from hydrostat.robot import describe_cable_side
@@ -112,11 +112,11 @@ def print_poses(network: "Network", seconds: float) -> tuple[str, ...]:
     corrected = corrected_error(network)
     after = f", {1e3 * corrected:.2f} mm after one correction by measured markers" if corrected < network.built else ""
     print(
-        f"model error {1e3 * network.rms_error:.2f} mm rms (at rest {1e3 * rest_error(network):.2f} mm), "
+        f"model error {1e3 * network.rms_error:.2f} mm rms (at rest {1e3 * network.rest_error:.2f} mm), "
         f"expected as-built error {1e3 * network.built:.2f} mm{after} "
         f"({plural(network.tried, 'candidate')}, {seconds:.1f} s)"
     )
-    print(f"build: {build_effort(robot, network.reached)}")
+    print(f"build: {Craft.of_robot(robot, network.reached)}")
     if words := describe_cable_side(robot):
         print(f"cables: {words}")
     _print_filled(network)
@@ -128,9 +128,9 @@ def _print_findings(network: "Network") -> tuple[str, ...]:
     from hydrostat.cli.check import FINDINGS
     from hydrostat.design import review_robot
     from hydrostat.errors import in_words
-    from hydrostat.fabrication import demand_of
+    from hydrostat.fabrication import Demand
 
-    found = review_robot(network.robot, demand=demand_of(network.robot, network.reached))
+    found = review_robot(network.robot, demand=Demand.of_results(network.robot, network.reached))
     for finding in found:
         print(f"{FINDINGS[finding.weight]}: {in_words(finding.text)}")
     return tuple(finding.text for finding in found)
@@ -161,19 +161,19 @@ def print_front(network: "Network") -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from hydrostat.design import best_by_winches, best_errors, build_effort, on_front, size_of
+    from hydrostat.design import Craft, on_front, size_of
 
-    console, best = Console(), best_by_winches(network)
+    console, best = Console(), network.best_by_winches()
     if len(best) > 1:
         motors = Table(title="best network for each number of winches", title_justify="left")
         for name in ("winches", "cables", "as-built error", "motors", "sewing", "price"):
             motors.add_column(name, justify="right")
         for winches, one in best.items():
-            effort = build_effort(one.robot, one.reached)
+            effort = Craft.of_robot(one.robot, one.reached)
             values = (f"{effort.motors} × {effort.motor}", f"{effort.minutes:.0f} min", f"{effort.price:.0f} USD")
             motors.add_row(str(winches), str(len(one.robot.cables)), f"{1e3 * one.built:.2f} mm", *values)
         console.print(motors)
-    errors = best_errors(network.alternatives, network)
+    errors = network.best_errors(network.alternatives)
     table = Table(title="expected as-built error by number of winches and cables", title_justify="left")
     for name in ("winches", "cables", "rms error"):
         table.add_column(name, justify="right")

@@ -130,9 +130,8 @@ class _Lines:
 
 def _write(path: Path, table: "Measurements", found: "IdentifiedRobot", out: Path) -> None:
     from hydrostat.cli.options import load_matplotlib
-    from hydrostat.files import read_text, replace_file
+    from hydrostat.files import csv_text, read_text, replace_file
     from hydrostat.robot import merged_text, save_robot
-    from hydrostat.simulation import csv_text
 
     load_matplotlib()
     from hydrostat.plot import draw_identified, save_png

@@ -41,8 +41,8 @@ def learn(
     """Train a surrogate model from samples.
 
     The model predicts marker positions and solves inverse kinematics. Writes one file. It runs without simulator and
-    PyTorch: hydrostat pose ROBOT --model MODEL, or in Python hydrostat.learning.load_model(MODEL).solve(targets).
-    Ctrl-C stops early and saves the best model so far.
+    PyTorch: hydrostat pose ROBOT --model MODEL, or in Python
+    hydrostat.learning.LearnedModel.load(MODEL).solve(targets). Ctrl-C stops early and saves the best model so far.
 
     With --fine-tune, training continues from an existing model. Train on many samples of a coarse mesh first, then
     fine-tune with a few samples of a finer mesh of the same robot.
@@ -50,7 +50,7 @@ def learn(
     Example: hydrostat learn build/samples --out build/starfish.model
     """
     from hydrostat.files import clear_unfinished
-    from hydrostat.learning import LearnOptions, correct_model, learn_model, load_model, read_samples, save_model
+    from hydrostat.learning import LearnedModel, LearnOptions, Samples, correct_model, learn_model
 
     if out.is_dir() or not out.parent.is_dir():
         raise InputError(
@@ -60,21 +60,21 @@ def learn(
     clear_unfinished(out.parent)
     chosen = {"members": members, "steps": steps}
     options = LearnOptions(seed=seed, threads=threads, **{name: n for name, n in chosen.items() if n is not None})
-    samples = read_samples(data)
+    samples = Samples.read(data)
     samples = samples if count is None else samples.first(count)
     if start is not None:
         if chosen != {"members": None, "steps": None}:
             raise InputError("--fine-tune: not available with --members or --steps. Remove them.")
-        known = load_model(start)
+        known = LearnedModel.load(start)
         with one_interrupt("stopping: saving the best model so far ...", interrupt=True):
             model = correct_model(known, samples, progress=report_progress())
-            save_model(model, out)
+            model.save(out)
         print(f"expected marker error {1e3 * model.card.error:.3f} mm ({len(samples)} samples)")
         _end(model, out)
         return
     with one_interrupt("stopping: saving the best model so far ...", interrupt=True):
         model = learn_model(samples, options=options, progress=report_progress())
-        save_model(model, out)
+        model.save(out)
     moved, error = 1e3 * model.card.displacement, 1e3 * model.card.error
     inverse = model.card.inverse_error
     words = "" if inverse is None else f", inverse error {1e3 * inverse:.3f} mm"

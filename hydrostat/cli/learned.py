@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
 def read_model(path: Path, robot: "Robot") -> "tuple[LearnedModel, Robot]":
     """A model, and the robot, which feels contact if the model knows it (InputError: it is another robot's)."""
-    from hydrostat.learning import load_model
+    from hydrostat.learning import LearnedModel
     from hydrostat.robot import Contact
 
-    model = load_model(path)
+    model = LearnedModel.load(path)
     silent = model.card.contact and robot.contact is None
     robot = replace(robot, contact=Contact()) if silent else robot
     model.check(robot)

@@ -53,19 +53,12 @@ def sample(
 
     Each sample holds contractions, markers, exact gradients and tensions. Writes the settings to samples.json and the
     samples to .npy files. Run the same command again to resume, or with a larger --count to add samples. Results do not
-    depend on the number of processes. Read them in Python with hydrostat.learning.read_samples.
+    depend on the number of processes. Read them in Python with hydrostat.learning.Samples.read.
 
     Example: hydrostat sample gallery:starfish --count 200 --contact --out build/samples
     """
     from hydrostat.closed_set import parse_choice
-    from hydrostat.learning import (
-        SamplingScheme,
-        check_export,
-        export_samples,
-        plan_samples,
-        read_samples,
-        sample_robot,
-    )
+    from hydrostat.learning import Samples, SamplingScheme, check_export, export_samples, plan_samples, sample_robot
     from hydrostat.units import FORCE
 
     require_folder(out, shared=True)  # shards of one plan write side by side
@@ -84,7 +77,7 @@ def sample(
         line_end = "\n" if sys.stderr.isatty() else ""  # of the line with the progress
         print(f"{line_end}interrupted: run the same command again to resume", file=sys.stderr, flush=True)
         raise
-    found = read_samples(out)
+    found = Samples.read(out)
     words = f"{len(found) + found.lost} of {count} samples in {out}"
     words += f", {found.lost} without a stable equilibrium" if found.lost else ""
     print(

@@ -125,7 +125,7 @@ def train(
         from hydrostat import training
     except ModuleNotFoundError as error:
         raise HydrostatError(f"train: package {error.name} not found. Install it: {install_command('rl')}") from None
-    from hydrostat.learning import load_model, save_model
+    from hydrostat.learning import LearnedModel
     from hydrostat.units import LENGTH, parse_quantity, plural
 
     require_folder(out)
@@ -154,7 +154,7 @@ def train(
     if watch:
         judged.render_mode = "human"
         print(f"Evaluation episodes: {judged.page.address}", flush=True)
-    networks = None if model is None else load_model(model)
+    networks = None if model is None else LearnedModel.load(model)
     if networks is not None:
         env.learn_in(networks, exact=exact)
     options = training.TrainOptions(
@@ -184,7 +184,7 @@ def train(
     print(f"Wrote {out / 'moves.csv'}: motion for the first goal. Run it with hydrostat play")
     if networks is not None and env.portable:
         learned = training.portable_policy(trained, cast("ReachEnv", env), networks)
-        print(f"Wrote {save_model(learned, out / 'policy.model')}")
+        print(f"Wrote {learned.save(out / 'policy.model')}")
 
 
 def _thing(robot: "Robot", text: str, at: str | None, mass: str, friction: float | None) -> "Obstacle":

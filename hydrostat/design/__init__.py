@@ -11,9 +11,9 @@ if TYPE_CHECKING:
     from hydrostat.design.constraints import RANGES, STEPPED, Constraints, Range
     from hydrostat.design.constraints_file import cable_name, read_constraints, read_uncertainty
     from hydrostat.design.corrected_error import corrected_errors
-    from hydrostat.design.craft import Craft, build_effort, front, sewing_minutes
+    from hydrostat.design.craft import Craft, front
     from hydrostat.design.design_cables import design_cables, find_network
-    from hydrostat.design.filled_reach import FilledReach, out_of_plane
+    from hydrostat.design.filled_reach import FilledReach
     from hydrostat.design.finding import Diagnostic, Severity, places_in
     from hydrostat.design.lifts import find_lifts
     from hydrostat.design.muscles.activation import Activation, FibreKind, activate, edge_fibres
@@ -25,14 +25,12 @@ if TYPE_CHECKING:
         Network,
         RouteTrace,
         TreeTrace,
-        best_by_winches,
-        best_errors,
         on_front,
         rms_error,
         size_of,
     )
     from hydrostat.design.polyline import nearest_shares, turns
-    from hydrostat.design.region import Region, body_region
+    from hydrostat.design.region import Region
     from hydrostat.design.request import (
         AUTO,
         COUNTS,
@@ -50,8 +48,8 @@ if TYPE_CHECKING:
     from hydrostat.design.routes.price import PricedPath
     from hydrostat.design.routes.propose import route_along
     from hydrostat.design.routes.quick_search import QuickSearch, propose_routes
-    from hydrostat.design.routes.route_graph import RouteGraph, route_graph
-    from hydrostat.design.score_card import corrected_error, rest_error, score_card
+    from hydrostat.design.routes.route_graph import RouteGraph
+    from hydrostat.design.score_card import corrected_error, score_card
     from hydrostat.design.trees.design_trees import propose_trees
     from hydrostat.design.uncertainty import BuildTolerances
     from hydrostat.design.winch_room import find_no_room
@@ -95,10 +93,6 @@ __all__ = [
     "Zone",
     "activate",
     "assign_cable_sides",
-    "best_by_winches",
-    "best_errors",
-    "body_region",
-    "build_effort",
     "built_errors",
     "cable_name",
     "corrected_error",
@@ -113,19 +107,15 @@ __all__ = [
     "kit_fits",
     "nearest_shares",
     "on_front",
-    "out_of_plane",
     "places_in",
     "propose_routes",
     "propose_trees",
     "read_constraints",
     "read_uncertainty",
-    "rest_error",
     "review_robot",
     "rms_error",
     "route_along",
-    "route_graph",
     "score_card",
-    "sewing_minutes",
     "size_of",
     "turns",
     "violations",

@@ -55,48 +55,48 @@ class Craft:
         """The fields by their names, as plain values for a file."""
         return dict(vars(self))
 
+    @staticmethod
+    def of_robot(robot: Robot, reached: Sequence[IKResult], *, times: SewingTimes | None = None) -> "Craft":
+        """Count what a network takes; the kind of motor follows from the tensions of the poses that it reaches.
 
-def build_effort(robot: Robot, reached: Sequence[IKResult], *, times: SewingTimes | None = None) -> Craft:
-    """Count what a network takes; the kind of motor follows from the tensions of the poses that it reaches.
+        Cables in pairs are sewn twice: all but motors counts for both.
+        """
+        cables, twice = robot.cables, len(sewn_sides(robot))
+        motors = len({cable.winch for cable in cables})
+        holes = twice * sum(len(cable.points) - 1 for cable in cables)
+        sheaths = twice * sum(len(cable.sheathed) for cable in cables)
+        length = twice * float(sum(cable.length for cable in cables))
+        tube = twice * float(sum(cable.segments[~cable.bare].sum() for cable in cables))
+        price, key = PRICES["line"].amount * length + PRICES["tube"].amount * tube, ""
+        if motors:
+            rows = [shaft_torques(robot, pose.pose.tensions) for pose in reached]
+            torques = np.array(rows).reshape(-1, len(robot.winches))
+            motor = find_motor(robot, torques.ravel().tolist(), KitOptions())
+            used, most = {cable.winch for cable in cables}, 1e3 * torques.max(axis=0, initial=0.0)
+            pairs = zip(robot.winches, most.tolist(), strict=True)
+            power = power_plan({winch.name: torque for winch, torque in pairs if winch.name in used}, motor)
+            price += motors * motor.price + sum(item.cost for item in control_needs(power))
+            key = motor.key
+        return Craft(
+            holes=holes,
+            crossings=twice * _crossings(robot),
+            sharp_turns=twice * sum(_sharp(cable) for cable in cables),
+            sheaths=sheaths,
+            length=length,
+            minutes=Craft.sewing_minutes(robot, times=times),
+            price=price,
+            motors=motors,
+            motor=key,
+        )
 
-    Cables in pairs are sewn twice: all but motors counts for both.
-    """
-    cables, twice = robot.cables, len(sewn_sides(robot))
-    motors = len({cable.winch for cable in cables})
-    holes = twice * sum(len(cable.points) - 1 for cable in cables)
-    sheaths = twice * sum(len(cable.sheathed) for cable in cables)
-    length = twice * float(sum(cable.length for cable in cables))
-    tube = twice * float(sum(cable.segments[~cable.bare].sum() for cable in cables))
-    price, key = PRICES["line"].amount * length + PRICES["tube"].amount * tube, ""
-    if motors:
-        rows = [shaft_torques(robot, pose.pose.tensions) for pose in reached]
-        torques = np.array(rows).reshape(-1, len(robot.winches))
-        motor = find_motor(robot, torques.ravel().tolist(), KitOptions())
-        used, most = {cable.winch for cable in cables}, 1e3 * torques.max(axis=0, initial=0.0)
-        pairs = zip(robot.winches, most.tolist(), strict=True)
-        power = power_plan({winch.name: torque for winch, torque in pairs if winch.name in used}, motor)
-        price += motors * motor.price + sum(item.cost for item in control_needs(power))
-        key = motor.key
-    return Craft(
-        holes=holes,
-        crossings=twice * _crossings(robot),
-        sharp_turns=twice * sum(_sharp(cable) for cable in cables),
-        sheaths=sheaths,
-        length=length,
-        minutes=sewing_minutes(robot, times=times),
-        price=price,
-        motors=motors,
-        motor=key,
-    )
-
-
-def sewing_minutes(robot: Robot, *, times: SewingTimes | None = None) -> float:
-    """Minutes that it takes to cut and stitch the cables and tubes of a robot, of pairs both [min]."""
-    clock, twice = times or SewingTimes(), len(sewn_sides(robot))
-    holes = sum(len(cable.points) - 1 for cable in robot.cables)
-    sheaths = sum(len(cable.sheathed) for cable in robot.cables)
-    each = (clock.cut + clock.begin) * len(robot.cables) + clock.hole * holes + (clock.cut + clock.sheath) * sheaths
-    return twice * each
+    @staticmethod
+    def sewing_minutes(robot: Robot, *, times: SewingTimes | None = None) -> float:
+        """Minutes that it takes to cut and stitch the cables and tubes of a robot, of pairs both [min]."""
+        clock, twice = times or SewingTimes(), len(sewn_sides(robot))
+        holes = sum(len(cable.points) - 1 for cable in robot.cables)
+        sheaths = sum(len(cable.sheathed) for cable in robot.cables)
+        each = (clock.cut + clock.begin) * len(robot.cables) + clock.hole * holes + (clock.cut + clock.sheath) * sheaths
+        return twice * each
 
 
 def front(points: Sequence[tuple[float, float]]) -> list[int]:

@@ -5,7 +5,7 @@ from dataclasses import replace
 from hydrostat.design.filled_reach import FilledReach, filled_reach
 from hydrostat.design.network import Alternative, Network, RouteTrace, size_of
 from hydrostat.errors import HydrostatError
-from hydrostat.fabrication import demand_of, find_refusals
+from hydrostat.fabrication import Demand, find_refusals
 from hydrostat.progress import Progress
 
 FINALISTS = 4  # so many networks are compared: the one that was found, and the first of its alternatives
@@ -21,7 +21,7 @@ def evaluate_stuffed(found: Network, *, progress: Progress) -> Network:
     first = Alternative(robot=found.robot, reached=found.reached, built=found.built)
     winches, cables = size_of(found)
     small = [one for one in found.alternatives if size_of(one)[0] <= winches and size_of(one)[1] <= cables]
-    fitting = [one for one in small if not find_refusals(one.robot, demand_of(one.robot, one.reached))]
+    fitting = [one for one in small if not find_refusals(one.robot, Demand.of_results(one.robot, one.reached))]
     finalists = [first, *fitting[: FINALISTS - 1]]
     judged: list[tuple[Alternative, FilledReach]] = []
     complete = found.complete

@@ -7,7 +7,7 @@ import numpy as np
 
 from hydrostat.ik import IKOptions, IKResult, Limits, solve_ik
 from hydrostat.robot import Face, PoseTarget, Robot, inflated_robot
-from hydrostat.simulation import Equilibrium, Simulation
+from hydrostat.simulation import Simulation
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -27,12 +27,7 @@ class FilledReach:
     @property
     def out(self) -> float:
         """The farthest that a marker of any pose is out of the plane [m]."""
-        return max(out_of_plane(pose.pose) for pose in self.reached)
-
-
-def out_of_plane(pose: Equilibrium) -> float:
-    """Largest distance of a marker of a filled body from the plane z = 0 [m]."""
-    return max((abs(float(place[2])) for place in pose.markers.values()), default=0.0)
+        return max(pose.pose.out_of_plane for pose in self.reached)
 
 
 def filled_reach(robot: Robot, reached: Sequence[IKResult], *, limits: Limits, finalists: int = 1) -> FilledReach:

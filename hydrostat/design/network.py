@@ -130,6 +130,34 @@ class Network:
         """Root of the mean squared marker error over all poses [m]."""
         return rms_error(self.reached)
 
+    def best_errors(self, alternatives: Iterable[Alternative]) -> "dict[Size, float]":
+        """The least error as built of each size [m], in order of the sizes; where the chosen network is, its own."""
+        found: dict[Size, float] = {}
+        for network in alternatives:
+            found[size_of(network)] = min(network.built, found.get(size_of(network), float("inf")))
+        found[size_of(self)] = self.built
+        return dict(sorted(found.items()))
+
+    def best_by_winches(self) -> "dict[int, Alternative | Network]":
+        """The network of the least error as built for each number of winches, in order; the chosen one for its own."""
+        found: dict[int, Alternative | Network] = {}
+        for other in self.alternatives:
+            count = len(other.robot.winches)
+            if count not in found or other.built < found[count].built:
+                found[count] = other
+        found[len(self.robot.winches)] = self
+        return dict(sorted(found.items()))
+
+    @property
+    def rest_error(self) -> float:
+        """Root of the mean squared marker error over all poses if nothing moved [m]."""
+        places = {marker.name: np.array(marker.at) for marker in self.robot.markers}
+        squares = [
+            np.mean([np.sum((places[name] - goal) ** 2) for name, goal in pose.pose_target.targets.items()])
+            for pose in self.reached
+        ]
+        return float(np.sqrt(np.mean(squares)))
+
 
 Size = tuple[int, int]  # numbers of winches and of cables
 
@@ -137,26 +165,6 @@ Size = tuple[int, int]  # numbers of winches and of cables
 def size_of(network: Alternative | Network) -> Size:
     """Numbers of winches and cables of a network."""
     return len(network.robot.winches), len(network.robot.cables)
-
-
-def best_errors(alternatives: Iterable[Alternative], chosen: Network) -> dict[Size, float]:
-    """The least error as built of each size [m], in order of the sizes; where the chosen network is, its own."""
-    found: dict[Size, float] = {}
-    for network in alternatives:
-        found[size_of(network)] = min(network.built, found.get(size_of(network), float("inf")))
-    found[size_of(chosen)] = chosen.built
-    return dict(sorted(found.items()))
-
-
-def best_by_winches(network: Network) -> dict[int, Alternative | Network]:
-    """The network of the least error as built for each number of winches, in order; the chosen one for its own."""
-    found: dict[int, Alternative | Network] = {}
-    for other in network.alternatives:
-        count = len(other.robot.winches)
-        if count not in found or other.built < found[count].built:
-            found[count] = other
-    found[len(network.robot.winches)] = network
-    return dict(sorted(found.items()))
 
 
 def on_front(size: Size, errors: Mapping[Size, float]) -> bool:

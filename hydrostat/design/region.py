@@ -83,6 +83,18 @@ class Region(ABC):
     def _nearest(self, places: Points) -> Nearest:
         return self.shell.nearest(places)
 
+    @staticmethod
+    def of_body(body: Body, clearance: float) -> "Region":
+        """The region of a body, as drawn or scanned, or of its mesh (InputError.
+
+        Too thin everywhere for the clearance).
+        """
+        region = (flat_region if body.mesh.dim == 2 else space_region)(body, clearance)
+        if region is None:
+            depth = f"{1e3 * clearance:g} mm inside its {'edge' if body.mesh.dim == 2 else 'surface'}"
+            raise InputError(f"the body is too thin for cables {depth}; lower the clearance")
+        return region
+
 
 @dataclass(frozen=True, eq=False)
 class FlatRegion(Region):
@@ -194,12 +206,3 @@ def body_shell(body: Body) -> Shell:
     if body.healing is not None:
         return Shell(body.healing.surface.vertices, body.healing.surface.triangles)
     return Shell(body.mesh.nodes, body.mesh.boundary)
-
-
-def body_region(body: Body, clearance: float) -> Region:
-    """The region of a body, as drawn or scanned, or of its mesh (InputError: too thin everywhere for the clearance)."""
-    region = (flat_region if body.mesh.dim == 2 else space_region)(body, clearance)
-    if region is None:
-        depth = f"{1e3 * clearance:g} mm inside its {'edge' if body.mesh.dim == 2 else 'surface'}"
-        raise InputError(f"the body is too thin for cables {depth}; lower the clearance")
-    return region

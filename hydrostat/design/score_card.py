@@ -6,9 +6,8 @@ from typing import Any
 import numpy as np
 
 from hydrostat.design.corrected_error import expected_corrected_error
-from hydrostat.design.craft import build_effort
-from hydrostat.design.filled_reach import out_of_plane
-from hydrostat.design.network import Alternative, Network, RouteTrace, TreeTrace, best_by_winches
+from hydrostat.design.craft import Craft
+from hydrostat.design.network import Alternative, Network, RouteTrace, TreeTrace
 from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.ik import IKResult
 from hydrostat.robot import Robot, robot_hash
@@ -23,8 +22,8 @@ def score_card(network: Network, *, version: str) -> dict[str, Any]:
         "rms_error": network.rms_error,
         "rms_error_as_built": network.built,
         "rms_error_corrected": corrected_error(network),
-        "rms_error_at_rest": rest_error(network),
-        "craft": build_effort(robot, network.reached).as_values,
+        "rms_error_at_rest": network.rest_error,
+        "craft": Craft.of_robot(robot, network.reached).as_values,
         "tension_limit": network.constraints.tension_limit,
         "torque_limit": network.constraints.torque,
         "poses": {pose.pose_target.name: _pose_results(robot, pose) for pose in network.reached},
@@ -32,7 +31,7 @@ def score_card(network: Network, *, version: str) -> dict[str, Any]:
         "cables": _cables(robot),
         **_trace(network.trace),
         **_filled_results(network),
-        "by_winches": [_by_winches(one) for one in best_by_winches(network).values()],
+        "by_winches": [_by_winches(one) for one in network.best_by_winches().values()],
         "alternatives": [_alternative(other) for other in network.alternatives],
         "networks_tried": network.tried,
         "cpu_seconds": network.seconds,
@@ -48,16 +47,6 @@ def corrected_error(network: Network) -> float:
     """Return the rms error expected of a built robot after one correction by measured markers [m]."""
     uncertainty = network.request.uncertainty or BuildTolerances.of(network.robot.body)
     return expected_corrected_error(Simulation(network.robot), network.reached, uncertainty)
-
-
-def rest_error(network: Network) -> float:
-    """Root of the mean squared marker error over all poses if nothing moved [m]."""
-    places = {marker.name: np.array(marker.at) for marker in network.robot.markers}
-    squares = [
-        np.mean([np.sum((places[name] - goal) ** 2) for name, goal in pose.pose_target.targets.items()])
-        for pose in network.reached
-    ]
-    return float(np.sqrt(np.mean(squares)))
 
 
 def _winches(robot: Robot) -> list[dict[str, Any]]:
@@ -119,7 +108,7 @@ def _filled_results(network: Network) -> dict[str, Any]:
             "contractions": dict(
                 zip((winch.name for winch in network.robot.winches), map(float, pose.pose.contractions), strict=True)
             ),
-            "out_of_plane": out_of_plane(pose.pose),
+            "out_of_plane": pose.pose.out_of_plane,
         }
         for pose in filled.reached
     }
@@ -133,7 +122,7 @@ def _by_winches(one: Alternative | Network) -> dict[str, Any]:
         "winches": len(one.robot.winches),
         "cables": len(one.robot.cables),
         "rms_error_as_built": one.built,
-        "craft": build_effort(one.robot, one.reached).as_values,
+        "craft": Craft.of_robot(one.robot, one.reached).as_values,
     }
 
 
@@ -143,7 +132,7 @@ def _alternative(other: Alternative) -> dict[str, Any]:
         "cables": len(other.robot.cables),
         "rms_error": other.rms_error,
         "rms_error_as_built": other.built,
-        "craft": build_effort(other.robot, other.reached).as_values,
+        "craft": Craft.of_robot(other.robot, other.reached).as_values,
         "poses": {pose.pose_target.name: pose.rms_error for pose in other.reached},
         "robot": robot_hash(other.robot),
     }

@@ -7,7 +7,7 @@ import numpy as np
 from hydrostat.arrays import Bool, Float
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.polyline import Route, least_along
-from hydrostat.design.region import Band, Region, SpaceRegion, body_region, body_shell
+from hydrostat.design.region import Band, Region, SpaceRegion, body_shell
 from hydrostat.errors import InputError
 from hydrostat.robot import Body
 
@@ -66,7 +66,7 @@ def cable_region(body: Body, constraints: Constraints) -> Region:
     Raises InputError: the body is too thin for that everywhere.
     """
     if constraints.depth is None:
-        return body_region(body, constraints.clearance)
+        return Region.of_body(body, constraints.clearance)
     region = SkinRegion(body_shell(body), max(constraints.depth - STITCH, 0.0), constraints.depth)
     nodes = body.mesh.nodes[np.unique(body.mesh.boundary)]
     if not region.fits(region.push_inside(nodes)).any():

@@ -17,14 +17,13 @@ from hydrostat.fabrication import (
     GIVES,
     MOTORS,
     Cuboid,
+    Demand,
     KitOptions,
     Method,
     Motor,
     PartOptions,
-    demand_of,
+    PocketRoom,
     find_motor,
-    largest_torque,
-    pocket_room,
     seam_of,
     sides_text,
     unit_room,
@@ -53,14 +52,14 @@ def find_holding_torque(robot: Robot, reached: Sequence[IKResult]) -> float | No
     """Torque that the motor of a kit holds for long [N m], if poses ask for more; None if not, or for no motor."""
     if not any(winch.mount is Mount.BODY for winch in robot.winches):
         return None
-    torques = demand_of(robot, reached).torques
+    torques = Demand.of_results(robot, reached).torques
     motor = find_motor(robot, torques, KitOptions())
-    return _torque_to_hold(motor) if float(torques.max()) > largest_torque(motor) else None
+    return _torque_to_hold(motor) if float(torques.max()) > motor.largest_torque() else None
 
 
 def _torque_to_hold(motor: Motor) -> float:
     """Torque that poses may ask of a motor for long [N m], with room for solvers that end near it."""
-    return largest_torque(motor) / _RULES.torque_margin
+    return motor.largest_torque() / _RULES.torque_margin
 
 
 def find_no_room(robot: Robot) -> str | None:
@@ -145,7 +144,7 @@ def _width(box: Cuboid) -> float:
 
 def _pocket_zones(robot: Robot, constraints: Constraints, box: Cuboid, winches: int) -> tuple[Zone, ...]:
     """Balls in which the pocket of a winch has room in a body of foam, the largest first."""
-    points, radii = pocket_room(robot).places(box)
+    points, radii = PocketRoom.of_robot(robot).places(box)
     if constraints.winch_zones and len(points):
         inside = -np.min([zone.distances(points) for zone in constraints.winch_zones], axis=0)
         points, radii = points[inside >= 0], np.minimum(radii, np.maximum(inside, _RULES.zone_radius))[inside >= 0]
@@ -195,7 +194,7 @@ def _has_room(robot: Robot, box: Cuboid, winches: int, scale: float) -> bool:
     """True if the units of all winches have room in a body that is scaled by a factor."""
     if robot.body.thickness is not None:
         return _has_room_for(_grid(_room(robot.body, box, scale)), winches, _width(box))
-    return _has_room_for(pocket_room(robot).places(box, scale=scale)[0], winches, _width(box))
+    return _has_room_for(PocketRoom.of_robot(robot).places(box, scale=scale)[0], winches, _width(box))
 
 
 def _least_scale(fits: Callable[[float], bool]) -> float:

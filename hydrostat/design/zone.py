@@ -1,6 +1,7 @@
 """`Zone`: a part of the plane or of space, at rest."""
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import isfinite
 from numbers import Real
@@ -91,6 +92,12 @@ class Zone:
         along = (ends - starts) * np.sign(turned)
         normals = np.column_stack([along[:, 1], -along[:, 0]])
         return starts, ends, normals / np.linalg.norm(normals, axis=1, keepdims=True)
+
+    def move(self, move: Callable[[Point], Point]) -> "Zone":
+        """A zone whose places are moved."""
+        at = None if self.at is None else move(self.at)
+        box = None if self.box is None else (move(self.box[0]), move(self.box[1]))
+        return replace(self, at=at, box=box, outline=tuple(map(move, self.outline)))
 
 
 class _Sides(NamedTuple):

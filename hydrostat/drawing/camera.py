@@ -23,7 +23,7 @@ class Camera:
     @classmethod
     def towards(cls, eye: Float[np.ndarray, " 3"], *, up: Float[np.ndarray, " 3"] | None = None) -> Self:
         """Camera in the direction `eye` from the body; `up` is up, or z, with x to the right seen from there."""
-        turn = upright(np.array([0.0, 0.0, 1.0]) if up is None else up)
+        turn = Camera.upright(np.array([0.0, 0.0, 1.0]) if up is None else up)
         near = turn @ eye / np.linalg.norm(eye)
         right = np.array([-near[1], near[0], 0.0])
         right = np.array([1.0, 0.0, 0.0]) if np.linalg.norm(right) < 1e-9 else right / np.linalg.norm(right)
@@ -57,67 +57,69 @@ class Camera:
         """Points as they are seen: to the right, up and towards the eye, in the unit of the points."""
         return points @ self.axes.T
 
+    @staticmethod
+    def along_an_axis(shape: Spots, shown: Spots, ways: Spots, up: Float[np.ndarray, " 3"] | None = None) -> "Camera":
+        """Camera along x, y or z that shows most of the body and of the paths of its points.
 
-def upright(up: Float[np.ndarray, " 3"]) -> Float[np.ndarray, "3 3"]:
-    """Shortest turn that makes `up` point along z, as a matrix; about x where it is straight down."""
-    way = up / np.linalg.norm(up)
-    if way[2] < -1 + 1e-9:
-        return np.diag([1.0, -1.0, -1.0])
-    x, y, z = way
-    share = 1 / (1 + z)
-    return np.array([[1 - x * x * share, -x * y * share, -x], [-x * y * share, 1 - y * y * share, -y], [x, y, z]])
+        The shape is points all over the body [m]; winches, cable points and markers that are shown [m], if any, decide
+        from which side; ways are how points of the body move [m]. Of x, y and z, whichever is nearest to `up`, z if
+        left out, stands upright.
+        """
+        turn = np.eye(3) if up is None else Camera.upright(_nearest_axis(up))
+        shape, shown, ways = shape @ turn.T, shown @ turn.T, ways @ turn.T
+        sides = np.ptp(shape, axis=0)
+        moved = (ways**2).sum(axis=0)
+        scores = []
+        # worth of a view from above beside one from the side that shows as much: there, up is not seen
+        from_above = 0.97
+        for axis in range(3):
+            others = [other for other in range(3) if other != axis]
+            share = moved[others].sum() / moved.sum() if moved.sum() > 0 else 1.0
+            scores.append(share * np.sqrt(np.prod(sides[others])) * (from_above if axis == 2 else 1.0))
+        axis = int(np.argmax(np.round(np.array(scores) / max(scores), 4)))
+        middle = (shape.min(axis=0) + shape.max(axis=0)) / 2
+        lean = float((shown - middle).mean(axis=0)[axis]) if len(shown) else 0.0
+        usual = (1.0, -1.0, 1.0)[axis]
+        sign = np.sign(lean) if abs(lean) > 0.02 * sides.max() and axis != 2 else usual
+        return Camera.towards(sign * np.eye(3)[axis] @ turn, up=turn[2])
 
+    @staticmethod
+    def three_quarter(
+        shape: Spots, shown: Spots, up: Float[np.ndarray, " 3"] | None = None, asked: Spots | None = None
+    ) -> "Camera":
+        """Camera that shows the length of a body, some of its depth, and the side with the most visible detail.
 
-def three_quarter(
-    shape: Spots, shown: Spots, up: Float[np.ndarray, " 3"] | None = None, asked: Spots | None = None
-) -> Camera:
-    """Camera that shows the length of a body, some of its depth, and the side with the most visible detail.
+        The shape is points all over the body at rest [m]; winches, cable points and markers are shown [m], if any; `up`
+        is z if left out. Points that are asked to move so far [m] rather come towards the eye than go away from it.
+        """
+        turn = np.eye(3) if up is None else Camera.upright(up)
+        shape, shown = shape @ turn.T, shown @ turn.T
+        middle = (shape.min(axis=0) + shape.max(axis=0)) / 2
+        sides = np.ptp(shape, axis=0)
+        flat = np.clip(1 - 2 * sides[2] / max(min(sides[0], sides[1]), 1e-12), 0, 1)
+        # angle of the eye of a three-quarter view above the horizon [degree]; more for a body that lies flat
+        elevation = 22.0
+        height = np.radians(elevation + 20 * flat)
+        long_way = _long_way(shape[:, :2])
+        turns = np.radians([-TURN, TURN, 180 - TURN, 180 + TURN]) + long_way
+        eyes = np.column_stack(
+            [np.cos(height) * np.cos(turns), np.cos(height) * np.sin(turns), np.full(4, np.sin(height))]
+        )
+        facing = (shown - middle).mean(axis=0) @ eyes.T / max(sides.max(), 1e-12) if len(shown) else np.zeros(4)
+        if asked is not None and len(asked):
+            facing = facing + asked.mean(axis=0) @ turn.T @ eyes.T / max(sides.max(), 1e-12)
+        score = np.round(facing, 3) - 0.02 * np.round(eyes[:, 1], 3) + 0.005 * np.round(eyes[:, 0], 3)
+        return Camera.towards(eyes[int(np.argmax(score))] @ turn, up=turn[2])
 
-    The shape is points all over the body at rest [m]; winches, cable points and markers are shown [m], if any; `up` is
-    z if left out. Points that are asked to move so far [m] rather come towards the eye than go away from it.
-    """
-    turn = np.eye(3) if up is None else upright(up)
-    shape, shown = shape @ turn.T, shown @ turn.T
-    middle = (shape.min(axis=0) + shape.max(axis=0)) / 2
-    sides = np.ptp(shape, axis=0)
-    flat = np.clip(1 - 2 * sides[2] / max(min(sides[0], sides[1]), 1e-12), 0, 1)
-    # angle of the eye of a three-quarter view above the horizon [degree]; more for a body that lies flat
-    elevation = 22.0
-    height = np.radians(elevation + 20 * flat)
-    long_way = _long_way(shape[:, :2])
-    turns = np.radians([-TURN, TURN, 180 - TURN, 180 + TURN]) + long_way
-    eyes = np.column_stack([np.cos(height) * np.cos(turns), np.cos(height) * np.sin(turns), np.full(4, np.sin(height))])
-    facing = (shown - middle).mean(axis=0) @ eyes.T / max(sides.max(), 1e-12) if len(shown) else np.zeros(4)
-    if asked is not None and len(asked):
-        facing = facing + asked.mean(axis=0) @ turn.T @ eyes.T / max(sides.max(), 1e-12)
-    score = np.round(facing, 3) - 0.02 * np.round(eyes[:, 1], 3) + 0.005 * np.round(eyes[:, 0], 3)
-    return Camera.towards(eyes[int(np.argmax(score))] @ turn, up=turn[2])
-
-
-def along_an_axis(shape: Spots, shown: Spots, ways: Spots, up: Float[np.ndarray, " 3"] | None = None) -> Camera:
-    """Camera along x, y or z that shows most of the body and of the paths of its points.
-
-    The shape is points all over the body [m]; winches, cable points and markers that are shown [m], if any, decide from
-    which side; ways are how points of the body move [m]. Of x, y and z, whichever is nearest to `up`, z if left out,
-    stands upright.
-    """
-    turn = np.eye(3) if up is None else upright(_nearest_axis(up))
-    shape, shown, ways = shape @ turn.T, shown @ turn.T, ways @ turn.T
-    sides = np.ptp(shape, axis=0)
-    moved = (ways**2).sum(axis=0)
-    scores = []
-    # worth of a view from above beside one from the side that shows as much: there, up is not seen
-    from_above = 0.97
-    for axis in range(3):
-        others = [other for other in range(3) if other != axis]
-        share = moved[others].sum() / moved.sum() if moved.sum() > 0 else 1.0
-        scores.append(share * np.sqrt(np.prod(sides[others])) * (from_above if axis == 2 else 1.0))
-    axis = int(np.argmax(np.round(np.array(scores) / max(scores), 4)))
-    middle = (shape.min(axis=0) + shape.max(axis=0)) / 2
-    lean = float((shown - middle).mean(axis=0)[axis]) if len(shown) else 0.0
-    usual = (1.0, -1.0, 1.0)[axis]
-    sign = np.sign(lean) if abs(lean) > 0.02 * sides.max() and axis != 2 else usual
-    return Camera.towards(sign * np.eye(3)[axis] @ turn, up=turn[2])
+    @staticmethod
+    def upright(up: Float[np.ndarray, " 3"]) -> Float[np.ndarray, "3 3"]:
+        """Shortest turn that makes `up` point along z, as a matrix; about x where it is straight down."""
+        way = up / np.linalg.norm(up)
+        if way[2] < -1 + 1e-9:
+            return np.diag([1.0, -1.0, -1.0])
+        x, y, z = way
+        share = 1 / (1 + z)
+        return np.array([[1 - x * x * share, -x * y * share, -x], [-x * y * share, 1 - y * y * share, -y], [x, y, z]])
 
 
 def _nearest_axis(way: Float[np.ndarray, " 3"]) -> Float[np.ndarray, " 3"]:

@@ -163,7 +163,7 @@ class Canvas:
     ) -> None:
         """Words of a size [pt], their middle at the height of `at`; with `halo` lines behind them stop short."""
         if halo:
-            wide, high = text_size(words, size)
+            wide, high = Canvas.text_size(words, size)
             left = at[0] - wide * {"start": 0.0, "middle": 0.5, "end": 1.0}[anchor]
             self.box((left - 0.3, at[1] - high / 2, left + wide + 0.3, at[1] + high / 2), grey=1.0)
         x, y, height = (number(value, 2) for value in (at[0], at[1] + 0.32 * size * POINT, size * POINT))
@@ -172,7 +172,7 @@ class Canvas:
 
     def balloon(self, at: Spot, words: str, *, dark: bool = False, size: float = 9.0) -> None:
         """Words in a circle, white on black if `dark`."""
-        radius = balloon_radius(words, size)
+        radius = Canvas.balloon_radius(words, size)
         self.disc(at, radius, grey=0.0 if dark else 1.0, edge=self.MIDDLE)
         self.text(at, words, size=size, bold=True, grey=1.0 if dark else 0.0)
 
@@ -192,21 +192,21 @@ class Canvas:
         self.line([frame.way(way) for way in drawing.lines], width=self.THIN)
         self.line([frame.way(way) for way in drawing.outlines], width=self.MIDDLE)
 
+    @staticmethod
+    def balloon_radius(words: str, size: float = 9.0) -> float:
+        """Radius of the circle round words [mm]."""
+        return max(0.62 * size * POINT, 0.56 * Canvas.text_size(words, size)[0] + 0.35)
 
-def fit_height(box: Float[np.ndarray, "2 2"], width: float, height: float) -> float:
-    """Height of a drawing scaled to the largest size that fits a width and a height [mm]."""
-    wide, high = np.maximum(box[1] - box[0], 1e-9).tolist()
-    return min(height, width * high / wide)
+    @staticmethod
+    def text_size(words: str, size: float) -> tuple[float, float]:
+        """Approximate width and height [mm] of a text of a size [pt]."""
+        return 0.5 * size * POINT * (len(words) + words.count("W")), 0.75 * size * POINT
 
-
-def text_size(words: str, size: float) -> tuple[float, float]:
-    """Approximate width and height [mm] of a text of a size [pt]."""
-    return 0.5 * size * POINT * (len(words) + words.count("W")), 0.75 * size * POINT
-
-
-def balloon_radius(words: str, size: float = 9.0) -> float:
-    """Radius of the circle round words [mm]."""
-    return max(0.62 * size * POINT, 0.56 * text_size(words, size)[0] + 0.35)
+    @staticmethod
+    def fit_height(box: Float[np.ndarray, "2 2"], width: float, height: float) -> float:
+        """Height of a drawing scaled to the largest size that fits a width and a height [mm]."""
+        wide, high = np.maximum(box[1] - box[0], 1e-9).tolist()
+        return min(height, width * high / wide)
 
 
 def _ink(grey: float) -> str:

@@ -88,6 +88,29 @@ class Color:
     TENSION = ("#efa35c", "#e56a4f", "#c33c6a", "#842681", "#40156b", "#150b37")
     """From little tension to much: as even in lightness as magma, without its ends that felt or paper would swallow."""
 
+    @staticmethod
+    def mix(color: str, other: str, share: float) -> str:
+        """Color with a share, 0 to 1, of another."""
+        pairs = zip(Color.channels(color), Color.channels(other), strict=True)
+        return "#" + "".join(f"{round((1 - share) * first + share * second):02x}" for first, second in pairs)
+
+    @staticmethod
+    def channels(color: str) -> list[int]:
+        """Red, green and blue of a color, 0 to 255."""
+        return [int(color[start : start + 2], 16) for start in (1, 3, 5)]
+
+    @staticmethod
+    def of_poses(names: Iterable[str]) -> dict[str, str]:
+        """Color of each of a robot's poses: the winch colors in reverse, as few robots have that many winches."""
+        return {name: Color.WINCHES[-1 - index % len(Color.WINCHES)] for index, name in enumerate(names)}
+
+    @staticmethod
+    def of_winches(winches: "Iterable[Named]") -> dict[str, str]:
+        """Color of each of a robot's winches, by name; darker ones from the ninth on, and again from the 17th."""
+        count = len(Color.WINCHES)
+        colors = [*Color.WINCHES, *(Color.mix(color, Color.INK, 0.55) for color in Color.WINCHES)]
+        return {winch.name: colors[index % (2 * count)] for index, winch in enumerate(winches)}
+
 
 @runtime_checkable
 class Named(Protocol):
@@ -97,26 +120,3 @@ class Named(Protocol):
     def name(self) -> str:
         """Name of the object."""
         ...
-
-
-def winch_colors(winches: Iterable[Named]) -> dict[str, str]:
-    """Color of each of a robot's winches, by name; darker ones from the ninth on, and again from the 17th."""
-    count = len(Color.WINCHES)
-    colors = [*Color.WINCHES, *(mix(color, Color.INK, 0.55) for color in Color.WINCHES)]
-    return {winch.name: colors[index % (2 * count)] for index, winch in enumerate(winches)}
-
-
-def pose_colors(names: Iterable[str]) -> dict[str, str]:
-    """Color of each of a robot's poses: the winch colors in reverse, as few robots have that many winches."""
-    return {name: Color.WINCHES[-1 - index % len(Color.WINCHES)] for index, name in enumerate(names)}
-
-
-def mix(color: str, other: str, share: float) -> str:
-    """Color with a share, 0 to 1, of another."""
-    pairs = zip(channels(color), channels(other), strict=True)
-    return "#" + "".join(f"{round((1 - share) * first + share * second):02x}" for first, second in pairs)
-
-
-def channels(color: str) -> list[int]:
-    """Red, green and blue of a color, 0 to 255."""
-    return [int(color[start : start + 2], 16) for start in (1, 3, 5)]

@@ -8,14 +8,14 @@ from hydrostat.arrays import Float, Int, Vector
 from hydrostat.drawing.camera import Spots
 from hydrostat.drawing.creases import smooth_normals
 from hydrostat.drawing.depth import DepthBuffer, Polyline
-from hydrostat.drawing.palette import Color, channels, mix, paint, sky_shares
+from hydrostat.drawing.palette import Color, paint, sky_shares
 
 FINER = 2  # samples along each side of a pixel
 CREASE = 42.0  # a sharper bend than this between two facets is drawn as an edge [degree]
 RAMP = (
     (0.0, Color.SHADE),
     (0.30, Color.SEAM),
-    (0.52, mix(Color.SEAM, Color.FELT, 0.62)),
+    (0.52, Color.mix(Color.SEAM, Color.FELT, 0.62)),
     (0.74, Color.FELT),
     (0.92, Color.FELT_LIGHT),
     (1.0, Color.STITCH),
@@ -79,7 +79,11 @@ def render(
     sky_way = (0.0, 1.0, 0.0) if up is None else up
     look = np.array([FINER, point / fine, 0.012 * size / fine, sky_way[1], sky_way[2], FINER * (steps[0] - steps[1])])
     inks = np.array(
-        [_shares(mix(Color.DARK, Color.SEAM, 0.25)), _shares(Color.MESH), _shares(mix(Color.SEAM, Color.PAPER, pale))]
+        [
+            _shares(Color.mix(Color.DARK, Color.SEAM, 0.25)),
+            _shares(Color.MESH),
+            _shares(Color.mix(Color.SEAM, Color.PAPER, pale)),
+        ]
     )
     shares = np.array([1.0, 0.5 * lines, 0.9])
     return Render(paint(samples.depth / fine, samples.shown, sky, look, _table(pale), inks, shares), buffer)
@@ -127,7 +131,7 @@ def _unit(vectors: Float[np.ndarray, "height width 3"]) -> np.ndarray:
 def _table(pale: float) -> Float[np.ndarray, "256 3"]:
     """Colors of felt from deep shade to full light."""
     stops = [stop for stop, _ in RAMP]
-    colors = np.array([_shares(mix(color, Color.PAPER, pale)) for _, color in RAMP])
+    colors = np.array([_shares(Color.mix(color, Color.PAPER, pale)) for _, color in RAMP])
     return np.column_stack([np.interp(np.linspace(0, 1, 256), stops, colors[:, channel]) for channel in range(3)])
 
 
@@ -142,4 +146,4 @@ def _smooth(image: np.ndarray) -> np.ndarray:
 
 def _shares(color: str) -> np.ndarray:
     """Red, green and blue of a color, 0 to 1."""
-    return np.array(channels(color)) / 255
+    return np.array(Color.channels(color)) / 255

@@ -6,8 +6,8 @@ from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
     from hydrostat.fabrication.build_kit import build_kit, write_kit
-    from hydrostat.fabrication.demand import Demand, demand_of, find_demand, shaft_torques
-    from hydrostat.fabrication.kit import Check, Kit, UnbuildableError, forget_files, write_files
+    from hydrostat.fabrication.demand import Demand, shaft_torques
+    from hydrostat.fabrication.kit import Check, Kit, UnbuildableError, write_files
     from hydrostat.fabrication.kit_options import (
         STUFFINGS,
         KitOptions,
@@ -23,16 +23,8 @@ if TYPE_CHECKING:
     from hydrostat.fabrication.lists.needs import control_needs
     from hydrostat.fabrication.lists.stitching import depth_table
     from hydrostat.fabrication.moulds.mould import make_mold
-    from hydrostat.fabrication.moulds.pocket_room import PocketRoom, pocket_room
-    from hydrostat.fabrication.parts.motor import (
-        BOARDS,
-        MOTORS,
-        BoardKind,
-        Motor,
-        board_for,
-        choose_motor,
-        largest_torque,
-    )
+    from hydrostat.fabrication.moulds.pocket_room import PocketRoom
+    from hydrostat.fabrication.parts.motor import BOARDS, MOTORS, BoardKind, Motor, board_for
     from hydrostat.fabrication.parts.places import GIVES, TOUCHES, UnitBox, seam_of, ways_to_lie
     from hydrostat.fabrication.parts.winch_unit import unit_room
     from hydrostat.fabrication.patches.skin_mesh import skin_of_surface
@@ -80,21 +72,15 @@ __all__ = [
     "UnitBox",
     "board_for",
     "build_kit",
-    "choose_motor",
     "control_needs",
-    "demand_of",
     "depth_table",
     "drawn_solid",
-    "find_demand",
     "find_motor",
     "find_refusals",
     "find_sewing",
     "find_weak_lines",
-    "forget_files",
-    "largest_torque",
     "make_mold",
     "plush_pattern",
-    "pocket_room",
     "power_plan",
     "seam_of",
     "sewing_of",

@@ -4,12 +4,12 @@ from pathlib import Path
 
 from hydrostat.fabrication.body_work import foam_work, plush_work
 from hydrostat.fabrication.checks.solid_checks import solid_checks, spool_checks, too_large
-from hydrostat.fabrication.demand import Demand, find_demand
+from hydrostat.fabrication.demand import Demand
 from hydrostat.fabrication.kit import MANIFEST, Kit, UnbuildableError, manifest
 from hydrostat.fabrication.kit_options import KitOptions, Method
 from hydrostat.fabrication.kit_plan import BodyWork, KitFindings, KitPlan
 from hydrostat.fabrication.lists.lists import Lists, make_lists
-from hydrostat.fabrication.parts.motor import choose_motor
+from hydrostat.fabrication.parts.motor import Motor
 from hydrostat.fabrication.parts.rigid_parts import RigidParts, rigid_parts
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.pattern import cut_sheet
@@ -51,7 +51,7 @@ def build_kit(robot: Robot, *, options: KitOptions | None = None, progress: Prog
     check_type(robot, Robot, "a kit is made of a Robot, such as load_robot gives")
     check_type(options, (KitOptions, type(None)), "options must be KitOptions(...)")
     options, tell = options or KitOptions(), _Stages(progress)
-    choose_motor(options.motor, ())  # a name that is wrong is told before the work
+    Motor.choose(options.motor, ())  # a name that is wrong is told before the work
     if options.step:
         require_cad()
     plan = _plan(robot, options, tell)
@@ -114,7 +114,7 @@ class _Stages:
 def _plan(drawn: Robot, options: KitOptions, tell: _Stages) -> KitPlan:
     robot = sewn_robot(drawn) if options.method_for(drawn.body) is Method.PLUSH else drawn
     tell("Loads in its poses")
-    demand = find_demand(robot, tension=options.tension, torque=options.torque, progress=tell.part)
+    demand = Demand.find(robot, tension=options.tension, torque=options.torque, progress=tell.part)
     rigid, work = _parts_and_body(drawn, robot, options, demand, tell)
     return KitPlan(drawn=drawn, robot=robot, options=options, demand=demand, rigid=rigid, work=work)
 

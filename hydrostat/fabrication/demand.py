@@ -32,41 +32,41 @@ class Demand:
     missed: tuple[str, ...] = ()  # poses that could not be solved, in words
     far: tuple[str, ...] = ()  # sentences on poses that are out of reach
 
+    @staticmethod
+    def find(
+        robot: Robot,
+        *,
+        tension: float | None = None,
+        torque: float | None = None,
+        progress: Callable[[int, int], None] | None = None,
+    ) -> "Demand":
+        """Find the loads of a robot's poses by inverse kinematics; without poses, of each winch alone at full travel.
 
-def find_demand(
-    robot: Robot,
-    *,
-    tension: float | None = None,
-    torque: float | None = None,
-    progress: Callable[[int, int], None] | None = None,
-) -> Demand:
-    """Find what the poses of a robot ask for, by inverse kinematics; without poses, each winch alone at full travel.
+        Winches are pulled alone too if no pose could be solved. In poses no cable is pulled with more than the tension
+        [N] and no winch with more than the torque [N m], as whoever plays them should keep to them; without these
+        winches do all they can. Cables with friction come to each pose
+        straight from rest. `progress` is told how many poses are solved, of how many.
+        """
+        if not robot.cables:
+            count = len(robot.winches)
+            return Demand(poses=(), tensions=np.zeros(0), torques=np.zeros(count), taken=np.zeros((count, 2)))
+        work = _PoseLoads(robot, Limits(tension=tension, torque=torque))
+        for done, pose in enumerate(robot.poses.values()):
+            if progress is not None:
+                progress(done, len(robot.poses))
+            work.reach(pose)
+        if not work.solved:
+            for winch in robot.winches:
+                work.pull(winch)
+        return work.demand()
 
-    Winches are pulled alone too if no pose could be solved. In poses no cable is pulled with more than the tension [N]
-    and no winch with more than the torque [N m], as whoever plays them should keep to them; without these winches do
-    all they can. Cables with friction come to each pose
-    straight from rest. `progress` is told how many poses are solved, of how many.
-    """
-    if not robot.cables:
-        count = len(robot.winches)
-        return Demand(poses=(), tensions=np.zeros(0), torques=np.zeros(count), taken=np.zeros((count, 2)))
-    work = _PoseLoads(robot, Limits(tension=tension, torque=torque))
-    for done, pose in enumerate(robot.poses.values()):
-        if progress is not None:
-            progress(done, len(robot.poses))
-        work.reach(pose)
-    if not work.solved:
-        for winch in robot.winches:
-            work.pull(winch)
-    return work.demand()
-
-
-def demand_of(robot: Robot, reached: Sequence[IKResult]) -> Demand:
-    """The loads of poses that are solved already, as a design has them."""
-    rest = (np.zeros(len(robot.winches)), np.zeros(len(robot.cables)))
-    solved = [(each.pose.contractions, each.pose.tensions) for each in reached]
-    names = [f'pose "{each.target.name}"' if each.target else "pose" for each in reached]
-    return _sum_up(robot, names, [rest, *solved])
+    @staticmethod
+    def of_results(robot: Robot, reached: Sequence[IKResult]) -> "Demand":
+        """The loads of poses that are solved already, as a design has them."""
+        rest = (np.zeros(len(robot.winches)), np.zeros(len(robot.cables)))
+        solved = [(each.pose.contractions, each.pose.tensions) for each in reached]
+        names = [f'pose "{each.target.name}"' if each.target else "pose" for each in reached]
+        return _sum_up(robot, names, [rest, *solved])
 
 
 def _sum_up(robot: Robot, poses: Sequence[str], loads: Sequence[tuple[Vector, Vector]]) -> Demand:

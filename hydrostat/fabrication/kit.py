@@ -78,6 +78,15 @@ class Kit:
         """Write all files into a folder, in place of an earlier kit (InputError: a file cannot be written)."""
         return write_files(self.files, folder)
 
+    @staticmethod
+    def forget_files(folder: str | Path) -> None:
+        """Remove a kit from a folder, but for what was changed or added since."""
+        folder = Path(folder)
+        for path in (*_written_before(folder), MANIFEST):
+            _remove(folder / path, folder)
+        with suppress(OSError):
+            folder.rmdir()
+
 
 def manifest(
     robot: Robot, options: KitOptions, files: Mapping[str, bytes], *, checks: Sequence[Check], told: Mapping[str, Any]
@@ -115,15 +124,6 @@ def write_files(files: Mapping[str, bytes], folder: str | Path) -> list[Path]:
         _remove(folder / path, folder)
     last = sorted(files, key=lambda path: (path == MANIFEST, path))
     return sorted(replace_file(folder / path, files[path]) for path in last)
-
-
-def forget_files(folder: str | Path) -> None:
-    """Remove a kit from a folder, but for what was changed or added since."""
-    folder = Path(folder)
-    for path in (*_written_before(folder), MANIFEST):
-        _remove(folder / path, folder)
-    with suppress(OSError):
-        folder.rmdir()
 
 
 def _written_before(folder: Path) -> Iterator[str]:

@@ -13,15 +13,7 @@ if TYPE_CHECKING:
     from hydrostat.ik.objectives.center_of_mass_target import CenterOfMassTarget
     from hydrostat.ik.objectives.effort import Effort
     from hydrostat.ik.objectives.marker_target import MarkerTarget, PointTarget, named_targets
-    from hydrostat.ik.objectives.objective import (
-        EquilibriumState,
-        Objective,
-        Residual,
-        StateJacobian,
-        place,
-        state_at,
-        state_jacobian_at,
-    )
+    from hydrostat.ik.objectives.objective import EquilibriumState, Objective, Residual, StateJacobian, place
     from hydrostat.ik.objectives.pose_regularizer import PoseRegularizer
     from hydrostat.ik.objectives.shape_target import ShapeTarget, load_target_outline
     from hydrostat.ik.reach import FoundReach, find_reach, reach_extent, usable_spans
@@ -74,8 +66,6 @@ __all__ = [
     "solve_ik_trajectory",
     "solve_pulls",
     "spool_arms",
-    "state_at",
-    "state_jacobian_at",
     "unconstrained_motion",
     "usable_spans",
 ]

@@ -7,7 +7,7 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.given import check_number
-from hydrostat.ik.objectives.objective import state_jacobian_at, winch_to_cable_matrix
+from hydrostat.ik.objectives.objective import StateJacobian, winch_to_cable_matrix
 from hydrostat.simulation import Contractions, Equilibrium, Simulation
 
 TOLERANCE = 1e-6
@@ -67,7 +67,7 @@ def solve_pulls(
 def _newton_step(simulation: Simulation, pose: Equilibrium, ratios: np.ndarray, own: Vector, missing: Vector) -> Vector:
     """Change of the contractions that would give the pulls, were the slopes constant; no longer than `LONGEST`."""
     cables = simulation.cables
-    slopes = ratios.T @ state_jacobian_at(simulation, pose).tensions[:, own]
+    slopes = ratios.T @ StateJacobian.at(simulation, pose).tensions[:, own]
     slack = cables.elongations(pose.nodes, pose.contractions) <= 0
     # A winch whose cables are slack goes on until the first is taut.
     gaps = np.where(slack, -cables.elongations(pose.nodes, pose.contractions), 0.0) + 0.5 * cables.law.smoothing

@@ -8,10 +8,10 @@ if TYPE_CHECKING:
     from hydrostat.learning.export import check_export, export_samples
     from hydrostat.learning.learn_model import correct_model, learn_model
     from hydrostat.learning.learn_options import LearnOptions
-    from hydrostat.learning.learned_model import LearnedModel, LearnedPose, load_model, save_model
+    from hydrostat.learning.learned_model import LearnedModel, LearnedPose
     from hydrostat.learning.model_card import ModelCard
     from hydrostat.learning.perceptrons import Perceptrons
-    from hydrostat.learning.portable_policy import PortablePolicy, load_policy
+    from hydrostat.learning.portable_policy import PortablePolicy
     from hydrostat.learning.sample_plan import (
         SamplePlan,
         SamplingScheme,
@@ -23,9 +23,9 @@ if TYPE_CHECKING:
     )
     from hydrostat.learning.sample_robot import sample_robot
     from hydrostat.learning.sample_shard import sample_shard
-    from hydrostat.learning.samples import Samples, read_samples
+    from hydrostat.learning.samples import Samples
     from hydrostat.learning.train import answer, tensors_of, train_forward
-    from hydrostat.learning.training_set import LEAST, TrainingSet, linear_map, make_training_set
+    from hydrostat.learning.training_set import LEAST, TrainingSet, linear_map
     from hydrostat.learning.verify import exact_steps, solve_exactly, verify
 
 __all__ = [
@@ -49,15 +49,10 @@ __all__ = [
     "export_samples",
     "learn_model",
     "linear_map",
-    "load_model",
-    "load_policy",
-    "make_training_set",
     "physics_hash",
     "plan_samples",
-    "read_samples",
     "sample_robot",
     "sample_shard",
-    "save_model",
     "shared_numbers",
     "solve_exactly",
     "tensors_of",

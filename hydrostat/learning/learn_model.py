@@ -14,7 +14,7 @@ from hydrostat.learning.learned_model import LearnedModel, index_pairs
 from hydrostat.learning.model_card import ModelCard
 from hydrostat.learning.sample_plan import SamplingScheme
 from hydrostat.learning.samples import Samples
-from hydrostat.learning.training_set import make_training_set
+from hydrostat.learning.training_set import TrainingSet
 from hydrostat.progress import Progress, no_progress
 
 
@@ -38,7 +38,7 @@ def learn_model(
     from hydrostat.learning.train import train_forward, train_inverse
 
     options, told = options or LearnOptions(), progress or no_progress
-    began, training_set, dim = time.process_time(), make_training_set(samples), samples.facts["dim"]
+    began, training_set, dim = time.process_time(), TrainingSet.of_samples(samples), samples.facts["dim"]
     kept = kept_facts(samples)
     pairs = index_pairs(kept["pairs"], samples.facts["winches"])
     length = float(training_set.unit[0])
@@ -120,7 +120,7 @@ def correct_model(
         raise InputError("the samples are of a robot whose winches have another travel than the model's")
     steps, rate = 6000, 6e-3  # Default number of steps and learning rate of a correction
     options = replace(options or LearnOptions(steps=steps, rate=rate), members=len(model.forward))
-    began, training_set = time.process_time(), make_training_set(samples, model)
+    began, training_set = time.process_time(), TrainingSet.of_samples(samples, model)
     trained = train_forward(training_set, model.card.dim, options, progress or no_progress, start=model.forward)
     if not np.isfinite(trained.error):
         if trained.stopped:

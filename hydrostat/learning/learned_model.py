@@ -297,6 +297,24 @@ class LearnedModel:
     def _center(self) -> Vector:
         return self.low + self._half
 
+    @staticmethod
+    def load(path: str | Path) -> "LearnedModel":
+        """A model that `save_model` has written.
+
+        Raises:
+            InputError: there is none, it was changed since it was written, or it is not one that this version can use.
+        """
+        return _FILE.read(path, _model)
+
+    def save(self, path: Path) -> Path:
+        """Write a model whole, or not at all (InputError: it cannot be written)."""
+        arrays = {name: getattr(self, name) for name in ("low", "high", "middle", "unit", "known", "reached")}
+        for name in ("forward", "inverse"):
+            network = getattr(self, name)
+            if network is not None:
+                arrays |= {f"{name}.sizes": network.sizes, f"{name}.numbers": network.numbers}
+        return _FILE.write(path, self.card.as_json(), arrays)
+
 
 def index_pairs(pairs: Sequence[Sequence[str]], winches: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
     """Places of the first and of the second winch of each pair by name; groups of one are left out."""
@@ -315,25 +333,6 @@ _BEYOND = 1.02
 
 _STARTS = 3
 """Samples that a search begins from where the inverse network's answer is not near enough."""
-
-
-def save_model(model: LearnedModel, path: Path) -> Path:
-    """Write a model whole, or not at all (InputError: it cannot be written)."""
-    arrays = {name: getattr(model, name) for name in ("low", "high", "middle", "unit", "known", "reached")}
-    for name in ("forward", "inverse"):
-        network = getattr(model, name)
-        if network is not None:
-            arrays |= {f"{name}.sizes": network.sizes, f"{name}.numbers": network.numbers}
-    return _FILE.write(path, model.card.as_json(), arrays)
-
-
-def load_model(path: str | Path) -> LearnedModel:
-    """A model that `save_model` has written.
-
-    Raises:
-        InputError: there is none, it was changed since it was written, or it is not one that this version can use.
-    """
-    return _FILE.read(path, _model)
 
 
 def _model(facts: dict[str, Any], arrays: dict[str, np.ndarray]) -> LearnedModel:

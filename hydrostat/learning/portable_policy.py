@@ -49,14 +49,14 @@ class PortablePolicy:
         arrays = {"actor.sizes": self.network.sizes, "actor.numbers": self.network.numbers}
         return _FILE.write(path, self.facts, arrays)
 
+    @staticmethod
+    def load(path: Path) -> "PortablePolicy":
+        """A policy that `hydrostat train` has written.
 
-def load_policy(path: Path) -> PortablePolicy:
-    """A policy that `hydrostat train` has written.
-
-    Raises:
-        InputError: there is none, it was changed since it was written, or it is not one that this version can use.
-    """
-    return _FILE.read(path, _policy)
+        Raises:
+            InputError: there is none, it was changed since it was written, or it is not one that this version can use.
+        """
+        return _FILE.read(path, _policy)
 
 
 def _policy(facts: dict[str, Any], arrays: dict[str, np.ndarray]) -> PortablePolicy:

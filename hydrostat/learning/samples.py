@@ -224,6 +224,31 @@ class Samples:
             lost=self.lost,
         )
 
+    @staticmethod
+    def read(folder: str | Path) -> "Samples":
+        """Samples of a folder that `sample_robot` has written; stable equilibria with slopes alone.
+
+        Raises:
+            InputError: as for `read_rows`.
+        """
+        facts, rows = read_rows(folder)
+        good = (rows["reason"] == REASONS.index("converged")) & (rows["stable"] > 0)
+        good &= np.isfinite(rows["jacobian"]).all(axis=(1, 2, 3)) & np.isfinite(rows["markers"]).all(axis=(1, 2))
+        rows, lost = rows[good], int((~good).sum())
+        return Samples(
+            facts=facts,
+            numbers=rows["number"],
+            contractions=rows["contractions"],
+            markers=rows["markers"],
+            jacobians=rows["jacobian"],
+            tensions=rows["tensions"],
+            tension_slopes=rows["tension_slopes"] if "tension_slopes" in (rows.dtype.names or ()) else None,
+            touches=rows["touches"] > 0,
+            crosses=rows["crosses"] > 0,
+            nodes=rows["nodes"] if "nodes" in (rows.dtype.names or ()) else None,
+            lost=lost,
+        )
+
 
 def read_rows(folder: str | Path) -> tuple[dict[str, Any], np.ndarray]:
     """Manifest and all rows of a folder of samples, in the order of their numbers; a run need not be complete.
@@ -247,28 +272,3 @@ def read_rows(folder: str | Path) -> tuple[dict[str, Any], np.ndarray]:
         parts.append(rows)
     rows = np.concatenate(parts)
     return facts, rows[np.argsort(rows["number"], kind="stable")]
-
-
-def read_samples(folder: str | Path) -> Samples:
-    """Samples of a folder that `sample_robot` has written; stable equilibria with slopes alone.
-
-    Raises:
-        InputError: as for `read_rows`.
-    """
-    facts, rows = read_rows(folder)
-    good = (rows["reason"] == REASONS.index("converged")) & (rows["stable"] > 0)
-    good &= np.isfinite(rows["jacobian"]).all(axis=(1, 2, 3)) & np.isfinite(rows["markers"]).all(axis=(1, 2))
-    rows, lost = rows[good], int((~good).sum())
-    return Samples(
-        facts=facts,
-        numbers=rows["number"],
-        contractions=rows["contractions"],
-        markers=rows["markers"],
-        jacobians=rows["jacobian"],
-        tensions=rows["tensions"],
-        tension_slopes=rows["tension_slopes"] if "tension_slopes" in (rows.dtype.names or ()) else None,
-        touches=rows["touches"] > 0,
-        crosses=rows["crosses"] > 0,
-        nodes=rows["nodes"] if "nodes" in (rows.dtype.names or ()) else None,
-        lost=lost,
-    )

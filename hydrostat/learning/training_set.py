@@ -36,42 +36,42 @@ class TrainingSet:
     coordinates: int
     linear: Float[np.ndarray, "rows outputs"]
 
+    @staticmethod
+    def of_samples(samples: Samples, like: LearnedModel | None = None) -> "TrainingSet":
+        """Return the training set of samples, in the units of a model if its networks are trained further.
 
-def make_training_set(samples: Samples, like: LearnedModel | None = None) -> TrainingSet:
-    """Return the training set of samples, in the units of a model if its networks are trained further.
-
-    Raises:
-        InputError: there are fewer than `LEAST`, or `FEWEST` where a model learns on.
-    """
-    count, least = len(samples), LEAST if like is None else FEWEST
-    if count < least:
-        raise InputError(f"there are {count} samples; learning takes {least} or more")
-    low, high = samples.limits
-    span = span_of(low, high)
-    inputs = 2.0 * (samples.contractions - low) / span - 1.0
-    markers = samples.markers.reshape(count, -1)
-    found = np.hstack([markers, samples.tensions])
-    middle, coordinates = found.mean(axis=0), markers.shape[1]
-    length, force = (_rms_scale(part) for part in np.split(found - middle, [coordinates], axis=1))
-    unit = np.r_[np.full(coordinates, length), np.full(found.shape[1] - coordinates, force)]
-    if like is not None:
-        middle, unit = like.middle, like.unit
-    found_slopes = samples.jacobians.reshape(count, coordinates, -1)
-    if samples.tension_slopes is not None:
-        found_slopes = np.hstack([found_slopes, samples.tension_slopes])
-    slopes = found_slopes * (0.5 * span) / unit[: found_slopes.shape[1], None]
-    outputs = (found - middle) / unit
-    return TrainingSet(
-        low=low,
-        high=high,
-        middle=middle,
-        unit=unit,
-        inputs=inputs,
-        outputs=outputs,
-        slopes=slopes,
-        coordinates=coordinates,
-        linear=linear_map(inputs, outputs),
-    )
+        Raises:
+            InputError: there are fewer than `LEAST`, or `FEWEST` where a model learns on.
+        """
+        count, least = len(samples), LEAST if like is None else FEWEST
+        if count < least:
+            raise InputError(f"there are {count} samples; learning takes {least} or more")
+        low, high = samples.limits
+        span = span_of(low, high)
+        inputs = 2.0 * (samples.contractions - low) / span - 1.0
+        markers = samples.markers.reshape(count, -1)
+        found = np.hstack([markers, samples.tensions])
+        middle, coordinates = found.mean(axis=0), markers.shape[1]
+        length, force = (_rms_scale(part) for part in np.split(found - middle, [coordinates], axis=1))
+        unit = np.r_[np.full(coordinates, length), np.full(found.shape[1] - coordinates, force)]
+        if like is not None:
+            middle, unit = like.middle, like.unit
+        found_slopes = samples.jacobians.reshape(count, coordinates, -1)
+        if samples.tension_slopes is not None:
+            found_slopes = np.hstack([found_slopes, samples.tension_slopes])
+        slopes = found_slopes * (0.5 * span) / unit[: found_slopes.shape[1], None]
+        outputs = (found - middle) / unit
+        return TrainingSet(
+            low=low,
+            high=high,
+            middle=middle,
+            unit=unit,
+            inputs=inputs,
+            outputs=outputs,
+            slopes=slopes,
+            coordinates=coordinates,
+            linear=linear_map(inputs, outputs),
+        )
 
 
 def linear_map(inputs: np.ndarray, outputs: np.ndarray) -> np.ndarray:

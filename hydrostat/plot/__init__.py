@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from hydrostat.plot.calibration_page import reach, write_calibration_page
     from hydrostat.plot.chart import new_chart, plain_axes, short_number
     from hydrostat.plot.drawn_body import DrawnBody
-    from hydrostat.plot.film import Film, Stop, film, pose_stops, trajectory_frames, upright, winch_stops
+    from hydrostat.plot.film import Film, Stop, film, trajectory_frames, upright
     from hydrostat.plot.frame import Attachments, Frame
     from hydrostat.plot.frame_pictures import FramePictures, Picture
     from hydrostat.plot.grasp_figure import draw_pull, pull_frames
@@ -74,7 +74,6 @@ __all__ = [
     "new_figure",
     "outer_points",
     "plain_axes",
-    "pose_stops",
     "pull_frames",
     "reach",
     "reached_title",
@@ -87,7 +86,6 @@ __all__ = [
     "table",
     "trajectory_frames",
     "upright",
-    "winch_stops",
     "write_calibration_page",
     "write_report",
 ]

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from hydrostat.arrays import Bool, UInt8
-from hydrostat.drawing import Color, channels, winch_colors
+from hydrostat.drawing import Color
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.files import replace_file
 from hydrostat.plot.frame import Frame, check_frames
@@ -241,9 +241,9 @@ def _palette(robot: Robot, pictures: Sequence[Picture]) -> Palette:
     from PIL import Image
 
     scale = TensionScale(most=1.0)
-    fixed = [Color.PAPER, Color.INK, Color.MUTED, Color.DARK, Color.ERROR, *winch_colors(robot.winches).values()]
+    fixed = [Color.PAPER, Color.INK, Color.MUTED, Color.DARK, Color.ERROR, *Color.of_winches(robot.winches).values()]
     fixed += [scale.color(share) for share in np.linspace(0, 1, 9)]
-    told = np.array([channels(color) for color in fixed], dtype=np.uint8)
+    told = np.array([Color.channels(color) for color in fixed], dtype=np.uint8)
     told = np.unique(told, axis=0)
     strip = Image.fromarray(np.concatenate([picture[::2, ::2].reshape(-1, 3) for picture in pictures])[None])
     colors = 72  # colors of a GIF, all frames together: what lies between two of felt is not to be told

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from hydrostat.arrays import Vector
-from hydrostat.drawing import Color, mix
+from hydrostat.drawing import Color
 from hydrostat.errors import InputError
 from hydrostat.plot.chart import plain_axes
 from hydrostat.plot.labels import Labels, shorten
@@ -103,7 +103,7 @@ def _draw_poses(sheet: PictureSheet, pane: Pane, poses: Sequence[Equilibrium]) -
         if len(poses) > 1:
             rings = pane.outline(sheet, pose.nodes)
             color = _color(index)
-            fill = "none" if index == 0 else mix(color, Color.PAPER, 0.75)
+            fill = "none" if index == 0 else Color.mix(color, Color.PAPER, 0.75)
             sheet.area(rings, facecolor=fill, alpha=0.55, edgecolor="none", joinstyle="round", zorder=2.5)
             sheet.area(
                 rings, facecolor="none", edgecolor=color, linewidth=1.3, joinstyle="round", zorder=8 - 0.1 * index

@@ -28,6 +28,35 @@ class Stop:
     target: PoseTarget | None = None  # whose targets are shown on the way
     words: str = ""  # shown while the robot stays there
 
+    @staticmethod
+    def for_poses(reached: Sequence[IKResult]) -> "list[Stop]":
+        """A stop for each pose that inverse kinematics found (InputError: a robot with drives)."""
+        for found in reached:
+            PinDrive.require_none(found.pose.robot.drives, "films")
+        return [
+            Stop(
+                name=shorten(found.pose_target.name),
+                contractions=found.pose.contractions,
+                target=found.pose_target,
+                words=f"{shorten(found.pose_target.name)}: marker error {MILLIMETERS * found.rms_error:.1f} mm rms",
+            )
+            for found in reached
+        ]
+
+    @staticmethod
+    def for_winches(robot: Robot) -> "list[Stop]":
+        """Each winch in turn taken in by half its travel; less where its cables are too short for that."""
+        stops = []
+        least_left = 0.7  # no winch is taken in so far that less than this share of its shortest cable is left
+        for index, winch in enumerate(robot.winches):
+            pairs = zip(robot.cables, robot.spool_ratios, strict=True)
+            lengths = [cable.length / ratio for cable, ratio in pairs if cable.winch == winch.name and ratio > 0]
+            taken = np.zeros(len(robot.winches))
+            taken[index] = min([winch.travel / 2, *((1 - least_left) * length for length in lengths)])
+            words = f"{shorten(winch.name)} {MILLIMETERS * taken[index]:.0f} mm"
+            stops.append(Stop(name=words, contractions=taken, words=words))
+        return stops
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Film:
@@ -36,35 +65,6 @@ class Film:
     frames: tuple[Frame, ...]  # the first and the last at rest
     step: float  # time of a frame [s]
     missing: tuple[int, ...]  # numbers of the frames without an equilibrium; they show the one before
-
-
-def pose_stops(reached: Sequence[IKResult]) -> list[Stop]:
-    """A stop for each pose that inverse kinematics found (InputError: a robot with drives)."""
-    for found in reached:
-        PinDrive.require_none(found.pose.robot.drives, "films")
-    return [
-        Stop(
-            name=shorten(found.pose_target.name),
-            contractions=found.pose.contractions,
-            target=found.pose_target,
-            words=f"{shorten(found.pose_target.name)}: marker error {MILLIMETERS * found.rms_error:.1f} mm rms",
-        )
-        for found in reached
-    ]
-
-
-def winch_stops(robot: Robot) -> list[Stop]:
-    """Each winch in turn taken in by half its travel; less where its cables are too short for that."""
-    stops = []
-    least_left = 0.7  # no winch is taken in so far that less than this share of its shortest cable is left
-    for index, winch in enumerate(robot.winches):
-        pairs = zip(robot.cables, robot.spool_ratios, strict=True)
-        lengths = [cable.length / ratio for cable, ratio in pairs if cable.winch == winch.name and ratio > 0]
-        taken = np.zeros(len(robot.winches))
-        taken[index] = min([winch.travel / 2, *((1 - least_left) * length for length in lengths)])
-        words = f"{shorten(winch.name)} {MILLIMETERS * taken[index]:.0f} mm"
-        stops.append(Stop(name=words, contractions=taken, words=words))
-    return stops
 
 
 def film(

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.drawing import Color, mix, winch_colors
+from hydrostat.drawing import Color
 from hydrostat.plot.drawn_body import DrawnBody, DrawnCable
 from hydrostat.plot.frame import Attachments
 from hydrostat.plot.labels import Labels, shorten
@@ -89,7 +89,7 @@ def _draw_cables(
 
     What the body covers is thinner and of the color of the body, the more so the deeper it lies.
     """
-    by_winch = winch_colors(robot.winches)
+    by_winch = Color.of_winches(robot.winches)
     for index, (cable, run) in enumerate(zip(robot.cables, runs, strict=True)):
         color = colors[index] if colors is not None else by_winch[cable.winch]
         for start, end in cable.sheathed:
@@ -108,7 +108,7 @@ def _draw_winches(
 
     There are hands only where `contractions` [m] are given.
     """
-    colors = winch_colors(robot.winches)
+    colors = Color.of_winches(robot.winches)
     for index, (winch, center, fade) in enumerate(zip(robot.winches, centers, fades, strict=True)):
         _draw_spool(sheet, winch, center, colors[winch.name], float(fade))
         if contractions is not None:
@@ -118,7 +118,7 @@ def _draw_winches(
 
 def name_winches(labels: Labels, robot: Robot, centers: Places, notes: Sequence[str] = ()) -> None:
     """The name of each winch, and a note behind it, on a flag at its spool with the center [mm]."""
-    colors = winch_colors(robot.winches)
+    colors = Color.of_winches(robot.winches)
     for center in centers:
         labels.reserve(center, 18)
     for index, (winch, center) in enumerate(zip(robot.winches, centers, strict=True)):
@@ -181,7 +181,9 @@ def _draw_spool(sheet: PictureSheet, winch: Winch, center: Place, color: str, fa
             markeredgecolor=_fade_color(Color.DARK, fade), markeredgewidth=0.9, zorder=order,
         )  # fmt: skip
     sheet.dots(center[None], size, color=color, markeredgecolor=light, markeredgewidth=1.0, zorder=order + 1)
-    sheet.dots(center[None], 0.58 * size, color=mix(color, light, 0.75), markeredgecolor="none", zorder=order + 1.1)
+    sheet.dots(
+        center[None], 0.58 * size, color=Color.mix(color, light, 0.75), markeredgecolor="none", zorder=order + 1.1
+    )
     sheet.dots(center[None], 0.2 * size, color=color, markeredgecolor="none", zorder=order + 1.2)
 
 
@@ -195,9 +197,11 @@ def _draw_hand(sheet: PictureSheet, winch: Winch, center: Place, turn: float, co
 def _draw_sheath(sheet: PictureSheet, pipe: Places, color: str, width: float, fade: float) -> None:
     """A pale pipe around a piece of a cable, beneath all cables where the body covers it."""
     wall, order = _fade_color(color, fade), 6.0 if fade > 0 else 8.2
-    sheet.curve(pipe, color=mix(wall, Color.LIGHT, 0.35), linewidth=width + 5.0, solid_capstyle="butt", zorder=order)
     sheet.curve(
-        pipe, color=mix(wall, Color.LIGHT, 0.82), linewidth=width + 3.6, solid_capstyle="butt", zorder=order + 0.1
+        pipe, color=Color.mix(wall, Color.LIGHT, 0.35), linewidth=width + 5.0, solid_capstyle="butt", zorder=order
+    )
+    sheet.curve(
+        pipe, color=Color.mix(wall, Color.LIGHT, 0.82), linewidth=width + 3.6, solid_capstyle="butt", zorder=order + 0.1
     )
 
 
@@ -228,4 +232,4 @@ def _draw_stopper(sheet: PictureSheet, run: DrawnCable, color: str, width: float
 
 
 def _fade_color(color: str, fade: float) -> str:
-    return mix(color, Color.FELT, fade) if fade > 0 else color
+    return Color.mix(color, Color.FELT, fade) if fade > 0 else color

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from hydrostat.arrays import Float, Int, Points
-from hydrostat.drawing import Camera, Color, Render, Spots, channels, render, three_quarter
+from hydrostat.drawing import Camera, Color, Render, Spots, render
 from hydrostat.geometry import Surface, sides_of
 from hydrostat.plot.pane import fit_pixel, lay_image
 from hydrostat.plot.sheet import TALLEST, WIDTH, PictureSheet, Place, new_sheet, round_step
@@ -36,7 +36,7 @@ def draw_healing(
     first, second = _weld(before), _weld(after)
     edges = _bad_edges(first)
     shown = np.concatenate([marked, first.vertices[edges].mean(axis=1)])
-    camera = three_quarter(second.vertices, shown)
+    camera = Camera.three_quarter(second.vertices, shown)
     spots, healed, rings = (camera.see(MILLIMETERS * points) for points in (first.vertices, second.vertices, marked))
     lines = _fit_lines([line for note in notes for line in _lines(note, width)], width)
     layout = _lay_out(np.concatenate([spots, healed, rings])[:, :2], lines, width)
@@ -119,7 +119,7 @@ def _both_sides(spots: Spots, triangles: Int[np.ndarray, "triangles 3"], pixel: 
     """A surface with its outside as felt and its inside, where that is nearer, in red."""
     outside = render(spots, triangles, pixel=pixel, up=camera.sky)
     inside = render(spots, triangles[:, ::-1], pixel=pixel, up=camera.sky)
-    red = np.array(channels(Color.ERROR)) / 255
+    red = np.array(Color.channels(Color.ERROR)) / 255
     nearer = inside.buffer.depth > outside.buffer.depth
     tinted = inside.colors.copy()
     redness = 0.72  # how red the inside of a surface is drawn where it is seen

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.drawing import NAMESPACE, Color, Html, mix, path, shape, tag, winch_colors
+from hydrostat.drawing import NAMESPACE, Color, Html, path, shape, tag
 from hydrostat.plot.frame import Attachments
 from hydrostat.plot.hardware import spool_size, stopper_bar
 from hydrostat.plot.sheet import Places, frame_points
@@ -75,7 +75,7 @@ def _marks(robot: Robot, frames: Sequence[Nodes], seconds: float) -> list[Html]:
 
 
 def _cables(robot: Robot, frames: Sequence[Nodes], seconds: float) -> list[Html]:
-    colors, runs = winch_colors(robot.winches), list(map(Attachments(robot).cables, frames))
+    colors, runs = Color.of_winches(robot.winches), list(map(Attachments(robot).cables, frames))
     lines = []
     for index, cable in enumerate(robot.cables):
         bars = [_outline([stopper_bar(MILLIMETERS * run[index], SCALE) / MILLIMETERS], closed=False) for run in runs]
@@ -90,11 +90,16 @@ def _cables(robot: Robot, frames: Sequence[Nodes], seconds: float) -> list[Html]
 def _winches(robot: Robot, frames: Sequence[Nodes], seconds: float) -> list[Html]:
     places = [MILLIMETERS * place for place in map(Attachments(robot).winches, frames)]
     spools = []
-    for index, (winch, color) in enumerate(zip(robot.winches, winch_colors(robot.winches).values(), strict=True)):
+    for index, (winch, color) in enumerate(zip(robot.winches, Color.of_winches(robot.winches).values(), strict=True)):
         radius = spool_size(winch, SCALE) * SCALE / 2
         discs = [
             shape("circle", r=f"{radius * share:.2f}", fill=fill)
-            for share, fill in ((1.12, Color.LIGHT), (1, color), (0.58, mix(color, Color.LIGHT, 0.75)), (0.2, color))
+            for share, fill in (
+                (1.12, Color.LIGHT),
+                (1, color),
+                (0.58, Color.mix(color, Color.LIGHT, 0.75)),
+                (0.2, color),
+            )
         ]
         way = [f"{place[index][0]:.2f} {-place[index][1]:.2f}" for place in places]
         move = _animation("animateTransform", "transform", way, seconds, type="translate")

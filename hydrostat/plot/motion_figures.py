@@ -8,7 +8,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from hydrostat.arrays import Vector
-from hydrostat.drawing import Color, winch_colors
+from hydrostat.drawing import Color
 from hydrostat.ik import KeyPose, Trajectory
 from hydrostat.plot.chart import DASHES, plain_axes
 from hydrostat.plot.frame import Attachments
@@ -33,7 +33,7 @@ def draw_motion(robot: Robot, table: MotionTable, *, title: str | None = None, w
     head = shorten(robot.name) if title is None else title
     if head:
         upper.set_title(head, loc="left", color=Color.INK, fontsize=11, fontweight="bold")
-    colors = winch_colors(robot.winches)
+    colors = Color.of_winches(robot.winches)
     way = MILLIMETERS * np.linalg.norm(table.markers - table.markers[0], axis=2)
     names = [marker.name for marker in robot.markers]
     others = cycle([color for color in Color.WINCHES if color not in colors.values()] or Color.WINCHES)
@@ -140,7 +140,7 @@ def _charts(figure: Figure, robot: Robot, trajectory: Trajectory, top: float) ->
         ("speed [mm/s]", trajectory.speeds, trajectory.limits.speed),
         ("acceleration [mm/s\N{SUPERSCRIPT TWO}]", trajectory.accelerations, trajectory.limits.acceleration),
     )
-    colors = winch_colors(robot.winches)
+    colors = Color.of_winches(robot.winches)
     right = 0.5 + 0.068 * max((len(shorten(name)) for name in trajectory.winches), default=0)
     first = None
     for row, (label, values, limits) in enumerate(rows):

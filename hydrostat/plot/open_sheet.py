@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.drawing import Camera, Color, along_an_axis, three_quarter
+from hydrostat.drawing import Camera, Color
 from hydrostat.plot.pane import FlatPane, Pane, SpacePane
 from hydrostat.plot.sheet import TALLEST, WIDTH, PictureSheet, Place, Spread, new_sheet, round_step
 from hydrostat.plot.skin import FlatSkin
@@ -65,7 +65,10 @@ def _cameras(robot: Robot, shapes: Sequence[Spread]) -> list[Camera]:
     corners = np.concatenate([mesh.nodes[outer], *(nodes[outer] for nodes in shapes)])
     ways = corners - np.tile(mesh.nodes[outer], (1 + len(shapes), 1))
     up = way_up(robot)
-    return [three_quarter(mesh.nodes[outer], shown, up, _pose_offsets(robot)), along_an_axis(corners, shown, ways, up)]
+    return [
+        Camera.three_quarter(mesh.nodes[outer], shown, up, _pose_offsets(robot)),
+        Camera.along_an_axis(corners, shown, ways, up),
+    ]
 
 
 def _pose_offsets(robot: Robot) -> Spread:

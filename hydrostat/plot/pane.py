@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 
 from hydrostat.arrays import Int, Nodes, Points, Vector
-from hydrostat.drawing import Camera, Color, Render, Spots, mix, render, silhouette
+from hydrostat.drawing import Camera, Color, Render, Spots, render, silhouette
 from hydrostat.plot.drawn_body import DrawnBody
 from hydrostat.plot.sheet import BODY, PictureSheet, Place, Places
 from hydrostat.plot.skin import FlatSkin
@@ -121,7 +121,9 @@ class FlatPane(Pane):
         pins: bool = False,
         things: Sequence[Obstacle] = (),
     ) -> DrawnBody:
-        fill, light, seam = (mix(color, Color.PAPER, pale) for color in (Color.FELT, Color.FELT_LIGHT, Color.SEAM))
+        fill, light, seam = (
+            Color.mix(color, Color.PAPER, pale) for color in (Color.FELT, Color.FELT_LIGHT, Color.SEAM)
+        )
         rings, seams = self.outline(sheet, nodes), [MILLIMETERS * ring for ring in self.skin.seam(nodes)]
         sheet.area(rings, facecolor=fill, edgecolor=seam, linewidth=1.3, joinstyle="round", zorder=3)
         if seams:
@@ -130,13 +132,15 @@ class FlatPane(Pane):
         for ring in seams:
             sheet.curve(np.concatenate([ring, ring[:1]]), color=Color.STITCH, zorder=3.2, **stitches)
         for part, loops in zip(self.robot.body.parts, self.robot.body.part_rings, strict=True):
-            color = mix(mix(Color.INK, Color.FELT, 0.6 if part.is_rigid else 0.85), Color.PAPER, pale)
+            color = Color.mix(Color.mix(Color.INK, Color.FELT, 0.6 if part.is_rigid else 0.85), Color.PAPER, pale)
             borders = [MILLIMETERS * nodes[loop] for loop in loops]
-            sheet.area(borders, facecolor=color, edgecolor=mix(Color.INK, Color.FELT, 0.4), linewidth=0.8, zorder=3.25)
+            sheet.area(
+                borders, facecolor=color, edgecolor=Color.mix(Color.INK, Color.FELT, 0.4), linewidth=0.8, zorder=3.25
+            )
         for anchors in self.robot.body.mark_anchors:
             sheet.curve(
                 MILLIMETERS * anchors.positions(nodes),
-                color=mix(Color.INK, Color.PAPER, pale),
+                color=Color.mix(Color.INK, Color.PAPER, pale),
                 linewidth=1.5,
                 zorder=3.3,
             )
@@ -187,7 +191,7 @@ class SpacePane(Pane):
             held=held.astype(float) if held.any() else None, lines=self._density(sheet) if mesh else 0.0,
             point=sheet.scale,
         )  # fmt: skip
-        rings = lay_image(sheet, image, self.shift, seam=mix(Color.SEAM, Color.PAPER, 0.6 * pale))
+        rings = lay_image(sheet, image, self.shift, seam=Color.mix(Color.SEAM, Color.PAPER, 0.6 * pale))
         thickness = MILLIMETERS * float(np.ptp(body.nodes, axis=0).min())
         return self._with_rims(sheet, DrawnBody(rings, (self.camera, self.shift, image, thickness)), things)
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from hydrostat.arrays import Nodes
-from hydrostat.design import Network, TreeTrace, rest_error
+from hydrostat.design import Network, TreeTrace
 from hydrostat.drawing import Html, tag
 from hydrostat.errors import InputError
 from hydrostat.plot.frame import Attachments
@@ -64,7 +64,7 @@ def _hero(network: Network, title: str) -> Html:
 
 def _path(network: Network, words: str) -> Html:
     """Error at rest, with all muscles, with the network."""
-    steps = [_error_fact(rest_error(network), "at rest, nothing pulls")]
+    steps = [_error_fact(network.rest_error, "at rest, nothing pulls")]
     activations = network.trace.activations if isinstance(network.trace, TreeTrace) else ()
     if activations:
         bound = float(np.sqrt(np.mean(np.array([activation.rms_error for activation in activations]) ** 2)))

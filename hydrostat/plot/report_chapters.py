@@ -7,15 +7,11 @@ import numpy as np
 from hydrostat.design import (
     Alternative,
     Certificate,
+    Craft,
     FilledReach,
     Network,
     RouteTrace,
     TreeTrace,
-    best_by_winches,
-    build_effort,
-    out_of_plane,
-    rest_error,
-    sewing_minutes,
 )
 from hydrostat.drawing import Html, tag
 from hydrostat.errors import HydrostatError
@@ -83,7 +79,7 @@ def _error_table(network: Network, filled: FilledReach) -> Html:
             pose.pose_target.name,
             millimeters(flat.rms_error),
             millimeters(pose.rms_error),
-            f"{1e3 * out_of_plane(pose.pose):.1f}",
+            f"{1e3 * pose.pose.out_of_plane:.1f}",
             ", ".join(
                 f"{winch.name} {1e3 * value:.1f}"
                 for winch, value in zip(network.robot.winches, map(float, pose.pose.contractions), strict=True)
@@ -268,7 +264,7 @@ def growth_chapters(network: Network, trace: RouteTrace) -> list[Chapter]:
         figure = draw_stage(stage.robot, like=network.robot, frame=frame)
         head = f"{index + 1}. {stage.words[:1].upper()}{stage.words[1:]}"
         pictures.append(picture(figure, f"stage-{index}", head, f": {_rms_text(stage.error)}"))
-    curve = draw_growth(trace.stages, rest=rest_error(network), final=network.built, marked=shown, width=CHART)
+    curve = draw_growth(trace.stages, rest=network.rest_error, final=network.built, marked=shown, width=CHART)
     note = f" over {plural(len(trace.stages), 'stage')}; those with a picture above are filled dots"
     parts = [grid(*pictures, kind="tiny"), grid(picture(curve, "growth", "The error", note))]
     return [Chapter("How it grew", words, [*parts, _certificate(network, trace.certificate)])]
@@ -279,7 +275,7 @@ def alternative_chapters(network: Network) -> list[Chapter]:
     others = network.alternatives
     if not others:
         return []
-    efforts = {sewing_minutes(one.robot) for one in (*others, network)}
+    efforts = {Craft.sewing_minutes(one.robot) for one in (*others, network)}
     words = "Other networks that were found on the way, each with its error over all poses."
     parts: list[Html] = []
     if len(efforts) > 1:
@@ -290,7 +286,7 @@ def alternative_chapters(network: Network) -> list[Chapter]:
         figure = draw_front(others, network, tolerance=network.request.route_options.tolerance, width=CHART)
         note = ", a color for each number of winches"
         parts.append(grid(picture(figure, "front", "Error against minutes of sewing", note)))
-    if len(best := best_by_winches(network)) > 1:
+    if len(best := network.best_by_winches()) > 1:
         words += " The table has the best network for each number of winches."
         parts.append(_winch_table(best))
     most_alternatives = 12  # so many alternatives have a picture
@@ -305,7 +301,7 @@ def _winch_table(best: Mapping[int, Alternative | Network]) -> Html:
     """Table of as-built error and effort by the number of winches."""
     rows = []
     for winches, one in best.items():
-        effort = build_effort(one.robot, one.reached)
+        effort = Craft.of_robot(one.robot, one.reached)
         made = (effort.motors, f"{effort.minutes:.0f}", f"{effort.price:.0f}")
         rows.append((winches, len(one.robot.cables), millimeters(one.built), *made))
     heads = ("winches", "cables", "error once built [mm]", "motors", "sewing [min]", "price [USD]")
@@ -349,7 +345,7 @@ def _pictures(network: Network, others: Sequence[Alternative]) -> Html:
         robot = other.robot
         head = f"{plural(len(robot.winches), 'winch')}, {plural(len(robot.cables), 'cable')}"
         figure = draw_stage(robot, like=network.robot, frame=frame)
-        told = f": {_rms_text(other.built)} once built; {build_effort(robot, other.reached)}"
+        told = f": {_rms_text(other.built)} once built; {Craft.of_robot(robot, other.reached)}"
         pictures.append(picture(figure, f"alternative-{index}", head, told))
     return grid(*pictures, kind="tiny")
 

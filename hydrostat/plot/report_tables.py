@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from hydrostat.design import Network, TreeTrace
-from hydrostat.drawing import Html, tag, winch_colors
+from hydrostat.drawing import Color, Html, tag
 from hydrostat.ik import IKResult
 from hydrostat.plot.picture_file import inline_svg
 from hydrostat.plot.targets import rest_errors
@@ -103,7 +103,7 @@ def marker_table(robot: Robot, reached: IKResult) -> Html:
 
 def contraction_table(robot: Robot, reached: IKResult) -> Html:
     """Contraction of each winch against what it can take in."""
-    colors = winch_colors(robot.winches)
+    colors = Color.of_winches(robot.winches)
     rows = [
         ([swatch(colors[winch.name]), winch.name], number(MILLIMETERS * contraction, 2),
          bar(abs(contraction) / (winch.travel if contraction >= 0 else winch.release or np.inf), colors[winch.name]),
@@ -116,7 +116,7 @@ def contraction_table(robot: Robot, reached: IKResult) -> Html:
 def tension_table(robot: Robot, reached: IKResult) -> Html:
     """Tension of each cable."""
     scale = TensionScale.of(reached.pose.tensions)
-    colors = winch_colors(robot.winches)
+    colors = Color.of_winches(robot.winches)
     rows = [
         (str(count), [swatch(colors[cable.winch]), cable.winch], f"{tension:.2f}" if tension > 0 else "slack",
          bar(tension / scale.most, scale.color(tension)))
@@ -189,7 +189,7 @@ def place_table(robot: Robot) -> Html:
 
 def winch_table(robot: Robot) -> Html:
     """Place and limits of each winch."""
-    colors = winch_colors(robot.winches)
+    colors = Color.of_winches(robot.winches)
     rows = [
         ([swatch(colors[winch.name]), winch.name], place(winch.at), number(MILLIMETERS * winch.spool_radius, 1),
          number(MILLIMETERS * winch.travel, 0), number(MILLIMETERS * winch.release, 0))
@@ -201,7 +201,7 @@ def winch_table(robot: Robot) -> Html:
 
 def cable_table(robot: Robot) -> Html:
     """Length, via points and stopper of each cable; winding and spool radius where cables of a winch differ in them."""
-    colors, steps = winch_colors(robot.winches), any(cable.spool_radius is not None for cable in robot.cables)
+    colors, steps = Color.of_winches(robot.winches), any(cable.spool_radius is not None for cable in robot.cables)
     back = any(cable.reverse for cable in robot.cables)
     rows = [
         (str(count), [swatch(colors[cable.winch]), cable.winch], number(MILLIMETERS * cable.length, 1),

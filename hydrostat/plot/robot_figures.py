@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.drawing import Color, winch_colors
+from hydrostat.drawing import Color
 from hydrostat.geometry import Outline, Ring, locate
 from hydrostat.given import check_positive, check_type
 from hydrostat.ik import IKResult, IKStatus
@@ -85,7 +85,7 @@ def draw_network(robot: Robot, *, title: str | None = None, width: float = WIDTH
     head = shorten(robot.name) if title is None else title
     sheet, panes, bodies = _at_rest(robot, head, count, width)
     drawn, labels = _draw_parts(sheet, robot, panes, bodies, width=2.4, size=4.0)
-    colors = winch_colors(robot.winches)
+    colors = Color.of_winches(robot.winches)
     draw_numbers(sheet, drawn.runs, [colors[cable.winch] for cable in robot.cables], labels)
     name_winches(labels, robot, drawn.winches)
     return sheet.figure

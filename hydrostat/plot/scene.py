@@ -8,7 +8,7 @@ from typing import Self
 import numpy as np
 
 from hydrostat.arrays import Float, Nodes, Points, Vector
-from hydrostat.drawing import Color, Spots, channels, upright, winch_colors
+from hydrostat.drawing import Camera, Color, Spots
 from hydrostat.errors import InputError
 from hydrostat.files import replace_file
 from hydrostat.plot.frame import Attachments, Frame, check_frames
@@ -113,7 +113,7 @@ def _turn(robot: Robot) -> tuple[float, float, float, float]:
     if robot.body.mesh.dim == 2:
         return 0.0, 0.0, 0.0, 1.0
     to_y = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
-    x, y, z, w = Rotation.from_matrix(to_y @ upright(way_up(robot))).as_quat()
+    x, y, z, w = Rotation.from_matrix(to_y @ Camera.upright(way_up(robot))).as_quat()
     return float(x), float(y), float(z), float(w)
 
 
@@ -146,7 +146,7 @@ def _add_hardware(glb: Glb, film: _Film) -> None:
     for cable in reversed(robot.cables):
         ends = _in_space(np.array(cable.points[:2], dtype=float))
         ways[cable.winch] = ends[1] - ends[0]
-    colors, winches = winch_colors(robot.winches), _carry_places(film, carried.winches)
+    colors, winches = Color.of_winches(robot.winches), _carry_places(film, carried.winches)
     for index, winch in enumerate(robot.winches):
         radius = min(max(robot.largest_spool(winch), SPOOL[0] * size), SPOOL[1] * size)
         shape = _shape(f"winch {winch.name}", spool(ways[winch.name], radius), colors[winch.name])
@@ -191,5 +191,5 @@ def _in_space(points: Spread) -> Spots:
 
 def _linear(color: str) -> Vector:
     """A color of a screen (sRGB) as shares of light, which glTF wants."""
-    shares = np.array(channels(color)) / 255
+    shares = np.array(Color.channels(color)) / 255
     return np.where(shares <= 0.04045, shares / 12.92, ((shares + 0.055) / 1.055) ** 2.4)

@@ -1,6 +1,5 @@
 """`Wishes`: a person's request for a design, with zones painted on the body."""
 
-from collections.abc import Callable
 from dataclasses import asdict, dataclass, field, fields, replace
 from enum import StrEnum
 from numbers import Real
@@ -22,7 +21,6 @@ from hydrostat.design import (
     Zone,
 )
 from hydrostat.errors import InputError
-from hydrostat.given import Point
 from hydrostat.robot import PoseTarget, Robot
 from hydrostat.units import quote
 
@@ -92,6 +90,28 @@ class Wishes:
         """Options of the thesis's search with these knobs (R46)."""
         return TreeOptions.single(**asdict(self.knobs))
 
+    def to_constraints(self, robot: Robot) -> Constraints:
+        """Constraints of the design settings, without parts to keep that are gone (InputError: impossible limits)."""
+        zones: dict[str, Any] = {paint: tuple(zone for other, zone in self.zones if other is paint) for paint in Paint}
+        names = {winch.name for winch in robot.winches}
+        return replace(
+            self.constraints,
+            **zones,
+            depth=self.constraints.depth if robot.body.mesh.dim == 3 else None,
+            locked_winches=tuple(name for name in self.kept_winches if name in names),
+            locked_cables=tuple(cable.name for cable in robot.cables if cable.name in self.kept_cables),
+        )
+
+    def to_poses(self, robot: Robot) -> tuple[PoseTarget, ...]:
+        """The poses to reach: those that are named and still there.
+
+        All if none is (InputError: the robot has no pose).
+        """
+        if not robot.poses:
+            raise InputError("no poses to design for. Drag the body in Pose and store a pose")
+        named = [pose for name, pose in robot.poses.items() if name in self.poses]
+        return tuple(named or robot.poses.values())
+
 
 OWN = tuple(one.name for one in fields(Wishes))
 """Fields that stand in `Wishes` itself, and the records that it has."""
@@ -105,13 +125,6 @@ ELSEWHERE = (*Paint, "locked_winches", "locked_cables", "spool_ratio")
 
 WISH_RANGES = {**RANGES, **{name: ROUTE_RANGES[name] for name in OPTIONS}, **KNOB_RANGES}
 """Allowed values of the numbers in the records of `Wishes`."""
-
-
-def moved_zone(zone: Zone, move: Callable[[Point], Point]) -> Zone:
-    """A zone whose places are moved."""
-    at = None if zone.at is None else move(zone.at)
-    box = None if zone.box is None else (move(zone.box[0]), move(zone.box[1]))
-    return replace(zone, at=at, box=box, outline=tuple(map(move, zone.outline)))
 
 
 def _record(name: str) -> str:
@@ -140,24 +153,3 @@ def _check(name: str, value: Any) -> None:
 def _check_mirror(value: object) -> None:
     if value not in (None, "x", "y", "z"):
         raise InputError(f"mirror must be x, y, z or nothing, not {quote(value)}")
-
-
-def wished_constraints(robot: Robot, wishes: Wishes) -> Constraints:
-    """Constraints of the design settings, without parts to keep that are gone (InputError: impossible limits)."""
-    zones: dict[str, Any] = {paint: tuple(zone for other, zone in wishes.zones if other is paint) for paint in Paint}
-    names = {winch.name for winch in robot.winches}
-    return replace(
-        wishes.constraints,
-        **zones,
-        depth=wishes.constraints.depth if robot.body.mesh.dim == 3 else None,
-        locked_winches=tuple(name for name in wishes.kept_winches if name in names),
-        locked_cables=tuple(cable.name for cable in robot.cables if cable.name in wishes.kept_cables),
-    )
-
-
-def wished_poses(robot: Robot, wishes: Wishes) -> tuple[PoseTarget, ...]:
-    """The poses to reach: those that are named and still there; all if none is (InputError: the robot has no pose)."""
-    if not robot.poses:
-        raise InputError("no poses to design for. Drag the body in Pose and store a pose")
-    named = [pose for name, pose in robot.poses.items() if name in wishes.poses]
-    return tuple(named or robot.poses.values())

@@ -1,4 +1,4 @@
-"""`save_work`, `open_work`: a robot's folder with robot.toml and, next to it, studio.json."""
+"""`Work`: a robot's folder with robot.toml and, next to it, studio.json."""
 
 import hashlib
 import tomllib
@@ -22,42 +22,98 @@ class Work:
     timeline: Timeline = field(default_factory=Timeline)  # keyframes
     wishes: Wishes = field(default_factory=Wishes)  # for a design
 
+    def after_design(self, robot: Robot) -> Wishes:
+        """Wishes after a design has given the robot another network: what was kept and is there still is kept on."""
+        same = {cable.name: cable.name for cable in self.robot.cables if cable in robot.cables}
+        wishes = self.follow_robot(robot, cables=same)[1]
+        places = {winch.name: winch.at for winch in self.robot.winches}
+        stayed = {winch.name for winch in robot.winches if places.get(winch.name) == winch.at}
+        return replace(wishes, kept_winches=tuple(name for name in wishes.kept_winches if name in stayed))
 
-def follow_robot(
-    work: Work, robot: Robot, renamed: Mapping[str, str] | None = None, cables: Mapping[str, str] | None = None
-) -> tuple[Timeline, Wishes]:
-    """Timeline and wishes that name only what the robot has now, by new names of winches and cables for old ones.
+    def warnings(self, folder: Path, stamp: str = "") -> list[str]:
+        """Questions for a person before work is saved; none if nothing is lost. Stamp: when last saved, "": never."""
+        asked = []
+        if changed_outside(folder, stamp):
+            asked.append(
+                "Files of the robot were changed by another program since it was opened; saving replaces that."
+                if stamp
+                else "There is a robot in this folder already; saving replaces it."
+            )
+        file = _home(folder) / self.robot.body.file
+        if self.robot.body.file != _body_file(_home(folder)) and _is_other(file, self.robot.body.content):
+            asked.append(f"There is another {file.name} in this folder, not of this robot; saving replaces it.")
+        lost = self.comments_lost(folder)
+        most_told = 5  # so many lost comments are told one by one
+        if lost:
+            told = lost if len(lost) <= most_told else [*lost[:most_told], f"and {len(lost) - most_told} more"]
+            asked.append("Comments in robot.toml would be lost, as what they speak of is gone:\n" + "\n".join(told))
+        note = open_note(folder)
+        if note:
+            asked.append(f"{PROJECT_FILE} cannot be read and would be replaced.")
+        return asked
 
-    Without names of cables, each is in its old place where there are as many as before, else those that are there still
-    have their old names.
-    """
-    names = {winch.name for winch in robot.winches}
-    new = dict(renamed or {})
-    keys = []
-    for key in work.timeline.keys:
-        told = {new.get(name, name): value for name, value in key.contractions.items()}
-        kept = {name: value for name, value in told.items() if name in names}
-        keys.append(key if kept == key.contractions else replace(key, contractions=kept))
-    before, now = work.wishes, [cable.name for cable in robot.cables]
-    if cables is None:
-        were = [cable.name for cable in work.robot.cables]
-        cables = dict(zip(were if len(were) == len(now) else now, now, strict=True))
-    wishes = replace(
-        before,
-        poses=tuple(pose for pose in before.poses if pose in robot.poses),
-        kept_winches=tuple(name for name in (new.get(name, name) for name in before.kept_winches) if name in names),
-        kept_cables=tuple(cables[name] for name in before.kept_cables if name in cables),
-    )
-    return replace(work.timeline, keys=tuple(keys)), before if wishes == before else wishes
+    def follow_robot(
+        self, robot: Robot, renamed: Mapping[str, str] | None = None, cables: Mapping[str, str] | None = None
+    ) -> tuple[Timeline, Wishes]:
+        """Timeline and wishes that name only what the robot has now, by new names of winches and cables for old ones.
 
+        Without names of cables, each is in its old place where there are as many as before, else those that are there
+        still have their old names.
+        """
+        names = {winch.name for winch in robot.winches}
+        new = dict(renamed or {})
+        keys = []
+        for key in self.timeline.keys:
+            told = {new.get(name, name): value for name, value in key.contractions.items()}
+            kept = {name: value for name, value in told.items() if name in names}
+            keys.append(key if kept == key.contractions else replace(key, contractions=kept))
+        before, now = self.wishes, [cable.name for cable in robot.cables]
+        if cables is None:
+            were = [cable.name for cable in self.robot.cables]
+            cables = dict(zip(were if len(were) == len(now) else now, now, strict=True))
+        wishes = replace(
+            before,
+            poses=tuple(pose for pose in before.poses if pose in robot.poses),
+            kept_winches=tuple(name for name in (new.get(name, name) for name in before.kept_winches) if name in names),
+            kept_cables=tuple(cables[name] for name in before.kept_cables if name in cables),
+        )
+        return replace(self.timeline, keys=tuple(keys)), before if wishes == before else wishes
 
-def after_design(work: Work, robot: Robot) -> Wishes:
-    """Wishes after a design has given the robot another network: what was kept and is there still is kept on."""
-    same = {cable.name: cable.name for cable in work.robot.cables if cable in robot.cables}
-    wishes = follow_robot(work, robot, cables=same)[1]
-    places = {winch.name: winch.at for winch in work.robot.winches}
-    stayed = {winch.name for winch in robot.winches if places.get(winch.name) == winch.at}
-    return replace(wishes, kept_winches=tuple(name for name in wishes.kept_winches if name in stayed))
+    def comments_lost(self, folder: Path) -> list[str]:
+        """Comments of a robot.toml that would be lost by saving, because what they speak of is gone."""
+        file = _home(folder) / FILE
+        if not file.is_file():
+            return []
+        try:
+            before = read_text(file)
+        except InputError:
+            return []
+        return lost_comments(before, merged_text(before, self.robot))
+
+    def save(self, folder: Path, text: str = "") -> None:
+        """Write everything into a folder; a robot.toml that is there keeps its comments and its form where it can.
+
+        Comments of the text, of the robot.toml that the work began with, go along into a new folder. A name that is not
+        allowed, or a folder that cannot be written, is an InputError.
+        """
+        folder = _home(folder)
+        save_robot(self.robot, folder, text=_text(self, folder, text))
+        kept = (folder / PROJECT_FILE).exists() or self.timeline != Timeline() or self.wishes != Wishes()
+        if kept or self.robot.cables:  # a kit keeps the tensions of cables to these limits
+            write_project_file(folder, self.timeline, self.wishes)
+
+    @staticmethod
+    def open(folder: Path) -> "Work":
+        """Read a robot's folder.
+
+        A broken studio.json is left, `open_note` says why (InputError: as for `load_robot`).
+        """
+        robot = load_robot(folder)
+        try:
+            timeline, wishes = read_project_file(_home(folder), [cable.name for cable in robot.cables])
+        except InputError:
+            return Work(robot=robot)
+        return Work(robot=robot, timeline=timeline, wishes=wishes)
 
 
 def fresh_name(stem: str, taken: Collection[str]) -> str:
@@ -68,16 +124,6 @@ def fresh_name(stem: str, taken: Collection[str]) -> str:
     return f"{stem}_{number}"
 
 
-def open_work(folder: Path) -> Work:
-    """Read a robot's folder; a broken studio.json is left, `open_note` says why (InputError: as for `load_robot`)."""
-    robot = load_robot(folder)
-    try:
-        timeline, wishes = read_project_file(_home(folder), [cable.name for cable in robot.cables])
-    except InputError:
-        return Work(robot=robot)
-    return Work(robot=robot, timeline=timeline, wishes=wishes)
-
-
 def open_note(folder: Path) -> str:
     """Reason why keyframes and wishes of a folder could not be read; "" if they could."""
     try:
@@ -85,19 +131,6 @@ def open_note(folder: Path) -> str:
     except InputError as error:
         return f"keyframes and wishes were not read: {error}"
     return ""
-
-
-def save_work(work: Work, folder: Path, text: str = "") -> None:
-    """Write everything into a folder; a robot.toml that is there keeps its comments and its form where it can.
-
-    Comments of the text, of the robot.toml that the work began with, go along into a new folder. A name that is not
-    allowed, or a folder that cannot be written, is an InputError.
-    """
-    folder = _home(folder)
-    save_robot(work.robot, folder, text=_text(work, folder, text))
-    kept = (folder / PROJECT_FILE).exists() or work.timeline != Timeline() or work.wishes != Wishes()
-    if kept or work.robot.cables:  # a kit keeps the tensions of cables to these limits
-        write_project_file(folder, work.timeline, work.wishes)
 
 
 def folder_stamp(folder: Path) -> str:
@@ -120,41 +153,6 @@ def folder_stamp(folder: Path) -> str:
 def changed_outside(folder: Path, stamp: str) -> bool:
     """Tell whether someone else wrote into a folder since it had this `folder_stamp`."""
     return folder_stamp(folder) not in ("", stamp)
-
-
-def comments_lost(work: Work, folder: Path) -> list[str]:
-    """Comments of a robot.toml that would be lost by saving, because what they speak of is gone."""
-    file = _home(folder) / FILE
-    if not file.is_file():
-        return []
-    try:
-        before = read_text(file)
-    except InputError:
-        return []
-    return lost_comments(before, merged_text(before, work.robot))
-
-
-def doubts(work: Work, folder: Path, stamp: str = "") -> list[str]:
-    """Questions for a person before work is saved; none if nothing is lost. Stamp: when last saved, "": never."""
-    asked = []
-    if changed_outside(folder, stamp):
-        asked.append(
-            "Files of the robot were changed by another program since it was opened; saving replaces that."
-            if stamp
-            else "There is a robot in this folder already; saving replaces it."
-        )
-    file = _home(folder) / work.robot.body.file
-    if work.robot.body.file != _body_file(_home(folder)) and _is_other(file, work.robot.body.content):
-        asked.append(f"There is another {file.name} in this folder, not of this robot; saving replaces it.")
-    lost = comments_lost(work, folder)
-    most_told = 5  # so many lost comments are told one by one
-    if lost:
-        told = lost if len(lost) <= most_told else [*lost[:most_told], f"and {len(lost) - most_told} more"]
-        asked.append("Comments in robot.toml would be lost, as what they speak of is gone:\n" + "\n".join(told))
-    note = open_note(folder)
-    if note:
-        asked.append(f"{PROJECT_FILE} cannot be read and would be replaced.")
-    return asked
 
 
 def _body_file(home: Path) -> str:

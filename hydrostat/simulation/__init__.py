@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from hydrostat.simulation.branches.find_equilibria import Multistability, find_equilibria
     from hydrostat.simulation.branches.loading_paths import friction_hysteresis
     from hydrostat.simulation.cable_sensitivities import CableSensitivities, cable_sensitivities
-    from hydrostat.simulation.contraction_profile import ContractionProfile, ProfileTable, csv_text
+    from hydrostat.simulation.contraction_profile import ContractionProfile, ProfileTable
     from hydrostat.simulation.controls import Contractions, contraction_values
     from hydrostat.simulation.equilibrium import Equilibrium, check_pose, largest_distance
     from hydrostat.simulation.filled import filled_motion, is_filled_motion_fast
@@ -50,7 +50,6 @@ __all__ = [
     "check_pose",
     "continue_branch",
     "contraction_values",
-    "csv_text",
     "describe_contacts",
     "filled_motion",
     "find_contacts",

@@ -2,7 +2,7 @@
 
 import csv
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from io import StringIO
 from pathlib import Path
@@ -12,7 +12,7 @@ import numpy as np
 
 from hydrostat.arrays import Float, Vector
 from hydrostat.errors import InputError
-from hydrostat.files import read_stranger, replace_file
+from hydrostat.files import csv_text, read_stranger, replace_file
 from hydrostat.robot import Robot
 from hydrostat.simulation.controls import contraction_values
 from hydrostat.units import quote
@@ -184,15 +184,6 @@ def _column(head: str, winches: Sequence[str]) -> str:
     """Winch that a column is of, if it is of one; else its head."""
     bare = head.removesuffix(MILLIMETERS)
     return bare if head not in winches and bare in winches else head
-
-
-def csv_text(head: Sequence[str], rows: Iterable[Iterable[str]]) -> bytes:
-    """CSV in UTF-8, a line for the names of the columns and one for each row."""
-    text = StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(head)
-    writer.writerows(rows)
-    return text.getvalue().encode()
 
 
 def _numbers(place: str, head: Sequence[str], row: Sequence[str]) -> dict[str, float]:

@@ -136,6 +136,11 @@ class Equilibrium:
         """Pose without its factorized Hessian, to be kept with many others: that takes megabytes."""
         return replace(self, result=replace(self.result, stiffness=None))
 
+    @property
+    def out_of_plane(self) -> float:
+        """Largest distance of a marker of a filled body from the plane z = 0 [m]."""
+        return max((abs(float(place[2])) for place in self.markers.values()), default=0.0)
+
 
 def beyond_travel(robot: Robot, contractions: Vector) -> list[str]:
     """Winches that would take in more than they can, or let out more, in words; empty where none does."""

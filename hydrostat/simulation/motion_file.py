@@ -14,10 +14,9 @@ import numpy as np
 
 from hydrostat.arrays import Float, Vector
 from hydrostat.errors import NotConvergedError
-from hydrostat.files import replace_file
+from hydrostat.files import csv_text, replace_file
 from hydrostat.geometry import write_vtu
 from hydrostat.robot import Robot, robot_hash
-from hydrostat.simulation.contraction_profile import csv_text
 from hydrostat.simulation.equilibrium import Equilibrium
 from hydrostat.simulation.obstacle_frames import carried_frames
 from hydrostat.simulation.simulation import Simulation

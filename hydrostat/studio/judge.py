@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from hydrostat.design import Diagnostic, Severity, places_in, review_robot
 from hydrostat.errors import HydrostatError
 from hydrostat.fabrication import Demand, KitOptions, find_refusals
-from hydrostat.project import Wishes, wished_constraints
+from hydrostat.project import Wishes
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.jobs import Slots
@@ -179,7 +179,7 @@ def _all_findings(
 ) -> tuple[Diagnostic, ...]:
     """All findings, the reasons of a refused kit among them; what cannot be judged is not said."""
     try:
-        constraints = wished_constraints(robot, wishes)
+        constraints = wishes.to_constraints(robot)
         demand = None if known is None else known.demand
         found = review_robot(robot, demand=demand, constraints=constraints, options=options)
     except HydrostatError:

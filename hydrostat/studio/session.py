@@ -10,8 +10,8 @@ from typing import Any
 
 from hydrostat.closed_set import parse_choice
 from hydrostat.errors import HydrostatError, InputError, in_words
-from hydrostat.learning import load_model
-from hydrostat.project import open_note, save_work
+from hydrostat.learning import LearnedModel
+from hydrostat.project import open_note
 from hydrostat.robot import Contact
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.designing.designer import Designer
@@ -134,7 +134,7 @@ class Session:
         if given is None and len(beside) != 1:
             return
         try:
-            model = load_model(given or beside[0])
+            model = LearnedModel.load(given or beside[0])
             if silent := model.card.contact and document.robot.contact is None:
                 model.check(replace(document.robot, contact=Contact()))
                 self.editor.set_contact(True)
@@ -227,7 +227,7 @@ class Session:
         if folder is None:
             raise InputError("choose a folder to save this robot in")
         work = self.document.work  # it may be changed while it is written
-        save_work(work, folder, self.document.text)
+        work.save(folder, self.document.text)
         self.document.mark_saved(folder, work)
         self.tell(f"saved in {folder}", Tone.GOOD)
 

@@ -10,12 +10,12 @@ if TYPE_CHECKING:
     from hydrostat.teleop.drive import DriveLoop, drive
     from hydrostat.teleop.hand_map import HandMap
     from hydrostat.teleop.keys import HELP
-    from hydrostat.teleop.lesson_poses import HeldStill, LessonPoses, go_there, hold_still, pose_pool
+    from hydrostat.teleop.lesson_poses import HeldStill, LessonPoses, go_there, hold_still
     from hydrostat.teleop.mapped_hand import MappedHand, Smoothing
-    from hydrostat.teleop.mimicry import Mimicry, write_mcap
+    from hydrostat.teleop.mimicry import Mimicry
     from hydrostat.teleop.open_source import EmulatedHand, open_hand, open_source
     from hydrostat.teleop.source import DriveSource, HandSource
-    from hydrostat.teleop.ways import CommandMapper, MarkerMapper, WinchMapper, marker_channels, winch_channels
+    from hydrostat.teleop.ways import CommandMapper, MarkerMapper, WinchMapper
 
 __all__ = [
     "BAUD",
@@ -40,12 +40,8 @@ __all__ = [
     "drive",
     "go_there",
     "hold_still",
-    "marker_channels",
     "open_hand",
     "open_source",
-    "pose_pool",
-    "winch_channels",
-    "write_mcap",
 ]
 
 open_package(__name__)

@@ -46,15 +46,6 @@ class HeldStill:
         return self.spread < still
 
 
-def pose_pool(channels: DriveChannels, seed: int = 0, count: int = POOL) -> Table:
-    """Contractions to choose from [m]: rest, and random ones in which about half of the winches are in use."""
-    random = np.random.default_rng(seed)
-    size = (count, len(channels.names))
-    share = random.uniform(0.0, SHARE, size) * (random.uniform(size=size) < 0.5)
-    pool = channels.rest + share * (channels.high - channels.rest)
-    return np.vstack([channels.rest, pool])
-
-
 def hold_still(
     hand: HandSource,
     beat: Callable[[], object] = lambda: None,
@@ -123,3 +114,12 @@ class LessonPoses:
         one, folds = (f"{1e3 * error:.2f} mm ({2 * error / self.span:.4f})" for error in self.made.errors(known))
         words = f"cross-validation error: leave-one-out {one}, five-fold {folds}"
         return f"{self.count} poses; {words}; in brackets: on a scale from -1 to 1"
+
+    @staticmethod
+    def pool(channels: DriveChannels, seed: int = 0, count: int = POOL) -> Table:
+        """Contractions to choose from [m]: rest, and random ones in which about half of the winches are in use."""
+        random = np.random.default_rng(seed)
+        size = (count, len(channels.names))
+        share = random.uniform(0.0, SHARE, size) * (random.uniform(size=size) < 0.5)
+        pool = channels.rest + share * (channels.high - channels.rest)
+        return np.vstack([channels.rest, pool])

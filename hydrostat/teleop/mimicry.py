@@ -114,33 +114,31 @@ class Mimicry:
                 raise InputError(f"{path}, line {count}: {error}") from None
         return made
 
+    def write_mcap(self, path: Path) -> Path:
+        """Write pairs as MCAP with JSON schemas for Foxglove and ROS 2; a channel each for glove and robot.
 
-def write_mcap(path: Path, mimicry: Mimicry) -> Path:
-    """Write pairs as MCAP with JSON schemas, which Foxglove and ROS 2 tools read; a channel each for glove and robot.
+        Args:
+            path: path of the file.
 
-    Args:
-        path: path of the file.
-        mimicry: the pairs.
-
-    Raises:
-        HydrostatError: the package mcap is not there.
-    """
-    try:
-        from mcap.writer import Writer
-    except ModuleNotFoundError:
-        raise HydrostatError(f"MCAP files need mcap; install it: {install_command('teleop')}") from None
-    buffer = io.BytesIO()
-    writer = Writer(buffer)
-    writer.start(library="hydrostat")
-    tables = {"glove": (mimicry.sensors, mimicry.inputs), "robot": (mimicry.outputs, mimicry.answers)}
-    for topic, (names, rows) in tables.items():
-        numbers = {"pose": {"type": "integer"}} | {name: {"type": "number"} for name in names}
-        schema = json.dumps({"type": "object", "properties": numbers}).encode()
-        known = writer.register_schema(f"hydrostat.{topic}", "jsonschema", schema)
-        channel = writer.register_channel(f"/{topic}", "json", known)
-        for pose, row, stamp in zip(mimicry.poses, rows.tolist(), mimicry.stamps, strict=True):
-            data = json.dumps({"pose": pose} | dict(zip(names, row, strict=True))).encode()
-            when = round(1e9 * stamp)
-            writer.add_message(channel, when, data, when)
-    writer.finish()
-    return replace_file(path, buffer.getvalue())
+        Raises:
+            HydrostatError: the package mcap is not there.
+        """
+        try:
+            from mcap.writer import Writer
+        except ModuleNotFoundError:
+            raise HydrostatError(f"MCAP files need mcap; install it: {install_command('teleop')}") from None
+        buffer = io.BytesIO()
+        writer = Writer(buffer)
+        writer.start(library="hydrostat")
+        tables = {"glove": (self.sensors, self.inputs), "robot": (self.outputs, self.answers)}
+        for topic, (names, rows) in tables.items():
+            numbers = {"pose": {"type": "integer"}} | {name: {"type": "number"} for name in names}
+            schema = json.dumps({"type": "object", "properties": numbers}).encode()
+            known = writer.register_schema(f"hydrostat.{topic}", "jsonschema", schema)
+            channel = writer.register_channel(f"/{topic}", "json", known)
+            for pose, row, stamp in zip(self.poses, rows.tolist(), self.stamps, strict=True):
+                data = json.dumps({"pose": pose} | dict(zip(names, row, strict=True))).encode()
+                when = round(1e9 * stamp)
+                writer.add_message(channel, when, data, when)
+        writer.finish()
+        return replace_file(path, buffer.getvalue())

@@ -63,7 +63,7 @@ class WinchMapper(CommandMapper):
     def __init__(self, simulation: Simulation, contractions: Vector, *, solves: bool = True) -> None:
         """Begin at contractions [m]; poses need not be solved where there is no guard."""
         robot = simulation.robot
-        self.channels, self.contractions = winch_channels(robot), contractions.copy()
+        self.channels, self.contractions = WinchMapper.channels(robot), contractions.copy()
         self.known = TensionLookup(robot, near=NEAR)
         self.known.add(simulation.solve(contractions, strict=False))
         self._seen = contractions.copy()
@@ -95,6 +95,20 @@ class WinchMapper(CommandMapper):
     def _hear(self, found: PoseOnWay) -> None:
         self.known.store(found.contractions, found.pulls)
 
+    @staticmethod
+    def channels(robot: Robot) -> DriveChannels:
+        """The winches of a robot as channels, each a group of its own (InputError: it has none)."""
+        if not robot.winches:
+            raise InputError(f"{robot.name} has no winches; add some, or let `hydrostat design` find them")
+        low, high = ([-winch.release for winch in robot.winches], [winch.travel for winch in robot.winches])
+        return DriveChannels(
+            names=tuple(winch.name for winch in robot.winches),
+            low=np.array(low, dtype=float),
+            high=np.array(high, dtype=float),
+            rest=np.zeros(len(robot.winches)),
+            groups=tuple((index,) for index in range(len(robot.winches))),
+        )
+
 
 class MarkerMapper(CommandMapper):
     """Markers are what is moved: `Tracker` finds contractions, step by step, each of them a pose in equilibrium.
@@ -114,7 +128,7 @@ class MarkerMapper(CommandMapper):
     ) -> None:
         """Begin at contractions [m]; cables get no faster than a rate [m/s] (InputError: there are no markers)."""
         self._model, robot = model, simulation.robot
-        self.channels, self.contractions = marker_channels(simulation), contractions.copy()
+        self.channels, self.contractions = MarkerMapper.channels(simulation), contractions.copy()
         self.known = TensionLookup(robot, near=NEAR)
         start = simulation.solve(contractions, strict=False)
         self.known.add(start)
@@ -189,32 +203,18 @@ class MarkerMapper(CommandMapper):
         if self.updated is not None:
             self.updated.set()
 
-
-def winch_channels(robot: Robot) -> DriveChannels:
-    """The winches of a robot as channels, each a group of its own (InputError: it has none)."""
-    if not robot.winches:
-        raise InputError(f"{robot.name} has no winches; add some, or let `hydrostat design` find them")
-    low, high = ([-winch.release for winch in robot.winches], [winch.travel for winch in robot.winches])
-    return DriveChannels(
-        names=tuple(winch.name for winch in robot.winches),
-        low=np.array(low, dtype=float),
-        high=np.array(high, dtype=float),
-        rest=np.zeros(len(robot.winches)),
-        groups=tuple((index,) for index in range(len(robot.winches))),
-    )
-
-
-def marker_channels(simulation: Simulation) -> DriveChannels:
-    """The coordinates of all markers as channels, a group for each marker (InputError: there are none)."""
-    markers, dim = simulation.rest.markers, simulation.robot.body.mesh.dim
-    if not markers:
-        raise InputError(f"{simulation.robot.name} has no markers to move; add [[marker]] to its robot.toml")
-    rest = np.concatenate([np.asarray(place, dtype=float) for place in markers.values()])
-    reach = REACH * simulation.robot.body.mesh.size
-    return DriveChannels(
-        names=tuple(f"{name} {axis}" for name in markers for axis in "xyz"[:dim]),
-        low=rest - reach,
-        high=rest + reach,
-        rest=rest,
-        groups=tuple(tuple(range(dim * index, dim * index + dim)) for index in range(len(markers))),
-    )
+    @staticmethod
+    def channels(simulation: Simulation) -> DriveChannels:
+        """The coordinates of all markers as channels, a group for each marker (InputError: there are none)."""
+        markers, dim = simulation.rest.markers, simulation.robot.body.mesh.dim
+        if not markers:
+            raise InputError(f"{simulation.robot.name} has no markers to move; add [[marker]] to its robot.toml")
+        rest = np.concatenate([np.asarray(place, dtype=float) for place in markers.values()])
+        reach = REACH * simulation.robot.body.mesh.size
+        return DriveChannels(
+            names=tuple(f"{name} {axis}" for name in markers for axis in "xyz"[:dim]),
+            low=rest - reach,
+            high=rest + reach,
+            rest=rest,
+            groups=tuple(tuple(range(dim * index, dim * index + dim)) for index in range(len(markers))),
+        )

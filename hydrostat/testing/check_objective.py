@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from hydrostat.arrays import Float, Vector
-from hydrostat.ik import EquilibriumState, Objective, Residual, state_at, state_jacobian_at
+from hydrostat.ik import EquilibriumState, Objective, Residual, StateJacobian
 from hydrostat.simulation import Contractions, Equilibrium, Simulation
 from hydrostat.testing.differences import ConformanceError, central_differences, steps
 
@@ -60,7 +60,7 @@ class _ObjectiveCheck:
     def __init__(self, objective: Objective, simulation: Simulation, pose: Equilibrium, tolerance: float) -> None:
         self.objective, self.simulation, self.pose, self.tolerance = objective, simulation, pose, tolerance
         self.term: Residual = objective.bind(simulation)
-        self.at = state_at(simulation, pose)
+        self.at = EquilibriumState.at(simulation, pose)
         self.rows = np.asarray(self.term.residual(self.at)).shape
         self.size = simulation.robot.body.mesh.size
 
@@ -78,11 +78,11 @@ class _ObjectiveCheck:
 
     def posture(self, contractions: Vector) -> None:
         """Another pose has as many rows, all finite, and errors that fit them."""
-        self._values(state_at(self.simulation, self._solve(contractions)))
+        self._values(EquilibriumState.at(self.simulation, self._solve(contractions)))
 
     def repeats(self) -> None:
         """An answer is the same when asked again, of this term or a new one, whatever was asked in between."""
-        rest = state_at(self.simulation, self.simulation.solve({}))
+        rest = EquilibriumState.at(self.simulation, self.simulation.solve({}))
         again = self.objective.bind(self.simulation)
         first, slopes, errors = self.term.residual(self.at), self._slopes(self.term), dict(self.term.errors(self.at))
         for term in (self.term, again):
@@ -131,14 +131,14 @@ class _ObjectiveCheck:
                 raise ConformanceError("errors", f"{name} is {error:.3g} m where the residual is zero")
 
     def _residual(self, contractions: Vector) -> Float[np.ndarray, " rows"]:
-        return np.asarray(self.term.residual(state_at(self.simulation, self._solve(contractions))))
+        return np.asarray(self.term.residual(EquilibriumState.at(self.simulation, self._solve(contractions))))
 
     def _solve(self, contractions: Vector) -> Equilibrium:
         start = None if self.simulation.assembly.has_history else self.pose
         return self.simulation.solve(contractions, start=start)
 
     def _slopes(self, term: Residual) -> np.ndarray:
-        return np.asarray(term.jacobian(self.at, state_jacobian_at(self.simulation, self.pose)))
+        return np.asarray(term.jacobian(self.at, StateJacobian.at(self.simulation, self.pose)))
 
 
 def _place(array: np.ndarray) -> tuple[int, ...]:

@@ -26,7 +26,7 @@ from machine import machine
 
 import numpy as np  # isort: skip
 
-from hydrostat.design import activate, body_region, design_cables, edge_fibres, violations
+from hydrostat.design import Region, activate, design_cables, edge_fibres, violations
 from hydrostat.errors import HydrostatError
 from hydrostat.robot import Robot
 
@@ -97,7 +97,7 @@ def _tried(way: Callable[[], Robot | None], robot: Robot, body: Body) -> Row:
         "error": judged(network, list(robot.poses.values()), body.constraints),
         "winches": len(network.winches),
         "cables": len(network.cables),
-        "violations": violations(network, body.constraints, body_region(robot.body, body.constraints.clearance)),
+        "violations": violations(network, body.constraints, Region.of_body(robot.body, body.constraints.clearance)),
     }
 
 

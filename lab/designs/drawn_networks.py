@@ -19,7 +19,7 @@ from machine import machine
 
 import numpy as np  # isort: skip
 
-from hydrostat.design import body_region, violations
+from hydrostat.design import Region, violations
 from hydrostat.robot import Cable, Robot, Winch
 
 
@@ -392,7 +392,7 @@ def main() -> None:
         body, robot = BODIES[name], hand_network(name)
         error = judged(robot, list(robot.poses.values()), body.constraints)
         print(f"| {name} | {len(robot.winches)} | {len(robot.cables)} | {1e3 * error:.2f} |", flush=True)
-        for wrong in violations(robot, body.constraints, body_region(robot.body, body.constraints.clearance)):
+        for wrong in violations(robot, body.constraints, Region.of_body(robot.body, body.constraints.clearance)):
             print(f"  cannot be built: {wrong}")
 
 

@@ -265,13 +265,13 @@ def _spread(rows: "Sequence[StudyRow]") -> list[list[str]]:
 
 def _poses(rows: "Sequence[StudyRow]", robot: "Robot", out: Path) -> "Figure":
     """Targets, and where two networks bring the hand, from the most samples."""
-    from hydrostat.learning import read_samples
+    from hydrostat.learning import Samples
     from hydrostat.simulation import Simulation
     from hydrostat_lab.learning_figures import draw_side_by_side
 
     most = max(row.samples for row in rows)
     best = {row.method: row for row in rows if row.samples == most and row.seed == 0}
-    test = read_samples(out / f"{robot.name}-{rows[0].draw}-test-{rows[0].targets}")
+    test = Samples.read(out / f"{robot.name}-{rows[0].draw}-test-{rows[0].targets}")
     count = len(best["thesis"].shown)
     shown = {"target": test.contractions[:count].tolist(), "Chang (2018)": best["thesis"].shown}
     shown |= {"hydrostat": best["search"].shown}

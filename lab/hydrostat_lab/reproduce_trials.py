@@ -187,17 +187,16 @@ def _count_equilibria(name: str, pairs: int, known: int, usual: "_Trials") -> in
 def _networks(robot: "Robot", out: Path, file: Path | None, samples: int, jobs: int) -> "LearnedModel":
     """The model of a file, or one of samples in which one winch of each pair takes in."""
     from hydrostat.learning import (
+        LearnedModel,
+        Samples,
         SamplingScheme,
         learn_model,
-        load_model,
         plan_samples,
-        read_samples,
         sample_robot,
-        save_model,
     )
 
     if file is not None:
-        return load_model(file)
+        return LearnedModel.load(file)
     kept = out / f"{robot.name}-{samples}.model"
     if not kept.exists():
         folder = out / f"{robot.name}-{SamplingScheme.ANTAGONIST}-train-{samples}"
@@ -207,8 +206,8 @@ def _networks(robot: "Robot", out: Path, file: Path | None, samples: int, jobs: 
             jobs=jobs,
             progress=report_progress(),
         )
-        save_model(learn_model(read_samples(folder), progress=report_progress()), kept)
-    return load_model(kept)
+        learn_model(Samples.read(folder), progress=report_progress()).save(kept)
+    return LearnedModel.load(kept)
 
 
 def _line(judged: "Judged", width: float) -> str:

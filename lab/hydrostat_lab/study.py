@@ -16,7 +16,6 @@ from hydrostat.learning import (
     Samples,
     SamplingScheme,
     plan_samples,
-    read_samples,
     sample_robot,
     sample_shard,
 )
@@ -225,7 +224,7 @@ def _samples(
         plan = plan_samples(robot, count, seed=seed, draws=(draw,))
         place = folder / f"{robot.name}-{draw}-{name}-{count}"
         sample_robot(plan, place, jobs=jobs, progress=progress)
-        found.append(read_samples(place))
+        found.append(Samples.read(place))
     trial = replace(plan, count=min(_TIMED, study.targets), shard=_TIMED)
     sample_shard(replace(trial, count=1), 0)  # compiles
     began = time.process_time()

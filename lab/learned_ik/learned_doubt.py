@@ -21,7 +21,7 @@ import numpy as np  # isort: skip
 from scipy.stats import rankdata
 
 import hydrostat as hs
-from hydrostat.learning import load_model, read_samples
+from hydrostat.learning import LearnedModel, Samples
 from hydrostat.plot import save_png
 from hydrostat_lab.learning_figures import draw_calibration
 
@@ -46,13 +46,13 @@ def main() -> None:
     parser.add_argument("--targets", type=int, default=100)
     parser.add_argument("--finer", type=Path)
     given = parser.parse_args()
-    model, test = load_model(given.model), read_samples(given.test).first(given.targets)
+    model, test = LearnedModel.load(given.model), Samples.read(given.test).first(given.targets)
     robot = hs.load_robot(given.robot)
     if model.card.contact and robot.contact is None:
         robot = replace(robot, contact=hs.Contact())
     model.check(robot)
     simulation, names = hs.Simulation(robot), test.facts["markers"]
-    finer = None if given.finer is None else read_samples(given.finer).markers
+    finer = None if given.finer is None else Samples.read(given.finer).markers
     print(machine())
     print(f"{robot.name}, {model.card.samples} samples; errors in mm")
     print(f"{'targets':14}{'count':>6}{'found':>9}{'expected':>10}{'doubt':>8}{'rank':>7}{'within':>8}{'lost':>6}")

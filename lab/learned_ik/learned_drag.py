@@ -23,7 +23,7 @@ from ik_problem import rests
 
 import hydrostat as hs
 from hydrostat.ik import IKOptions, Tracker
-from hydrostat.learning import LearnedModel, load_model, read_samples
+from hydrostat.learning import LearnedModel, Samples
 from hydrostat.simulation import Equilibrium
 from hydrostat.studio import STRIDE
 from hydrostat_lab.compare import targets_of
@@ -114,7 +114,7 @@ def main() -> None:
     parser.add_argument("--targets", type=int, default=20)
     parser.add_argument("--seconds", type=float, default=1.0)
     given = parser.parse_args()
-    model, test = load_model(given.model), read_samples(given.test).first(given.targets)
+    model, test = LearnedModel.load(given.model), Samples.read(given.test).first(given.targets)
     robot = hs.load_robot(given.robot)
     if model.card.contact and robot.contact is None:
         robot = replace(robot, contact=hs.Contact())

@@ -23,7 +23,7 @@ from machine import machine
 import numpy as np  # isort: skip
 
 import hydrostat as hs
-from hydrostat.learning import LearnedModel, Samples, correct_model, load_model, read_samples
+from hydrostat.learning import LearnedModel, Samples, correct_model
 from hydrostat_lab.compare import targets_of
 
 
@@ -71,10 +71,10 @@ def main() -> None:
     parser.add_argument("--coarse", type=Path)
     parser.add_argument("--orders", type=int, default=8)
     given = parser.parse_args()
-    robot, model = hs.load_robot(given.robot), load_model(given.model)
+    robot, model = hs.load_robot(given.robot), LearnedModel.load(given.model)
     if model.card.contact and robot.contact is None:
         robot = replace(robot, contact=hs.Contact())
-    train, test, size = read_samples(given.train), read_samples(given.test), robot.body.mesh.size
+    train, test, size = Samples.read(given.train), Samples.read(given.test), robot.body.mesh.size
     print(machine())
     coarse = f"networks of {model.card.samples} samples of a coarse mesh"
     print(f"{robot.name}, {len(robot.body.mesh.nodes)} nodes; {coarse}")

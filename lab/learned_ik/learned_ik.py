@@ -23,7 +23,7 @@ from machine import machine
 import numpy as np  # isort: skip
 
 import hydrostat as hs
-from hydrostat.learning import read_samples
+from hydrostat.learning import Samples
 from hydrostat_lab.compare import METHODS, Compared, compare
 
 QUANTILES = {"median": 0.5, "p90": 0.9, "p99": 0.99, "max": 1.0}
@@ -67,7 +67,7 @@ def main() -> None:
     parser.add_argument("--methods", default=";".join(METHODS), help="separated by ;")
     parser.add_argument("--keep", type=Path)
     given = parser.parse_args()
-    train, test = read_samples(given.train), read_samples(given.test).first(given.targets)
+    train, test = Samples.read(given.train), Samples.read(given.test).first(given.targets)
     robot = hs.load_robot(given.robot)
     if test.facts["contact"] and robot.contact is None:
         robot = replace(robot, contact=hs.Contact())

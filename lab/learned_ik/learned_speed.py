@@ -15,7 +15,7 @@ from pathlib import Path
 
 from machine import machine
 
-from hydrostat.learning import load_model, read_samples
+from hydrostat.learning import LearnedModel, Samples
 from hydrostat_lab.compare import targets_of
 
 
@@ -37,7 +37,7 @@ def main() -> None:
     parser.add_argument("--targets", type=int, default=1000)
     parser.add_argument("--rounds", type=int, default=5)
     given = parser.parse_args()
-    model, test = load_model(given.model), read_samples(given.test).first(given.targets)
+    model, test = LearnedModel.load(given.model), Samples.read(given.test).first(given.targets)
     targets, markers = targets_of(test), list(test.markers.reshape(len(test), -1))
     print(machine())
     words = f"{len(model.forward)} networks; {len(test)} targets, {given.rounds} rounds"

@@ -18,7 +18,7 @@ from machine import machine
 import numpy as np  # isort: skip
 
 import hydrostat as hs
-from hydrostat.learning import exact_steps, load_model, read_samples, verify
+from hydrostat.learning import LearnedModel, Samples, exact_steps, verify
 from hydrostat.simulation import Equilibrium
 from hydrostat_lab.compare import targets_of
 
@@ -34,7 +34,7 @@ def main() -> None:
     parser.add_argument("--targets", type=int, default=300)
     parser.add_argument("--again", action="store_true")
     given = parser.parse_args()
-    model, test = load_model(given.model), read_samples(given.test).first(given.targets)
+    model, test = LearnedModel.load(given.model), Samples.read(given.test).first(given.targets)
     robot = hs.load_robot(given.robot)
     if model.card.contact and robot.contact is None:
         robot = replace(robot, contact=hs.Contact())

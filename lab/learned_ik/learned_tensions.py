@@ -17,14 +17,14 @@ from hydrostat.progress import no_progress
 
 import numpy as np  # isort: skip
 
-from hydrostat.learning import LearnOptions, Samples, make_training_set, read_samples, train_forward
+from hydrostat.learning import LearnOptions, Samples, TrainingSet, train_forward
 
 HELD_OUT = 200
 
 
 def errors(known: Samples, new: Samples, options: LearnOptions) -> tuple[float, float, float, float]:
     """Of markers [mm], mean and p99; of tensions [N]; of their slopes [N/m]."""
-    training_set = make_training_set(known)
+    training_set = TrainingSet.of_samples(known)
     networks = train_forward(training_set, known.facts["dim"], options, no_progress).networks
     low, high = known.limits
     answers = [networks.slopes(row) for row in 2 * (new.contractions - low) / (high - low) - 1]
@@ -49,7 +49,7 @@ def main() -> None:
     parser.add_argument("--steps", type=int, default=2000)
     parser.add_argument("--seeds", type=int, default=2)
     given = parser.parse_args()
-    samples = read_samples(given.samples)
+    samples = Samples.read(given.samples)
     if samples.tension_slopes is None:
         parser.error(f"{given.samples}: an earlier version sampled no slopes of tensions; sample again")
     new = samples.only(np.arange(len(samples) - HELD_OUT, len(samples)))

@@ -18,7 +18,7 @@ from machine import machine
 import numpy as np  # isort: skip
 
 import hydrostat as hs
-from hydrostat.learning import LearnedModel, Samples, load_model, read_samples
+from hydrostat.learning import LearnedModel, Samples
 from hydrostat_lab.thesis_network import train_thesis_network
 
 
@@ -50,8 +50,8 @@ def main() -> None:
     parser.add_argument("--counts", default="10000,100000")
     parser.add_argument("--targets", type=int, default=200)
     given = parser.parse_args()
-    model, train = load_model(given.model), read_samples(given.train)
-    test, counts = read_samples(given.test).first(given.targets), [int(count) for count in given.counts.split(",")]
+    model, train = LearnedModel.load(given.model), Samples.read(given.train)
+    test, counts = Samples.read(given.test).first(given.targets), [int(count) for count in given.counts.split(",")]
     robot = hs.load_robot(given.robot)
     simulation = hs.Simulation(replace(robot, contact=robot.contact or hs.Contact()))
     print(machine())

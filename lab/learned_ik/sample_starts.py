@@ -26,7 +26,7 @@ from scipy.stats import beta
 import hydrostat as hs
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.geometry import find_crossings
-from hydrostat.learning import LearnOptions, Samples, TrainingSet, linear_map, read_samples, train_forward
+from hydrostat.learning import LearnOptions, Samples, TrainingSet, linear_map, train_forward
 from hydrostat.progress import no_progress
 
 COMPONENTS = 100
@@ -101,7 +101,7 @@ def main() -> None:
     parser.add_argument("--targets", type=int, default=500)
     parser.add_argument("--steps", type=int, default=2000)
     given = parser.parse_args()
-    samples, robot = read_samples(given.samples).first(given.known + given.targets), hs.load_robot(given.robot)
+    samples, robot = Samples.read(given.samples).first(given.known + given.targets), hs.load_robot(given.robot)
     if samples.facts["contact"] and robot.contact is None:
         robot = replace(robot, contact=hs.Contact())
     known, targets = samples.first(given.known), samples.only(np.arange(given.known, len(samples)))

@@ -46,7 +46,7 @@ from hydrostat.control import (
     open_line,
 )
 from hydrostat.errors import HydrostatError
-from hydrostat.learning import load_model
+from hydrostat.learning import LearnedModel
 from hydrostat.robot import Contact, Robot
 from hydrostat.teleop import (
     BAUD,
@@ -61,7 +61,6 @@ from hydrostat.teleop import (
     Smoothing,
     WinchMapper,
     drive,
-    winch_channels,
 )
 
 MEASURES = 90
@@ -180,7 +179,7 @@ def other_end(pipe, low: np.ndarray, high: np.ndarray, poses: np.ndarray, baud: 
 
 def learned(robot: Robot, simulation: hs.Simulation, *, tips: bool) -> HandMap:
     """What 60 mimicked poses teach, each read 25 times."""
-    winches, random = winch_channels(robot), np.random.default_rng(1)
+    winches, random = WinchMapper.channels(robot), np.random.default_rng(1)
     person = EmulatedPerson(winches.low, winches.high)
     glove = CyberGlove(person.glove)
     names = tuple(f"{name} {axis}" for name in simulation.rest.markers for axis in "xyz") if tips else winches.names
@@ -212,7 +211,7 @@ def again(ask: Callable[[], object]) -> None:
 
 def measure(robot: Robot, way: CommandMapper, known: HandMap, given: argparse.Namespace) -> Told:
     """Drive, and let the other end measure."""
-    winches, random, moves, baud = winch_channels(robot), np.random.default_rng(2), given.moves, given.baud
+    winches, random, moves, baud = WinchMapper.channels(robot), np.random.default_rng(2), given.moves, given.baud
     flexors = np.array(["flexor" in name for name in winches.names])
     poses = random.uniform(0, 0.35, (moves + 1, len(flexors))) * winches.high * flexors
     ours, theirs = mp.get_context("spawn").Pipe()
@@ -281,7 +280,7 @@ def main() -> None:
     for number, name in enumerate(ways):
         if given.way not in (None, number):
             continue
-        model = load_model(given.model) if number == 2 and given.model else None
+        model = LearnedModel.load(given.model) if number == 2 and given.model else None
         body = replace(robot, contact=Contact()) if model and model.card.contact else robot
         simulation = hs.Simulation(body)
         known = learned(robot, simulation, tips=number > 0)

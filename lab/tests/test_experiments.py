@@ -10,15 +10,7 @@ from builders import strip_robot
 
 torch = pytest.importorskip("torch")
 
-from hydrostat.learning import (  # noqa: E402
-    LearnedModel,
-    LearnOptions,
-    learn_model,
-    plan_samples,
-    read_samples,
-    sample_robot,
-    save_model,
-)
+from hydrostat.learning import LearnedModel, LearnOptions, Samples, learn_model, plan_samples, sample_robot  # noqa: E402
 from hydrostat.robot import Robot  # noqa: E402
 from hydrostat.simulation import Simulation  # noqa: E402
 from hydrostat_lab import experiments as room  # noqa: E402
@@ -40,7 +32,7 @@ def robot() -> Robot:
 def model(robot: Robot, tmp_path_factory: pytest.TempPathFactory) -> LearnedModel:
     folder = tmp_path_factory.mktemp("samples") / "strip"
     sample_robot(plan_samples(robot, 60), folder)
-    return learn_model(read_samples(folder), options=LearnOptions(steps=400, inverse_steps=10, width=24, members=1))
+    return learn_model(Samples.read(folder), options=LearnOptions(steps=400, inverse_steps=10, width=24, members=1))
 
 
 def test_networks_place_markers_as_the_model_does(model: LearnedModel) -> None:
@@ -124,7 +116,7 @@ def test_an_experiment_writes_its_table_picture_and_verdicts(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    save_model(model, tmp_path / "strip.model")
+    model.save(tmp_path / "strip.model")
     short = EXPERIMENTS["table-noise"]
     runs = {
         name: replace(run, options=replace(run.options, cycles=2, updates=2, batch=16))

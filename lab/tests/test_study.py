@@ -10,7 +10,7 @@ from builders import strip_robot
 
 import hydrostat as hs
 from hydrostat.errors import InputError
-from hydrostat.learning import LearnOptions, read_samples
+from hydrostat.learning import LearnOptions, Samples
 from hydrostat.robot import Robot
 from hydrostat_lab import reproduce
 from hydrostat_lab.compare import Compared, compare
@@ -40,7 +40,7 @@ def test_rows_are_those_of_the_comparison_and_are_kept(robot: Robot, folder: Pat
     """Oracle: `compare` called directly, on the samples that the study left."""
     rows = list(run_study(study(), robot, folder))
     assert [(row.samples, row.method) for row in rows] == [(count, name) for count in (20, 40) for name in PLAIN]
-    train, test = (read_samples(folder / f"{robot.name}-box-{name}") for name in ("train-40", "test-5"))
+    train, test = (Samples.read(folder / f"{robot.name}-box-{name}") for name in ("train-40", "test-5"))
     assert not np.isin(test.contractions, train.contractions).any()
     for row, found in zip(rows[4:], compare(hs.Simulation(robot), train, test, PLAIN), strict=True):
         assert row.errors["mean"] == pytest.approx(found.distances.mean(), rel=1e-6)
@@ -66,7 +66,7 @@ def test_rows_are_those_of_the_comparison_and_are_kept(robot: Robot, folder: Pat
 def test_kernel_ridge_goes_through_what_is_smooth(robot: Robot, tmp_path: Path) -> None:
     """Oracle: contractions that are a smooth function of markers, at places that were not seen."""
     list(run_study(study(counts=(2,), targets=2, methods=("constant",)), robot, tmp_path))
-    some = read_samples(tmp_path / f"{robot.name}-box-train-2")
+    some = Samples.read(tmp_path / f"{robot.name}-box-train-2")
     draw = np.random.default_rng(0)
     places, new = draw.uniform(-1, 1, (200, 1, 2)), draw.uniform(-0.8, 0.8, (50, 1, 2))
     high = np.array(some.facts["travel"])

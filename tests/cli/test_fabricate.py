@@ -11,7 +11,7 @@ from plush import near_the_edge
 
 from hydrostat.cli.design_results import designed_tension
 from hydrostat.errors import InputError
-from hydrostat.project import Wishes, Work, save_work
+from hydrostat.project import Wishes, Work
 from hydrostat.robot import load_robot, robot_hash, save_robot
 
 Run = Callable[..., tuple[int, str, str]]
@@ -119,14 +119,14 @@ def test_the_tension_of_its_design_is_beside_a_robot(tmp_path: Path) -> None:
 def test_a_robot_of_the_studio_keeps_to_the_limit_that_it_had_there(tmp_path: Path) -> None:
     """Oracle: the wish; by its kit in the studio no cable is pulled harder either."""
     robot = near_the_edge()
-    save_work(Work(robot=robot), tmp_path / "usual")
+    Work(robot=robot).save(tmp_path / "usual")
     assert designed_tension(robot, tmp_path / "usual") == Wishes().constraints.tension
-    save_work(Work(robot=robot, wishes=Wishes.of(tension=7.5)), tmp_path / "weak")
+    Work(robot=robot, wishes=Wishes.of(tension=7.5)).save(tmp_path / "weak")
     assert designed_tension(robot, tmp_path / "weak") == designed_tension(robot, tmp_path / "weak/robot.toml") == 7.5
     (tmp_path / "weak" / "studio.json").write_text("{")
     with pytest.raises(InputError, match=r"^studio\.json: .*\. Fix the file, or set the limit with --tension"):
         designed_tension(robot, tmp_path / "weak")
-    save_work(Work(robot=robot.with_network((), ())), tmp_path / "bare")
+    Work(robot=robot.with_network((), ())).save(tmp_path / "bare")
     assert not (tmp_path / "bare" / "studio.json").exists()
 
 
@@ -134,7 +134,7 @@ def test_a_robot_of_the_studio_keeps_to_the_limit_that_it_had_there(tmp_path: Pa
 def test_a_kit_keeps_to_a_tension(run: Run, tmp_path: Path, starfish: Path) -> None:
     """Oracle: the largest tension of its list: of the 3 N that the studio kept to, and more if the command says so."""
     largest, robot = {}, tmp_path / "robot"
-    save_work(Work(robot=load_robot(starfish), wishes=Wishes.of(tension=3.0)), robot)
+    Work(robot=load_robot(starfish), wishes=Wishes.of(tension=3.0)).save(robot)
     for limit, asked in {"3 N": (), "200 N": ("--tension", "200 N")}.items():
         code, out, _ = run("fabricate", robot, *asked, "--force", "--out", tmp_path / limit[0])
         assert code == 0

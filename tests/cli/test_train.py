@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hydrostat.learning import load_policy
+from hydrostat.learning import PortablePolicy
 from hydrostat.robot import gallery_folder
 
 Run = Callable[..., tuple[int, str, str]]
@@ -24,7 +24,7 @@ def test_a_few_actions_are_judged_and_counted(run: Run, starfish: Path, tmp_path
     assert [point["steps"] for point in curve] == [4, 8, 12, 16, 20]  # four episodes side by side
     assert curve[-1]["equilibria"] >= 40  # a goal and an action each
     assert out.splitlines()[-4].endswith("(3 unseen goals)")
-    assert load_policy(tmp_path / "policy" / "actor.policy").facts["task"] == "reach"
+    assert PortablePolicy.load(tmp_path / "policy" / "actor.policy").facts["task"] == "reach"
     assert (tmp_path / "policy" / "curve.png").read_bytes().startswith(b"\x89PNG")
 
 

@@ -9,7 +9,7 @@ from builders import box_mesh, mesh_body, strip_mesh
 
 from hydrostat.design.buildable import violations
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.region import body_region
+from hydrostat.design.region import Region
 from hydrostat.robot import Body, Cable, Pin, Robot, Winch
 
 UP = ((0.03, 0.03), (0.06, 0.03), (0.1, 0.03), (0.15, 0.03))
@@ -58,7 +58,7 @@ def network(
 def broken(robot: Robot, **limits: Any) -> list[str]:
     constraints = Constraints(**{"cable_gap": 0.0, "turn": 75.0, **limits})
     constraints.check(robot)
-    return violations(robot, constraints, body_region(robot.body, constraints.clearance))
+    return violations(robot, constraints, Region.of_body(robot.body, constraints.clearance))
 
 
 def moved(points: Points, index: int, *at: float) -> Points:

@@ -8,7 +8,7 @@ import pytest
 from builders import strip_robot
 
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.region import body_region
+from hydrostat.design.region import Region
 from hydrostat.design.request import RouteOptions
 from hydrostat.design.routes import bench as bench_module
 from hydrostat.design.routes.begin import layout_of
@@ -16,7 +16,7 @@ from hydrostat.design.routes.bench import Bench, Trial
 from hydrostat.design.routes.growth import Growth
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.propose import Proposals
-from hydrostat.design.routes.route_graph import route_graph
+from hydrostat.design.routes.route_graph import RouteGraph
 from hydrostat.ik import IKOptions, IKResult, solve_ik
 from hydrostat.robot import Marker, PoseTarget
 from hydrostat.simulation import Simulation
@@ -59,7 +59,7 @@ def test_a_held_layout_above_the_bound_is_none(unchecked: None) -> None:
 def test_the_best_candidates_are_those_of_all_solved_to_the_end(unchecked: None) -> None:
     robot = strip_robot(columns=6, rows=2).with_network((), ())
     bench = Bench(robot, POSES, LIMITS)
-    graph = route_graph(robot, body_region(robot.body, LIMITS.clearance), LIMITS, spacing=0.03)
+    graph = RouteGraph.build(robot, Region.of_body(robot.body, LIMITS.clearance), LIMITS, spacing=0.03)
     growth = Growth(Proposals(bench, graph, RouteOptions(hops=4, trials=6, steps=0), 0.05), lambda *_: None)
     start = growth.evaluate(Layout(robot, LIMITS, (), ()))
     assert start is not None
@@ -95,7 +95,7 @@ def test_a_pose_that_misses_more_than_hoped_is_sought_again(monkeypatch: pytest.
 
 def test_poses_from_rest_are_told(unchecked: None) -> None:
     layout, bench = robot_and_bench()
-    graph = route_graph(bench.source, body_region(bench.source.body, LIMITS.clearance), LIMITS, spacing=0.03)
+    graph = RouteGraph.build(bench.source, Region.of_body(bench.source.body, LIMITS.clearance), LIMITS, spacing=0.03)
     growth = Growth(Proposals(bench, graph, RouteOptions(), 0.05), lambda *_: None)
     found = bench.reach_poses(layout, None)
     assert isinstance(found, Trial)

@@ -10,7 +10,7 @@ from builders import mesh_body, strip_mesh, strip_robot
 from robustness import EXAMPLES
 
 from hydrostat.design import Constraints, FibreKind, Network, TreeOptions, TreeTrace, design_cables
-from hydrostat.design.region import body_region
+from hydrostat.design.region import Region
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.fabrication import plush_pattern
 from hydrostat.ik import solve_ik
@@ -81,7 +81,7 @@ def test_the_errors_told_are_those_of_the_robot(case: str, unchecked: None) -> N
 def test_cables_and_winches_keep_their_distances(case: str, unchecked: None) -> None:
     network, limits = designed(case), Constraints()
     robot = network.robot
-    region = body_region(robot.body, limits.clearance)
+    region = Region.of_body(robot.body, limits.clearance)
     rim = region.body.boundary
     for cable in robot.cables:
         assert region.body.contains(shapely.LineString(cable.points))

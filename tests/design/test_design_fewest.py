@@ -10,7 +10,7 @@ from test_design_routes import DOWN, SMALL, UP, Stopped, bare, broken
 from hydrostat.design import Constraints, DesignStage, Network, design_cables
 from hydrostat.design.request import RouteOptions
 from hydrostat.errors import HydrostatError
-from hydrostat.fabrication import demand_of, find_refusals
+from hydrostat.fabrication import Demand, find_refusals
 
 TOLERANCE = 8e-3
 
@@ -63,7 +63,9 @@ def test_the_front_holds_every_size_once(unchecked: None) -> None:
 def test_a_tolerance_out_of_reach_gives_the_best(unchecked: None) -> None:
     network, _ = out_of_reach()
     assert network.complete
-    fitting = [one for one in network.alternatives if not find_refusals(one.robot, demand_of(one.robot, one.reached))]
+    fitting = [
+        one for one in network.alternatives if not find_refusals(one.robot, Demand.of_results(one.robot, one.reached))
+    ]
     assert network.built == pytest.approx(min(one.built for one in fitting))
 
 

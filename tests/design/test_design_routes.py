@@ -11,14 +11,14 @@ from builders import gallery_robot, mesh_body, strip_mesh, strip_robot
 from hydrostat.design import Constraints, DesignRequest, Network, TreeOptions, design_cables
 from hydrostat.design.buildable import pulls, violations
 from hydrostat.design.network import RouteTrace
-from hydrostat.design.region import body_region
+from hydrostat.design.region import Region
 from hydrostat.design.request import RouteOptions
 from hydrostat.design.routes import design_routes as routes
 from hydrostat.design.routes import final_judgement, finalists
 from hydrostat.design.routes.deadline import Deadline
 from hydrostat.design.zone import Zone
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.fabrication import demand_of, find_refusals
+from hydrostat.fabrication import Demand, find_refusals
 from hydrostat.ik import solve_ik
 from hydrostat.progress import no_progress
 from hydrostat.robot import Marker, Mount, Pin, PoseTarget, Robot, Winch, robot_hash
@@ -132,7 +132,7 @@ def designed(name: str) -> Network:
 
 def broken(network: Network) -> list[str]:
     limits = network.constraints
-    region = body_region(network.robot.body, limits.clearance)
+    region = Region.of_body(network.robot.body, limits.clearance)
     return [
         *violations(network.robot, limits, region),
         *pulls(network.robot, network.reached, limits),
@@ -155,7 +155,7 @@ def test_every_constraint_is_kept(name: str, unchecked: None) -> None:
     asked = [one for one in network.alternatives if len(one.robot.winches) == case.winches]
     if len(robot.winches) < case.winches:  # then no kit could be made of those with as many as were asked for
         assert asked
-        assert all(find_refusals(one.robot, demand_of(one.robot, one.reached)) for one in asked)
+        assert all(find_refusals(one.robot, Demand.of_results(one.robot, one.reached)) for one in asked)
     assert len(robot.winches) <= case.winches
     assert len(robot.winches) <= len(robot.cables) <= case.cables
     assert max(counts.values()) <= network.constraints.cables_per_winch
@@ -227,7 +227,7 @@ def test_winches_move_apart_where_their_units_meet(unchecked: None) -> None:
     """Oracle: the kit, which refuses units of 25 x 25 x 40 mm as near as the constraints alone would let them be."""
     network = design_cables(bare(), [UP, DOWN], winches=2, cables=2)
     assert len(network.robot.winches) == 2
-    assert find_refusals(network.robot, demand_of(network.robot, network.reached)) == ()
+    assert find_refusals(network.robot, Demand.of_results(network.robot, network.reached)) == ()
     one, other = (np.array(winch.at) for winch in network.robot.winches)
     assert np.linalg.norm(one - other) > Constraints().winch_gap
 

@@ -6,15 +6,7 @@ import numpy as np
 import pytest
 from builders import gallery_robot
 
-from hydrostat.design import (
-    DesignRequest,
-    Network,
-    RouteTrace,
-    assign_cable_sides,
-    build_effort,
-    design_cables,
-    score_card,
-)
+from hydrostat.design import Craft, DesignRequest, Network, RouteTrace, assign_cable_sides, design_cables, score_card
 from hydrostat.design.filled_judge import evaluate_stuffed
 from hydrostat.design.filled_reach import filled_reach
 from hydrostat.design.network import Alternative
@@ -63,7 +55,7 @@ def test_new_networks_run_where_a_builder_would_want_them() -> None:
 def test_craft_of_pairs_is_sewn_twice_by_the_same_motors() -> None:
     """Oracle: the craft of the same network on one face, doubled but for its motors."""
     starfish = gallery_robot("starfish")
-    one, both = build_effort(starfish, []), build_effort(assign_cable_sides(starfish), [])
+    one, both = Craft.of_robot(starfish, []), Craft.of_robot(assign_cable_sides(starfish), [])
     assert (both.holes, both.motors, both.motor) == (2 * one.holes, one.motors, one.motor)
     assert both.minutes == pytest.approx(2 * one.minutes)
     assert both.length == pytest.approx(2 * one.length)

@@ -9,7 +9,7 @@ from builders import gallery_robot, strip_robot
 from hydrostat.design.buildable import violations
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.finding import places_in
-from hydrostat.design.region import body_region
+from hydrostat.design.region import Region
 from hydrostat.fabrication import find_refusals
 from hydrostat.robot import Robot, find_risks
 
@@ -75,7 +75,7 @@ def test_every_sentence_of_the_checks_that_names_a_part_has_a_place(name: str, u
     robot, limits = gallery_robot(name), Constraints()
     crowded = replace(robot, winches=tuple(replace(winch, spool_radius=0.02) for winch in robot.winches))
     said = [
-        *violations(robot, limits, body_region(robot.body, limits.clearance)),
+        *violations(robot, limits, Region.of_body(robot.body, limits.clearance)),
         *(text for text in find_risks(robot) if not text.startswith(("body", "pose"))),
         *find_refusals(crowded),
     ]

@@ -8,7 +8,7 @@ import shapely
 from builders import strip_robot
 
 from hydrostat.design.polyline import length, resample
-from hydrostat.design.region import body_region
+from hydrostat.design.region import Region
 from hydrostat.design.trees.grow_routes import GrowthLimits, grow_routes, keep_apart, lay_route, strongest
 
 LIMITS = GrowthLimits(distance=0.5, steps=20, turn=60.0, spacing=1.0)
@@ -97,7 +97,7 @@ def test_resample() -> None:
 
 
 def test_a_laid_route_keeps_its_clearance() -> None:
-    region = body_region(strip_robot().body, 0.006)
+    region = Region.of_body(strip_robot().body, 0.006)
     route = np.column_stack([np.linspace(0.0, 0.2, 9), np.tile([0.03, 0.018], 5)[:9]])
     laid = lay_route(route, region, 0.02)
     assert laid is not None
@@ -107,7 +107,7 @@ def test_a_laid_route_keeps_its_clearance() -> None:
 
 
 def test_region() -> None:
-    region = body_region(strip_robot().body, 0.006)
+    region = Region.of_body(strip_robot().body, 0.006)
     assert region.body.area == pytest.approx(0.2 * 0.05)
     assert region.depths(np.array([[0.1, 0.0], [0.1, 0.02], [0.1, 0.04]])) == pytest.approx([0.025, 0.005, -0.015])
     starts, ends = np.array([[0.05, 0.0], [0.05, 0.0]]), np.array([[0.15, 0.0], [0.15, 0.0245]])

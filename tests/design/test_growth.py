@@ -7,13 +7,13 @@ import pytest
 from builders import strip_robot
 
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.region import body_region
+from hydrostat.design.region import Region
 from hydrostat.design.request import RouteOptions
 from hydrostat.design.routes.bench import Bench
 from hydrostat.design.routes.growth import Growth
 from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
 from hydrostat.design.routes.propose import Proposals
-from hydrostat.design.routes.route_graph import route_graph
+from hydrostat.design.routes.route_graph import RouteGraph
 from hydrostat.robot import PoseTarget, Winch
 
 LIMITS = Constraints(winch_clearance=0.006, leads=False, cable_gap=0.0)
@@ -23,7 +23,7 @@ def test_the_first_cable_is_nearly_the_best_of_all_short_ones(unchecked: None) -
     """Each of one segment, from every place where a winch may stand; the grown one may be of up to two hops."""
     robot = strip_robot(columns=6, rows=2).with_network((), ())
     bench = Bench(robot, [PoseTarget(name="up", targets={"tip": (0.199, 0.006)})], LIMITS)
-    graph = route_graph(robot, body_region(robot.body, LIMITS.clearance), LIMITS, spacing=0.03)
+    graph = RouteGraph.build(robot, Region.of_body(robot.body, LIMITS.clearance), LIMITS, spacing=0.03)
     # Far apart, so that paths of two hops stay straight and no point is moved.
     growth = Growth(Proposals(bench, graph, RouteOptions(hops=2, trials=6, steps=0, starts=1), 0.06), lambda *_: None)
     start = growth.evaluate(Layout(robot, LIMITS, (), ()))
@@ -48,7 +48,7 @@ def test_the_first_cable_is_nearly_the_best_of_all_short_ones(unchecked: None) -
 def test_growth_stops_at_the_count(cables: int, unchecked: None) -> None:
     robot = strip_robot(columns=6, rows=2).with_network((), ())
     bench = Bench(robot, [PoseTarget(name="up", targets={"tip": (0.18, 0.06)})], LIMITS)
-    graph = route_graph(robot, body_region(robot.body, LIMITS.clearance), LIMITS, spacing=0.03)
+    graph = RouteGraph.build(robot, Region.of_body(robot.body, LIMITS.clearance), LIMITS, spacing=0.03)
     noted: list[int] = []
     growth = Growth(
         Proposals(bench, graph, RouteOptions(hops=4, trials=2, steps=1, starts=1), 0.05),

@@ -9,7 +9,7 @@ from builders import mesh_body, strip_mesh, strip_robot
 
 from hydrostat.design.buildable import violations
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.region import body_region
+from hydrostat.design.region import Region
 from hydrostat.design.routes.begin import layout_of
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.margins import margins
@@ -99,7 +99,7 @@ BROKEN: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
 def test_what_is_pushed_back_can_be_built(name: str, unchecked: None) -> None:
     made, limits = BROKEN[name]
     robot, constraints = network(**made), Constraints(**limits)
-    region = body_region(robot.body, constraints.clearance)
+    region = Region.of_body(robot.body, constraints.clearance)
     assert violations(robot, constraints, region)
     pushed = pushed_back(layout_of(robot, constraints), region, 0.006)
     assert pushed is not None
@@ -111,7 +111,7 @@ def test_what_is_pushed_back_can_be_built(name: str, unchecked: None) -> None:
 
 def test_what_can_be_built_is_left_alone() -> None:
     start = layout_of(network(), Constraints())
-    assert pushed_back(start, body_region(start.source.body, 0.005), 0.006) is start
+    assert pushed_back(start, Region.of_body(start.source.body, 0.005), 0.006) is start
 
 
 def test_what_is_locked_asks_for_no_room() -> None:
@@ -120,7 +120,7 @@ def test_what_is_locked_asks_for_no_room() -> None:
     beside = tuple((x, y - 0.001) for x, y in up[1:])
     robot = network(up, more=[("up", (up[0], *beside))])
     start = layout_of(robot, Constraints(locked_cables=("up 1", "up 2")))
-    region = body_region(robot.body, 0.005)
+    region = Region.of_body(robot.body, 0.005)
     pushed = pushed_back(start, region, 0.006)
     assert pushed is not None
     assert pushed.robot() == robot
@@ -129,7 +129,7 @@ def test_what_is_locked_asks_for_no_room() -> None:
 def test_new_cables_of_a_locked_winch_at_the_edge() -> None:
     robot = network(moved(UP, 0, 0.03, 0.048))
     constraints = Constraints(locked_winches=("up",))
-    region = body_region(robot.body, 0.005)
+    region = Region.of_body(robot.body, 0.005)
     pushed = pushed_back(layout_of(robot, constraints), region, 0.006)
     assert pushed is not None
     assert violations(pushed.robot(), constraints, region) == []
@@ -162,7 +162,7 @@ def test_rows_are_the_slopes_of_what_they_limit(name: str, unchecked: None) -> N
     """Central differences of the room of each row by all numbers; a row is where it was, as all limits are in reach."""
     made, limits = KINDS[name]
     robot, constraints = network(**made), Constraints(**limits)
-    region = body_region(robot.body, constraints.clearance)
+    region = Region.of_body(robot.body, constraints.clearance)
     start = layout_of(robot, constraints)
     numbers = start.numbers + np.concatenate(
         [np.random.default_rng(3).uniform(-5e-4, 5e-4, start.starts[-2]), np.full(2 * len(start.routes), 1e-3)]
@@ -182,7 +182,7 @@ def test_rows_are_the_slopes_of_what_they_limit(name: str, unchecked: None) -> N
 def test_only_limits_within_reach_are_told() -> None:
     robot = network()
     constraints = Constraints()
-    region = body_region(robot.body, constraints.clearance)
+    region = Region.of_body(robot.body, constraints.clearance)
     start = layout_of(robot, constraints)
     far, near = margins(start, region, reach=1.0), margins(start, region, reach=0.006)
     bounds = 4 * len(start.routes)
@@ -194,11 +194,11 @@ def test_a_layout_far_out_is_given_up() -> None:
     track = tuple((0.02 + 0.0025 * index, 0.01) for index in range(60))
     robot = network(track, DOWN)
     constraints = Constraints(hole_gap=0.03, winch_clearance=0.005)
-    assert pushed_back(layout_of(robot, constraints), body_region(robot.body, 0.005), 0.006) is None
+    assert pushed_back(layout_of(robot, constraints), Region.of_body(robot.body, 0.005), 0.006) is None
 
 
 def test_strips_have_room() -> None:
     """The strip of the other tests: every number of its layout is limited by something within the body."""
     start = layout_of(strip_robot(), Constraints(winch_clearance=0.005))
-    rows = margins(start, body_region(start.source.body, 0.005), reach=1.0).rows
+    rows = margins(start, Region.of_body(start.source.body, 0.005), reach=1.0).rows
     assert (np.abs(rows).max(axis=0) > 0).all()

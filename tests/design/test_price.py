@@ -11,15 +11,15 @@ import pytest
 from builders import mesh_body, strip_mesh, strip_robot
 
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.region import body_region
+from hydrostat.design.region import Region
 from hydrostat.design.routes.price import Missed, PathLimits, PricedPath, price_paths
-from hydrostat.design.routes.route_graph import RouteGraph, route_graph
+from hydrostat.design.routes.route_graph import RouteGraph
 from hydrostat.geometry import Anchors
 from hydrostat.kernel import native
 from hydrostat.robot import Marker
 from hydrostat.simulation import Simulation
 
-REGION = body_region(mesh_body(strip_mesh(4, 2)), 0.005)
+REGION = Region.of_body(mesh_body(strip_mesh(4, 2)), 0.005)
 """Of a body that has nothing to do with the graphs: paths only ask the graph."""
 
 
@@ -286,7 +286,7 @@ def test_two_cables_chosen_one_by_one_are_nearly_the_best_pair() -> None:
     """A small strip to be bent: against every pair of all short paths, each with a winch of its own (linear model)."""
     robot = replace(strip_robot(columns=8, rows=2), cables=(), winches=())
     robot = replace(robot, markers=(Marker(name="tip", at=(0.2, 0.0)), Marker(name="middle", at=(0.1, 0.0))))
-    graph = route_graph(robot, body_region(robot.body, 0.004), Constraints(clearance=0.004), spacing=0.025)
+    graph = RouteGraph.build(robot, Region.of_body(robot.body, 0.004), Constraints(clearance=0.004), spacing=0.025)
     moves = strip_moves(graph, Simulation(robot))
     paths = [path for path in all_paths(graph, 3, 30.0) if path[0] < path[-1]]
     along = sums_along(graph, paths, moves)

@@ -16,7 +16,7 @@ from hydrostat.design import (
     propose_routes,
     violations,
 )
-from hydrostat.design.region import body_region
+from hydrostat.design.region import Region
 from hydrostat.ik import solve_ik
 from hydrostat.robot import Marker, limit_travels
 from hydrostat.simulation import Simulation
@@ -33,7 +33,7 @@ def test_networks_keep_all_limits_and_have_the_error_that_is_told() -> None:
     first, last = propose_routes(robot, request)
     assert (first.is_refined, last.is_refined, last.is_buildable) == (False, True, True)
     for one in (first, last):
-        assert violations(one.robot, limits, body_region(robot.body, limits.clearance)) == []
+        assert violations(one.robot, limits, Region.of_body(robot.body, limits.clearance)) == []
         assert limit_travels(one.robot).winches == one.robot.winches
     simulation = Simulation(last.robot)
     searched = QuickSearch(robot, request).constraints  # with the torque of the motors that fit

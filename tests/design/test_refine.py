@@ -8,7 +8,7 @@ from builders import strip_robot
 
 from hydrostat.design.buildable import violations
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.region import body_region
+from hydrostat.design.region import Region
 from hydrostat.design.request import RouteOptions
 from hydrostat.design.routes.begin import add_mirror_image, layout_of
 from hydrostat.design.routes.bench import Bench, Trial
@@ -16,7 +16,7 @@ from hydrostat.design.routes.certificate import certify
 from hydrostat.design.routes.layout import CableRoute, Layout
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.refine import RefineOptions, linear_model, refine
-from hydrostat.design.routes.route_graph import route_graph
+from hydrostat.design.routes.route_graph import RouteGraph
 from hydrostat.robot import Marker, PoseTarget, Robot
 from hydrostat.simulation import Simulation
 
@@ -80,7 +80,7 @@ def test_the_linear_model_agrees_with_finite_differences(made, unchecked: None) 
     layout, pulled = made(), [(0.012, 0.006), (-0.015 if made is of_two_ways else 0.004, 0.015)]
     bench = Bench(layout.source, poses_of(strip(), [(0.01, 0.0), (0.0, 0.01)]), layout.constraints)
     trial = trial_at(bench, layout, pulled)
-    region = body_region(layout.source.body, layout.constraints.clearance)
+    region = Region.of_body(layout.source.body, layout.constraints.clearance)
     model = linear_model(bench, region, trial, effort=EFFORT, reach=0.006)
 
     def right(change: np.ndarray) -> np.ndarray:
@@ -122,7 +122,7 @@ def hidden() -> tuple[Bench, Layout, Trial]:
 
 def test_refinement_finds_a_hidden_network_again(unchecked: None) -> None:
     bench, _, trial = hidden()
-    region = body_region(bench.source.body, bench.constraints.clearance)
+    region = Region.of_body(bench.source.body, bench.constraints.clearance)
     found = refine(bench, region, trial, RefineOptions(iterations=60, effort=1e-4, straightness=0.0, progress=1e-4))
     assert trial.error > 5e-4
     assert found.error < 0.01 * trial.error
@@ -131,7 +131,7 @@ def test_refinement_finds_a_hidden_network_again(unchecked: None) -> None:
 
 def test_every_step_lowers_the_error_and_stays_buildable(unchecked: None) -> None:
     bench, _, trial = hidden()
-    region = body_region(bench.source.body, bench.constraints.clearance)
+    region = Region.of_body(bench.source.body, bench.constraints.clearance)
     for _ in range(4):
         found = refine(bench, region, trial, RefineOptions(iterations=1, effort=1e-4, straightness=0.0))
         assert found.error < trial.error * (1 + 1e-6)
@@ -144,15 +144,15 @@ def test_every_step_lowers_the_error_and_stays_buildable(unchecked: None) -> Non
 
 def test_it_ends_where_enough_is_reached(unchecked: None) -> None:
     bench, _, trial = hidden()
-    region = body_region(bench.source.body, bench.constraints.clearance)
+    region = Region.of_body(bench.source.body, bench.constraints.clearance)
     assert refine(bench, region, trial, RefineOptions(enough=2 * trial.error)) is trial
 
 
 def proposals(bench: Bench) -> Proposals:
     mesh = bench.source.body.mesh
     spacing = float(np.linalg.norm(np.diff(mesh.nodes[mesh.edges], axis=1)[:, 0], axis=1).mean())
-    region = body_region(bench.source.body, bench.constraints.clearance)
-    graph = route_graph(bench.source, region, bench.constraints, spacing=spacing)
+    region = Region.of_body(bench.source.body, bench.constraints.clearance)
+    graph = RouteGraph.build(bench.source, region, bench.constraints, spacing=spacing)
     return Proposals(bench, graph, RouteOptions(hops=6), 1.5 * spacing)
 
 
@@ -167,7 +167,7 @@ def test_the_slope_falls_towards_an_optimum(unchecked: None) -> None:
     bench = Bench(bench.source, [PoseTarget(name="other", targets=targets)], bench.constraints)
     start = bench.reach_poses(trial.layout, None)
     assert start is not None
-    region = body_region(bench.source.body, bench.constraints.clearance)
+    region = Region.of_body(bench.source.body, bench.constraints.clearance)
     ended = refine(bench, region, start, RefineOptions(iterations=60, effort=0.0, progress=1e-7))
     before, after = certify(proposals(bench), start), certify(proposals(bench), ended)
     assert before.slope > 0.02

@@ -8,7 +8,7 @@ import pytest
 from builders import box_mesh, mesh_body, strip_mesh
 
 from hydrostat.design.polyline import least_along
-from hydrostat.design.region import FlatRegion, Region, body_region
+from hydrostat.design.region import FlatRegion, Region
 from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh, Solid
 from hydrostat.robot import Body, load_robot
@@ -27,7 +27,7 @@ def body(name: str) -> Body:
 
 @cache
 def region(name: str, clearance: float = 0.005) -> Region:
-    return body_region(body(name), clearance)
+    return Region.of_body(body(name), clearance)
 
 
 def some_places(name: str, count: int, *, beyond: float = 0.01) -> np.ndarray:
@@ -95,7 +95,7 @@ def test_a_thin_part_gives_its_deepest_place() -> None:
     plate = box_mesh((6, 4, 1), size=(0.06, 0.04, 0.008))
     apart = plate.nodes + np.array([0.06, 0.0, 0.0])
     both = Mesh(np.vstack([block.nodes, apart]), np.vstack([block.elements, plate.elements + len(block.nodes)]))
-    here = body_region(mesh_body(both), 0.005)
+    here = Region.of_body(mesh_body(both), 0.005)
     points = np.array([[0.09, 0.02, 0.001], [0.08, 0.015, 0.0065], [0.1, 0.02, 0.0]])
     pushed = here.push_inside(points)
     assert here.depths(pushed) == pytest.approx(0.004, abs=1e-4)
@@ -173,5 +173,5 @@ def test_a_route_is_held_if_all_of_it_is(name: str) -> None:
 @pytest.mark.parametrize(("name", "where"), [("strip", "edge"), ("box", "surface")])
 def test_too_thin_a_body_is_told(name: str, where: str) -> None:
     with pytest.raises(InputError, match=f"too thin for cables 30 mm inside its {where}; lower the clearance"):
-        body_region(body(name), 0.03)
-    assert body_region(body(name), 0.02).clearance == 0.02
+        Region.of_body(body(name), 0.03)
+    assert Region.of_body(body(name), 0.02).clearance == 0.02

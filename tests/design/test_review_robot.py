@@ -10,7 +10,7 @@ from builders import gallery_robot, gallery_texts
 from hydrostat.design import Constraints, Network, RouteOptions, design_cables
 from hydrostat.design.finding import Severity
 from hydrostat.design.review_robot import review_robot
-from hydrostat.fabrication import MOTORS, KitOptions, UnbuildableError, build_kit, demand_of, find_demand
+from hydrostat.fabrication import MOTORS, Demand, KitOptions, UnbuildableError, build_kit
 from hydrostat.robot import Robot, find_risks, robot_hash
 
 SMALL = RouteOptions(starts=1, exchanges=0, polish=2, trials=2, steps=2, hops=6)
@@ -41,7 +41,7 @@ def crowded() -> Robot:
 @pytest.mark.parametrize("motor", ["auto", "25d"])
 def test_what_is_known_before_a_kit_is_made_is_what_refuses_it(motor: str, unchecked: None) -> None:
     robot, options = crowded(), KitOptions(motor=motor)
-    known = refused(robot, demand=find_demand(robot), options=options)
+    known = refused(robot, demand=Demand.find(robot), options=options)
     assert len(known) >= 2
     with pytest.raises(UnbuildableError) as told:
         build_kit(robot, options=options)
@@ -84,7 +84,7 @@ def test_risks_are_told_last_as_they_are(unchecked: None) -> None:
 def test_the_motor_of_the_judgement_is_that_of_the_poses(unchecked: None) -> None:
     """Oracle: the strongest motor, asked for by its name."""
     robot = gallery_robot("squid")
-    demand = find_demand(replace(robot, poses=dict(list(robot.poses.items())[:1])))
+    demand = Demand.find(replace(robot, poses=dict(list(robot.poses.items())[:1])))
     strong = replace(demand, torques=np.full(len(robot.winches), 10.0))
     assert refused(robot, demand=strong) == refused(robot, options=KitOptions(motor=MOTORS[-1].key))
     assert refused(robot, demand=strong) != []
@@ -100,12 +100,12 @@ def test_a_kit_never_refuses_what_a_design_returned(name: str, winches: int, cab
     pose = next(iter(robot.poses.values()))
     network = designed(name, winches, cables)
     made = replace(network.robot, poses={pose.name: pose})
-    assert refused(made, demand=demand_of(made, network.reached)) == []
+    assert refused(made, demand=Demand.of_results(made, network.reached)) == []
     kit = build_kit(
         made, options=KitOptions(tension=network.constraints.tension_limit, torque=network.constraints.torque)
     )
     assert kit.problems == ()
-    assert find_demand(made, tension=network.constraints.tension_limit).tensions.max() <= 1.001 * 20.0
+    assert Demand.find(made, tension=network.constraints.tension_limit).tensions.max() <= 1.001 * 20.0
 
 
 @pytest.mark.slow

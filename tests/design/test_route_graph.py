@@ -8,8 +8,8 @@ import pytest
 from builders import box_robot, mesh_body, strip_mesh, strip_robot
 
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.region import body_region
-from hydrostat.design.routes.route_graph import RouteGraph, route_graph
+from hydrostat.design.region import Region
+from hydrostat.design.routes.route_graph import RouteGraph
 from hydrostat.design.zone import Zone
 from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh
@@ -34,7 +34,7 @@ def comb_robot() -> Robot:
 def made(kind: str) -> tuple[Robot, RouteGraph]:
     robot = {"comb": comb_robot, "box": box_robot, "strip": lambda: strip_robot(columns=16, rows=4)}[kind]()
     constraints = Constraints(clearance=0.004, winch_clearance=0.008)
-    return robot, route_graph(robot, body_region(robot.body, 0.004), constraints, spacing=SPACING)
+    return robot, RouteGraph.build(robot, Region.of_body(robot.body, 0.004), constraints, spacing=SPACING)
 
 
 def samples(graph: RouteGraph, edges: np.ndarray) -> np.ndarray:
@@ -45,7 +45,7 @@ def samples(graph: RouteGraph, edges: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("kind", ["comb", "box"])
 def test_points_and_edges_keep_inside(kind: str) -> None:
     _, graph = made(kind)
-    region = body_region(made(kind)[0].body, 0.004)
+    region = Region.of_body(made(kind)[0].body, 0.004)
     assert region.depths(graph.points).min() >= 0.004
     places = samples(graph, graph.edges).reshape(-1, graph.points.shape[1])
     assert region.depths(places).min() >= 0.002 - 5e-5
@@ -81,8 +81,8 @@ def test_directed_edges_are_the_edges_both_ways(kind: str) -> None:
 
 def test_the_same_graph_twice() -> None:
     robot, graph = made("box")
-    again = route_graph(
-        robot, body_region(robot.body, 0.004), Constraints(clearance=0.004, winch_clearance=0.008), spacing=SPACING
+    again = RouteGraph.build(
+        robot, Region.of_body(robot.body, 0.004), Constraints(clearance=0.004, winch_clearance=0.008), spacing=SPACING
     )
     np.testing.assert_array_equal(graph.points, again.points)
     np.testing.assert_array_equal(graph.edges, again.edges)
@@ -95,7 +95,7 @@ def test_zones() -> None:
     constraints = Constraints(
         clearance=0.004, winch_clearance=0.008, keep_out=(out,), still=(still,), winch_zones=(stand,)
     )
-    graph = route_graph(robot, body_region(robot.body, 0.004), constraints, spacing=SPACING)
+    graph = RouteGraph.build(robot, Region.of_body(robot.body, 0.004), constraints, spacing=SPACING)
     assert 0 < len(graph.points) < len(made("comb")[1].points)
     assert out.distances(samples(graph, graph.edges).reshape(-1, 2)).min() >= 0
     inside = np.array([still.distances(some).min() < 0 for some in samples(graph, graph.edges)])
@@ -107,10 +107,12 @@ def test_zones() -> None:
     assert (moves[graph.still] == 0).all()
     assert (moves[~graph.still] != 0).any(axis=1).all()
     with pytest.raises(InputError, match="winch_clearance"):
-        route_graph(robot, body_region(robot.body, 0.004), replace(constraints, winch_clearance=0.08), spacing=SPACING)
+        RouteGraph.build(
+            robot, Region.of_body(robot.body, 0.004), replace(constraints, winch_clearance=0.08), spacing=SPACING
+        )
     nowhere = replace(constraints, keep_out=(Zone(at=(0.1, 0.0), radius=1.0),))
     with pytest.raises(InputError, match="keep-out"):
-        route_graph(robot, body_region(robot.body, 0.004), nowhere, spacing=SPACING)
+        RouteGraph.build(robot, Region.of_body(robot.body, 0.004), nowhere, spacing=SPACING)
 
 
 def world_robot() -> Robot:
@@ -121,8 +123,8 @@ def world_robot() -> Robot:
 
 def test_winches_in_the_world() -> None:
     robot = world_robot()
-    region, constraints = body_region(robot.body, 0.004), Constraints(clearance=0.004)
-    graph = route_graph(robot, region, constraints, spacing=SPACING)
+    region, constraints = Region.of_body(robot.body, 0.004), Constraints(clearance=0.004)
+    graph = RouteGraph.build(robot, region, constraints, spacing=SPACING)
     assert graph.world.sum() == 2
     np.testing.assert_array_equal(graph.points[-2:], [winch.at for winch in robot.winches])
     np.testing.assert_array_equal(graph.winch_places, np.flatnonzero(graph.world))
@@ -133,11 +135,11 @@ def test_winches_in_the_world() -> None:
     assert held
     assert {tuple(pair) for pair in entering.tolist()} == {(p, len(graph.points) - w) for p in held for w in (1, 2)}
     assert not graph.world[graph.edges[:, 0]].any()
-    inside = route_graph(robot, region, replace(constraints, mount=Mount.BODY), spacing=SPACING)
+    inside = RouteGraph.build(robot, region, replace(constraints, mount=Mount.BODY), spacing=SPACING)
     assert not inside.world.any()
     bare = robot.with_network((), ())
     with pytest.raises(InputError, match="winches in the world"):
-        route_graph(bare, region, replace(constraints, mount=Mount.WORLD), spacing=SPACING)
+        RouteGraph.build(bare, region, replace(constraints, mount=Mount.WORLD), spacing=SPACING)
 
 
 @pytest.mark.parametrize("kind", ["strip", "box", "world"])
@@ -145,7 +147,7 @@ def test_what_an_edge_moves_is_what_a_cable_along_it_moves(kind: str) -> None:
     """Markers of a bent robot with one more cable of a tiny tension, per newton; two tensions tell the limit."""
     robot = world_robot() if kind == "world" else made(kind)[0]
     constraints = Constraints(clearance=0.004, winch_clearance=0.008)
-    graph = route_graph(robot, body_region(robot.body, 0.004), constraints, spacing=SPACING)
+    graph = RouteGraph.build(robot, Region.of_body(robot.body, 0.004), constraints, spacing=SPACING)
     robot = replace(robot, markers=_markers(robot))
     simulation = Simulation(robot)
     pose = simulation.solve(np.array([0.02, 0.004]))
@@ -195,7 +197,7 @@ def _pulled(robot: Robot, graph: RouteGraph, edge: int, pose: Equilibrium, tensi
 def test_a_zone_between_nodes_holds_a_winch() -> None:
     """Oracle: a box and a polygon of 1 mm, far from every node: each has a place for a winch."""
     robot, _ = made("comb")
-    region = body_region(robot.body, 0.004)
+    region = Region.of_body(robot.body, 0.004)
     middle = robot.body.mesh.nodes[robot.body.mesh.elements].mean(axis=1)
     depths = region.depths(middle)
     deep = middle[np.argsort(-depths)[:2]]
@@ -203,7 +205,7 @@ def test_a_zone_between_nodes_holds_a_winch() -> None:
     corners = deep[1] + 5e-4 * np.array([[-1, -1], [1, -1], [0, 1]])
     two = Zone(outline=tuple(map(tuple, corners.tolist())))
     constraints = Constraints(clearance=0.004, winch_clearance=0.004, winch_zones=(one, two))
-    found = route_graph(robot, region, constraints, spacing=SPACING)
+    found = RouteGraph.build(robot, region, constraints, spacing=SPACING)
     places = found.points[found.winch_places]
     assert one.distances(places).min() < 0
     assert two.distances(places).min() < 0

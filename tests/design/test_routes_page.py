@@ -10,7 +10,7 @@ from jaxtyping import config
 from hydrostat.design.buildable import violations
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.constraints_file import read_constraints
-from hydrostat.design.region import body_region
+from hydrostat.design.region import Region
 from hydrostat.robot import load_robot
 
 pytestmark = pytest.mark.slow
@@ -56,13 +56,13 @@ def test_the_proposal_of_the_page_can_be_built(page: dict[str, Any]) -> None:
     assert proposal.is_refined
     assert proposal.is_buildable
     limits = Constraints()
-    assert violations(proposal.robot, limits, body_region(proposal.robot.body, limits.clearance)) == []
+    assert violations(proposal.robot, limits, Region.of_body(proposal.robot.body, limits.clearance)) == []
 
 
 def test_the_constraints_of_the_page_hold(page: dict[str, Any]) -> None:
     """Oracle: `violations`, and the largest tension."""
     robot, constraints, bounded = page["robot"], page["constraints"], page["bounded"]
-    region = body_region(robot.body, constraints.clearance)
+    region = Region.of_body(robot.body, constraints.clearance)
     assert violations(bounded.robot, constraints, region) == []
     assert max(reached.pose.tensions.max() for reached in bounded.reached) <= 15.0 * 1.001
 

@@ -10,13 +10,13 @@ from scipy.optimize import nnls
 
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.polyline import nearest_shares, resample
-from hydrostat.design.region import body_region
+from hydrostat.design.region import Region
 from hydrostat.design.request import RouteOptions
 from hydrostat.design.routes.bench import Bench, Trial
 from hydrostat.design.routes.growth import Growth
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.propose import Proposals
-from hydrostat.design.routes.route_graph import route_graph
+from hydrostat.design.routes.route_graph import RouteGraph
 from hydrostat.design.routes.sketch import LineChoice, draw_lines, sketches
 from hydrostat.robot import Cable, PoseTarget, load_robot
 from hydrostat.simulation import Simulation
@@ -26,7 +26,7 @@ def _begun(robot, constraints: Constraints, poses) -> tuple[Proposals, Trial]:
     robot = robot.with_network((), ())
     bench = Bench(robot, list(poses), constraints)
     spacing = float(robot.body.mesh.edge_lengths.mean())
-    graph = route_graph(robot, body_region(robot.body, constraints.clearance), constraints, spacing=spacing)
+    graph = RouteGraph.build(robot, Region.of_body(robot.body, constraints.clearance), constraints, spacing=spacing)
     proposals = Proposals(bench, graph, RouteOptions(), 2 * spacing)
     bare = Growth(proposals, lambda *_: None).evaluate(Layout(robot, constraints, (), ()))
     assert bare is not None

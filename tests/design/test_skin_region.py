@@ -10,7 +10,7 @@ from builders import box_mesh, box_robot, gallery_robot, mesh_body, strip_robot
 from hydrostat.design import Constraints, Network, RouteOptions, design_cables
 from hydrostat.design.buildable import violations
 from hydrostat.design.review_robot import review_robot
-from hydrostat.design.routes.route_graph import route_graph
+from hydrostat.design.routes.route_graph import RouteGraph
 from hydrostat.design.skin_region import SINK, STITCH, SkinRegion, cable_region
 from hydrostat.errors import InputError
 from hydrostat.fabrication import PatternOptions, depth_table, space_pattern
@@ -126,7 +126,7 @@ def test_points_and_runs_off_the_layer_are_told(points: tuple[tuple[float, float
 def test_the_graph_lies_in_the_layer(depth: float, unchecked: None) -> None:
     """By winding numbers of the healed surface, along 21 places of each run."""
     robot, limits = gallery_robot("trunk"), Constraints(depth=depth)
-    graph = route_graph(robot, cable_region(robot.body, limits), limits, spacing=0.0117)
+    graph = RouteGraph.build(robot, cable_region(robot.body, limits), limits, spacing=0.0117)
     held = graph.points[~graph.world]
     solid = robot.body.solid
     assert solid is not None

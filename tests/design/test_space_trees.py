@@ -9,7 +9,7 @@ from builders import box_robot, gallery_robot
 
 from hydrostat.design import Constraints, FibreKind, Network, TreeOptions, TreeTrace, design_cables
 from hydrostat.design.buildable import violations
-from hydrostat.design.region import body_region
+from hydrostat.design.region import Region
 from hydrostat.design.trees.lead_ways import LeadWays, lead_ways
 from hydrostat.design.trees.winch_trees import WinchTrees, tree_score
 from hydrostat.ik import solve_ik
@@ -31,13 +31,13 @@ def designed(name: str, pose: str, phi: float = 0.5, kind: FibreKind = FibreKind
 @cache
 def ways(name: str) -> LeadWays:
     robot = gallery_robot(name)
-    return lead_ways(robot, body_region(robot.body, LIMITS.clearance), LIMITS)
+    return lead_ways(robot, Region.of_body(robot.body, LIMITS.clearance), LIMITS)
 
 
 def test_ways_run_inside_and_end_at_winches_in_the_world(unchecked: None) -> None:
     """Half a clearance all along, by 41 places of each run; into winches only from the part that is held."""
     robot, found = gallery_robot("trunk"), ways("trunk")
-    region = body_region(robot.body, LIMITS.clearance)
+    region = Region.of_body(robot.body, LIMITS.clearance)
     starts, ends = found.runs.nonzero()
     inner = (starts < found.within) & (ends < found.within)
     shares = np.linspace(0, 1, 41)[:, None, None]
@@ -55,7 +55,7 @@ def test_ways_run_inside_and_end_at_winches_in_the_world(unchecked: None) -> Non
 def test_winches_stand_in_a_body_where_the_robots_own_do() -> None:
     """A box 40 mm thick: 12 mm deep."""
     robot = box_robot()
-    found = lead_ways(robot, body_region(robot.body, 0.005), LIMITS)
+    found = lead_ways(robot, Region.of_body(robot.body, 0.005), LIMITS)
     places = found.points[found.places]
     assert len(places)
     assert not any(map(found.outside, found.places.tolist()))
@@ -68,7 +68,7 @@ def test_a_network_in_space_can_be_built(name: str, pose: str, unchecked: None) 
     """By sentences of the checks, which know nothing of trees; and it reaches what it says, by a fresh simulation."""
     network, robot = designed(name, pose), gallery_robot(name)
     limits = replace(LIMITS, cable_gap=0.0, turn=TreeOptions.turn)
-    assert violations(network.robot, limits, body_region(robot.body, LIMITS.clearance)) == []
+    assert violations(network.robot, limits, Region.of_body(robot.body, LIMITS.clearance)) == []
     own = {winch.at for winch in robot.winches}
     world = robot.winches[0].mount is Mount.WORLD
     assert all((winch.at in own and winch.mount is Mount.WORLD) == world for winch in network.robot.winches)

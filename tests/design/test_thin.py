@@ -4,13 +4,13 @@ import numpy as np
 from builders import strip_robot
 
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.region import body_region
+from hydrostat.design.region import Region
 from hydrostat.design.request import RouteOptions
 from hydrostat.design.routes.bench import Bench
 from hydrostat.design.routes.growth import Growth
 from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
 from hydrostat.design.routes.propose import Proposals
-from hydrostat.design.routes.route_graph import route_graph
+from hydrostat.design.routes.route_graph import RouteGraph
 from hydrostat.design.routes.thin import remove_via_points
 from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.robot import PoseTarget, Winch
@@ -21,7 +21,7 @@ UP = PoseTarget(name="up", targets={"tip": (0.18, 0.06)})
 
 def growth_of(tolerances: BuildTolerances, simplicity: float) -> Growth:
     robot = strip_robot(columns=10, rows=3).with_network((), ())
-    graph = route_graph(robot, body_region(robot.body, LIMITS.clearance), LIMITS, spacing=0.03)
+    graph = RouteGraph.build(robot, Region.of_body(robot.body, LIMITS.clearance), LIMITS, spacing=0.03)
     bench = Bench(robot, [UP], LIMITS, tolerances)
     return Growth(Proposals(bench, graph, RouteOptions(simplicity=simplicity), 0.05), lambda *_: None)
 

@@ -21,12 +21,11 @@ from hydrostat.fabrication import (
     MOTORS,
     TOUCHES,
     KitOptions,
+    Motor,
     PartOptions,
     UnitBox,
     build_kit,
-    choose_motor,
     find_refusals,
-    largest_torque,
     seam_of,
     unit_room,
     ways_to_lie,
@@ -185,14 +184,14 @@ def test_a_small_body_gives_the_torque_that_the_motor_that_fits_holds() -> None:
     assert motor is not None
     limits = built_in(robot, Constraints(), winches=1, cables=2)
     assert limits.torque is not None
-    assert choose_motor("auto", [limits.torque]) is motor
-    assert choose_motor("auto", [1.01 * limits.torque]) is not motor
+    assert Motor.choose("auto", [limits.torque]) is motor
+    assert Motor.choose("auto", [1.01 * limits.torque]) is not motor
     assert limits.tension_limit == pytest.approx(min(limits.torque / limits.spool_radius, limits.tension))
     assert built_in(robot, Constraints(torque=0.01), winches=1, cables=2).torque == 0.01
 
 
 def test_where_the_strongest_motor_fits_a_cable_pulls_as_asked(unchecked: None) -> None:
     limits = built_in(gallery_robot("starfish"), Constraints(), winches=2, cables=6)
-    assert limits.torque == pytest.approx(largest_torque(MOTORS[-1]), rel=3e-3)
-    assert limits.torque < largest_torque(MOTORS[-1])
+    assert limits.torque == pytest.approx(MOTORS[-1].largest_torque(), rel=3e-3)
+    assert limits.torque < MOTORS[-1].largest_torque()
     assert limits.tension_limit == Constraints().tension

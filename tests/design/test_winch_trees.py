@@ -7,7 +7,7 @@ import pytest
 from builders import mesh_body, strip_mesh
 
 from hydrostat.design import Constraints, TreeOptions
-from hydrostat.design.region import body_region
+from hydrostat.design.region import Region
 from hydrostat.design.trees.design_trees import _apart, _shares
 from hydrostat.design.trees.lead_ways import LeadWays, lead_ways
 from hydrostat.design.trees.winch_trees import WinchTrees, tree_score
@@ -43,7 +43,7 @@ def strip_trees(seed: int, *, poses: int = 1, **options: float) -> WinchTrees:
 def ways_of(body: Body) -> LeadWays:
     """Of a body without a network."""
     robot = Robot(name="bare", body=body, pins=(Pin(box=((-1.0, -1.0), (1.0, 1.0))),), poses={})
-    return lead_ways(robot, body_region(body, LIMITS.clearance), LIMITS)
+    return lead_ways(robot, Region.of_body(body, LIMITS.clearance), LIMITS)
 
 
 def test_the_score_by_hand() -> None:
@@ -113,7 +113,7 @@ def test_leads_stay_inside_and_begin_at_the_winch() -> None:
     full = strip_mesh(20, 20, size=(0.1, 0.1))
     centers = full.nodes[full.elements].mean(axis=1)
     body = mesh_body(Mesh(*_used(full.nodes, full.elements[np.abs(centers - [0.05, 0.0]).max(axis=1) > 0.02])))
-    region = body_region(body, 0.005)
+    region = Region.of_body(body, 0.005)
     assert region.body.area == pytest.approx(0.1**2 - 0.04**2)
     route = np.array([[0.085, -0.03], [0.085, 0.0], [0.085, 0.03]])
     trees = WinchTrees(body.mesh, [route], [body.mesh.nodes], ways_of(body), LIMITS, OPTIONS)

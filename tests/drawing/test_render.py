@@ -5,7 +5,7 @@ import pytest
 import shapely
 from builders import box_mesh
 
-from hydrostat.drawing.camera import Camera, along_an_axis, three_quarter
+from hydrostat.drawing.camera import Camera
 from hydrostat.drawing.creases import smooth_normals
 from hydrostat.drawing.depth import DepthBuffer
 from hydrostat.drawing.palette import Color, sky_shares
@@ -256,7 +256,7 @@ def test_the_long_side_of_a_body_is_seen(turn: float) -> None:
     """Oracle: however a rod lies, its projected length is sin(58 degrees) of the true one or more."""
     rod = box_mesh((4, 1, 1), size=(0.2, 0.02, 0.02)).nodes
     spin = np.array([[np.cos(turn), -np.sin(turn), 0], [np.sin(turn), np.cos(turn), 0], [0, 0, 1]])
-    camera = three_quarter(rod @ spin.T, np.empty((0, 3)))
+    camera = Camera.three_quarter(rod @ spin.T, np.empty((0, 3)))
     way = camera.see((spin @ np.array([200.0, 0.0, 0.0]))[None])[0]
     assert np.hypot(way[0], way[1]) >= 200 * np.sin(np.radians(58)) - 1e-6
     assert 0.2 < camera.axes[2, 2] < 0.7
@@ -265,7 +265,7 @@ def test_the_long_side_of_a_body_is_seen(turn: float) -> None:
 def test_the_eye_is_where_things_are_to_be_seen() -> None:
     nodes = box().nodes
     for y in (0.0, 0.05):
-        camera = three_quarter(nodes, np.array([[0.05, y, 0.015]]))
+        camera = Camera.three_quarter(nodes, np.array([[0.05, y, 0.015]]))
         assert np.sign(camera.axes[2, 1]) == np.sign(y - 0.025)
 
 
@@ -273,6 +273,6 @@ def test_the_eye_is_where_things_are_to_be_seen() -> None:
 def test_the_side_view_shows_the_motion(way: list[float], hidden: str) -> None:
     """Oracle: of a box 100 x 50 x 30 mm, the view across the motion in which most is to be seen."""
     nodes = box().nodes
-    camera = along_an_axis(nodes, np.empty((0, 3)), np.tile(np.array(way, dtype=float), (len(nodes), 1)))
+    camera = Camera.along_an_axis(nodes, np.empty((0, 3)), np.tile(np.array(way, dtype=float), (len(nodes), 1)))
     assert "xyz"[int(np.argmax(np.abs(camera.axes[2])))] == hidden
     assert np.abs(camera.axes).max(axis=1) == pytest.approx(1)

@@ -15,7 +15,7 @@ from shapely import LineString
 from hydrostat.errors import InputError
 from hydrostat.fabrication import MOTORS, Kit, KitOptions, Method, PatternOptions, build_kit
 from hydrostat.fabrication.checks.pattern_checks import SeenSvg, pattern_checks
-from hydrostat.fabrication.demand import find_demand
+from hydrostat.fabrication.demand import Demand
 from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.spool import capacity, spool_turns
 from hydrostat.fabrication.parts.winch_unit import WinchUnit, winch_units
@@ -138,7 +138,7 @@ def _sorted(places: np.ndarray) -> np.ndarray:
 def test_motors_are_asked_for_the_same_and_each_line_for_half(pairs: Kit) -> None:
     """Oracle: two equal cables beside each other share what one bore, at the same torque but for their stretch."""
     robot = starfish(Face.PAIRS)
-    one, both = find_demand(starfish(None)), find_demand(sewn_robot(robot))
+    one, both = Demand.find(starfish(None)), Demand.find(sewn_robot(robot))
     np.testing.assert_allclose(both.tensions[:5], both.tensions[5:], rtol=1e-6, atol=1e-9)
     np.testing.assert_allclose(both.torques, one.torques, rtol=0.03)
     assert not any("alone" in warning for warning in pairs.warnings)

@@ -9,7 +9,7 @@ from scipy.optimize import least_squares
 
 from hydrostat.errors import InputError, OutlineError
 from hydrostat.geometry import Outline
-from hydrostat.ik.objectives.objective import state_at, state_jacobian_at
+from hydrostat.ik.objectives.objective import EquilibriumState, StateJacobian
 from hydrostat.ik.objectives.shape_target import ShapeTarget, load_target_outline
 from hydrostat.robot import Body, Pin, Robot
 from hydrostat.simulation import Simulation
@@ -74,10 +74,10 @@ def test_contractions_are_found_from_the_drawing_of_a_pose() -> None:
         ring.append(node)
     term = ShapeTarget(outline=Outline(simulation.solve(hidden).nodes[ring])).bind(simulation)
     found = least_squares(
-        lambda a: term.residual(state_at(simulation, simulation.solve(a))),
+        lambda a: term.residual(EquilibriumState.at(simulation, simulation.solve(a))),
         [0.003, 0.003],
         jac=lambda a: term.jacobian(
-            state_at(simulation, pose := simulation.solve(a)), state_jacobian_at(simulation, pose)
+            EquilibriumState.at(simulation, pose := simulation.solve(a)), StateJacobian.at(simulation, pose)
         ),
         bounds=(0, 0.05),
         xtol=1e-14,
@@ -86,4 +86,4 @@ def test_contractions_are_found_from_the_drawing_of_a_pose() -> None:
     )
     np.testing.assert_allclose(found.x, hidden, atol=1e-7)
     assert found.nfev < 25
-    assert term.errors(state_at(simulation, simulation.solve(found.x)))["outline"] < 1e-7
+    assert term.errors(EquilibriumState.at(simulation, simulation.solve(found.x)))["outline"] < 1e-7

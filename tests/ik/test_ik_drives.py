@@ -5,7 +5,7 @@ import pytest
 from builders import box_mesh, mesh_body
 
 from hydrostat.errors import InputError
-from hydrostat.ik import IKStatus, solve_ik, solve_ik_trajectory, state_at, state_jacobian_at
+from hydrostat.ik import EquilibriumState, IKStatus, StateJacobian, solve_ik, solve_ik_trajectory
 from hydrostat.robot import Cable, Marker, Material, Pin, PinDrive, Robot, Winch
 from hydrostat.simulation import Simulation
 
@@ -56,8 +56,11 @@ def test_a_limit_of_a_drive_holds_and_is_told() -> None:
 def test_state_jacobian_is_that_of_differences() -> None:
     simulation = Simulation(arm(cabled=True))
     at, step = np.array([0.01, 0.3]), 1e-5
-    moves = state_jacobian_at(simulation, simulation.solve(at))
-    ends = [[state_at(simulation, simulation.solve(at + sign * way)) for sign in (1, -1)] for way in step * np.eye(2)]
+    moves = StateJacobian.at(simulation, simulation.solve(at))
+    ends = [
+        [EquilibriumState.at(simulation, simulation.solve(at + sign * way)) for sign in (1, -1)]
+        for way in step * np.eye(2)
+    ]
     tensions = np.stack([(up.tensions - down.tensions) / (2 * step) for up, down in ends], axis=1)
     nodes = np.stack([(up.nodes - down.nodes) / (2 * step) for up, down in ends], axis=2)
     np.testing.assert_allclose(moves.nodes, nodes, atol=1e-5)

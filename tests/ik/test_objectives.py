@@ -15,7 +15,7 @@ from hydrostat.ik.ik_result import IKStatus
 from hydrostat.ik.objectives.center_of_mass_target import CenterOfMassTarget
 from hydrostat.ik.objectives.effort import Effort
 from hydrostat.ik.objectives.marker_target import MarkerTarget
-from hydrostat.ik.objectives.objective import EquilibriumState, Objective, checked_objectives, state_at
+from hydrostat.ik.objectives.objective import EquilibriumState, Objective, checked_objectives
 from hydrostat.ik.objectives.pose_regularizer import PoseRegularizer
 from hydrostat.ik.objectives.shape_target import ShapeTarget
 from hydrostat.ik.solve_ik import solve_ik
@@ -34,13 +34,13 @@ def test_objectives_in_space_conform(name: str) -> None:
 
 
 def test_the_suite_sees_a_taut_and_a_slack_cable() -> None:
-    elongations = state_at(FLAT, FLAT.solve(BENT[2])).elongations
+    elongations = EquilibriumState.at(FLAT, FLAT.solve(BENT[2])).elongations
     assert elongations[0] > 1e-3
     assert elongations[1] < -1e-3
 
 
 def at_rest(simulation: Simulation) -> EquilibriumState:
-    return state_at(simulation, simulation.solve({}))
+    return EquilibriumState.at(simulation, simulation.solve({}))
 
 
 PAD = 0.006
@@ -115,15 +115,15 @@ def test_values_of_the_others() -> None:
     np.testing.assert_allclose(center.residual(at_rest(SPACE)), [0.01, 0.0, -0.01], atol=1e-12)
     slack = Effort(of="slack", weight=1.0, scale=0.2).bind(FLAT)
     np.testing.assert_allclose(slack.residual(rest), [0.0, -0.005], atol=1e-12)
-    posture = state_at(FLAT, FLAT.solve(BENT[2]))
+    posture = EquilibriumState.at(FLAT, FLAT.solve(BENT[2]))
     contraction = Effort(weight=1.0).bind(FLAT).residual(posture)
     np.testing.assert_allclose(contraction, 0.2 * BENT[2] / [winch.travel for winch in robot.winches])
     tension = Effort(of="tension", weight=1.0, scale=2.0).bind(FLAT).residual(posture)
     np.testing.assert_allclose(tension, 0.2 * posture.tensions / 2.0)
     assert posture.tensions[0] > 0.1
-    same = PoseRegularizer(pose=BEFORE[2], of="nodes").bind(FLAT).residual(state_at(FLAT, BEFORE[2]))
+    same = PoseRegularizer(pose=BEFORE[2], of="nodes").bind(FLAT).residual(EquilibriumState.at(FLAT, BEFORE[2]))
     assert not same.any()
-    shifted = replace(state_at(FLAT, BEFORE[2]), nodes=BEFORE[2].nodes + np.array([0.003, 0.004]))
+    shifted = replace(EquilibriumState.at(FLAT, BEFORE[2]), nodes=BEFORE[2].nodes + np.array([0.003, 0.004]))
     assert np.linalg.norm(
         PoseRegularizer(pose=BEFORE[2], of="nodes", weight=2.0).bind(FLAT).residual(shifted)
     ) == pytest.approx(2 * 0.005)

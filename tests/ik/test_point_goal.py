@@ -6,7 +6,7 @@ from wishes import BENT, FLAT, SPACE
 
 from hydrostat.errors import InputError
 from hydrostat.ik.objectives.marker_target import MarkerTarget, PointTarget
-from hydrostat.ik.objectives.objective import state_at
+from hydrostat.ik.objectives.objective import EquilibriumState
 from hydrostat.ik.solve_ik import solve_ik
 from hydrostat.ik.tracker import Tracker
 from hydrostat.testing import check_objective
@@ -26,7 +26,7 @@ def test_it_conforms_in_space() -> None:
 def test_at_markers_it_is_the_goal_of_markers() -> None:
     targets = {"tip": (0.17, 0.06), "top": (0.09, 0.05)}
     points = {marker.name: marker.at for marker in FLAT.robot.markers if marker.name in targets}
-    posture = state_at(FLAT, FLAT.solve(BENT[2]))
+    posture = EquilibriumState.at(FLAT, FLAT.solve(BENT[2]))
     found = PointTarget(points=points, targets=targets).bind(FLAT)
     known = MarkerTarget(targets={name: targets[name] for name in points}).bind(FLAT)
     assert found.residual(posture) == pytest.approx(known.residual(posture))

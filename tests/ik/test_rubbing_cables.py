@@ -9,7 +9,7 @@ from builders import strip_robot
 import hydrostat as hs
 from hydrostat import friction_hysteresis
 from hydrostat.ik.ik_result import IKStatus
-from hydrostat.ik.objectives.objective import state_jacobian_at
+from hydrostat.ik.objectives.objective import StateJacobian
 
 SIZE = 0.2  # about that of the strip [m]
 WAVY = (0.005, 0.018, 0.008, 0.016, 0.004, 0.012)
@@ -59,7 +59,7 @@ def test_next_to_no_friction_is_none() -> None:
 def test_slopes_of_tensions_and_elongations_are_differences() -> None:
     simulation, step = rubbing(0.3), 1e-6
     middle = np.array([0.012, 0.0])
-    moves = state_jacobian_at(simulation, simulation.solve(middle))
+    moves = StateJacobian.at(simulation, simulation.solve(middle))
     up, down = (simulation.solve(middle * (1 + sign * step)) for sign in (1, -1))
     along = middle * 2 * step
     assert moves.tensions @ along == pytest.approx(up.tensions - down.tensions, rel=1e-4, abs=1e-9)

@@ -9,7 +9,7 @@ from builders import strip_robot
 from hydrostat.ik import Effort, IKOptions, Limits, MarkerTarget, solve_ik
 from hydrostat.ik.limits import bounds
 from hydrostat.ik.objectives.effort import EffortKind
-from hydrostat.ik.objectives.objective import posture_of, state_at, state_jacobian_at
+from hydrostat.ik.objectives.objective import EquilibriumState, StateJacobian, posture_of
 from hydrostat.ik.search.inverse_search import InverseSearch
 from hydrostat.ik.search.linear_model import channels, stack_jacobians
 from hydrostat.ik.search.problem import InverseProblem, _full_tension
@@ -56,8 +56,10 @@ def test_slopes_of_markers() -> None:
 def test_a_model_has_the_slopes_of_the_pose() -> None:
     simulation = Simulation(stepped())
     pose = simulation.solve(PULLED)
-    expected = state_jacobian_at(simulation, pose)
-    found = stack_jacobians(simulation, state_at(simulation, pose), simulation.stiffness(pose), np.array([0, 2]))
+    expected = StateJacobian.at(simulation, pose)
+    found = stack_jacobians(
+        simulation, EquilibriumState.at(simulation, pose), simulation.stiffness(pose), np.array([0, 2])
+    )
     for part in ("nodes", "elongations", "tensions"):
         want = getattr(expected, part)
         assert np.abs(getattr(found, part) - want).max() < 1e-6 * np.abs(want).max()
@@ -121,7 +123,7 @@ def test_weights_count_what_cables_take_in() -> None:
     cables = [replace(cable, winch=str(number), spool_radius=None) for number, cable in enumerate(robot.cables)]
     shared, apart = Simulation(robot), Simulation(robot.with_network(winches, cables))
     assert _full_tension(shared) == pytest.approx(_full_tension(apart), rel=1e-9)
-    slack = state_at(shared, shared.solve(np.array([0.0, 0.005])))
+    slack = EquilibriumState.at(shared, shared.solve(np.array([0.0, 0.005])))
     found, expected = (Effort(of="slack").bind(simulation).residual(slack) for simulation in (shared, apart))
     assert found == pytest.approx(expected, rel=1e-12)
     assert (found != 0).sum() == 2

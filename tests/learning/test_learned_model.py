@@ -12,7 +12,7 @@ from plain_model import plain
 
 import hydrostat as hs
 from hydrostat.errors import InputError
-from hydrostat.learning import ModelCard, load_model, plan_samples, read_samples, sample_robot, save_model, verify
+from hydrostat.learning import LearnedModel, ModelCard, Samples, plan_samples, sample_robot, verify
 from hydrostat.learning.learn_model import kept_facts
 from hydrostat.learning.learned_model import Tier
 from hydrostat.learning.perceptrons import Perceptrons
@@ -58,7 +58,7 @@ def test_an_answer_is_of_steps_only_where_one_was_taken(robot: Robot, simulation
 
 def test_a_file_gives_the_model_back(robot: Robot, tmp_path: Path) -> None:
     model = plain(robot)
-    again = load_model(save_model(model, tmp_path / "strip.model"))
+    again = LearnedModel.load(model.save(tmp_path / "strip.model"))
     assert again.card == model.card
     target = {"tip": (0.1, 0.02)}
     assert again.solve(target).commands == model.solve(target).commands
@@ -104,9 +104,9 @@ def test_answers_hold_what_samples_held(robot: Robot, tmp_path: Path) -> None:
     """
     free = plain(robot)
     pairs = (tuple(winch.name for winch in robot.winches),)
-    held = load_model(save_model(replace(free, card=replace(free.card, pairs=pairs)), tmp_path / "a"))
+    held = LearnedModel.load(replace(free, card=replace(free.card, pairs=pairs)).save(tmp_path / "a"))
     with pytest.raises(InputError, match="pairs are none of its winches"):
-        load_model(save_model(replace(free, card=replace(free.card, pairs=(("W1", "nobody"),))), tmp_path / "b"))
+        LearnedModel.load(replace(free, card=replace(free.card, pairs=(("W1", "nobody"),))).save(tmp_path / "b"))
     rows = np.random.default_rng(4).uniform(0, 1, (20, 2)) * held.high
     again = contractions(
         SamplingScheme.ANTAGONIST, shared_numbers(rows, held.high, [(0, 1)]), held.low, held.high, [(0, 1)]
@@ -133,7 +133,7 @@ def test_answers_hold_what_samples_held(robot: Robot, tmp_path: Path) -> None:
 def test_a_model_of_another_contact_is_refused(robot: Robot, tmp_path: Path) -> None:
     """The two contacts differ in a number alone; the hash of physics knows neither."""
     felt = replace(robot, contact=hs.Contact())
-    model = load_model(save_model(plain(felt), tmp_path / "strip.model"))
+    model = LearnedModel.load(plain(felt).save(tmp_path / "strip.model"))
     model.check(felt)
     usual = 1e3 * felt.contact_distance
     for contact, words in (
@@ -156,14 +156,14 @@ def test_a_model_of_another_contact_is_refused(robot: Robot, tmp_path: Path) -> 
         earlier.check(replace(robot, contact=hs.Contact(distance=0.01)))
     for wrong in ("far", float("inf"), []):
         card = replace(model.card, contact_distance=wrong)  # type: ignore[arg-type]
-        file = save_model(replace(model, card=card), tmp_path / "wrong.model")
+        file = replace(model, card=card).save(tmp_path / "wrong.model")
         with pytest.raises(InputError, match=r"wrong\.model.*contact_distance"):
-            load_model(file)
+            LearnedModel.load(file)
 
 
 def test_samples_and_models_tell_their_contact(robot: Robot, tmp_path: Path) -> None:
     felt = replace(robot, contact=hs.Contact(distance=0.002))
-    samples = read_samples(sample_robot(plan_samples(felt, 1), tmp_path).path)
+    samples = Samples.read(sample_robot(plan_samples(felt, 1), tmp_path).path)
     told = {name: kept_facts(samples)[name] for name in ("contact", "contact_distance", "contact_friction")}
     assert told == {"contact": True, "contact_distance": 0.002, "contact_friction": 0.0}
     other = replace(robot, contact=hs.Contact(distance=0.002, friction=2.0))
@@ -173,7 +173,7 @@ def test_samples_and_models_tell_their_contact(robot: Robot, tmp_path: Path) -> 
 
 def test_no_changed_file_is_believed(robot: Robot, tmp_path: Path) -> None:
     """Oracle: a checksum of 256 bits; bytes changed, cut off, put in, twice over."""
-    whole, file = save_model(plain(robot), tmp_path / "strip.model").read_bytes(), tmp_path / "changed.model"
+    whole, file = plain(robot).save(tmp_path / "strip.model").read_bytes(), tmp_path / "changed.model"
     draw = np.random.default_rng(7)
     for _ in range(500):
         content = bytearray(whole)
@@ -194,15 +194,15 @@ def test_no_changed_file_is_believed(robot: Robot, tmp_path: Path) -> None:
             continue
         file.write_bytes(content)
         with pytest.raises(InputError, match=r"is damaged|is no model"):
-            load_model(file)
+            LearnedModel.load(file)
 
 
 def test_what_is_no_file_is_no_model() -> None:
     """A device without an end was read until the memory was full."""
     with pytest.raises(InputError, match="/dev/zero: is not a file; name a file that hydrostat learn wrote"):
-        load_model("/dev/zero")
+        LearnedModel.load("/dev/zero")
     with pytest.raises(InputError, match="a model is read from its file, by a path, not None"):
-        load_model(None)  # type: ignore[arg-type]
+        LearnedModel.load(None)  # type: ignore[arg-type]
 
 
 def forged(whole: bytes, change: object) -> bytes:
@@ -240,12 +240,12 @@ FORGERIES = {
 @pytest.mark.parametrize("kind", FORGERIES)
 def test_no_forged_file_crashes(kind: str, robot: Robot, tmp_path: Path) -> None:
     """Oracle: files whose checksum fits, but whose contents are no model."""
-    whole, file = save_model(plain(robot), tmp_path / "strip.model").read_bytes(), tmp_path / "forged.model"
+    whole, file = plain(robot).save(tmp_path / "strip.model").read_bytes(), tmp_path / "forged.model"
     file.write_bytes(forged(whole, lambda header: None))
-    load_model(file)
+    LearnedModel.load(file)
     file.write_bytes(forged(whole, FORGERIES[kind]))
     with pytest.raises(InputError, match="is no sound model"):
-        load_model(file)
+        LearnedModel.load(file)
 
 
 def test_another_robot_is_refused(robot: Robot, simulation: hs.Simulation) -> None:

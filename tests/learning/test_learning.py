@@ -21,11 +21,8 @@ from hydrostat.learning import (
     Samples,
     correct_model,
     learn_model,
-    load_model,
     plan_samples,
-    read_samples,
     sample_robot,
-    save_model,
     solve_exactly,
     verify,
 )
@@ -52,7 +49,7 @@ def folder(robot: Robot, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def samples(folder: Path) -> Samples:
-    return read_samples(folder)
+    return Samples.read(folder)
 
 
 @pytest.fixture(scope="module")
@@ -127,7 +124,7 @@ def test_a_few_samples_of_a_finer_mesh_correct_a_model(
 ) -> None:
     """Oracle: samples of the finer mesh that nothing was learned from; the model as it was."""
     finer = strip_robot(columns=16, rows=4)
-    found = read_samples(sample_robot(plan_samples(finer, 20), tmp_path / "finer").path)
+    found = Samples.read(sample_robot(plan_samples(finer, 20), tmp_path / "finer").path)
     known, new = found.only(np.arange(8)), found.only(np.arange(8, 20))
     better = correct_model(model, known)
     better.check(finer)
@@ -139,7 +136,7 @@ def test_a_few_samples_of_a_finer_mesh_correct_a_model(
     ]
     assert missed[1] < 0.5 * missed[0]
     assert better.card.corrected == 8
-    assert load_model(save_model(better, tmp_path / "finer.model")).card.physics == better.card.physics
+    assert LearnedModel.load(better.save(tmp_path / "finer.model")).card.physics == better.card.physics
     with pytest.raises(InputError, match="there are 3 samples; learning takes 5"):
         correct_model(model, known.first(3))
     monkeypatch.setattr("hydrostat.learning.train.sobolev_loss", _interrupted)
@@ -186,7 +183,7 @@ def test_a_tracker_begins_from_an_answer(model: LearnedModel, samples: Samples, 
 @pytest.mark.slow
 def test_the_answer_does_not_need_torch_nor_a_simulator(model: LearnedModel, samples: Samples, tmp_path: Path) -> None:
     """Oracle: an interpreter in which torch cannot be imported."""
-    file = save_model(model, tmp_path / "strip.model")
+    file = model.save(tmp_path / "strip.model")
     place = samples.markers[70, 0]
     code = f"""
 import sys
@@ -196,11 +193,11 @@ class NoTorch(MetaPathFinder):
         if name == "torch":
             raise ImportError(name)
 sys.meta_path.insert(0, NoTorch())
-from hydrostat.learning import load_model
-print(load_model({str(file)!r}).solve({{"tip": {place.tolist()}}}).commands)
+from hydrostat.learning import (LearnedModel)
+print(LearnedModel.load({str(file)!r}).solve({{"tip": {place.tolist()}}}).commands)
 """
     printed = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
-    assert printed.strip() == str(dict(load_model(file).solve({"tip": place}).commands))
+    assert printed.strip() == str(dict(LearnedModel.load(file).solve({"tip": place}).commands))
 
 
 @pytest.mark.slow
@@ -266,15 +263,15 @@ def test_the_commands(
     once = ("--max-samples", 60, "--members", 1, "--steps", 100)
     run("learn", folder, "--out", tmp_path / "strip.model", *once)
     assert "Wrote" in capsys.readouterr().out
-    assert load_model(tmp_path / "strip.model").card.samples == 60
-    part = learn_model(read_samples(folder).first(60), options=replace(OPTIONS, steps=1, inverse_steps=1))
+    assert LearnedModel.load(tmp_path / "strip.model").card.samples == 60
+    part = learn_model(Samples.read(folder).first(60), options=replace(OPTIONS, steps=1, inverse_steps=1))
     early = replace(part, card=replace(part.card, stopped=True))
     monkeypatch.setattr("hydrostat.learning.correct_model", lambda *_, **__: early)
     assert run("learn", folder, "--out", tmp_path / "early.model", "--fine-tune", tmp_path / "strip.model") == 130
     assert capsys.readouterr().out.endswith("interrupted: best model so far\n")
-    place = tuple(read_samples(folder).markers[70, 0].tolist())
+    place = tuple(Samples.read(folder).markers[70, 0].tolist())
     posed = replace(robot, poses={"far": hs.PoseTarget(name="far", targets={"tip": place})})
-    good = save_model(model, tmp_path / "good.model")
+    good = model.save(tmp_path / "good.model")
     monkeypatch.setattr("hydrostat.robot.load_robot", lambda path: posed)
     run("pose", tmp_path, "--out", tmp_path / "out", "--model", good)
     assert "far: model predicts rms error" in (printed := capsys.readouterr().out)

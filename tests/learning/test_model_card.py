@@ -13,7 +13,7 @@ from plain_model import plain
 
 import hydrostat as hs
 from hydrostat.errors import InputError
-from hydrostat.learning import ModelCard, load_model, save_model
+from hydrostat.learning import LearnedModel, ModelCard
 
 pytestmark = pytest.mark.usefixtures("unchecked")
 
@@ -53,7 +53,7 @@ OPTIONAL = (*FIRST, "inverse_error", "corrected", "policy")
 
 def written(facts: dict[str, Any], folder: Path) -> Path:
     """Write a file with such facts; its arrays are those of a plain model."""
-    whole = save_model(plain(strip_robot(columns=8, rows=2)), folder / "plain.model").read_bytes()
+    whole = plain(strip_robot(columns=8, rows=2)).save(folder / "plain.model").read_bytes()
     length = int.from_bytes(whole[8:16], "little")
     text = json.dumps({"facts": facts, "arrays": json.loads(whole[16 : 16 + length])["arrays"]}).encode()
     content = whole[:8] + len(text).to_bytes(8, "little") + text + whole[16 + length : -32]
@@ -64,22 +64,22 @@ def written(facts: dict[str, Any], folder: Path) -> Path:
 @pytest.mark.parametrize("more", [{}, {"corrected": 8}, {"corrected": 8, "policy": "TQC"}, {"inverse_error": 0.002}])
 def test_a_file_is_read_and_written_to_the_same_bytes(more: dict[str, Any], tmp_path: Path) -> None:
     old = written(FACTS | more, tmp_path)
-    model = load_model(old)
+    model = LearnedModel.load(old)
     for name, value in (FACTS | more).items():
         assert model.card.as_json()[name] == value
-    assert save_model(model, tmp_path / "new.model").read_bytes() == old.read_bytes()
+    assert model.save(tmp_path / "new.model").read_bytes() == old.read_bytes()
 
 
 def test_a_file_of_the_first_version_is_read(tmp_path: Path) -> None:
     """It says no pairs, no distance and no friction: the distance is the usual one of the robot's contact."""
     felt = replace(strip_robot(columns=8, rows=2), contact=hs.Contact())
     facts = {name: value for name, value in FACTS.items() if name not in FIRST} | {"size": felt.body.mesh.size}
-    card = load_model(written(facts, tmp_path)).card
+    card = LearnedModel.load(written(facts, tmp_path)).card
     assert (card.pairs, card.contact_distance, card.contact_friction) == ((), felt.contact_distance, 0.0)
     assert (card.corrected, card.policy) == (None, None)
-    silent = load_model(written(facts | {"contact": False}, tmp_path)).card
+    silent = LearnedModel.load(written(facts | {"contact": False}, tmp_path)).card
     assert (silent.contact, silent.contact_distance, silent.contact_friction) == (False, None, None)
-    assert load_model(written(FACTS | {"of another version": [1]}, tmp_path)).card == ModelCard.from_json(FACTS)
+    assert LearnedModel.load(written(FACTS | {"of another version": [1]}, tmp_path)).card == ModelCard.from_json(FACTS)
 
 
 def test_a_card_is_given_back_by_its_json() -> None:
@@ -97,10 +97,10 @@ def test_a_card_is_given_back_by_its_json() -> None:
 def test_a_missing_key_is_refused(key: str, tmp_path: Path) -> None:
     file = written({name: value for name, value in FACTS.items() if name != key}, tmp_path)
     with pytest.raises(InputError, match=rf'old\.model: is no sound model: "{key}" is missing$') as stop:
-        load_model(file)
+        LearnedModel.load(file)
     assert "\n" not in str(stop.value)
     with pytest.raises(InputError, match=f'"{key}" is missing$'):
-        load_model(written(FACTS | {key: None}, tmp_path))
+        LearnedModel.load(written(FACTS | {key: None}, tmp_path))
 
 
 FULL = FACTS | {"inverse_error": 0.1, "corrected": 8, "policy": "TQC"}
@@ -118,13 +118,13 @@ def is_wrong(key: str, value: Any) -> bool:
 @pytest.mark.parametrize(("key", "value"), [(key, value) for key in FULL for value in VALUES if is_wrong(key, value)])
 def test_a_value_of_another_kind_is_refused(key: str, value: Any, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=rf'old\.model: is no sound model: "{key}" ') as stop:
-        load_model(written(FULL | {key: value}, tmp_path))
+        LearnedModel.load(written(FULL | {key: value}, tmp_path))
     assert "\n" not in str(stop.value)
 
 
 @pytest.mark.parametrize("key", [key for key, value in FULL.items() if isinstance(value, float)])
 def test_a_whole_number_is_a_number(key: str, tmp_path: Path) -> None:
-    assert getattr(load_model(written(FULL | {key: 2}, tmp_path)).card, key) == 2
+    assert getattr(LearnedModel.load(written(FULL | {key: 2}, tmp_path)).card, key) == 2
 
 
 @pytest.mark.parametrize(
@@ -148,5 +148,5 @@ def test_a_whole_number_is_a_number(key: str, tmp_path: Path) -> None:
 )
 def test_a_value_out_of_range_is_refused(key: str, value: Any, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=rf"old\.model: is no sound model: .*{key}.*") as stop:
-        load_model(written(FACTS | {key: value}, tmp_path))
+        LearnedModel.load(written(FACTS | {key: value}, tmp_path))
     assert "\n" not in str(stop.value)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from hydrostat.errors import InputError
-from hydrostat.learning import PortablePolicy, load_policy
+from hydrostat.learning import PortablePolicy
 from hydrostat.learning.perceptrons import Perceptrons
 
 FACTS = {"task": "walk", "robot": "strip", "physics": "0", "sees": [["goal", 1], ["place", 2]], "actions": 2}
@@ -24,7 +24,7 @@ def policy() -> PortablePolicy:
 
 
 def test_actions_are_sums_squashed(tmp_path: Path) -> None:
-    kept = load_policy(policy().save(tmp_path / "actor.policy"))
+    kept = PortablePolicy.load(policy().save(tmp_path / "actor.policy"))
     action = kept.act({"goal": np.array([0.5]), "place": np.array([1.0, 2.0])})
     assert action == pytest.approx(np.tanh([0.5 + 0.5, 0.25 - 2.0 + 0.125]), abs=1e-12)
     assert kept.facts == policy().facts
@@ -67,7 +67,7 @@ def test_no_forged_file_answers(change: Callable[[dict], object], tmp_path: Path
     content = whole[:8] + len(text).to_bytes(8, "little") + text + whole[16 + length : -32]
     file.write_bytes(content + hashlib.sha256(content).digest())
     with pytest.raises(InputError, match="is no sound policy"):
-        load_policy(file)
+        PortablePolicy.load(file)
     file.write_bytes(whole[:-1])
     with pytest.raises(InputError, match="is damaged"):
-        load_policy(file)
+        PortablePolicy.load(file)

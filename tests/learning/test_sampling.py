@@ -22,10 +22,10 @@ from hydrostat.errors import HydrostatError, InputError
 from hydrostat.files import temporary_path
 from hydrostat.learning import (
     SamplePlan,
+    Samples,
     SamplingScheme,
     export_samples,
     plan_samples,
-    read_samples,
     sample_robot,
     sample_shard,
 )
@@ -52,7 +52,7 @@ def contents(folder: Path) -> dict[str, bytes]:
 
 
 def test_a_sample_is_what_the_simulator_finds(plan: SamplePlan, once: Path) -> None:
-    samples, simulation = read_samples(once), hs.Simulation(plan.robot)
+    samples, simulation = Samples.read(once), hs.Simulation(plan.robot)
     assert len(samples) == 22
     assert samples.lost == 0
     for place in (0, 7, 21):
@@ -72,7 +72,7 @@ def test_slopes_of_tensions(friction: float, tmp_path: Path) -> None:
     """Oracle: differences of poses, central ones by winch; with friction further on the way from rest."""
     robot = strip_robot(columns=8, rows=2)
     robot = replace(robot, cables=tuple(replace(cable, friction=friction) for cable in robot.cables))
-    samples, simulation = read_samples(sample_robot(plan_samples(robot, 3), tmp_path).path), hs.Simulation(robot)
+    samples, simulation = Samples.read(sample_robot(plan_samples(robot, 3), tmp_path).path), hs.Simulation(robot)
     assert samples.tension_slopes is not None
     size = 1e-6 if friction else 1e-7  # of the difference [m]
     for contractions, slopes in zip(samples.contractions, samples.tension_slopes, strict=True):
@@ -95,7 +95,7 @@ def test_samples_of_an_earlier_version_are_read_but_not_gone_on_with(plan: Sampl
         without[name] = rows[name]
     np.save(old / "samples-000000.npy", without)
     (old / "samples.json").write_text(json.dumps({k: v for k, v in manifest.items() if k != "tension_slopes"}))
-    samples = read_samples(old)
+    samples = Samples.read(old)
     assert samples.tension_slopes is None
     assert len(samples.first(3)) == 3
     with pytest.raises(InputError, match="another plan: tension_slopes is None, asked for True"):
@@ -109,7 +109,7 @@ def test_samples_that_do_not_tell_their_friction_had_none(tmp_path: Path) -> Non
     manifest = json.loads((folder / "samples.json").read_text())
     del manifest["contact_friction"]
     (folder / "samples.json").write_text(json.dumps(manifest))
-    assert len(read_samples(sample_robot(plan_samples(robot, 3, shard=2), folder).path)) == 3
+    assert len(Samples.read(sample_robot(plan_samples(robot, 3, shard=2), folder).path)) == 3
 
 
 def test_bytes_do_not_depend_on_who_works(plan: SamplePlan, once: Path, tmp_path: Path) -> None:
@@ -151,7 +151,7 @@ def test_samples_drawn_by_tension_pull_no_harder(tmp_path: Path) -> None:
     plan = plan_samples(strip_robot(columns=8, rows=2), 8, draws=[SamplingScheme.TENSION], tension=0.5)
     free = hs.Simulation(plan.robot).solve_batch(plan.contractions(range(8)), jacobians=False)
     assert free.tensions.max() > 0.6
-    samples = read_samples(sample_robot(plan, tmp_path).path)
+    samples = Samples.read(sample_robot(plan, tmp_path).path)
     assert samples.tensions.max() <= 0.5
     assert samples.tensions.max(axis=1).min() > 0.0
 
@@ -174,8 +174,8 @@ def test_a_pose_that_is_not_found_is_a_row_with_its_reason(plan: SamplePlan, mon
 def test_contact_is_told(tmp_path: Path) -> None:
     hand = gallery_robot("starfish")
     draws = [SamplingScheme.BOX]
-    apart = read_samples(sample_robot(plan_samples(hand, 24, contact=True, draws=draws), tmp_path / "a").path)
-    through = read_samples(sample_robot(plan_samples(hand, 24, draws=draws), tmp_path / "b").path)
+    apart = Samples.read(sample_robot(plan_samples(hand, 24, contact=True, draws=draws), tmp_path / "a").path)
+    through = Samples.read(sample_robot(plan_samples(hand, 24, draws=draws), tmp_path / "b").path)
     assert apart.touches.any()
     assert not apart.crosses.any()
     assert through.crosses.any()
@@ -254,9 +254,9 @@ def test_a_folder_grows_to_a_larger_count_and_to_no_smaller_one(plan: SamplePlan
     sample_robot(replace(plan, count=12), tmp_path)
     first = (tmp_path / "samples-000000.npy").stat().st_mtime_ns
     SampleFolder.begin(tmp_path, plan)  # a run that was killed just then
-    assert len(read_samples(tmp_path)) == 12
+    assert len(Samples.read(tmp_path)) == 12
     sample_robot(plan, tmp_path, part=(1, 2))  # a job of an array, whose files the short one is not among
-    assert len(read_samples(tmp_path)) == 12 + 5
+    assert len(Samples.read(tmp_path)) == 12 + 5
     sample_robot(plan, tmp_path)
     assert contents(tmp_path) == contents(once)
     assert (tmp_path / "samples-000000.npy").stat().st_mtime_ns == first
@@ -312,7 +312,7 @@ def test_a_folder_of_something_else_is_refused(plan: SamplePlan, once: Path, tmp
     with pytest.raises(InputError, match=r"holds other things, such as letter.txt"):
         sample_robot(plan, tmp_path)
     with pytest.raises(InputError, match=r"samples.json: there is no such file"):
-        read_samples(tmp_path)
+        Samples.read(tmp_path)
 
 
 def test_damaged_files_are_told(plan: SamplePlan, tmp_path: Path) -> None:
@@ -320,13 +320,13 @@ def test_damaged_files_are_told(plan: SamplePlan, tmp_path: Path) -> None:
     file = tmp_path / "samples-000002.npy"
     file.write_bytes(file.read_bytes()[:-9])
     with pytest.raises(InputError, match=r"samples-000002.npy: is damaged"):
-        read_samples(tmp_path)
+        Samples.read(tmp_path)
     file.write_bytes(file.read_bytes()[:10] + b"{'descr': [(" + file.read_bytes()[22:])
     with pytest.raises(InputError, match=r"samples-000002.npy: is damaged"):  # a header that is no Python any more
-        read_samples(tmp_path)
+        Samples.read(tmp_path)
     (tmp_path / "samples.json").write_text("{")
     with pytest.raises(InputError, match=r"samples.json: is no JSON"):
-        read_samples(tmp_path)
+        Samples.read(tmp_path)
 
 
 @pytest.mark.parametrize(
@@ -362,7 +362,7 @@ def test_what_cannot_be_exported_is_told_before_sampling(tmp_path: Path, monkeyp
 def test_exports_hold_the_same_numbers(plan: SamplePlan, once: Path, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"must end in .parquet or .zarr"):
         export_samples(once, tmp_path / "all.csv")
-    samples = read_samples(once)
+    samples = Samples.read(once)
     parquet = pytest.importorskip("pyarrow.parquet")
     table = parquet.read_table(export_samples(once, tmp_path / "all.parquet"))
     winch, marker = plan.robot.winches[1].name, plan.robot.markers[0].name

@@ -13,7 +13,7 @@ from plot.films import flat_film, frames_of, space_film
 
 from hydrostat.drawing import Color
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.plot import Frame, film, save_gif, save_mp4, winch_stops
+from hydrostat.plot import Frame, Stop, film, save_gif, save_mp4
 from hydrostat.plot.animation import gif_bytes
 from hydrostat.plot.frame_pictures import FramePictures
 from hydrostat.robot import Load, Robot
@@ -178,7 +178,7 @@ def test_where_there_is_no_equilibrium_the_frame_before_stands(monkeypatch: pyte
         return replace(pose, nodes=pose.nodes + 1.0, result=replace(pose.result, reason=Reason.NO_DESCENT))
 
     monkeypatch.setattr(Simulation, "solve", failing)
-    stop = winch_stops(robot)[0]
+    stop = Stop.for_winches(robot)[0]
     made = film(Simulation(robot), [stop], seconds=1.3, step=0.1)
     assert made.missing
     for number in made.missing:
@@ -189,7 +189,7 @@ def test_where_there_is_no_equilibrium_the_frame_before_stands(monkeypatch: pyte
 def test_without_poses_each_winch_in_turn() -> None:
     """Oracle: half the travel, but never less than 70 % of the cable left."""
     robot = space_film()[0]
-    stops = winch_stops(robot)
+    stops = Stop.for_winches(robot)
     assert len(stops) == 2
     for index, (stop, winch) in enumerate(zip(stops, robot.winches, strict=True)):
         assert stop.contractions[index] == pytest.approx(min(winch.travel / 2, 0.3 * robot.cables[index].length))

@@ -5,7 +5,7 @@ import pytest
 from builders import strip_robot
 from matplotlib.colors import to_hex
 
-from hydrostat.drawing import winch_colors
+from hydrostat.drawing import Color
 from hydrostat.plot import draw_motion
 from hydrostat.simulation import MotionTable
 
@@ -27,6 +27,6 @@ def test_lines_are_the_table() -> None:
     for column in range(2):
         assert winches.lines[column].get_ydata() == pytest.approx(1e3 * table.contractions[:, column])
         assert cables.lines[column].get_ydata() == pytest.approx(table.tensions[:, column])
-        color = winch_colors(robot.winches)[robot.cables[column].winch]
+        color = Color.of_winches(robot.winches)[robot.cables[column].winch]
         assert to_hex(winches.lines[column].get_color()) == to_hex(cables.lines[column].get_color()) == color
         assert cables.lines[column].get_xdata() == pytest.approx(table.times)

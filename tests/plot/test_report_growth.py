@@ -7,16 +7,7 @@ import pytest
 from plot.designs import SCRIPT, grown, hostile_network, plain_network, space_network
 from plot.test_report import Page
 
-from hydrostat.design import (
-    Alternative,
-    Certificate,
-    DesignStage,
-    Network,
-    best_errors,
-    on_front,
-    score_card,
-    sewing_minutes,
-)
+from hydrostat.design import Alternative, Certificate, Craft, DesignStage, Network, on_front, score_card
 from hydrostat.drawing import Color
 from hydrostat.plot import inline_svg
 from hydrostat.plot.design_charts import draw_front, draw_growth, stage_runs
@@ -150,7 +141,7 @@ def chosen(error: float = 0.006) -> Network:
 
 
 def test_the_best_of_each_size_counts_and_the_chosen_one_always() -> None:
-    errors = best_errors([sized(*other) for other in [*OTHERS, (2, 2, 0.001)]], chosen())
+    errors = chosen().best_errors([sized(*other) for other in [*OTHERS, (2, 2, 0.001)]])
     assert errors == pytest.approx(
         {(1, 1): 0.009, (1, 2): 0.008, (1, 3): 0.0085, (2, 2): 0.006, (2, 3): 0.004, (2, 4): 0.004, (3, 3): 0.005}
     )
@@ -185,8 +176,8 @@ def test_the_picture_of_the_front() -> None:
     """A cable of `sized` takes as many minutes as each other: dots stand at multiples of it, filled by brute force."""
     others = [sized(*other) for other in OTHERS]
     axes = draw_front(others, chosen(), tolerance=0.0045).axes[0]
-    each = sewing_minutes(others[0].robot)
-    own = sewing_minutes(chosen().robot)
+    each = Craft.sewing_minutes(others[0].robot)
+    own = Craft.sewing_minutes(chosen().robot)
     points = [(own, 6.0), *((each * cables, 1e3 * error) for _, cables, error in OTHERS)]
     dots = [line for line in axes.lines if line.get_markersize() == 5.5 and np.size(line.get_xdata())]
     drawn = {tuple(np.asarray(dot.get_xydata())[0].round(9)): dot for dot in dots}

@@ -14,7 +14,7 @@ from PIL import Image
 from plot.designs import grown, space_network, space_trace
 
 from hydrostat import plot
-from hydrostat.drawing import Color, mix
+from hydrostat.drawing import Color
 from hydrostat.plot import activation_figures, robot_figures
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.report import report_text
@@ -100,7 +100,7 @@ def test_cables_wear_the_colors_of_their_tension() -> None:
     for tension in pose.tensions:
         full = scale.color(float(tension))
         assert full in colors
-        assert any(mix(full, Color.FELT, share / 10000) in colors for share in range(2000, 7000, 25))
+        assert any(Color.mix(full, Color.FELT, share / 10000) in colors for share in range(2000, 7000, 25))
 
 
 @pytest.mark.slow

@@ -8,7 +8,7 @@ import pytest
 from builders import strip_robot
 from matplotlib.colors import to_hex
 
-from hydrostat.drawing import Color, winch_colors
+from hydrostat.drawing import Color
 from hydrostat.geometry import Outline
 from hydrostat.ik import CenterOfMassTarget, ShapeTarget, Trajectory, TrajectoryOptions, solve_ik, solve_ik_trajectory
 from hydrostat.plot import draw_reached, draw_trajectory, inline_svg, trajectory_frames
@@ -36,7 +36,7 @@ def test_lines_are_the_trajectory() -> None:
     charts = [axes for axes in figure.axes if not axes.images]
     values = (trajectory.contractions, trajectory.speeds, trajectory.accelerations)
     for axes, wanted in zip(charts, values, strict=True):
-        colors = winch_colors(robot.winches)
+        colors = Color.of_winches(robot.winches)
         lines = {line.get_label(): line for line in axes.lines if line.get_label() in colors}
         for column, name in enumerate(trajectory.winches):
             assert lines[name].get_ydata() == pytest.approx(1e3 * wanted[:, column])

@@ -9,7 +9,7 @@ from matplotlib.text import Text
 from scipy.spatial.transform import Rotation
 
 from hydrostat import plot
-from hydrostat.drawing import Camera, along_an_axis, three_quarter, upright
+from hydrostat.drawing import Camera
 from hydrostat.geometry import Mesh
 from hydrostat.plot.open_sheet import open_sheet, way_up
 from hydrostat.robot import Load, PoseTarget, Robot
@@ -41,13 +41,13 @@ def test_the_way_up_is_upright_in_both_views(way: list[float]) -> None:
     """Oracle: what is up has no share to the right and a share upwards; along an axis, the nearest axis has all."""
     up = np.array(way, dtype=float) / np.linalg.norm(way)
     nodes = box_mesh((4, 3, 2), size=(0.1, 0.05, 0.03)).nodes
-    camera = three_quarter(nodes, np.empty((0, 3)), up)
+    camera = Camera.three_quarter(nodes, np.empty((0, 3)), up)
     right, high, near = camera.axes @ up
     assert right == pytest.approx(0, abs=1e-9)
     assert high > 0.5
     assert near > 0
     assert camera.sky == pytest.approx([right, high, near], abs=1e-8)
-    side = along_an_axis(nodes, np.empty((0, 3)), np.zeros_like(nodes), up)
+    side = Camera.along_an_axis(nodes, np.empty((0, 3)), np.zeros_like(nodes), up)
     assert np.sort(np.abs(side.axes), axis=1) == pytest.approx(np.tile([0, 0, 1], (3, 1)), abs=1e-12)
     nearest = np.zeros(3)
     nearest[np.argmax(np.abs(up))] = np.sign(up[np.argmax(np.abs(up))])
@@ -57,7 +57,7 @@ def test_the_way_up_is_upright_in_both_views(way: list[float]) -> None:
 @pytest.mark.parametrize("way", WAYS)
 def test_the_turn_upright_is_a_turn(way: list[float]) -> None:
     """Oracle: an orthogonal matrix of determinant 1 that takes the way to z."""
-    turn = upright(np.array(way, dtype=float))
+    turn = Camera.upright(np.array(way, dtype=float))
     assert turn @ turn.T == pytest.approx(np.eye(3), abs=1e-8)
     assert np.linalg.det(turn) == pytest.approx(1)
     assert turn @ np.array(way) == pytest.approx([0, 0, np.linalg.norm(way)], abs=1e-8)
@@ -81,7 +81,7 @@ def test_a_mirrored_body_is_seen_from_the_mirrored_side() -> None:
     nodes = box_mesh((4, 3, 2), size=(0.1, 0.05, 0.03)).nodes - np.array([0.05, 0.025, 0.015])
     shown = np.array([[0.02, 0.02, 0.01], [0.03, 0.02, 0.0]])
     mirror = np.array([1.0, -1.0, 1.0])
-    one, two = (three_quarter(nodes * side, shown * side) for side in (np.ones(3), mirror))
+    one, two = (Camera.three_quarter(nodes * side, shown * side) for side in (np.ones(3), mirror))
     assert one.axes[2] * mirror == pytest.approx(two.axes[2], abs=1e-9)
     assert one.axes[1] * mirror == pytest.approx(two.axes[1], abs=1e-9)
     assert one.axes[0] * mirror == pytest.approx(-two.axes[0], abs=1e-9)
@@ -91,7 +91,7 @@ def test_the_eye_sees_markers_come() -> None:
     """Oracle: where nothing else decides, the eye is on the side that the points move to."""
     nodes = box_mesh((4, 3, 2), size=(0.1, 0.05, 0.03)).nodes
     for way in (0.03, -0.03):
-        camera = three_quarter(nodes, np.empty((0, 3)), None, np.array([[0.0, way, 0.0]]))
+        camera = Camera.three_quarter(nodes, np.empty((0, 3)), None, np.array([[0.0, way, 0.0]]))
         assert np.sign(camera.axes[2, 1]) == np.sign(way)
 
 

@@ -7,7 +7,7 @@ from builders import strip_robot
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication import Circle, winch_marks
-from hydrostat.plot import cable_table, winch_stops
+from hydrostat.plot import Stop, cable_table
 from hydrostat.robot import Robot, find_risks
 
 
@@ -59,7 +59,7 @@ def test_a_travel_that_is_longer_than_the_cable_of_a_larger_step() -> None:
 
 def test_a_film_stops_before_a_cable_is_taken_in() -> None:
     """Oracle: the contraction of a plain winch, divided by the ratio."""
-    plain, steps = (winch_stops(stepped(radius, travel=1.0))[0] for radius in (None, 0.015))
+    plain, steps = (Stop.for_winches(stepped(radius, travel=1.0))[0] for radius in (None, 0.015))
     assert steps.contractions[0] == pytest.approx(plain.contractions[0] / 2.5)
 
 

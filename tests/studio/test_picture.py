@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from builders import gallery_robot
 
-from hydrostat.drawing import winch_colors
+from hydrostat.drawing import Color
 from hydrostat.fabrication import winch_marks_of
 from hydrostat.geometry import locate
 from hydrostat.robot import Robot
@@ -129,7 +129,7 @@ def test_winches_have_the_marks_of_the_kit() -> None:
     assert {dot.label: dot.short for dot in dots} == marks
     assert {bar.winch: bar.mark for bar in winch_bars(robot, rest_shape(robot), 20.0)} == marks
     many = [replace(robot.winches[0], name=f"winch_{number}") for number in range(16)]
-    assert len(set(winch_colors(many).values())) == 16
+    assert len(set(Color.of_winches(many).values())) == 16
 
 
 def test_eyes_are_shown_and_go_along_with_the_body() -> None:

@@ -7,8 +7,8 @@ import pytest
 from builders import gallery_robot
 
 from hydrostat.design import Severity, review_robot
-from hydrostat.fabrication import KitOptions, find_demand
-from hydrostat.project import Wishes, Work, wished_constraints
+from hydrostat.fabrication import Demand, KitOptions
+from hydrostat.project import Wishes, Work
 from hydrostat.robot import Mount, Robot
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.judge import QUIET, Judge
@@ -48,7 +48,7 @@ def test_what_is_said_is_the_one_judgement_once_a_robot_rests(squid: Robot) -> N
     judge.look(squid, WISHES, 2 * QUIET, held=True)
     assert judge.of(squid, WISHES) is None
     assert heard == []
-    assert judged(judge, squid) == review_robot(squid, constraints=wished_constraints(squid, WISHES))
+    assert judged(judge, squid) == review_robot(squid, constraints=WISHES.to_constraints(squid))
     assert set(heard) == {Topic.JOB, Topic.THINGS}
 
 
@@ -69,11 +69,11 @@ def test_other_wishes_and_other_kits_are_judged_anew(squid: Robot) -> None:
 def test_loads_that_a_design_found_and_reasons_of_a_kit_count_for_the_accepted_network_too(squid: Robot) -> None:
     judge = Judge(Bell())
     usual = judged(judge, squid)
-    found = find_demand(replace(squid, poses=dict(list(squid.poses.items())[:1])))
+    found = Demand.find(replace(squid, poses=dict(list(squid.poses.items())[:1])))
     demand = replace(found, torques=np.full(len(squid.winches), 10.0))
     judge.learn(squid, demand=demand)
     loaded = judged(judge, squid)
-    assert loaded == review_robot(squid, demand=demand, constraints=wished_constraints(squid, WISHES))
+    assert loaded == review_robot(squid, demand=demand, constraints=WISHES.to_constraints(squid))
     assert loaded != usual
     again = squid.with_network(squid.winches, squid.cables)
     assert judged(judge, again) == loaded
@@ -118,7 +118,7 @@ def test_a_finding_is_chosen_and_let_go(squid: Robot) -> None:
 
 
 def test_a_ring_at_every_place_with_few_words(squid: Robot) -> None:
-    said = review_robot(squid, constraints=wished_constraints(squid, WISHES))
+    said = review_robot(squid, constraints=WISHES.to_constraints(squid))
     dots = finding_things(squid, said)
     expected = {(place.at, TONES[one.weight], place.part) for one in said for place in one.places}
     assert flags(dots) == expected

@@ -8,7 +8,7 @@ import pytest
 from hydrostat.control import Motors, SimulatedLink
 from hydrostat.errors import HydrostatError
 from hydrostat.robot import Winch
-from hydrostat.teleop import CyberGlove, EmulatedPerson, LessonPoses, Mimicry, go_there, hold_still, pose_pool
+from hydrostat.teleop import CyberGlove, EmulatedPerson, LessonPoses, Mimicry, go_there, hold_still
 from hydrostat.teleop.source import DriveChannels
 
 COUNT = 10
@@ -22,12 +22,12 @@ CHANNELS = DriveChannels(
 
 
 def lesson() -> LessonPoses:
-    pool = pose_pool(CHANNELS)
+    pool = LessonPoses.pool(CHANNELS)
     return LessonPoses(Mimicry(CyberGlove.names, CHANNELS.names), pool, pool)
 
 
 def test_poses_are_within_limits_and_the_first_is_the_rest() -> None:
-    pool = pose_pool(CHANNELS)
+    pool = LessonPoses.pool(CHANNELS)
     assert (pool >= CHANNELS.low).all()
     assert (pool <= 0.4 * CHANNELS.high + 1e-12).all()
     course = lesson()

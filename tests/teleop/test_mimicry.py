@@ -11,7 +11,6 @@ from synthetic_hand import OUTPUTS, averaged, mimicked, shown
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.teleop import CyberGlove, Mimicry
 from hydrostat.teleop.cyber_glove import SENSORS, EmulatedGlove
-from hydrostat.teleop.mimicry import write_mcap
 from hydrostat.teleop.ridge import fit_ridge, folded_error, left_out_error
 
 MARK = 0.0026  # of the thesis: error of 120 poses, contractions from -1 to 1
@@ -109,7 +108,7 @@ def test_pairs_are_kept_as_text_and_as_mcap(tmp_path: Path) -> None:
     assert np.array_equal(read.inputs, made.inputs)
     assert np.array_equal(read.answers, made.answers)
     mcap = pytest.importorskip("mcap.reader")
-    path = write_mcap(tmp_path / "poses.mcap", read)
+    path = read.write_mcap(tmp_path / "poses.mcap")
     told = list(mcap.make_reader(io.BytesIO(path.read_bytes())).iter_messages())
     assert [channel.topic for _, channel, _ in told].count("/glove") == 6
     schema, channel, message = next(each for each in told if each[1].topic == "/robot" and each[2].log_time == 10**9)

@@ -333,7 +333,7 @@ def test_a_checkpoint_of_a_stranger_runs_no_code(goals: Goals, tmp_path: Path) -
 def test_a_policy_runs_without_torch_and_answers_the_same(method: str, goals: Goals, tmp_path: Path) -> None:
     name = "sb3_contrib" if method == "TQC" else "stable_baselines3"
     library = pytest.importorskip(name, reason=f"{name} is not installed")
-    from hydrostat.learning import LearnedModel, Perceptrons, load_policy
+    from hydrostat.learning import LearnedModel, Perceptrons, PortablePolicy
 
     env, random = straight(), np.random.default_rng(5)
     count = len(env.seen)
@@ -351,7 +351,7 @@ def test_a_policy_runs_without_torch_and_answers_the_same(method: str, goals: Go
         reached=np.zeros((1, count)),
     )
     alone = portable_policy(trained, env, model)
-    policy = load_policy(policy_of(trained, env, task="reach", error=0.01).save(tmp_path / "actor.policy"))
+    policy = PortablePolicy.load(policy_of(trained, env, task="reach", error=0.01).save(tmp_path / "actor.policy"))
     for goal in goals[:5]:
         observation, _ = env.reset(options=goal)
         action = trained.predict(observation, deterministic=True)[0]

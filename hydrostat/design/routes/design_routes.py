@@ -22,7 +22,7 @@ from hydrostat.design.routes.growth import Growth
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.refine import pushed_back
-from hydrostat.design.routes.route_graph import route_graph
+from hydrostat.design.routes.route_graph import RouteGraph
 from hydrostat.design.routes.screen import screen_sketches
 from hydrostat.design.routes.search_rules import RULES
 from hydrostat.design.routes.sketch import sketches
@@ -170,7 +170,7 @@ class RouteSearch:
         if self.constraints.mirror is not None and self.cables < 2:
             raise InputError("1 cable: a mirrored network has its cables in pairs; ask for at least 2 cables")
         spacing = float(self.robot.body.mesh.edge_lengths.mean())
-        graph = route_graph(self.robot, self.region, self.constraints, spacing=spacing)
+        graph = RouteGraph.build(self.robot, self.region, self.constraints, spacing=spacing)
         self.proposals = Proposals(self.bench, graph, self.options, self.options.spacing * spacing)
         self.growth = growth = Growth(self.proposals, self._note_network)
         self.progress("Growing networks", 0, self._total)

@@ -17,7 +17,7 @@ from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.refine import pushed_back
 from hydrostat.design.routes.search_rules import RULES
 from hydrostat.errors import NotConvergedError
-from hydrostat.fabrication import demand_of, find_refusals
+from hydrostat.fabrication import Demand, find_refusals
 from hydrostat.ik import IKOptions
 from hydrostat.robot import Robot, limit_travels
 from hydrostat.simulation import Simulation, cable_sensitivities
@@ -131,7 +131,7 @@ class Finalists:
 def kit_fits(network: Alternative | Network) -> bool:
     """True if the kit of a network would not be refused; each network is examined once."""
     if network not in _EXAMINED:
-        _EXAMINED[network] = not find_refusals(network.robot, demand_of(network.robot, network.reached))
+        _EXAMINED[network] = not find_refusals(network.robot, Demand.of_results(network.robot, network.reached))
     return _EXAMINED[network]
 
 

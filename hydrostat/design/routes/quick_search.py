@@ -17,7 +17,7 @@ from hydrostat.design.routes.growth import Growth
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.line_choice import Line
 from hydrostat.design.routes.propose import Proposals
-from hydrostat.design.routes.route_graph import RouteGraph, route_graph
+from hydrostat.design.routes.route_graph import RouteGraph
 from hydrostat.design.routes.search_rules import RULES
 from hydrostat.design.routes.sketch import draw_lines, sketches
 from hydrostat.design.skin_region import cable_region
@@ -116,7 +116,7 @@ class QuickSearch:
     def graph(self) -> RouteGraph:
         """Via points and the runs between them."""
         spacing = float(self.robot.body.mesh.edge_lengths.mean())
-        return route_graph(self.robot, self.region, self.constraints, spacing=spacing)
+        return RouteGraph.build(self.robot, self.region, self.constraints, spacing=spacing)
 
     def _proposals(self, bench: Bench) -> Proposals:
         options, spacing = self.request.route_options, float(self.robot.body.mesh.edge_lengths.mean())

@@ -98,40 +98,40 @@ class RouteGraph:
         directions[self.still] = 0.0
         return np.einsum("edr,ed->er", priced[first] - priced[second], directions)
 
+    @staticmethod
+    def build(robot: Robot, region: Region, constraints: Constraints, *, spacing: float) -> "RouteGraph":
+        """The graph of a body: mesh nodes moved inside the clearance, each joined to those around it that it sees.
 
-def route_graph(robot: Robot, region: Region, constraints: Constraints, *, spacing: float) -> RouteGraph:
-    """The graph of a body: mesh nodes moved inside the clearance, each joined to those around it that it sees.
-
-    Winches of the robot matter only where they stand in the world. The spacing [m] is a rough distance between via
-    points, such as the element size. Raises InputError if there is no place for a via point or for a winch.
-    """
-    mesh = robot.body.mesh
-    whole = _with_zones(mesh.nodes, robot, constraints)
-    nodes, points = _via_points(whole, region, constraints, spacing, first=len(whole) - len(mesh.nodes))
-    if len(points) < 2:
-        raise InputError(
-            f"there is no room for cables {1e3 * constraints.clearance:g} mm inside the edge; lower the clearance or "
-            f"make the keep-out zones smaller"
+        Winches of the robot matter only where they stand in the world. The spacing [m] is a rough distance between via
+        points, such as the element size. Raises InputError if there is no place for a via point or for a winch.
+        """
+        mesh = robot.body.mesh
+        whole = _with_zones(mesh.nodes, robot, constraints)
+        nodes, points = _via_points(whole, region, constraints, spacing, first=len(whole) - len(mesh.nodes))
+        if len(points) < 2:
+            raise InputError(
+                f"there is no room for cables {1e3 * constraints.clearance:g} mm inside the edge; lower the "
+                f"clearance or make the keep-out zones smaller"
+            )
+        edges = _join_points(points, _near(points, nodes, mesh.edges, spacing), region, constraints)
+        anchors = locate(mesh, points)
+        if _in_world(robot, constraints):
+            winches = np.array([winch.at for winch in robot.winches], dtype=float)
+            entries = _entries(robot, points, winches, constraints, spacing)
+            places = np.arange(len(points), len(points) + len(winches))
+            points, edges = np.concatenate([points, winches]), np.concatenate([edges, entries])
+        else:
+            places = _winch_places(points, region, constraints)
+        edges = edges[np.lexsort((edges[:, 1], edges[:, 0]))]
+        return RouteGraph(
+            points=points,
+            anchors=anchors,
+            edges=edges,
+            still=_meets(points, edges, constraints.still),
+            winch_places=places,
+            size=mesh.size,
+            region=region,
         )
-    edges = _join_points(points, _near(points, nodes, mesh.edges, spacing), region, constraints)
-    anchors = locate(mesh, points)
-    if _in_world(robot, constraints):
-        winches = np.array([winch.at for winch in robot.winches], dtype=float)
-        entries = _entries(robot, points, winches, constraints, spacing)
-        places = np.arange(len(points), len(points) + len(winches))
-        points, edges = np.concatenate([points, winches]), np.concatenate([edges, entries])
-    else:
-        places = _winch_places(points, region, constraints)
-    edges = edges[np.lexsort((edges[:, 1], edges[:, 0]))]
-    return RouteGraph(
-        points=points,
-        anchors=anchors,
-        edges=edges,
-        still=_meets(points, edges, constraints.still),
-        winch_places=places,
-        size=mesh.size,
-        region=region,
-    )
 
 
 _CROWDED = 0.35  # points nearer than this share of the spacing are one

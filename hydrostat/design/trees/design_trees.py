@@ -23,7 +23,7 @@ from hydrostat.design.muscles.activation import (
 )
 from hydrostat.design.network import Network, TreeTrace
 from hydrostat.design.polyline import Route, length, sharpest_turn
-from hydrostat.design.region import body_region
+from hydrostat.design.region import Region
 from hydrostat.design.request import DesignRequest
 from hydrostat.design.trees.grow_routes import GrowthLimits, grow_routes, keep_apart, lay_route, strongest
 from hydrostat.design.trees.judge_robots import judge, prune
@@ -104,7 +104,7 @@ class _TreeDesign:
         self.constraints = replace(request.constraints, cable_gap=0.0, turn=self.options.turn)
         self.winches, self.cables = int(request.winches), request.cables
         self.body, self.mesh = body, robot.body.mesh
-        self.region = body_region(robot.body, self.constraints.clearance)
+        self.region = Region.of_body(robot.body, self.constraints.clearance)
         self.ways = lead_ways(robot, self.region, self.constraints)
         self.spacing = float(self.mesh.edge_lengths.mean())
         self.rejected: Counter[str] = Counter()  # routes and networks that cannot be built, by the limit in the way

@@ -117,6 +117,13 @@ class PocketRoom:
             found = found + sign * self._sums[np.ix_(*(pick[side] for pick, side in zip(picks, corner, strict=True)))]
         return np.asarray(found)
 
+    @staticmethod
+    def of_robot(robot: Robot, options: MoldOptions | None = None) -> "PocketRoom":
+        """Find the room for pockets in a robot's body of foam (InputError: the body is not closed)."""
+        setting = mold_setting(robot)
+        clearance = (options or MoldOptions()).pocket_clearance
+        return PocketRoom(setting.stance.enter(setting.solid), setting.stance, clearance)
+
 
 def _corners() -> Iterator[Number3]:
     """The eight corners of a box, 0 for its low and 1 for its high side."""
@@ -143,10 +150,3 @@ class _PocketRules:
 
 
 _RULES = _PocketRules()
-
-
-def pocket_room(robot: Robot, options: MoldOptions | None = None) -> PocketRoom:
-    """Find the room for pockets in a robot's body of foam (InputError: the body is not closed)."""
-    setting = mold_setting(robot)
-    clearance = (options or MoldOptions()).pocket_clearance
-    return PocketRoom(setting.stance.enter(setting.solid), setting.stance, clearance)

@@ -147,6 +147,31 @@ class Motor:
         boss = Cylinder(self.shaft.boss_height, self.shaft.boss)
         return self.body + boss + self.shaft.shape(self.shaft.length)
 
+    def largest_torque(self, *, inside: bool = False) -> float:
+        """The most that poses may ask of a motor [N m], with the margin.
+
+        Outside the body for long, inside for seconds.
+        """
+        return 1e-3 * (BRIEF * self.stall_torque if inside else self.rated_torque) / MARGIN
+
+    @staticmethod
+    def choose(key: str, torques: Iterable[float], *, inside: bool = False, winches: int = 0) -> "Motor":
+        """The motor of a key; "auto": the first of the table that carries the largest torque [N m], with the margin.
+
+        Outside the body it must carry it for long; `inside`, where there is little room, for seconds. Where none does
+        it is the strongest. More `winches` outside than one board bears get servos, which share one bus. Raises
+        InputError if no motor has this key.
+        """
+        if key == "auto":
+            needed = max((float(torque) for torque in torques), default=0.0) - 1e-12
+            able = [each for each in MOTORS if each.largest_torque(inside=inside) >= needed] or [MOTORS[-1]]
+            many = winches > max(board.motors for board in BOARDS.values()) and not inside
+            return next((each for each in able if each.horn is not None or not many), able[0])
+        for motor in MOTORS:
+            if motor.key == key:
+                return motor
+        raise InputError(f'unknown motor "{key}". Available: auto, {", ".join(each.key for each in MOTORS)}.')
+
 
 def _box_outline(low: Corner, high: Corner) -> tuple[Corner, ...]:
     return low, (high[0], low[1]), high, (low[0], high[1])
@@ -250,26 +275,3 @@ Bodies also differ from their assumed stiffness, and motors age."""
 BRIEF = 0.5
 """Share of its stall torque that a motor bears for seconds: its coils warm up faster than they cool, but have not burnt
 by then. Assumed, measured on none."""
-
-
-def largest_torque(motor: Motor, *, inside: bool = False) -> float:
-    """The most that poses may ask of a motor [N m], with the margin: outside the body for long, inside for seconds."""
-    return 1e-3 * (BRIEF * motor.stall_torque if inside else motor.rated_torque) / MARGIN
-
-
-def choose_motor(key: str, torques: Iterable[float], *, inside: bool = False, winches: int = 0) -> Motor:
-    """The motor of a key; "auto": the first of the table that carries the largest torque [N m], with the margin.
-
-    Outside the body it must carry it for long; `inside`, where there is little room, for seconds. Where none does it is
-    the strongest. More `winches` outside than one board bears get servos, which share one bus. Raises InputError if no
-    motor has this key.
-    """
-    if key == "auto":
-        needed = max((float(torque) for torque in torques), default=0.0) - 1e-12
-        able = [each for each in MOTORS if largest_torque(each, inside=inside) >= needed] or [MOTORS[-1]]
-        many = winches > max(board.motors for board in BOARDS.values()) and not inside
-        return next((each for each in able if each.horn is not None or not many), able[0])
-    for motor in MOTORS:
-        if motor.key == key:
-            return motor
-    raise InputError(f'unknown motor "{key}". Available: auto, {", ".join(each.key for each in MOTORS)}.')

@@ -8,7 +8,7 @@ from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.base_plate import BasePlate, base_plate
 from hydrostat.fabrication.parts.body_seat import BodySeat, body_seat
 from hydrostat.fabrication.parts.grommet import grommet
-from hydrostat.fabrication.parts.motor import Motor, choose_motor
+from hydrostat.fabrication.parts.motor import Motor
 from hydrostat.fabrication.parts.stopper import Stopper, stopper
 from hydrostat.fabrication.parts.winch_unit import WinchUnit, find_crowded_units, winch_units
 from hydrostat.fabrication.solids.assembly import PartAssembly
@@ -152,7 +152,7 @@ def rigid_parts(
     pinhole is too small for a grommet.
     """
     inside = any(winch.mount is Mount.BODY for winch in robot.winches)
-    chosen = choose_motor(motor, demand.torques, inside=inside, winches=len(robot.winches))
+    chosen = Motor.choose(motor, demand.torques, inside=inside, winches=len(robot.winches))
     units = winch_units(robot, options, chosen)
     seat = body_seat(robot, options, bed)
     return RigidParts(

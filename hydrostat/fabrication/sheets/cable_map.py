@@ -6,19 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.arrays import Float
-from hydrostat.drawing import (
-    Box,
-    Camera,
-    Canvas,
-    CanvasFrame,
-    Color,
-    LineDrawing,
-    Spot,
-    balloon_radius,
-    fit_height,
-    line_drawing,
-    text_size,
-)
+from hydrostat.drawing import Box, Camera, Canvas, CanvasFrame, Color, LineDrawing, Spot, line_drawing
 from hydrostat.fabrication.inserts import InsertKind, find_inserts
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side
 from hydrostat.fabrication.sheets.map_layout import (
@@ -62,7 +50,7 @@ def flat_map(robot: Robot, stitches: Sequence[CableStitches], *, width: float, h
     rings = [1e3 * ring for ring in flat_rings(robot)]
     places = np.concatenate([*rings, *(1e3 * np.array(cable.points) for cable in robot.cables)])
     box = np.array([places.min(axis=0), places.max(axis=0)])
-    height = fit_height(box, width - 2 * _MARGIN, height - 2 * _MARGIN) + 2 * _MARGIN
+    height = Canvas.fit_height(box, width - 2 * _MARGIN, height - 2 * _MARGIN) + 2 * _MARGIN
     canvas = Canvas(width, height)
     frame = CanvasFrame.fit(box, (_MARGIN, _MARGIN, width - _MARGIN, height - _MARGIN))
     canvas.fill([frame.way(ring) for ring in rings], grey=0.95)
@@ -107,7 +95,7 @@ def space_map(robot: Robot, *, width: float, height: float, views: Sequence[Came
     breadths = np.array([float(np.ptp(pane.box[:, 0])) for pane in panes])
     rooms = breadths / breadths.sum() * (width - 2 * _MARGIN * len(views))
     inner = max(
-        fit_height(pane.box, float(room), height - 2 * _MARGIN) for pane, room in zip(panes, rooms, strict=True)
+        Canvas.fit_height(pane.box, float(room), height - 2 * _MARGIN) for pane, room in zip(panes, rooms, strict=True)
     )
     canvas, left = Canvas(width, inner + 2 * _MARGIN), 0.0
     for pane, room in zip(panes, rooms.tolist(), strict=True):
@@ -189,7 +177,7 @@ def _put_runs(canvas: Canvas, labels: LabelPlaces, runs: Sequence[CableRun], sta
     _put_winches(canvas, labels, stands)
     for run in runs:
         words = f"C{run.cable}" if run.twin is None else f"C{run.cable} C{run.twin}"
-        middle = labels.beside(run.spots[-1], text_size(words, 9.0), gap=1.7)
+        middle = labels.beside(run.spots[-1], Canvas.text_size(words, 9.0), gap=1.7)
         if middle is not None:
             canvas.text(middle, words, size=9.0, bold=True, halo=True, color=run.color)
     _put_numbers(canvas, labels, runs)
@@ -206,7 +194,7 @@ def put_run(canvas: Canvas, labels: LabelPlaces, run: CableRun, mark: str) -> No
     _put_stopper(canvas, run)
     labels.take_box(box_round(run.spots[-1], 1.4))
     canvas.balloon(run.spots[0], mark, dark=True, size=7.5)
-    labels.take_box(box_round(run.spots[0], balloon_radius(mark, 7.5)))
+    labels.take_box(box_round(run.spots[0], Canvas.balloon_radius(mark, 7.5)))
     for place, hole in enumerate(run.holes[:-1]):
         if hole and place:
             _put_number(canvas, labels, run, place, led=True, words=str(place + 1))
@@ -229,7 +217,7 @@ def _put_inserts(
             labels.take_line(way)
     for insert, way in zip(inserts, ways, strict=True):
         spot = np.mean(way[:2], axis=0)
-        middle = labels.beside((float(spot[0]), float(spot[1])), text_size(insert.mark, 8.0), gap=0.3)
+        middle = labels.beside((float(spot[0]), float(spot[1])), Canvas.text_size(insert.mark, 8.0), gap=0.3)
         if middle is not None:
             canvas.text(middle, insert.mark, size=8.0, bold=True, halo=True, grey=0.25)
 
@@ -240,7 +228,7 @@ def _put_winches(canvas: Canvas, labels: LabelPlaces, stands: Mapping[str, Spot]
     many = 6  # more winches than this have smaller marks
     size = 9.0 if len(stands) <= many else 7.5
     for letter, stand in stands.items():
-        radius, at = balloon_radius(letter, size), stand
+        radius, at = Canvas.balloon_radius(letter, size), stand
         if any(np.hypot(*np.subtract(stand, other)) < 2 * radius for other in taken):
             at = labels.beside(stand, (2 * radius, 2 * radius), gap=0.8) or stand
             canvas.line([[stand, at]], width=Canvas.MIDDLE)
@@ -268,7 +256,7 @@ def _put_number(
 ) -> None:
     """Put a number next to its hole, or with `led` and the cable's name further away with a line to it."""
     words = words or (f"C{run.cable}-{place + 1}" if led else str(place + 1))
-    size, spot = text_size(words, 7.5), run.spots[place]
+    size, spot = Canvas.text_size(words, 7.5), run.spots[place]
     middle = labels.beside(spot, size, gap=0.75, most=40 if led else 3, rings=4 if led else 2)
     if middle is None:
         return
@@ -330,7 +318,9 @@ def single_maps(
     scene = _flat_scene(robot, stitches) if view is None else _space_scene(robot, view)
     columns, rows = 3, 4  # maps on a page
     room = width / columns
-    tall = min(height / rows, _CELL_HEAD + 2 * _CELL_MARGIN + fit_height(scene.box, room - 2 * _CELL_MARGIN, 1e3))
+    tall = min(
+        height / rows, _CELL_HEAD + 2 * _CELL_MARGIN + Canvas.fit_height(scene.box, room - 2 * _CELL_MARGIN, 1e3)
+    )
     count = len(scene.runs(CanvasFrame.fit(scene.box, (0.0, 0.0, 1.0, 1.0))))
     each = columns * max(int(height / tall), 1)
     pages = []

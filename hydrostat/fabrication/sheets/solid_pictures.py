@@ -17,8 +17,6 @@ from hydrostat.drawing import (
     LineDrawing,
     Polyline,
     Spot,
-    balloon_radius,
-    fit_height,
     level_rings,
     line_drawing,
 )
@@ -47,7 +45,7 @@ def exploded_picture(
     solids = [drawn_solid(placed.solid, shift=placed.pulled) for placed in assembly.pieces]
     drawing = line_drawing(solids, view or Camera.isometric(), pixels=round(Canvas.PIXELS * max(width, height)))
     side = _SIDE if numbers else 0.6
-    height = fit_height(drawing.box, width - 2 * side, height - 1.2) + 1.2
+    height = Canvas.fit_height(drawing.box, width - 2 * side, height - 1.2) + 1.2
     canvas = Canvas(width, height)
     frame = CanvasFrame.fit(drawing.box, (side, 0.6, width - side, height - 0.6))
     canvas.drawing(drawing, frame)
@@ -80,7 +78,7 @@ def put_balloons(canvas: Canvas, targets: Sequence[tuple[str, Spot]], room: Box)
     half = (len(ordered) + 1) // 2
     for side, chosen in ((left, ordered[:half]), (right, ordered[half:])):
         column = sorted(chosen, key=lambda target: target[1][1])
-        radii = [balloon_radius(words) for words, _ in column]
+        radii = [Canvas.balloon_radius(words) for words, _ in column]
         step = 2 * max(radii, default=0.0) + 1.0
         heights = spread_heights([spot[1] for _, spot in column], step, top + step / 2, bottom - step / 2)
         for (words, spot), radius, height in zip(column, radii, heights, strict=True):
@@ -124,7 +122,7 @@ def undercut_picture(
     drawing = line_drawing(
         [body], _view(body, held, pull), soft=0.008, pixels=round(Canvas.PIXELS * max(width, height))
     )
-    height = fit_height(drawing.box, width - 1.2, height - 9.6) + 9.6
+    height = Canvas.fit_height(drawing.box, width - 1.2, height - 9.6) + 9.6
     canvas = Canvas(width, height)
     frame = CanvasFrame.fit(drawing.box, (0.6, 9.0, width - 0.6, height - 0.6))
     canvas.drawing(drawing, frame)

@@ -36,6 +36,11 @@ class EquilibriumState:
     tensions: Vector
     history: Vector = field(default_factory=lambda: np.zeros(0))
 
+    @staticmethod
+    def at(simulation: Simulation, pose: Equilibrium) -> "EquilibriumState":
+        """Return the state of a pose that objectives depend on."""
+        return posture_of(simulation, pose.nodes, pose.controls, pose.history)
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class StateJacobian:
@@ -50,6 +55,25 @@ class StateJacobian:
     nodes: Float[np.ndarray, "nodes dim winches"]
     elongations: Float[np.ndarray, "cables winches"]
     tensions: Float[np.ndarray, "cables winches"]
+
+    @staticmethod
+    def at(simulation: Simulation, pose: Equilibrium) -> "StateJacobian":
+        """Sensitivities of that posture to contractions: ds/da = B + (dl/dx)^T dx/da, and dT/da = T' ds/da (R33).
+
+        Cables that rub slip on as they slip, and their tension is that at the winch.
+
+        Raises:
+            NotConvergedError: the pose is about to snap, its Hessian is singular.
+        """
+        if simulation.friction is not None:
+            stiffness = simulation.stiffness(pose)
+            return rubbing_moves(simulation, simulation.friction, EquilibriumState.at(simulation, pose), stiffness)
+        cables, nodes = simulation.cables, simulation.jacobian(pose)
+        elongations = winch_to_cable_matrix(simulation) + cables.columns(pose.nodes).T @ nodes.reshape(
+            pose.nodes.size, -1
+        )
+        tangents = cables.law.tangent(cables.elongations(pose.nodes, pose.controls))
+        return StateJacobian(nodes=nodes, elongations=elongations, tensions=tangents[:, None] * elongations)
 
 
 class Residual(ABC):
@@ -91,11 +115,6 @@ def checked_objectives(given: object) -> tuple[Objective, ...]:
     return tuple(given)
 
 
-def state_at(simulation: Simulation, pose: Equilibrium) -> EquilibriumState:
-    """Return the state of a pose that objectives depend on."""
-    return posture_of(simulation, pose.nodes, pose.controls, pose.history)
-
-
 def posture_of(
     simulation: Simulation, nodes: Nodes, contractions: Vector, history: Vector | None = None
 ) -> EquilibriumState:
@@ -123,23 +142,6 @@ def winch_to_cable_matrix(simulation: Simulation) -> Float[np.ndarray, "cables w
     """B: contraction of each cable per meter of its winch's contraction; 0 for other winches, and drives."""
     cables, winches = simulation.cables, np.arange(simulation.robot.num_controls)
     return np.where(cables.winches[:, None] == winches, cables.ratios[:, None], 0.0)
-
-
-def state_jacobian_at(simulation: Simulation, pose: Equilibrium) -> StateJacobian:
-    """Sensitivities of that posture to contractions: ds/da = B + (dl/dx)^T dx/da, and dT/da = T' ds/da (R33).
-
-    Cables that rub slip on as they slip, and their tension is that at the winch.
-
-    Raises:
-        NotConvergedError: the pose is about to snap, its Hessian is singular.
-    """
-    if simulation.friction is not None:
-        stiffness = simulation.stiffness(pose)
-        return rubbing_moves(simulation, simulation.friction, state_at(simulation, pose), stiffness)
-    cables, nodes = simulation.cables, simulation.jacobian(pose)
-    elongations = winch_to_cable_matrix(simulation) + cables.columns(pose.nodes).T @ nodes.reshape(pose.nodes.size, -1)
-    tangents = cables.law.tangent(cables.elongations(pose.nodes, pose.controls))
-    return StateJacobian(nodes=nodes, elongations=elongations, tensions=tangents[:, None] * elongations)
 
 
 def rubbing_moves(

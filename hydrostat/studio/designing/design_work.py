@@ -13,11 +13,10 @@ from hydrostat.design import (
     DesignStage,
     Network,
     assign_cable_sides,
-    build_effort,
     find_network,
     rms_error,
 )
-from hydrostat.fabrication import Demand, demand_of
+from hydrostat.fabrication import Demand
 from hydrostat.ik import IKResult
 from hydrostat.robot import Cable, PoseTarget, Robot, Winch
 from hydrostat.studio.jobs import Report
@@ -115,8 +114,8 @@ def solution(found: Network | Alternative, torque: float | None) -> Solution:
         reaches=tuple(map(_reach, found.reached)),
         error=rms_error(found.reached),
         built=found.built,
-        craft=build_effort(found.robot, found.reached),
-        demand=demand_of(found.robot, found.reached),
+        craft=Craft.of_robot(found.robot, found.reached),
+        demand=Demand.of_results(found.robot, found.reached),
         torque=torque,
     )
 

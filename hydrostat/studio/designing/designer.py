@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from hydrostat.design import KNOB_RANGES, DesignRequest, RouteOptions
-from hydrostat.drawing import Color, pose_colors
+from hydrostat.drawing import Color
 from hydrostat.errors import InputError
-from hydrostat.project import Paint, Wishes, after_design, wished_poses
+from hydrostat.project import Paint, Wishes
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.designing.cards_file import cards_content, read_cards
@@ -121,7 +121,7 @@ class Designer(Stage):
 
     def wish_pose(self, name: str, wanted: bool) -> None:
         """Include a pose in the design or leave it out (InputError: it would be the last one)."""
-        names = {pose.name for pose in wished_poses(self._document.robot, self.wishes)}
+        names = {pose.name for pose in self.wishes.to_poses(self._document.robot)}
         kept = names | {name} if wanted else names - {name}
         if not kept:
             raise InputError("a design needs at least one pose. Select another pose before you leave this one out")
@@ -204,7 +204,7 @@ class Designer(Stage):
             raise InputError("no network selected for this body. Select one of its networks, then accept it")
         drawn = self._document.robot.with_network(candidate.robot.winches, candidate.robot.cables)
         robot = replace(drawn, face=candidate.robot.face)
-        wishes = after_design(self._document.work, robot)
+        wishes = self._document.work.after_design(robot)
         self._document.change(f"accept design, {candidate.counts}", robot=robot, wishes=wishes)
 
     def clear(self) -> None:
@@ -330,7 +330,7 @@ class Designer(Stage):
             return [(reach.pose.targets, Color.INK)]
         if self.painter.busy or not robot.poses:
             return []
-        poses, colors = wished_poses(robot, self.wishes), pose_colors(robot.poses)
+        poses, colors = self.wishes.to_poses(robot), Color.of_poses(robot.poses)
         most_rings = 12  # more targets than these at once say nothing
         if sum(len(pose.targets) for pose in poses) > most_rings:
             return []

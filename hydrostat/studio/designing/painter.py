@@ -7,7 +7,7 @@ from dataclasses import replace
 from hydrostat.design import Zone
 from hydrostat.errors import InputError
 from hydrostat.given import Point
-from hydrostat.project import Paint, moved_zone
+from hydrostat.project import Paint
 from hydrostat.studio.document import Document
 from hydrostat.studio.stage import Hit
 from hydrostat.studio.view.things import Area, Dot, Look, Strand, Stroke, Thing
@@ -43,7 +43,7 @@ def move_zone(zone: Zone, start: Point, end: Point) -> Zone:
     def there(point: Point) -> Point:
         return tuple(value + last - first for value, first, last in zip(point, start, end, strict=True))
 
-    return moved_zone(zone, there)
+    return zone.move(there)
 
 
 def with_corner(zone: Zone, index: int, place: Point) -> Zone:

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from hydrostat.design import AUTO, DesignMethod, DesignRequest, RouteOptions, assign_cable_sides, sewing_minutes
-from hydrostat.project import Wishes, wished_constraints, wished_poses
+from hydrostat.design import AUTO, Craft, DesignMethod, DesignRequest, RouteOptions, assign_cable_sides
+from hydrostat.project import Wishes
 from hydrostat.robot import PoseTarget, Robot
 from hydrostat.studio.designing.design_work import BestSoFar
 
@@ -18,10 +18,10 @@ def wished_request(robot: Robot, wishes: Wishes, options: RouteOptions | None = 
     Winch trees are grown as the thesis does it, by one value of each of its knobs (R46).
     """
     request = DesignRequest(
-        poses=wished_poses(robot, wishes),
+        poses=wishes.to_poses(robot),
         winches=wishes.winches or AUTO,
         cables=wishes.cables,
-        constraints=wished_constraints(robot, wishes),
+        constraints=wishes.to_constraints(robot),
         method=DesignMethod.CHANG2018 if wishes.method.grows_trees else wishes.method,
         options=wishes.tree_options if wishes.method.grows_trees else options or wishes.options,
         improve=wishes.improve,
@@ -63,7 +63,7 @@ class DesignRun:
             error=found.error,
             winches=len(found.winches),
             cables=len(found.cables),
-            minutes=sewing_minutes(best),
+            minutes=Craft.sewing_minutes(best),
             words=found.words,
             tried=found.tried,
         )

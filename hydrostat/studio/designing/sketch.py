@@ -5,7 +5,7 @@ from functools import cached_property
 import numpy as np
 
 from hydrostat.arrays import Float, Nodes, Points, Vector
-from hydrostat.drawing import winch_colors
+from hydrostat.drawing import Color
 from hydrostat.robot import Body, Robot
 
 DURATION = 0.45  # time from one shape to the next [s]
@@ -58,7 +58,7 @@ class BodySketch:
 
     def network(self, robot: Robot) -> str:
         """The picture of a network in this body."""
-        colors = winch_colors(robot.winches)
+        colors = Color.of_winches(robot.winches)
         parts = [f'<path d="{self._outline}" class="sketch-body"/>']
         for cable in robot.cables:
             places = self._places(np.array(cable.points))

@@ -11,7 +11,7 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.control import FASTEST, Link, Motors, Player, Timeline
 from hydrostat.errors import HydrostatError
-from hydrostat.fabrication import choose_motor
+from hydrostat.fabrication import Motor
 from hydrostat.plot import upright
 from hydrostat.robot import Mount, Robot
 from hydrostat.simulation import Equilibrium, Simulation
@@ -33,7 +33,7 @@ def kit_speed(robot: Robot, tension: float) -> tuple[float, str]:
     if not loads:
         return FASTEST, ""
     inside = any(winch.mount is Mount.BODY for winch in robot.winches)
-    motor = choose_motor("auto", loads.values(), inside=inside, winches=len(loads))
+    motor = Motor.choose("auto", loads.values(), inside=inside, winches=len(loads))
     share = max(1e3 * load / motor.stall_torque for load in loads.values())
     turns = motor.speed / 60 * max(1 - share, _LEAST)
     return 2 * math.pi * min(winch.spool_radius for winch in loads) * turns, motor.title

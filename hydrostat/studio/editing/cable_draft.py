@@ -5,7 +5,7 @@ from typing import Self
 
 import numpy as np
 
-from hydrostat.drawing import Color, winch_colors
+from hydrostat.drawing import Color
 from hydrostat.errors import InputError
 from hydrostat.given import Point
 from hydrostat.robot import Robot
@@ -88,7 +88,7 @@ def _axis(robot: Robot, mirror: Mirror) -> Strand:
 def _draft(robot: Robot, draft: CableDraft) -> list[Thing]:
     color: str = Color.WINCHES[len(robot.winches) % len(Color.WINCHES)]
     if draft.winch is not None:
-        color = winch_colors(robot.winches).get(draft.winch, Color.INK)
+        color = Color.of_winches(robot.winches).get(draft.winch, Color.INK)
     start, *rest = draft.points
     things: list[Thing] = []
     if rest:

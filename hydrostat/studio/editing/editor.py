@@ -9,7 +9,6 @@ import numpy as np
 from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
 from hydrostat.given import Point
-from hydrostat.project import follow_robot
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
@@ -385,7 +384,7 @@ class Editor(Stage):
         return (key,) if twin is None else (key, twin)
 
     def _change(self, label: str, robot: Robot, renamed: dict[str, str] | None = None) -> None:
-        timeline, wishes = follow_robot(self._document.work, robot, renamed)
+        timeline, wishes = self._document.work.follow_robot(robot, renamed)
         self._refused = ""
         self._document.change(label, robot=robot, timeline=timeline, wishes=wishes)
 

@@ -10,7 +10,6 @@ from typing import Any
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.fabrication import KitOptions
 from hydrostat.ik import IKOptions, IKResult, solve_ik
-from hydrostat.project import save_work, wished_constraints
 from hydrostat.robot import Face, Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
@@ -102,7 +101,7 @@ class Exporter(Stage):
             raise InputError("a kit needs cables. Press Design, or place winches and cables by hand")
         robot = self._document.robot
         wished, designed = (
-            wished_constraints(robot, self._document.work.wishes),
+            self._document.work.wishes.to_constraints(robot),
             self._document.judge.torque_limit(robot),
         )
         limits = [torque for torque in (wished.torque, designed) if torque is not None]
@@ -132,7 +131,7 @@ class Exporter(Stage):
         name = file_name(work.robot.name)
         with TemporaryDirectory() as scratch:
             folder = Path(scratch)
-            save_work(work, folder, self._document.text)
+            work.save(folder, self._document.text)
             paths = [path for path in folder.rglob("*") if path.is_file()]
             files = {path.relative_to(folder).as_posix(): path.read_bytes() for path in paths}
         return Download(name=f"{name}.zip", content=archive(files, folder=name), title="Robot")

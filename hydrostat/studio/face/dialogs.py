@@ -6,7 +6,6 @@ from pathlib import Path
 
 from nicegui import ui
 
-from hydrostat.project import doubts
 from hydrostat.studio.face.page import WindowPage
 
 
@@ -56,7 +55,7 @@ class SaveDialog:
     async def _save_in(self, goal: Path) -> None:
         document = self._document
         same = document.folder is not None and goal.resolve() == document.folder.resolve()
-        told = await self._page.act_slowly(doubts, document.work, goal, document.stamp if same else "")
+        told = await self._page.act_slowly(document.work.warnings, goal, document.stamp if same else "")
         if told is None:
             return
         answer = await self._sure.ask(told) if told else "save"

@@ -7,7 +7,7 @@ from typing import Any
 from nicegui import events, ui
 
 from hydrostat.control import Player, Timeline
-from hydrostat.drawing import winch_colors
+from hydrostat.drawing import Color
 from hydrostat.robot import Robot
 from hydrostat.studio.face.messages import sent_number
 from hydrostat.studio.starting.loops import HANDLE, Loop, send_loops
@@ -62,7 +62,7 @@ class TimelineView(ui.element, component="static/timeline.js"):
 
     def show_keys(self, robot: Robot, timeline: Timeline, chosen: int | None) -> None:
         """Show the keys of a timeline, one of them selected."""
-        colors = winch_colors(robot.winches)
+        colors = Color.of_winches(robot.winches)
         keys = [{"time": key.time, "values": _shares(robot, key.contractions)} for key in timeline.keys]
         self._set(seconds=timeline.seconds, smooth=timeline.smooth, keys=keys, chosen=chosen, colors=[*colors.values()])
 

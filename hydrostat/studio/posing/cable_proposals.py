@@ -7,7 +7,6 @@ from threading import Condition, Thread
 
 from hydrostat.design import DesignMethod, assign_cable_sides
 from hydrostat.errors import InputError
-from hydrostat.project import after_design, wished_poses
 from hydrostat.robot import Mount, Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
@@ -82,7 +81,7 @@ class CableProposals:
         if targets.held and targets.mode is Mode.MUSCLES and muscles is not None:
             nodes, tensions = muscles.pulls
             pulls = MusclePulls(nodes=nodes, tensions=tensions)
-        poses = wished_poses(robot, wishes) if self.with_poses and robot.poses else ()
+        poses = wishes.to_poses(robot) if self.with_poses and robot.poses else ()
         moment = ProposalInput(held=targets.held, wishes=wishes, markers=robot.markers, poses=poses, muscles=pulls)
         self.ask(robot, moment, is_settled=is_settled)
 
@@ -139,7 +138,7 @@ class CableProposals:
         robot = self.network(work.robot)
         if robot is None:
             raise InputError("no network proposed yet. Drag the body until one appears")
-        self._document.change("keep proposed cables", robot=robot, wishes=after_design(work, robot))
+        self._document.change("keep proposed cables", robot=robot, wishes=work.after_design(robot))
         self._document.bell.ring(Topic.THINGS)
         counts = f"{plural(len(robot.winches), 'winch')} and {plural(len(robot.cables), 'cable')}"
         return f"kept {counts}. Undo takes them back"

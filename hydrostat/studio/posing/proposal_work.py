@@ -20,7 +20,7 @@ from hydrostat.design import (
 )
 from hydrostat.errors import HydrostatError
 from hydrostat.ik import IKOptions, solve_ik
-from hydrostat.project import Wishes, wished_constraints
+from hydrostat.project import Wishes
 from hydrostat.robot import Cable, Marker, PoseTarget, Robot, Winch, limit_travels
 from hydrostat.simulation import BodyPhysics, Simulation
 from hydrostat.studio.posing.pose_state import Anchored, HeldPoint, with_pose
@@ -170,7 +170,7 @@ def request_routes(robot: Robot, wishes: Wishes) -> DesignRequest:
         poses=tuple(robot.poses.values()),
         winches=_winches(wishes),
         cables=wishes.cables,
-        constraints=wished_constraints(robot, wishes),
+        constraints=wishes.to_constraints(robot),
         options=wishes.options,
     ).fit_robot(robot)
 

@@ -17,7 +17,7 @@ from typing import IO
 
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.files import lock_file, read_stranger
-from hydrostat.project import Work, open_work, save_work, text_of
+from hydrostat.project import Work, text_of
 from hydrostat.studio.document import Document
 
 LOCK = "lock"
@@ -136,7 +136,7 @@ class Autosave:
     def restore(self, left: RecoveredWork) -> None:
         """Open what was left; it is kept on as work of this studio (InputError: it cannot be read any more)."""
         home, designs = left.folder / "work", left.folder / DESIGNS
-        work = open_work(home)
+        work = Work.open(home)
         found = read_stranger(designs, name=DESIGNS, most=LARGEST) if designs.is_file() else b""
         self._document.open(work, folder=left.origin, saved=False, stamp=left.stamp, text=text_of(home), designs=found)
         if self._keep():
@@ -176,7 +176,7 @@ class Autosave:
         self._count += 1
         home = self._held.path
         part, whole = home / f"{self._count}.part", home / str(self._count)
-        save_work(work, part / "work", self._document.text)
+        work.save(part / "work", self._document.text)
         origin, stamp = self._document.folder, self._document.stamp
         meta = {
             "name": work.robot.name,

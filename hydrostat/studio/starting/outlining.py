@@ -9,7 +9,7 @@ import numpy as np
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.geometry import read_drawing
 from hydrostat.given import Point
-from hydrostat.project import Work, follow_robot, moved_zone
+from hydrostat.project import Work
 from hydrostat.robot import Body, BodyPart, Cable, Mount, Pin, PoseTarget, Robot
 from hydrostat.studio.starting.loops import Loop, LoopCorner, fit_loops, loops_svg, outline_of, read_loops
 from hydrostat.studio.starting.photo import Backdrop
@@ -217,6 +217,6 @@ def _poses_of(poses: tuple[PoseTarget, ...], markers: set[str], dropped: list[st
 
 def _matching(work: Work, robot: Robot, move: Move) -> Work:
     """Wishes and keyframes that fit the robot."""
-    zones = tuple((paint, moved_zone(zone, move)) for paint, zone in work.wishes.zones)
-    timeline, wishes = follow_robot(work, robot)
+    zones = tuple((paint, zone.move(move)) for paint, zone in work.wishes.zones)
+    timeline, wishes = work.follow_robot(robot)
     return replace(work, robot=robot, timeline=timeline, wishes=replace(wishes, zones=zones))

@@ -13,7 +13,7 @@ from typing import Any
 from zipfile import BadZipFile, ZipFile, ZipInfo
 
 from hydrostat.errors import InputError
-from hydrostat.project import Work, open_note, open_work, text_of
+from hydrostat.project import Work, open_note, text_of
 from hydrostat.robot import FILE, GALLERY, gallery_folder, get_material, is_of_gallery, load_robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
@@ -54,7 +54,7 @@ def unpack_robot(name: str, content: bytes) -> tuple[Work, str]:
                     _write(archive, entry, folder / path.relative_to(home), shown)
             if note := open_note(folder):
                 raise InputError(f"{shown}: {note}")
-            return open_work(folder), text_of(folder)
+            return Work.open(folder), text_of(folder)
     except InputError as error:  # of robot.toml, by the name of a scratch folder that nobody knows
         raise InputError(str(error).replace(f"{folder}/", f"{shown}: ")) from None
     except (
@@ -163,7 +163,7 @@ class Starter(Stage):
             return
         try:
             folder = Path(text.strip()).expanduser()
-            work = open_work(folder)
+            work = Work.open(folder)
         except (OSError, ValueError, RuntimeError) as error:
             raise InputError(f"cannot read this folder ({error})") from None
         home = folder.parent if folder.suffix == ".toml" else folder

@@ -10,7 +10,7 @@ import numpy as np
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.design import Diagnostic, Severity
-from hydrostat.drawing import Color, winch_colors
+from hydrostat.drawing import Color
 from hydrostat.errors import in_words
 from hydrostat.fabrication import winch_marks_of
 from hydrostat.geometry import Mesh
@@ -60,7 +60,7 @@ def robot_things(
     are drawn on a scale up to the largest, obstacles that move where they are carried to [m]. With `vias` each point of
     a cable is a dot that can be taken hold of; else only its stopper is shown.
     """
-    colors, marks = winch_colors(robot.winches), winch_marks_of(robot)
+    colors, marks = Color.of_winches(robot.winches), winch_marks_of(robot)
     things: list[Thing] = [
         Strand(points=tuple(map(tuple, line.tolist())), stroke=Stroke.RIM, color=Color.MUTED, loose=-1)
         for line in obstacle_lines(obstacles_in_pose(robot, carried))
@@ -93,7 +93,7 @@ def proposed_things(robot: Robot, own: Collection[Winch] = ()) -> list[Thing]:
 
     Winches that stand on own ones, which are drawn already, are left out.
     """
-    colors, marks = winch_colors(robot.winches), winch_marks_of(robot)
+    colors, marks = Color.of_winches(robot.winches), winch_marks_of(robot)
     things: list[Thing] = []
     for index, cable in enumerate(robot.cables):
         things += _cable(robot, index, cable, colors[cable.winch], 0.0, ())
@@ -218,7 +218,7 @@ class Bar:
 
 def winch_bars(robot: Robot, shape: RobotShape, limit: float) -> list[Bar]:
     """A bar for each winch: what it does in a shape, beside the most that a cable bears [N]."""
-    colors, marks = winch_colors(robot.winches), winch_marks_of(robot)
+    colors, marks = Color.of_winches(robot.winches), winch_marks_of(robot)
     largest = dict.fromkeys(colors, 0.0)
     for cable, tension in zip(robot.cables, np.asarray(shape.tensions).tolist(), strict=True):
         largest[cable.winch] = max(largest[cable.winch], tension)

@@ -11,7 +11,7 @@ from lerobot.teleoperators import Teleoperator, TeleoperatorConfig
 
 from hydrostat.errors import HydrostatError
 from hydrostat.robot import load_robot
-from hydrostat.teleop import DriveSource, EmulatedHand, HandMap, open_source, winch_channels
+from hydrostat.teleop import DriveSource, EmulatedHand, HandMap, WinchMapper, open_source
 
 
 @TeleoperatorConfig.register_subclass("hydrostat")
@@ -39,7 +39,7 @@ class HydrostatTeleop(Teleoperator):
     def __init__(self, config: HydrostatTeleopConfig) -> None:
         """The source of a config (InputError: no such robot)."""
         super().__init__(config)
-        self.config, self._channels = config, winch_channels(load_robot(config.robot))
+        self.config, self._channels = config, WinchMapper.channels(load_robot(config.robot))
         self._source: DriveSource | None = None
         self._values = self._channels.rest.copy()
 

@@ -4,7 +4,7 @@ import pytest
 from manifold3d import Manifold
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.parts.motor import MOTORS, FaceScrew, Motor, choose_motor
+from hydrostat.fabrication.parts.motor import MOTORS, FaceScrew, Motor
 from hydrostat.fabrication.solids.construct import solid_of
 
 
@@ -43,30 +43,30 @@ def test_every_motor_is_stronger_than_the_one_before_and_says_where_its_figures_
 def test_auto_takes_the_first_that_carries_the_load_for_long():
     """Oracle: the table, with a margin of 2."""
     for index, motor in enumerate(MOTORS):
-        assert choose_motor("auto", [0.0, 1e-3 * motor.rated_torque / 2]) is motor
+        assert Motor.choose("auto", [0.0, 1e-3 * motor.rated_torque / 2]) is motor
         if index + 1 < len(MOTORS):
-            assert choose_motor("auto", [1.01e-3 * motor.rated_torque / 2]) is MOTORS[index + 1]
+            assert Motor.choose("auto", [1.01e-3 * motor.rated_torque / 2]) is MOTORS[index + 1]
 
 
 def test_in_the_body_it_has_to_carry_it_for_seconds():
     """Oracle: half of stall, with a margin of 2, is a quarter of it."""
     for index, motor in enumerate(MOTORS):
-        assert choose_motor("auto", [0.99e-3 * motor.stall_torque / 4], inside=True) is motor
+        assert Motor.choose("auto", [0.99e-3 * motor.stall_torque / 4], inside=True) is motor
         if index + 1 < len(MOTORS):
-            assert choose_motor("auto", [1.01e-3 * motor.stall_torque / 4], inside=True) is MOTORS[index + 1]
+            assert Motor.choose("auto", [1.01e-3 * motor.stall_torque / 4], inside=True) is MOTORS[index + 1]
 
 
 def test_auto_takes_the_strongest_if_none_carries_it():
-    assert choose_motor("auto", [2.0]) is MOTORS[-1]
+    assert Motor.choose("auto", [2.0]) is MOTORS[-1]
 
 
 def test_a_motor_that_was_named_is_taken():
-    assert choose_motor("n20", [2.0]) is MOTORS[0]
+    assert Motor.choose("n20", [2.0]) is MOTORS[0]
 
 
 def test_an_unknown_motor_is_refused_with_those_there_are():
     with pytest.raises(InputError, match=r'unknown motor "nema"\. Available: auto, n20, xl330, 25d'):
-        choose_motor("nema", [0.1])
+        Motor.choose("nema", [0.1])
 
 
 @pytest.mark.parametrize("wall", [0.8, 1.2, 1.6, 2.0, 3.1])
@@ -91,7 +91,7 @@ def test_a_thicker_shaft_is_thicker_all_round():
 
 def test_more_winches_than_a_board_bears_get_servos_where_they_carry_it() -> None:
     n20, xl330, strong = MOTORS
-    assert choose_motor("auto", [0.01], winches=6) is n20
-    assert choose_motor("auto", [0.01], winches=7) is xl330
-    assert choose_motor("auto", [0.01], winches=7, inside=True) is n20
-    assert choose_motor("auto", [0.1], winches=7) is strong
+    assert Motor.choose("auto", [0.01], winches=6) is n20
+    assert Motor.choose("auto", [0.01], winches=7) is xl330
+    assert Motor.choose("auto", [0.01], winches=7, inside=True) is n20
+    assert Motor.choose("auto", [0.1], winches=7) is strong

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from builders import box_robot, strip_robot
 
-from hydrostat.design import DesignRequest, build_effort
-from hydrostat.fabrication import demand_of
+from hydrostat.design import Craft, DesignRequest
+from hydrostat.fabrication import Demand
 from hydrostat.robot import PoseTarget, Robot
 from hydrostat.studio.designing.charts import BOTTOM, FRONT_HEIGHT, LEFT, Chart, front_chart, growth_chart, ticks
 from hydrostat.studio.designing.design_work import Candidate
@@ -100,7 +100,7 @@ def test_a_design_that_has_found_nothing_yet_has_a_chart() -> None:
 
 def candidate(number: int, robot: Robot, *, minutes: float, built: float) -> Candidate:
     """A network that takes so long to sew and is so far off once built [mm]."""
-    craft = replace(build_effort(robot, []), minutes=minutes)
+    craft = replace(Craft.of_robot(robot, []), minutes=minutes)
     return Candidate(
         number=number,
         source=robot,
@@ -109,7 +109,7 @@ def candidate(number: int, robot: Robot, *, minutes: float, built: float) -> Can
         error=0.0,
         built=1e-3 * built,
         craft=craft,
-        demand=demand_of(robot, []),
+        demand=Demand.of_results(robot, []),
         complete=True,
     )
 

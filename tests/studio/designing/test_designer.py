@@ -10,7 +10,7 @@ import pytest
 from builders import strip_robot
 
 from hydrostat.design import Constraints, DesignRequest, RouteOptions, TreeOptions, design_cables
-from hydrostat.drawing import Color, pose_colors
+from hydrostat.drawing import Color
 from hydrostat.errors import InputError
 from hydrostat.ik import Limits, solve_ik
 from hydrostat.project import Wishes, Work
@@ -287,7 +287,7 @@ def test_targets_of_several_poses_are_told_apart(fresh: Studio) -> None:
 
     assert rings() == {(0.18, 0.06): Color.INK}
     fresh.designer.wish_pose("down", True)
-    colors = pose_colors(["up", "down"])
+    colors = Color.of_poses(["up", "down"])
     assert rings() == {(0.18, 0.06): colors["up"], (0.185, -0.05): colors["down"]}
     assert len({*colors.values(), Color.INK}) == 3
 

@@ -5,7 +5,7 @@ from builders import gallery_robot
 
 from hydrostat.design import Constraints, DesignMethod, RouteOptions, TreeOptions, Zone
 from hydrostat.errors import InputError
-from hydrostat.project import Paint, Wishes, wished_constraints, wished_poses
+from hydrostat.project import Paint, Wishes
 from hydrostat.robot import Robot
 from hydrostat.studio.designing.run import starting_robot, wished_request
 
@@ -31,7 +31,7 @@ def test_every_wish_is_a_constraint(starfish: Robot) -> None:
         kept_winches=("left",),
         kept_cables=("left 2",),
     )
-    assert wished_constraints(starfish, wishes) == Constraints(
+    assert wishes.to_constraints(starfish) == Constraints(
         keep_out=(DISC, TRIANGLE), still=(TRIANGLE,), winch_zones=(DISC,), mirror="x", tension=12.0, clearance=0.004,
         cables_per_winch=3, slack=0.01, spool_ratio=2.0, torque=0.2, locked_winches=("left",),
         locked_cables=("left 2",),
@@ -40,30 +40,28 @@ def test_every_wish_is_a_constraint(starfish: Robot) -> None:
 
 def test_a_depth_is_for_bodies_in_space(starfish: Robot) -> None:
     wishes = Wishes.of(depth=0.0)
-    assert wished_constraints(starfish, wishes) == Constraints()
+    assert wishes.to_constraints(starfish) == Constraints()
     trunk = gallery_robot("trunk")
-    assert wished_constraints(trunk, wishes) == Constraints(depth=0.0)
+    assert wishes.to_constraints(trunk) == Constraints(depth=0.0)
     assert wished_request(trunk, wishes).constraints.depth == 0.0
     with pytest.raises(InputError, match="does not keep depth"):
         wished_request(trunk, Wishes.of(depth=0.0, method=DesignMethod.TREES))
 
 
 def test_no_wish_is_no_constraint(starfish: Robot) -> None:
-    assert wished_constraints(starfish, Wishes()) == Constraints()
+    assert Wishes().to_constraints(starfish) == Constraints()
 
 
 def test_what_is_kept_but_gone_is_passed_over(starfish: Robot) -> None:
-    constraints = wished_constraints(
-        starfish, Wishes(kept_winches=("left", "nobody"), kept_cables=("left 1", "gone 7"))
-    )
+    constraints = Wishes(kept_winches=("left", "nobody"), kept_cables=("left 1", "gone 7")).to_constraints(starfish)
     assert constraints == Constraints(locked_winches=("left",), locked_cables=("left 1",))
 
 
 def test_poses_by_name_all_if_none_is_left(starfish: Robot) -> None:
     every = tuple(starfish.poses.values())
-    assert wished_poses(starfish, Wishes()) == every
-    assert wished_poses(starfish, Wishes(poses=("star_jump", "gone"))) == (starfish.pose("star_jump"),)
-    assert wished_poses(starfish, Wishes(poses=("gone",))) == every
+    assert Wishes().to_poses(starfish) == every
+    assert Wishes(poses=("star_jump", "gone")).to_poses(starfish) == (starfish.pose("star_jump"),)
+    assert Wishes(poses=("gone",)).to_poses(starfish) == every
 
 
 def test_as_few_winches_as_will_do(starfish: Robot) -> None:

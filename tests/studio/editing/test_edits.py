@@ -9,7 +9,7 @@ from builders import gallery_robot
 from hydrostat.control import Key, Timeline
 from hydrostat.errors import InputError, in_words
 from hydrostat.geometry import locate
-from hydrostat.project import Wishes, Work, after_design, follow_robot
+from hydrostat.project import Wishes, Work
 from hydrostat.robot import Contact, Mount, Robot, find_risks
 from hydrostat.studio.editing.cable_draft import begin_cable, end_cable
 from hydrostat.studio.editing.change import change, remesh, rename, set_contact, set_gravity, sheathed_segments, sheaths
@@ -297,9 +297,9 @@ def test_keyframes_and_wishes_follow(starfish: Robot) -> None:
     timeline = Timeline(keys=(Key(time=0.0, contractions={"left": 0.01, "feet": 0.02}),))
     work = Work(robot=starfish, timeline=timeline, wishes=Wishes(poses=("wave", "star_jump")))
     renamed = rename(starfish, "winch:feet", "legs")
-    assert follow_robot(work, renamed, {"feet": "legs"})[0].keys[0].contractions == {"left": 0.01, "legs": 0.02}
+    assert work.follow_robot(renamed, {"feet": "legs"})[0].keys[0].contractions == {"left": 0.01, "legs": 0.02}
     gone = remove(starfish, ["winch:feet", *(f"marker:{marker.name}" for marker in starfish.markers)])
-    after, wishes = follow_robot(work, gone)
+    after, wishes = work.follow_robot(gone)
     assert after.keys[0].contractions == {"left": 0.01}
     assert wishes.poses == ()
 
@@ -309,17 +309,17 @@ def test_what_is_kept_follows(starfish: Robot) -> None:
     names = (starfish.cables[0].name, starfish.cables[3].name)
     work = Work(robot=starfish, wishes=Wishes(kept_winches=("feet", "left"), kept_cables=names))
     gone = remove(starfish, ["cable:1"])
-    wishes = follow_robot(work, gone)[1]
+    wishes = work.follow_robot(gone)[1]
     assert [gone.cable(name) for name in wishes.kept_cables] == [starfish.cables[0], starfish.cables[3]]
     assert wishes.kept_winches == ("feet", "left")
-    assert follow_robot(work, remove(starfish, ["cable:3"]))[1].kept_cables == names[:1]
+    assert work.follow_robot(remove(starfish, ["cable:3"]))[1].kept_cables == names[:1]
     legs = rename(starfish, "winch:feet", "legs")
-    renamed = follow_robot(work, legs, {"feet": "legs"})[1]
+    renamed = work.follow_robot(legs, {"feet": "legs"})[1]
     assert renamed.kept_winches == ("legs", "left")
     assert renamed.kept_cables == (legs.cables[0].name, legs.cables[3].name) != names
-    assert follow_robot(work, remove(starfish, ["via:0:2"]))[1] is work.wishes
+    assert work.follow_robot(remove(starfish, ["via:0:2"]))[1] is work.wishes
     bare = remove(starfish, ["winch:feet"])
-    assert follow_robot(work, bare)[1].kept_winches == ("left",)
+    assert work.follow_robot(bare)[1].kept_winches == ("left",)
 
 
 def test_a_design_keeps_what_it_has_kept(starfish: Robot) -> None:
@@ -329,7 +329,7 @@ def test_a_design_keeps_what_it_has_kept(starfish: Robot) -> None:
     winches = [replace(winch, at=(0.0, -0.03)) if winch.name == "feet" else winch for winch in starfish.winches]
     changed = replace(starfish.cables[0], slack=0.002)
     made = starfish.with_network(winches, [starfish.cables[3], changed, *starfish.cables[1:3]])
-    wishes = after_design(work, made)
+    wishes = work.after_design(made)
     assert wishes.kept_winches == ("left",)
     assert [made.cable(name) for name in wishes.kept_cables] == [starfish.cables[3]]
 

@@ -17,13 +17,9 @@ from hydrostat.project import (
     Wishes,
     Work,
     changed_outside,
-    comments_lost,
-    doubts,
     folder_stamp,
     open_note,
-    open_work,
     read_project_file,
-    save_work,
     write_project_file,
 )
 from hydrostat.robot import (
@@ -261,20 +257,20 @@ def work_of(robot: Robot) -> Work:
 def test_a_file_that_numbers_kept_cables_is_still_read(tmp_path: Path) -> None:
     """Oracle: the names of the cables; numbers counted from 0 there. One that is gone is passed over."""
     robot = load_robot(gallery_folder("starfish"))
-    save_work(Work(robot=robot, wishes=Wishes(kept_cables=("left 1",))), tmp_path / "kept")
-    assert open_work(tmp_path / "kept").wishes.kept_cables == ("left 1",)
+    Work(robot=robot, wishes=Wishes(kept_cables=("left 1",))).save(tmp_path / "kept")
+    assert Work.open(tmp_path / "kept").wishes.kept_cables == ("left 1",)
     file = tmp_path / "kept" / "studio.json"
     read = json.loads(file.read_text())
     read["wishes"]["kept_cables"] = [0, 3, 99]
     file.write_text(json.dumps(read))
-    assert open_work(tmp_path / "kept").wishes.kept_cables == (robot.cables[0].name, robot.cables[3].name)
+    assert Work.open(tmp_path / "kept").wishes.kept_cables == (robot.cables[0].name, robot.cables[3].name)
     assert open_note(tmp_path / "kept") == ""
 
 
 def test_all_work_is_read_again(robot: Robot, tmp_path: Path) -> None:
     work = work_of(robot)
-    save_work(work, tmp_path / "new" / "robot")
-    again = open_work(tmp_path / "new" / "robot")
+    work.save(tmp_path / "new" / "robot")
+    again = Work.open(tmp_path / "new" / "robot")
     assert (again.robot, again.timeline, again.wishes) == (work.robot, work.timeline, work.wishes)
     assert open_note(tmp_path / "new" / "robot") == ""
     assert not list((tmp_path / "new" / "robot").glob(".*"))
@@ -297,12 +293,12 @@ def test_a_tension_that_is_no_number_is_refused(value: object, told: str) -> Non
 def test_a_plain_robot_needs_no_second_file(robot: Robot, tmp_path: Path) -> None:
     """One with cables does: a kit that is made of the folder keeps to the limits that its poses had here."""
     plain = robot.with_network((), ())
-    save_work(Work(robot=plain), tmp_path)
+    Work(robot=plain).save(tmp_path)
     assert sorted(file.name for file in tmp_path.iterdir()) == ["body.svg", "robot.toml"]
-    assert doubts(Work(robot=plain), tmp_path, folder_stamp(tmp_path)) == []
-    save_work(Work(robot=robot), tmp_path)
+    assert Work(robot=plain).warnings(tmp_path, folder_stamp(tmp_path)) == []
+    Work(robot=robot).save(tmp_path)
     assert sorted(file.name for file in tmp_path.iterdir()) == ["body.svg", "robot.toml", "studio.json"]
-    assert doubts(Work(robot=robot), tmp_path, folder_stamp(tmp_path)) == []
+    assert Work(robot=robot).warnings(tmp_path, folder_stamp(tmp_path)) == []
 
 
 @pytest.mark.parametrize(
@@ -311,73 +307,73 @@ def test_a_plain_robot_needs_no_second_file(robot: Robot, tmp_path: Path) -> Non
      ('"time": 0.5', '"time": NaN'), ('"time": 0.5', '"time": -1.0'), ('"radius": 0.01', '"radius": -1.0')],
 )  # fmt: skip
 def test_a_broken_studio_file_is_told_in_one_line(robot: Robot, tmp_path: Path, before: str, after: str) -> None:
-    save_work(work_of(robot), tmp_path)
+    work_of(robot).save(tmp_path)
     file = tmp_path / "studio.json"
     assert before in file.read_text()
     file.write_text(file.read_text().replace(before, after, 1))
-    again = open_work(tmp_path)
+    again = Work.open(tmp_path)
     assert again.robot == robot
     assert (again.timeline, again.wishes) == (Timeline(), Wishes())
     assert "studio.json" in open_note(tmp_path)
     assert "\n" not in open_note(tmp_path)
     assert len(open_note(tmp_path)) < 400
-    assert "replaced" in doubts(again, tmp_path, folder_stamp(tmp_path))[-1]
+    assert "replaced" in again.warnings(tmp_path, folder_stamp(tmp_path))[-1]
 
 
 def test_comments_stay_when_saved(robot: Robot, tmp_path: Path) -> None:
-    save_work(Work(robot=robot), tmp_path)
+    Work(robot=robot).save(tmp_path)
     (tmp_path / "robot.toml").write_text(COMMENTED)
     stamp = folder_stamp(tmp_path)
     edited = Work(robot=remove(move(robot, {"marker:tip": (0.024, 0.0)}), ["marker:middle"]))
-    assert comments_lost(edited, tmp_path) == ["# not the end"]
-    assert "# not the end" in doubts(edited, tmp_path, stamp)[0]
-    save_work(edited, tmp_path)
+    assert edited.comments_lost(tmp_path) == ["# not the end"]
+    assert "# not the end" in edited.warnings(tmp_path, stamp)[0]
+    edited.save(tmp_path)
     assert lost_comments(COMMENTED, (tmp_path / "robot.toml").read_text()) == ["# not the end"]
-    assert open_work(tmp_path).robot == edited.robot
+    assert Work.open(tmp_path).robot == edited.robot
 
 
 def test_what_others_wrote_is_asked_about(robot: Robot, tmp_path: Path) -> None:
     work = Work(robot=robot)
-    assert doubts(work, tmp_path) == []
+    assert work.warnings(tmp_path) == []
     assert not changed_outside(tmp_path, "")
-    save_work(work, tmp_path)
-    assert "already" in doubts(work, tmp_path)[0]
+    work.save(tmp_path)
+    assert "already" in work.warnings(tmp_path)[0]
     stamp = folder_stamp(tmp_path)
     assert not changed_outside(tmp_path, stamp)
     (tmp_path / "robot.toml").write_text((tmp_path / "robot.toml").read_text() + "# mine\n")
     assert changed_outside(tmp_path, stamp)
-    assert "another program" in doubts(work, tmp_path, stamp)[0]
+    assert "another program" in work.warnings(tmp_path, stamp)[0]
 
 
 def test_a_file_that_is_not_of_the_robot_is_asked_about(robot: Robot, tmp_path: Path) -> None:
     """Oracle: a drawing of a person's own that has the name of the body's file, with and without a robot.toml."""
     work = Work(robot=robot)
     (tmp_path / "body.svg").write_bytes(robot.body.content)
-    assert doubts(work, tmp_path) == []
+    assert work.warnings(tmp_path) == []
     (tmp_path / "body.svg").write_text("mine")
-    assert "body.svg" in doubts(work, tmp_path)[0]
-    save_work(work, tmp_path)
+    assert "body.svg" in work.warnings(tmp_path)[0]
+    work.save(tmp_path)
     stamp = folder_stamp(tmp_path)
     (tmp_path / "other.svg").write_text("mine")
     other = Work(robot=replace(robot, body=replace(robot.body, file="other.svg")))
-    assert "other.svg" in doubts(other, tmp_path, stamp)[0]
+    assert "other.svg" in other.warnings(tmp_path, stamp)[0]
 
 
 def test_a_body_that_others_changed_is_asked_about_but_not_a_new_outline(robot: Robot, tmp_path: Path) -> None:
     """Oracle: the file of the body as it was when the robot was opened."""
     work = Work(robot=robot)
-    save_work(work, tmp_path)
+    work.save(tmp_path)
     stamp = folder_stamp(tmp_path)
     drawn = Work(robot=replace(robot, body=replace(robot.body, content=BODY.replace("40", "42").encode())))
-    assert doubts(drawn, tmp_path, stamp) == []
+    assert drawn.warnings(tmp_path, stamp) == []
     (tmp_path / "body.svg").write_text(BODY.replace("40", "41"))
-    assert "another program" in doubts(drawn, tmp_path, stamp)[0]
+    assert "another program" in drawn.warnings(tmp_path, stamp)[0]
 
 
 def test_names_that_the_file_does_not_allow_are_refused(robot: Robot, tmp_path: Path) -> None:
     wrong = replace(robot, winches=(*robot.winches, Winch(name="a/b", at=(0.0, 0.0))))
     with pytest.raises(InputError, match="letters"):
-        save_work(Work(robot=wrong), tmp_path)
+        Work(robot=wrong).save(tmp_path)
     assert not list(tmp_path.iterdir())
 
 
@@ -388,14 +384,14 @@ def test_the_gallery_is_left_to_the_letter() -> None:
 
 def test_a_document_knows_how_its_folder_was(robot: Robot, tmp_path: Path) -> None:
     document = Document(Bell())
-    save_work(Work(robot=robot), tmp_path)
-    document.open(open_work(tmp_path), folder=tmp_path)
-    assert doubts(document.work, tmp_path, document.stamp) == []
+    Work(robot=robot).save(tmp_path)
+    document.open(Work.open(tmp_path), folder=tmp_path)
+    assert document.work.warnings(tmp_path, document.stamp) == []
     (tmp_path / "robot.toml").write_text((tmp_path / "robot.toml").read_text() + "# mine\n")
     assert changed_outside(tmp_path, document.stamp)
-    save_work(document.work, tmp_path)
+    document.work.save(tmp_path)
     document.mark_saved(tmp_path, document.work)
-    assert doubts(document.work, tmp_path, document.stamp) == []
+    assert document.work.warnings(tmp_path, document.stamp) == []
     assert "# mine" in (tmp_path / "robot.toml").read_text()
     document.open(Work(robot=robot))
     assert document.stamp == ""

@@ -12,9 +12,9 @@ from hydrostat.design import (
     Constraints,
     DesignMethod,
     QuickSearch,
+    Region,
     TreeOptions,
     assign_cable_sides,
-    body_region,
     expected_error,
     rms_error,
     violations,
@@ -96,7 +96,7 @@ def test_routes_of_a_moment_keep_all_limits_and_have_the_error_that_is_told(star
         robot = assign_cable_sides(named).with_network(one.winches, one.cables)
         assert 1 <= len(one.winches) <= 2
         assert len(one.winches) <= len(one.cables) <= 4
-        assert violations(robot, request.constraints, body_region(robot.body, request.constraints.clearance)) == []
+        assert violations(robot, request.constraints, Region.of_body(robot.body, request.constraints.clearance)) == []
         assert limit_travels(robot).winches == one.winches
     simulation = Simulation(robot)
     limits = QuickSearch(named, request).constraints.limits  # with the torque of the motors that fit
@@ -142,7 +142,7 @@ def test_winch_trees_are_proposed_where_no_route_is_sketched(starfish: Robot, un
     robot = starfish.with_network(found.winches, found.cables)
     assert limit_travels(robot).winches == found.winches
     limits = Constraints(clearance=0.006, cable_gap=0.0, turn=TreeOptions.turn)
-    assert violations(robot, limits, body_region(robot.body, 0.006)) == []
+    assert violations(robot, limits, Region.of_body(robot.body, 0.006)) == []
     named = with_pose(robot, POSE, held)
     simulation = Simulation(named)
     reached = solve_ik(simulation, named.pose(POSE), options=OPTIONS)

@@ -11,7 +11,7 @@ from model_cards import model_card
 
 from hydrostat.errors import InputError
 from hydrostat.given import Point
-from hydrostat.learning import LearnedModel, Perceptrons, save_model
+from hydrostat.learning import LearnedModel, Perceptrons
 from hydrostat.robot import Robot, load_robot, save_robot
 from hydrostat.simulation import Simulation
 from hydrostat.studio.document import Document
@@ -144,7 +144,7 @@ def untrained(robot: Robot) -> LearnedModel:
 def test_a_model_beside_the_robot_is_found_and_another_robots_refused(starfish: Robot, tmp_path: Path) -> None:
     folder = tmp_path / "star"
     save_robot(starfish, folder)
-    file = save_model(untrained(load_robot(folder)), folder / "star.model")
+    file = untrained(load_robot(folder)).save(folder / "star.model")
     session = Session()
     session.open_folder(folder)
     assert session.document.model is not None

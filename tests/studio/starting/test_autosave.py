@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from hydrostat.project import Work, doubts, save_work
+from hydrostat.project import Work
 from hydrostat.robot import Marker, gallery_folder, load_robot
 from hydrostat.studio.bell import Bell
 from hydrostat.studio.document import Document
@@ -191,7 +191,7 @@ def test_work_goes_on_and_is_kept_as_often_as_said(tmp_path: Path, work: Work) -
 def test_what_others_wrote_after_a_crash_is_asked_about(tmp_path: Path, work: Work, touched: bool) -> None:
     """Oracle: doubts about the folder of the robot; none if nobody touched it."""
     home = tmp_path / "robot"
-    save_work(work, home)
+    work.save(home)
     document, autosave = opened(tmp_path / "state")
     document.open(work, folder=home)
     changed(document, "mine")
@@ -201,7 +201,7 @@ def test_what_others_wrote_after_a_crash_is_asked_about(tmp_path: Path, work: Wo
     again, autosave = opened(tmp_path / "state")
     autosave.restore(autosave.find_recovered()[0])
     assert again.folder == home
-    assert any("another program" in words for words in doubts(again.work, home, again.stamp)) == touched
+    assert any("another program" in words for words in again.work.warnings(home, again.stamp)) == touched
     autosave.close()
 
 

@@ -5,8 +5,7 @@ from functools import partial
 from nicegui import ui
 
 from hydrostat.design import AUTO, DesignMethod
-from hydrostat.drawing import pose_colors
-from hydrostat.project import wished_poses
+from hydrostat.drawing import Color
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.designing.charts import front_chart, growth_chart
 from hydrostat.studio.designing.design_work import Candidate
@@ -45,11 +44,11 @@ def _poses(page: WindowPage) -> None:
 
     def find_wished() -> frozenset[str]:
         robot = document.robot
-        return frozenset(pose.name for pose in wished_poses(robot, designer.wishes)) if robot.poses else frozenset()
+        return frozenset(pose.name for pose in designer.wishes.to_poses(robot)) if robot.poses else frozenset()
 
     def build() -> None:
         names, on = document.robot.poses, find_wished()
-        colors = pose_colors(names)
+        colors = Color.of_poses(names)
         if not names:
             _no_pose(page)
             return

@@ -2,7 +2,7 @@
 
 from nicegui import events, ui
 
-from hydrostat.drawing import Color, winch_colors
+from hydrostat.drawing import Color
 from hydrostat.fabrication import winch_marks_of
 from hydrostat.robot import Winch
 from hydrostat.studio.bell import Topic
@@ -39,7 +39,7 @@ def drive_panel(page: WindowPage) -> None:
 
     def build() -> None:
         winches, marks = session.document.robot.winches, winch_marks_of(session.document.robot)
-        colors, size = winch_colors(winches), 68 if len(winches) <= many else 50
+        colors, size = Color.of_winches(winches), 68 if len(winches) <= many else 50
         cards[:] = [_Card(page, winch, marks[winch.name], colors[winch.name], size) for winch in winches]
 
     def show() -> None:

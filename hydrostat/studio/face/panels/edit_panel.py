@@ -5,7 +5,7 @@ from typing import Any
 
 from nicegui import events, ui
 
-from hydrostat.drawing import winch_colors
+from hydrostat.drawing import Color
 from hydrostat.fabrication import winch_marks_of
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
@@ -232,7 +232,7 @@ def _part_words(robot: Robot, key: str) -> tuple[str, str]:
 
 def _color(robot: Robot, key: str) -> str:
     """Color of its winch; the quiet one for all else."""
-    part, colors = find_part(robot, key), winch_colors(robot.winches)
+    part, colors = find_part(robot, key), Color.of_winches(robot.winches)
     if part is not None and part.kind is Kind.WINCH:
         return _page_color(colors[robot.winches[part.index].name])
     if part is not None and part.kind is Kind.CABLE:
