@@ -289,7 +289,7 @@ def _tell_better() -> "Callable[[DesignStage], None]":
 
 def _tell_count(network: "Network", request: "DesignRequest") -> None:
     """Say it if there are fewer than there may be, what would leave less error, and what each number gains if open."""
-    from hydrostat.design import AUTO, find_lifts
+    from hydrostat.design import find_lifts
 
     found, asked = (len(network.robot.winches), len(network.robot.cables)), (request.winches, request.cables)
     if network.complete and isinstance(request.winches, int) and found != asked:
@@ -298,7 +298,7 @@ def _tell_count(network: "Network", request: "DesignRequest") -> None:
     if network.complete and not request.method.grows_trees:
         for lift in find_lifts(network):
             print(f"note: {lift.words} would leave {1e3 * lift.built:.2g} mm as built, or less (by a quick search)")
-    if request.winches == AUTO:
+    if request.is_open:
         print_front(network)
 
 

@@ -214,13 +214,13 @@ def _constraint_texts(constraints: "Constraints") -> dict[str, str]:
 
 def _words(name: str, value: Any) -> str:
     """The value of one constraint with its unit; nothing if it asks nothing."""
-    from hydrostat.design import RANGES
+    from hydrostat.design import Constraints
 
     if isinstance(value, bool):
         return "allowed" if value else "not allowed"
     if isinstance(value, tuple):
         return ", ".join(value) if name.startswith("locked") else str(len(value) or "")
     if isinstance(value, float):
-        factor, unit = RANGES[name].display_unit
+        factor, unit = Constraints.ranges()[name].display_unit
         return f"{factor * value:g}{'°' if unit == 'degrees' else f' {unit}'.rstrip()}"
     return "" if value is None else str(value)

@@ -80,14 +80,14 @@ def _uncertainty(robot: "Robot", typed: DesignArguments) -> "BuildTolerances | N
 
 def _constraints(robot: "Robot", typed: DesignArguments) -> "Constraints":
     """The constraints of a file, with those of the command line before them."""
-    from hydrostat.design import STEPPED, Constraints, read_constraints
+    from hydrostat.design import Constraints, read_constraints
 
     constraints = Constraints() if typed.file is None else read_constraints(typed.file, robot)
     if typed.symmetric not in (None, "x", "y", "z"):
         raise InputError(f"--symmetric {typed.symmetric}: unknown axis. Allowed: x, y, z.")
     given: dict[str, Any] = {
         **{name: _limit(name, value) for name, value in typed.limits.items()},
-        "spool_ratio": STEPPED if typed.stepped else None,
+        "spool_ratio": Constraints.STEPPED if typed.stepped else None,
         "two_way": typed.two_way or None,
         "mirror": typed.symmetric,
         "locked_winches": tuple(dict.fromkeys(_winch(name, robot) for name in typed.lock_winch)) or None,
@@ -98,12 +98,12 @@ def _constraints(robot: "Robot", typed: DesignArguments) -> "Constraints":
 
 def _limit(name: str, value: str | int | None) -> float | int | None:
     """The value of a number of `Constraints`, typed with its unit if it has one."""
-    from hydrostat.design import RANGES
+    from hydrostat.design import Constraints
     from hydrostat.units import ANGLE, FORCE, LENGTH, TORQUE
 
     if not isinstance(value, str):
         return value
-    allowed = RANGES[name]
+    allowed = Constraints.ranges()[name]
     dimension = {"m": LENGTH, "N": FORCE, "N m": TORQUE, "degrees": ANGLE}[allowed.unit]
     return positive(f"--{name.replace('_', '-')}", value, dimension, zero=allowed.holds(0.0))
 

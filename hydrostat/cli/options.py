@@ -96,7 +96,7 @@ class DefaultText(str):
         value = getattr(getattr(design, record), field)
         if not isinstance(value, float):
             return format(str(value), spec)
-        allowed = design.RANGES.get(field) if record == "Constraints" else None
+        allowed = design.Constraints.ranges().get(field) if record == "Constraints" else None
         scale, unit = (allowed or design.Range()).display_unit
         return format(f"{scale * value:g} {unit}".rstrip(), spec)
 

@@ -12,7 +12,6 @@ if TYPE_CHECKING:
     from hydrostat.control.dynamixel_bus import GOAL, TICK, DynamixelBus
     from hydrostat.control.emulated_feetech import EmulatedLine
     from hydrostat.control.emulated_servos import EmulatedChain, EmulatedServo, LiveChain
-    from hydrostat.control.feetech_bus import FeetechBus
     from hydrostat.control.firmware_build import board_kind, build_images, check_ports, flash, flash_command, on_boards
     from hydrostat.control.guard import TensionGuard, not_judged
     from hydrostat.control.link import Link, SimulatedLink
@@ -39,7 +38,6 @@ __all__ = [
     "EmulatedChain",
     "EmulatedLine",
     "EmulatedServo",
-    "FeetechBus",
     "Key",
     "Link",
     "LinkLimits",

@@ -40,7 +40,7 @@ def arm_motors(
         InputError: no such port or calibration.
         HydrostatError: a motor is silent, or wrong.
     """
-    found = Calibration.emulated if port == EMULATED else Calibration.read
+    found = Calibration.emulate if port == EMULATED else Calibration.read
     calibration = found(folder, robot)
     bus = open_bus(port, robot, calibration, pulls)
     link = BusLink(bus, robot.winches, calibration, log=log)

@@ -191,7 +191,7 @@ class Calibration:
         )
 
     @staticmethod
-    def emulated(folder: Path | None, robot: Robot) -> "Calibration":
+    def emulate(folder: Path | None, robot: Robot) -> "Calibration":
         """Emulated motors: as calibrated, or as in motors.toml; without either they stand at 0.
 
         Raises:

@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from hydrostat.design.buildable import violations
     from hydrostat.design.built_error import built_errors, expected_error
     from hydrostat.design.cable_sides import assign_cable_sides
-    from hydrostat.design.constraints import RANGES, STEPPED, Constraints, Range
+    from hydrostat.design.constraints import Constraints, Range
     from hydrostat.design.constraints_file import cable_name, read_constraints, read_uncertainty
     from hydrostat.design.corrected_error import corrected_errors
     from hydrostat.design.craft import Craft, front
@@ -31,17 +31,7 @@ if TYPE_CHECKING:
     )
     from hydrostat.design.polyline import nearest_shares, turns
     from hydrostat.design.region import Region
-    from hydrostat.design.request import (
-        AUTO,
-        COUNTS,
-        KNOB_RANGES,
-        ROUTE_RANGES,
-        DesignMethod,
-        DesignRequest,
-        RouteOptions,
-        TreeKnobs,
-        TreeOptions,
-    )
+    from hydrostat.design.request import DesignMethod, DesignRequest, RouteOptions, TreeKnobs, TreeOptions
     from hydrostat.design.review_robot import review_robot
     from hydrostat.design.routes.finalists import kit_fits
     from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
@@ -56,12 +46,6 @@ if TYPE_CHECKING:
     from hydrostat.design.zone import Zone
 
 __all__ = [
-    "AUTO",
-    "COUNTS",
-    "KNOB_RANGES",
-    "RANGES",
-    "ROUTE_RANGES",
-    "STEPPED",
     "Activation",
     "Alternative",
     "BuildTolerances",

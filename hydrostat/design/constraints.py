@@ -3,12 +3,12 @@
 # Of the thesis (docs/thesis.md): R12, R14, R44, R53, E12
 
 import dataclasses
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property
 from math import inf, isfinite
 from numbers import Integral, Real
-from typing import Any, NoReturn
+from typing import Any, ClassVar, NoReturn
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from hydrostat.closed_set import make_member
 from hydrostat.design.zone import Zone, ZoneUnion
 from hydrostat.errors import InputError
 from hydrostat.ik import Limits
-from hydrostat.robot import LARGEST_STEP, Cable, Mount, Robot, Winch
+from hydrostat.robot import Cable, Mount, Robot, Winch
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -116,6 +116,9 @@ class Constraints:
         InputError: a value of the wrong kind or out of its range.
     """
 
+    STEPPED: ClassVar[float] = 2.0
+    """Spool ratio of a robot whose spools may differ."""
+
     winch_zones: tuple[Zone, ...] = ()
     keep_out: tuple[Zone, ...] = ()
     still: tuple[Zone, ...] = ()
@@ -137,7 +140,7 @@ class Constraints:
     release: float = _limit(0.0, _GAP, trees=True)
     spool_radius: float = _limit(0.006, _LENGTH, trees=True)
     slack: float = _limit(0.0, Range(most=1.0, unit="m"))
-    spool_ratio: float = _limit(1.0, Range(least=1.0, most=LARGEST_STEP))
+    spool_ratio: float = _limit(1.0, Range(least=1.0, most=Robot.LARGEST_STEP))
     two_way: bool = False
     leads: bool = _limit(True, trees=True)
     mirror: str | None = None
@@ -290,6 +293,11 @@ class Constraints:
                 if names.count(name) > 1:
                     raise InputError(f"constraints: {field}: name used twice ({name!r}). Name it once.")
 
+    @classmethod
+    def ranges(cls) -> Mapping[str, Range]:
+        """Return the allowed values of each number of the record, by the name of its field."""
+        return RANGES
+
 
 RANGES: dict[str, Range] = {one.name: allowed for one in fields(Constraints) if (allowed := one.metadata.get("range"))}
 """Allowed values of each number of `Constraints`."""
@@ -297,8 +305,6 @@ RANGES: dict[str, Range] = {one.name: allowed for one in fields(Constraints) if 
 ROUTES_ONLY = tuple(one.name for one in fields(Constraints) if not one.metadata.get("trees"))
 """Constraints that winch trees do not keep."""
 
-STEPPED = 2.0
-"""Spool ratio of a robot whose spools may differ."""
 
 _SIZES = 10.0  # lengths of constraints are at most so many sizes of the body
 _ASKEW = 0.02  # share of its width by which a body's two sides may lie unevenly about a mirror

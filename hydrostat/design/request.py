@@ -2,6 +2,7 @@
 
 # Of the thesis (docs/thesis.md): F1, E28, M8 to M10, R39, R40, R43, E23, E24, E21
 
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from enum import StrEnum
 from typing import Any, Self
@@ -81,6 +82,11 @@ class RouteOptions:
             if not allowed.holds(getattr(self, name)):
                 raise InputError(f"RouteOptions.{name} must be {allowed}, not {getattr(self, name)!r}")
 
+    @classmethod
+    def ranges(cls) -> Mapping[str, Range]:
+        """Return the allowed values of each number of the record, by the name of its field."""
+        return ROUTE_RANGES
+
 
 SECONDS = Range(above=True, unit="s")
 """Allowed time of a search."""
@@ -110,6 +116,11 @@ class TreeKnobs:
     distance: float = 1.5  # largest gap between two fibres that are joined, in mean mesh edges (R40)
     steps: int = 12  # most fibres joined to one route (R40)
     phi: float = 0.5  # weight of the mean against the spread in the score (R43)
+
+    @classmethod
+    def ranges(cls) -> Mapping[str, Range]:
+        """Return the allowed values of each number of the record, by the name of its field."""
+        return KNOB_RANGES
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -317,6 +328,16 @@ class DesignRequest:
             raise InputError(
                 f'method "{self.method}" does not keep {", ".join(asked)}. Use method "routes", which does.'
             )
+
+    @property
+    def is_open(self) -> bool:
+        """True if the search chooses the number of winches."""
+        return self.winches == AUTO
+
+    @classmethod
+    def ranges(cls) -> Mapping[str, Range]:
+        """Return the allowed numbers of winches and of cables, by the name of the field."""
+        return COUNTS
 
 
 _OPTIONS: dict[str, type[RouteOptions] | type[TreeOptions]] = {

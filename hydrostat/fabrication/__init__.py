@@ -29,14 +29,10 @@ if TYPE_CHECKING:
     from hydrostat.fabrication.parts.winch_unit import unit_room
     from hydrostat.fabrication.patches.skin_mesh import skin_of_surface
     from hydrostat.fabrication.patches.space_pattern import Sewing, find_sewing, sewing_of, space_pattern
-    from hydrostat.fabrication.patterns.marks import winch_marks
     from hydrostat.fabrication.patterns.pattern import plush_pattern
-    from hydrostat.fabrication.patterns.shape import Circle, PatternPart
     from hydrostat.fabrication.refusals import find_motor, find_refusals
-    from hydrostat.fabrication.sheets.solid_pictures import drawn_solid
     from hydrostat.fabrication.sheets.tiles import PAPERS
-    from hydrostat.fabrication.solids.construct import Box, Cuboid, Cylinder, sides_text, solid_of
-    from hydrostat.fabrication.solids.printed import Printed
+    from hydrostat.fabrication.solids.construct import Cuboid, sides_text
     from hydrostat.fabrication.weak_lines import find_weak_lines
     from hydrostat.fabrication.winch_marks import winch_marks_of
 
@@ -49,11 +45,8 @@ __all__ = [
     "STUFFINGS",
     "TOUCHES",
     "BoardKind",
-    "Box",
     "Check",
-    "Circle",
     "Cuboid",
-    "Cylinder",
     "Demand",
     "Kit",
     "KitOptions",
@@ -64,9 +57,7 @@ __all__ = [
     "Paper",
     "PartOptions",
     "PatternOptions",
-    "PatternPart",
     "PocketRoom",
-    "Printed",
     "Sewing",
     "UnbuildableError",
     "UnitBox",
@@ -74,7 +65,6 @@ __all__ = [
     "build_kit",
     "control_needs",
     "depth_table",
-    "drawn_solid",
     "find_motor",
     "find_refusals",
     "find_sewing",
@@ -87,11 +77,9 @@ __all__ = [
     "shaft_torques",
     "sides_text",
     "skin_of_surface",
-    "solid_of",
     "space_pattern",
     "unit_room",
     "ways_to_lie",
-    "winch_marks",
     "winch_marks_of",
     "write_files",
     "write_kit",

@@ -7,14 +7,12 @@ from hydrostat.lazy import open_package
 if TYPE_CHECKING:
     from hydrostat.identification.fit import FittedModel, fit_model
     from hydrostat.identification.identified_robot import IdentifiedRobot, identify
-    from hydrostat.identification.kinds import KINDS
     from hydrostat.identification.measurements import Measurements, rms
     from hydrostat.identification.model import IdentificationModel, Parameter
     from hydrostat.identification.read import read_measurements
     from hydrostat.identification.suggest_measurements import suggest_measurements
 
 __all__ = [
-    "KINDS",
     "FittedModel",
     "IdentificationModel",
     "IdentifiedRobot",

@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from hydrostat.learning.export import check_export, export_samples
     from hydrostat.learning.learn_model import correct_model, learn_model
     from hydrostat.learning.learn_options import LearnOptions
-    from hydrostat.learning.learned_model import LearnedModel, LearnedPose
+    from hydrostat.learning.learned_model import LearnedModel
     from hydrostat.learning.model_card import ModelCard
     from hydrostat.learning.perceptrons import Perceptrons
     from hydrostat.learning.portable_policy import PortablePolicy
@@ -32,7 +32,6 @@ __all__ = [
     "LEAST",
     "LearnOptions",
     "LearnedModel",
-    "LearnedPose",
     "ModelCard",
     "Perceptrons",
     "PortablePolicy",

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from hydrostat.plot.photo_overlay import draw_photo_overlay
     from hydrostat.plot.picture_file import drawing, inline_svg, save_png
     from hydrostat.plot.report import write_report
-    from hydrostat.plot.report_tables import cable_table, table
+    from hydrostat.plot.report_tables import cable_table
     from hydrostat.plot.robot_figures import (
         draw_network,
         draw_portrait,
@@ -83,7 +83,6 @@ __all__ = [
     "save_mp4",
     "save_png",
     "short_number",
-    "table",
     "trajectory_frames",
     "upright",
     "write_calibration_page",

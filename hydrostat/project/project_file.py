@@ -10,7 +10,7 @@ from pydantic import ConfigDict, ValidationError, create_model
 
 from hydrostat import units
 from hydrostat.control import Timeline
-from hydrostat.design import STEPPED, Constraints, RouteOptions, TreeKnobs
+from hydrostat.design import Constraints, RouteOptions, TreeKnobs
 from hydrostat.errors import InputError
 from hydrostat.files import read_stranger, replace_file
 from hydrostat.project.wishes import ELSEWHERE, Wishes
@@ -55,7 +55,7 @@ def write_project_file(folder: Path, timeline: Timeline, wishes: Wishes) -> None
     """Write keyframes and wishes whole or not at all (InputError: the file cannot be written)."""
     usual = Wishes()
     ratio = wishes.constraints.spool_ratio
-    special = None if ratio in (1.0, STEPPED) else ratio
+    special = None if ratio in (1.0, Constraints.STEPPED) else ratio
     table = _TABLE(**{name: wishes.value(name) for name in (*KEYS, *MORE)}, spool_ratio=special)
     left_out = {name for name in MORE if wishes.value(name) == usual.value(name)}
     left_out |= {"spool_ratio"} if special is None else set()

@@ -7,11 +7,6 @@ from typing import Any
 
 from hydrostat.closed_set import make_member
 from hydrostat.design import (
-    COUNTS,
-    KNOB_RANGES,
-    RANGES,
-    ROUTE_RANGES,
-    STEPPED,
     Constraints,
     DesignMethod,
     DesignRequest,
@@ -58,10 +53,12 @@ class Wishes:
 
     def __post_init__(self) -> None:
         make_member(self, "method", DesignMethod)
-        if self.winches != 0 and not COUNTS["winches"].holds(self.winches):
-            raise InputError(f"winches must be {COUNTS['winches']}, or 0 for as few as will do, not {self.winches}")
-        if not COUNTS["cables"].holds(self.cables):
-            raise InputError(f"cables must be {COUNTS['cables']}, not {self.cables}")
+        if self.winches != 0 and not DesignRequest.ranges()["winches"].holds(self.winches):
+            raise InputError(
+                f"winches must be {DesignRequest.ranges()['winches']}, or 0 for as few as will do, not {self.winches}"
+            )
+        if not DesignRequest.ranges()["cables"].holds(self.cables):
+            raise InputError(f"cables must be {DesignRequest.ranges()['cables']}, not {self.cables}")
 
     @classmethod
     def of(cls, **values: Any) -> "Wishes":
@@ -73,7 +70,7 @@ class Wishes:
         changes: dict[str, dict[str, Any]] = {"": {}}
         for name, value in values.items():
             _check(name, value)
-            key, told = ("spool_ratio", STEPPED if value else 1.0) if name == "stepped" else (name, value)
+            key, told = ("spool_ratio", Constraints.STEPPED if value else 1.0) if name == "stepped" else (name, value)
             changes.setdefault(_record(key), {})[key] = told
         own = changes.pop("")
         return replace(self, **own, **{part: replace(getattr(self, part), **new) for part, new in changes.items()})
@@ -123,7 +120,11 @@ ELSEWHERE = (*Paint, "locked_winches", "locked_cables", "spool_ratio")
 """Fields of `Constraints` that are wished by other names: as `zones`, `kept_winches`, `kept_cables` and "stepped"."""
 
 
-WISH_RANGES = {**RANGES, **{name: ROUTE_RANGES[name] for name in OPTIONS}, **KNOB_RANGES}
+WISH_RANGES = {
+    **Constraints.ranges(),
+    **{name: RouteOptions.ranges()[name] for name in OPTIONS},
+    **TreeKnobs.ranges(),
+}
 """Allowed values of the numbers in the records of `Wishes`."""
 
 
@@ -131,7 +132,7 @@ def _record(name: str) -> str:
     """Field of `Wishes` that holds the record with a value; "" for its own values."""
     if name in OWN:
         return ""
-    return "knobs" if name in KNOB_RANGES else "options" if name in OPTIONS else "constraints"
+    return "knobs" if name in TreeKnobs.ranges() else "options" if name in OPTIONS else "constraints"
 
 
 def _check(name: str, value: Any) -> None:

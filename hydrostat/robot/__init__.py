@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from hydrostat.robot.cable_side import Face
     from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape, closed_mesh
     from hydrostat.robot.element_kind import ElementKind, Plane, Volume
-    from hydrostat.robot.gravity import DIRECTIONS, STANDARD_GRAVITY, direction_of, gravity_along
+    from hydrostat.robot.gravity import DIRECTIONS, direction_of, gravity_along
     from hydrostat.robot.inflated import describe_cable_side, inflated_robot, sewn_robot, sewn_sides
     from hydrostat.robot.load import Load
     from hydrostat.robot.marker import Marker, Pin, PoseTarget
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from hydrostat.robot.pin_drive import PinDrive
     from hydrostat.robot.read import FILE, GALLERY, RobotReader, gallery_folder, is_of_gallery, list_gallery, load_robot
     from hydrostat.robot.risks import SEWN_DEPTH, find_risks, limit_travels
-    from hydrostat.robot.risks.body_risks import LEAST_ACROSS, LOCKING
-    from hydrostat.robot.robot import LARGEST_STEP, Robot
+    from hydrostat.robot.risks.body_risks import LEAST_ACROSS
+    from hydrostat.robot.robot import Robot
     from hydrostat.robot.rod import Rod
     from hydrostat.robot.scaled import scaled_robot
     from hydrostat.robot.sketch import sketch_robot
@@ -39,12 +39,9 @@ __all__ = [
     "FOAMS",
     "FOAM_POISSON_LIMIT",
     "GALLERY",
-    "LARGEST_STEP",
     "LEAST_ACROSS",
-    "LOCKING",
     "MATERIALS",
     "SEWN_DEPTH",
-    "STANDARD_GRAVITY",
     "Body",
     "BodyPart",
     "Cable",

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Self, TypeVar
+from typing import ClassVar, Self, TypeVar
 
 import numpy as np
 
@@ -28,9 +28,6 @@ from hydrostat.robot.winch import Mount, Winch
 from hydrostat.units import plural
 
 _Part = TypeVar("_Part", Winch, Cable, Marker)
-
-LARGEST_STEP = 4.0
-"""The spool of a cable is at most so many times larger or smaller than its winch's: more is no step on one shaft."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,6 +71,7 @@ class Robot:
     obstacles: tuple[Obstacle, ...] = ()
     loads: tuple[Load, ...] = ()
     rods: tuple[Rod, ...] = ()
+    LARGEST_STEP: ClassVar[float] = 4.0  # the spools of cables on one shaft differ by at most so many times
 
     def __post_init__(self) -> None:
         self._check_kinds()
@@ -353,11 +351,11 @@ class Robot:
 
     def _check_spool(self, index: int, cable: Cable, winch: Winch) -> None:
         radius, usual = cable.spool_radius or winch.spool_radius, winch.spool_radius
-        if max(radius, usual) > (1 + 1e-9) * LARGEST_STEP * min(radius, usual):
+        if max(radius, usual) > (1 + 1e-9) * self.LARGEST_STEP * min(radius, usual):
             raise InputError(
-                f"cable[{index}].spool_radius must be from {self._text(usual / LARGEST_STEP)} to "
-                f"{self._text(usual * LARGEST_STEP)}, at most {LARGEST_STEP:g} times smaller or larger than that of "
-                f'winch "{winch.name}", not {self._text(radius)}'
+                f"cable[{index}].spool_radius must be from {self._text(usual / self.LARGEST_STEP)} to "
+                f"{self._text(usual * self.LARGEST_STEP)}, at most {self.LARGEST_STEP:g} times smaller or larger than "
+                f'that of winch "{winch.name}", not {self._text(radius)}'
             )
 
     def _check_inside(self, named: Sequence[tuple[str, Point]]) -> None:

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from hydrostat.simulation.simulation import Simulation
     from hydrostat.simulation.static_obstacles import require_static_obstacles, rests_at_first, without_contact_friction
     from hydrostat.simulation.statics.batch_result import BatchResult
-    from hydrostat.simulation.statics.history_equilibrium import find_history_equilibrium
     from hydrostat.simulation.statics.static_solver import StaticSolver, not_converged
     from hydrostat.simulation.strain import node_strains, node_stresses
     from hydrostat.simulation.time.dynamics import StepOptions
@@ -54,7 +53,6 @@ __all__ = [
     "filled_motion",
     "find_contacts",
     "find_equilibria",
-    "find_history_equilibrium",
     "friction_hysteresis",
     "is_filled_motion_fast",
     "largest_distance",

@@ -10,13 +10,12 @@ import gymnasium
 from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
-    from hydrostat.training.goal_env import GoalEnv, TaskOptions
-    from hydrostat.training.manipulation_env import ManipulationOptions
+    from hydrostat.training.goal_env import TaskOptions
     from hydrostat.training.manipulation_tasks import PushEnv, PushOptions, TwistEnv, TwistOptions
     from hydrostat.training.manipulation_world import ManipulationPhysics
     from hydrostat.training.portable import policy_of, portable_policy
     from hydrostat.training.reach_env import BEYOND, HysteresisEnv, ReachEnv, ReachOptions
-    from hydrostat.training.tasks import TASKS, task_of
+    from hydrostat.training.tasks import task_of
     from hydrostat.training.train import (
         CurvePoint,
         Listener,
@@ -29,19 +28,15 @@ if TYPE_CHECKING:
         train,
     )
     from hydrostat.training.walk_env import Gait, WalkEnv, WalkOptions
-    from hydrostat.training.worlds import MixedWorld, World
+
 
 __all__ = [
     "BEYOND",
-    "TASKS",
     "CurvePoint",
     "Gait",
-    "GoalEnv",
     "HysteresisEnv",
     "Listener",
-    "ManipulationOptions",
     "ManipulationPhysics",
-    "MixedWorld",
     "PushEnv",
     "PushOptions",
     "ReachEnv",
@@ -53,7 +48,6 @@ __all__ = [
     "TwistOptions",
     "WalkEnv",
     "WalkOptions",
-    "World",
     "begun_curve",
     "held_out_goals",
     "judge",

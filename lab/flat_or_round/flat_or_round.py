@@ -27,7 +27,7 @@ import numpy as np  # isort: skip
 
 from hydrostat.ik import Limits, solve_ik
 from hydrostat.mechanics import Energy
-from hydrostat.robot import STANDARD_GRAVITY, Face, PoseTarget, inflated_robot
+from hydrostat.robot import Face, PoseTarget, gravity_along, inflated_robot
 from hydrostat.simulation import Equilibrium, Simulation, filled_motion
 
 EVERY = ("starfish", "robot", "pig", "letter_e", "letter_s", "puppy", "squid")
@@ -86,7 +86,7 @@ def table_rows(name: str, element_size: float | None) -> Iterator[str]:
     robot = body_robot(name)
     pulled = [solve_ik(Simulation(robot), pose).pose.contractions for pose in robot.poses.values()]
     for face, lies in ((Face.FRONT, "up"), (Face.BACK, "down"), (Face.PAIRS, "both")):
-        solid = replace(inflated_robot(robot, face, element_size=element_size), gravity=(0.0, 0.0, -STANDARD_GRAVITY))
+        solid = replace(inflated_robot(robot, face, element_size=element_size), gravity=gravity_along("-z", 3))
         mesh = solid.body.mesh
         table = Table(len(mesh.nodes), float(mesh.nodes[:, 2].min()), STIFF)
         air, lying = ([Simulation(solid, energies=more).solve(each) for each in pulled] for more in ((), (table,)))

@@ -74,8 +74,8 @@ def test_emulated_motors_keep_a_file_of_their_own(copy: Path) -> None:
     def at(zero: float) -> Calibration:
         return Calibration(tuple(replace(motor, zero=zero) for motor in usual.motors))
 
-    assert Calibration.emulated(None, robot) == Calibration.emulated(copy, robot) == at(0.0)
+    assert Calibration.emulate(None, robot) == Calibration.emulate(copy, robot) == at(0.0)
     at(1.0).write(copy)
-    assert Calibration.emulated(copy, robot) == at(1.0), "as real ones, until they are calibrated themselves"
+    assert Calibration.emulate(copy, robot) == at(1.0), "as real ones, until they are calibrated themselves"
     at(2.0).write(copy, name=EMULATED_CALIBRATION)
-    assert (Calibration.read(copy, robot), Calibration.emulated(copy, robot)) == (at(1.0), at(2.0))
+    assert (Calibration.read(copy, robot), Calibration.emulate(copy, robot)) == (at(1.0), at(2.0))

@@ -20,7 +20,8 @@ time.sleep = lambda seconds: _sleep(seconds * SLOW)
 from emulation import NAMES, RADIUS  # noqa: E402
 
 from hydrostat.cli import one_interrupt  # noqa: E402
-from hydrostat.control import BusLink, Calibration, DynamixelBus, FeetechBus, Motors, Player, Port, WinchMotor  # noqa: E402
+from hydrostat.control import BusLink, Calibration, DynamixelBus, Motors, Player, Port, WinchMotor  # noqa: E402
+from hydrostat.control.feetech_bus import FeetechBus  # noqa: E402
 from hydrostat.errors import HydrostatError  # noqa: E402
 from hydrostat.robot import Winch  # noqa: E402
 from hydrostat.simulation import ContractionProfile  # noqa: E402

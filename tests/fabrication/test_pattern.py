@@ -6,9 +6,9 @@ import shapely
 from plush_robots import HOLED, SQUARE, crossed, disc_path, drawn_body, plush_robot
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication import Circle, PatternOptions, PatternPart, plush_pattern
+from hydrostat.fabrication import PatternOptions, plush_pattern
 from hydrostat.fabrication.kit_options import Corner
-from hydrostat.fabrication.patterns.shape import LaserLine, Layer, Panel
+from hydrostat.fabrication.patterns.shape import Circle, LaserLine, Layer, Panel, PatternPart
 from hydrostat.geometry import Mesh
 from hydrostat.robot import MATERIALS, Body, Cable, Mount, Pin, Robot, Source
 

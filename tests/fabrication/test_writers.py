@@ -11,9 +11,10 @@ import pytest
 from plush_robots import SQUARE, crossed, drawn_body, plush_robot
 from read_back import Seen, see_dxf, see_svg
 
-from hydrostat.fabrication import PatternPart, plush_pattern
+from hydrostat.fabrication import plush_pattern
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.pattern import Pattern
+from hydrostat.fabrication.patterns.shape import PatternPart
 from hydrostat.fabrication.patterns.svg_writer import pattern_svg
 from hydrostat.robot import Robot
 

@@ -8,14 +8,8 @@ import pytest
 from builders import box_mesh, mesh_body, strip_mesh
 
 from hydrostat.errors import InputError
-from hydrostat.identification import (
-    KINDS,
-    Measurements,
-    fit_model,
-    identify,
-    read_measurements,
-)
-from hydrostat.identification.kinds import named_model
+from hydrostat.identification import Measurements, fit_model, identify, read_measurements
+from hydrostat.identification.kinds import KINDS, named_model
 from hydrostat.identification.marker_predictor import MarkerPredictor
 from hydrostat.robot import Cable, Load, Marker, Mount, Pin, Robot, Rod, Winch
 from hydrostat.simulation import Simulation

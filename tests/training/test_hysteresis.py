@@ -14,7 +14,8 @@ from hydrostat.simulation import Equilibrium, Simulation
 
 gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed")
 
-from hydrostat.training import HysteresisEnv, ReachEnv, ReachOptions, TaskOptions, held_out_goals, judge  # noqa: E402
+from hydrostat.training import ReachEnv, ReachOptions, TaskOptions, held_out_goals, judge  # noqa: E402
+from hydrostat.training.reach_env import HysteresisEnv  # noqa: E402
 
 MU = 0.3
 

@@ -14,7 +14,6 @@ from hydrostat.robot import Contact, Obstacle, Pin, Robot
 gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed")
 
 from hydrostat.training import (  # noqa: E402
-    ManipulationOptions,
     ManipulationPhysics,
     PushEnv,
     PushOptions,
@@ -24,6 +23,7 @@ from hydrostat.training import (  # noqa: E402
     held_out_goals,
     judge,
 )
+from hydrostat.training.manipulation_env import ManipulationOptions  # noqa: E402
 from hydrostat.training.manipulation_world import ManipulationWorld  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures("unchecked")

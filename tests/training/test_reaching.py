@@ -21,19 +21,17 @@ from hydrostat.arrays import Vector  # noqa: E402
 from hydrostat.training import (  # noqa: E402
     CurvePoint,
     Listener,
-    MixedWorld,
     ReachEnv,
     ReachOptions,
     TrainMethod,
     TrainOptions,
-    World,
     held_out_goals,
     judge,
     policy_of,
     portable_policy,
     train,
 )
-from hydrostat.training.worlds import ExactWorld, LearnedWorld  # noqa: E402
+from hydrostat.training.worlds import ExactWorld, LearnedWorld, MixedWorld, World  # noqa: E402
 
 Goals = list[dict[str, Any]]
 

@@ -16,9 +16,13 @@ from hydrostat.simulation import Simulation, StepOptions
 
 gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed")
 
-from hydrostat.training import TaskOptions, WalkEnv, WalkOptions, held_out_goals, judge  # noqa: E402
+from hydrostat.training import TaskOptions, WalkOptions, held_out_goals, judge  # noqa: E402
 from hydrostat.training.ground import standing, tilt, with_friction  # noqa: E402
-from hydrostat.training.walk_env import Gait, GaitClock  # noqa: E402
+from hydrostat.training.walk_env import (  # noqa: E402
+    Gait,
+    GaitClock,
+    WalkEnv,
+)
 
 LENGTH, HEIGHT = 0.16, 0.04
 CONTRACTIONS = WalkOptions(actions="contractions", steps=2)

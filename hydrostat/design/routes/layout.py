@@ -8,7 +8,7 @@ import numpy as np
 
 from hydrostat.arrays import Bool, Float, Int, Points, Vector
 from hydrostat.design.constraints import Constraints
-from hydrostat.robot import LARGEST_STEP, Cable, Mount, Robot, Winch
+from hydrostat.robot import Cable, Mount, Robot, Winch
 
 
 @dataclass(frozen=True, eq=False)
@@ -286,7 +286,7 @@ def _follow(full: np.ndarray, drop: np.ndarray, rows: slice, twin: slice, flip: 
 
 def _clip_ratio(ratio: float, *, way: float) -> float:
     """A spool ratio that can be made, of the same sign as `way`."""
-    size = float(np.clip(ratio if way > 0 else -ratio, 1 / LARGEST_STEP, LARGEST_STEP))
+    size = float(np.clip(ratio if way > 0 else -ratio, 1 / Robot.LARGEST_STEP, Robot.LARGEST_STEP))
     return size if way > 0 else -size
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from hydrostat.design import KNOB_RANGES, DesignRequest, RouteOptions
+from hydrostat.design import DesignRequest, RouteOptions, TreeKnobs
 from hydrostat.drawing import Color
 from hydrostat.errors import InputError
 from hydrostat.project import Paint, Wishes
@@ -44,7 +44,7 @@ TITLE = "Designing cables"
 
 MODULE = "hydrostat.studio.designing.design_work"
 
-LIVE = frozenset({"method", "winches", "cables", *KNOB_RANGES})
+LIVE = frozenset({"method", "winches", "cables", *TreeKnobs.ranges()})
 """Wishes that act immediately where the thesis's search is chosen."""
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from hydrostat.design import AUTO, Craft, DesignMethod, DesignRequest, RouteOptions, assign_cable_sides
+from hydrostat.design import Craft, DesignMethod, DesignRequest, RouteOptions, assign_cable_sides
 from hydrostat.project import Wishes
 from hydrostat.robot import PoseTarget, Robot
 from hydrostat.studio.designing.design_work import BestSoFar
@@ -19,7 +19,7 @@ def wished_request(robot: Robot, wishes: Wishes, options: RouteOptions | None = 
     """
     request = DesignRequest(
         poses=wishes.to_poses(robot),
-        winches=wishes.winches or AUTO,
+        winches=wishes.winches or "auto",
         cables=wishes.cables,
         constraints=wishes.to_constraints(robot),
         method=DesignMethod.CHANG2018 if wishes.method.grows_trees else wishes.method,
@@ -75,7 +75,7 @@ def share_done(request: DesignRequest, stage: str, done: int, total: int) -> flo
 
     The stages of a search whose number of winches is open repeat.
     """
-    if request.winches == AUTO or (stage == "Growing networks" and not done):
+    if request.is_open or (stage == "Growing networks" and not done):
         return None
     start, end = SHARES.get(stage, (0.0, 0.0))
     return start + (end - start) * min(done / total if total else 0.0, 1.0) if end else None

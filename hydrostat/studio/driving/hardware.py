@@ -103,7 +103,7 @@ class Hardware:
         if not robot.winches:
             raise InputError("this robot has no winches. Press Design to find some")
         if port == EMULATED:
-            calibration = Calibration.emulated(folder, robot)
+            calibration = Calibration.emulate(folder, robot)
         elif folder is None:
             raise InputError(f"save the robot first. {CALIBRATION} next to robot.toml assigns motors to winches")
         else:

@@ -6,11 +6,12 @@ import pytest
 from plush_robots import crossed
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication import PatternOptions, PatternPart, plush_pattern
+from hydrostat.fabrication import PatternOptions, plush_pattern
 from hydrostat.fabrication.checks.pattern_checks import pattern_checks
 from hydrostat.fabrication.kit import Check
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.pattern import Pattern
+from hydrostat.fabrication.patterns.shape import PatternPart
 from hydrostat.fabrication.patterns.svg_writer import pattern_svg
 
 

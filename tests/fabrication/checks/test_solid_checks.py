@@ -6,10 +6,11 @@ import numpy as np
 from manifold3d import Manifold
 from plush_robots import crossed
 
-from hydrostat.fabrication import MOTORS, PartOptions, Printed
+from hydrostat.fabrication import MOTORS, PartOptions
 from hydrostat.fabrication.checks.solid_checks import solid_checks, spool_checks, too_large
 from hydrostat.fabrication.parts.winch_unit import WinchUnit, winch_units
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
+from hydrostat.fabrication.solids.printed import Printed
 
 CUBE = Manifold.cube((10.0, 20.0, 30.0))
 

@@ -11,10 +11,10 @@ from plush_robots import HOLED, SQUARE, crossed, disc_path, drawn_body, plush_ro
 from read_back import see_dxf, see_svg
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication import PatternOptions, PatternPart, plush_pattern
+from hydrostat.fabrication import PatternOptions, plush_pattern
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.pattern import Pattern, stuffed_thickness
-from hydrostat.fabrication.patterns.shape import Panel
+from hydrostat.fabrication.patterns.shape import Panel, PatternPart
 from hydrostat.fabrication.patterns.skin import find_notches, flat_skin
 from hydrostat.fabrication.patterns.svg_writer import pattern_svg
 from hydrostat.geometry import Mesh

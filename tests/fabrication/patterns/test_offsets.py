@@ -8,8 +8,8 @@ import shapely
 from plush_robots import disc_path, drawn_body, plush_robot
 from scipy.spatial import cKDTree
 
-from hydrostat.fabrication import PatternOptions, PatternPart, plush_pattern
-from hydrostat.fabrication.patterns.shape import Panel
+from hydrostat.fabrication import PatternOptions, plush_pattern
+from hydrostat.fabrication.patterns.shape import Panel, PatternPart
 
 CONVEX = {
     "triangle": "M0 0H120L30 90Z",

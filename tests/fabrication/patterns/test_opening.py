@@ -3,10 +3,10 @@ import pytest
 import shapely
 from plush_robots import drawn_body, plush_robot
 
-from hydrostat.fabrication import PatternOptions, PatternPart, plush_pattern
+from hydrostat.fabrication import PatternOptions, plush_pattern
 from hydrostat.fabrication.patterns.opening import ZIPPERS
 from hydrostat.fabrication.patterns.pattern import Pattern
-from hydrostat.fabrication.patterns.shape import Layer
+from hydrostat.fabrication.patterns.shape import Layer, PatternPart
 from hydrostat.robot import Cable, Robot, Winch
 
 WIDE = "M0 0H290V120H0Z"

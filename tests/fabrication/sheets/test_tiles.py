@@ -15,10 +15,10 @@ from plush_robots import SQUARE, crossed, drawn_body, plush_robot
 from pypdf import PdfReader, PdfWriter, Transformation
 from scipy import ndimage
 
-from hydrostat.fabrication import Circle, PatternPart, plush_pattern
+from hydrostat.fabrication import plush_pattern
 from hydrostat.fabrication.kit_options import Paper
 from hydrostat.fabrication.patterns.pattern import Pattern
-from hydrostat.fabrication.patterns.shape import LaserLine, Layer
+from hydrostat.fabrication.patterns.shape import Circle, LaserLine, Layer, PatternPart
 from hydrostat.fabrication.sheets.tiles import Tile, tile_grid, tiled_pdf
 
 SIZES = {Paper.A4: (210.0, 297.0), Paper.LETTER: (215.9, 279.4)}

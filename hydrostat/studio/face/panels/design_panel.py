@@ -4,7 +4,7 @@ from functools import partial
 
 from nicegui import ui
 
-from hydrostat.design import AUTO, DesignMethod
+from hydrostat.design import DesignMethod
 from hydrostat.drawing import Color
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.designing.charts import front_chart, growth_chart
@@ -196,7 +196,7 @@ def _progress(page: WindowPage) -> None:
             share = told[run.began]
         told.clear()
         told[run.began] = share or 0.0
-        is_open = run.request.winches == AUTO
+        is_open = run.request.is_open
         bar.props(add="indeterminate" if is_open else "", remove="" if is_open else "indeterminate")
         bar.set_value(share or 0.0)
         stage.set_text("Finishing with the best so far" if state.stopping else _stage(state.stage, best))

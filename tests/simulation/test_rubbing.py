@@ -24,7 +24,8 @@ from hydrostat.mechanics import (
     minimize,
 )
 from hydrostat.robot import Contact
-from hydrostat.simulation import Simulation, find_contacts, find_history_equilibrium
+from hydrostat.simulation import Simulation, find_contacts
+from hydrostat.simulation.statics.history_equilibrium import find_history_equilibrium
 from hydrostat.testing import check_energy
 
 IDLE, FRICTION, YOUNG, PRESS = np.zeros(0), 0.4, 1e5, 1.4e-3

@@ -16,7 +16,8 @@ from scipy.sparse.linalg import splu
 
 from hydrostat.geometry import Mesh
 from hydrostat.mechanics import PATCH_SIZE, Assembly, Energy, NeoHookean, PatchVolume, grow_patches
-from hydrostat.robot import LOCKING, Cable, Pin, Robot, Volume, Winch
+from hydrostat.robot import Cable, Pin, Robot, Volume, Winch
+from hydrostat.robot.risks.body_risks import LOCKING
 from hydrostat.simulation import BodyPhysics, Simulation
 
 HEIGHT, LENGTH, OFFSET, THICKNESS = 0.02, 0.12, 0.005, 0.03

@@ -6,7 +6,8 @@ import pytest
 from builders import strip_robot
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication import Circle, winch_marks
+from hydrostat.fabrication.patterns.marks import winch_marks
+from hydrostat.fabrication.patterns.shape import Circle
 from hydrostat.plot import Stop, cable_table
 from hydrostat.robot import Robot, find_risks
 

@@ -7,9 +7,9 @@ import pytest
 import shapely
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication import PatternPart, plush_pattern
-from hydrostat.geometry.files.drawing_body import Inner
-from hydrostat.geometry.files.outline_file import read_drawing
+from hydrostat.fabrication import plush_pattern
+from hydrostat.fabrication.patterns.shape import PatternPart
+from hydrostat.geometry import Inner, read_drawing
 from hydrostat.ik import new_robot
 from hydrostat.robot import load_robot, save_robot, scaled_robot
 

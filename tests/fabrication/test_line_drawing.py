@@ -5,9 +5,9 @@ import pytest
 import shapely
 from manifold3d import Manifold
 
-from hydrostat.drawing.camera import Camera
-from hydrostat.drawing.line_drawing import line_drawing
-from hydrostat.fabrication import Box, Cylinder, drawn_solid, solid_of
+from hydrostat.drawing import Camera, line_drawing
+from hydrostat.fabrication.sheets.solid_pictures import drawn_solid
+from hydrostat.fabrication.solids.construct import Box, Cylinder, solid_of
 
 SIDE = 10.0
 
