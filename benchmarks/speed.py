@@ -220,9 +220,9 @@ def sample(count: int) -> float:
     """Samples of the hand with contact and Jacobians, a second; contractions up to full travel."""
     from benchmark_bodies import hand_robot
 
-    from hydrostat.learning import plan_samples, sample_shard
+    from hydrostat.learning import SamplePlan, sample_shard
 
-    plan = plan_samples(hand_robot(), count, contact=True, shard=count)
+    plan = SamplePlan.of_robot(hand_robot(), count, contact=True, shard=count)
     return count / cpu(lambda: sample_shard(plan, 0))[0]
 
 

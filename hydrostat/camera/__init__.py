@@ -6,7 +6,7 @@ from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
     from hydrostat.camera.measure_photos import PhotoMeasurements, PhotoOptions, measure_photos
-    from hydrostat.camera.photo import Photo, read_colors, read_photos
+    from hydrostat.camera.photo import Photo, read_colors
     from hydrostat.camera.print_tags import tags_pdf
     from hydrostat.camera.table_text import table_text
 
@@ -16,7 +16,6 @@ __all__ = [
     "PhotoOptions",
     "measure_photos",
     "read_colors",
-    "read_photos",
     "table_text",
     "tags_pdf",
 ]

@@ -61,24 +61,24 @@ class Photo:
         masses = sorted((name, mass) for name, mass in self.masses.items() if mass > 0)
         return (*(Load(name=f"measured {name}", marker=name, mass=mass) for name, mass in masses), *self.loads)
 
+    @staticmethod
+    def read_all(files: Sequence[Path], robot: Robot, table: Path | None = None) -> "list[Photo]":
+        """Photographs with contractions from their names, such as "left=12mm,right=0mm.jpg", or from a table.
 
-def read_photos(files: Sequence[Path], robot: Robot, table: Path | None = None) -> list[Photo]:
-    """Photographs with contractions from their names, such as "left=12mm,right=0mm.jpg", or from a table.
+        A name may also hold hung masses, such as "tip=100g", and end in a number in brackets, such as " (2)", for more
+        photographs of one pose.
 
-    A name may also hold hung masses, such as "tip=100g", and end in a number in brackets, such as " (2)", for more
-    photographs of one pose.
-
-    Raises:
-        InputError: a photograph without contractions, an unknown winch or marker, or a file that is named twice.
-    """
-    if not files:
-        raise InputError("no photographs. Name at least one file.")
-    names = [file.name for file in files]
-    if twice := [name for name in names if names.count(name) > 1]:
-        raise InputError(f"{twice[0]}: two photographs have this name. Rename one.")
-    if table is not None:
-        return _with_table(files, robot, table)
-    return [_with_name(file, robot) for file in files]
+        Raises:
+            InputError: a photograph without contractions, an unknown winch or marker, or a file that is named twice.
+        """
+        if not files:
+            raise InputError("no photographs. Name at least one file.")
+        names = [file.name for file in files]
+        if twice := [name for name in names if names.count(name) > 1]:
+            raise InputError(f"{twice[0]}: two photographs have this name. Rename one.")
+        if table is not None:
+            return _with_table(files, robot, table)
+        return [_with_name(file, robot) for file in files]
 
 
 def _with_name(file: Path, robot: Robot) -> Photo:

@@ -52,7 +52,7 @@ def animate(
 
     Example: hydrostat animate gallery:starfish --pose wave --out build/wave
     """
-    from hydrostat.plot import film, find_ffmpeg
+    from hydrostat.plot import Film, find_ffmpeg
 
     require_folder(out)
     formats = list(dict.fromkeys(format or (Format.GIF, Format.GLB)))
@@ -73,7 +73,7 @@ def animate(
         stops = _stops(simulation, name or list(loaded.poses), progress)
         ways = len(stops) + 1
         length = max(min(each_way * ways, usual), least_way * ways) if seconds is None else seconds
-        made = film(simulation, stops, seconds=length, progress=progress)
+        made = Film.of_stops(simulation, stops, seconds=length, progress=progress)
         with result_folder(out) as folder:
             files = [out / _write(simulation, made, folder, kind, width, progress).name for kind in formats]
     print(f"{plural(len(made.frames), 'frame')}, {length:g} s: rest, {', '.join(stop.name for stop in stops)}, rest")

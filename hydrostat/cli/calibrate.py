@@ -190,12 +190,12 @@ def _tell(
 ) -> None:
     """Compare with the model, in words and on a page."""
     from hydrostat.control import EMULATED
-    from hydrostat.plot import reach, write_calibration_page
+    from hydrostat.plot import write_calibration_page
 
     notes = []
     soft, hard = 0.5, 2.0  # cables that feel so much softer or stiffer than the model are told
     for taken, pull, constant in zip(found, model, constants.tolist(), strict=True):
-        wanted = pull.stiffness(reach(taken))
+        wanted = pull.stiffness(taken.reach)
         felt = wanted * taken.gain * constant / taken.motor.radius
         if felt < soft * wanted or felt > hard * wanted:
             notes.append(

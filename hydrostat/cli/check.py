@@ -91,10 +91,10 @@ def print_sewing(body: "Body") -> tuple[str, ...]:
 
     if not KitOptions().sews_skin(body):
         return ()
-    from hydrostat.fabrication import find_sewing
+    from hydrostat.fabrication import Sewing
 
     with patiently("flattening the skin, patch by patch ..."):
-        sewing = find_sewing(body)
+        sewing = Sewing.find(body)
     if not sewing.problems:
         print(f"skin: {sewing}")
     return sewing.problems

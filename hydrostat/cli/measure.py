@@ -73,10 +73,10 @@ def measure(
         print(f"Wrote {sheet}. Print it at 100 % (actual size).")
     if out is None:
         return
-    from hydrostat.camera import measure_photos, read_photos, table_text
+    from hydrostat.camera import Photo, measure_photos, table_text
     from hydrostat.files import replace_file
 
-    given = read_photos(photos or [], loaded, table)
+    given = Photo.read_all(photos or [], loaded, table)
     found = measure_photos(loaded, given, options)
     replace_file(out, table_text(loaded, found))
     print_photos(found)

@@ -171,7 +171,7 @@ class _Session:
             if asks and self._key(number) == "q":
                 return None
             try:
-                held = teleop.hold_still(self._hand, self.beat)
+                held = teleop.HeldStill.wait(self._hand, self.beat)
             except HydrostatError as error:
                 if not asks:
                     raise

@@ -200,7 +200,6 @@ def _begin(source: str, folder: Path, wish: "NewRobotWish", seconds: float) -> l
     if is_of_gallery(source):
         return _from_gallery(source, folder, wish)
     from hydrostat.files import replace_file
-    from hydrostat.ik import begin_robot
     from hydrostat.robot import save_robot
 
     wish = _asked_about_holes(source, wish, seconds)
@@ -208,7 +207,7 @@ def _begin(source: str, folder: Path, wish: "NewRobotWish", seconds: float) -> l
     def run(sketch: Callable[[], "BegunRobot"]) -> "BegunRobot":
         return run_bounded(sketch, file=source, words="healing and meshing the body ...", seconds=seconds)
 
-    begun = begin_robot(source, wish, run=run)
+    begun = wish.begin(source, run=run)
     save_robot(begun.robot, folder, text=_commented_text(begun.robot, Path(source).name))
     lines, sketch = list(begun.notes), begun.sketch
     if sketch is not None and not sketch.healing.clean:

@@ -58,7 +58,7 @@ def sample(
     Example: hydrostat sample gallery:starfish --count 200 --contact --out build/samples
     """
     from hydrostat.closed_set import parse_choice
-    from hydrostat.learning import Samples, SamplingScheme, check_export, export_samples, plan_samples, sample_robot
+    from hydrostat.learning import SamplePlan, Samples, SamplingScheme, check_export, export_samples, sample_robot
     from hydrostat.units import FORCE
 
     require_folder(out, shared=True)  # shards of one plan write side by side
@@ -68,7 +68,7 @@ def sample(
     draws = tuple(parse_choice(SamplingScheme, each.strip(), what="--draw") for each in draw.split(","))
     most = parse_optional("--tension", tension, FORCE)
     loaded = read_robot(robot)
-    plan = plan_samples(
+    plan = SamplePlan.of_robot(
         loaded, count, contact=contact, seed=seed, draws=draws, shard=file_size, nodes=nodes, tension=most
     )
     try:

@@ -81,6 +81,11 @@ class SlackCalibration:
     floor: float
     seconds: float
 
+    @property
+    def reach(self) -> float:
+        """Cable length that a winch reeled in beyond the edge, where its cable goes taut [m]."""
+        return max(float(self.places.max()), 1e-3)
+
 
 def find_cable_zeros(
     bus: Bus,

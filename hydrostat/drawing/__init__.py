@@ -9,9 +9,9 @@ if TYPE_CHECKING:
     from hydrostat.drawing.canvas import NAMESPACE, Box, Canvas, CanvasFrame, Html, Spot, number, path, shape, tag
     from hydrostat.drawing.creases import smooth_normals
     from hydrostat.drawing.depth import DepthBuffer, Polyline, level_rings
-    from hydrostat.drawing.line_drawing import DrawnSolid, LineDrawing, line_drawing
+    from hydrostat.drawing.line_drawing import DrawnSolid, LineDrawing
     from hydrostat.drawing.palette import Color
-    from hydrostat.drawing.render import CREASE, Render, render, silhouette
+    from hydrostat.drawing.render import CREASE, Render, render
 
 __all__ = [
     "CREASE",
@@ -30,12 +30,10 @@ __all__ = [
     "Spot",
     "Spots",
     "level_rings",
-    "line_drawing",
     "number",
     "path",
     "render",
     "shape",
-    "silhouette",
     "smooth_normals",
     "tag",
 ]

@@ -1,4 +1,4 @@
-"""`line_drawing`: solids as lines without hidden parts, with light grey on sides turned from the lamp."""
+"""`LineDrawing.of_solids`: solids as lines without hidden parts, with light grey on sides turned from the lamp."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -74,29 +74,31 @@ class LineDrawing:
         mask = (self.buffer.owner >= 0) & wanted[self.buffer.owner]
         return self.buffer.rings(gaussian_filter(mask.astype(float), 1.0), 0.5, tolerance=_SMOOTH)
 
+    @staticmethod
+    def of_solids(
+        solids: Sequence[DrawnSolid], camera: Camera, *, soft: float = 0.0, pixels: int = 1400
+    ) -> "LineDrawing":
+        """Draw solids as they are seen, each edge and rim only as far as nothing hides it.
 
-def line_drawing(solids: Sequence[DrawnSolid], camera: Camera, *, soft: float = 0.0, pixels: int = 1400) -> LineDrawing:
-    """Draw solids as they are seen, each edge and rim only as far as nothing hides it.
-
-    The light is blurred over a share of the picture (`soft`), for a body with dents. Pixels along the longer side tell
-    what is hidden; ten for a millimeter of paper are enough.
-    """
-    facets = [Facets.of(solid.vertices, solid.triangles, sharp=solid.sharp) for solid in solids]
-    spots = np.concatenate([camera.see(item.vertices)[item.triangles] for item in facets])
-    lights = np.concatenate([item.corners @ (camera.axes.T @ _LAMP) for item in facets])
-    buffer = DepthBuffer.of(spots, lights[..., None], pixels=pixels)
-    segments = np.concatenate([part for item in facets for part in (item.sharp_edges(), item.rims(camera.axes[2]))])
-    seen = camera.see(segments.reshape(-1, 3)).reshape(-1, 2, 3)
-    outlines, lines = _visible(seen, buffer)
-    return LineDrawing(
-        camera=camera,
-        outlines=outlines,
-        lines=lines,
-        tones=_tones(buffer, soft),
-        buffer=buffer,
-        solid_of=np.repeat(np.arange(len(facets)), [len(item.triangles) for item in facets]),
-        source=np.concatenate([item.source for item in facets]),
-    )
+        The light is blurred over a share of the picture (`soft`), for a body with dents. Pixels along the longer side
+        tell what is hidden; ten for a millimeter of paper are enough.
+        """
+        facets = [Facets.of(solid.vertices, solid.triangles, sharp=solid.sharp) for solid in solids]
+        spots = np.concatenate([camera.see(item.vertices)[item.triangles] for item in facets])
+        lights = np.concatenate([item.corners @ (camera.axes.T @ _LAMP) for item in facets])
+        buffer = DepthBuffer.of(spots, lights[..., None], pixels=pixels)
+        segments = np.concatenate([part for item in facets for part in (item.sharp_edges(), item.rims(camera.axes[2]))])
+        seen = camera.see(segments.reshape(-1, 3)).reshape(-1, 2, 3)
+        outlines, lines = _visible(seen, buffer)
+        return LineDrawing(
+            camera=camera,
+            outlines=outlines,
+            lines=lines,
+            tones=_tones(buffer, soft),
+            buffer=buffer,
+            solid_of=np.repeat(np.arange(len(facets)), [len(item.triangles) for item in facets]),
+            source=np.concatenate([item.source for item in facets]),
+        )
 
 
 def _visible(segments: Segments, buffer: DepthBuffer) -> tuple[tuple[Polyline, ...], tuple[Polyline, ...]]:

@@ -47,6 +47,14 @@ class Render:
         rings = [ring[:-1] for ring in self.buffer.rings(self.colors[..., 3], 0.5, tolerance=0.15)]
         return sorted(rings, key=lambda ring: float(np.prod(np.ptp(ring, axis=0))), reverse=True)
 
+    @staticmethod
+    def silhouette(spots: Spots, facets: Int[np.ndarray, "facets 3"], *, pixel: float) -> "Render":
+        """Render cover and depth as `render` does, faster; colors are not valid."""
+        samples, _ = _samples(spots[facets], np.empty((*facets.shape, 0)), pixel)
+        rows, columns = (count // FINER for count in samples.depth.shape)
+        cover = np.isfinite(samples.depth).reshape(rows, FINER, columns, FINER).mean(axis=(1, 3))
+        return Render(np.stack([cover] * 4, axis=2), samples.coarser(FINER))
+
 
 def render(
     spots: Spots,
@@ -87,14 +95,6 @@ def render(
     )
     shares = np.array([1.0, 0.5 * lines, 0.9])
     return Render(paint(samples.depth / fine, samples.shown, sky, look, _table(pale), inks, shares), buffer)
-
-
-def silhouette(spots: Spots, facets: Int[np.ndarray, "facets 3"], *, pixel: float) -> Render:
-    """Render cover and depth as `render` does, faster; colors are not valid."""
-    samples, _ = _samples(spots[facets], np.empty((*facets.shape, 0)), pixel)
-    rows, columns = (count // FINER for count in samples.depth.shape)
-    cover = np.isfinite(samples.depth).reshape(rows, FINER, columns, FINER).mean(axis=(1, 3))
-    return Render(np.stack([cover] * 4, axis=2), samples.coarser(FINER))
 
 
 def _samples(

@@ -25,10 +25,10 @@ if TYPE_CHECKING:
     from hydrostat.fabrication.moulds.mould import make_mold
     from hydrostat.fabrication.moulds.pocket_room import PocketRoom
     from hydrostat.fabrication.parts.motor import BOARDS, MOTORS, BoardKind, Motor, board_for
-    from hydrostat.fabrication.parts.places import GIVES, TOUCHES, UnitBox, seam_of, ways_to_lie
+    from hydrostat.fabrication.parts.places import GIVES, TOUCHES, UnitBox, seam_of
     from hydrostat.fabrication.parts.winch_unit import unit_room
     from hydrostat.fabrication.patches.skin_mesh import skin_of_surface
-    from hydrostat.fabrication.patches.space_pattern import Sewing, find_sewing, sewing_of, space_pattern
+    from hydrostat.fabrication.patches.space_pattern import Sewing, space_pattern
     from hydrostat.fabrication.patterns.pattern import plush_pattern
     from hydrostat.fabrication.refusals import find_motor, find_refusals
     from hydrostat.fabrication.sheets.tiles import PAPERS
@@ -67,19 +67,16 @@ __all__ = [
     "depth_table",
     "find_motor",
     "find_refusals",
-    "find_sewing",
     "find_weak_lines",
     "make_mold",
     "plush_pattern",
     "power_plan",
     "seam_of",
-    "sewing_of",
     "shaft_torques",
     "sides_text",
     "skin_of_surface",
     "space_pattern",
     "unit_room",
-    "ways_to_lie",
     "winch_marks_of",
     "write_files",
     "write_kit",

@@ -21,7 +21,6 @@ from hydrostat.robot import (
     load_robot,
     sketch_mesh,
     sketch_robot,
-    sketch_surface,
 )
 
 MESH_SUFFIXES = (".vtk", ".vtu", ".msh")
@@ -61,6 +60,31 @@ class NewRobotWish:
         for key in keys:
             if getattr(self, key) is not None:
                 raise InputError(f"{key}: {what}; leave it out")
+
+    def begin(
+        self, source: str | Path, *, run: "Callable[[Sketch], BegunRobot]" = lambda sketch: sketch()
+    ) -> "BegunRobot":
+        """Create a first robot, with notes; see `new_robot`.
+
+        `run` does the part that reads, heals and meshes what may be a stranger's file, perhaps within limits.
+        """
+        from hydrostat.geometry import OUTLINE_SUFFIXES, SURFACE_SUFFIXES
+
+        if is_of_gallery(source):
+            return BegunRobot(_of_gallery(source, self))
+        path = path_of(source, 'a robot begins from the path of a file, or "gallery:NAME"')
+        kinds = {OUTLINE_SUFFIXES: _of_drawing, SURFACE_SUFFIXES: _of_surface, MESH_SUFFIXES: _of_mesh}
+        for suffixes, make in kinds.items():
+            if path.suffix.lower() in suffixes:
+                if not path.is_file():
+                    raise InputError(f"{source}: there is no such file")
+                return _add_first_pose(run(lambda make=make: make(path, self)))
+        if path.is_dir():
+            raise InputError(f"{source}: is a folder; name a file, or copy the folder if it is a robot")
+        if path.suffix.lower() in CAD_SUFFIXES:
+            raise InputError(f"{source}: CAD files are not read; export it as STL or 3MF")
+        known = ", ".join(ending for suffixes in kinds for ending in suffixes)
+        raise InputError(f"{source}: cannot be read; a robot begins from gallery:NAME or a file that ends in {known}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,36 +126,10 @@ def new_robot(source: str | Path, **wished: Unpack[_Wished]) -> Robot:
     if unknown:
         known = ", ".join(NewRobotWish.__dataclass_fields__)
         raise InputError(f'unknown option "{sorted(unknown)[0]}". Allowed: {known}.')
-    return begin_robot(source, NewRobotWish(**wished)).robot
+    return NewRobotWish(**wished).begin(source).robot
 
 
 Sketch = Callable[[], BegunRobot]
-
-
-def begin_robot(
-    source: str | Path, wish: NewRobotWish, *, run: Callable[[Sketch], BegunRobot] = lambda sketch: sketch()
-) -> BegunRobot:
-    """Create a first robot, with notes; see `new_robot`.
-
-    `run` does the part that reads, heals and meshes what may be a stranger's file, perhaps within limits.
-    """
-    from hydrostat.geometry import OUTLINE_SUFFIXES, SURFACE_SUFFIXES
-
-    if is_of_gallery(source):
-        return BegunRobot(_of_gallery(source, wish))
-    path = path_of(source, 'a robot begins from the path of a file, or "gallery:NAME"')
-    kinds = {OUTLINE_SUFFIXES: _of_drawing, SURFACE_SUFFIXES: _of_surface, MESH_SUFFIXES: _of_mesh}
-    for suffixes, make in kinds.items():
-        if path.suffix.lower() in suffixes:
-            if not path.is_file():
-                raise InputError(f"{source}: there is no such file")
-            return _add_first_pose(run(lambda make=make: make(path, wish)))
-    if path.is_dir():
-        raise InputError(f"{source}: is a folder; name a file, or copy the folder if it is a robot")
-    if path.suffix.lower() in CAD_SUFFIXES:
-        raise InputError(f"{source}: CAD files are not read; export it as STL or 3MF")
-    known = ", ".join(ending for suffixes in kinds for ending in suffixes)
-    raise InputError(f"{source}: cannot be read; a robot begins from gallery:NAME or a file that ends in {known}")
 
 
 def _of_gallery(source: str, wish: NewRobotWish) -> Robot:
@@ -171,7 +169,7 @@ def _of_surface(path: Path, wish: NewRobotWish) -> BegunRobot:
 
 
 def _of_bytes(content: bytes, path: Path, wish: NewRobotWish, material: str, *, size: float | None) -> BegunRobot:
-    sketch = sketch_surface(
+    sketch = SurfaceSketch.of_scan(
         content,
         file=_file_name(path.name),
         name=_robot_name(path, wish),

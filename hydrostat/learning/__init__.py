@@ -12,15 +12,7 @@ if TYPE_CHECKING:
     from hydrostat.learning.model_card import ModelCard
     from hydrostat.learning.perceptrons import Perceptrons
     from hydrostat.learning.portable_policy import PortablePolicy
-    from hydrostat.learning.sample_plan import (
-        SamplePlan,
-        SamplingScheme,
-        antagonists,
-        contractions,
-        physics_hash,
-        plan_samples,
-        shared_numbers,
-    )
+    from hydrostat.learning.sample_plan import SamplePlan, SamplingScheme, antagonists, physics_hash, shared_numbers
     from hydrostat.learning.sample_robot import sample_robot
     from hydrostat.learning.sample_shard import sample_shard
     from hydrostat.learning.samples import Samples
@@ -42,14 +34,12 @@ __all__ = [
     "answer",
     "antagonists",
     "check_export",
-    "contractions",
     "correct_model",
     "exact_steps",
     "export_samples",
     "learn_model",
     "linear_map",
     "physics_hash",
-    "plan_samples",
     "sample_robot",
     "sample_shard",
     "shared_numbers",

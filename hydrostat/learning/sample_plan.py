@@ -28,26 +28,25 @@ class SamplingScheme(StrEnum):
     FACES = "faces"  # as box, but each winch is left at 0 in half of the samples
     TENSION = "tension"  # as box, let out until no cable pulls harder than allowed
 
+    def contractions(self, points: Points, low: Vector, high: Vector, pairs: Winches) -> Rows:
+        """Contractions [m] of points in the unit cube.
+
+        Args:
+            draw: distribution of the contractions.
+            points: (samples, dimensions).
+            low: least contraction of each winch [m].
+            high: largest [m].
+            pairs: winches that work against one another, two by two; those that have no partner alone.
+        """
+        if self is SamplingScheme.ANTAGONIST:
+            return _against(points, high, pairs)
+        box = low + points[:, : len(low)] * (high - low)
+        return np.where(points[:, len(low) :] < 0.5, box, 0.0) if self is SamplingScheme.FACES else box
+
 
 def dimensions(draw: SamplingScheme, pairs: Winches, winches: int) -> int:
     """Number of random numbers of a sample."""
     return {SamplingScheme.ANTAGONIST: len(pairs), SamplingScheme.FACES: 2 * winches}.get(draw, winches)
-
-
-def contractions(draw: SamplingScheme, points: Points, low: Vector, high: Vector, pairs: Winches) -> Rows:
-    """Contractions [m] of points in the unit cube.
-
-    Args:
-        draw: distribution of the contractions.
-        points: (samples, dimensions).
-        low: least contraction of each winch [m].
-        high: largest [m].
-        pairs: winches that work against one another, two by two; those that have no partner alone.
-    """
-    if draw is SamplingScheme.ANTAGONIST:
-        return _against(points, high, pairs)
-    box = low + points[:, : len(low)] * (high - low)
-    return np.where(points[:, len(low) :] < 0.5, box, 0.0) if draw is SamplingScheme.FACES else box
 
 
 def shared_numbers(rows: Rows, high: Vector, pairs: Winches) -> Points:
@@ -159,7 +158,7 @@ class SamplePlan:
             mine = [number for number in numbers if number % len(self.draws) == place]
             if mine:
                 points = self._points(place, mine[0] // len(self.draws), len(mine))
-                rows[np.array(mine) - numbers.start] = contractions(draw, points, low, high, self.pairs)
+                rows[np.array(mine) - numbers.start] = draw.contractions(points, low, high, self.pairs)
         return rows
 
     def _points(self, place: int, first: int, count: int) -> Float[np.ndarray, "samples dims"]:
@@ -193,46 +192,46 @@ class SamplePlan:
             "size": robot.body.mesh.size,
         }
 
+    @staticmethod
+    def of_robot(
+        robot: Robot,
+        count: int,
+        *,
+        contact: bool = False,
+        seed: int = 0,
+        draws: Sequence[SamplingScheme] = (SamplingScheme.BOX,),
+        shard: int = 64,
+        nodes: bool = False,
+        tension: float | None = None,
+    ) -> "SamplePlan":
+        """Plan samples of a robot; winches that work against one another are found by one pose of each.
 
-def plan_samples(
-    robot: Robot,
-    count: int,
-    *,
-    contact: bool = False,
-    seed: int = 0,
-    draws: Sequence[SamplingScheme] = (SamplingScheme.BOX,),
-    shard: int = 64,
-    nodes: bool = False,
-    tension: float | None = None,
-) -> SamplePlan:
-    """Plan samples of a robot; winches that work against one another are found by one pose of each.
+        Args:
+            robot: robot to sample.
+            count: number of samples.
+            contact: True for self-contact, also if the robot does not set it.
+            seed: random seed.
+            draws: ways in which contractions are drawn, one sample each in turn.
+            shard: samples in one file.
+            nodes: True if all nodes are kept.
+            tension: the most that a cable shall pull [N]; for `SamplingScheme.TENSION`.
 
-    Args:
-        robot: robot to sample.
-        count: number of samples.
-        contact: True for self-contact, also if the robot does not set it.
-        seed: random seed.
-        draws: ways in which contractions are drawn, one sample each in turn.
-        shard: samples in one file.
-        nodes: True if all nodes are kept.
-        tension: the most that a cable shall pull [N]; for `SamplingScheme.TENSION`.
-
-    Raises:
-        InputError: as for `SamplePlan`.
-    """
-    if contact and robot.contact is None:
-        robot = replace(robot, contact=Contact())
-    plan = SamplePlan(
-        robot=robot, count=count, seed=seed, draws=tuple(draws), shard=shard, nodes=nodes, tension=tension
-    )
-    if SamplingScheme.ANTAGONIST not in plan.draws:
-        return plan
-    simulation, winches = Simulation(robot), len(robot.winches)
-    travel = np.array([winch.travel for winch in robot.winches])
-    little = 0.2  # Share of its travel by which each winch shows where it moves the markers
-    rows = np.vstack([np.zeros(winches), little * np.diag(travel)])
-    markers = simulation.solve_batch(rows, jacobians=False, threads=1).markers.reshape(winches + 1, -1)
-    return replace(plan, pairs=antagonists(np.nan_to_num(markers[1:] - markers[0])))
+        Raises:
+            InputError: as for `SamplePlan`.
+        """
+        if contact and robot.contact is None:
+            robot = replace(robot, contact=Contact())
+        plan = SamplePlan(
+            robot=robot, count=count, seed=seed, draws=tuple(draws), shard=shard, nodes=nodes, tension=tension
+        )
+        if SamplingScheme.ANTAGONIST not in plan.draws:
+            return plan
+        simulation, winches = Simulation(robot), len(robot.winches)
+        travel = np.array([winch.travel for winch in robot.winches])
+        little = 0.2  # Share of its travel by which each winch shows where it moves the markers
+        rows = np.vstack([np.zeros(winches), little * np.diag(travel)])
+        markers = simulation.solve_batch(rows, jacobians=False, threads=1).markers.reshape(winches + 1, -1)
+        return replace(plan, pairs=antagonists(np.nan_to_num(markers[1:] - markers[0])))
 
 
 def physics_hash(robot: Robot) -> str:

@@ -8,10 +8,10 @@ if TYPE_CHECKING:
     from hydrostat.plot.activation_figures import draw_activation
     from hydrostat.plot.animation import WIDTHS, find_ffmpeg, save_gif, save_mp4
     from hydrostat.plot.branch_figure import draw_branches
-    from hydrostat.plot.calibration_page import reach, write_calibration_page
+    from hydrostat.plot.calibration_page import write_calibration_page
     from hydrostat.plot.chart import new_chart, plain_axes, short_number
     from hydrostat.plot.drawn_body import DrawnBody
-    from hydrostat.plot.film import Film, Stop, film, trajectory_frames, upright
+    from hydrostat.plot.film import Film, Stop, trajectory_frames, upright
     from hydrostat.plot.frame import Attachments, Frame
     from hydrostat.plot.frame_pictures import FramePictures, Picture
     from hydrostat.plot.grasp_figure import draw_pull, pull_frames
@@ -67,7 +67,6 @@ __all__ = [
     "draw_rest",
     "draw_trajectory",
     "drawing",
-    "film",
     "find_ffmpeg",
     "inline_svg",
     "new_chart",
@@ -75,7 +74,6 @@ __all__ = [
     "outer_points",
     "plain_axes",
     "pull_frames",
-    "reach",
     "reached_title",
     "robot_report",
     "save_gif",

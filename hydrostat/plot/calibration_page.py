@@ -41,7 +41,7 @@ def write_calibration_page(
     """
     rows, pictures = [], []
     for index, (each, wanted, constant) in enumerate(zip(found, model, constants.tolist(), strict=True)):
-        stiff = wanted.stiffness(reach(each))
+        stiff = wanted.stiffness(each.reach)
         felt = stiff * each.gain * constant / each.motor.radius
         rows.append(
             (
@@ -95,11 +95,6 @@ def _draw_spool(found: SpoolCurve) -> Figure:
     return figure
 
 
-def reach(found: SlackCalibration) -> float:
-    """Cable length that a winch reeled in beyond the edge, where its cable goes taut [m]."""
-    return max(float(found.places.max()), 1e-3)
-
-
 def _draw(found: SlackCalibration, model: WinchPull, constant: float) -> Figure:
     """Pull by cable taken in; current where the motor's constant is not known."""
     known = np.isfinite(constant)
@@ -111,6 +106,6 @@ def _draw(found: SlackCalibration, model: WinchPull, constant: float) -> Figure:
         MILLIMETERS * found.places, scale * (found.currents - found.floor), ".", color=Color.WINCHES[0], markersize=4
     )
     if known:
-        way = np.linspace(min(0.0, float(found.places.min())), reach(found), 40)
+        way = np.linspace(min(0.0, float(found.places.min())), found.reach, 40)
         axes.plot(MILLIMETERS * way, model.at(model.taut + way), color=Color.MUTED, linewidth=1.2)
     return figure

@@ -66,41 +66,41 @@ class Film:
     step: float  # time of a frame [s]
     missing: tuple[int, ...]  # numbers of the frames without an equilibrium; they show the one before
 
+    @staticmethod
+    def of_stops(
+        simulation: Simulation,
+        stops: Sequence[Stop],
+        *,
+        seconds: float,
+        step: float = 0.08,
+        progress: Progress | None = None,
+    ) -> "Film":
+        """The equilibria from rest through all stops and back to rest; it starts and stops gently.
 
-def film(
-    simulation: Simulation,
-    stops: Sequence[Stop],
-    *,
-    seconds: float,
-    step: float = 0.08,
-    progress: Progress | None = None,
-) -> Film:
-    """The equilibria from rest through all stops and back to rest; it starts and stops gently.
+        A frame that has no equilibrium, or in which an element would be inverted, shows the one before. The film takes
+        so many seconds, each frame about a step [s].
 
-    A frame that has no equilibrium, or in which an element would be inverted, shows the one before. The film takes so
-    many seconds, each frame about a step [s].
-
-    Raises:
-        InputError: no stop, or so little time that a way would have fewer than four frames.
-        NotConvergedError: the robot has no equilibrium at rest.
-    """
-    ways = len(stops) + 1
-    if not stops:
-        raise InputError("a film needs a stop to go to")
-    count = round(seconds / step)
-    fewest = 4  # frames from one stop to the next
-    if count < 1 + fewest * ways:
-        least = np.ceil(10 * (1 + fewest * ways) * step) / 10
-        raise InputError(f"{seconds:g} s are too short for {ways} ways; at least {least:g} s")
-    ends = 1 + np.round((count - 1) * np.arange(ways + 1) / ways).astype(int)
-    rest = simulation.solve({})
-    home = Stop(name="rest", contractions=rest.contractions, words="at rest")
-    shot = _Shot(simulation, rest, count, progress)
-    begin = home
-    for stop, frames in zip([*stops, home], np.diff(ends), strict=True):
-        shot.go(begin, stop, int(frames))
-        begin = stop
-    return Film(frames=tuple(shot.frames), step=seconds / count, missing=tuple(shot.missing))
+        Raises:
+            InputError: no stop, or so little time that a way would have fewer than four frames.
+            NotConvergedError: the robot has no equilibrium at rest.
+        """
+        ways = len(stops) + 1
+        if not stops:
+            raise InputError("a film needs a stop to go to")
+        count = round(seconds / step)
+        fewest = 4  # frames from one stop to the next
+        if count < 1 + fewest * ways:
+            least = np.ceil(10 * (1 + fewest * ways) * step) / 10
+            raise InputError(f"{seconds:g} s are too short for {ways} ways; at least {least:g} s")
+        ends = 1 + np.round((count - 1) * np.arange(ways + 1) / ways).astype(int)
+        rest = simulation.solve({})
+        home = Stop(name="rest", contractions=rest.contractions, words="at rest")
+        shot = _Shot(simulation, rest, count, progress)
+        begin = home
+        for stop, frames in zip([*stops, home], np.diff(ends), strict=True):
+            shot.go(begin, stop, int(frames))
+            begin = stop
+        return Film(frames=tuple(shot.frames), step=seconds / count, missing=tuple(shot.missing))
 
 
 class _Shot:

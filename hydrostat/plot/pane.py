@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 
 from hydrostat.arrays import Int, Nodes, Points, Vector
-from hydrostat.drawing import Camera, Color, Render, Spots, render, silhouette
+from hydrostat.drawing import Camera, Color, Render, Spots, render
 from hydrostat.plot.drawn_body import DrawnBody
 from hydrostat.plot.sheet import BODY, PictureSheet, Place, Places
 from hydrostat.plot.skin import FlatSkin
@@ -165,7 +165,7 @@ class SpacePane(Pane):
 
     def outline(self, sheet: PictureSheet, nodes: Nodes) -> list[Places]:
         spots = self.camera.see(MILLIMETERS * nodes)
-        image = silhouette(spots, self.robot.body.mesh.boundary, pixel=self._pixel(sheet, spots))
+        image = Render.silhouette(spots, self.robot.body.mesh.boundary, pixel=self._pixel(sheet, spots))
         return [ring + self.shift for ring in image.rings()]
 
     def draw_body(

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from hydrostat.robot.rod import Rod
     from hydrostat.robot.scaled import scaled_robot
     from hydrostat.robot.sketch import sketch_robot
-    from hydrostat.robot.sketch_space import SurfaceSketch, inflate_outline, sketch_mesh, sketch_surface
+    from hydrostat.robot.sketch_space import SurfaceSketch, inflate_outline, sketch_mesh
     from hydrostat.robot.tables_file import TablesFile
     from hydrostat.robot.winch import Mount, Winch
     from hydrostat.robot.write import robot_hash, robot_text, save_robot, with_values
@@ -94,7 +94,6 @@ __all__ = [
     "sewn_sides",
     "sketch_mesh",
     "sketch_robot",
-    "sketch_surface",
     "with_values",
 ]
 

@@ -29,63 +29,63 @@ class SurfaceSketch:
     before: Surface  # surface before healing
     healing: Healing  # report of the healing
 
+    @staticmethod
+    def of_scan(
+        content: bytes,
+        *,
+        file: str,
+        name: str,
+        size: float | None = None,
+        element_size: float | None = None,
+        nodes: int | None = None,
+        material: str = "flexfoam-it x",
+        tell: Callable[[str], None] | None = None,
+    ) -> "SurfaceSketch":
+        """Robot from the bytes of a scan or CAD model; coordinates count in mm if the file does not say.
 
-def sketch_surface(
-    content: bytes,
-    *,
-    file: str,
-    name: str,
-    size: float | None = None,
-    element_size: float | None = None,
-    nodes: int | None = None,
-    material: str = "flexfoam-it x",
-    tell: Callable[[str], None] | None = None,
-) -> SurfaceSketch:
-    """Robot from the bytes of a scan or CAD model; coordinates count in mm if the file does not say.
+        Args:
+            content: bytes of an STL, OBJ, PLY, OFF or 3MF file.
+            file: its name.
+            name: name of the robot.
+            size: longest side of the bounding box [m]; None: as the file says.
+            element_size: [m]; None: so that there are about as many nodes as asked for.
+            nodes: wanted; None: as many as the thesis's hand has; not used with an element size.
+            material: a name from the table.
+            tell: called with what is done next, such as "healing 12,000 triangles".
 
-    Args:
-        content: bytes of an STL, OBJ, PLY, OFF or 3MF file.
-        file: its name.
-        name: name of the robot.
-        size: longest side of the bounding box [m]; None: as the file says.
-        element_size: [m]; None: so that there are about as many nodes as asked for.
-        nodes: wanted; None: as many as the thesis's hand has; not used with an element size.
-        material: a name from the table.
-        tell: called with what is done next, such as "healing 12,000 triangles".
+        Raises:
+            InputError: the file is no body.
+        """
+        from hydrostat.geometry import read_surface, tetrahedralize, write_ply
 
-    Raises:
-        InputError: the file is no body.
-    """
-    from hydrostat.geometry import read_surface, tetrahedralize, write_ply
+        known, nodes = get_material(material), NODES if nodes is None else nodes
+        before = read_surface(content, name=file, size=size)
+        _check_scale(before.size, size)
+        told = tell or _silent
+        told(f"healing {len(before.triangles):,} triangles")
+        healing = heal(before, resolution=(element_size or _guess(before, nodes)) / 4)
+        closed, meshes = healing.surface, {}
 
-    known, nodes = get_material(material), NODES if nodes is None else nodes
-    before = read_surface(content, name=file, size=size)
-    _check_scale(before.size, size)
-    told = tell or _silent
-    told(f"healing {len(before.triangles):,} triangles")
-    healing = heal(before, resolution=(element_size or _guess(before, nodes)) / 4)
-    closed, meshes = healing.surface, {}
+        def fill(trial: float) -> Mesh:
+            told(f"filling it with elements of {1e3 * trial:.3g} mm" + f", try {len(meshes) + 1}" * bool(meshes))
+            meshes[trial] = tetrahedralize(closed, trial)
+            return meshes[trial]
 
-    def fill(trial: float) -> Mesh:
-        told(f"filling it with elements of {1e3 * trial:.3g} mm" + f", try {len(meshes) + 1}" * bool(meshes))
-        meshes[trial] = tetrahedralize(closed, trial)
-        return meshes[trial]
-
-    length = element_size or size_for(nodes, fill, content=closed.volume, rim=closed.area, dim=3)
-    if not healing.clean:
-        content, file, size = write_ply(closed), f"{PurePath(file).stem}_healed.ply", None
-    body = Body(
-        source=Source.SURFACE,
-        file=file,
-        content=content,
-        material=known,
-        size=size,
-        element_size=length,
-        mesh=meshes[length] if length in meshes else fill(length),
-        healing=healing,
-    )
-    told("finding ends, winches and cables")
-    return SurfaceSketch(_first_robot(body, name), before, healing)
+        length = element_size or size_for(nodes, fill, content=closed.volume, rim=closed.area, dim=3)
+        if not healing.clean:
+            content, file, size = write_ply(closed), f"{PurePath(file).stem}_healed.ply", None
+        body = Body(
+            source=Source.SURFACE,
+            file=file,
+            content=content,
+            material=known,
+            size=size,
+            element_size=length,
+            mesh=meshes[length] if length in meshes else fill(length),
+            healing=healing,
+        )
+        told("finding ends, winches and cables")
+        return SurfaceSketch(_first_robot(body, name), before, healing)
 
 
 def _silent(stage: str) -> None:
@@ -93,7 +93,7 @@ def _silent(stage: str) -> None:
 
 
 def inflate_outline(outline: Outline, height: float) -> bytes:
-    """Blow an outline up to a body so thick where it is thickest [m], as the bytes of a PLY file for `sketch_surface`.
+    """Inflate an outline to a body of this largest thickness [m]; return a PLY file for `SurfaceSketch.of_scan`.
 
     Raises:
         InputError: the height does not fit the outline, or that is too thin somewhere.

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from hydrostat.simulation.controls import Contractions, contraction_values
     from hydrostat.simulation.equilibrium import Equilibrium, check_pose, largest_distance
     from hydrostat.simulation.filled import filled_motion, is_filled_motion_fast
-    from hydrostat.simulation.find_contacts import ContactPatch, describe_contacts, find_contacts
+    from hydrostat.simulation.find_contacts import ContactPatch, find_contacts
     from hydrostat.simulation.marker_compliance import marker_compliance
     from hydrostat.simulation.motion_file import MotionTable, write_motion, write_pose
     from hydrostat.simulation.obstacle_frames import obstacle_forces, obstacles_in_pose, with_obstacles, with_replaced
@@ -49,7 +49,6 @@ __all__ = [
     "check_pose",
     "continue_branch",
     "contraction_values",
-    "describe_contacts",
     "filled_motion",
     "find_contacts",
     "find_equilibria",

@@ -30,6 +30,20 @@ class ContactPatch:
         """Magnitude of the contact force [N]."""
         return float(np.linalg.norm(self.force))
 
+    @staticmethod
+    def describe_all(found: "Sequence[ContactPatch]") -> str:
+        """Describe all contacts and their forces in one sentence; empty if nothing touches."""
+        parts = []
+        for name in dict.fromkeys(touch.obstacle for touch in found):
+            own = [touch for touch in found if touch.obstacle == name]
+            if name is None:
+                places = "in one place" if len(own) == 1 else f"in {len(own)} places, the hardest"
+                parts.append(f"itself {places} with {_newtons(own[0].strength)}")
+            else:
+                total = np.linalg.norm(np.sum([touch.force for touch in own], axis=0))
+                parts.append(f"{name!r} with {_newtons(float(total))}")
+        return f"the body touches {', '.join(parts)}" if parts else ""
+
 
 def find_contacts(simulation: Simulation, pose: Equilibrium) -> tuple[ContactPatch, ...]:
     """Find where a pose touches itself and obstacles, the hardest first; nothing where contact is off.
@@ -54,20 +68,6 @@ def find_contacts(simulation: Simulation, pose: Equilibrium) -> tuple[ContactPat
         if pressed is not None:
             found += [_touch(pressed, patch, names.get(slot)) for patch in _patches(pressed.stencils, len(where))]
     return tuple(sorted(found, key=lambda touch: -touch.strength))
-
-
-def describe_contacts(found: Sequence[ContactPatch]) -> str:
-    """Describe all contacts and their forces in one sentence; empty if nothing touches."""
-    parts = []
-    for name in dict.fromkeys(touch.obstacle for touch in found):
-        own = [touch for touch in found if touch.obstacle == name]
-        if name is None:
-            places = "in one place" if len(own) == 1 else f"in {len(own)} places, the hardest"
-            parts.append(f"itself {places} with {_newtons(own[0].strength)}")
-        else:
-            total = np.linalg.norm(np.sum([touch.force for touch in own], axis=0))
-            parts.append(f"{name!r} with {_newtons(float(total))}")
-    return f"the body touches {', '.join(parts)}" if parts else ""
 
 
 def _newtons(force: float) -> str:

@@ -5,7 +5,7 @@ from threading import Lock
 
 from hydrostat.design import Diagnostic, Severity
 from hydrostat.errors import InputError
-from hydrostat.fabrication import KitOptions, PatternOptions, Sewing, find_sewing
+from hydrostat.fabrication import KitOptions, PatternOptions, Sewing
 from hydrostat.robot import Body
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.jobs import Jobs, Report, Slots
@@ -108,7 +108,7 @@ class Skins:
 def lay_flat(report: Report, body: Body, pattern: PatternOptions) -> Sewing:
     """Find what sewing takes (InputError: a flat body)."""
     report.progress(TITLE, 0, 0)
-    return find_sewing(body, options=pattern)
+    return Sewing.find(body, options=pattern)
 
 
 def _is_of(skin: SewnSkin, body: Body, options: KitOptions) -> bool:

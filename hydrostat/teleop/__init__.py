@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from hydrostat.teleop.drive import DriveLoop, drive
     from hydrostat.teleop.hand_map import HandMap
     from hydrostat.teleop.keys import HELP
-    from hydrostat.teleop.lesson_poses import HeldStill, LessonPoses, go_there, hold_still
+    from hydrostat.teleop.lesson_poses import HeldStill, LessonPoses, go_there
     from hydrostat.teleop.mapped_hand import MappedHand, Smoothing
     from hydrostat.teleop.mimicry import Mimicry
     from hydrostat.teleop.open_source import EmulatedHand, open_hand, open_source
@@ -39,7 +39,6 @@ __all__ = [
     "WinchMapper",
     "drive",
     "go_there",
-    "hold_still",
     "open_hand",
     "open_source",
 ]

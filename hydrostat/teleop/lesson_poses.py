@@ -45,21 +45,24 @@ class HeldStill:
         still = 0.012
         return self.spread < still
 
+    @staticmethod
+    def wait(
+        hand: HandSource,
+        beat: Callable[[], object] = lambda: None,
+        *,
+        seconds: float = HOLD,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> "HeldStill":
+        """Average the readings of a hand for a while.
 
-def hold_still(
-    hand: HandSource,
-    beat: Callable[[], object] = lambda: None,
-    *,
-    seconds: float = HOLD,
-    clock: Callable[[], float] = time.monotonic,
-) -> HeldStill:
-    """Average the readings of a hand for a while; a beat after each keeps motors (HydrostatError: it is not heard)."""
-    end, told = clock() + seconds, [hand.read().values]
-    while clock() < end:
-        beat()
-        told.append(hand.read().values)
-    table = np.array(told)
-    return HeldStill(table.mean(0), float(table.std(0).max()), len(table))
+        A beat after each keeps motors (HydrostatError: it is not heard).
+        """
+        end, told = clock() + seconds, [hand.read().values]
+        while clock() < end:
+            beat()
+            told.append(hand.read().values)
+        table = np.array(told)
+        return HeldStill(table.mean(0), float(table.std(0).max()), len(table))
 
 
 def go_there(motors: Motors, contractions: Vector, beat: Callable[[], object]) -> None:

@@ -175,9 +175,9 @@ def flows(folder: Path) -> dict[str, Flow]:
         return hs.Simulation(hs.load_robot(folder)).solve({"left": 0.012})
 
     def mesh(content: bytes) -> object:
-        from hydrostat.robot import sketch_surface
+        from hydrostat.robot import SurfaceSketch
 
-        return sketch_surface(content, file="scan.stl", name="scan")
+        return SurfaceSketch.of_scan(content, file="scan.stl", name="scan")
 
     return {
         "drawing to pose": (lambda: starfish, pose_drawing),

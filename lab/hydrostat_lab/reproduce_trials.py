@@ -186,14 +186,7 @@ def _count_equilibria(name: str, pairs: int, known: int, usual: "_Trials") -> in
 
 def _networks(robot: "Robot", out: Path, file: Path | None, samples: int, jobs: int) -> "LearnedModel":
     """The model of a file, or one of samples in which one winch of each pair takes in."""
-    from hydrostat.learning import (
-        LearnedModel,
-        Samples,
-        SamplingScheme,
-        learn_model,
-        plan_samples,
-        sample_robot,
-    )
+    from hydrostat.learning import LearnedModel, SamplePlan, Samples, SamplingScheme, learn_model, sample_robot
 
     if file is not None:
         return LearnedModel.load(file)
@@ -201,7 +194,7 @@ def _networks(robot: "Robot", out: Path, file: Path | None, samples: int, jobs: 
     if not kept.exists():
         folder = out / f"{robot.name}-{SamplingScheme.ANTAGONIST}-train-{samples}"
         sample_robot(
-            plan_samples(robot, samples, draws=(SamplingScheme.ANTAGONIST,)),
+            SamplePlan.of_robot(robot, samples, draws=(SamplingScheme.ANTAGONIST,)),
             folder,
             jobs=jobs,
             progress=report_progress(),

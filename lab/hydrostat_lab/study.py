@@ -10,15 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.learning import (
-    LearnOptions,
-    SamplePlan,
-    Samples,
-    SamplingScheme,
-    plan_samples,
-    sample_robot,
-    sample_shard,
-)
+from hydrostat.learning import LearnOptions, SamplePlan, Samples, SamplingScheme, sample_robot, sample_shard
 from hydrostat.progress import Progress
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
@@ -118,7 +110,7 @@ def run_study(
         progress: same as for `sample_robot`.
 
     Raises:
-        InputError: as for `plan_samples` and `compare`, or a file of rows that is damaged.
+        InputError: as for `SamplePlan.of_robot` and `compare`, or a file of rows that is damaged.
     """
     file = folder / "rows.jsonl"
     known = read_rows_of(file) if file.exists() else []
@@ -221,7 +213,7 @@ def _samples(
     found: list[Samples] = []
     plan: SamplePlan | None = None
     for name, count, seed in (("train", max(study.counts), 0), ("test", study.targets, 1)):
-        plan = plan_samples(robot, count, seed=seed, draws=(draw,))
+        plan = SamplePlan.of_robot(robot, count, seed=seed, draws=(draw,))
         place = folder / f"{robot.name}-{draw}-{name}-{count}"
         sample_robot(plan, place, jobs=jobs, progress=progress)
         found.append(Samples.read(place))

@@ -8,7 +8,7 @@ import numpy as np
 
 from hydrostat.arrays import Float
 from hydrostat.errors import InputError
-from hydrostat.learning import Samples, SamplingScheme, contractions, shared_numbers
+from hydrostat.learning import Samples, SamplingScheme, shared_numbers
 from hydrostat.version import install_command
 
 Goals = Float[np.ndarray, "targets coordinates"]
@@ -87,5 +87,5 @@ def _actions(train: Samples) -> tuple[Callable[[Answers], np.ndarray], Callable[
     pairs = tuple(tuple(places[name] for name in names) for names in train.facts["pairs"])
     return (
         lambda rows: 2 * shared_numbers(rows, high, pairs) - 1,
-        lambda found: contractions(SamplingScheme.ANTAGONIST, 0.5 * (found + 1), low, high, pairs),
+        lambda found: SamplingScheme.ANTAGONIST.contractions(0.5 * (found + 1), low, high, pairs),
     )

@@ -10,7 +10,7 @@ from drawings import SHARP, SMOOTH, drawing
 from machine import machine  # first: it sets one thread
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication import PatternOptions, sewing_of, skin_of_surface
+from hydrostat.fabrication import PatternOptions, Sewing, skin_of_surface
 from hydrostat.geometry import inflate, read_drawing
 
 
@@ -22,7 +22,7 @@ def judge(name: str, size: float, height: float) -> tuple[str, bool | None]:
     except InputError as error:
         return str(error), None
     begun = time.process_time()
-    sewing = sewing_of(skin_of_surface(surface), PatternOptions())
+    sewing = Sewing.of_mesh(skin_of_surface(surface), PatternOptions())
     seconds = time.process_time() - begun
     return f"{sewing.patches} | {sewing.give:.1%} | {seconds:.1f} | {'; '.join(sewing.problems)}", not sewing.problems
 

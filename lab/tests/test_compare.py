@@ -6,7 +6,7 @@ from builders import strip_robot
 
 import hydrostat as hs
 from hydrostat.errors import InputError
-from hydrostat.learning import LearnedModel, LearnOptions, Samples, learn_model, plan_samples, sample_robot, verify
+from hydrostat.learning import LearnedModel, LearnOptions, SamplePlan, Samples, learn_model, sample_robot, verify
 from hydrostat_lab.compare import METHODS, WAYS, compare, targets_of
 
 pytestmark = pytest.mark.usefixtures("unchecked")
@@ -21,7 +21,9 @@ def simulation() -> hs.Simulation:
 
 @pytest.fixture(scope="module")
 def samples(simulation: hs.Simulation, tmp_path_factory: pytest.TempPathFactory) -> Samples:
-    return Samples.read(sample_robot(plan_samples(simulation.robot, 80), tmp_path_factory.mktemp("learned")).path)
+    return Samples.read(
+        sample_robot(SamplePlan.of_robot(simulation.robot, 80), tmp_path_factory.mktemp("learned")).path
+    )
 
 
 @pytest.fixture(scope="module")

@@ -10,7 +10,7 @@ from builders import strip_robot
 
 torch = pytest.importorskip("torch")
 
-from hydrostat.learning import LearnedModel, LearnOptions, Samples, learn_model, plan_samples, sample_robot  # noqa: E402
+from hydrostat.learning import LearnedModel, LearnOptions, SamplePlan, Samples, learn_model, sample_robot  # noqa: E402
 from hydrostat.robot import Robot  # noqa: E402
 from hydrostat.simulation import Simulation  # noqa: E402
 from hydrostat_lab import experiments as room  # noqa: E402
@@ -31,7 +31,7 @@ def robot() -> Robot:
 @pytest.fixture(scope="module")
 def model(robot: Robot, tmp_path_factory: pytest.TempPathFactory) -> LearnedModel:
     folder = tmp_path_factory.mktemp("samples") / "strip"
-    sample_robot(plan_samples(robot, 60), folder)
+    sample_robot(SamplePlan.of_robot(robot, 60), folder)
     return learn_model(Samples.read(folder), options=LearnOptions(steps=400, inverse_steps=10, width=24, members=1))
 
 

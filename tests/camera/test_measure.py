@@ -15,7 +15,7 @@ import typst
 from photographs import Camera, Scene, board_plane, photograph, tag_corners, tag_plane, wall_plane
 from PIL import Image
 
-from hydrostat.camera import Photo, PhotoOptions, measure_photos, read_photos, table_text
+from hydrostat.camera import Photo, PhotoOptions, measure_photos, table_text
 from hydrostat.camera.calibrate_camera import calibrate_camera
 from hydrostat.camera.find_tags import find_tags
 from hydrostat.camera.locate_tags import locate_in_space, locate_on_plane
@@ -106,7 +106,7 @@ def test_photographs_give_back_a_hidden_modulus(tmp_path: Path) -> None:
         "up=9mm,tip=4g.png": ({"up": 0.009}, 0.004),
     }
     files = photographs(tmp_path, hidden, poses)
-    found = measure_photos(assumed, read_photos(files, assumed))
+    found = measure_photos(assumed, Photo.read_all(files, assumed))
     table = tmp_path / "table.csv"
     table.write_bytes(table_text(assumed, found))
     fitted = identify(assumed, read_measurements(table, assumed), fit=("young", "frame"))
@@ -171,17 +171,17 @@ def test_faults_of_photographs_are_said_in_one_line(rest: Path, tmp_path: Path) 
             measure_photos(robot, [Photo(file=tmp_path / file, contractions={}, masses={})])
         assert "\n" not in str(caught.value)
     with pytest.raises(InputError, match="is of another robot"):
-        measure_photos(replace(robot, name="another"), read_photos([rest], robot))
-    found = measure_photos(robot, read_photos([save(without(numbers["middle"]), tmp_path / "rest.png")], robot))
+        measure_photos(replace(robot, name="another"), Photo.read_all([rest], robot))
+    found = measure_photos(robot, Photo.read_all([save(without(numbers["middle"]), tmp_path / "rest.png")], robot))
     assert found.warnings == ["middle: its tag is in no photograph. The table leaves it out."]
     assert found.measurements.markers == ("root", "tip")
-    high = measure_photos(robot, read_photos([rest], robot), PhotoOptions(height=0.0))
+    high = measure_photos(robot, Photo.read_all([rest], robot), PhotoOptions(height=0.0))
     assert "Check --height and --tag" in high.warnings[0]
     bent = pixels.copy()
     corners = tags[numbers["tip"]]
     low = corners[0].astype(int) - 6
     bent[low[1] : low[1] + 14, low[0] : low[0] + 14] = 200
-    found = measure_photos(robot, read_photos([save(bent, tmp_path / "rest.png")], robot))
+    found = measure_photos(robot, Photo.read_all([save(bent, tmp_path / "rest.png")], robot))
     assert [text for text in found.warnings if "the tag of tip is no square" in text or "tip: its tag" in text]
 
 
@@ -197,8 +197,8 @@ def test_a_sheet_that_moved_is_named(tmp_path: Path) -> None:
         far = replace(camera, position=camera.position + np.array([0.08, 0.0, 0.3]))
         files.append(save(photograph(far, planes, seed=index, over=1), tmp_path / f"rest ({index}).png"))
     with pytest.raises(InputError, match=r"rest \(2\).png: the board is bent or its sheets have moved"):
-        measure_photos(robot, read_photos(files, robot))
-    first = measure_photos(robot, read_photos(files[:2], robot))
+        measure_photos(robot, Photo.read_all(files, robot))
+    first = measure_photos(robot, Photo.read_all(files[:2], robot))
     assert first.error < 0.5
 
 
@@ -215,19 +215,19 @@ def test_a_board_that_moved_is_named(rest: Path, tmp_path: Path) -> None:
     planes = scene.planes(pose.nodes, pose.markers, move=(0.02, 0.0, 0.0))
     moved = save(photograph(CAMERAS[0], planes, over=1), tmp_path / "rest (3).png")
     same = save(np.array(Image.open(rest)), tmp_path / "rest (2).png")
-    found = measure_photos(robot, read_photos([rest, same, moved], robot))
+    found = measure_photos(robot, Photo.read_all([rest, same, moved], robot))
     assert [text for text in found.warnings if text.startswith("rest (3).png: board or robot moved by about")]
 
 
 def test_contractions_come_from_names_and_tables(tmp_path: Path) -> None:
     robot = strip()
     names = ["up=12mm,tip=100g (2).jpg", "rest.jpg", "up=-1.5 mm.jpg"]
-    photos = read_photos([tmp_path / name for name in names], robot)
+    photos = Photo.read_all([tmp_path / name for name in names], robot)
     assert [dict(photo.contractions) for photo in photos] == [{"up": 0.012}, {}, {"up": -0.0015}]
     assert dict(photos[0].masses) == {"tip": 0.1}
     table = tmp_path / "photos.csv"
     table.write_text("photo,up_mm,tip_load_g\na.jpg,12,100\nb.jpg,,\n")
-    photos = read_photos([tmp_path / "b.jpg", tmp_path / "a.jpg"], robot, table)
+    photos = Photo.read_all([tmp_path / "b.jpg", tmp_path / "a.jpg"], robot, table)
     assert [(dict(photo.contractions), dict(photo.masses)) for photo in photos] == [
         ({}, {}),
         ({"up": 0.012}, {"tip": 0.1}),
@@ -238,9 +238,9 @@ def test_contractions_come_from_names_and_tables(tmp_path: Path) -> None:
         ("up=2.jpg", "has no unit"),
     ):
         with pytest.raises(InputError, match=words):
-            read_photos([tmp_path / name], robot)
+            Photo.read_all([tmp_path / name], robot)
     with pytest.raises(InputError, match=r"c.jpg: no row in .*photos.csv"):
-        read_photos([tmp_path / "c.jpg"], robot, table)
+        Photo.read_all([tmp_path / "c.jpg"], robot, table)
 
 
 @pytest.mark.slow
@@ -270,7 +270,7 @@ def test_printed_pages_hold_the_tags_in_true_size() -> None:
 def test_the_overlay_draws_markers_where_the_photograph_shows_them(rest: Path, tmp_path: Path) -> None:
     """Oracle: the tags that were found in it."""
     robot = strip(gravity=None)
-    found = measure_photos(robot, read_photos([rest], robot))
+    found = measure_photos(robot, Photo.read_all([rest], robot))
     measured = found.photos[0]
     for name, corners in measured.corners.items():
         center = found.project(0, measured.places[name][None])[0]

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from hydrostat.camera import read_photos
+from hydrostat.camera import Photo
 from hydrostat.robot import load_robot
 
 Run = Callable[..., tuple[int, str, str]]
@@ -16,7 +16,7 @@ def test_names_of_suggested_photographs_can_be_read(run: Run, starfish: Path) ->
     code, text, _ = run("identify", starfish, "--suggest", 4, "--fit", "gain", "--tension", "10N")
     assert code == 0
     names = [line.strip() for line in text.splitlines() if line.endswith(".jpg")]
-    photos = read_photos([Path(name) for name in names], load_robot(starfish))
+    photos = Photo.read_all([Path(name) for name in names], load_robot(starfish))
     assert len({photo.pose for photo in photos}) == 4
     assert all(0 <= pull <= 0.06 for photo in photos for pull in photo.contractions.values())
 

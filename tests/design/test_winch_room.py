@@ -28,7 +28,6 @@ from hydrostat.fabrication import (
     find_refusals,
     seam_of,
     unit_room,
-    ways_to_lie,
 )
 from hydrostat.robot import Marker, Mount, Pin, PoseTarget, Robot
 
@@ -52,7 +51,7 @@ def test_a_unit_lies_within_the_seam_wherever_there_is_room(name: str, unchecked
 
     def fits(at: np.ndarray) -> bool:
         unit = UnitBox(winch="w", at=(1e3 * at[0], 1e3 * at[1]), low=box.low, high=box.high, along=0.0)
-        return any(place.outside <= TOUCHES and place.depth <= (1 + GIVES) * thick for place in ways_to_lie(unit, seam))
+        return any(place.outside <= TOUCHES and place.depth <= (1 + GIVES) * thick for place in unit.ways_to_lie(seam))
 
     inside, outside = nodes[away < -5e-4][::4], nodes[away > 8e-3][::6]
     assert len(inside) > 3

@@ -9,7 +9,7 @@ from hydrostat.drawing.camera import Camera
 from hydrostat.drawing.creases import smooth_normals
 from hydrostat.drawing.depth import DepthBuffer
 from hydrostat.drawing.palette import Color, sky_shares
-from hydrostat.drawing.render import render, silhouette
+from hydrostat.drawing.render import Render, render
 from hydrostat.geometry import Mesh
 from hydrostat.plot import DrawnBody
 
@@ -36,7 +36,7 @@ def test_the_silhouette_of_a_box(eye: list[float]) -> None:
     """Oracle: a convex body's silhouette is the hull of its seen nodes; corners are cut by less than a pixel."""
     mesh, camera = box(), Camera.towards(np.array(eye))
     spots = camera.see(1e3 * mesh.nodes)
-    image = silhouette(spots, mesh.boundary, pixel=0.25)
+    image = Render.silhouette(spots, mesh.boundary, pixel=0.25)
     rings = image.rings()
     hull = shapely.MultiPoint(spots[:, :2]).convex_hull
     assert len(rings) == 1
@@ -50,7 +50,7 @@ def test_a_hole_is_a_ring_of_its_own() -> None:
     away = (np.abs(middles[:, :2] - 0.015) < 0.005).all(axis=1)
     mesh = Mesh(plate.nodes, plate.elements[~away])
     spots = Camera.towards(np.array([0.0, 0.0, 1.0])).see(1e3 * mesh.nodes)
-    outer, inner = silhouette(spots, mesh.boundary, pixel=0.1).rings()
+    outer, inner = Render.silhouette(spots, mesh.boundary, pixel=0.1).rings()
     assert shapely.Polygon(outer).area == pytest.approx(900, rel=5e-3)
     assert shapely.Polygon(inner).area == pytest.approx(100, rel=1e-2)
 

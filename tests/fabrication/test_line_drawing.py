@@ -5,7 +5,7 @@ import pytest
 import shapely
 from manifold3d import Manifold
 
-from hydrostat.drawing import Camera, line_drawing
+from hydrostat.drawing import Camera, LineDrawing
 from hydrostat.fabrication.sheets.solid_pictures import drawn_solid
 from hydrostat.fabrication.solids.construct import Box, Cylinder, solid_of
 
@@ -34,7 +34,7 @@ def cube_edges(low=(0.0, 0.0, 0.0)):
 
 
 def test_a_cube_shows_nine_of_its_edges():
-    drawing = line_drawing([drawn_solid(solid_of(Box((SIDE, SIDE, SIDE))))], Camera.isometric())
+    drawing = LineDrawing.of_solids([drawn_solid(solid_of(Box((SIDE, SIDE, SIDE))))], Camera.isometric())
     shares = sorted(drawn_share(drawing, *edge) for edge in cube_edges())
     assert len(shares) == 12
     # The hidden three meet in one corner behind the front one, and touch drawn lines at their ends only.
@@ -43,19 +43,19 @@ def test_a_cube_shows_nine_of_its_edges():
 
 
 def test_lines_are_as_long_as_nine_edges():
-    drawing = line_drawing([drawn_solid(solid_of(Box((SIDE, SIDE, SIDE))))], Camera.isometric())
+    drawing = LineDrawing.of_solids([drawn_solid(solid_of(Box((SIDE, SIDE, SIDE))))], Camera.isometric())
     total = sum(shapely.linestrings(way).length for way in (*drawing.outlines, *drawing.lines))
     assert total == pytest.approx(9 * SIDE * np.sqrt(2 / 3), rel=0.01)
 
 
 def test_six_of_them_are_the_thick_outline():
-    drawing = line_drawing([drawn_solid(solid_of(Box((SIDE, SIDE, SIDE))))], Camera.isometric())
+    drawing = LineDrawing.of_solids([drawn_solid(solid_of(Box((SIDE, SIDE, SIDE))))], Camera.isometric())
     outline = sum(shapely.linestrings(way).length for way in drawing.outlines)
     assert outline == pytest.approx(6 * SIDE * np.sqrt(2 / 3), rel=0.02)
 
 
 def test_no_line_is_drawn_within_a_flat_side():
-    drawing = line_drawing([drawn_solid(solid_of(Box((SIDE, SIDE, SIDE))))], Camera.isometric())
+    drawing = LineDrawing.of_solids([drawn_solid(solid_of(Box((SIDE, SIDE, SIDE))))], Camera.isometric())
     assert drawn_share(drawing, (1, 1, SIDE), (SIDE - 1, SIDE - 1, SIDE)) < 0.02
 
 
@@ -63,8 +63,8 @@ def test_a_cube_in_front_hides_what_is_behind_it():
     view = Camera.isometric()
     ahead = 60 * view.axes[2] + 0.55 * SIDE * view.axes[0]
     cube = solid_of(Box((SIDE, SIDE, SIDE)))
-    alone = line_drawing([drawn_solid(cube)], view)
-    both = line_drawing([drawn_solid(cube), drawn_solid(cube, shift=ahead.tolist())], view)
+    alone = LineDrawing.of_solids([drawn_solid(cube)], view)
+    both = LineDrawing.of_solids([drawn_solid(cube), drawn_solid(cube, shift=ahead.tolist())], view)
     flat = shapely.convex_hull(
         shapely.multipoints(view.see(np.array([c for e in cube_edges(ahead) for c in e]))[:, :2])
     )
@@ -82,14 +82,14 @@ def test_a_cube_in_front_hides_what_is_behind_it():
 def test_a_cube_behind_changes_nothing():
     view, cube = Camera.isometric(), solid_of(Box((SIDE, SIDE, SIDE)))
     small = solid_of(Box((2, 2, 2)).move(4, 4, 4))
-    alone = line_drawing([drawn_solid(cube)], view)
-    both = line_drawing([drawn_solid(cube), drawn_solid(small)], view)
+    alone = LineDrawing.of_solids([drawn_solid(cube)], view)
+    both = LineDrawing.of_solids([drawn_solid(cube), drawn_solid(small)], view)
     assert lines_of(both).hausdorff_distance(lines_of(alone)) < 0.05
 
 
 @pytest.mark.parametrize("view", [Camera.isometric(), Camera.at(20, 5), Camera.at(130, 80)])
 def test_a_sphere_is_a_circle(view):
-    drawing = line_drawing([drawn_solid(Manifold.sphere(7.0, 96).translate((1, 2, 3)))], view)
+    drawing = LineDrawing.of_solids([drawn_solid(Manifold.sphere(7.0, 96).translate((1, 2, 3)))], view)
     middle = view.see(np.array([[1.0, 2.0, 3.0]]))[0, :2]
     assert drawing.lines == ()
     radii = np.concatenate([np.linalg.norm(way - middle, axis=1) for way in drawing.outlines])
@@ -99,20 +99,20 @@ def test_a_sphere_is_a_circle(view):
 
 
 def test_a_cylinder_from_the_side_is_a_rectangle():
-    drawing = line_drawing([drawn_solid(solid_of(Cylinder(20, 5)))], Camera.at(30, 0))
+    drawing = LineDrawing.of_solids([drawn_solid(solid_of(Cylinder(20, 5)))], Camera.at(30, 0))
     outline = shapely.box(-5, 0, 5, 20).exterior
     assert lines_of(drawing).hausdorff_distance(outline) < 0.05
 
 
 def test_a_hole_through_a_plate_is_seen_from_above():
     plate = Box((20, 20, 2)) - Cylinder(2, 4).move(10, 10, 0)
-    drawing = line_drawing([drawn_solid(solid_of(plate))], Camera.at(0, 90))
+    drawing = LineDrawing.of_solids([drawn_solid(solid_of(plate))], Camera.at(0, 90))
     total = sum(shapely.linestrings(way).length for way in (*drawing.outlines, *drawing.lines))
     assert total == pytest.approx(80 + 2 * np.pi * 4, rel=0.01)
 
 
 def test_tones_are_pale_and_the_top_is_white():
-    drawing = line_drawing([drawn_solid(solid_of(Box((SIDE, SIDE, SIDE))))], Camera.isometric())
+    drawing = LineDrawing.of_solids([drawn_solid(solid_of(Box((SIDE, SIDE, SIDE))))], Camera.isometric())
     view = drawing.camera
     middles = {"top": (5, 5, 10), "left": (5, 0, 5), "right": (10, 5, 5)}
     grey = {}
@@ -127,7 +127,7 @@ def test_tones_are_pale_and_the_top_is_white():
 
 
 def test_a_line_in_space_is_seen_as_far_as_nothing_hides_it():
-    drawing = line_drawing([drawn_solid(solid_of(Box((10, 10, 10))))], Camera.at(-90, 0))
+    drawing = LineDrawing.of_solids([drawn_solid(solid_of(Box((10, 10, 10))))], Camera.at(-90, 0))
     through = np.array([[5.0, -5.0, 5.0], [5.0, -5.0, 5.0 + 10.0]])
     behind = through + np.array([0.0, 30.0, 0.0])
     assert sum(shapely.linestrings(way).length for way in drawing.seen_of(through)) == pytest.approx(10, abs=0.1)
@@ -136,7 +136,7 @@ def test_a_line_in_space_is_seen_as_far_as_nothing_hides_it():
 
 def test_a_piece_is_pointed_at_where_it_is_seen():
     pieces = [drawn_solid(solid_of(Box((10, 10, 10)))), drawn_solid(solid_of(Box((2, 2, 2)).move(4, 4, 4)))]
-    drawing = line_drawing(pieces, Camera.isometric())
+    drawing = LineDrawing.of_solids(pieces, Camera.isometric())
     assert drawing.spot_on(1) is None
     spot = drawing.spot_on(0)
     assert spot is not None
@@ -145,6 +145,6 @@ def test_a_piece_is_pointed_at_where_it_is_seen():
 
 def test_the_same_drawing_twice():
     piece = drawn_solid(solid_of(Box((20, 20, 2)) - Cylinder(2, 4).move(10, 10, 0)))
-    one, two = (line_drawing([piece], Camera.isometric()) for _ in range(2))
+    one, two = (LineDrawing.of_solids([piece], Camera.isometric()) for _ in range(2))
     assert len(one.outlines) == len(two.outlines)
     assert all(np.array_equal(a, b) for a, b in zip(one.outlines, two.outlines, strict=True))

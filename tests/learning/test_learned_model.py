@@ -12,11 +12,11 @@ from plain_model import plain
 
 import hydrostat as hs
 from hydrostat.errors import InputError
-from hydrostat.learning import LearnedModel, ModelCard, Samples, plan_samples, sample_robot, verify
+from hydrostat.learning import LearnedModel, ModelCard, SamplePlan, Samples, sample_robot, verify
 from hydrostat.learning.learn_model import kept_facts
 from hydrostat.learning.learned_model import Tier
 from hydrostat.learning.perceptrons import Perceptrons
-from hydrostat.learning.sample_plan import SamplingScheme, contractions, shared_numbers
+from hydrostat.learning.sample_plan import SamplingScheme, shared_numbers
 from hydrostat.robot import Robot
 
 pytestmark = pytest.mark.usefixtures("unchecked")
@@ -108,8 +108,8 @@ def test_answers_hold_what_samples_held(robot: Robot, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="pairs are none of its winches"):
         LearnedModel.load(replace(free, card=replace(free.card, pairs=(("W1", "nobody"),))).save(tmp_path / "b"))
     rows = np.random.default_rng(4).uniform(0, 1, (20, 2)) * held.high
-    again = contractions(
-        SamplingScheme.ANTAGONIST, shared_numbers(rows, held.high, [(0, 1)]), held.low, held.high, [(0, 1)]
+    again = SamplingScheme.ANTAGONIST.contractions(
+        shared_numbers(rows, held.high, [(0, 1)]), held.low, held.high, [(0, 1)]
     )
     assert np.array([held._apply_pairs(row) for row in rows]) == pytest.approx(again, abs=1e-15)
     sides = np.linspace(0, 1, 201)[:, None] * np.diag(free.high)[:, None]
@@ -163,12 +163,12 @@ def test_a_model_of_another_contact_is_refused(robot: Robot, tmp_path: Path) -> 
 
 def test_samples_and_models_tell_their_contact(robot: Robot, tmp_path: Path) -> None:
     felt = replace(robot, contact=hs.Contact(distance=0.002))
-    samples = Samples.read(sample_robot(plan_samples(felt, 1), tmp_path).path)
+    samples = Samples.read(sample_robot(SamplePlan.of_robot(felt, 1), tmp_path).path)
     told = {name: kept_facts(samples)[name] for name in ("contact", "contact_distance", "contact_friction")}
     assert told == {"contact": True, "contact_distance": 0.002, "contact_friction": 0.0}
     other = replace(robot, contact=hs.Contact(distance=0.002, friction=2.0))
     with pytest.raises(InputError, match=r"contact_friction is 0\.0, asked for 2\.0"):
-        sample_robot(plan_samples(other, 1), tmp_path)
+        sample_robot(SamplePlan.of_robot(other, 1), tmp_path)
 
 
 def test_no_changed_file_is_believed(robot: Robot, tmp_path: Path) -> None:

@@ -18,10 +18,10 @@ from hydrostat.ik import IKStatus
 from hydrostat.learning import (
     LearnedModel,
     LearnOptions,
+    SamplePlan,
     Samples,
     correct_model,
     learn_model,
-    plan_samples,
     sample_robot,
     solve_exactly,
     verify,
@@ -44,7 +44,7 @@ def robot() -> Robot:
 
 @pytest.fixture(scope="module")
 def folder(robot: Robot, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return sample_robot(plan_samples(robot, 80), tmp_path_factory.mktemp("learned")).path
+    return sample_robot(SamplePlan.of_robot(robot, 80), tmp_path_factory.mktemp("learned")).path
 
 
 @pytest.fixture(scope="module")
@@ -124,7 +124,7 @@ def test_a_few_samples_of_a_finer_mesh_correct_a_model(
 ) -> None:
     """Oracle: samples of the finer mesh that nothing was learned from; the model as it was."""
     finer = strip_robot(columns=16, rows=4)
-    found = Samples.read(sample_robot(plan_samples(finer, 20), tmp_path / "finer").path)
+    found = Samples.read(sample_robot(SamplePlan.of_robot(finer, 20), tmp_path / "finer").path)
     known, new = found.only(np.arange(8)), found.only(np.arange(8, 20))
     better = correct_model(model, known)
     better.check(finer)

@@ -20,15 +20,7 @@ import hydrostat as hs
 from hydrostat.cli.main import app
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.files import temporary_path
-from hydrostat.learning import (
-    SamplePlan,
-    Samples,
-    SamplingScheme,
-    export_samples,
-    plan_samples,
-    sample_robot,
-    sample_shard,
-)
+from hydrostat.learning import SamplePlan, Samples, SamplingScheme, export_samples, sample_robot, sample_shard
 from hydrostat.learning.sample_plan import contractions as drawn
 from hydrostat.learning.sample_plan import shared_numbers
 from hydrostat.learning.sample_shard import REASONS
@@ -39,7 +31,7 @@ pytestmark = pytest.mark.usefixtures("unchecked")
 
 @pytest.fixture(scope="module")
 def plan() -> SamplePlan:
-    return plan_samples(strip_robot(columns=8, rows=2), 22, shard=5, draws=tuple(SamplingScheme)[:3], seed=3)
+    return SamplePlan.of_robot(strip_robot(columns=8, rows=2), 22, shard=5, draws=tuple(SamplingScheme)[:3], seed=3)
 
 
 @pytest.fixture(scope="module")
@@ -72,7 +64,7 @@ def test_slopes_of_tensions(friction: float, tmp_path: Path) -> None:
     """Oracle: differences of poses, central ones by winch; with friction further on the way from rest."""
     robot = strip_robot(columns=8, rows=2)
     robot = replace(robot, cables=tuple(replace(cable, friction=friction) for cable in robot.cables))
-    samples, simulation = Samples.read(sample_robot(plan_samples(robot, 3), tmp_path).path), hs.Simulation(robot)
+    samples, simulation = Samples.read(sample_robot(SamplePlan.of_robot(robot, 3), tmp_path).path), hs.Simulation(robot)
     assert samples.tension_slopes is not None
     size = 1e-6 if friction else 1e-7  # of the difference [m]
     for contractions, slopes in zip(samples.contractions, samples.tension_slopes, strict=True):
@@ -105,11 +97,11 @@ def test_samples_of_an_earlier_version_are_read_but_not_gone_on_with(plan: Sampl
 def test_samples_that_do_not_tell_their_friction_had_none(tmp_path: Path) -> None:
     """As an earlier version wrote them, which told no friction."""
     robot = replace(strip_robot(columns=8, rows=2), contact=hs.Contact())
-    folder = sample_robot(plan_samples(robot, 2, shard=2), tmp_path).path
+    folder = sample_robot(SamplePlan.of_robot(robot, 2, shard=2), tmp_path).path
     manifest = json.loads((folder / "samples.json").read_text())
     del manifest["contact_friction"]
     (folder / "samples.json").write_text(json.dumps(manifest))
-    assert len(Samples.read(sample_robot(plan_samples(robot, 3, shard=2), folder).path)) == 3
+    assert len(Samples.read(sample_robot(SamplePlan.of_robot(robot, 3, shard=2), folder).path)) == 3
 
 
 def test_bytes_do_not_depend_on_who_works(plan: SamplePlan, once: Path, tmp_path: Path) -> None:
@@ -127,7 +119,7 @@ def test_a_number_decides_about_a_sample_however_many_there_are(plan: SamplePlan
 
 def test_draws_keep_to_what_they_say() -> None:
     robot = gallery_robot("cupping_hand")
-    plan = plan_samples(robot, 96, draws=[SamplingScheme.ANTAGONIST, SamplingScheme.FACES, SamplingScheme.BOX])
+    plan = SamplePlan.of_robot(robot, 96, draws=[SamplingScheme.ANTAGONIST, SamplingScheme.FACES, SamplingScheme.BOX])
     assert sorted(plan.pairs) == [(2 * finger, 2 * finger + 1) for finger in range(5)]  # flexor and extensor
     rows, travel = plan.contractions(range(96)), np.array([winch.travel for winch in robot.winches])
     assert (rows >= 0).all()
@@ -148,7 +140,7 @@ def test_numbers_that_two_winches_share_are_found_again() -> None:
 
 
 def test_samples_drawn_by_tension_pull_no_harder(tmp_path: Path) -> None:
-    plan = plan_samples(strip_robot(columns=8, rows=2), 8, draws=[SamplingScheme.TENSION], tension=0.5)
+    plan = SamplePlan.of_robot(strip_robot(columns=8, rows=2), 8, draws=[SamplingScheme.TENSION], tension=0.5)
     free = hs.Simulation(plan.robot).solve_batch(plan.contractions(range(8)), jacobians=False)
     assert free.tensions.max() > 0.6
     samples = Samples.read(sample_robot(plan, tmp_path).path)
@@ -174,8 +166,8 @@ def test_a_pose_that_is_not_found_is_a_row_with_its_reason(plan: SamplePlan, mon
 def test_contact_is_told(tmp_path: Path) -> None:
     hand = gallery_robot("starfish")
     draws = [SamplingScheme.BOX]
-    apart = Samples.read(sample_robot(plan_samples(hand, 24, contact=True, draws=draws), tmp_path / "a").path)
-    through = Samples.read(sample_robot(plan_samples(hand, 24, draws=draws), tmp_path / "b").path)
+    apart = Samples.read(sample_robot(SamplePlan.of_robot(hand, 24, contact=True, draws=draws), tmp_path / "a").path)
+    through = Samples.read(sample_robot(SamplePlan.of_robot(hand, 24, draws=draws), tmp_path / "b").path)
     assert apart.touches.any()
     assert not apart.crosses.any()
     assert through.crosses.any()
@@ -401,5 +393,5 @@ def test_an_array_of_jobs_gives_the_same_bytes(tmp_path: Path) -> None:
         variables = {"PATH": paths, "SLURM_ARRAY_TASK_ID": part, "SLURM_ARRAY_TASK_COUNT": "2"}
         command = ["bash", examples / "sample_array.sh", examples / "letter_s", "100", tmp_path / "array"]
         subprocess.run(command, env=os.environ | variables, check=True, capture_output=True)
-    alone = sample_robot(plan_samples(hs.load_robot(examples / "letter_s"), 100), tmp_path / "alone", jobs=1)
+    alone = sample_robot(SamplePlan.of_robot(hs.load_robot(examples / "letter_s"), 100), tmp_path / "alone", jobs=1)
     assert contents(tmp_path / "array") == contents(alone.path)

@@ -13,7 +13,7 @@ from plot.films import flat_film, frames_of, space_film
 
 from hydrostat.drawing import Color
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.plot import Frame, Stop, film, save_gif, save_mp4
+from hydrostat.plot import Film, Frame, Stop, save_gif, save_mp4
 from hydrostat.plot.animation import gif_bytes
 from hydrostat.plot.frame_pictures import FramePictures
 from hydrostat.robot import Load, Robot
@@ -179,7 +179,7 @@ def test_where_there_is_no_equilibrium_the_frame_before_stands(monkeypatch: pyte
 
     monkeypatch.setattr(Simulation, "solve", failing)
     stop = Stop.for_winches(robot)[0]
-    made = film(Simulation(robot), [stop], seconds=1.3, step=0.1)
+    made = Film.of_stops(Simulation(robot), [stop], seconds=1.3, step=0.1)
     assert made.missing
     for number in made.missing:
         assert np.array_equal(made.frames[number].nodes, made.frames[number - 1].nodes)

@@ -8,7 +8,7 @@ import pytest
 from builders import box_mesh, mesh_body
 
 from hydrostat.geometry import Mesh, Surface, contour, write_ply
-from hydrostat.robot import Body, Cable, Marker, Mount, Pin, Robot, Winch, find_risks, sketch_surface
+from hydrostat.robot import Body, Cable, Marker, Mount, Pin, Robot, SurfaceSketch, Winch, find_risks
 
 LENGTH, SIDE = 0.12, 0.04
 
@@ -128,20 +128,22 @@ def test_a_mesh_unlike_its_surface() -> None:
     rim = np.column_stack([0.02 * np.cos(turns), 0.02 * np.sin(turns), np.zeros(24)])
     vertices = np.concatenate([rim, [[0, 0, 0.2], [0, 0, 0]]])
     sides = [(i, (i + 1) % 24, 24) for i in range(24)] + [((i + 1) % 24, i, 25) for i in range(24)]
-    needle = sketch_surface(write_ply(Surface(vertices, np.array(sides))), file="a.ply", name="a", element_size=0.009)
+    needle = SurfaceSketch.of_scan(
+        write_ply(Surface(vertices, np.array(sides))), file="a.ply", name="a", element_size=0.009
+    )
     found = [risk for risk in find_risks(needle.robot) if "off the surface" in risk]
     assert len(found) == 1
     assert "mm the mesh is" in found[0]
     assert not any("other holes" in risk for risk in find_risks(needle.robot))
     ball = contour(lambda points: np.linalg.norm(points, axis=1) - 0.03, np.array([[-0.04] * 3, [0.04] * 3]), 0.004)
-    smooth = sketch_surface(write_ply(ball), file="b.ply", name="b", element_size=0.01)
+    smooth = SurfaceSketch.of_scan(write_ply(ball), file="b.ply", name="b", element_size=0.01)
     assert not any("off the surface" in risk or "other holes" in risk for risk in find_risks(smooth.robot))
 
 
 def test_limbs_that_have_grown_together() -> None:
     """By hand: a ring whose hole is a hundredth of an element wide has another Euler characteristic than a disc."""
     ball = contour(lambda points: np.linalg.norm(points, axis=1) - 0.03, np.array([[-0.04] * 3, [0.04] * 3]), 0.004)
-    robot = sketch_surface(write_ply(ball), file="b.ply", name="b", element_size=0.01).robot
+    robot = SurfaceSketch.of_scan(write_ply(ball), file="b.ply", name="b", element_size=0.01).robot
     ring = contour(
         lambda points: np.hypot(np.hypot(points[:, 0], points[:, 1]) - 0.02, points[:, 2]) - 0.008,
         np.array([[-0.04] * 3, [0.04] * 3]),

@@ -7,7 +7,7 @@ import pytest
 
 from hydrostat.errors import InputError, SurfaceError
 from hydrostat.geometry import Surface, locate, write_ply
-from hydrostat.robot import find_risks, load_robot, robot_text, save_robot, sketch_surface
+from hydrostat.robot import SurfaceSketch, find_risks, load_robot, robot_text, save_robot
 
 CORNERS = np.array([[x, y, z] for x in (0.0, 0.12) for y in (0.0, 0.03) for z in (0.0, 0.02)])
 QUADS = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
@@ -26,7 +26,7 @@ def tapered(turned: bool = False) -> Surface:
 def test_sketch(turned: bool, tmp_path: Path) -> None:
     """Held at the thicker end, with a cable along it and a marker at the other; read again it is the same."""
     told: list[str] = []
-    sketch = sketch_surface(write_ply(tapered(turned)), file="bar.ply", name="bar", nodes=600, tell=told.append)
+    sketch = SurfaceSketch.of_scan(write_ply(tapered(turned)), file="bar.ply", name="bar", nodes=600, tell=told.append)
     assert [words.split()[0] for words in dict.fromkeys(told)][:2] == ["healing", "filling"]
     assert told[-1] == "finding ends, winches and cables"
     robot = sketch.robot
@@ -53,7 +53,7 @@ def test_sketch(turned: bool, tmp_path: Path) -> None:
 
 def test_the_cable_runs_along_the_thin_way_off_the_middle() -> None:
     """By hand: the bar is thinnest along z; the cable is 4 mm above its middle or so, and level."""
-    robot = sketch_surface(write_ply(BAR), file="bar.ply", name="bar", element_size=0.012).robot
+    robot = SurfaceSketch.of_scan(write_ply(BAR), file="bar.ply", name="bar", element_size=0.012).robot
     points = np.array(robot.cables[0].points)
     np.testing.assert_allclose(points[:, 1], 0.015, atol=0.002)
     assert (points[:, 2] > 0.0115).all()
@@ -62,7 +62,7 @@ def test_the_cable_runs_along_the_thin_way_off_the_middle() -> None:
 
 
 def test_size_scales_and_element_size_is_taken() -> None:
-    robot = sketch_surface(write_ply(BAR), file="b.ply", name="b", size=0.24, element_size=0.025).robot
+    robot = SurfaceSketch.of_scan(write_ply(BAR), file="b.ply", name="b", size=0.24, element_size=0.025).robot
     assert robot.body.element_size == 0.025
     assert np.ptp(robot.body.mesh.nodes, axis=0) == pytest.approx([0.24, 0.06, 0.04], abs=0.004)
     assert robot.body.material.name == "flexfoam-it x"
@@ -71,7 +71,9 @@ def test_size_scales_and_element_size_is_taken() -> None:
 def test_a_dirty_surface_is_kept_healed(tmp_path: Path) -> None:
     """Without a quarter of its triangles turned and one gone; the robot holds the healed one, clean when read again."""
     triangles = np.concatenate([BAR.triangles[1:4, ::-1], BAR.triangles[4:]])
-    dirty = sketch_surface(write_ply(Surface(CORNERS, triangles)), file="a b.ply", name="bar", element_size=0.012)
+    dirty = SurfaceSketch.of_scan(
+        write_ply(Surface(CORNERS, triangles)), file="a b.ply", name="bar", element_size=0.012
+    )
     assert not dirty.healing.clean
     assert dirty.robot.body.file == "a b_healed.ply"
     assert dirty.robot.body.mesh.volumes.sum() == pytest.approx(0.12 * 0.03 * 0.02, rel=0.03)
@@ -83,11 +85,11 @@ def test_a_dirty_surface_is_kept_healed(tmp_path: Path) -> None:
 
 def test_no_body() -> None:
     with pytest.raises(SurfaceError, match=r"encloses|holes|open"):
-        sketch_surface(write_ply(Surface(CORNERS, BAR.triangles[:2])), file="a.ply", name="a")
+        SurfaceSketch.of_scan(write_ply(Surface(CORNERS, BAR.triangles[:2])), file="a.ply", name="a")
     with pytest.raises(InputError, match="unknown material"):
-        sketch_surface(write_ply(BAR), file="a.ply", name="a", material="steel")
+        SurfaceSketch.of_scan(write_ply(BAR), file="a.ply", name="a", material="steel")
     with pytest.raises(InputError, match="number of nodes must be from 10"):
-        sketch_surface(write_ply(BAR), file="a.ply", name="a", nodes=3)
+        SurfaceSketch.of_scan(write_ply(BAR), file="a.ply", name="a", nodes=3)
 
 
 TEXT = """\
@@ -187,7 +189,7 @@ def test_a_ball_is_held_and_reached(tmp_path: Path) -> None:
     import trimesh
 
     ball = trimesh.creation.icosphere(subdivisions=3, radius=0.03)
-    sketch = sketch_surface(write_ply(Surface(ball.vertices, ball.faces)), file="ball.ply", name="ball")
+    sketch = SurfaceSketch.of_scan(write_ply(Surface(ball.vertices, ball.faces)), file="ball.ply", name="ball")
     (cable,) = sketch.robot.cables
     assert 0.0 < cable.length < 0.12
     assert (sketch.robot.body.distances(np.array(cable.points)) <= 0).all()

@@ -9,7 +9,7 @@ from touching import fork_robot
 
 from hydrostat.mechanics import ContactEnergy
 from hydrostat.robot import Contact, Obstacle, Pin, Robot
-from hydrostat.simulation import Simulation, describe_contacts, find_contacts, obstacle_forces
+from hydrostat.simulation import ContactPatch, Simulation, find_contacts, obstacle_forces
 
 CLOSED = {"up": 0.012, "down": 0.01}
 
@@ -33,7 +33,7 @@ def test_prongs_press_each_other(dim: int) -> None:
     assert [touch.strength for touch in found] == sorted((touch.strength for touch in found), reverse=True)
     ends = pose.nodes[upper, 1].max(), pose.nodes[~upper, 1].min()
     assert all(ends[1] < touch.place[1] < ends[0] for touch in found)
-    assert describe_contacts(found).startswith("the body touches itself in ")
+    assert ContactPatch.describe_all(found).startswith("the body touches itself in ")
 
 
 @pytest.mark.parametrize("dim", [2, 3])
@@ -77,12 +77,12 @@ def test_a_block_lies_on_a_plane(dim: int, friction: float) -> None:
     middle = 0.5 * (mesh.nodes.min(axis=0) + mesh.nodes.max(axis=0))
     away = np.abs(np.delete(touch.place - middle, 1)).max()
     assert away < 2e-3  # the mesh of a block in space is not the same to both sides
-    assert describe_contacts([touch]) == f"the body touches 'floor' with {touch.strength:.2g} N"
+    assert ContactPatch.describe_all([touch]) == f"the body touches 'floor' with {touch.strength:.2g} N"
 
 
 def test_nothing_touches_at_rest() -> None:
     simulation = Simulation(fork_robot(2))
     assert find_contacts(simulation, simulation.rest) == ()
-    assert describe_contacts(()) == ""
+    assert ContactPatch.describe_all(()) == ""
     free = Simulation(fork_robot(2, contact=False))
     assert find_contacts(free, free.solve(CLOSED)) == ()

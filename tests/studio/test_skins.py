@@ -1,4 +1,4 @@
-"""Whether a skin can be sewn, told beside all else. Oracles: `find_sewing` here, what `hydrostat check` prints."""
+"""Whether a skin can be sewn, told beside all else. Oracles: `Sewing.find` here, what `hydrostat check` prints."""
 
 import threading
 from collections.abc import Callable, Iterator
@@ -8,7 +8,7 @@ import pytest
 from builders import box_mesh, gallery_robot, mesh_body
 
 from hydrostat.design import Severity
-from hydrostat.fabrication import KitOptions, find_sewing
+from hydrostat.fabrication import KitOptions, Sewing
 from hydrostat.geometry import Mesh
 from hydrostat.project import Work
 from hydrostat.robot import MATERIALS, Pin, Robot
@@ -69,7 +69,7 @@ def test_a_skin_that_cannot_be_sewn_is_told_in_all_lists_and_in_the_words_of_che
     first = judge.of(robot, wishes)
     assert first is not None, "the rest is told while the skin is laid flat"
     settle(robot)
-    problems = find_sewing(robot.body).problems
+    problems = Sewing.find(robot.body).problems
     assert len(problems) > 0
     said = judge.of(robot, wishes)
     assert said is not None
@@ -94,8 +94,8 @@ def test_where_no_list_is_shown_a_note_tells_it_once(session: Session, settle: C
     settle(robot)
     session.step(0.0)
     session.step(1.0)
-    assert [note.text for note in session.notes if find_sewing(robot.body).problems[0] in note.text] == [
-        f"skin cannot be sewn: {find_sewing(robot.body).problems[0]}"
+    assert [note.text for note in session.notes if Sewing.find(robot.body).problems[0] in note.text] == [
+        f"skin cannot be sewn: {Sewing.find(robot.body).problems[0]}"
     ]
 
 
@@ -110,5 +110,5 @@ def test_a_bear_can_be_sewn(session: Session, settle: Callable[[Robot], None], c
     settle(robot)
     skin = judge.skin(robot)
     assert skin is not None
-    assert (skin.words, skin.findings) == (f"skin: {find_sewing(robot.body)}", ())
+    assert (skin.words, skin.findings) == (f"skin: {Sewing.find(robot.body)}", ())
     assert judge.skin(gallery_robot("starfish")) is None

@@ -8,7 +8,7 @@ import pytest
 from hydrostat.control import Motors, SimulatedLink
 from hydrostat.errors import HydrostatError
 from hydrostat.robot import Winch
-from hydrostat.teleop import CyberGlove, EmulatedPerson, LessonPoses, Mimicry, go_there, hold_still
+from hydrostat.teleop import CyberGlove, EmulatedPerson, HeldStill, LessonPoses, Mimicry, go_there
 from hydrostat.teleop.source import DriveChannels
 
 COUNT = 10
@@ -42,7 +42,7 @@ def test_forty_poses_of_a_person_who_holds_still(bent: float, enough: float) -> 
     for _ in range(40):
         contractions = course.next_pose()
         person.mimic(contractions)
-        held = hold_still(glove, clock=lambda: float(next(told)))
+        held = HeldStill.wait(glove, clock=lambda: float(next(told)))
         assert held.still
         assert 25 <= held.readings <= 29
         course.take(held, contractions)
@@ -66,7 +66,7 @@ def test_a_hand_that_moves_is_told_from_one_that_holds_still() -> None:
         beats.append(1)
         person.mimic(np.full(COUNT, 0.0004 * len(beats)))
 
-    held = hold_still(glove, beat, clock=lambda: float(next(times)))
+    held = HeldStill.wait(glove, beat, clock=lambda: float(next(times)))
     assert not held.still
     assert len(beats) == held.readings - 1  # motors are told after each reading
 

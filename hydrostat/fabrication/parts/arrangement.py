@@ -10,7 +10,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from hydrostat.arrays import Vector
-from hydrostat.fabrication.parts.places import GIVES, TOUCHES, UnitBox, UnitPlace, ways_to_lie
+from hydrostat.fabrication.parts.places import GIVES, TOUCHES, UnitBox, UnitPlace
 from hydrostat.fabrication.solids.construct import sides_text
 
 _SWEEPS = 8  # rounds of a search
@@ -39,7 +39,7 @@ def arrange_units(boxes: Sequence[UnitBox], seam: BaseGeometry, thickness: float
 @lru_cache(maxsize=128)
 def _arrange_units(boxes: tuple[UnitBox, ...], seam: BaseGeometry, thickness: float) -> tuple[LaidUnit, ...]:
     """Lay each unit."""
-    ways = [_Ways(ways_to_lie(box, seam), thickness) for box in boxes]
+    ways = [_Ways(box.ways_to_lie(seam), thickness) for box in boxes]
     total, places = _settle_units(ways)
     if total[0] > 0:
         thin = [way.thinnest() if _meets_another(places, number) else way for number, way in enumerate(ways)]

@@ -34,6 +34,34 @@ class UnitBox(Cuboid):
         """Name of its winch and its sides, in words."""
         return f'the unit of winch "{self.winch}", {sides_text(self.size)} mm,'
 
+    def ways_to_lie(self, seam: BaseGeometry) -> "list[UnitPlace]":
+        """Across the body and in its plane, turned by whole hours and slid a little.
+
+        Those first that are moved least.
+        """
+        turns = sorted(range(-180 + _STEP, 181, _STEP), key=lambda turn: (abs(turn), turn))
+        slides = (
+            (0.0, 0.0),
+            *((sign * x, sign * y) for x, y in ((0.0, _SLIDE), (_SLIDE, 0.0)) for sign in (1.0, -1.0)),
+        )
+        ways = [
+            (slid, across, flipped, self.along + turn)
+            for slid in slides
+            for across, flipped in ((True, False), (False, False), (False, True))
+            for turn in turns
+        ]
+        footprints = shapely.polygons([_corners(self, *way) for way in ways])
+        shapely.prepare(seam)
+        beyond = ~shapely.covers(seam, footprints)
+        outside = np.zeros(len(ways))
+        outside[beyond] = shapely.area(shapely.difference(footprints[beyond], seam))
+        return [
+            UnitPlace(
+                box=self, across=across, turn=turn, flipped=flipped, slid=slid, footprint=footprint, outside=float(area)
+            )
+            for (slid, across, flipped, turn), footprint, area in zip(ways, footprints, outside, strict=True)
+        ]
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class UnitPlace:
@@ -77,29 +105,6 @@ def seam_of(body: Body) -> BaseGeometry:
     if body.outline is not None:
         return shapely.transform(body.outline.polygon, lambda points: 1e3 * points)
     return shapely.union_all(shapely.polygons(1e3 * body.mesh.nodes[body.mesh.elements]))
-
-
-def ways_to_lie(box: UnitBox, seam: BaseGeometry) -> list[UnitPlace]:
-    """Across the body and in its plane, turned by whole hours and slid a little: those first that are moved least."""
-    turns = sorted(range(-180 + _STEP, 181, _STEP), key=lambda turn: (abs(turn), turn))
-    slides = ((0.0, 0.0), *((sign * x, sign * y) for x, y in ((0.0, _SLIDE), (_SLIDE, 0.0)) for sign in (1.0, -1.0)))
-    ways = [
-        (slid, across, flipped, box.along + turn)
-        for slid in slides
-        for across, flipped in ((True, False), (False, False), (False, True))
-        for turn in turns
-    ]
-    footprints = shapely.polygons([_corners(box, *way) for way in ways])
-    shapely.prepare(seam)
-    beyond = ~shapely.covers(seam, footprints)
-    outside = np.zeros(len(ways))
-    outside[beyond] = shapely.area(shapely.difference(footprints[beyond], seam))
-    return [
-        UnitPlace(
-            box=box, across=across, turn=turn, flipped=flipped, slid=slid, footprint=footprint, outside=float(area)
-        )
-        for (slid, across, flipped, turn), footprint, area in zip(ways, footprints, outside, strict=True)
-    ]
 
 
 def _corners(box: UnitBox, slid: Corner, across: bool, flipped: bool, turn: float) -> list[Corner]:

@@ -323,28 +323,28 @@ class Sewing:
         """In words, such as "2 patches, cloth with 9 % stretch"."""
         return f"{plural(self.patches, 'patch')}, cloth with {100 * self.give:.0f} % stretch"
 
+    @staticmethod
+    def of_mesh(mesh: SkinMesh, options: PatternOptions) -> "Sewing":
+        """Compute the sewing work of a skin, with the reasons if it cannot be sewn."""
+        cutting = cut_skin(mesh)
+        skins = tuple(patch_skin(patch, options) for patch in cutting.patches)
+        seams = find_seams(cutting.mesh, cutting.patches, np.eye(3)[2])
+        return Sewing(
+            patches=len(cutting.patches),
+            give=max(distortion(patch).give(0.95) for patch in cutting.patches),
+            problems=patch_problems(cutting.names, cutting.patches, skins, seams),
+        )
 
-def find_sewing(body: Body, *, options: PatternOptions | None = None) -> Sewing:
-    """Cut and flatten the skin of a body in space as its kit will, with the reasons if it cannot be sewn.
+    @staticmethod
+    def find(body: Body, *, options: PatternOptions | None = None) -> "Sewing":
+        """Cut and flatten the skin of a body in space as its kit will, with the reasons if it cannot be sewn.
 
-    It takes seconds. Raises InputError: a flat body.
-    """
-    if body.mesh.dim != 3:
-        raise InputError("a flat body has a flat pattern of its own")
-    try:
-        mesh = skin_mesh(body)
-    except InputError as error:
-        return Sewing(patches=0, give=0.0, problems=(str(error),))
-    return sewing_of(mesh, options or PatternOptions())
-
-
-def sewing_of(mesh: SkinMesh, options: PatternOptions) -> Sewing:
-    """Compute the sewing work of a skin, with the reasons if it cannot be sewn."""
-    cutting = cut_skin(mesh)
-    skins = tuple(patch_skin(patch, options) for patch in cutting.patches)
-    seams = find_seams(cutting.mesh, cutting.patches, np.eye(3)[2])
-    return Sewing(
-        patches=len(cutting.patches),
-        give=max(distortion(patch).give(0.95) for patch in cutting.patches),
-        problems=patch_problems(cutting.names, cutting.patches, skins, seams),
-    )
+        It takes seconds. Raises InputError: a flat body.
+        """
+        if body.mesh.dim != 3:
+            raise InputError("a flat body has a flat pattern of its own")
+        try:
+            mesh = skin_mesh(body)
+        except InputError as error:
+            return Sewing(patches=0, give=0.0, problems=(str(error),))
+        return Sewing.of_mesh(mesh, options or PatternOptions())

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.arrays import Float
-from hydrostat.drawing import Box, Camera, Canvas, CanvasFrame, Color, LineDrawing, Spot, line_drawing
+from hydrostat.drawing import Box, Camera, Canvas, CanvasFrame, Color, LineDrawing, Spot
 from hydrostat.fabrication.inserts import InsertKind, find_inserts
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side
 from hydrostat.fabrication.sheets.map_layout import (
@@ -108,7 +108,7 @@ def pane_of(robot: Robot, camera: Camera, pixels: int) -> SightedBody:
     """A body in space and its cables and winches [mm], as a camera sees them."""
     body = body_solid(robot)
     soft = 0.008  # share of the picture over which the light on a body is blurred
-    drawing = line_drawing([body], camera, soft=soft, pixels=pixels)
+    drawing = LineDrawing.of_solids([body], camera, soft=soft, pixels=pixels)
     cables = [camera.see(1e3 * np.array(cable.points)) for cable in robot.cables]
     winches = [camera.see(1e3 * np.array([winch.at]))[0] for winch in robot.winches]
     places = np.concatenate([drawing.box, *(way[:, :2] for way in cables)])

@@ -8,18 +8,7 @@ from manifold3d import Manifold
 from scipy.ndimage import distance_transform_edt, gaussian_filter
 
 from hydrostat.arrays import Bool, Float, Int
-from hydrostat.drawing import (
-    Box,
-    Camera,
-    Canvas,
-    CanvasFrame,
-    DrawnSolid,
-    LineDrawing,
-    Polyline,
-    Spot,
-    level_rings,
-    line_drawing,
-)
+from hydrostat.drawing import Box, Camera, Canvas, CanvasFrame, DrawnSolid, LineDrawing, Polyline, Spot, level_rings
 from hydrostat.fabrication.sheets.map_layout import body_solid, flat_marks, flat_rings
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
 from hydrostat.fabrication.solids.printed import triangles_of
@@ -43,7 +32,9 @@ def exploded_picture(
     at most so high [mm]; the view is isometric if left out.
     """
     solids = [drawn_solid(placed.solid, shift=placed.pulled) for placed in assembly.pieces]
-    drawing = line_drawing(solids, view or Camera.isometric(), pixels=round(Canvas.PIXELS * max(width, height)))
+    drawing = LineDrawing.of_solids(
+        solids, view or Camera.isometric(), pixels=round(Canvas.PIXELS * max(width, height))
+    )
     side = _SIDE if numbers else 0.6
     height = Canvas.fit_height(drawing.box, width - 2 * side, height - 1.2) + 1.2
     canvas = Canvas(width, height)
@@ -119,7 +110,7 @@ def undercut_picture(
 ) -> Canvas:
     """The body with the pull upright, hatched where it holds in its half; seen from where most of that is in sight."""
     body = DrawnSolid(vertices=vertices, triangles=triangles, sharp=70.0)
-    drawing = line_drawing(
+    drawing = LineDrawing.of_solids(
         [body], _view(body, held, pull), soft=0.008, pixels=round(Canvas.PIXELS * max(width, height))
     )
     height = Canvas.fit_height(drawing.box, width - 1.2, height - 9.6) + 9.6
@@ -168,7 +159,9 @@ def portrait(robot: Robot, view: Camera | None, *, width: float, height: float) 
     canvas = Canvas(width, height)
     room = (0.6, 0.6, width - 0.6, height - 0.6)
     if view is not None:
-        drawing = line_drawing([body_solid(robot)], view, soft=0.01, pixels=round(Canvas.PIXELS * max(width, height)))
+        drawing = LineDrawing.of_solids(
+            [body_solid(robot)], view, soft=0.01, pixels=round(Canvas.PIXELS * max(width, height))
+        )
         canvas.drawing(drawing, CanvasFrame.fit(drawing.box, room))
         return canvas
     rings = [1e3 * ring for ring in flat_rings(robot)]

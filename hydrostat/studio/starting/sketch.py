@@ -5,7 +5,7 @@ from pathlib import PurePath
 
 from hydrostat.errors import InputError
 from hydrostat.geometry import DRAWN_HINT
-from hydrostat.robot import Robot, SurfaceSketch, inflate_outline, sketch_robot, sketch_surface
+from hydrostat.robot import Robot, SurfaceSketch, inflate_outline, sketch_robot
 from hydrostat.studio.jobs import Report
 from hydrostat.studio.starting.draft import BodyDraft
 from hydrostat.studio.starting.photo import Backdrop, backdrop, cut_out
@@ -58,7 +58,7 @@ def _sketch(report: Report, draft: BodyDraft) -> Sketch:
             return replace(made, behind=behind)
         report.progress("inflating the outline", 0, 2)
         content, file, size = inflate_outline(drawing.outline, draft.inflate), f"{PurePath(file).stem}.ply", None
-    sketch = sketch_surface(
+    sketch = SurfaceSketch.of_scan(
         content,
         file=file,
         name=draft.name,

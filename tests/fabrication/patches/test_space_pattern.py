@@ -9,7 +9,7 @@ from hydrostat.errors import InputError
 from hydrostat.fabrication.checks.pattern_checks import patch_checks
 from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patches import cutting
-from hydrostat.fabrication.patches.space_pattern import SpacePattern, find_sewing, space_pattern
+from hydrostat.fabrication.patches.space_pattern import Sewing, SpacePattern, space_pattern
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.shape import PatternPart
 from hydrostat.fabrication.patterns.stitches import Side
@@ -120,7 +120,7 @@ def test_a_body_too_small_to_sew_is_refused():
         space_pattern(tiny, PatternOptions())
     problems = space_pattern(tiny, PatternOptions(force=True)).problems
     assert problems
-    assert find_sewing(tiny.body).problems == problems
+    assert Sewing.find(tiny.body).problems == problems
 
 
 @pytest.mark.slow

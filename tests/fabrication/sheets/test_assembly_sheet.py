@@ -13,7 +13,7 @@ from page_words import read_words as words
 from pypdf import PdfReader
 from sheet_inputs import Given, changed, checks, foam, lists, plush
 
-from hydrostat.drawing import Camera, DrawnSolid, LineDrawing, line_drawing
+from hydrostat.drawing import Camera, DrawnSolid, LineDrawing
 from hydrostat.fabrication.kit_options import Method, Paper, PartOptions
 from hydrostat.fabrication.lists.bill import BillGroup, Item, Price
 from hydrostat.fabrication.lists.motors import power_plan
@@ -40,7 +40,7 @@ def shared_drawings() -> Iterator[None]:
     def draw_once(solids: Sequence[DrawnSolid], camera: Camera, **options: float) -> LineDrawing:
         key = pickle.dumps((solids, camera, options))
         if key not in drawn:
-            drawn[key] = line_drawing(solids, camera, **options)  # type: ignore[arg-type]
+            drawn[key] = LineDrawing.of_solids(solids, camera, **options)  # type: ignore[arg-type]
         return drawn[key]
 
     with pytest.MonkeyPatch.context() as patch:

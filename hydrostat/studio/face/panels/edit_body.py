@@ -6,7 +6,7 @@ from functools import partial
 from nicegui import ui
 
 from hydrostat.robot import DIRECTIONS, MATERIALS, Source, direction_of
-from hydrostat.simulation import describe_contacts
+from hydrostat.simulation import ContactPatch
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.editing.tools import Findings
 from hydrostat.studio.face.page import WindowPage
@@ -39,7 +39,7 @@ def touch_label(page: WindowPage, shape: Callable[[], RobotShape], mark: str) ->
     label = ui.label().classes("studio-hint").mark(mark)
 
     def show() -> None:
-        words = describe_contacts(shape().touches)
+        words = ContactPatch.describe_all(shape().touches)
         label.set_text(f"{words[:1].upper()}{words[1:]}")
         label.set_visibility(bool(words))
 
