@@ -9,9 +9,8 @@ from typing import TypedDict, Unpack
 from hydrostat.closed_set import parse_choice
 from hydrostat.design.cable_sides import assign_cable_sides
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.filled_judge import evaluate_stuffed
-from hydrostat.design.filled_reach import check_filled
-from hydrostat.design.network import Network
+from hydrostat.design.filled_reach import FilledReach, check_filled, filled_reach
+from hydrostat.design.network import Alternative, Network, RouteTrace, size_of
 from hydrostat.design.request import DesignMethod, DesignRequest, RouteOptions, TreeOptions
 from hydrostat.design.routes.design_fewest import design_fewest
 from hydrostat.design.routes.design_routes import design_routes
@@ -19,6 +18,7 @@ from hydrostat.design.routes.finalists import kit_fits
 from hydrostat.design.trees.design_trees import design_trees
 from hydrostat.design.watch import Better, Watch, unseen
 from hydrostat.errors import HydrostatError, InputError
+from hydrostat.fabrication import Demand, find_refusals
 from hydrostat.given import check_type
 from hydrostat.progress import Progress, no_progress
 from hydrostat.robot import PinDrive, PoseTarget, Robot
@@ -146,3 +146,59 @@ def _trees(robot: Robot, request: DesignRequest, body: BodyPhysics) -> list[Robo
 
 
 _TREES = 16  # networks of winch trees whose poses are solved
+
+
+FINALISTS = 4  # so many networks are compared: the one that was found, and the first of its alternatives
+GAIN = 0.95  # another network takes its place if its error on the filled body is less than this share of its own
+
+
+def evaluate_stuffed(found: Network, *, progress: Progress) -> Network:
+    """The network with what it reaches on the filled body; an alternative that does better there takes its place.
+
+    Compared are alternatives with no more winches and no more cables, of which a kit can be made. Stopped
+    (KeyboardInterrupt), the best of those that were looked at is returned.
+    """
+    first = Alternative(robot=found.robot, reached=found.reached, built=found.built)
+    winches, cables = size_of(found)
+    small = [one for one in found.alternatives if size_of(one)[0] <= winches and size_of(one)[1] <= cables]
+    fitting = [one for one in small if not find_refusals(one.robot, Demand.of_results(one.robot, one.reached))]
+    finalists = [first, *fitting[: FINALISTS - 1]]
+    judged: list[tuple[Alternative, FilledReach]] = []
+    complete = found.complete
+    try:
+        for number, one in enumerate(finalists):
+            progress("Filled bodies", number, len(finalists))
+            reach = _reach(found, one)
+            judged += [] if reach is None else [(one, reach)]
+    except KeyboardInterrupt:
+        complete = False
+    progress("Filled bodies", 1, 1)
+    if not judged:
+        return replace(found, complete=complete)
+    best, reach = judged[0]
+    for one, other in judged[1:]:
+        if other.rms_error < GAIN * reach.rms_error:
+            best, reach = one, other
+    reach = replace(reach, finalists=len(judged))
+    if best is first:
+        return replace(found, filled=reach, complete=complete)
+    others = (first, *(one for one in found.alternatives if one is not best))
+    trace = replace(found.trace, certificate=None) if isinstance(found.trace, RouteTrace) else found.trace
+    return replace(
+        found,
+        robot=best.robot,
+        reached=best.reached,
+        built=best.built,
+        alternatives=others,
+        trace=trace,
+        filled=reach,
+        complete=complete,
+    )
+
+
+def _reach(found: Network, one: Alternative) -> FilledReach | None:
+    """Return the results of a network on the filled body; None where a pose has no equilibrium there."""
+    try:
+        return filled_reach(one.robot, one.reached, limits=found.constraints.limits)
+    except HydrostatError:
+        return None

@@ -10,7 +10,7 @@ from hydrostat.fabrication.kit_options import KitOptions, Method
 from hydrostat.fabrication.lists.line import check_line, line_for
 from hydrostat.fabrication.moulds.pocket import WinchRoom, clashes, make_pockets
 from hydrostat.fabrication.moulds.setting import mold_setting
-from hydrostat.fabrication.parts.motor import MOTORS, Motor
+from hydrostat.fabrication.parts.motor import MOTORS, Motor, choose_motor, largest_torque
 from hydrostat.fabrication.parts.winch_unit import unit_problems, unit_rooms
 from hydrostat.fabrication.patterns.pattern import pattern_problems
 from hydrostat.fabrication.print_work import print_problems
@@ -23,7 +23,7 @@ def find_refusals(robot: Robot, demand: Demand | None = None, *, options: KitOpt
 
     They cover units and pockets that do not fit, holes that cannot be cut, sheaths too near the skin, and lines that
     break. Without a demand the motor is the weakest that fits and no line breaks: these problems then hold for all
-    poses. The demand is that of the robot as it is drawn, or as its cables are sewn in pairs. `find_sewing` judges the
+    poses. The demand is that of the robot as it is drawn, or as its cables are sewn in pairs. `Sewing.find` judges the
     skin of bodies in space. Moulds, pieces too large for the printer and the checks of finished files are judged only
     as the kit is made. Raises InputError: an unknown motor, a demand of another robot.
     """
@@ -41,16 +41,16 @@ def find_motor(robot: Robot, torques: Iterable[float], options: KitOptions) -> M
 
     For "auto" it is the weakest that holds the poses for long and whose units fit into the body, none above another.
     If there is none, it is the strongest that does so for seconds. Else units may lie above each other. If no motor
-    fits, the choice is that of `Motor.choose`.
+    fits, the choice is that of `choose_motor`.
     """
     inside = any(winch.mount is Mount.BODY for winch in robot.winches)
     needed = [float(torque) for torque in torques]
-    chosen = Motor.choose(options.motor, needed, inside=inside, winches=len(robot.winches))
+    chosen = choose_motor(options.motor, needed, inside=inside, winches=len(robot.winches))
     if options.motor != "auto" or not inside:
         return chosen
     most = max(needed, default=0.0) - 1e-12
-    steady = [motor for motor in MOTORS if motor.largest_torque() >= most]
-    brief = [motor for motor in reversed(MOTORS) if motor.largest_torque(inside=True) >= most and motor not in steady]
+    steady = [motor for motor in MOTORS if largest_torque(motor) >= most]
+    brief = [motor for motor in reversed(MOTORS) if largest_torque(motor, inside=True) >= most and motor not in steady]
     piled = []
     for motor in (*steady, *brief):
         problems, is_piled = _fit(robot, options, motor)

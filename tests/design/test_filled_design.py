@@ -7,7 +7,7 @@ import pytest
 from builders import gallery_robot
 
 from hydrostat.design import Craft, DesignRequest, Network, RouteTrace, assign_cable_sides, design_cables, score_card
-from hydrostat.design.filled_judge import evaluate_stuffed
+from hydrostat.design.design_cables import evaluate_stuffed
 from hydrostat.design.filled_reach import filled_reach
 from hydrostat.design.network import Alternative
 from hydrostat.errors import InputError

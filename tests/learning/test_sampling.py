@@ -21,7 +21,6 @@ from hydrostat.cli.main import app
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.files import temporary_path
 from hydrostat.learning import SamplePlan, Samples, SamplingScheme, export_samples, sample_robot, sample_shard
-from hydrostat.learning.sample_plan import contractions as drawn
 from hydrostat.learning.sample_plan import shared_numbers
 from hydrostat.learning.sample_shard import REASONS
 from hydrostat.learning.samples import SampleFolder
@@ -135,7 +134,7 @@ def test_numbers_that_two_winches_share_are_found_again() -> None:
     """Oracle: the points that contractions were made of; a winch without partner has a number of its own."""
     points, high = np.random.default_rng(0).random((50, 2)), np.array([0.03, 0.05, 0.04])
     pairs = ((0, 2), (1,))
-    rows = drawn(SamplingScheme.ANTAGONIST, points, np.zeros(3), high, pairs)
+    rows = SamplingScheme.ANTAGONIST.contractions(points, np.zeros(3), high, pairs)
     assert shared_numbers(rows, high, pairs) == pytest.approx(points, abs=1e-12)
 
 

@@ -1,8 +1,10 @@
 """`make_lists`: what to cut, to stitch and to buy, and whether motors and lines are strong enough."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Annotated
 
-from hydrostat.fabrication.inserts import insert_title
+from hydrostat.fabrication.inserts import Insert, insert_title
 from hydrostat.fabrication.kit import Check
 from hydrostat.fabrication.kit_options import Method
 from hydrostat.fabrication.kit_plan import KitPlan
@@ -17,7 +19,6 @@ from hydrostat.fabrication.lists.cuts import (
     sheath_cuts,
     sheath_table,
 )
-from hydrostat.fabrication.lists.insert_table import InsertRow, insert_table
 from hydrostat.fabrication.lists.line import LineRow, check_line, line_for
 from hydrostat.fabrication.lists.motors import (
     MotorRow,
@@ -36,7 +37,7 @@ from hydrostat.fabrication.lists.stitching import (
     plane_table,
     stitch_table,
 )
-from hydrostat.fabrication.lists.table import Table
+from hydrostat.fabrication.lists.table import Table, number_column, text_column
 from hydrostat.simulation import Simulation
 
 _MOULD_COST = "For hands of foam the thesis gives about 100 USD for a silicone mould and a few dollars for each core"
@@ -53,7 +54,7 @@ class Lists:
     strength: Table[LineRow]  # strength of the line
     motors: Table[MotorRow]  # and what the winches ask of them
     power: PowerPlan | None  # power supply of the motors; None without motors
-    inserts: Table[InsertRow] | None = None  # parts and rods in the body; None without any
+    inserts: "Table[InsertRow] | None" = None  # parts and rods in the body; None without any
     problems: tuple[str, ...] = ()  # why the robot cannot be built well
     warnings: tuple[str, ...] = ()  # warnings for the builder
     checks: tuple[Check, ...] = ()  # comparisons of the lists with the simulation
@@ -121,3 +122,50 @@ def _sewing(plan: KitPlan) -> tuple[Stitching | None, tuple[str, ...]]:
     if plan.method is Method.FOAM and plan.robot.cables:
         return plane_table(plan.robot), close_warnings(plan.robot)
     return None, ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class InsertRow:
+    """Part or rod in the body."""
+
+    mark: Annotated[str, text_column("mark")]
+    name: Annotated[str, text_column("name")]
+    kind: Annotated[str, text_column("kind")]
+    material: Annotated[str, text_column("material")]
+    size: Annotated[str, text_column("size")]
+    where: Annotated[str, text_column("place")]
+    length: Annotated[float | None, number_column("length", "mm")]
+    diameter: Annotated[float | None, number_column("diameter", "mm", decimals=2)]
+    volume: Annotated[float | None, number_column("volume", "cm^3", decimals=2)]
+    mass: Annotated[float | None, number_column("mass", "g")]
+    step: Annotated[str, text_column("step")]
+
+
+def insert_table(inserts: Iterable[Insert], step: str) -> Table[InsertRow]:
+    """Table of parts and rods, all of which one step puts in."""
+    rows = [
+        InsertRow(
+            mark=insert.mark,
+            name=insert.name,
+            kind=insert.kind,
+            material=insert.material,
+            size=insert.size,
+            where=insert.where,
+            length=insert.length,
+            diameter=insert.diameter,
+            volume=None if insert.volume is None else 1e-3 * insert.volume,
+            mass=insert.mass,
+            step=step,
+        )
+        for insert in inserts
+    ]
+    return Table(
+        name="inserts",
+        title="Parts and rods in the body",
+        row=InsertRow,
+        rows=tuple(rows),
+        notes=(
+            "Sizes are as drawn, volumes and masses those of the simulated mesh.",
+            "The kit has no file for these parts: print, cut or cast them.",
+        ),
+    )

@@ -11,7 +11,7 @@ from test_bill import needs
 from hydrostat.fabrication.inserts import find_inserts, insert_title, rod_problems
 from hydrostat.fabrication.kit_options import Method
 from hydrostat.fabrication.kit_plan import Cloth
-from hydrostat.fabrication.lists.insert_table import insert_table
+from hydrostat.fabrication.lists.lists import insert_table
 from hydrostat.fabrication.lists.needs import filling_mass
 from hydrostat.fabrication.refusals import find_refusals
 from hydrostat.fabrication.sheets.steps import insert_steps

@@ -7,7 +7,7 @@ from overhang import overhang
 from hydrostat.errors import InputError
 from hydrostat.fabrication.checks.solid_checks import watertight_problems
 from hydrostat.fabrication.kit_options import PartOptions, PatternOptions
-from hydrostat.fabrication.parts.grommet import grommet
+from hydrostat.fabrication.parts.rigid_parts import grommet
 from hydrostat.fabrication.solids.printed import Printed
 
 HOLES = [PatternOptions().pinhole, 3.0, 6.0]
