@@ -191,7 +191,10 @@ ASTRAY = {
     "a search without physics": (lambda _: hs.solve_ik(None, {}), r"must be a Simulation\(robot\), not None"),
     "a tracker without physics": (lambda _: hs.Tracker(None), r"must be a Simulation\(robot\), not None"),
     "limits of a tracker": (lambda s: hs.Tracker(s, limits=3), r"limits must be Limits\(...\)"),
-    "a model of a tracker": (lambda s: hs.Tracker(s, model="a.model"), "one that load_model gives, not 'a.model'"),
+    "a model of a tracker": (
+        lambda s: hs.Tracker(s, model="a.model"),
+        "one that LearnedModel.load returns, not 'a.model'",
+    ),
     "steps of a tracker": (lambda s: hs.Tracker(s).update({"left": (0.0, 0.0)}, seconds="1"), "above 0, not '1'"),
     "no material": (lambda _: hs.get_material(None), "found by its name"),
     "points of a cable": (lambda _: hs.Cable(winch="a", points=None), "points must hold at least 2 points"),

@@ -97,7 +97,7 @@ class Tracker:
         simulation.solver.with_accuracy(accuracy, simulation.robot.body.mesh.size)
         if model is not None:
             if not hasattr(model, "check"):
-                raise InputError(f"model must be one that load_model gives, not {model!r:.60}")
+                raise InputError(f"model must be one that LearnedModel.load returns, not {model!r:.60}")
             model.check(simulation.robot)
         self._model = model
         self._asked: Mapping[str, Point] | None = None  # the targets that the model was asked for last

@@ -299,7 +299,7 @@ class LearnedModel:
 
     @staticmethod
     def load(path: str | Path) -> "LearnedModel":
-        """A model that `save_model` has written.
+        """A model that `LearnedModel.save` has written.
 
         Raises:
             InputError: there is none, it was changed since it was written, or it is not one that this version can use.

@@ -36,7 +36,7 @@ def verify(
         InputError: a model of another robot.
     """
     check_type(simulation, Simulation, "simulation must be a Simulation(robot)")
-    check_type(model, LearnedModel, "the model must be one that load_model gives")
+    check_type(model, LearnedModel, "the model must be one that LearnedModel.load returns")
     check_type(answer, LearnedPose, "the answer must be what model.solve gives")
     if isinstance(steps, bool) or not isinstance(steps, int) or steps < 0:
         raise InputError(f"steps must be a whole number of 0 or more, not {steps!r:.60}")

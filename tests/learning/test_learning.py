@@ -236,7 +236,7 @@ def test_what_cannot_be_certified_is_told(simulation: hs.Simulation, model: Lear
     assert len(repr(model)) + len(repr(answer)) < 300
     for given, words in (
         ((None, model, answer), r"must be a Simulation\(robot\), not None"),
-        ((simulation, None, answer), "one that load_model gives, not None"),
+        ((simulation, None, answer), "one that LearnedModel.load returns, not None"),
         ((simulation, model, None), "what model.solve gives, not None"),
     ):
         with pytest.raises(InputError, match=words):

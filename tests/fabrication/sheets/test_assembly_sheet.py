@@ -22,7 +22,6 @@ from hydrostat.fabrication.lists.table import Table
 from hydrostat.fabrication.moulds.casting import make_casting
 from hydrostat.fabrication.parts.motor import MOTORS
 from hydrostat.fabrication.parts.winch_unit import winch_units
-from hydrostat.fabrication.sheets import cable_map, solid_pictures
 from hydrostat.fabrication.sheets.assembly_sheet import assembly_sheet
 from hydrostat.fabrication.sheets.legible import legible, note_lines, shorten_text, typeset
 from hydrostat.fabrication.sheets.steps import plush_steps
@@ -36,16 +35,16 @@ NASTY = '#let x = 1 $*_ <b>&"\\'
 def shared_drawings() -> Iterator[None]:
     """Draw the same solids from the same place once: sheets here differ in their words, kits check their bytes."""
     drawn: dict[bytes, LineDrawing] = {}
+    draw = LineDrawing.of_solids
 
     def draw_once(solids: Sequence[DrawnSolid], camera: Camera, **options: float) -> LineDrawing:
         key = pickle.dumps((solids, camera, options))
         if key not in drawn:
-            drawn[key] = LineDrawing.of_solids(solids, camera, **options)  # type: ignore[arg-type]
+            drawn[key] = draw(solids, camera, **options)  # type: ignore[arg-type]
         return drawn[key]
 
     with pytest.MonkeyPatch.context() as patch:
-        for module in (cable_map, solid_pictures):
-            patch.setattr(module, "line_drawing", draw_once)
+        patch.setattr(LineDrawing, "of_solids", staticmethod(draw_once))
         yield
 
 
