@@ -31,9 +31,9 @@ if TYPE_CHECKING:
     from hydrostat.fabrication.patches.space_pattern import Sewing, space_pattern
     from hydrostat.fabrication.patterns.pattern import plush_pattern
     from hydrostat.fabrication.refusals import find_motor, find_refusals
-    from hydrostat.fabrication.weak_lines import find_weak_lines
     from hydrostat.fabrication.sheets.tiles import PAPERS
     from hydrostat.fabrication.solids.construct import Cuboid, sides_text
+    from hydrostat.fabrication.weak_lines import find_weak_lines
     from hydrostat.fabrication.winch_marks import winch_marks_of
 
 __all__ = [

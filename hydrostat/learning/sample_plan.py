@@ -32,7 +32,6 @@ class SamplingScheme(StrEnum):
         """Contractions [m] of points in the unit cube.
 
         Args:
-            draw: distribution of the contractions.
             points: (samples, dimensions).
             low: least contraction of each winch [m].
             high: largest [m].
