@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 from functools import cached_property
 from math import inf, isfinite
 from numbers import Integral, Real
-from typing import Any, ClassVar, NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -116,7 +116,7 @@ class Constraints:
         InputError: a value of the wrong kind or out of its range.
     """
 
-    STEPPED: ClassVar[float] = 2.0
+    STEPPED = 2.0
     """Spool ratio of a robot whose spools may differ."""
 
     winch_zones: tuple[Zone, ...] = ()

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import ClassVar, Self, TypeVar
+from typing import Self, TypeVar
 
 import numpy as np
 
@@ -71,7 +71,7 @@ class Robot:
     obstacles: tuple[Obstacle, ...] = ()
     loads: tuple[Load, ...] = ()
     rods: tuple[Rod, ...] = ()
-    LARGEST_STEP: ClassVar[float] = 4.0  # the spools of cables on one shaft differ by at most so many times
+    LARGEST_STEP = 4.0  # the spools of cables on one shaft differ by at most so many times
 
     def __post_init__(self) -> None:
         self._check_kinds()
