@@ -10,7 +10,7 @@ from hydrostat.fabrication.kit_options import KitOptions, Method
 from hydrostat.fabrication.lists.line import check_line, line_for
 from hydrostat.fabrication.moulds.pocket import WinchRoom, clashes, make_pockets
 from hydrostat.fabrication.moulds.setting import mold_setting
-from hydrostat.fabrication.parts.motor import MOTORS, Motor, choose_motor, largest_torque
+from hydrostat.fabrication.parts.motor import MOTORS, Motor
 from hydrostat.fabrication.parts.winch_unit import unit_problems, unit_rooms
 from hydrostat.fabrication.patterns.pattern import pattern_problems
 from hydrostat.fabrication.print_work import print_problems
@@ -45,12 +45,12 @@ def find_motor(robot: Robot, torques: Iterable[float], options: KitOptions) -> M
     """
     inside = any(winch.mount is Mount.BODY for winch in robot.winches)
     needed = [float(torque) for torque in torques]
-    chosen = choose_motor(options.motor, needed, inside=inside, winches=len(robot.winches))
+    chosen = Motor.choose(options.motor, needed, inside=inside, winches=len(robot.winches))
     if options.motor != "auto" or not inside:
         return chosen
     most = max(needed, default=0.0) - 1e-12
-    steady = [motor for motor in MOTORS if largest_torque(motor) >= most]
-    brief = [motor for motor in reversed(MOTORS) if largest_torque(motor, inside=True) >= most and motor not in steady]
+    steady = [motor for motor in MOTORS if motor.largest_torque() >= most]
+    brief = [motor for motor in reversed(MOTORS) if motor.largest_torque(inside=True) >= most and motor not in steady]
     piled = []
     for motor in (*steady, *brief):
         problems, is_piled = _fit(robot, options, motor)
