@@ -22,6 +22,7 @@ from hydrostat.design.routes.growth import Growth
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.refine import pushed_back
+from hydrostat.design.routes.route_graph import RouteGraph
 from hydrostat.design.routes.screen import screen_sketches
 from hydrostat.design.routes.search_rules import RULES
 from hydrostat.design.routes.sketch import sketches
