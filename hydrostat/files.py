@@ -116,22 +116,26 @@ def hold_folder(folder: Path) -> None:
     Raises:
         InputError: another process holds it.
     """
-    folder = folder.absolute()
-    if folder in _HELD:
+    place, user = folder.resolve(), getattr(os, "getuid", int)()
+    if place in _HELD:
         return
-    name = sha256(str(folder.resolve()).encode()).hexdigest()[:32]
-    locks = Path(tempfile.gettempdir()) / f"hydrostat-{getattr(os, 'getuid', int)()}"
+    locks = Path(tempfile.gettempdir()) / f"hydrostat-{user}"
     try:
         locks.mkdir(mode=0o700, exist_ok=True)
-        file = (locks / name).open("wb")
+        if locks.is_symlink() or locks.stat().st_uid != user:
+            return  # another user made it
+        path = locks / sha256(str(place).encode()).hexdigest()[:32]
+        file = os.fdopen(os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0), 0o600), "r+b")
     except OSError:
         return
     try:
         lock_file(file)
     except OSError:
         file.close()
-        raise InputError(f"{folder}: another hydrostat writes there. Wait for it, or name another folder.") from None
-    _HELD[folder] = file
+        raise InputError(
+            f"{folder.absolute()}: another hydrostat writes there. Wait for it, or name another folder."
+        ) from None
+    _HELD[place] = file
 
 
 def lock_file(file: IO[bytes]) -> None:

@@ -214,11 +214,11 @@ def design(
         network = _search(source, request)
         pass_over()
         printed = print_poses(network, time.perf_counter() - began)
-        _tell_count(network, request)
-        sys.stdout.flush()
+        print(end="", flush=True)
         made = _write(network, out, kit=kit)
     if made is not None:
         print_kit(made, printed=printed)
+    _tell_count(network, request)
     fits = kit_fits(network) and not (made is not None and made.problems)
     _tell_next(network, robot, out, kit=kit, fits=fits)
     if network.timed_out:

@@ -76,7 +76,7 @@ def drive(
         asked: DriveSource | None = None
         motors: Motors | None = None
         try:
-            wearer = teleop.EmulatedHand(teleop.WinchMapper.channels(loaded))
+            wearer = teleop.EmulatedHand(teleop.WinchMapper.list_channels(loaded))
             asked = teleop.open_source(source, way.channels, learned, wearer, smoothing=smooth)
             motors = _motors(folder_of(robot), loaded, port, way)
             shown = _Shown(kind, motors)
@@ -115,7 +115,7 @@ def _way(simulation: "Simulation", networks: "LearnedModel | None", *, tips: boo
     """From what is asked for to contractions, from where the body is at rest."""
     from hydrostat import control, teleop
 
-    begin = teleop.WinchMapper.channels(simulation.robot).rest
+    begin = teleop.WinchMapper.list_channels(simulation.robot).rest
     if tips:
         rate = control.LinkLimits().speed if guarded else control.FASTEST
         return teleop.MarkerMapper(simulation, begin, model=networks, rate=rate)

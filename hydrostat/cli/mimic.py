@@ -56,7 +56,7 @@ def mimic(
         raise InputError(f"--count {poses}: must be at least 4")
     require_folder(out)
     loaded = read_robot(robot)
-    wearer = teleop.EmulatedHand(teleop.WinchMapper.channels(loaded))
+    wearer = teleop.EmulatedHand(teleop.WinchMapper.list_channels(loaded))
     wearer.waves, emulated = False, glove == teleop.EMULATED
     hand = teleop.open_hand(glove, wearer)
     try:
@@ -92,11 +92,11 @@ def _lesson(simulation: "Simulation", hand: "HandSource", out: Path, *, tips: bo
 
     from hydrostat import teleop
 
-    channels = teleop.WinchMapper.channels(simulation.robot)
+    channels = teleop.WinchMapper.list_channels(simulation.robot)
     answers = pool = teleop.LessonPoses.pool(channels)
     names = channels.names
     if tips:
-        names = teleop.MarkerMapper.channels(simulation).names
+        names = teleop.MarkerMapper.list_channels(simulation).names
         pool = pool[:: len(pool) // TIPS]
         print("solving candidate poses ...", flush=True)
         answers = np.array([_markers(simulation, contractions) for contractions in pool])
@@ -127,7 +127,7 @@ class _Session:
 
         robot, self._simulation, self._hand = simulation.robot, simulation, hand
         self.kind = "simulated" if port is None else port.partition(":")[0]
-        rest = teleop.WinchMapper.channels(robot).rest
+        rest = teleop.WinchMapper.list_channels(robot).rest
         self._way = teleop.WinchMapper(simulation, rest, solves=port is not None)
         try:
             self.motors = control.Motors(robot.winches, control.SimulatedLink(rest))

@@ -188,7 +188,7 @@ def _move(
     profile = _profile(simulation, contractions, ramp, play)
     seconds = parse_optional("--duration", duration, TIME) or max(float(profile.times[-1]), 1.0)
     dt = positive("--time-step", step, TIME)
-    start = simulation.motion_at_rest(simulation.solve(profile.at(0.0)) if rests_at_first(simulation.robot) else None)
+    start = simulation.motion_at_rest(_first_pose(simulation, profile) if rests_at_first(simulation.robot) else None)
     began = time.process_time()
     with progress_bar() as progress:
         motions = _with_progress(simulation.play(profile, seconds, dt, start=start), seconds, progress)
@@ -204,6 +204,18 @@ def _move(
     steps = f"{plural(len(table.times) - 1, 'step')} to {last.time:g} s, computed in {spent:.1f} s"
     print(f"{steps}. Maximum speed at the end: {fastest:.2g} mm/s")
     return files
+
+
+def _first_pose(simulation: "Simulation", profile: "ContractionProfile") -> "Equilibrium":
+    """Equilibrium in which a motion begins: each load with the share that it has at 0 s."""
+    from dataclasses import replace
+
+    from hydrostat.simulation import Simulation
+
+    if not any(load.path for load in simulation.robot.loads):
+        return simulation.solve(profile.at(0.0))
+    loads = tuple(load for load in (each.held_at(0.0) for each in simulation.robot.loads) if load is not None)
+    return Simulation(replace(simulation.robot, loads=loads)).solve(profile.at(0.0))
 
 
 def _profile(

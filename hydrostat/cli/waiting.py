@@ -5,11 +5,11 @@ import signal
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from threading import Timer, current_thread, main_thread
 from types import FrameType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from hydrostat.progress import Progress
 
@@ -63,13 +63,14 @@ def progress_bar() -> Iterator[Progress]:
     from rich.progress import Progress as Bars
 
     columns = (TextColumn("{task.description:<22}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Bars(*columns, console=Console(stderr=True)) as bar:
+    # without a thread of its own: a search shares its work with a copy of this process only while it has one thread
+    with Bars(*columns, console=Console(stderr=True), auto_refresh=False) as bar:
         tasks: dict[str, int] = {}
 
         def tell(stage: str, done: int, total: int) -> None:
             if stage not in tasks:
                 tasks[stage] = bar.add_task(stage, total=total)
-            bar.update(tasks[stage], completed=done, total=total)  # type: ignore[arg-type]
+            bar.update(tasks[stage], completed=done, total=total, refresh=True)  # type: ignore[arg-type]
 
         yield tell
 
@@ -151,8 +152,8 @@ def one_interrupt(
     The first signal raises KeyboardInterrupt, or SystemExit for another signal than SIGINT unless `interrupt`; every
     later one is passed over until the block ends. Then signals do again what they did before, whatever that was. A
     handler that was not set from Python cannot be put back by it, so where there is such a one it stays, and answers.
-    A SIGHUP that came ignored, as under nohup, stays ignored; one that comes with a closed terminal ends what is
-    printed there, and not the work that is still to be kept.
+    A SIGHUP that came ignored, as under nohup, stays ignored. From the first signal on, output that nobody reads any
+    more, as of a closed terminal or pipe, is dropped, and does not end the work that is still to be kept.
 
     Gives what to call where the work is over: from there on every signal is passed over, so that results are whole.
     """
@@ -166,17 +167,14 @@ def one_interrupt(
     if current_thread() is not main_thread():  # where no signal arrives
         ours = []
 
-    terminals = [stream for stream in (1, 2) if os.isatty(stream)]
-
     def pass_over() -> None:
+        _outlive_readers()
         for number in ours:
             signal.signal(number, signal.SIG_IGN)
 
     def stop(number: int, frame: FrameType | None) -> None:
         del frame
         pass_over()
-        if number == hangup:
-            _send_nowhere(terminals)
         if words:
             print(words, file=sys.stderr, flush=True)
         raise KeyboardInterrupt if interrupt or number == signal.SIGINT else SystemExit(128 + number)
@@ -190,12 +188,40 @@ def one_interrupt(
             signal.signal(number, before[number])
 
 
-def _send_nowhere(streams: Sequence[int]) -> None:
-    """Drop all later output of file descriptors, as writing to a closed terminal fails."""
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    for stream in streams:
-        os.dup2(nowhere, stream)
-    os.close(nowhere)
+class _LastingOutput:
+    """Text stream that drops what it cannot write: work that is to be kept outlives a closed terminal or pipe."""
+
+    def __init__(self, stream: Any) -> None:
+        self._stream = stream
+
+    def write(self, text: str) -> int:
+        """Write text, to nowhere if nobody reads it any more."""
+        self._try(lambda: self._stream.write(text))
+        return len(text)
+
+    def flush(self) -> None:
+        """Hand on what was written."""
+        self._try(self._stream.flush)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
+
+    def _try(self, act: Callable[[], object]) -> None:
+        try:
+            act()
+        except OSError:
+            with suppress(OSError, ValueError):
+                nowhere = os.open(os.devnull, os.O_WRONLY)
+                os.dup2(nowhere, self._stream.fileno())
+                os.close(nowhere)
+
+
+def _outlive_readers() -> None:
+    """Let output fail in silence from here on."""
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is not None and not isinstance(stream, _LastingOutput):
+            setattr(sys, name, _LastingOutput(stream))
 
 
 def heed_interrupts() -> None:

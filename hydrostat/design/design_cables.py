@@ -104,12 +104,16 @@ def _search(robot: Robot, request: DesignRequest, told: Progress, seen: Watch) -
         return design_trees(robot, request, progress=told, watch=seen)
     if not isinstance(request.winches, int):
         return design_fewest(robot, request, progress=told, watch=seen)
-    found = _design_routes(robot, request, told, seen)
-    return _search_with_fewer(robot, request, found, told, seen) if _may_gain_by_fewer(request, found) else found
+    body = BodyPhysics(robot)
+    found = _design_routes(robot, request, body, told, seen)
+    return _search_with_fewer(robot, request, found, body, told, seen) if _may_gain_by_fewer(request, found) else found
 
 
-def _design_routes(robot: Robot, request: DesignRequest, told: Progress, seen: Watch) -> Network:
-    return design_routes(robot, request, progress=told, watch=seen, hints=lambda body: _trees(robot, request, body))
+def _design_routes(robot: Robot, request: DesignRequest, body: BodyPhysics, told: Progress, seen: Watch) -> Network:
+    def hints(_: BodyPhysics) -> list[Robot]:
+        return _trees(robot, request, body)
+
+    return design_routes(robot, request, progress=told, watch=seen, hints=hints, body=body)
 
 
 def _may_gain_by_fewer(request: DesignRequest, found: Network) -> bool:
@@ -118,11 +122,13 @@ def _may_gain_by_fewer(request: DesignRequest, found: Network) -> bool:
     return found.complete and fewest and request.seconds is None and not request.improve
 
 
-def _search_with_fewer(robot: Robot, request: DesignRequest, found: Network, told: Progress, seen: Watch) -> Network:
+def _search_with_fewer(
+    robot: Robot, request: DesignRequest, found: Network, body: BodyPhysics, told: Progress, seen: Watch
+) -> Network:
     """The better of a network and of one from a search with no more cables than it has."""
     winches, cables = len(found.robot.winches), len(found.robot.cables)
     try:
-        other = _design_routes(robot, replace(request, winches=winches, cables=cables), told, seen)
+        other = _design_routes(robot, replace(request, winches=winches, cables=cables), body, told, seen)
     except HydrostatError:  # none can be built
         return found
     except KeyboardInterrupt:

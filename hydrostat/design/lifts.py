@@ -20,8 +20,8 @@ class Lift:
 def find_lifts(network: Network) -> tuple[Lift, ...]:
     """Find changes that would leave a clearly smaller error where fewer winches than poses share contractions.
 
-    Tried are one more winch, and winches that pull both ways. A quick search (`propose_routes`) takes a second or two
-    for each; the whole search may find better. Only networks count whose kit would be made.
+    Tried are one more winch, and winches that pull both ways. A quick search (`propose_routes`) takes as long as
+    half of the whole one; that may find better. Only networks count whose kit would be made.
     """
     request = network.request
     if not isinstance(request.winches, int) or request.winches >= len(request.poses) or request.improve:

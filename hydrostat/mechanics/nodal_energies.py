@@ -54,7 +54,6 @@ class PinEnergy(Energy):
     """Penalty of boundary conditions: sum of k/2 |y - y_pin|^2 over anchors y = sum of weights x nodes (R29, E10)."""
 
     quadratic = True
-    supports: Int[np.ndarray, " terms"]
 
     def __init__(
         self,
@@ -67,7 +66,8 @@ class PinEnergy(Energy):
     ) -> None:
         """Pins that pull anchors to their targets [m], with a stiffness each [N/m]; each a support if none is given."""
         self.stencils = stencils
-        self.supports = self._support_of = np.arange(len(stencils)) if supports is None else supports
+        self._support_of = np.arange(len(stencils)) if supports is None else supports
+        self.supports = self._support_of
         self.weights, self.targets, self.stiffness = weights, targets, stiffness
         dim = targets.shape[1]
         self._rows, self._pulls = weights[:, None, :], stiffness[:, None, None] * weights[:, :, None]

@@ -1,7 +1,7 @@
 """`Load`: a force or moment at a point of the body, a mass that hangs there, or a pressure in a cavity."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -90,6 +90,21 @@ class Load:
         if not self.path:
             return 1.0
         return float(np.interp(instant, [time for time, _ in self.path], [share for _, share in self.path]))
+
+    def held_at(self, instant: float) -> "Load | None":
+        """The load as it acts at an instant of a motion [s], without a path; None where none of it does."""
+        share = self.share_at(instant)
+        if share == 0.0:
+            return None
+        if not self.path:
+            return self
+        return replace(
+            self,
+            path=(),
+            force=None if self.force is None else tuple(share * part for part in self.force),
+            moment=None if self.moment is None else tuple(share * part for part in self.moment),
+            pressure=None if self.pressure is None else share * self.pressure,
+        )
 
     @property
     def body_points(self) -> tuple[Point, ...]:

@@ -63,7 +63,7 @@ class WinchMapper(CommandMapper):
     def __init__(self, simulation: Simulation, contractions: Vector, *, solves: bool = True) -> None:
         """Begin at contractions [m]; poses need not be solved where there is no guard."""
         robot = simulation.robot
-        self.channels, self.contractions = WinchMapper.channels(robot), contractions.copy()
+        self.channels, self.contractions = WinchMapper.list_channels(robot), contractions.copy()
         self.known = TensionLookup(robot, near=NEAR)
         self.known.add(simulation.solve(contractions, strict=False))
         self._seen = contractions.copy()
@@ -96,7 +96,7 @@ class WinchMapper(CommandMapper):
         self.known.store(found.contractions, found.pulls)
 
     @staticmethod
-    def channels(robot: Robot) -> DriveChannels:
+    def list_channels(robot: Robot) -> DriveChannels:
         """The winches of a robot as channels, each a group of its own (InputError: it has none)."""
         if not robot.winches:
             raise InputError(f"{robot.name} has no winches; add some, or let `hydrostat design` find them")
@@ -128,7 +128,7 @@ class MarkerMapper(CommandMapper):
     ) -> None:
         """Begin at contractions [m]; cables get no faster than a rate [m/s] (InputError: there are no markers)."""
         self._model, robot = model, simulation.robot
-        self.channels, self.contractions = MarkerMapper.channels(simulation), contractions.copy()
+        self.channels, self.contractions = MarkerMapper.list_channels(simulation), contractions.copy()
         self.known = TensionLookup(robot, near=NEAR)
         start = simulation.solve(contractions, strict=False)
         self.known.add(start)
@@ -204,7 +204,7 @@ class MarkerMapper(CommandMapper):
             self.updated.set()
 
     @staticmethod
-    def channels(simulation: Simulation) -> DriveChannels:
+    def list_channels(simulation: Simulation) -> DriveChannels:
         """The coordinates of all markers as channels, a group for each marker (InputError: there are none)."""
         markers, dim = simulation.rest.markers, simulation.robot.body.mesh.dim
         if not markers:

@@ -179,7 +179,7 @@ def other_end(pipe, low: np.ndarray, high: np.ndarray, poses: np.ndarray, baud: 
 
 def learned(robot: Robot, simulation: hs.Simulation, *, tips: bool) -> HandMap:
     """What 60 mimicked poses teach, each read 25 times."""
-    winches, random = WinchMapper.channels(robot), np.random.default_rng(1)
+    winches, random = WinchMapper.list_channels(robot), np.random.default_rng(1)
     person = EmulatedPerson(winches.low, winches.high)
     glove = CyberGlove(person.glove)
     names = tuple(f"{name} {axis}" for name in simulation.rest.markers for axis in "xyz") if tips else winches.names
@@ -211,7 +211,7 @@ def again(ask: Callable[[], object]) -> None:
 
 def measure(robot: Robot, way: CommandMapper, known: HandMap, given: argparse.Namespace) -> Told:
     """Drive, and let the other end measure."""
-    winches, random, moves, baud = WinchMapper.channels(robot), np.random.default_rng(2), given.moves, given.baud
+    winches, random, moves, baud = WinchMapper.list_channels(robot), np.random.default_rng(2), given.moves, given.baud
     flexors = np.array(["flexor" in name for name in winches.names])
     poses = random.uniform(0, 0.35, (moves + 1, len(flexors))) * winches.high * flexors
     ours, theirs = mp.get_context("spawn").Pipe()

@@ -80,3 +80,22 @@ def test_a_table_that_takes_in_a_whole_cable_is_refused(run: Run, starfish: Path
     code, _, err = run("simulate", starfish, "--dynamic", "--play", played, "--out", tmp_path / "out")
     assert code == 2
     assert "takes in the whole cable (116 mm)" in err
+
+
+def test_a_motion_begins_under_the_loads_of_its_first_instant(run: Run, tmp_path: Path) -> None:
+    """Oracle: the same robot without the load, which does not act before half a second."""
+    names = ("plain", "late")
+    for name in names:
+        assert run("new", tmp_path / name, "--from", "gallery:starfish")[0] == 0
+    with (tmp_path / "late" / "robot.toml").open("a") as file:
+        file.write('\n[[load]]\nname = "late"\nmarker = "top"\nforce = ["0 N", "0.3 N"]\n')
+        file.write(
+            'path = [{ time = "0 s", share = 0 }, { time = "0.5 s", share = 0 }, { time = "0.6 s", share = 1 }]\n'
+        )
+    for name in names:
+        code, _, _ = run(
+            "simulate", tmp_path / name, "--dynamic", "--duration", "20ms", "--out", tmp_path / "out" / name
+        )
+        assert code == 0
+    plain, late = (json.loads((tmp_path / "out" / name / "pose.json").read_text())["markers"]["top"] for name in names)
+    assert late == pytest.approx(plain, abs=1e-6)

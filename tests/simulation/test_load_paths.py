@@ -44,3 +44,9 @@ def test_impulse_of_a_load_on_a_body_that_hardly_anything_holds() -> None:
     end = play(free, 0.25, 0.01)[-1]
     momentum = Simulation(free).body.masses @ end.velocities
     assert momentum == pytest.approx(np.array([0.3, 0.1]) * 0.1, rel=1e-4)
+
+
+def test_a_load_is_held_as_it_acts_at_an_instant() -> None:
+    load = Load(name="late", marker="tip", force=(0.2, -0.4), path=((0.0, 0.5), (1.0, 0.0)))
+    assert load.held_at(0.0) == Load(name="late", marker="tip", force=(0.1, -0.2))
+    assert load.held_at(2.0) is None

@@ -48,6 +48,7 @@ def design_routes(
     progress: Progress,
     watch: Watch = unseen,
     hints: Hints = lambda _: (),
+    body: BodyPhysics | None = None,
 ) -> Network:
     """Cables added where the adjoint of the pose error prices them best, and moved to where it is least.
 
@@ -56,7 +57,8 @@ def design_routes(
     (`sketches`); the one that promises most gets a cable, all via points are moved downhill, and so on (column
     generation). The best are refined, and the best one's cables exchanged one by one where another path does better.
 
-    `hints` finds robots with networks of the same body, which are refined beside those that are grown. Interrupted
+    `hints` finds robots with networks of the same body, which are refined with those that are grown; `body` has the
+    energies of that body if they are made already. Interrupted
     (KeyboardInterrupt), it returns the best network so far.
 
     Raises:
@@ -64,7 +66,7 @@ def design_routes(
         HydrostatError: no network can be built.
     """
     deadline = Deadline.after(request.seconds)
-    return RouteSearch(robot, request, BodyPhysics(robot), progress, watch, hints, deadline).run()
+    return RouteSearch(robot, request, body or BodyPhysics(robot), progress, watch, hints, deadline).run()
 
 
 class RouteSearch:
