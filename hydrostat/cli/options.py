@@ -56,8 +56,8 @@ AddedLoads = Annotated[
     typer.Option(
         "--load",
         metavar="MARKER=FORCE",
-        help='Force along each axis at a marker, e.g. "tip=0,0,-1N", a hung mass, e.g. tip=100g, or a moment, e.g. '
-        '"tip=moment 0.01Nm" (in space one about each axis). Repeatable.',
+        help='Force along each axis at a marker, e.g. "tip=0,0,-1N", or hung mass, e.g. tip=100g. '
+        'Moment, in space one about each axis: "tip=moment 0.01Nm". Repeatable.',
     ),
 ]
 Pulls = Annotated[

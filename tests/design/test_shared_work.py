@@ -20,7 +20,12 @@ POSES = tuple(
 )
 QUICK = RouteOptions(starts=1, exchanges=1, polish=2, trials=2, steps=2, hops=6)
 
-pytestmark = pytest.mark.skipif(not can_share(), reason="no copy of this process can be made")
+
+@pytest.fixture(autouse=True)
+def alone() -> None:
+    """Skip a test where an earlier one left a thread, as no copy of such a process is made."""
+    if not can_share():
+        pytest.skip("no copy of this process can be made")
 
 
 def process_of(_: object) -> int:

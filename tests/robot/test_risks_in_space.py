@@ -99,7 +99,9 @@ def test_segment_leaves_the_body() -> None:
     body = valley_body()
     robot = solid_robot(route=((10, 20, 30), (110, 20, 30)))
     (line,) = [risk for risk in find_risks(replace(robot, body=body)) if "cable" in risk]
-    found = re.fullmatch(r"cable\[0\]: leaves the body by (.*) mm at \[(.*), 20, 30\] mm; add a point .* round", line)
+    found = re.fullmatch(
+        r"cable\[0\]: leaves the body by (.*) mm at \[(.*), 20, 30\] mm; add a point .* round, .* slit", line
+    )
     assert found is not None
     assert float(found[1]) == pytest.approx(10, abs=0.75)  # it is looked at every 1.5 mm
     assert float(found[2]) == pytest.approx(60, abs=1.25)

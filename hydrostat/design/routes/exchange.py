@@ -21,7 +21,7 @@ class Exchanges:
     def exchange_cables(self, trial: Trial, most: int) -> Trial:
         """Exchange cables, those first whose loss costs least, where prices promise enough; `most` are tried.
 
-        It ends after two exchanges in a row that do not help.
+        It ends after the first exchange that does not help (`RULES.exchange_failures`).
         """
         failed, order = 0, self._by_loss(trial)
         while order and most > 0 and failed < RULES.exchange_failures:
