@@ -61,11 +61,15 @@ _SENTENCES = {
 """Our sentence for each of pydantic's kinds of errors."""
 
 
+_BRANCHES = ("<", "function-", "list[")
+"""Beginnings of what pydantic calls the kinds of value that a key may have; they are no keys."""
+
+
 def first_complaint(error: ValidationError, form: type[TomlTable] = RobotTable) -> tuple[str, str]:
     """Return the key, such as cable[1].points[0], and the error; unknown keys first, as they explain missing ones."""
     errors = error.errors()
     worst: Any = next((entry for entry in errors if entry["type"] == "extra_forbidden"), errors[0])
-    location = tuple(step for step in worst["loc"] if not str(step).startswith("<"))
+    location = tuple(step for step in worst["loc"] if not str(step).startswith(_BRANCHES))
     return _dotted_path(location), _message(worst, location, form)
 
 
