@@ -294,7 +294,7 @@ def _tell_count(network: "Network", request: "DesignRequest") -> None:
     found, asked = (len(network.robot.winches), len(network.robot.cables)), (request.winches, request.cables)
     if network.complete and isinstance(request.winches, int) and found != asked:
         words = f"{plural(request.winches, 'winch')} and {plural(request.cables, 'cable')}"
-        print(f"limit: {words}. More would not reduce the error, or cannot be built")
+        print(f"note: {words} were allowed. The search found no smaller error with more that can be built")
     if network.complete and not request.method.grows_trees:
         for lift in find_lifts(network):
             print(f"note: {lift.words} would leave {1e3 * lift.built:.2g} mm as built, or less (by a quick search)")
