@@ -42,7 +42,7 @@ class SearchRules:
     same_point: float = 1e-6  # points nearer than this [m] are one
     # shares of the way to the clearance, and of the spacing, the first of which does: finer where a corner is cut
     sides: tuple[tuple[float, float], ...] = ((0.85, 1.0), (0.85, 0.5), (0.4, 0.5))
-    sketch_reach: float = 0.03  # what is farther than this share of the body's size from a limit does not feel it
+    sketch_reach: float = 0.03  # what is farther than this share of the body's size from a limit is not affected by it
 
     # Screening of sketches
     screen_ik_steps: int = 5  # steps of inverse kinematics before a sketch is refined
@@ -89,7 +89,7 @@ class SearchRules:
     # within so many spool radii of its winch a cable may be near another, which may be of the same winch
     crowded_radii: float = 2.5
     forbidden_moves: float = 1e5  # so many times the largest move of an edge
-    path_reach: float = 0.03  # what is farther than this share of the body's size from a limit does not feel it
+    path_reach: float = 0.03  # what is farther than this share of the body's size from a limit is not affected by it
 
     # Steps of refinement
     point_step: float = 0.03  # a large step of a via point, as a share of the body's size
