@@ -58,7 +58,7 @@ class StateJacobian:
 
     @staticmethod
     def at(simulation: Simulation, pose: Equilibrium) -> "StateJacobian":
-        """Sensitivities of that posture to contractions: ds/da = B + (dl/dx)^T dx/da, and dT/da = T' ds/da (R33).
+        """Sensitivities of that posture to contractions: ds/da = B + (dl/dx)^T dx/da, and dT/da = T' ds/da.
 
         Cables that rub slip on as they slip, and their tension is that at the winch.
 
