@@ -32,7 +32,7 @@ class DriveEnergy(Energy):
         self._places, self._stiffness = pins.targets[terms], pins.stiffness[terms]
         self._first, self._second = directions
         self._turns = turns
-        self._owners = pins.supports[terms]
+        self._owners = pins.support_of[terms]
         size = self.stencils.shape[1] * self._places.shape[1]
         self._blocks = np.zeros((len(terms), size, size))
 
@@ -70,5 +70,5 @@ class DriveEnergy(Energy):
     def support_work(self, field: Nodes, controls: Vector) -> Vector:
         """d(dE/dx . field) / dk of each support of the pins, to be added to the `parameter_work` of these."""
         works = (self.gradient(field, controls) * field[self.stencils]).sum(axis=(1, 2))
-        wholes = np.bincount(self._pins.supports, self._pins.stiffness)
+        wholes = np.bincount(self._pins.support_of, self._pins.stiffness)
         return np.bincount(self._owners, works, len(wholes)) / wholes

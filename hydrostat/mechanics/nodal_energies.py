@@ -66,8 +66,8 @@ class PinEnergy(Energy):
     ) -> None:
         """Pins that pull anchors to their targets [m], with a stiffness each [N/m]; each a support if none is given."""
         self.stencils = stencils
-        self._support_of = np.arange(len(stencils)) if supports is None else supports
-        self.supports = self._support_of
+        self.support_of = np.arange(len(stencils)) if supports is None else supports
+        self.supports = self.support_of
         self.weights, self.targets, self.stiffness = weights, targets, stiffness
         dim = targets.shape[1]
         self._rows, self._pulls = weights[:, None, :], stiffness[:, None, None] * weights[:, :, None]
@@ -91,10 +91,10 @@ class PinEnergy(Energy):
 
     def with_supports_moved(self, shifts: Points) -> "PinEnergy":
         other = copy(self)
-        other.targets = self.targets + shifts[self._support_of]
+        other.targets = self.targets + shifts[self.support_of]
         return other
 
     def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
         works = (self.gradient(nodes, np.zeros(0)) * field[self.stencils]).sum(axis=(1, 2))
-        wholes = np.bincount(self._support_of, self.stiffness)
-        return {"support_stiffness": np.bincount(self._support_of, works, len(wholes)) / wholes}
+        wholes = np.bincount(self.support_of, self.stiffness)
+        return {"support_stiffness": np.bincount(self.support_of, works, len(wholes)) / wholes}

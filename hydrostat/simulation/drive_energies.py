@@ -12,8 +12,8 @@ def drive_energies(robot: Robot, pins: PinEnergy) -> list[DriveEnergy]:
     owners = np.array([-1 if pin.drive is None else order[pin.drive] for pin in robot.pins], dtype=np.int64)
     if not order:
         return []
-    terms = np.flatnonzero(owners[pins.supports] >= 0)
-    drives, places = owners[pins.supports[terms]], pins.targets[terms]
+    terms = np.flatnonzero(owners[pins.support_of] >= 0)
+    drives, places = owners[pins.support_of[terms]], pins.targets[terms]
     first, second = np.zeros_like(places), np.zeros_like(places)
     for index, drive in enumerate(robot.drives):
         first[drives == index], second[drives == index] = drive.directions(places[drives == index])
