@@ -19,7 +19,7 @@ from hydrostat.robot.gravity import gravity_along
 from hydrostat.robot.load import Load
 from hydrostat.robot.marker import Marker, Pin, PoseTarget
 from hydrostat.robot.material import FoamTerm, Material, Relaxation
-from hydrostat.robot.materials import FOAMS, get_material
+from hydrostat.robot.materials import get_material
 from hydrostat.robot.part import BodyPart, PartShape
 from hydrostat.robot.pin_drive import PinDrive
 from hydrostat.robot.robot import Robot
@@ -276,8 +276,7 @@ def read_material(entry: Any) -> Material:
         viscous["relaxation"] = tuple(_branch(index, branch) for index, branch in enumerate(entry.relaxation))
     terms = _foam_terms(entry)
     if hasattr(entry, "name"):
-        known = FOAMS.get(entry.name) if terms else None
-        known = known or get_material(entry.name, None if terms else entry.law)
+        known = get_material(entry.name, None if terms else entry.law)
         return replace(known, **viscous, **({"foam": terms} if terms else {}))
     if entry.law is MaterialLaw.FOAM and not terms:
         raise InputError("terms are missing; a foam law needs them: terms = [{ share = 1, exponent = 8 }]")

@@ -60,7 +60,7 @@ def units() -> tuple[WinchUnit, ...]:
 def test_spools_have_the_radius_of_the_robot_file():
     (check,) = spool_checks(crossed(), units())
     assert check.passed
-    assert check.what.startswith("the 2 grooves")
+    assert check.what.startswith("radius of 2 grooves")
 
 
 def test_a_spool_that_is_too_thick_is_seen():

@@ -20,7 +20,11 @@ from hydrostat.fabrication.parts.winch_unit import WinchUnit, winch_units
 from hydrostat.robot import Cable, Robot, Winch
 
 N20, XL330, POLOLU_25D = MOTORS
-FLAT = [name for name, text in gallery_texts().items() if "thickness" in text["body"]]
+FLAT = [
+    name
+    for name, text in gallery_texts().items()
+    if "thickness" in text["body"] and not any(winch.get("mount") == "world" for winch in text["winch"])
+]
 
 
 def units_of(robot: Robot, motor: Motor = N20) -> tuple[WinchUnit, ...]:
