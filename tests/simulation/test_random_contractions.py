@@ -11,7 +11,6 @@ from robustness import example_folders, fault, sweep  # pyright: ignore[reportMi
 import hydrostat as hs
 from hydrostat.robot import load_robot
 
-
 INVERTED = pytest.mark.xfail(run=False, reason="quadratic elements invert at corners where cables pull at random")
 QUADRATIC = ("finger", "spiral")
 
