@@ -97,8 +97,8 @@ def spiral() -> Sheet:
             words=f"curls it to the {name}, which is {'+' if name == 'left' else '-'}y",
             points=[(MM * (-40 - middle), MM * 1.5 * route[0][1])] + [(MM * (x - middle), MM * y) for x, y in route],
             sheath=1,
-            travel=70,
-            release=70,
+            travel=36,
+            release=36,
             stiffness=20,
         )
         for name, route in lines.items()
@@ -184,8 +184,8 @@ def tendon_finger() -> Sheet:
                 words="bends it to the palm" if name == "flex" else "bends it to the back",
                 points=[(MM * (-35 - middle), MM * 1.6 * places[0][1])]
                 + [(MM * (x - middle), MM * y) for x, y in places],
-                travel=30,
-                release=30,
+                travel=14,
+                release=14,
                 stiffness=20,
             )
             for name, places in routes.items()
