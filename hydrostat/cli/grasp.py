@@ -125,7 +125,7 @@ def _reach_pose(simulation: "Simulation", name: str) -> "Equilibrium":
 
 
 def _place_object(robot: "Robot", thing: "Obstacle", at: str | None, closed: "Points") -> "Obstacle":
-    """The object where it shall lie."""
+    """Place the object."""
     from hydrostat.grasp import move_object, place_object
 
     if at is None:

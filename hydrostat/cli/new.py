@@ -336,7 +336,7 @@ def _commented_text(robot: "Robot", source: str) -> str:
         "[[marker]]": "# Markers are points whose way is followed. Add one wherever the robot should reach something.",
         "[[pose]]": (
             "# A pose says where markers should go. `hydrostat design` finds cables for it.\n"
-            "# What it does not name may go anywhere: name markers that shall stay, too, where they are."
+            "# What it does not name may go anywhere: name markers that stay, too, where they are."
         ),
     }
     lines, told = [], set()

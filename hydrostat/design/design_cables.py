@@ -154,7 +154,7 @@ def _trees(robot: Robot, request: DesignRequest, body: BodyPhysics) -> list[Robo
 _TREES = 16  # networks of winch trees whose poses are solved
 
 
-FINALISTS = 4  # so many networks are compared: the one that was found, and the first of its alternatives
+FINALISTS = 4  # networks compared: the one that was found, and the first of its alternatives
 GAIN = 0.95  # another network takes its place if its error on the filled body is less than this share of its own
 
 

@@ -45,4 +45,4 @@ def _changes(request: DesignRequest, winches: int) -> Iterator[tuple[str, Design
         yield "--two-way", replace(request, constraints=replace(request.constraints, two_way=True))
 
 
-_CLEARLY = 0.85  # an error below so many times that of the network is told
+_CLEARLY = 0.85  # an error below this multiple of the network's is reported

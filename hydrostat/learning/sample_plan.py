@@ -104,7 +104,7 @@ class SamplePlan:
         draws: ways in which contractions are drawn, one sample each in turn.
         shard: samples in one file.
         nodes: True if the positions of all nodes are kept.
-        tension: the most that a cable shall pull [N]; for `SamplingScheme.TENSION`.
+        tension: the most that a cable pulls [N]; for `SamplingScheme.TENSION`.
         pairs: antagonistic pairs of winches, those without a partner alone; for `SamplingScheme.ANTAGONIST`.
 
     Raises:
@@ -213,7 +213,7 @@ class SamplePlan:
             draws: ways in which contractions are drawn, one sample each in turn.
             shard: samples in one file.
             nodes: True if all nodes are kept.
-            tension: the most that a cable shall pull [N]; for `SamplingScheme.TENSION`.
+            tension: the most that a cable pulls [N]; for `SamplingScheme.TENSION`.
 
         Raises:
             InputError: as for `SamplePlan`.

@@ -24,7 +24,7 @@ def test_routes_tell_each_stage_that_is_better_than_all_before(unchecked: None) 
 
 
 def test_a_second_search_tells_only_what_is_better_than_the_first(unchecked: None) -> None:
-    """Oracle: the errors that are told; with two cables allowed and one used, fewer cables are searched too."""
+    """Oracle: the errors that are reported; with two cables allowed and one used, fewer cables are searched too."""
     told: list[DesignStage] = []
     design_cables(bare(), [UP], winches=1, cables=2, options=SMALL, watch=told.append)
     errors = [stage.error for stage in told]
