@@ -102,13 +102,17 @@ def test_on_a_terminal_one_line_is_updated(starfish: Path, wave: Path) -> None:
 @pytest.mark.slow
 def test_a_signal_stops_the_motors(starfish: Path, wave: Path, number: int, code: int, ignored: bool) -> None:
     """Also in the background of a script, where SIGINT comes ignored."""
-    before = signal.SIG_IGN if ignored else signal.SIG_DFL
+
+    def begin() -> None:
+        signal.signal(signal.SIGINT, signal.SIG_IGN if ignored else signal.SIG_DFL)
+        signal.signal(signal.SIGHUP, signal.SIG_DFL)  # tests may run under nohup
+
     work = subprocess.Popen(
         [sys.executable, "-uc", PROGRAM, "play", str(starfish), str(wave), "--repeat", "0"],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, before),
+        preexec_fn=begin,
     )
     assert work.stdout is not None
     lines = [work.stdout.readline() for _ in range(2)]

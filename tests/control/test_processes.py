@@ -7,6 +7,7 @@ import sys
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -84,6 +85,7 @@ def ends(event: str, kind: str, slow: int) -> tuple[int, str, list[float]]:
             stdout=subprocess.PIPE,
             text=True,
             env=os.environ | {"PYTHONPATH": str(Path(hydrostat.__file__).parents[1])},
+            preexec_fn=partial(signal.signal, signal.SIGHUP, signal.SIG_DFL),  # tests may run under nohup
         )
         try:
             until(lambda: process.poll() is not None or RADIUS * (servos[0].angle - 1.0) > 0.003)

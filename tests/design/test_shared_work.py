@@ -2,6 +2,8 @@
 
 import os
 import signal
+import subprocess
+import sys
 from collections.abc import Iterator
 from contextlib import closing
 from dataclasses import replace
@@ -22,9 +24,9 @@ QUICK = RouteOptions(starts=1, exchanges=1, polish=2, trials=2, steps=2, hops=6)
 
 
 @pytest.fixture(autouse=True)
-def alone() -> None:
-    """Skip a test where an earlier one left a thread, as no copy of such a process is made."""
-    if not can_share():
+def alone(request: pytest.FixtureRequest) -> None:
+    """Skip a test in a process with threads, as no copy of it is made; the last test runs all in another one."""
+    if not can_share() and request.node.name != "test_all_of_these_in_a_process_without_threads":
         pytest.skip("no copy of this process can be made")
 
 
@@ -97,3 +99,18 @@ def test_two_cores_find_the_network_of_one(monkeypatch: pytest.MonkeyPatch, unch
     )  # fmt: skip
     assert stages(two) == stages(one)
     assert [pose.errors for pose in two.reached] == [pose.errors for pose in one.reached]
+
+
+@pytest.mark.slow
+def test_all_of_these_in_a_process_without_threads() -> None:
+    """Workers of pytest-xdist have threads, so all that is above is skipped there."""
+    if can_share():
+        pytest.skip("they ran in this process")
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", "-p", "no:xdist", "-p", "no:cacheprovider", __file__],
+        capture_output=True,
+        text=True,
+        env={name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")},
+    )
+    assert done.returncode == 0, done.stdout
+    assert " 1 skipped" in done.stdout.splitlines()[-1]
