@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from hydrostat.cli.check import print_sewing
+from hydrostat.cli.design_record import open_record, write_record
 from hydrostat.cli.design_results import STALE, print_front, print_poses, write_kit, write_results
 from hydrostat.cli.design_wishes import DesignArguments, parse_request
 from hydrostat.cli.fabricate import print_kit
@@ -22,7 +23,7 @@ from hydrostat.units import plural
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from hydrostat.design import DesignRequest, DesignStage, Network
+    from hydrostat.design import DesignRequest, DesignStage, Network, SearchRecord
     from hydrostat.fabrication import Kit
     from hydrostat.robot import Robot
 
@@ -134,6 +135,7 @@ Knobs = Annotated[
         help="Setting for --method chang2018: threshold, distance, steps or phi (Chang 2018). Repeatable.",
     ),
 ]
+Resume = Annotated[bool, typer.Option("--resume", help="Continue a search that was stopped: same command, same --out.")]
 WithKit = Annotated[bool, typer.Option("--kit", help="Also write the build kit.")]
 
 
@@ -165,11 +167,13 @@ def design(
     fibres: Fibres = None,
     knob: Knobs = None,
     kit: WithKit = False,
+    resume: Resume = False,
 ) -> None:
     """Design the winches and cable routes that reach given poses.
 
     Writes a robot folder, report.html with pictures of every stage, score.json, and alternatives as robot folders.
-    Ctrl-C, SIGTERM, a closed terminal and --time end the search and keep the best network so far. A constraints file
+    Ctrl-C, SIGTERM, a closed terminal and --time end the search and keep the best network so far; search.json keeps its
+    steps for --resume. A constraints file
     has lines such as clearance = "4 mm", tension = "15 N", locked_cables = ["left 1"], and tables [[keep_out]],
     [[still]] and [[winch_zone]] with at and radius, box, or outline.
 
@@ -210,12 +214,14 @@ def design(
     source = read_robot(robot)
     request = parse_request(source, typed)
     _refuse_body(source, request)
+    record = open_record(out, source, request, resume=resume)
     with one_interrupt(STOPPING, interrupt=True) as pass_over:
-        network = _search(source, request)
+        network = _search(source, request, record)
         pass_over()
         printed = print_poses(network, time.perf_counter() - began)
         print(end="", flush=True)
         made = _write(network, out, kit=kit)
+        write_record(record, network, out, source, request)
     if made is not None:
         print_kit(made, printed=printed)
     _tell_count(network, request)
@@ -243,13 +249,13 @@ def _refuse_body(source: "Robot", request: "DesignRequest") -> None:
         print(f"warning: {reason}", file=sys.stderr, flush=True)
 
 
-def _search(source: "Robot", request: "DesignRequest") -> "Network":
+def _search(source: "Robot", request: "DesignRequest", record: "SearchRecord") -> "Network":
     """Find the network; exit where it is interrupted before the first one."""
     from hydrostat.design import find_network
 
     with progress_bar() as progress:
         try:
-            return find_network(source, request, progress=progress, watch=_tell_better())
+            return find_network(source, request, progress=progress, watch=_tell_better(), record=record)
         except KeyboardInterrupt:
             print("hydrostat: interrupted before the first network; no files written", file=sys.stderr)
             raise typer.Exit(130) from None

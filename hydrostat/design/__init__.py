@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from hydrostat.design.routes.propose import route_along
     from hydrostat.design.routes.quick_search import QuickSearch, propose_routes
     from hydrostat.design.routes.route_graph import RouteGraph
+    from hydrostat.design.routes.search_record import SearchRecord
     from hydrostat.design.score_card import corrected_error, score_card
     from hydrostat.design.trees.design_trees import propose_trees
     from hydrostat.design.uncertainty import BuildTolerances
@@ -69,6 +70,7 @@ __all__ = [
     "RouteGraph",
     "RouteOptions",
     "RouteTrace",
+    "SearchRecord",
     "Severity",
     "TreeKnobs",
     "TreeOptions",

@@ -2,7 +2,7 @@
 
 # Of the thesis (docs/thesis.md): R2, R35, F1, E28
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import TypedDict, Unpack
 
@@ -15,6 +15,7 @@ from hydrostat.design.request import DesignMethod, DesignRequest, RouteOptions, 
 from hydrostat.design.routes.design_fewest import design_fewest
 from hydrostat.design.routes.design_routes import design_routes
 from hydrostat.design.routes.finalists import kit_fits
+from hydrostat.design.routes.search_record import SearchRecord
 from hydrostat.design.trees.design_trees import design_trees
 from hydrostat.design.watch import Better, Watch, unseen
 from hydrostat.errors import HydrostatError, InputError
@@ -76,11 +77,17 @@ def design_cables(
 
 
 def find_network(
-    robot: Robot, request: DesignRequest, *, progress: Progress | None = None, watch: Watch | None = None
+    robot: Robot,
+    request: DesignRequest,
+    *,
+    progress: Progress | None = None,
+    watch: Watch | None = None,
+    record: SearchRecord | None = None,
 ) -> Network:
     """Find the network that a request asks for; `design_cables` for one that is made already.
 
-    `watch` is told each better network that is found on the way. The cables of a flat robot that does not say where
+    `watch` is told each better network that is found on the way. `record` keeps the steps of a search for routes, and
+    begins with those that it knows; parts with contact have none. The cables of a flat robot that does not say where
     they run are designed to be sewn in pairs (`assign_cable_sides`), and the network's robot says so.
 
     Raises:
@@ -94,26 +101,26 @@ def find_network(
     fitted = request.fit_robot(stated)
     if fitted.filled:
         check_filled(stated)  # told before the search
-    found = _search(stated, fitted, told, Better(watch or unseen))
+    found = _search(stated, fitted, told, Better(watch or unseen), record)
     return replace(evaluate_stuffed(found, progress=told) if fitted.filled else found, source=robot)
 
 
-def _search(robot: Robot, request: DesignRequest, told: Progress, seen: Watch) -> Network:
+def _search(robot: Robot, request: DesignRequest, told: Progress, seen: Watch, record: SearchRecord | None) -> Network:
     """The network of the method that is asked for."""
     if request.method.grows_trees:
         return design_trees(robot, request, progress=told, watch=seen)
     if not isinstance(request.winches, int):
-        return design_fewest(robot, request, progress=told, watch=seen)
+        return design_fewest(robot, request, progress=told, watch=seen, record=record)
     body = BodyPhysics(robot)
-    found = _design_routes(robot, request, body, told, seen)
-    return _search_with_fewer(robot, request, found, body, told, seen) if _may_gain_by_fewer(request, found) else found
 
+    def design(asked: DesignRequest) -> Network:
+        def hints(_: BodyPhysics) -> list[Robot]:
+            return _trees(robot, asked, body)
 
-def _design_routes(robot: Robot, request: DesignRequest, body: BodyPhysics, told: Progress, seen: Watch) -> Network:
-    def hints(_: BodyPhysics) -> list[Robot]:
-        return _trees(robot, request, body)
+        return design_routes(robot, asked, progress=told, watch=seen, hints=hints, body=body, record=record)
 
-    return design_routes(robot, request, progress=told, watch=seen, hints=hints, body=body)
+    found = design(request)
+    return _search_with_fewer(request, found, design) if _may_gain_by_fewer(request, found) else found
 
 
 def _may_gain_by_fewer(request: DesignRequest, found: Network) -> bool:
@@ -122,13 +129,11 @@ def _may_gain_by_fewer(request: DesignRequest, found: Network) -> bool:
     return found.complete and fewest and request.seconds is None and not request.improve
 
 
-def _search_with_fewer(
-    robot: Robot, request: DesignRequest, found: Network, body: BodyPhysics, told: Progress, seen: Watch
-) -> Network:
+def _search_with_fewer(request: DesignRequest, found: Network, design: Callable[[DesignRequest], Network]) -> Network:
     """The better of a network and of one from a search with no more cables than it has."""
     winches, cables = len(found.robot.winches), len(found.robot.cables)
     try:
-        other = _design_routes(robot, replace(request, winches=winches, cables=cables), body, told, seen)
+        other = design(replace(request, winches=winches, cables=cables))
     except HydrostatError:  # none can be built
         return found
     except KeyboardInterrupt:

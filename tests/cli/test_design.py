@@ -5,7 +5,7 @@ errors word by word.
 """
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
@@ -22,6 +22,7 @@ from hydrostat.design import (
     FibreKind,
     Network,
     RouteOptions,
+    SearchRecord,
     TreeOptions,
     Zone,
 )
@@ -45,10 +46,14 @@ class Search:
 
     def __init__(self) -> None:
         self.asked: DesignRequest | None = None
+        self.known: Sequence[object] = ()
         self.answer: Network = plain_network()
 
-    def __call__(self, robot: hs.Robot, request: DesignRequest, *, progress: object, watch: object) -> Network:
+    def __call__(self, robot: hs.Robot, request: DesignRequest, *, record: SearchRecord, **_: object) -> Network:
         self.asked = request
+        self.known = record.known
+        if not self.answer.complete:
+            record.add({"step": "sketch", "tried": 1, "networks": None})
         return replace(self.answer, request=request)
 
 
@@ -281,6 +286,15 @@ def test_the_best_so_far_where_the_search_is_stopped(
     assert told.endswith("interrupted: best network so far\n")
     assert json.loads((tmp_path / "out" / "score.json").read_text())["complete"] is False
     assert hs.load_robot(tmp_path / "out" / "robot").cables == search.answer.robot.cables
+
+    assert "run the same command with --resume" in told
+    assert run("design", strip, "--winches", "1", "--resume", "--out", tmp_path / "out")[2].endswith(
+        "record of another search (winches differs). Start without --resume.\n"
+    )
+    search.answer = plain_network()
+    assert run("design", strip, "--time", "9 s", "--resume", "--out", tmp_path / "out")[0] == 0
+    assert len(search.known) == 1
+    assert not (tmp_path / "out" / "search.json").exists()
 
 
 def test_auto_tells_the_error_against_winches_and_cables(

@@ -10,7 +10,7 @@ from builders import strip_robot
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.region import Region
 from hydrostat.design.request import RouteOptions
-from hydrostat.design.routes import bench as bench_module
+from hydrostat.design.routes import reach_from_rest as from_rest
 from hydrostat.design.routes.begin import layout_of
 from hydrostat.design.routes.bench import Bench, Trial
 from hydrostat.design.routes.growth import Growth
@@ -81,7 +81,7 @@ def test_a_pose_that_misses_more_than_hoped_is_sought_again(monkeypatch: pytest.
         asked.append(options.restarts)
         return solve_ik(*given, options=options, **more)
 
-    monkeypatch.setattr(bench_module, "solve_ik", watched)
+    monkeypatch.setattr(from_rest, "solve_ik", watched)
     poor = bench.reach_poses(layout, None, iterations=0)
     assert good is not None
     assert poor is not None

@@ -1,25 +1,29 @@
 """`Bench`: what a network in the making does to every pose."""
 
 from collections.abc import Callable, Generator, Sequence
-from contextlib import suppress
+from contextlib import closing, suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.routes.layout import Layout
+from hydrostat.design.routes.layout_values import Values, layout_values, read_layout
+from hydrostat.design.routes.reach_from_rest import reach_from_rest
+from hydrostat.design.routes.search_record import SearchRecord, Step
 from hydrostat.design.routes.search_rules import RULES
 from hydrostat.design.routes.shared_work import map_in_order
 from hydrostat.design.spread import Columns, spread_columns
 from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.errors import InputError, NotConvergedError
-from hydrostat.ik import IKOptions, IKResult, Limits, reach_extent, solve_ik, spool_arms, usable_spans
+from hydrostat.ik import IKOptions, reach_extent, solve_ik, spool_arms, usable_spans
 from hydrostat.robot import PoseTarget, Robot
 from hydrostat.simulation import BodyPhysics, CableSensitivities, Equilibrium, Simulation, cable_sensitivities
 
+Found = TypeVar("Found", bound="Trial | None")
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
@@ -45,6 +49,17 @@ class Trial:
         return float(np.hypot(self.error, self.spread))
 
     @property
+    def as_values(self) -> Values:
+        """Plain values, from which a bench computes it again."""
+        return {
+            "layout": layout_values(self.layout),
+            "poses": [{"contractions": pose.contractions, "nodes": pose.nodes} for pose in self.poses],
+            "from_rest": self.from_rest,
+            "failed": not np.isfinite(self.error),
+            "built_error": self.built_error if np.isfinite(self.error) else None,
+        }
+
+    @property
     def cost(self) -> float:
         """The error as built, more where cables bear too much, and where little else is in reach [m]."""
         return self.built_error * max(self.pull, 1.0) * self.near
@@ -64,6 +79,81 @@ class Bench:
     cores: int = 1  # that independent layouts are shared by
     look: Callable[[], None] = lambda: None  # called before each pose is solved; what it raises ends the search
     time_left: Callable[[], float | None] = lambda: None  # seconds that a solve may take; None for no limit
+    record: SearchRecord | None = None  # steps of the search, if they are kept
+
+    def keep(self, words: str, work: Callable[[], Sequence[Found]]) -> list[Found]:
+        """Networks of a step of the search: those of the record if it is known, else of some work, which is added.
+
+        Networks are computed again from the values of the record, also where these are new. So they have the same bits
+        in a search that was stopped and in one that was not.
+        """
+        if self.record is None or self.record.is_paused:
+            return list(work())
+        found = self._read_step(words)
+        if found is None:
+            found, step = self._carry_out(words, work)
+            self.record.add(step)
+        return found
+
+    def keep_each(
+        self, words: str, work: Callable[[Item], Found], items: Sequence[Item]
+    ) -> Generator[Found, None, None]:
+        """Yield the networks of work on independent items, shared by the cores, each a step as in `keep`."""
+        if self.record is None or self.record.is_paused:
+            yield from self.map(work, items)
+            return
+        for number, _ in enumerate(items):
+            found = self._read_step(words)
+            if found is None:
+                left = items[number:]
+                break
+            yield found[0]
+        else:
+            return
+        with closing(self.map(lambda item: self._carry_out(words, lambda: [work(item)]), left)) as results:
+            for (trial,), step in results:
+                self.record.add(step)
+                yield trial
+
+    def _read_step(self, words: str) -> list[Any] | None:
+        """Networks of the next step of the record; None if they must be computed."""
+        assert self.record is not None
+        step = self.record.take(words)
+        if step is None or step["networks"] is None:
+            return None
+        try:
+            found = [None if values is None else self._read_trial(values) for values in step["networks"]]
+        except (LookupError, TypeError, ValueError, NotConvergedError) as error:
+            raise InputError(f"record of the search: a network cannot be read ({error!r:.80})") from None
+        self.solves += step["tried"]
+        self.record.add(step)
+        return found
+
+    def _carry_out(self, words: str, work: Callable[[], Sequence[Trial | None]]) -> tuple[list[Any], Step]:
+        """Networks of some work, computed again from their values, and the step with these."""
+        assert self.record is not None
+        before = self.solves
+        with self.record.pause():
+            found = list(work())
+        tried = self.solves - before
+        values = [None if trial is None else trial.as_values for trial in found]
+        try:
+            found = [None if one is None else self._read_trial(one) for one in values]
+        except NotConvergedError:  # about to snap
+            return found, {"step": words, "tried": tried, "networks": None}
+        return found, {"step": words, "tried": tried, "networks": values}
+
+    def _read_trial(self, values: Values) -> Trial:
+        """The trial of some values; its poses begin where they are."""
+        layout = read_layout(values["layout"], self.source, self.constraints)
+        simulation = Simulation(layout.robot(limited=True), body=self.body)
+        poses = []
+        for pose in values["poses"]:
+            pulled = np.array(pose["contractions"], dtype=float)
+            result = simulation.solver.relax(np.array(pose["nodes"], dtype=float), pulled, iterations=15)
+            poses.append(simulation.make_pose(pulled, result))
+        trial = replace(self.trial(layout, simulation, poses), from_rest=values["from_rest"])
+        return replace(trial, error=np.inf) if values["failed"] else trial
 
     def map(
         self, work: Callable[[Item], Result], items: Sequence[Item], *, known: Sequence[object] = ()
@@ -304,29 +394,3 @@ class Bench:
         """Root of the mean squared marker error [m], of the first poses as if the others were reached."""
         squares = [float((self.residual(simulation, index, pose.nodes) ** 2).sum()) for index, pose in enumerate(poses)]
         return float(np.sqrt(sum(squares)))
-
-
-def reach_from_rest(
-    simulation: Simulation,
-    target: PoseTarget,
-    limits: Limits,
-    options: IKOptions,
-    *,
-    start: Equilibrium | None = None,
-    seconds: Callable[[], float | None] = lambda: None,
-) -> IKResult:
-    """The pose that is reached when its contractions are played from rest on, as the robot will.
-
-    Inverse kinematics may end on a branch of equilibria that the straight way from rest does not lead to. Then it
-    begins again where that leads, a few times. Raises NotConvergedError where there is no equilibrium on the way.
-    """
-    found = solve_ik(simulation, target, start=start, limits=limits, options=options, seconds=seconds())
-    for _ in range(RULES.max_replays):
-        played = simulation.solve(found.pose.contractions)
-        apart = max(float(np.linalg.norm(played.markers[name] - place)) for name, place in found.pose.markers.items())
-        if apart <= RULES.same_pose * simulation.robot.body.mesh.size:
-            return found
-        found = solve_ik(simulation, target, start=played, limits=limits, options=options, seconds=seconds())
-    played = simulation.solve(found.pose.contractions)
-    errors = {name: float(np.linalg.norm(played.markers[name] - place)) for name, place in target.targets.items()}
-    return replace(found, pose=played, errors=errors)

@@ -8,6 +8,7 @@ from hydrostat.design.request import COUNTS, DesignRequest
 from hydrostat.design.routes.deadline import Deadline
 from hydrostat.design.routes.design_routes import Hints, RouteSearch
 from hydrostat.design.routes.finalists import kit_fits
+from hydrostat.design.routes.search_record import SearchRecord
 from hydrostat.design.routes.search_rules import RULES
 from hydrostat.design.watch import Better, Watch, unseen
 from hydrostat.errors import HydrostatError, InputError
@@ -23,12 +24,13 @@ def design_fewest(
     progress: Progress,
     watch: Watch = unseen,
     hints: Hints = lambda _: (),
+    record: SearchRecord | None = None,
 ) -> Network:
     """One winch, then two, and so on, until every pose is reached within the tolerance, or there are no more cables.
 
     Each number of winches is searched by itself. It ends, as it may, with fewer cables than are allowed. Of networks
     that miss the tolerance the best one is returned, those whose kit would be refused last. Locked winches count;
-    `watch` is told each better network on the way, whatever its number of winches.
+    `watch` is told each better network on the way, whatever its number of winches; `record` keeps the steps.
     """
     size = robot.body.mesh.size
     constraints, options, cables = request.constraints, request.route_options, request.cables
@@ -43,7 +45,7 @@ def design_fewest(
     for winches in range(least, largest + 1):
         most = min(cables, winches * constraints.cables_per_winch)
         asked = replace(request, winches=winches, cables=most, options=sought)
-        search = RouteSearch(robot, asked, body, progress, watch=better, hints=hints, deadline=deadline)
+        search = RouteSearch(robot, asked, body, progress, better, hints, deadline, record)
         try:
             found.append(search.run())
         except KeyboardInterrupt:

@@ -24,6 +24,7 @@ from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.refine import pushed_back
 from hydrostat.design.routes.route_graph import RouteGraph
 from hydrostat.design.routes.screen import screen_sketches
+from hydrostat.design.routes.search_record import SearchRecord
 from hydrostat.design.routes.search_rules import RULES
 from hydrostat.design.routes.sketch import sketches
 from hydrostat.design.routes.thin import remove_via_points
@@ -49,6 +50,7 @@ def design_routes(
     watch: Watch = unseen,
     hints: Hints = lambda _: (),
     body: BodyPhysics | None = None,
+    record: SearchRecord | None = None,
 ) -> Network:
     """Cables added where the adjoint of the pose error prices them best, and moved to where it is least.
 
@@ -58,7 +60,7 @@ def design_routes(
     generation). The best are refined, and the best one's cables exchanged one by one where another path does better.
 
     `hints` finds robots with networks of the same body, which are refined with those that are grown; `body` has the
-    energies of that body if they are made already. Interrupted
+    energies of that body if they are made already; `record` keeps the steps. Interrupted
     (KeyboardInterrupt), it returns the best network so far.
 
     Raises:
@@ -66,7 +68,7 @@ def design_routes(
         HydrostatError: no network can be built.
     """
     deadline = Deadline.after(request.seconds)
-    return RouteSearch(robot, request, body or BodyPhysics(robot), progress, watch, hints, deadline).run()
+    return RouteSearch(robot, request, body or BodyPhysics(robot), progress, watch, hints, deadline, record).run()
 
 
 class RouteSearch:
@@ -88,6 +90,7 @@ class RouteSearch:
         watch: Watch = unseen,
         hints: Hints = lambda _: (),
         deadline: Deadline | None = None,
+        record: SearchRecord | None = None,
     ) -> None:
         self.deadline = deadline or Deadline.after(request.seconds)
         self.robot, self.request, self.progress, self.watch = robot, request, progress, watch
@@ -107,6 +110,7 @@ class RouteSearch:
         self.bench.look, self.bench.time_left = self._look, self._time_left
         if robot.contact is None and not robot.obstacles:  # parts that touch are remembered, and not sent
             self.bench.cores = min(THREADS, RULES.processes)
+            self.bench.record = record  # nor kept
         self.stages: list[DesignStage] = []
         self.passed: list[tuple[float, Layout]] = []
         self.found: list[Trial] = []
@@ -124,6 +128,7 @@ class RouteSearch:
             complete = False
             if self.best is None:
                 raise
+        self.bench.record = None  # networks are judged again
         timed_out = not complete and self.deadline.is_over
         self.deadline = self.deadline.with_grace()
         judgement = self._judgement(complete)
@@ -229,7 +234,7 @@ class RouteSearch:
         """Refine the best networks to the end, and the next only if it is nearly as good from rest."""
         grown.sort(key=lambda trial: trial.cost)
         whole = [trial for trial in grown if len(trial.layout.sites) >= self.winches] or grown
-        rested = list(self.bench.map(growth.resolve_from_rest, whole[: RULES.refined + 1]))
+        rested = list(self.bench.keep_each("from rest", growth.resolve_from_rest, whole[: RULES.refined + 1]))
         rested.sort(key=lambda trial: trial.cost)
         refined: list[Trial] = []
         for rank, trial in enumerate(rested[: RULES.refined]):
@@ -269,7 +274,7 @@ class RouteSearch:
         thinner = remove_via_points(growth, trial)
         if thinner is trial:
             return trial
-        thinner = growth.refine(growth.resolve_from_rest(thinner))
+        thinner = growth.refine(thinner)
         return thinner if thinner.cost < (1 + RULES.thinner_cost) * trial.cost else trial
 
     @cached_property

@@ -34,7 +34,7 @@ class Exchanges:
             if predict_cost(before, additions.gain) > (1 - RULES.exchange_promise) * trial.cost:
                 continue
             most -= 1
-            better = self._exchange(before, additions, needed)
+            better = self._keep_exchange(before, additions, needed)
             if better is None:
                 failed += 1
                 continue
@@ -52,7 +52,7 @@ class Exchanges:
             allowed = max((1 + self._worth(trial, rest)) * trial.cost, self.growth.enough_error)
             found = self._without(trial, number, worst=allowed)
             hopeful = found is not None and found.cost <= allowed
-            found = self.growth.bench.reach_poses(rest, None, worst=allowed) if hopeful else None
+            found = self._reach_from_rest(rest, allowed) if hopeful else None
             if found is not None and found.cost <= allowed:
                 trial = found
                 self.growth.note("a cable that does nothing left out", trial)
@@ -62,10 +62,14 @@ class Exchanges:
         """Cables that may be exchanged, by the cost without them."""
         numbers = range(len(trial.layout.routes))
         rests = [(number, rest) for number in numbers if (rest := self._rest(trial, number)) is not None]
-        solved = list(self.growth.bench.map(lambda pair: self._reach(pair[1], trial), rests))
+        solved = self.growth.bench.keep_each("a cable less", lambda pair: self._reach(pair[1], trial), rests)
         self._trial = trial
         self._known = {number: before for (number, _), before in zip(rests, solved, strict=True)}
         return [number for _, number in sorted((one.cost, number) for number, one in self._known.items() if one)]
+
+    def _keep_exchange(self, before: Trial, additions: Additions, worst: float) -> Trial | None:
+        """Exchange a cable, as a step of the search."""
+        return self.growth.bench.keep("a cable exchanged", lambda: [self._exchange(before, additions, worst)])[0]
 
     def _exchange(self, before: Trial, additions: Additions, worst: float) -> Trial | None:
         """The best network with another cable, from rest; None if its cost is not below `worst` [m]."""
@@ -99,7 +103,7 @@ class Exchanges:
         rest = self._rest(trial, number)
         if rest is None:
             return None
-        found = self._reach(rest, trial, worst)
+        found = self.growth.bench.keep("a cable less", lambda: [self._reach(rest, trial, worst)])[0]
         if found is not None or worst == float("inf"):
             self._known[number] = found
         return found
@@ -109,6 +113,12 @@ class Exchanges:
         places = {site.winch.name: number for number, site in enumerate(trial.layout.sites)}
         kept = [places[site.winch.name] for site in rest.sites]
         return self.growth.bench.reach_poses(rest, trial, iterations=RULES.exchange_ik_steps, kept=kept, worst=worst)
+
+    def _reach_from_rest(self, rest: Layout, worst: float) -> Trial | None:
+        """A network with poses from rest, kept as a step of the search; None with an error above `worst` [m]."""
+        return self.growth.bench.keep(
+            "a cable left out", lambda: [self.growth.bench.reach_poses(rest, None, worst=worst)]
+        )[0]
 
     def _worth(self, trial: Trial, rest: Layout) -> float:
         """The share of the cost that a cable must save to be kept, more where its winch goes too."""

@@ -12,8 +12,9 @@ from hydrostat.design.constraints import Constraints
 from hydrostat.design.network import Alternative, Network
 from hydrostat.design.region import Region
 from hydrostat.design.request import DesignRequest
-from hydrostat.design.routes.bench import Bench, Trial, reach_from_rest
+from hydrostat.design.routes.bench import Bench, Trial
 from hydrostat.design.routes.layout import Layout
+from hydrostat.design.routes.reach_from_rest import reach_from_rest
 from hydrostat.design.routes.refine import pushed_back
 from hydrostat.design.routes.search_rules import RULES
 from hydrostat.errors import NotConvergedError
@@ -104,12 +105,16 @@ class Finalists:
         """The first of some networks that a kit can be made of once its winches stand farther apart."""
         for times in RULES.winch_distances:
             for trial in trials:
-                pushed = None if trial is None else self._push_apart(trial.layout, times)
-                moved = self.bench.reach_poses(pushed, trial) if pushed else None
+                moved = None if trial is None else self.push_apart(trial, times)
                 judged = None if moved is None else self.judge(refined(moved).layout)
                 if judged is not None and kit_fits(judged):
                     return [judged]
         return []
+
+    def push_apart(self, trial: Trial, times: float) -> Trial | None:
+        """The network with winches apart by a multiple of the distance of the nearest two; None if it cannot be."""
+        pushed = self._push_apart(trial.layout, times)
+        return self.bench.reach_poses(pushed, trial) if pushed else None
 
     def _push_apart(self, layout: Layout, times: float) -> Layout | None:
         """The layout with winches apart by a multiple of the distance of the nearest two, or of what they need."""

@@ -86,8 +86,12 @@ class Growth:
         """Networks with one cable more, roughly refined, noted where they are better than before."""
         trial = promise.trial
         best = RULES.growth_candidates if trial.layout.routes else RULES.first_candidates
-        layouts = self.build(trial, promise.additions, winches, best=best)
-        solved = self.solve_layouts(trial, layouts, best=best)
+
+        def try_cables() -> list[Trial]:
+            layouts = self.build(trial, promise.additions, winches, best=best)
+            return self.solve_layouts(trial, layouts, best=best)
+
+        solved = self.bench.keep("cables tried", try_cables)
         rough = unlike(self.refine_each(solved, directions=0, steps=RULES.growth_steps), best, self._rate)
         kept = rough[: 1 if trial.layout.routes else RULES.first_candidates]
         more = self.refine_each(kept, directions=0, steps=RULES.growth_more_steps)
@@ -115,15 +119,13 @@ class Growth:
         It ends early where a round gained less than what is left to a `wanted` cost [m]: later rounds gain less still.
         """
         steps = self.proposals.options.polish
-        best = trial if trial.from_rest else self.resolve_from_rest(trial)
+        best = trial if trial.from_rest else self.bench.keep("from rest", lambda: [self.resolve_from_rest(trial)])[0]
         effort, round_size = 1.0, RULES.round_steps
         done = failed = 0
         while done < steps and failed < RULES.round_failures and best.cost > self.enough_error:
             size = min(round_size, steps - done)
             options = replace(self._options(size), effort=effort * self._options(size).effort)
-            found = self.resolve_from_rest(
-                refine(self.bench, self.proposals.graph.region, best, options), worst=best.cost
-            )
+            found = self._refine_round(best, options)
             done += size
             if found.cost < best.cost:
                 gain = 1.0 - found.cost / best.cost
@@ -134,6 +136,15 @@ class Growth:
             else:
                 effort, round_size, failed = 4.0 * effort, max(round_size // 2, 1), failed + 1
         return best
+
+    def _refine_round(self, trial: Trial, options: RefineOptions) -> Trial:
+        """A network after some steps of refinement, its poses found from rest."""
+
+        def refine_once() -> list[Trial]:
+            refined = refine(self.bench, self.proposals.graph.region, trial, options)
+            return [self.resolve_from_rest(refined, worst=trial.cost)]
+
+        return self.bench.keep("refined, poses from rest", refine_once)[0]
 
     def resolve_from_rest(self, trial: Trial, *, worst: float = np.inf) -> Trial:
         """The same network with poses found from rest: what its user will find; infinite errors above `worst` [m]."""
@@ -192,7 +203,8 @@ class Growth:
 
     def refine_each(self, trials: Sequence[Trial], *, directions: int = 2, steps: int | None = None) -> list[Trial]:
         """Refine some networks by a few steps each, shared by the cores."""
-        return list(self.bench.map(partial(self.refine_briefly, directions=directions, steps=steps), trials))
+        work = partial(self.refine_briefly, directions=directions, steps=steps)
+        return list(self.bench.keep_each("refined", work, trials))
 
     def _options(self, steps: int) -> RefineOptions:
         return RefineOptions(iterations=steps, enough=self.enough_error)

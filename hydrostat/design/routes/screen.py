@@ -24,7 +24,7 @@ def screen_sketches(
 
     rough: list[Trial] = []
     least, idle = float("inf"), 0
-    with closing(growth.bench.map(solve, drawn)) as trials:
+    with closing(growth.bench.keep_each("sketch", solve, drawn)) as trials:
         for trial in trials:
             if trial is None:
                 continue

@@ -71,6 +71,11 @@ def _to_line(points: np.ndarray) -> np.ndarray:
 
 
 def _without(growth: Growth, trial: Trial, holes: Sequence[Hole], allowed: float) -> Trial | None:
+    """Leave out holes, as a step of the search."""
+    return growth.bench.keep("holes left out", lambda: [_solve_without(growth, trial, holes, allowed)])[0]
+
+
+def _solve_without(growth: Growth, trial: Trial, holes: Sequence[Hole], allowed: float) -> Trial | None:
     """The network without some holes; None if it cannot be built, or costs more than allowed [m]."""
     routes, region = list(trial.layout.routes), growth.proposals.graph.region
     for number in {number for number, _ in holes}:
