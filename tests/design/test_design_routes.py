@@ -233,6 +233,24 @@ def test_winches_move_apart_where_their_units_meet(unchecked: None) -> None:
 
 
 @pytest.mark.slow
+def test_winches_move_apart_for_motors_that_hold_for_long(monkeypatch: pytest.MonkeyPatch, unchecked: None) -> None:
+    """Oracle: the distance at which the stronger motors fit, just above that of the network without them."""
+
+    def far(robot: Robot) -> float:
+        return float(np.linalg.norm(np.subtract(*(winch.at for winch in robot.winches))))
+
+    usual = designed("usual")
+    enough, torque = 1.05 * far(usual.robot), usual.constraints.torque
+    monkeypatch.setattr(
+        final_judgement, "find_holding_torque", lambda robot, _: None if far(robot) >= enough else 0.5 * (torque or 1.0)
+    )
+    held = designed.__wrapped__("usual")
+    assert far(held.robot) >= enough
+    assert held.built < 1.15 * usual.built
+    assert broken(held) == []
+
+
+@pytest.mark.slow
 def test_the_same_twice(unchecked: None) -> None:
     again = designed.__wrapped__("usual")
     first = designed("usual")

@@ -67,10 +67,35 @@ class FinalJudgement:
             judged.insert(0, held)
 
     def _hold(self, network: Alternative) -> Alternative | None:
-        """Refine a network that its motors hold for seconds until they hold it for long; None if that costs much."""
+        """A network whose motors hold the poses for long, where they hold these for seconds; None if that costs much.
+
+        Winches stand farther apart, so that stronger motors fit, or poses ask for less torque.
+        """
         torque = find_holding_torque(network.robot, network.reached)
         if torque is None:
             return None
+        return self._hold_apart(network) or self._hold_weaker(network, torque)
+
+    def _hold_apart(self, network: Alternative) -> Alternative | None:
+        """The network with its winches as far apart as motors need that hold the poses for long; None if none is."""
+        allowed = (1 + RULES.holding_cost) * network.built
+        layout = replace(layout_of(network.robot, self.finalists.constraints), source=self.finalists.robot)
+        before = self.growth.bench.reach_poses(layout, None)
+        for times in RULES.holding_distances if before is not None else ():
+            moved = self.finalists.push_apart(before, times)
+            if moved is None:
+                continue
+            refined = self.growth.refine(moved, wanted=allowed)
+            hopeful = refined.cost < RULES.unjudged_cost * allowed
+            held = self.finalists.judge(refined.layout) if hopeful else None
+            if held is None or held.built > allowed:
+                continue
+            if kit_fits(held) and find_holding_torque(held.robot, held.reached) is None:
+                return held
+        return None
+
+    def _hold_weaker(self, network: Alternative, torque: float) -> Alternative | None:
+        """The network refined until its poses ask for no more than a torque [N m]; None if that costs much."""
         bench, usual = self.growth.bench, self.growth.bench.constraints
         bench.constraints = replace(usual, torque=torque)
         try:

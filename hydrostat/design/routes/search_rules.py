@@ -140,7 +140,9 @@ class SearchRules:
     # a simpler network is told of where those that are simpler still have so much larger errors
     simpler_cost: float = 0.05
     unjudged_cost: float = 1.1  # a network with so many times the allowed cost is not judged: judging it changes less
-    holding_cost: float = 0.1  # errors may be so much larger where motors hold poses for long
+    holding_cost: float = 0.15  # errors may be so much larger where motors hold poses for long
+    # multiples of their distance to which winches move for motors that hold poses for long
+    holding_distances: tuple[float, ...] = (1.1, 1.2, 1.35)
     judged_on_the_way: int = 12  # networks on the way that are judged where no refined one can be built
     judged_late: int = 4  # the same, where the search was ended before
     # multiples of their distance to which winches move whose units meet
