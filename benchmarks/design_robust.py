@@ -1,25 +1,37 @@
 """What designs are worth once they are built: errors of robots drawn at random, their commands played open loop.
 
-    python benchmarks/design_robust.py [--bodies starfish,puppy] [--methods hand,trees,exact,routes] [--draws 100]
-                                       [--held-out 5] [--seeds 3]
+    python benchmarks/design_robust.py [--bodies starfish,puppy] [--methods hand,trees,exact,routes] [--draws 60]
+                                       [--draws-in-space 20] [--held-out 5] [--seeds 3] [--rough]
+                                       [--jobs 2] [--rows build/design_robust.jsonl]
 
 A network is found for each body by each method, and its commands by inverse kinematics in the model. Then so many
-robots are drawn (`hydrostat.design.Uncertainty`: holes, friction, stiffness, knots, spools), with draws that no design
-saw, and solved from rest along the straight loading path with the friction of each. `exact` are routes for a robot
-that is built just as its model, as designs were before: cables may cross, lie side by side and turn by 75 degrees.
+robots are drawn (`hydrostat.design.BuildTolerances`: holes, friction, stiffness, knots, spools), with draws that no
+design saw, and solved from rest along the straight loading path with the friction of each. `exact` are routes for a
+robot that is built just as its model: cables may cross, lie side by side and turn by 75 degrees.
 Further methods, not among those that are usually printed: `reach` are routes with `RouteOptions.reach` of 1, `family`
 routes that are designed for the half-way poses too, `two_way` routes whose winches may pull both ways.
 
 Columns, errors in mm rms over markers and poses: `model`, as designed; `built`, median and 90 % of the draws;
 `corrected`, the same after one round of correction: up to five markers of each pose are measured on the built robot,
 each coordinate to 0.5 mm, and the contractions are solved again in the model for targets moved by what it missed;
-`mu 0.3`, 90 % with friction 0.3 in all cables; `held out`, poses that hidden networks reach, solved again in the model.
+`mu 0.3`, 90 % with friction 0.3 in all cables, with `--rough`; `held out`, poses that hidden networks reach, solved
+again in the model, with `--held-out`. A second table has `built` of the routes as a share of the better of hand and
+trees.
+
+Each row is added to the file of `--rows` when it is done. Run the same command again to continue, with more bodies or
+methods too. Name another file where the search or the physics changed.
 """
 
 import argparse
+import json
 import time
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import suppress
+from dataclasses import asdict, dataclass, replace
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
 
 from design_bodies import BODIES, Body, body_robot
 from machine import machine
@@ -90,33 +102,91 @@ def half_way(robot: Robot, pose: PoseTarget) -> PoseTarget:
     return PoseTarget(name=f"{pose.name}, half way", targets=targets)
 
 
-def row(name: str, method: str, draws: int, held_out: Sequence[PoseTarget]) -> str:
+Row = dict[str, Any]
+"""Values of one line of the table, by column; None where nothing was computed. Errors in mm."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Job:
+    """A row that is asked for."""
+
+    body: str
+    method: str
+    draws: int
+    rough: bool
+    held_out: int
+    seeds: int
+
+    @property
+    def key(self) -> Row:
+        """Values by which a row that is done already is known."""
+        return asdict(self)
+
+
+def compute_row(job: Job) -> Row:
     """One line of the table."""
+    name, method, draws = job.body, job.method, job.draws
     robot, body = body_robot(name), BODIES[name]
     poses = list(robot.poses.values())
     began = time.process_time()
     found = network(method, robot, body, poses)
-    seconds = time.process_time() - began
+    row: Row = {**job.key, "seconds": time.process_time() - began, "found": found is not None}
     if found is None:
-        return f"| {name} | {method} | none found |"
+        return row
     simulation, limits = Simulation(found), Limits(tension=body.constraints.tension_limit)
     reached = [solve_ik(simulation, pose, limits=limits) for pose in poses]
-    commands = [one.pose.contractions for one in reached]
     uncertainty = BuildTolerances.of(robot.body)
-    built = built_errors(found, poses, commands, uncertainty, draws=draws, seed=1)
     corrected = corrected_errors(found, reached, uncertainty, limits=limits, draws=draws, seed=1)
-    rough = built_errors(found, poses, commands, replace(uncertainty, friction=(0.3, 0.3)), draws=draws, seed=1)
+    built = corrected.played
+    rough = None
+    if job.rough:
+        slippery = replace(uncertainty, friction=(0.3, 0.3))
+        commands = [one.pose.contractions for one in reached]
+        rough = 1e3 * built_errors(found, poses, commands, slippery, draws=draws, seed=1).most
+    held_out = poses_of_others(name, job.held_out, job.seeds) if job.held_out else []
     unseen = [solve_ik(simulation, pose, limits=limits).rms_error for pose in held_out]
-    held = f"{1e3 * np.sqrt(np.mean(np.square(unseen))):.2f}" if unseen else ""
-    sharp, crossings = sharp_turns(found), crossed(found)
-    holes = sum(len(cable.points) - 1 for cable in found.cables)
-    pull = max(one.pose.tensions.max() for one in reached)
-    return (
-        f"| {name} | {method} | {len(found.winches)}/{len(found.cables)} | {1e3 * built.model:.2f} | "
-        f"{1e3 * built.median:.2f} | {1e3 * built.most:.2f} | "
-        f"{1e3 * corrected.median:.2f} | {1e3 * corrected.most:.2f} | {1e3 * rough.most:.2f} | {held} | {holes} | "
-        f"{crossings} | {sharp} | {pull:.1f} | {seconds:.0f} |"
-    )
+    return row | {
+        "counts": f"{len(found.winches)}/{len(found.cables)}",
+        "model": 1e3 * built.model,
+        "built_median": 1e3 * built.median,
+        "built": 1e3 * built.most,
+        "corrected_median": 1e3 * corrected.median,
+        "corrected": 1e3 * corrected.most,
+        "rough": rough,
+        "held_out_error": 1e3 * float(np.sqrt(np.mean(np.square(unseen)))) if unseen else None,
+        "holes": sum(len(cable.points) - 1 for cable in found.cables),
+        "crossings": crossed(found),
+        "sharp": sharp_turns(found),
+        "pull": float(max(one.pose.tensions.max() for one in reached)),
+    }
+
+
+def words(row: Row) -> str:
+    """A row of the table, as Markdown."""
+    begin = f"| {row['body']} | {row['method']} |"
+    if not row["found"]:
+        return f"{begin} none found |"
+    errors = ("model", "built_median", "built", "corrected_median", "corrected", "rough", "held_out_error")
+    told = ["" if row[name] is None else f"{row[name]:.2f}" for name in errors]
+    told += [str(row[name]) for name in ("holes", "crossings", "sharp")]
+    return f"{begin} {row['counts']} | {' | '.join(told)} | {row['pull']:.1f} | {row['seconds']:.0f} |"
+
+
+def share_table(rows: Iterable[Row]) -> list[str]:
+    """Lines of the table of shares: as-built error of the routes over that of the better of hand and trees."""
+    built: dict[str, dict[str, float]] = {}
+    for row in rows:
+        if row["found"]:
+            built.setdefault(row["body"], {})[row["method"]] = row["built"]
+    lines, shares = ["| body | hand | trees | routes | share |", "|" + "---|" * 5], []
+    for name, own in built.items():
+        others = [own[method] for method in ("hand", "trees") if method in own]
+        if "routes" not in own or not others:
+            continue
+        shares.append(own["routes"] / min(others))
+        told = [f"{own[method]:.2f}" if method in own else "" for method in ("hand", "trees", "routes")]
+        lines.append(f"| {name} | {' | '.join(told)} | {shares[-1]:.2f} |")
+    return [*lines, f"| median of {len(shares)} | | | | {np.median(shares):.2f} |"] if shares else []
 
 
 def sharp_turns(robot: Robot) -> int:
@@ -155,28 +225,68 @@ def poses_of_others(name: str, count: int, seeds: int) -> list[PoseTarget]:
     return [pose for seed in range(seeds) for pose in family(name, seed).held_out[:count]]
 
 
+def read_rows(file: Path) -> list[Row]:
+    """Rows that are done; a last line that was cut off is left out."""
+    rows = []
+    for line in file.read_text().splitlines() if file.exists() else []:
+        with suppress(json.JSONDecodeError):
+            rows.append(json.loads(line))
+    return rows
+
+
+def find_row(rows: Sequence[Row], key: Mapping[str, Any]) -> Row | None:
+    """The row of a job; None if it is not done."""
+    return next((row for row in rows if all(row.get(name) == value for name, value in key.items())), None)
+
+
+def compute_rows(jobs: Sequence[Job], processes: int, file: Path) -> None:
+    """Compute rows in some processes and add each to a file when it is done; the bodies that take longest first."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    order = sorted(jobs, key=lambda job: (body_robot(job.body).body.mesh.dim, job.method == "routes"), reverse=True)
+    with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
+        for done in as_completed([pool.submit(compute_row, job) for job in order]):
+            row = done.result()
+            with file.open("a") as lines:
+                lines.write(json.dumps(row) + "\n")
+            print(words(row), flush=True)
+
+
 def main() -> None:
-    """Print the table."""
+    """Compute the rows that are missing, and print the tables."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--bodies", default=",".join(EVERY))
     parser.add_argument("--methods", default=",".join(METHODS))
-    parser.add_argument("--draws", type=int, default=100)
-    parser.add_argument("--held-out", type=int, default=5)
+    parser.add_argument("--draws", type=int, default=60)
+    parser.add_argument("--draws-in-space", type=int, default=20)
+    parser.add_argument("--held-out", type=int, default=0)
     parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--rough", action="store_true")
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--rows", type=Path, default=Path("build/design_robust.jsonl"))
     given = parser.parse_args()
     print(machine())
-    print()
+    jobs = []
+    for name in given.bodies.split(","):
+        flat = body_robot(name).body.mesh.dim == 2
+        for method in given.methods.split(","):
+            if method == "trees" and not flat:
+                continue
+            draws = given.draws if flat else given.draws_in_space
+            jobs.append(
+                Job(
+                    body=name, method=method, draws=draws, rough=given.rough, held_out=given.held_out, seeds=given.seeds
+                )
+            )
+    done = read_rows(given.rows)
+    compute_rows([job for job in jobs if find_row(done, job.key) is None], given.jobs, given.rows)
+    done = read_rows(given.rows)
+    rows = [row for job in jobs if (row := find_row(done, job.key)) is not None]
     print(
-        "| body | method | winches/cables | model | built median | built 90 % | corrected median | "
+        "\n| body | method | winches/cables | model | built median | built 90 % | corrected median | "
         "corrected 90 % | mu 0.3 90 % | held out | holes | crossings | turns > 60 | N | CPU s |"
     )
     print("|" + "---|" * 15)
-    for name in given.bodies.split(","):
-        unseen = poses_of_others(name, given.held_out, given.seeds) if given.held_out else []
-        for method in given.methods.split(","):
-            if method == "trees" and body_robot(name).body.mesh.dim == 3:
-                continue
-            print(row(name, method, given.draws, unseen), flush=True)
+    print(*map(words, rows), "", *share_table(rows), sep="\n")
 
 
 if __name__ == "__main__":

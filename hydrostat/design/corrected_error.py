@@ -1,6 +1,7 @@
 """`corrected_errors`, `expected_corrected_error`: pose errors of built robots after one correction by a measurement."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -20,6 +21,13 @@ NOISE = 5e-4
 """Standard deviation of each measured coordinate [m]: a ruler or a photo."""
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CorrectedErrors(BuiltErrors):
+    """Errors after one correction; `played` are those of the same robots before it, as `built_errors` has them."""
+
+    played: BuiltErrors
+
+
 def corrected_errors(
     robot: Robot,
     reached: Sequence[IKResult],
@@ -30,7 +38,7 @@ def corrected_errors(
     noise: float = NOISE,
     draws: int = 40,
     seed: int = 0,
-) -> BuiltErrors:
+) -> CorrectedErrors:
     """Play poses on robots drawn at random, measure markers, correct the contractions once and play again.
 
     The robots are those of `built_errors` with the same seed. Each pose is corrected by itself, by
@@ -48,22 +56,26 @@ def corrected_errors(
     """
     model, rest = Simulation(robot), {marker.name: np.array(marker.at) for marker in robot.markers}
     names = [spread_markers({name: rest[name] for name in one.pose_target.targets}, measured) for one in reached]
-    found = []
+    before, after = [], []
     for number in range(draws):
         built = Simulation(uncertainty.draw(robot, np.random.default_rng([seed, number])))
         chance = np.random.default_rng([seed, number, 1])
-        squares = []
+        first, second = [], []
         for one, chosen in zip(reached, names, strict=True):
             played = built.solve(one.pose.contractions, strict=False)
+            first.append(mean_square(played, one.pose_target))
             if played.result.converged:
                 places = {
                     name: played.markers[name] + noise * chance.standard_normal(rest[name].shape) for name in chosen
                 }
                 contractions = correct_contractions(model, one, places, limits=limits)
                 played = built.solve(contractions, strict=False)
-            squares.append(mean_square(played, one.pose_target))
-        found.append(np.sqrt(np.mean(squares)))
-    return BuiltErrors(drawn=np.array(found), model=float(np.sqrt(np.mean([one.rms_error**2 for one in reached]))))
+            second.append(mean_square(played, one.pose_target))
+        before.append(np.sqrt(np.mean(first)))
+        after.append(np.sqrt(np.mean(second)))
+    own = float(np.sqrt(np.mean([one.rms_error**2 for one in reached])))
+    uncorrected = BuiltErrors(drawn=np.array(before), model=own)
+    return CorrectedErrors(drawn=np.array(after), model=own, played=uncorrected)
 
 
 def expected_corrected_error(
