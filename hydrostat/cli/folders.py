@@ -67,9 +67,18 @@ def require_folder(out: Path, *, shared: bool = False) -> None:
 
 def require_writable(folder: Path, what: str) -> None:
     """Before long work begins: this process may write into a folder, or make it (InputError: it may not)."""
+    from hydrostat.files import temporary_path
+
     there = next(place for place in (folder, *folder.absolute().parents) if place.exists())
-    if not os.access(there, os.W_OK | os.X_OK):
-        raise InputError(f"{what}: cannot write to {there.absolute()}. Name another folder or change its permissions.")
+    trial = temporary_path(there / "trial")
+    try:
+        if not os.access(there, os.W_OK | os.X_OK):
+            raise PermissionError
+        trial.mkdir()  # where a root may do all, as in /proc, permissions do not tell
+        trial.rmdir()
+    except OSError:
+        told = f"{what}: cannot write to {there.absolute()}. Name another folder or change its permissions."
+        raise InputError(told) from None
 
 
 @contextmanager

@@ -35,7 +35,7 @@ from hydrostat.cli.simulate import simulate
 from hydrostat.cli.studio import studio
 from hydrostat.cli.train import train
 from hydrostat.cli.trajectory import trajectory
-from hydrostat.cli.waiting import heed_interrupts
+from hydrostat.cli.waiting import heed_interrupts, outlive_readers
 from hydrostat.errors import HydrostatError, InputError
 
 app = typer.Typer(
@@ -54,11 +54,17 @@ class _InterruptError(Exception):
     """Ctrl-C, which typer would turn into an exit code of its own."""
 
 
+_TURN_MOTORS = (calibrate, play, drive, mimic)
+"""Commands that end where nobody reads any more what they print; others go on, and end as they would have."""
+
+
 def _interruptible(command: Callable[..., None]) -> Callable[..., None]:
     """The command; Ctrl-C in it reaches `main`."""
 
     @wraps(command)
     def run(*arguments: Any, **options: Any) -> None:
+        if command not in _TURN_MOTORS:
+            outlive_readers()
         try:
             command(*arguments, **options)
         except KeyboardInterrupt:

@@ -168,7 +168,7 @@ def one_interrupt(
         ours = []
 
     def pass_over() -> None:
-        _outlive_readers()
+        outlive_readers(errors=OSError)
         for number in ours:
             signal.signal(number, signal.SIG_IGN)
 
@@ -189,10 +189,10 @@ def one_interrupt(
 
 
 class _LastingOutput:
-    """Text stream that drops what it cannot write: work that is to be kept outlives a closed terminal or pipe."""
+    """Text stream that drops what it cannot write for some errors: work outlives a closed terminal or pipe."""
 
-    def __init__(self, stream: Any) -> None:
-        self._stream = stream
+    def __init__(self, stream: Any, errors: type[OSError]) -> None:
+        self._stream, self.errors = stream, errors
 
     def write(self, text: str) -> int:
         """Write text, to nowhere if nobody reads it any more."""
@@ -209,19 +209,21 @@ class _LastingOutput:
     def _try(self, act: Callable[[], object]) -> None:
         try:
             act()
-        except OSError:
+        except self.errors:
             with suppress(OSError, ValueError):
                 nowhere = os.open(os.devnull, os.O_WRONLY)
                 os.dup2(nowhere, self._stream.fileno())
                 os.close(nowhere)
 
 
-def _outlive_readers() -> None:
-    """Let output fail in silence from here on."""
+def outlive_readers(*, errors: type[OSError] = BrokenPipeError) -> None:
+    """Let output fail in silence from here on: where its reader has gone, such as `head`, or for all errors."""
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
-        if stream is not None and not isinstance(stream, _LastingOutput):
-            setattr(sys, name, _LastingOutput(stream))
+        if isinstance(stream, _LastingOutput):
+            stream.errors = errors
+        elif stream is not None:
+            setattr(sys, name, _LastingOutput(stream, errors))
 
 
 def heed_interrupts() -> None:
