@@ -1,5 +1,6 @@
 """Parsing of options given as text: quantities with units, limits, contractions."""
 
+import math
 import sys
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
@@ -222,6 +223,9 @@ def moves(robot: "Robot", texts: Sequence[str] | None) -> dict[str, float]:
             found[name] = PinDrive.parse_value(value, turns=drives[name].turns)
         except InputError as error:
             raise InputError(f"--move {text}: {error}") from None
+        if drives[name].turns and abs(found[name]) > 2 * math.pi:
+            shown = drives[name].format_value(found[name])
+            raise InputError(f"--move {text}: {shown} is more than a turn. Allowed: -360 to 360 deg.")
         for line in PinDrive.check_values([drives[name]], [found[name]]):
             print(f"warning: {line}")
     return found

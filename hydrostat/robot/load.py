@@ -10,6 +10,9 @@ from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh
 from hydrostat.given import Point, check_name, check_number, check_point, check_positive
 
+MOST_SHARE = 100.0
+"""Largest share of a load in a motion: 1 is all of it. Write a larger load instead."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Load:
@@ -78,8 +81,10 @@ class Load:
         for instant, share in self.path:
             check_number("path", instant, "s")
             check_number("path", share, "")
-            if not (math.isfinite(instant) and math.isfinite(share)):
-                raise InputError(f"path: its times and shares must be finite, not {instant:g} s and {share:g}")
+            if not math.isfinite(instant):
+                raise InputError(f"path: its times must be finite, not {instant:g} s")
+            if not abs(share) <= MOST_SHARE:
+                raise InputError(f"path: a share must be from -{MOST_SHARE:g} to {MOST_SHARE:g}, not {share:g}")
             if not (instant >= 0 and instant > before):
                 after = "" if before < 0 else f" after {before:g} s"
                 raise InputError(f"path: its times must rise from 0 s; {instant:g} s comes{after or ' first'}")

@@ -2,6 +2,7 @@
 
 import csv
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from io import StringIO
@@ -143,8 +144,13 @@ class ProfileTable:
         names = [winch.name for winch in robot.winches]
         head = [_column(cell.strip(), names) for cell in rows[0][1]] if rows else []
         if TIME not in head or len(set(head)) != len(head):
-            other = next((said for mark, said in _MARKS.items() if rows and mark in ",".join(rows[0][1])), "")
-            raise InputError(f"{name}, line 1: name the columns: {TIME} and the winches, each once{other}")
+            first = ",".join(rows[0][1]) if rows else ""
+            other = next((said for mark, said in _MARKS.items() if re.match(mark, first)), "")
+            example = ",".join([TIME, *(f"{winch}{MILLIMETERS}" for winch in names[:2])])
+            raise InputError(
+                f"{name}, line 1: not a table of moves. Name the columns, each once: {TIME} and winches, as in "
+                f"{example}{other}"
+            )
         for column in head:
             if column not in (TIME, *names):
                 raise InputError(f'{name}, line 1: unknown winch "{column}". Available: {", ".join(names)}.')
@@ -208,7 +214,7 @@ MILLIMETERS = "_mm"  # ends the head of a column of contractions
 
 
 _MARKS = {
-    "{": "; this is JSON: hydrostat trajectory writes trajectory.csv",
-    ";": "; commas part them, not semicolons",
-    "\t": "; commas part them, not tabs",
+    r"\s*[{\[]": "; this is JSON: hydrostat trajectory writes trajectory.csv",
+    rf"\s*{TIME}.*;": "; commas part them, not semicolons",
+    rf"\s*{TIME}.*\t": "; commas part them, not tabs",
 }

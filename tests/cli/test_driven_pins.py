@@ -53,6 +53,13 @@ def test_a_servo_turns_a_bar(bar: Path, run: Run) -> None:
     assert (bar / "out" / "pose.png").is_file()
 
 
+def test_more_than_a_turn_is_refused_in_degrees(bar: Path, run: Run) -> None:
+    code, _, err = run("simulate", str(bar), "--move", "servo=400deg", "--out", str(bar / "out"))
+    assert code == 2
+    told = "hydrostat: error: --move servo=400deg: 400 deg is more than a turn. Allowed: -360 to 360 deg.\n"
+    assert err == told
+
+
 def test_the_angle_of_a_pose_is_printed(bar: Path, run: Run) -> None:
     code, out, _ = run("pose", str(bar), "--pose", "up", "--out", str(bar / "out"))
     assert code == 0, out

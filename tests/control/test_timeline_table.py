@@ -56,7 +56,7 @@ def test_rows_that_lie_on_lines_are_left_out(starfish: Robot) -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        (b"", "mine.csv, line 1: name the columns"),
+        (b"", "mine.csv, line 1: not a table of moves"),
         (b"time_s,tail\n0,1\n", 'mine.csv, line 1: unknown winch "tail"'),
         (b"time_s,left\n0,much\n", "mine.csv, line 2, column left: write a number"),
         (b"time_s,left\n0,1\n0,2\n", "mine.csv, line 3, column time_s: the times must rise"),

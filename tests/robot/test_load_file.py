@@ -66,6 +66,7 @@ def test_loads_go_along(tmp_path: Path) -> None:
         (TURNED.replace("N mm", "N"), r"load\[0\].moment: .* does not measure a torque"),
         (HUNG + PATH, r"load\[0\].path: a hung mass is always there; give its weight as a force"),
         (PUSH + PATH.replace("0.5 s", "0 s"), r"load\[0\].path: its times must rise from 0 s; 0 s comes after 0 s"),
+        (PUSH + PATH.replace("1.5", "1e9"), r"load\[0\].path: a share must be from -100 to 100, not 1e\+09"),
         (PUSH + PATH.replace("0.5 s", "5 N"), r"load\[0\].path\[1\].time.* does not measure a time"),
         (PUSH + PUSH, r'load\[1\].name: there are two of the name "push"'),
     ],

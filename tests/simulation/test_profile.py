@@ -42,12 +42,17 @@ def test_a_table_is_read(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "line 1: name the columns"),
-        ("down\n1\n", "line 1: name the columns"),
+        (
+            "",
+            "line 1: not a table of moves. Name the columns, each once: time_s and winches, as in time_s,up_mm,down_mm",
+        ),
+        ("down\n1\n", "line 1: not a table of moves"),
+        ("#!/bin/sh\nplay ${ROBOT}\n", "time_s,up_mm,down_mm$"),
+        ("run() {\n", "time_s,up_mm,down_mm$"),
         ("time_s,down,down\n0,1,1\n", "each once"),
-        ("time_s;down\n0;1,5\n", "each once; commas part them, not semicolons"),
-        ("time_s\tdown\n0\t1\n", "each once; commas part them, not tabs"),
-        ('{"times": [0.0, 1.0]}', "each once; this is JSON: hydrostat trajectory writes trajectory.csv"),
+        ("time_s;down\n0;1,5\n", "down_mm; commas part them, not semicolons"),
+        ("time_s\tdown\n0\t1\n", "down_mm; commas part them, not tabs"),
+        ('{"times": [0.0, 1.0]}', "down_mm; this is JSON: hydrostat trajectory writes trajectory.csv"),
         ("time_s,sideways\n0,1\n", 'line 1: unknown winch "sideways". Available: up, down.'),
         ("time_s,down\n0,1\n1,much\n", 'line 3, column down: write a number of millimeters, not "much"'),
         ("time_s,down\n0,1\n\nsoon,1\n", 'line 4, column time_s: write a number of seconds, not "soon"'),
