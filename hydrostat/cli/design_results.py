@@ -166,7 +166,8 @@ def print_front(network: "Network") -> None:
     console, best = Console(), network.best_by_winches()
     if len(best) > 1:
         motors = Table(title="best network for each number of winches", title_justify="left")
-        for name in ("winches", "cables", "as-built error", "motors", "sewing", "price"):
+        work = Craft.cable_work(network.robot)
+        for name in ("winches", "cables", "as-built error", "motors", work, "price"):
             motors.add_column(name, justify="right")
         for winches, one in best.items():
             effort = Craft.of_robot(one.robot, one.reached)

@@ -7,7 +7,7 @@ import numpy as np
 
 from hydrostat.design.checks.cables import SAME
 from hydrostat.design.polyline import nearest_shares, turns
-from hydrostat.fabrication import PRICES, KitOptions, control_needs, find_motor, power_plan, shaft_torques
+from hydrostat.fabrication import PRICES, KitOptions, Method, control_needs, find_motor, power_plan, shaft_torques
 from hydrostat.ik import IKResult
 from hydrostat.robot import Cable, Mount, Robot, sewn_sides
 from hydrostat.units import plural
@@ -26,6 +26,8 @@ class SewingTimes:
     begin: float = 2.5  # to begin a cable at its winch
     hole: float = 1.5  # to lead it through a hole, from the one before; at the last with its stopper
     sheath: float = 2.0  # to tie a tube down at both its ends
+    thread: float = 5.0  # to draw a cable through the hole of a printed body, as on its sheet
+    draw: float = 15.0  # to draw a cable through a cast body by a needle, as on its sheet
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,16 +39,17 @@ class Craft:
     sharp_turns: int  # via points at which a cable turns by more than `SHARP` degrees
     sheaths: int  # tubes
     length: float  # of all cables along their routes [m]
-    minutes: float  # of cutting and stitching cables and tubes [min]
+    minutes: float  # of cutting cables and tubes, and of stitching or threading them [min]
     price: float  # rough, of motors with boards, drivers and supply, of line and tube as used up [USD]
     motors: int  # winches that have cables: one motor each
     motor: str  # key of the kind of motor, the same for all; empty where there is none
+    work: str = "sewing"  # of those minutes: sewing of a plush body, threading of a printed or a cast one
 
     def __str__(self) -> str:
         """Such as "18 holes, 52 min of sewing, 165 USD (3 motors, power, cables)"; crossings if there are any."""
         crossed = f", {plural(self.crossings, 'crossing')}" if self.crossings else ""
         return (
-            f"{plural(self.holes, 'hole')}{crossed}, {self.minutes:.0f} min of sewing, {self.price:.0f} USD "
+            f"{plural(self.holes, 'hole')}{crossed}, {self.minutes:.0f} min of {self.work}, {self.price:.0f} USD "
             f"({plural(self.motors, 'motor')}, power, cables)"
         )
 
@@ -59,9 +62,9 @@ class Craft:
     def of_robot(robot: Robot, reached: Sequence[IKResult], *, times: SewingTimes | None = None) -> "Craft":
         """Count what a network takes; the kind of motor follows from the tensions of the poses that it reaches.
 
-        Cables in pairs are sewn twice: all but motors counts for both.
+        Cables in pairs are sewn twice: all but motors counts for both. Printed and cast bodies have no pairs.
         """
-        cables, twice = robot.cables, len(sewn_sides(robot))
+        cables, twice = robot.cables, _num_sides(robot)
         motors = len({cable.winch for cable in cables})
         holes = twice * sum(len(cable.points) - 1 for cable in cables)
         sheaths = twice * sum(len(cable.sheathed) for cable in cables)
@@ -83,20 +86,32 @@ class Craft:
             sharp_turns=twice * sum(_sharp(cable) for cable in cables),
             sheaths=sheaths,
             length=length,
-            minutes=Craft.sewing_minutes(robot, times=times),
+            minutes=Craft.cable_minutes(robot, times=times),
             price=price,
             motors=motors,
             motor=key,
+            work=Craft.cable_work(robot),
         )
 
     @staticmethod
-    def sewing_minutes(robot: Robot, *, times: SewingTimes | None = None) -> float:
-        """Minutes that it takes to cut and stitch the cables and tubes of a robot, of pairs both [min]."""
-        clock, twice = times or SewingTimes(), len(sewn_sides(robot))
+    def cable_work(robot: Robot) -> str:
+        """Work that the cables of a robot take by the usual method of its body: "sewing" or "threading"."""
+        return "sewing" if KitOptions().method_for(robot.body) is Method.PLUSH else "threading"
+
+    @staticmethod
+    def cable_minutes(robot: Robot, *, times: SewingTimes | None = None) -> float:
+        """Minutes that it takes to cut the cables and tubes of a robot, and to stitch or thread them [min]."""
+        clock, method = times or SewingTimes(), KitOptions().method_for(robot.body)
+        sheaths = (clock.cut + clock.sheath) * sum(len(cable.sheathed) for cable in robot.cables)
+        if method is not Method.PLUSH:
+            return (clock.cut + (clock.thread if method is Method.PRINT else clock.draw)) * len(robot.cables) + sheaths
         holes = sum(len(cable.points) - 1 for cable in robot.cables)
-        sheaths = sum(len(cable.sheathed) for cable in robot.cables)
-        each = (clock.cut + clock.begin) * len(robot.cables) + clock.hole * holes + (clock.cut + clock.sheath) * sheaths
-        return twice * each
+        return _num_sides(robot) * ((clock.cut + clock.begin) * len(robot.cables) + clock.hole * holes + sheaths)
+
+
+def _num_sides(robot: Robot) -> int:
+    """Number of times that each cable is there: two in pairs, which only a plush body has."""
+    return len(sewn_sides(robot)) if KitOptions().method_for(robot.body) is Method.PLUSH else 1
 
 
 def front(points: Sequence[tuple[float, float]]) -> list[int]:

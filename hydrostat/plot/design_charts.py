@@ -89,14 +89,16 @@ def _scale(axes: Axes, errors: np.ndarray) -> None:
 def draw_front(
     alternatives: Iterable[Alternative], chosen: Network, *, tolerance: float | None = None, width: float = WIDTH
 ) -> Figure:
-    """Error as built over minutes of sewing: a dot for each network in the color of its number of winches.
+    """Error as built over minutes of work on cables: a dot for each network in the color of its number of winches.
 
-    The number above a dot counts cables. A filled dot is on the Pareto front, which a line joins: nothing that is sewn
-    as fast is better. A ring marks the chosen one, a dashed line the tolerance that was asked for [m]. Width in inches.
+    The number above a dot counts cables. A filled dot is on the Pareto front, which a line joins: nothing that takes
+    as few minutes is better. A ring marks the chosen one, a dashed line the tolerance that was asked for [m]. Width in
+    inches.
     """
     networks = [chosen, *(other for other in alternatives if other.robot != chosen.robot)]
-    figure, axes = new_chart("minutes of sewing", "error once built [mm rms]", width=width, height=0.5 * width)
-    points = [(Craft.sewing_minutes(one.robot), MILLIMETERS * one.built) for one in networks]
+    below = f"minutes of {Craft.cable_work(chosen.robot)}"
+    figure, axes = new_chart(below, "error once built [mm rms]", width=width, height=0.5 * width)
+    points = [(Craft.cable_minutes(one.robot), MILLIMETERS * one.built) for one in networks]
     best = front(points)
     axes.plot(*np.transpose([points[index] for index in best]), color=Color.GHOST, linewidth=1.2, zorder=2)
     _draw_dots(axes, networks, points, set(best))

@@ -174,7 +174,7 @@ REACHED = (  # head and words of the chapter on the poses
 def reached_part(robot: Robot, reached: IKResult, index: int, *notes: Html) -> Html:
     """A pose as the winches reach it, beside tables of markers, winches and cables; below them what is to be minded."""
     figure = draw_reached(robot, reached, title="", width=NARROW)
-    note = f": {MILLIMETERS * reached.rms_error:.2f} mm rms; {reached.status}"
+    note = f": {MILLIMETERS * reached.rms_error:.2f} mm rms; {reached.ending}"
     tables = {
         "Markers": marker_table(robot, reached),
         "Winches": contraction_table(robot, reached),
@@ -275,17 +275,18 @@ def alternative_chapters(network: Network) -> list[Chapter]:
     others = network.alternatives
     if not others:
         return []
-    efforts = {Craft.sewing_minutes(one.robot) for one in (*others, network)}
+    efforts = {Craft.cable_minutes(one.robot) for one in (*others, network)}
     words = "Other networks that were found on the way, each with its error over all poses."
     parts: list[Html] = []
     if len(efforts) > 1:
+        work = Craft.cable_work(network.robot)
         words += (
-            " More sewing reaches more: the curve tells how much. The number at a dot counts cables. A filled dot lies "
-            "on the Pareto front: no network that is sewn as fast is better."
+            f" More {work} reaches more: the curve tells how much. The number at a dot counts cables. A filled dot "
+            "lies on the Pareto front: no network that takes as few minutes is better."
         )
         figure = draw_front(others, network, tolerance=network.request.route_options.tolerance, width=CHART)
         note = ", a color for each number of winches"
-        parts.append(grid(picture(figure, "front", "Error against minutes of sewing", note)))
+        parts.append(grid(picture(figure, "front", f"Error against minutes of {work}", note)))
     if len(best := network.best_by_winches()) > 1:
         words += " The table has the best network for each number of winches."
         parts.append(_winch_table(best))
@@ -304,7 +305,8 @@ def _winch_table(best: Mapping[int, Alternative | Network]) -> Html:
         effort = Craft.of_robot(one.robot, one.reached)
         made = (effort.motors, f"{effort.minutes:.0f}", f"{effort.price:.0f}")
         rows.append((winches, len(one.robot.cables), millimeters(one.built), *made))
-    heads = ("winches", "cables", "error once built [mm]", "motors", "sewing [min]", "price [USD]")
+    work = Craft.cable_work(next(iter(best.values())).robot)
+    heads = ("winches", "cables", "error once built [mm]", "motors", f"{work} [min]", "price [USD]")
     return table(heads, rows, numbers=range(len(heads)))
 
 

@@ -8,7 +8,7 @@ import pytest
 from hydrostat.design import Craft
 from hydrostat.design.craft import SewingTimes, front
 from hydrostat.fabrication import MOTORS
-from hydrostat.robot import Cable, Robot, gallery_folder, load_robot
+from hydrostat.robot import Cable, Face, Robot, gallery_folder, load_robot
 
 
 @pytest.fixture(scope="module")
@@ -70,7 +70,23 @@ def test_no_front_of_nothing() -> None:
 
 def test_nothing_takes_nothing(starfish: Robot) -> None:
     found = Craft.of_robot(starfish.with_network((), ()), [])
-    assert set(found.as_values.values()) == {0, ""}
+    assert set(found.as_values.values()) == {0, "", "sewing"}
+
+
+def test_no_body_is_sewn_that_is_printed_or_cast(starfish: Robot) -> None:
+    """Oracle: the minutes of the assembly sheets of printed and of cast bodies, which have no pairs."""
+    flat = replace(sewn(starfish, BENT), face=Face.PAIRS)
+    told = {}
+    for material in ("polyester fibre", "tpu 85a", "flexfoam-it x"):
+        found = Craft.of_robot(flat.with_material(material), [])
+        told[material] = found.work, found.minutes, found.holes
+    assert told == {
+        "polyester fibre": ("sewing", 2 * (3 + 2.5 + 3 * 1.5), 6),
+        "tpu 85a": ("threading", 3 + 5, 3),
+        "flexfoam-it x": ("threading", 3 + 15, 3),
+    }
+    assert "10 min of sewing" not in str(found)
+    assert "18 min of threading" in str(found)
 
 
 def test_motors_are_those_of_the_table(starfish: Robot) -> None:

@@ -176,8 +176,8 @@ def test_the_picture_of_the_front() -> None:
     """A cable of `sized` takes as many minutes as each other: dots stand at multiples of it, filled by brute force."""
     others = [sized(*other) for other in OTHERS]
     axes = draw_front(others, chosen(), tolerance=0.0045).axes[0]
-    each = Craft.sewing_minutes(others[0].robot)
-    own = Craft.sewing_minutes(chosen().robot)
+    each = Craft.cable_minutes(others[0].robot)
+    own = Craft.cable_minutes(chosen().robot)
     points = [(own, 6.0), *((each * cables, 1e3 * error) for _, cables, error in OTHERS)]
     dots = [line for line in axes.lines if line.get_markersize() == 5.5 and np.size(line.get_xdata())]
     drawn = {tuple(np.asarray(dot.get_xydata())[0].round(9)): dot for dot in dots}

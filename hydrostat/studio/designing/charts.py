@@ -93,7 +93,7 @@ def front_chart(candidates: Sequence[Candidate], trail: Sequence[ProgressPoint],
         across=1.06 * max([1.0, *(minutes for minutes, _ in (*errors, *way))]),
         up=1.18 * max([1e-3, *(error for _, error in (*errors, *way))]),
         name="error, mm",
-        below="sewing time, min",
+        below=f"{candidates[0].craft.work if candidates else 'sewing'} time, min",
         whole=True,
     )
     points = [*errors, *way]

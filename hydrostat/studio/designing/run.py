@@ -63,7 +63,7 @@ class DesignRun:
             error=found.error,
             winches=len(found.winches),
             cables=len(found.cables),
-            minutes=Craft.sewing_minutes(best),
+            minutes=Craft.cable_minutes(best),
             words=found.words,
             tried=found.tried,
         )

@@ -249,7 +249,7 @@ def design_compare(page: WindowPage) -> None:
 def _front(page: WindowPage, candidates: tuple[Candidate, ...]) -> None:
     designer = page.session.designer
     with ui.element("div").classes("design-front"):
-        ui.label("Error vs. sewing time").classes("studio-section").style("margin: 0 0 8px")
+        ui.label(f"Error vs. {candidates[0].craft.work} time").classes("studio-section").style("margin: 0 0 8px")
         ui.html(front_chart(candidates, designer.trail, designer.chosen), sanitize=False).classes("w-full")
 
 
@@ -300,7 +300,7 @@ def _words(one: Candidate, own: tuple[int, ...], *, refused: bool) -> str:
     craft = one.craft
     lines = [
         one.counts,
-        f"{craft.minutes:.0f} min of sewing",
+        f"{craft.minutes:.0f} min of {craft.work}",
         f"{craft.price:.0f} USD, {plural(craft.motors, 'motor')}",
     ]
     if craft.crossings:
