@@ -17,14 +17,17 @@ _SILICONE = "mould of silicone"  # in reasons that a mold of silicone does not h
 def kit_remedy(robot: "Robot", folder: Path, out: Path, *, options: "KitOptions", reasons: Iterable[str]) -> str:
     """Command that makes a rejected kit buildable: another motor, a mold of silicone, a seam, or a new design.
 
-    It is `hydrostat check` if no kit can be made of the body itself.
+    It is `hydrostat materials` if the material is a cause, and `hydrostat check` if no kit can be made of the body
+    itself.
     """
-    from hydrostat.fabrication import MOTORS, Method, find_refusals
+    from hydrostat.fabrication import MATERIAL_FIX, MOTORS, Method, find_refusals
 
     place, kit = quote(str(folder)), quote(str(out))
     told = list(reasons)
     if options.method_for(robot.body) is Method.FOAM and all(_SILICONE in reason for reason in told):
         return f"hydrostat fabricate {place} --mould silicone --out {kit}"
+    if any(MATERIAL_FIX in reason for reason in told):
+        return f"hydrostat materials, then edit material in {place}"
     known = set(find_refusals(robot, options=options))
     for motor in MOTORS if known and known >= set(told) else ():
         if not find_refusals(robot, options=replace(options, motor=motor.key)):

@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from hydrostat.fabrication.demand import Demand, shaft_torques
     from hydrostat.fabrication.kit import Check, Kit, UnbuildableError, write_files
     from hydrostat.fabrication.kit_options import (
+        MATERIAL_FIX,
         STUFFINGS,
         KitOptions,
         Method,
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
 __all__ = [
     "BOARDS",
     "GIVES",
+    "MATERIAL_FIX",
     "MOTORS",
     "PAPERS",
     "PRICES",

@@ -9,7 +9,16 @@ import numpy as np
 from hydrostat.arrays import Float
 from hydrostat.fabrication.checks.mold_checks import mold_checks
 from hydrostat.fabrication.checks.pattern_checks import patch_checks, pattern_checks
-from hydrostat.fabrication.kit_options import STUFFINGS, KitOptions, MoldKind, PartOptions
+from hydrostat.fabrication.kit_options import (
+    BLOCKS,
+    MATERIAL_FIX,
+    PRINTED,
+    STUFFINGS,
+    KitOptions,
+    MoldKind,
+    PartOptions,
+    block_problem,
+)
 from hydrostat.fabrication.kit_plan import BodyWork, Cloth, FoamNeeds
 from hydrostat.fabrication.moulds.mould import make_mold
 from hydrostat.fabrication.moulds.pocket import WinchRoom
@@ -165,9 +174,12 @@ def stuffing_problems(robot: Robot) -> tuple[str, ...]:
     name = robot.body.material.name
     if not name or name in STUFFINGS:
         return ()
+    if name in BLOCKS:
+        return (block_problem(name),)
+    how = "print it (--method print)" if name in PRINTED else "cast it (--method foam)"
     return (
-        f'the body was simulated as "{name}", which is no stuffing for cloth. Set its material to '
-        f'"{STUFFINGS[0]}" and simulate again, or cast it (--method foam)',
+        f'the body was simulated as "{name}", which is no stuffing for cloth. {MATERIAL_FIX} "{STUFFINGS[0]}" and '
+        f"simulate again, or {how}",
     )
 
 

@@ -165,9 +165,16 @@ def _findings(plan: KitPlan, lists: Lists) -> KitFindings:
     return KitFindings(
         checks=checks,
         problems=tuple(dict.fromkeys((*known, *made, *large, *failed))),
-        warnings=(*_part_warnings(plan), *work.warnings, *rigid.warnings, *lists.warnings),
+        warnings=(*_cable_warnings(plan), *_part_warnings(plan), *work.warnings, *rigid.warnings, *lists.warnings),
         notes=(*work.notes, *rigid.notes, *plan.demand.far),
     )
+
+
+def _cable_warnings(plan: KitPlan) -> tuple[str, ...]:
+    """Warn of a robot that nothing moves."""
+    if plan.drawn.cables:
+        return ()
+    return ("the robot has no cables: the kit has its body alone. `hydrostat design` adds winches and cables",)
 
 
 def _part_warnings(plan: KitPlan) -> tuple[str, ...]:

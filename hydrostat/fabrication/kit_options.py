@@ -14,6 +14,20 @@ PRINTED = ("tpu 85a",)  # materials of filament: a body of them is printed in on
 CASTABLE = ("flexfoam-it", "ecoflex", "dragon skin")  # beginnings of names of materials that are poured
 STUFFINGS = ("polyester fibre",)  # materials that are stuffed into cloth: a body of them is plush, in space too
 
+BLOCKS = ("polyurethane foam", "polyethylene foam")  # materials that are bought as blocks and cut
+
+MATERIAL_FIX = "Set the body's material to"
+"""Words of each reason for which a kit needs another material."""
+
+
+def block_problem(name: str) -> str:
+    """Return the reason why no method makes a body of a foam that comes in blocks."""
+    return (
+        f'no method of the kit makes a body of "{name}". Cut it from a block by hand, and take all else from a kit '
+        f'with --force. {MATERIAL_FIX} "{STUFFINGS[0]}" to sew it, "flexfoam-it x" to cast it or "{PRINTED[0]}" to '
+        "print it, and simulate again"
+    )
+
 
 class Corner(StrEnum):
     """Way in which the cut goes round an outward corner of the seam."""

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from hydrostat.fabrication.kit_options import CASTABLE
+from hydrostat.fabrication.kit_options import BLOCKS, CASTABLE, MATERIAL_FIX, block_problem
 from hydrostat.robot import MATERIALS, Material
 
 SILICONE_PRICE = 40.0  # price of a kilogram of Mold Max 30 [USD]: not measured, check yours
@@ -88,10 +88,12 @@ def _castable(material: Material) -> tuple[Material, tuple[str, ...]]:
     if material.name.startswith(CASTABLE):
         return material, ()
     foam = MATERIALS["flexfoam-it x"]
+    if material.name in BLOCKS:
+        return foam, (block_problem(material.name),)
     name = f'"{material.name}"' if material.name else "the body's material, given by its numbers,"
     problem = (
         f"{name} ({material.density:.0f} kg/m^3) is not cast from two parts. This mould is sized for {foam.name} "
-        f"({foam.density:.0f} kg/m^3), so the robot would differ from the simulated one. Set the body's material to "
+        f"({foam.density:.0f} kg/m^3), so the robot would differ from the simulated one. {MATERIAL_FIX} "
         f"what you pour, such as {foam.name}, and simulate again, or choose plush if the body is flat"
     )
     return foam, (problem,)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.arrays import Float
+from hydrostat.errors import InputError
 from hydrostat.fabrication.patches.patch import Disc, Patch
 
 
@@ -41,11 +42,15 @@ def quantile(values: Float[np.ndarray, " _"], weights: Float[np.ndarray, " _"], 
 
 
 def distortion(patch: Patch) -> Distortion:
-    """The distortion of a patch."""
+    """The distortion of a patch (InputError: a triangle of it has no area)."""
     flat, solid = patch.flat[patch.disc.triangles], patch.disc.vertices[patch.disc.triangles]
     from_flat = np.stack([flat[:, 1] - flat[:, 0], flat[:, 2] - flat[:, 0]], axis=2)
     to_solid = np.stack([solid[:, 1] - solid[:, 0], solid[:, 2] - solid[:, 0]], axis=2)
-    stretches = np.linalg.svd(to_solid @ np.linalg.inv(from_flat), compute_uv=False)
+    try:
+        stretches = np.linalg.svd(to_solid @ np.linalg.inv(from_flat), compute_uv=False)
+    except np.linalg.LinAlgError:
+        told = "the skin of this body cannot be flattened into patches. Print or cast the body, or make it simpler"
+        raise InputError(told) from None
     return Distortion(longest=stretches[:, 0], shortest=stretches[:, 1], areas=patch.disc.areas)
 
 

@@ -344,7 +344,6 @@ class Sewing:
         if body.mesh.dim != 3:
             raise InputError("a flat body has a flat pattern of its own")
         try:
-            mesh = skin_mesh(body)
+            return Sewing.of_mesh(skin_mesh(body), options or PatternOptions())
         except InputError as error:
             return Sewing(patches=0, give=0.0, problems=(str(error),))
-        return Sewing.of_mesh(mesh, options or PatternOptions())

@@ -114,7 +114,8 @@ def _polygons(geometry: BaseGeometry) -> list[Polygon]:
 def _at(geometry: Polygon | shapely.Point) -> str:
     """Place of a geometry, in words."""
     place = geometry.representative_point()
-    return f"[{place.x:.4g}, {place.y:.4g}] mm"
+    x, y = round(place.x, 1) + 0.0, round(place.y, 1) + 0.0
+    return f"[{x:g}, {y:g}] mm"
 
 
 @dataclass(frozen=True)

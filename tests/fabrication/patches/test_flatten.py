@@ -5,6 +5,7 @@ import pytest
 import shapely
 from patch_bodies import cap, folded, half_cone, half_cylinder
 
+from hydrostat.errors import InputError
 from hydrostat.fabrication.patches.flatten import distortion, flatten, quantile
 from hydrostat.fabrication.patches.patch import Patch
 
@@ -52,6 +53,13 @@ def test_distortion_of_a_known_stretch():
     assert bent.longest == pytest.approx(np.full(len(disc.triangles), 1.25), rel=2e-3)
     assert bent.shortest == pytest.approx(np.full(len(disc.triangles), 0.8), rel=2e-3)
     assert bent.give(0.95) == pytest.approx(0.25, rel=1e-2)
+
+
+def test_a_patch_that_folds_onto_a_line_is_refused():
+    """Such as that of gallery:spine, between the discs of which a skin would have to be all seams."""
+    patch = flatten(cap(0.2))
+    with pytest.raises(InputError, match="cannot be flattened into patches"):
+        distortion(Patch(disc=patch.disc, flat=patch.flat * [1.0, 0.0]))
 
 
 def test_quantiles_count_areas():
