@@ -53,6 +53,7 @@ def pose(
     Writes contractions.json, pose.json, pose.vtu (for ParaView) and pose.png; several poses get one folder each.
     A pose sets marker targets; --drawing sets a whole target shape. Give both to combine them. With --model, the
     command prints the error that the model predicts and the simulated error, then starts the search from there.
+    A pose counts as reached if each marker is within 0.3 % of the body's size of its target.
 
     Example: hydrostat pose gallery:starfish --pose wave --out build/wave
     """
@@ -147,7 +148,7 @@ def _write(
 
 def _print_reached(loaded: "Robot", reached: "IKResult", title: str, seconds: float) -> None:
     """Print what was reached, and what keeps it from more."""
-    print(f"{title}: rms error {1e3 * reached.rms_error:.2f} mm; {reached.status} ({1e3 * seconds:.0f} ms)")
+    print(f"{title}: rms error {1e3 * reached.rms_error:.2f} mm; {reached.ending} ({1e3 * seconds:.0f} ms)")
     if len(reached.errors) > 1:
         markers = ", ".join(f"{name} {1e3 * error:.2f} mm" for name, error in reached.errors.items())
         print(f"  marker errors: {markers}")

@@ -1,5 +1,6 @@
 """`IKResult`: result of inverse kinematics for one pose."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
@@ -22,6 +23,10 @@ class IKStatus(StrEnum):
     ITERATION_LIMIT = "iteration limit reached"
     TIME_LIMIT = "time limit reached"
     NO_EQUILIBRIUM = "no equilibrium found on the way"
+
+
+CLOSE = 3e-3
+"""Distance from its target, as a share of the body's size, within which each goal counts as reached in words."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -56,10 +61,22 @@ class IKResult:
         """Return the same result without the factorized Hessian of its pose, to keep many results in memory."""
         return replace(self, pose=self.pose.without_factors())
 
+    @property
+    def is_close(self) -> bool:
+        """True if every goal is within 0.3 % of the body's size of its target."""
+        return max(self.errors.values(), default=0.0) <= CLOSE * self.pose.robot.body.mesh.size
+
+    @property
+    def ending(self) -> str:
+        """Reason why the search ended, in words; at an optimum that is close to its targets, how close."""
+        if self.status is not IKStatus.LOCAL_OPTIMUM or not (self.errors and self.is_close):
+            return str(self.status)
+        return f"reached within {_round_up(1e3 * max(self.errors.values())):g} mm"
+
     def __repr__(self) -> str:
         """Return a one-line summary."""
         goal = "objectives" if self.target is None else repr(self.target.name)
-        return f"<IKResult for {goal}: rms error {1e3 * self.rms_error:.3g} mm; {self.status}; {self.pose!r}>"
+        return f"<IKResult for {goal}: rms error {1e3 * self.rms_error:.3g} mm; {self.ending}; {self.pose!r}>"
 
     def _repr_html_(self) -> str:
         """Summary, warnings and a picture, for a notebook."""
@@ -77,3 +94,9 @@ class IKResult:
     def rms_error(self) -> float:
         """Root of the mean squared error over the goals [m]."""
         return float(np.sqrt(np.mean(np.square(list(self.errors.values()))))) if self.errors else 0.0
+
+
+def _round_up(length: float) -> float:
+    """A length above 0 with one significant digit, not below what it is."""
+    step = 10.0 ** math.floor(math.log10(length))
+    return float(f"{math.ceil(length / step - 1e-9) * step:.1g}")

@@ -180,7 +180,7 @@ def draw_pose(
 def reached_title(reached: IKResult, name: str | None = None) -> str:
     """Title of an answer: "Reached: wave", or "Closest to wave" where a target is missed."""
     named = shorten(name or ("" if reached.target is None else reached.target.name))
-    if reached.status is IKStatus.REACHED:
+    if reached.status is IKStatus.REACHED or (reached.errors and reached.is_close):
         return f"Reached: {named}" if named else "Reached"
     return f"Closest to {named}" if named else "Closest"
 
@@ -223,7 +223,7 @@ def _reached_note(reached: IKResult, names: list[str]) -> str:
     parts += [f"{shorten(name)} error {MILLIMETERS * error:.2f} mm" for name, error in others.items()]
     drives = zip(reached.pose.robot.drives, reached.pose.drives, strict=True)
     parts += [f"{shorten(drive.name)} {drive.format_value(value)}" for drive, value in drives]
-    return ", ".join(parts) or str(reached.status)
+    return ", ".join(parts) or reached.ending
 
 
 def _draw_wanted(sheet: PictureSheet, ring: Places) -> None:
