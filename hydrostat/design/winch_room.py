@@ -11,6 +11,7 @@ from shapely.geometry.base import BaseGeometry
 
 from hydrostat.arrays import Points
 from hydrostat.design.constraints import Constraints
+from hydrostat.design.request import DesignRequest
 from hydrostat.design.zone import Zone
 from hydrostat.errors import InputError
 from hydrostat.fabrication import (
@@ -63,11 +64,14 @@ def _torque_to_hold(motor: Motor) -> float:
 
 
 def find_no_room(robot: Robot) -> str | None:
-    """Return why no motor of the kit fits into the body for winches that a design would place; None if one fits."""
-    constraints = Constraints()
+    """Return why no motor of the kit fits into the body for winches that a design would place; None if one fits.
+
+    A design of one winch may put all of its cables there, and its unit is longer the more cables it holds.
+    """
+    constraints, usual = Constraints(), DesignRequest.cables
     if constraints.stand_outside(robot) or not has_known_room(robot.body):
         return None
-    return None if winch_room(robot, constraints, 1)[1] is not None else _no_room(robot, constraints, 1, 1)
+    return None if winch_room(robot, constraints, usual)[1] is not None else _no_room(robot, constraints, usual, 1)
 
 
 def has_known_room(body: Body) -> bool:
@@ -175,7 +179,14 @@ def _has_room_for(points: Points, winches: int, apart: float) -> bool:
 
 def _no_room(robot: Robot, constraints: Constraints, cables: int, winches: int) -> str:
     """Reason why no motor can be built in, and the changes that would allow one."""
-    motor, body = MOTORS[0], robot.body
+    counts = range(cables - 1, 0, -1)
+    fits = next((count for count in counts if winch_room(robot, constraints, count, winches=winches)[1] is not None), 0)
+    if fits:
+        return (
+            f"body: no room for a motor with {cables} cables on its winch, but for one with {fits}. Ask for fewer, "
+            f"e.g. --winches {winches} --cables {winches * fits}."
+        )
+    motor, body, cables = MOTORS[0], robot.body, 1
     box = unit_room(*_example(robot, constraints, cables), PartOptions(), motor)
     smallest = f"{motor.title}, {sides_text(sorted(box.size, reverse=True))} mm"
     lift = 'Or put winches outside, as [[winch]] with mount = "world".'
