@@ -88,25 +88,30 @@ def _suggest(
     robot: "Robot", count: int, names: tuple[str, ...] | None, hang: Sequence[str], tension: str | None
 ) -> None:
     """Print measurements that tell most about the parameters, named as `hydrostat measure` reads them."""
+    from hydrostat.design import Constraints
     from hydrostat.identification import suggest_measurements
     from hydrostat.units import FORCE, MASS
 
-    most = parse_optional("--tension", tension, FORCE)
+    most = parse_optional("--tension", tension, FORCE) or Constraints().tension_limit
     found = suggest_measurements(
         robot,
         count,
         fit=names,
         masses=[positive("--hang", text, MASS) for text in hang],
-        tension=float("inf") if most is None else most,
+        tension=most,
     )
-    print(f"Take these photographs, chosen from {plural(found.candidates, 'pose')}. The first show most.")
+    poses = f"{plural(found.candidates, 'pose')} with tensions up to {most:g} N"
+    print(f"Take these photographs, chosen from {poses}. The first show most.")
     for command, masses in zip(found.commands, found.masses, strict=True):
         parts = [f"{w.name}={1e3 * pull:g}mm" for w, pull in zip(robot.winches, command, strict=True) if pull]
         parts += [f"{marker}={1e3 * mass:g}g" for marker, mass in zip(found.markers, masses, strict=True) if mass]
         print(f"  {','.join(parts) or 'rest'}.jpg")
     hidden = [name for name, share in found.deviations.items() if share > HIDDEN]
     if hidden:
-        print(f"note: these photographs will not show {', '.join(hidden)}.")
+        print(
+            f"note: if markers are read to {1e3 * found.noise:.1f} mm, these photographs hardly show "
+            f"{', '.join(hidden)}. Sharper photographs or more of them do."
+        )
     if not hang and any(name.endswith(".young") for name in hidden):
         print("note: a hung mass shows a modulus. Add --hang 50g, and gravity to robot.toml.")
 

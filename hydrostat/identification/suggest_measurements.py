@@ -34,6 +34,7 @@ class SuggestedMeasurements:
         masses: mass to hang at each marker [kg], (rows, markers).
         deviations: standard deviation of each parameter after these measurements, over that of its guess.
         candidates: number of poses they were chosen from.
+        noise: assumed standard deviation of a measured coordinate about a good model [m].
     """
 
     commands: Float[np.ndarray, "rows winches"]
@@ -41,6 +42,7 @@ class SuggestedMeasurements:
     masses: Float[np.ndarray, "rows markers"]
     deviations: dict[str, float]
     candidates: int
+    noise: float
 
 
 def suggest_measurements(
@@ -88,9 +90,11 @@ def suggest_measurements(
     ]
     if len(able) < count:
         raise InputError(
-            f"--suggest {count}: {len(able)} of {len(commands)} poses tried are within the limits. Ask fewer."
+            f"--suggest {count}: {len(able)} of {len(commands)} poses tried are within the limits. Ask fewer, or "
+            "allow more tension."
         )
-    slopes = found.jacobian[able].reshape(len(able), -1, len(model.parameters)) / (NOISE * robot.body.mesh.size)
+    noise = NOISE * robot.body.mesh.size
+    slopes = found.jacobian[able].reshape(len(able), -1, len(model.parameters)) / noise
     chosen = choose_measurements(slopes, count)
     information = np.eye(len(model.parameters)) + np.einsum("rci,rcj->ij", slopes[chosen], slopes[chosen])
     kept = np.sqrt(np.diag(np.linalg.inv(information)))
@@ -101,6 +105,7 @@ def suggest_measurements(
         masses=hung[rows],
         deviations=dict(zip((parameter.name for parameter in model.parameters), kept.tolist(), strict=True)),
         candidates=len(able),
+        noise=noise,
     )
 
 

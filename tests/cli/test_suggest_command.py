@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 
 from hydrostat.camera import Photo
+from hydrostat.design import Constraints
+from hydrostat.errors import InputError
 from hydrostat.robot import load_robot
 
 Run = Callable[..., tuple[int, str, str]]
@@ -18,7 +20,18 @@ def test_names_of_suggested_photographs_can_be_read(run: Run, starfish: Path) ->
     names = [line.strip() for line in text.splitlines() if line.endswith(".jpg")]
     photos = Photo.read_all([Path(name) for name in names], load_robot(starfish))
     assert len({photo.pose for photo in photos}) == 4
+    assert "with tensions up to 10 N" in text
     assert all(0 <= pull <= 0.06 for photo in photos for pull in photo.contractions.values())
+
+
+def test_pulls_are_bounded_by_the_usual_limit_of_designs(
+    run: Run, starfish: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def suggested(*_: object, tension: float, **__: object) -> None:
+        raise InputError(f"{tension:g} N")
+
+    monkeypatch.setattr("hydrostat.identification.suggest_measurements", suggested)
+    assert run("identify", starfish, "--suggest", 4)[2] == f"hydrostat: error: {Constraints().tension_limit:g} N\n"
 
 
 def test_fit_or_suggest(run: Run, starfish: Path, tmp_path: Path) -> None:
