@@ -266,3 +266,6 @@ def test_a_frame_can_be_the_body() -> None:
     assert "left out a ground or frame of 420 x 297; if it is the body, say --part 1" in note
     framed = read_drawing(content, name="a.dxf", part=1).outline
     assert (framed.size, len(framed.holes)) == (pytest.approx(0.42), 1)
+    block = drawn(box(-40, -40, 420, 297), box(320, -40, 60, 30))
+    notes = read_drawing(block, name="a.dxf", part=1).notes
+    assert "left out 1 closed shape on the edge, the largest at" in " ".join(notes)

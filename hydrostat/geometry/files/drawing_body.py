@@ -107,7 +107,9 @@ def choose_body(shapes: Shapes, part: int | None, name: str) -> tuple[DrawnLine,
         inside = [line for line in closed[closed.index(shapes.doubtful) + 1 :] if line not in shapes.grounds]
         raise _several([shapes.doubtful, inside[0]], closed, name)
     body = _the_largest(candidates, closed, name) if part is None else closed[part - 1]
-    smaller = [line for line in closed[closed.index(body) + 1 :] if line not in shapes.grounds]
+    after = closed[closed.index(body) + 1 :]
+    smaller = [line for line in after if line not in shapes.grounds]
+    blocks = [line for line in after if line in shapes.grounds and body.polygon.covers(line.polygon)]
     beside = disjoint(body.polygon, [line.polygon for line in smaller])
     left = [line for line, apart in zip(smaller, beside, strict=True) if apart]
     notes = []
@@ -118,6 +120,9 @@ def choose_body(shapes: Shapes, part: int | None, name: str) -> tuple[DrawnLine,
             f"left out a ground or frame of {across:.4g} x {up:.4g}; if it is the body, say "
             f"{PART_HINT.replace('N', str(closed.index(ground) + 1))}"
         )
+    if part is not None and blocks:
+        where = point_text(blocks[0].points[0])
+        notes.append(f"left out {plural(len(blocks), 'closed shape')} on the edge, the largest at {where}")
     if left:
         where = point_text(left[0].points[0])
         notes.append(f"left out {plural(len(left), 'closed shape')} beside the body, the largest at {where}")
