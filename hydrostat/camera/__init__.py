@@ -5,12 +5,15 @@ from typing import TYPE_CHECKING
 from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
+    from hydrostat.camera.marker_camera import CameraFrames, MarkerCamera
     from hydrostat.camera.measure_photos import PhotoMeasurements, PhotoOptions, measure_photos
     from hydrostat.camera.photo import Photo, read_colors
     from hydrostat.camera.print_tags import tags_pdf
     from hydrostat.camera.table_text import table_text
 
 __all__ = [
+    "CameraFrames",
+    "MarkerCamera",
     "Photo",
     "PhotoMeasurements",
     "PhotoOptions",

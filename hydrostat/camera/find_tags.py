@@ -1,5 +1,6 @@
 """`find_tags`: tags in a photograph, with their corners to a few hundredths of a pixel."""
 
+from collections.abc import Container
 from typing import Any
 
 import numpy as np
@@ -25,8 +26,13 @@ def load_opencv() -> Any:
     return cv2
 
 
-def find_tags(pixels: Gray, where: str) -> dict[int, Corners]:
+def find_tags(pixels: Gray, where: str, *, refine: Container[int] | None = None) -> dict[int, Corners]:
     """Tags in a photograph by their numbers.
+
+    Args:
+        pixels: brightness of the photograph.
+        where: name of the photograph, for messages.
+        refine: numbers of the tags whose corners are refined; all if left out.
 
     Raises:
         InputError: a tag that is there twice, or a mirrored photograph.
@@ -40,7 +46,10 @@ def find_tags(pixels: Gray, where: str) -> dict[int, Corners]:
             f"{where}: the photograph is mirrored ({len(mirrored)} tags). Turn off mirroring, as of a front camera."
         )
     bright = (pixels / np.float32(255.0)) ** np.float32(2.2)  # light, of which blur is a mean
-    return {number: _refine_corners(bright, corners) for number, corners in found}
+    return {
+        number: _refine_corners(bright, corners) if refine is None or number in refine else corners
+        for number, corners in found
+    }
 
 
 def _detect(pixels: np.ndarray) -> list[tuple[int, np.ndarray]]:

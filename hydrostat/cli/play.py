@@ -3,7 +3,9 @@
 import shutil
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -11,13 +13,16 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrostat.cli.folders import RobotFolder, folder_of
+from hydrostat.cli.measure import TagHeight, TagSide, photo_options
 from hydrostat.cli.options import MotorPort
 from hydrostat.cli.waiting import one_interrupt, read_robot
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.units import plural
 
 if TYPE_CHECKING:
-    from hydrostat.control import Motors, Player
+    from hydrostat.camera import MarkerCamera, PhotoOptions
+    from hydrostat.control import LostAction, MarkerFeedback, Motors, Player
+    from hydrostat.robot import Robot
     from hydrostat.simulation import ContractionProfile
 
 SHOWN, LISTED = 0.1, 2.0  # time from one word on the progress to the next [s]: on a terminal, and where lines are kept
@@ -33,12 +38,27 @@ def play(
     ] = 1,
     speed: Annotated[float, typer.Option(metavar="TIMES", help="Playback speed factor.")] = 1.0,
     port: MotorPort = None,
+    camera: Annotated[
+        str | None,
+        typer.Option(
+            metavar="CAMERA", help="Correct contractions by the tags that a camera sees: its number, device or address."
+        ),
+    ] = None,
+    lag: Annotated[
+        str, typer.Option(metavar="TIME", help="Time from a command until a frame with its effect arrives.")
+    ] = "100ms",
+    lost: Annotated[
+        str, typer.Option(metavar="hold|open", help="Without a marker in sight, hold or go on without correction.")
+    ] = "hold",
+    tag: TagSide = "15mm",
+    height: TagHeight = None,
 ) -> None:
     """Play a table of contractions on the motors in real time.
 
     Without --motors the motors are simulated, and every line starts with "simulated". `hydrostat trajectory` and the
     studio write such tables. Motors stop at the end, on Ctrl-C, on SIGTERM, when the terminal closes and on
-    any error. With --motors they also stop if a cable tension is far above the simulated one, or missing.
+    any error. With --motors they also stop if a cable tension is far above the simulated one, or missing. With
+    --camera, tags that `hydrostat measure --print` writes keep the markers on their simulated paths.
 
     Example: hydrostat play gallery:starfish build/dance/trajectory.csv --repeat 3
     """
@@ -49,6 +69,7 @@ def play(
 
     if port is not None:
         control.check_port(port)
+    wishes = None if camera is None else _CameraWishes.read(camera, port, lag, lost, photo_options(tag, height))
     if loop < 0:
         raise InputError(f"--repeat {loop}: must be 0 or more. 0 plays until you stop it.")
     player = control.Player()
@@ -65,20 +86,117 @@ def play(
     motors = control.Motors(loaded.winches, control.SimulatedLink(np.zeros(len(loaded.winches))), fastest=fastest)
     motors.check(table, speed=speed)  # before anything turns
     pulls = None if port is None else control.tensions_along(loaded, table.profile)
-    with one_interrupt(""):  # arming turns motors, too
+    with one_interrupt(""), _open_camera(wishes, loaded, table.profile, kind) as seen:  # arming turns motors, too
         if port is not None and pulls is not None:
             motors = control.arm_motors(folder_of(robot), loaded, port, pulls, log=lambda line: print(line, flush=True))
         try:
+            if seen is not None:
+                _require_rest(motors)
             often = {0: "until stopped", 1: "once"}.get(loop, f"{loop} times")
             seconds, winches = float(table.profile.times[-1]), plural(len(motors.names), "winch")
             _say(kind, f"{moves} on {loaded.name}, {winches}: {seconds:.2f} s, {often}, at {speed:g}x")
-            _play(kind, motors, table.profile, player)
+            _play(kind, motors, table.profile, player, seen)
         finally:
             motors.link.close()
+        if seen is not None:
+            _say(kind, seen.result())
     _say(kind, f"finished; motors holding at {_places(motors)}")
 
 
-def _play(kind: str, motors: "Motors", profile: "ContractionProfile", player: "Player") -> None:
+@dataclass(frozen=True, kw_only=True)
+class _CameraWishes:
+    """Options of a camera that corrects contractions."""
+
+    name: str
+    lag: float
+    lost: "LostAction"
+    options: "PhotoOptions"
+
+    @classmethod
+    def read(cls, name: str, port: str | None, lag: str, lost: str, options: "PhotoOptions") -> "_CameraWishes":
+        """Check the options (InputError: no motors, or no such value)."""
+        from hydrostat.cli.options import positive
+        from hydrostat.closed_set import parse_choice
+        from hydrostat.control import LostAction
+        from hydrostat.units import TIME
+
+        if port is None:
+            raise InputError("--camera: simulated motors move no robot. Add --motors.")
+        most, seconds = 0.5, positive("--lag", lag, TIME, zero=True)
+        if seconds > most:
+            raise InputError(f"--lag {lag}: must be {1e3 * most:g} ms or less")
+        return cls(name=name, lag=seconds, lost=parse_choice(LostAction, lost, what="--lost"), options=options)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _SeeingPlayer:
+    """Camera, and the feedback that it gives."""
+
+    camera: "MarkerCamera"
+    feedback: "MarkerFeedback"
+
+    def result(self) -> str:
+        """Errors and rate, in words."""
+        import numpy as np
+
+        found, slow = self.feedback, 15.0
+        if not found.errors:
+            return "warning: the camera saw no marker, so nothing was corrected. " + self.camera.trouble
+        half = len(found.errors) // 2
+        text = (
+            f"markers {1e3 * np.mean(found.errors[half:]):.1f} mm from the simulation in the second half, about "
+            f"{1e3 * np.mean(found.open_errors[half:]):.1f} mm without correction; {found.rate:.0f} frames a second"
+        )
+        return text if found.rate >= slow else f"{text}. warning: below {slow:g}, take smaller pictures or more light"
+
+
+@contextmanager
+def _open_camera(
+    wishes: _CameraWishes | None, robot: "Robot", profile: "ContractionProfile", kind: str
+) -> Iterator[_SeeingPlayer | None]:
+    """Calibrate a camera by the robot at rest; None without a camera.
+
+    Armed motors wait for nobody, so that everything slow is done before.
+    """
+    if wishes is None:
+        yield None
+        return
+    from hydrostat import camera, control
+    from hydrostat.simulation import Simulation
+
+    frames = camera.CameraFrames(wishes.name)
+    try:
+        path = control.MarkerPath.along(robot, profile)
+        source = camera.MarkerCamera(frames, Simulation(robot).rest, control.MarkerSight, wishes.options)
+    except BaseException:
+        frames.close()
+        raise
+
+    def log(text: str) -> None:
+        _say(kind, f"{text} ({source.trouble})" if source.trouble else text)
+
+    try:
+        feedback = control.MarkerFeedback(robot, path, source, lag=wishes.lag, lost=wishes.lost, log=log)
+        yield _SeeingPlayer(camera=source, feedback=feedback)
+    finally:
+        source.close()
+
+
+def _require_rest(motors: "Motors") -> None:
+    """Check that the robot was at rest when the camera was calibrated (InputError: a winch has contracted)."""
+    import numpy as np
+
+    index, most = int(np.abs(motors.places).argmax()), 2e-3
+    if abs(motors.places[index]) > most:
+        raise InputError(
+            f"--camera: {motors.names[index]} stands at {1e3 * motors.places[index]:.1f} mm. Begin at rest: pay its "
+            "cable out first."
+        )
+
+
+def _play(
+    kind: str, motors: "Motors", profile: "ContractionProfile", player: "Player", seen: _SeeingPlayer | None
+) -> None:
     """Play, and say how it was stopped, if it was."""
     import numpy as np
 
@@ -89,7 +207,7 @@ def _play(kind: str, motors: "Motors", profile: "ContractionProfile", player: "P
         )
     tell, newline = _progress(kind, motors, player, float(profile.times[-1]))
     try:
-        player.run(motors, profile, tell=tell)
+        player.run(motors, profile, feedback=None if seen is None else seen.feedback, tell=tell)
     except (KeyboardInterrupt, SystemExit) as stop:
         newline()
         _say(kind, f"stopped at {player.time:.2f} s; motors holding at {_places(motors)}")

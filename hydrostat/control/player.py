@@ -7,6 +7,7 @@ from math import floor, inf, isfinite
 import numpy as np
 
 from hydrostat.arrays import Vector
+from hydrostat.control.marker_feedback import MarkerFeedback
 from hydrostat.control.motors import Motors
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.simulation import ContractionProfile
@@ -69,6 +70,7 @@ class Player:
         motors: Motors,
         profile: ContractionProfile,
         *,
+        feedback: MarkerFeedback | None = None,
         tell: Callable[[], None] = lambda: None,
         clock: Callable[[], float] = time.monotonic,
         wait: Callable[[float], None] = time.sleep,
@@ -77,7 +79,8 @@ class Player:
 
         First they go to where the player begins, in a profile from 0 s to its last time. What the player is told
         meanwhile counts at once: its speed, its rounds, to stop. `tell` is called after each command, the clock only
-        runs forward [s], `wait` lets so much time pass [s].
+        runs forward [s], `wait` lets so much time pass [s]. With feedback, commands are corrected by the markers in
+        sight; while it waits for a marker, the playhead stands still.
 
         Raises:
             InputError: a winch cannot take in what it should.
@@ -104,14 +107,24 @@ class Player:
                 wait(TICK)
                 drive(contractions)
 
+        def corrected() -> Vector:
+            planned = profile.at(self.time)
+            return planned if feedback is None else feedback.correct(planned, self.time, clock())
+
         try:
             self.play(seconds)
             arrive(profile.at(self.time))
             while self.playing:
+                if feedback is not None and feedback.is_waiting:
+                    self._seen = clock()
                 self.advance(clock(), seconds)
-                drive(profile.at(self.time))
+                drive(corrected())
                 wait(TICK)
-            arrive(profile.at(self.time))
+            until = clock() + (0.0 if feedback is None else feedback.settle)
+            while clock() < until:
+                drive(corrected())
+                wait(TICK)
+            arrive(corrected())
         finally:
             self.stop()
             motors.hold()

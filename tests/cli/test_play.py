@@ -213,3 +213,27 @@ def test_signals_are_caught_from_before_motors_are_armed(
     assert (code, "no motors here" in err) == (1, True)
     assert caught != [before]
     assert callable(caught[0])
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "words"),
+    [
+        (("--camera", 0), 2, "--camera: simulated motors move no robot. Add --motors."),
+        (("--camera", 0, "--motors", "emulated", "--lag", "2s"), 2, "--lag 2s: must be 500 ms or less"),
+        (("--camera", 0, "--motors", "emulated", "--lost", "run"), 2, "--lost"),
+        (("--camera", 0, "--motors", "emulated"), 1, "photographs need OpenCV"),
+    ],
+)
+def test_a_camera_that_cannot_correct_is_refused(
+    run: Run,
+    starfish: Path,
+    wave: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    options: tuple[object, ...],
+    code: int,
+    words: str,
+) -> None:
+    monkeypatch.setitem(sys.modules, "cv2", None)
+    found, _, err = run("play", starfish, wave, *options)
+    assert (found, err.count("\n")) == (code, 1)
+    assert words in err

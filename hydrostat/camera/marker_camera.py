@@ -1,0 +1,188 @@
+"""`MarkerCamera`: places of a robot's markers in the frames of a camera, while the robot plays."""
+
+import threading
+import time
+from collections.abc import Callable, Mapping
+from typing import Any, Protocol, runtime_checkable
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.camera.calibrate_camera import calibrate_camera
+from hydrostat.camera.find_tags import Corners, Gray, find_tags, load_opencv
+from hydrostat.camera.locate_tags import align_places, locate_in_space, locate_on_plane, pairs_of
+from hydrostat.camera.measure_photos import LEAST, PhotoOptions
+from hydrostat.camera.tags import marker_tags, sheet_of
+from hydrostat.errors import HydrostatError, InputError
+from hydrostat.simulation import Equilibrium
+from hydrostat.units import plural
+
+FRAMES = 5
+"""Frames whose corners are averaged before the robot moves."""
+
+MOVED = 3.0
+"""Shift of the board at which the camera or the board counts as moved [pixels]."""
+
+
+@runtime_checkable
+class FrameSource(Protocol):
+    """Frames of a camera."""
+
+    def read(self) -> Gray | None:
+        """Wait for the next frame; return None when there are no more."""
+        ...
+
+    def close(self) -> None:
+        """Release the camera."""
+        ...
+
+
+class CameraFrames:
+    """Frames of a camera of this computer, by OpenCV."""
+
+    def __init__(self, name: str) -> None:
+        """Open a camera by its number, device or address (HydrostatError: it gives no pictures)."""
+        cv2 = load_opencv()
+        self._gray = cv2.COLOR_BGR2GRAY
+        self._cv2, self._camera = cv2, cv2.VideoCapture(int(name) if name.isdecimal() else name)
+        self._camera.set(cv2.CAP_PROP_BUFFERSIZE, 1)
+        if not self._camera.isOpened():
+            raise HydrostatError(f"--camera {name}: gives no pictures. Check its number, plug and permissions.")
+
+    def read(self) -> Gray | None:
+        """Wait for the next frame; return None when there are no more."""
+        is_read, pixels = self._camera.read()
+        return self._cv2.cvtColor(pixels, self._gray) if is_read else None
+
+    def close(self) -> None:
+        """Release the camera."""
+        self._camera.release()
+
+
+class MarkerView:
+    """Fixed camera before a robot on its board: places of markers in each frame."""
+
+    def __init__(self, frames: list[Gray], pose: Equilibrium, options: PhotoOptions | None = None) -> None:
+        """Calibrate the camera by frames of a robot that stands in a simulated pose.
+
+        Args:
+            frames: frames in which nothing moves.
+            pose: simulated pose of the robot in them.
+            options: numbers that frames do not show.
+
+        Raises:
+            InputError: too few tags of the board or of markers.
+        """
+        robot, self._options = pose.robot, options or PhotoOptions()
+        self._numbers, self._dim = marker_tags(robot), robot.body.mesh.dim
+        found = [find_tags(pixels, "camera") for pixels in frames]
+        tags = {
+            number: np.mean([each[number] for each in found], axis=0)
+            for number in set.intersection(*(set(each) for each in found))
+        }
+        self._board = {number: corners for number, corners in tags.items() if sheet_of(number) is not None}
+        if len(self._board) < LEAST:
+            raise InputError(
+                f"--camera: {plural(len(self._board), 'tag')} of the board in sight. Show at least {LEAST} whole tags, "
+                "in focus."
+            )
+        calibration = calibrate_camera([tags], (frames[0].shape[1], frames[0].shape[0]))
+        self._lens, self._view = calibration.lens, calibration.views[0]
+        thickness = robot.body.thickness or 0.0
+        self._height = thickness if self._options.height is None else self._options.height
+        self._turn, self._shift = np.eye(self._dim), np.zeros(self._dim)
+        places, targets = pairs_of(self._locate(tags), pose.markers)
+        if len(places) < self._dim:
+            raise InputError(
+                f"--camera: {plural(len(places), 'marker')} of {robot.name} in sight. Show at least {self._dim}."
+            )
+        self._turn, self._shift = align_places(places, targets)
+
+    def find(self, pixels: Gray) -> dict[str, Vector]:
+        """Places of the markers in sight, in the frame of the robot [m].
+
+        Raises:
+            InputError: a tag is there twice, or the camera or the board has moved.
+        """
+        tags = find_tags(pixels, "camera", refine=self._numbers.values())
+        both = [number for number in self._board if number in tags]
+        moved = [np.linalg.norm((tags[number] - self._board[number]).mean(axis=0)) for number in both]
+        if both and np.median(moved) > MOVED:
+            raise InputError("camera: the camera or the board has moved")
+        return self._locate(tags)
+
+    def _locate(self, tags: Mapping[int, Corners]) -> dict[str, Vector]:
+        found = {}
+        for name, number in self._numbers.items():
+            if number in tags:
+                if self._dim == 2:
+                    at = locate_on_plane(tags[number], self._lens, self._view, self._height)[0][:2]
+                else:
+                    at = locate_in_space([(tags[number], self._view)], self._lens, self._options.side)[0]
+                found[name] = self._turn @ at + self._shift
+        return found
+
+
+class MarkerCamera:
+    """Camera that is read in a thread of its own, so that motors never wait for it.
+
+    Attributes:
+        trouble: reason why the last frame shows no marker; "" if it does.
+    """
+
+    def __init__(
+        self,
+        frames: FrameSource,
+        pose: Equilibrium,
+        sight: Callable[[float, Mapping[str, Vector]], Any],
+        options: PhotoOptions | None = None,
+        *,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """Calibrate by the first frames, then begin to look.
+
+        Args:
+            frames: frames of the camera.
+            pose: simulated pose in which the robot stands.
+            sight: record to make of a time [s] and places [m], such as `control.MarkerSight`.
+            options: numbers that frames do not show.
+            clock: clock of the motors [s].
+
+        Raises:
+            InputError: too few tags in sight.
+            HydrostatError: the camera gives no pictures.
+        """
+        self._frames, self._sight, self._clock = frames, sight, clock
+        self._newest: Any = None
+        self.trouble, self._is_open = "", True
+        first = [pixels for _ in range(FRAMES) if (pixels := frames.read()) is not None]
+        if len(first) < FRAMES:
+            raise HydrostatError("--camera: gives no pictures. Check its number, plug and permissions.")
+        self._view = MarkerView(first, pose, options)
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def look(self) -> Any:
+        """Newest sight of markers; None before the first."""
+        return self._newest
+
+    def close(self) -> None:
+        """Stop looking and release the camera. It may be called twice."""
+        self._is_open = False
+        self._thread.join(timeout=1.0)
+        self._frames.close()
+
+    def _run(self) -> None:
+        while self._is_open:
+            pixels = self._frames.read()
+            now = self._clock()
+            if pixels is None:
+                self.trouble = "the camera gives no more pictures"
+                return
+            try:
+                places = self._view.find(pixels)
+                self.trouble = "" if places else "no tag of a marker in sight"
+                if places:
+                    self._newest = self._sight(now, places)
+            except InputError as error:
+                self.trouble = str(error)

@@ -1,0 +1,276 @@
+"""`MarkerFeedback`: contractions corrected by the markers that a camera sees while a robot plays."""
+
+from collections import deque
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+
+from hydrostat.arrays import Float, Vector
+from hydrostat.errors import HydrostatError, InputError
+from hydrostat.ik import CORRECTION_DAMPING
+from hydrostat.robot import PinDrive, Robot
+from hydrostat.simulation import ContractionProfile, Simulation
+from hydrostat.units import plural
+
+GAIN = 3.0
+"""Share of the remaining marker error that is taken back in a second, at first [1/s]."""
+
+BOUND = 0.2
+"""Largest correction of a winch, as a share of its travel."""
+
+FASTEST_CORRECTION = 0.02
+"""Largest speed of a correction [m/s]."""
+
+MISREAD = 0.2
+"""Distance from the simulated marker, as a share of the body's size, beyond which a marker counts as misread."""
+
+LOST, GIVEN_UP = 0.5, 10.0
+"""Time without a marker in sight after which the camera counts as lost, and after which a held robot stops [s]."""
+
+FADE = 1.0
+"""Time in which a correction fades out when the motors go on without a camera [s]."""
+
+SETTLE = 1.0
+"""Time for which the last pose is still corrected [s]."""
+
+POSES = 150
+"""Equilibria along a profile, at most, beyond those of its rows."""
+
+
+class LostAction(StrEnum):
+    """Reaction to a camera that sees no marker."""
+
+    HOLD = "hold"
+    OPEN = "open"
+
+
+@dataclass(frozen=True, eq=False)
+class MarkerSight:
+    """Markers in one frame of a camera.
+
+    Attributes:
+        time: time at which the frame arrived, by the clock of the motors [s].
+        places: places of the markers in sight, in the frame of the robot [m].
+    """
+
+    time: float
+    places: Mapping[str, Vector]
+
+
+@runtime_checkable
+class MarkerSource(Protocol):
+    """Camera that sees markers."""
+
+    def look(self) -> MarkerSight | None:
+        """Return the newest sight at once; None before the first."""
+        ...
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MarkerPath:
+    """Simulated markers along a profile, with their exact slopes by the contractions.
+
+    Attributes:
+        times: times of the profile [s].
+        places: places of all markers [m].
+        jacobians: slopes dx/da of these places.
+    """
+
+    times: Vector
+    places: Float[np.ndarray, "times markers dim"]
+    jacobians: Float[np.ndarray, "times markers dim winches"]
+
+    @classmethod
+    def along(cls, robot: Robot, profile: ContractionProfile) -> "MarkerPath":
+        """Simulate the poses of a profile.
+
+        Raises:
+            InputError: a robot without markers, or with drives.
+            HydrostatError: a pose without equilibrium.
+        """
+        if not robot.markers:
+            raise InputError(f"{robot.name}: no [[marker]] in robot.toml. Add one for each tag.")
+        PinDrive.require_none(robot.drives, "corrections")
+        rows = profile.times[np.linspace(0, len(profile.times) - 1, min(len(profile.times), POSES)).astype(int)]
+        times = np.unique([0.0, *rows, *np.linspace(0.0, profile.times[-1], POSES // 2)])
+        simulation, pose, places, jacobians = Simulation(robot), None, [], []
+        for time in times.tolist():
+            pose = simulation.solve(profile.at(time), start=pose, strict=False)
+            if not pose.result.converged:
+                raise HydrostatError(
+                    f"the simulated robot reaches no equilibrium at {time:.2f} s. Play without --camera."
+                )
+            places.append(simulation.marker_anchors.positions(pose.nodes))
+            jacobians.append(simulation.marker_jacobian(pose))
+        return cls(times=times, places=np.array(places), jacobians=np.array(jacobians))
+
+    def at(self, time: float) -> tuple[np.ndarray, np.ndarray]:
+        """Places and slopes at a time [s], linear between poses."""
+        place = int(np.clip(np.searchsorted(self.times, time) - 1, 0, max(len(self.times) - 2, 0)))
+        after = min(place + 1, len(self.times) - 1)
+        length = self.times[after] - self.times[place]
+        share = float(np.clip((time - self.times[place]) / length, 0.0, 1.0)) if length > 0 else 0.0
+        places, slopes = ((1 - share) * each[place] + share * each[after] for each in (self.places, self.jacobians))
+        return places, slopes
+
+
+@dataclass(frozen=True)
+class _Past:
+    """Correction at an earlier time."""
+
+    now: float
+    time: float
+    correction: Vector
+
+
+class MarkerFeedback:
+    """Correct contractions so that markers follow the simulated ones (integral control with a known lag).
+
+    Each frame shows an error at the time when it was taken. A damped least-squares step by the exact slopes of the
+    model states the correction that would have removed it; the present correction approaches that one. Lag does not
+    add up, as the correction of that time is remembered. Corrections stay within 20 % of the travel of each winch, and
+    commands within its limits.
+
+    Attributes:
+        is_waiting: True while motors hold because no marker is in sight.
+        errors: mean distance of the markers in each frame from the simulated ones [m].
+        open_errors: the same without the correction, to first order [m].
+    """
+
+    settle = SETTLE
+
+    def __init__(
+        self,
+        robot: Robot,
+        path: MarkerPath,
+        source: MarkerSource,
+        *,
+        lag: float = 0.1,
+        lost: LostAction = LostAction.HOLD,
+        log: Callable[[str], None] = lambda _: None,
+    ) -> None:
+        """Feedback along a path.
+
+        Args:
+            robot: robot that plays.
+            path: simulated markers of the profile.
+            source: camera that sees the markers.
+            lag: time from a command until a frame with its effect arrives [s].
+            lost: reaction to a camera that sees no marker.
+            log: receives a line when markers are lost, found again, or at the bound of the correction.
+        """
+        self._names = [marker.name for marker in robot.markers]
+        self._path, self._source, self._lag, self._lost, self._log = path, source, lag, lost, log
+        self._low = np.array([-winch.release for winch in robot.winches])
+        self._high = np.array([winch.travel for winch in robot.winches])
+        self._bound, self._misread = BOUND * self._high, MISREAD * robot.body.mesh.size
+        self._winches = [winch.name for winch in robot.winches]
+        self._correction = np.zeros(len(robot.winches))
+        self._aim = self._correction
+        self._past = deque[_Past]()
+        self._seen: float | None = None  # time of the last sight with markers [s]
+        self._told: set[str] = set()
+        self.is_waiting = self._is_lost = False
+        self.errors, self.open_errors = list[float](), list[float]()
+        self._began: float | None = None
+        self._start: float | None = None
+
+    @property
+    def rate(self) -> float:
+        """Frames with markers in a second; 0 before the second one."""
+        seconds = (self._seen or 0.0) - (self._began or 0.0)
+        return (len(self.errors) - 1) / seconds if len(self.errors) > 1 and seconds > 0 else 0.0
+
+    def correct(self, contractions: Vector, time: float, now: float) -> Vector:
+        """Contractions to command [m], within the limits of the winches.
+
+        Args:
+            contractions: contractions of the profile [m].
+            time: time in the profile [s].
+            now: clock that only runs forward [s].
+
+        Raises:
+            HydrostatError: held motors saw no marker for too long.
+        """
+        self._start = now if self._start is None else self._start
+        step = now - self._past[-1].now if self._past else 0.0
+        sight = self._source.look()
+        if sight is not None and (self._seen is None or sight.time > self._seen):
+            self._take(sight, now)
+        self._watch(now)
+        if not self.is_waiting:
+            self._advance(step)
+        command = np.clip(contractions + self._correction, self._low, self._high)
+        self._correction = command - contractions  # no windup at a limit
+        self._past.append(_Past(now, time, self._correction))
+        while len(self._past) > 2 and self._past[1].now < now - LOST - self._lag:
+            self._past.popleft()
+        return command
+
+    def _advance(self, step: float) -> None:
+        """Move the correction towards its aim; out, if motors go on without a camera."""
+        if self._is_lost:
+            move = -self._correction * min(step / FADE, 1.0)
+        else:
+            move = (self._aim - self._correction) * (1.0 - np.exp(-GAIN * step))
+        move = np.clip(move, -FASTEST_CORRECTION * step, FASTEST_CORRECTION * step)
+        self._correction = np.clip(self._correction + move, -self._bound, self._bound)
+
+    def _take(self, sight: MarkerSight, now: float) -> None:
+        """Aim at the correction that would have removed the errors of a frame."""
+        before = next((past for past in reversed(self._past) if past.now <= sight.time - self._lag), None)
+        if before is None:
+            return
+        places, slopes = self._path.at(before.time)
+        errors, rows = [], []
+        for index, name in enumerate(self._names):
+            if name in sight.places:
+                error = np.asarray(sight.places[name]) - places[index]
+                if np.isfinite(error).all() and np.linalg.norm(error) < self._misread:
+                    errors.append(error)
+                    rows.append(slopes[index])
+        if not errors:
+            return
+        self._began = sight.time if self._began is None else self._began
+        self._seen = sight.time
+        error, jacobian = np.array(errors), np.array(rows)
+        flat = jacobian.reshape(-1, jacobian.shape[2])
+        damping = CORRECTION_DAMPING**2 * len(errors) * np.eye(flat.shape[1])
+        aim = before.correction - np.linalg.solve(flat.T @ flat + damping, flat.T @ error.ravel())
+        self._aim = np.clip(aim, -self._bound, self._bound)
+        self.errors.append(float(np.linalg.norm(error, axis=1).mean()))
+        opened = error - jacobian @ before.correction
+        self.open_errors.append(float(np.linalg.norm(opened, axis=1).mean()))
+        for winch in np.flatnonzero(np.abs(aim) > self._bound).tolist():
+            self._tell_once(
+                f"warning: the correction of {self._winches[winch]} is at its bound of "
+                f"{1e3 * self._bound[winch]:.0f} mm. Fit the model first: hydrostat identify"
+            )
+
+    def _watch(self, now: float) -> None:
+        """Notice a camera that sees nothing, or sees again."""
+        seen = self._start if self._seen is None else self._seen
+        since = 0.0 if seen is None else now - seen
+        if since > LOST and not self._is_lost:
+            self._is_lost, self.is_waiting = True, self._lost is LostAction.HOLD
+            does = "motors hold until one is" if self.is_waiting else "going on without correction"
+            self._log(f"warning: no marker in sight for {since:.1f} s; {does}")
+        elif since <= LOST and self._is_lost:
+            self._is_lost = self.is_waiting = False
+            self._log("note: markers in sight again; correcting")
+        if self.is_waiting and since > GIVEN_UP:
+            raise HydrostatError(
+                f"no marker in sight for {since:.0f} s. Check camera, light and tags, then play again."
+            )
+
+    def _tell_once(self, text: str) -> None:
+        if text not in self._told:
+            self._told.add(text)
+            self._log(text)
+
+    def __repr__(self) -> str:
+        """Return a one-line summary."""
+        return f"<MarkerFeedback of {plural(len(self._names), 'marker')}>"

@@ -1,0 +1,191 @@
+"""Contractions corrected by markers. Oracle: a hidden robot, on emulated servos in their own time."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from builders import mesh_body, strip_mesh
+
+from hydrostat.control import (
+    BusLink,
+    Calibration,
+    DynamixelBus,
+    EmulatedChain,
+    EmulatedServo,
+    LostAction,
+    MarkerFeedback,
+    MarkerPath,
+    MarkerSight,
+    Motors,
+    Player,
+    TensionGuard,
+    TensionLookup,
+    WinchMotor,
+)
+from hydrostat.errors import HydrostatError, InputError
+from hydrostat.robot import Cable, Marker, Pin, Robot, Winch
+from hydrostat.simulation import ContractionProfile, Simulation
+
+ROUTES = [[(0.01, y), (0.07, y), (0.13, y), (0.19, y)] for y in (0.014, -0.014)]
+GAINS = np.array([0.88, 1.0])  # spool radii of the hidden robot, over those of its model
+FRAME, LAG = 1 / 15, 0.1  # time between frames, and from a command to a frame with its effect [s]
+
+
+def strip() -> Robot:
+    """A strip that is held at its left end, sags under its weight, and has a cable above and one below."""
+    return Robot(
+        name="strip",
+        body=mesh_body(strip_mesh(8, 2)),
+        pins=(Pin(box=((-0.001, -1.0), (0.001, 1.0)), stiffness=3e3),),
+        gravity=(0.0, -9.81),
+        winches=tuple(
+            Winch(name=name, at=route[0], travel=0.03, release=0.002)
+            for name, route in zip(("up", "down"), ROUTES, strict=True)
+        ),
+        cables=tuple(
+            Cable(winch=name, points=tuple(route)) for name, route in zip(("up", "down"), ROUTES, strict=True)
+        ),
+        markers=tuple(Marker(name=name, at=(x, 0.0)) for name, x in (("root", 0.03), ("middle", 0.11), ("tip", 0.19))),
+        poses={},
+    )
+
+
+def hidden_strip() -> Robot:
+    """The same of a softer material with another Poisson's ratio, its routes 1 mm off."""
+    robot = strip()
+    material = replace(robot.body.material, young=0.7 * robot.body.material.young, poisson=0.4)
+    cables = tuple(
+        replace(cable, points=tuple((x, y + 0.001 * (index % 2)) for index, (x, y) in enumerate(cable.points)))
+        for cable in robot.cables
+    )
+    return replace(robot, body=replace(robot.body, material=material), cables=cables)
+
+
+PROFILE = ContractionProfile(
+    times=np.array([0.0, 1.0, 2.0, 3.5]), values=np.array([[0, 0], [0.006, 0.0], [0.01, 0.001], [0.008, 0.0]])
+)
+
+
+class Bench:
+    """A hidden robot on emulated servos, and a camera that sees its markers some time later."""
+
+    def __init__(self, see: Callable[[dict[str, np.ndarray], float], dict[str, np.ndarray]] | None = None) -> None:
+        self.robot, self.hidden = strip(), Simulation(hidden_strip())
+        self._see = see or (lambda places, _: places)
+        winches = self.robot.winches
+        spools = [
+            WinchMotor(winch=w.name, number=n, zero=1.0, radius=w.spool_radius, current=0.6)
+            for n, w in enumerate(winches, 1)
+        ]
+        calibration, pulls = Calibration(tuple(spools)), TensionLookup(self.robot)
+        simulation = Simulation(self.robot)
+        for time in np.linspace(0, 3.5, 12).tolist():
+            pulls.add(simulation.solve(PROFILE.at(time)))
+        self.servos = [EmulatedServo(n, model=1200, angle=1.0) for n in (1, 2)]
+        self.chain = EmulatedChain(self.servos)
+        for index, (servo, winch) in enumerate(zip(self.servos, winches, strict=True)):
+            servo.constant = 0.35
+            servo.load = lambda _, index=index, winch=winch: winch.spool_radius * pulls.nearest(self.places)[index]
+        bus = DynamixelBus(self.chain, [1, 2], clock=self.chain.clock, wait=self.chain.wait)
+        self.log, self.link = list[str](), BusLink(bus, winches, calibration, clock=self.chain.clock)
+        self.link.identify()
+        self.link.guard = TensionGuard(pulls.nearest, np.array([s.constant for s in self.servos]), ("up", "down"))
+        self.link.arm()
+        self.motors = Motors(winches, self.link, places=self.link.read(self.chain.now), fastest=self.link.limits.speed)
+        self.path, self.commands = MarkerPath.along(self.robot, PROFILE), list[np.ndarray]()
+        self._pose, self._framed, self._sights = self.hidden.rest, -np.inf, list[MarkerSight]()
+        self.player = Player()
+        self.player.rounds = 1
+
+    @property
+    def places(self) -> np.ndarray:
+        """Contractions of the motors in truth [m]."""
+        return np.array(
+            [w.spool_radius * (s.angle - 1.0) for w, s in zip(self.robot.winches, self.servos, strict=True)]
+        )
+
+    def _markers(self) -> dict[str, np.ndarray]:
+        self._pose = self.hidden.solve(GAINS * self.places, start=self._pose)
+        return self._pose.markers
+
+    def look(self) -> MarkerSight | None:
+        """Newest frame that has arrived."""
+        if self.chain.now >= self._framed + FRAME:
+            self._framed = self.chain.now
+            if seen := self._see(self._markers(), self.player.time):
+                self._sights.append(MarkerSight(self.chain.now + LAG, seen))
+        return next((each for each in reversed(self._sights) if each.time <= self.chain.now), None)
+
+    def play(self, lost: LostAction | None = LostAction.HOLD) -> float:
+        """Play; returns the mean distance of the markers in truth from their simulated places at the end [m]."""
+        made = MarkerFeedback(self.robot, self.path, self, lag=LAG, lost=lost or LostAction.OPEN, log=self.log.append)
+        self.feedback = made
+        self.player.run(
+            self.motors,
+            PROFILE,
+            feedback=None if lost is None else made,
+            clock=self.chain.clock,
+            wait=self.chain.wait,
+            tell=lambda: self.commands.append(self.motors.command.copy()),
+        )
+        wanted = Simulation(self.robot).solve(PROFILE.at(3.5)).markers
+        return float(np.mean([np.linalg.norm(at - wanted[name]) for name, at in self._markers().items()]))
+
+
+@pytest.mark.slow
+def test_a_hidden_material_is_corrected() -> None:
+    before, bench = Bench().play(None), Bench()
+    after = bench.play()
+    assert after < before / 3
+    assert bench.feedback.rate == pytest.approx(1 / FRAME, rel=0.3)
+    second = len(bench.feedback.errors) // 2
+    assert np.mean(bench.feedback.errors[second:]) < np.mean(bench.feedback.open_errors[second:])
+    assert not bench.log
+
+
+def test_slopes_of_the_path_are_those_of_whole_solves() -> None:
+    simulation, path = Simulation(strip()), MarkerPath.along(strip(), PROFILE)
+    index, step = int(np.searchsorted(path.times, 1.0)), np.array([1e-6, 0.0])
+    more, less = (simulation.solve(PROFILE.at(1.0) + sign * step).markers for sign in (1, -1))
+    slope = [(more[name] - less[name]) / 2e-6 for name in more]
+    assert path.jacobians[index][:, :, 0] == pytest.approx(np.array(slope), rel=1e-3, abs=1e-4)
+
+
+@pytest.mark.slow
+def test_a_lost_camera_holds_or_goes_on() -> None:
+    """Markers are covered from 1 s on: held motors stand and stop with one line; others go on as planned."""
+
+    def see(places: dict[str, np.ndarray], time: float) -> dict[str, np.ndarray]:
+        return places if time < 1.0 else {}
+
+    bench = Bench(see)
+    with pytest.raises(HydrostatError, match="no marker in sight for 10 s"):
+        bench.play(LostAction.HOLD)
+    assert bench.player.time < 1.8
+    assert any("motors hold until one is" in line for line in bench.log)
+    assert np.ptp(bench.commands[-200:], axis=0).max() < 1e-9
+    bench = Bench(see)
+    bench.play(LostAction.OPEN)
+    assert any("going on without correction" in line for line in bench.log)
+    assert bench.commands[-1] == pytest.approx(PROFILE.at(3.5), abs=2e-4)
+
+
+@pytest.mark.slow
+def test_wrong_markers_move_nothing_far() -> None:
+    """Misread markers count for nothing; a constant error ends at the bound, within all limits."""
+    bench = Bench(lambda places, _: {name: at + 0.1 for name, at in places.items()})
+    bench.play(LostAction.OPEN)
+    assert np.abs(bench.commands[-1] - PROFILE.at(3.5)).max() < 1e-9
+    bench = Bench(lambda places, _: {name: at + np.array([0.0, -0.03]) for name, at in places.items()})
+    bench.play(LostAction.OPEN)
+    assert any("at its bound of 6 mm" in line for line in bench.log)
+    corrections = np.array(bench.commands) - PROFILE.at(3.5)
+    assert np.abs(corrections[-1]).max() <= 0.006 + 1e-9
+    assert np.array(bench.commands).min() >= -0.002 - 1e-12
+    assert np.array(bench.commands).max() <= 0.03 + 1e-12
+
+
+def test_a_robot_without_markers_is_refused() -> None:
+    with pytest.raises(InputError, match="Add one for each tag"):
+        MarkerPath.along(replace(strip(), markers=()), PROFILE)
