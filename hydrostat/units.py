@@ -56,6 +56,7 @@ COMMON = {
         STIFFNESS: {"N/m": "1", "N/mm": "1000"},
         ACCELERATION: {"m/s^2": "1", "mm/s^2": "0.001"},
         VISCOSITY: {"Pa s": "1"},
+        MASS: {"kg": "1", "g": "0.001"},
         TIME: {"s": "1", "ms": "0.001"},
         FORCE: {"N": "1"},
         SPEED: {"m/s": "1", "mm/s": "0.001"},

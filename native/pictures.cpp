@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "arrays.hpp"
 
@@ -24,25 +25,34 @@ void sky_shares(Reals<2> depths, Reals<3> normals, double reach, Array<float, 2>
                (Int)sky.shape(0) == height && (Int)sky.shape(1) == width, "a normal and a share for each pixel");
     const double *depth = depths.data(), *normal = normals.data();
     float* share = sky.data();
-    Offset offsets[SAMPLES];
+    // Depths with a border of nothing, as wide as the farthest neighbor: no neighbor lies beyond it.
+    const Int border = (Int)std::ceil(reach) + 1, wide = width + 2 * border;
+    std::vector<double> framed(wide * (height + 2 * border), NOTHING);
+    for (Int row = 0; row < height; row++)
+        std::copy(depth + row * width, depth + (row + 1) * width, framed.data() + (row + border) * wide + border);
+    double across[SAMPLES], along[SAMPLES], flat[SAMPLES];
+    Int places[SAMPLES];
     for (int sample = 0; sample < SAMPLES; sample++) {
         const double radius = reach * std::sqrt((sample + 0.5) / SAMPLES), angle = 2.399963229728653 * sample;
-        offsets[sample] = {(Int)std::nearbyint(radius * std::cos(angle)), (Int)std::nearbyint(radius * std::sin(angle))};
+        across[sample] = std::nearbyint(radius * std::cos(angle)), along[sample] = std::nearbyint(radius * std::sin(angle));
+        places[sample] = (Int)along[sample] * wide + (Int)across[sample];
+        flat[sample] = across[sample] * across[sample] + along[sample] * along[sample];
     }
     Free others(100.0 * height * width);
     for (Int row = 0; row < height; row++)
         for (Int column = 0; column < width; column++) {
             const Int pixel = row * width + column;
+            const double* here = framed.data() + (row + border) * wide + column + border;
             share[pixel] = 1.0f;
-            if (depth[pixel] == NOTHING) continue;
+            if (*here == NOTHING) continue;
             const double* n = normal + 3 * pixel;
             double taken = 0.0;
-            for (const Offset& offset : offsets) {
-                const Int x = column + offset.x, y = row + offset.y;
-                if (x < 0 || y < 0 || x >= width || y >= height || depth[y * width + x] == NOTHING) continue;
-                const double dx = (double)offset.x, dy = (double)offset.y, rise = depth[y * width + x] - depth[pixel];
-                const double far = std::sqrt(dx * dx + dy * dy + rise * rise) + 1e-6;
-                const double lean = (n[0] * dx + n[1] * dy + n[2] * rise) / far - 0.12;
+            for (int sample = 0; sample < SAMPLES; sample++) {
+                const double rise = here[places[sample]] - *here;
+                const double towards = n[0] * across[sample] + n[1] * along[sample] + n[2] * rise;
+                const double square = flat[sample] + rise * rise;
+                if (!(towards > 0.0) || towards * towards < 0.0143 * square || rise == NOTHING) continue;  // leans below 0.12
+                const double far = std::sqrt(square) + 1e-6, lean = towards / far - 0.12;
                 if (lean > 0 && far < 2 * reach) taken += lean * (1 - far / (2 * reach));
             }
             share[pixel] = (float)std::max(0.0, 1.0 - 2.6 * taken / SAMPLES);
@@ -73,12 +83,14 @@ double hatching(double row, double column, double dot) {
 
 // 1 where a nearer part of the body begins at a neighbor, 0 elsewhere.
 double edge_at(const Samples& all, Int row, Int column, double x, double y, double z, double jump, const Offset (&around)[8]) {
-    const double lean_x = x / std::max(z, 0.15), lean_y = y / std::max(z, 0.15);
+    const double own = all.depth[row * all.width + column];
     for (const Offset& offset : around) {
         const Int u = column + offset.x, v = row + offset.y;
-        if (u < 0 || v < 0 || u >= all.width || v >= all.height || all.depth[v * all.width + u] == NOTHING) continue;
-        const double leaning = -(lean_x * (double)offset.x + lean_y * (double)offset.y);
-        if (all.depth[v * all.width + u] - all.depth[row * all.width + column] - std::max(leaning, 0.0) > jump) return 1.0;
+        if (u < 0 || v < 0 || u >= all.width || v >= all.height) continue;
+        const double rise = all.depth[v * all.width + u] - own;
+        if (!(rise > jump)) continue;
+        const double leaning = -(x / std::max(z, 0.15) * (double)offset.x + y / std::max(z, 0.15) * (double)offset.y);
+        if (rise - std::max(leaning, 0.0) > jump) return 1.0;
     }
     return 0.0;
 }
@@ -102,34 +114,37 @@ void paint(Reals<2> depths, Array<const float, 3> shown, Array<const float, 2> s
         around[turn] = {(Int)std::nearbyint(0.55 * dot * std::cos(turn * M_PI / 4)),
                         (Int)std::nearbyint(0.55 * dot * std::sin(turn * M_PI / 4))};
     Free others(100.0 * all.height * all.width);
-    std::fill(pixels, pixels + height * width * 4, 0.0);
-    for (Int row = 0; row < all.height; row++)
-        for (Int column = 0; column < all.width; column++) {
-            const Int sample = row * all.width + column, pixel = row / fine * width + column / fine;
-            if (all.depth[sample] == NOTHING) continue;
-            const float* seen = all.shown + sample * all.values;
-            double x = seen[0], y = seen[1], z = seen[2];
-            const double length = std::max(std::sqrt(x * x + y * y + z * z), 1e-12);
-            x /= length, y /= length, z /= length;
-            const double light = light_on(x, y, z, up, near) * (0.35 + 0.65 * (double)sky.data()[pixel]);
-            const double place = clamp(light) * (double)(colors - 1);
-            const Int lower = std::min((Int)place, colors - 2);
-            double covers[3] = {0.0, 0.0, edge_at(all, row, column, x, y, z, jump, around)};
-            if (seen[3] > 0.5) covers[0] = hatching((double)row, (double)column + moved, dot);
-            if (all.values == 7) covers[1] = clamp(0.24 * dot + 0.5 - (double)std::min({seen[4], seen[5], seen[6]}));
-            for (int channel = 0; channel < 3; channel++) {
-                const double low = scale[lower * 3 + channel], high = scale[(lower + 1) * 3 + channel];
-                double value = low + (place - (double)lower) * (high - low);
-                for (int each = 0; each < 3; each++) value += strength[each] * covers[each] * (ink[each * 3 + channel] - value);
-                pixels[pixel * 4 + channel] += value;
-            }
-            pixels[pixel * 4 + 3] += 1.0;
+    const auto add_sample = [&](Int row, Int column, double share, double* pixel) {
+        const Int sample = row * all.width + column;
+        if (all.depth[sample] == NOTHING) return;
+        const float* seen = all.shown + sample * all.values;
+        double x = seen[0], y = seen[1], z = seen[2];
+        const double length = std::max(std::sqrt(x * x + y * y + z * z), 1e-12);
+        x /= length, y /= length, z /= length;
+        const double place = clamp(light_on(x, y, z, up, near) * (0.35 + 0.65 * share)) * (double)(colors - 1);
+        const Int lower = std::min((Int)place, colors - 2);
+        double covers[3] = {0.0, 0.0, edge_at(all, row, column, x, y, z, jump, around)};
+        if (seen[3] > 0.5) covers[0] = hatching((double)row, (double)column + moved, dot);
+        if (all.values == 7) covers[1] = clamp(0.24 * dot + 0.5 - (double)std::min({seen[4], seen[5], seen[6]}));
+        for (int channel = 0; channel < 3; channel++) {
+            const double low = scale[lower * 3 + channel], high = scale[(lower + 1) * 3 + channel];
+            double value = low + (place - (double)lower) * (high - low);
+            for (int each = 0; each < 3; each++)
+                if (covers[each] > 0.0) value += strength[each] * covers[each] * (ink[each * 3 + channel] - value);
+            pixel[channel] += value;
         }
-    for (double* pixel = pixels; pixel < pixels + height * width * 4; pixel += 4) {
-        for (int channel = 0; channel < 3; channel++)
-            pixel[channel] = pixel[3] > 0 ? pixel[channel] / pixel[3] : ink[6 + channel];
-        pixel[3] /= (double)(fine * fine);
-    }
+        pixel[3] += 1.0;
+    };
+    for (Int row = 0; row < height; row++)
+        for (Int column = 0; column < width; column++) {
+            const double share = (double)sky.data()[row * width + column];
+            double sums[4] = {}, *pixel = pixels + (row * width + column) * 4;
+            for (Int v = row * fine; v < (row + 1) * fine; v++)
+                for (Int u = column * fine; u < (column + 1) * fine; u++) add_sample(v, u, share, sums);
+            for (int channel = 0; channel < 3; channel++)
+                pixel[channel] = sums[3] > 0 ? sums[channel] / sums[3] : ink[6 + channel];
+            pixel[3] = sums[3] / (double)(fine * fine);
+        }
 }
 
 void demand_corners(const Counts<2>& triangles, Int vertices) {

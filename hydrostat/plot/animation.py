@@ -36,22 +36,22 @@ def gif_bytes(pictures: Iterable[Picture], palette: Palette, times: Sequence[int
     height = width = 0
     parts: list[bytes] = []
     last: Indices | None = None
-    before, nearest = None, None
+    colors, before, nearest = _NearestColors(palette), None, None
     for picture, time in zip(pictures, times, strict=True):
         height, width, _ = picture.shape
         if before is None or nearest is None:
-            nearest = _nearest(picture.reshape(-1, 3), palette).reshape(height, width)
+            nearest = colors.find(picture.reshape(-1, 3)).reshape(height, width)
         else:
             new = _differs(picture, before)
-            nearest[new] = _nearest(picture[new], palette)
+            nearest[new] = colors.find(picture[new])
         before, indices = picture, nearest.copy()
         if last is None:
             box, shown = (0, 0, width, height), indices
         else:
-            off = np.abs(palette[last].astype(np.int16) - picture)
-            near = (off[..., 0] <= STAYS) & (off[..., 1] <= STAYS) & (off[..., 2] <= STAYS)
-            stays = near | (indices == last)
-            indices = np.where(stays, last, indices)
+            other = np.nonzero(indices != last)
+            near = np.abs(palette[last[other]].astype(np.int16) - picture[other]).max(axis=1) <= STAYS
+            still = tuple(places[near] for places in other)
+            indices[still] = last[still]
             box, shown = _changed_box(indices, last, len(palette))
         parts.append(_frame(shown, box, time, palette))
         last = indices
@@ -64,15 +64,23 @@ def _differs(one: Picture, two: Picture) -> Bool[np.ndarray, "_ _"]:
     return other[..., 0] | other[..., 1] | other[..., 2]
 
 
-def _nearest(pixels: UInt8[np.ndarray, "pixels 3"], palette: Palette) -> UInt8[np.ndarray, " pixels"]:
-    """The number of the nearest color for each pixel; without dithering, so that what rests keeps its pixels."""
-    from scipy.spatial import KDTree
+class _NearestColors:
+    """Number of the nearest color of a palette; without dithering, so that what rests keeps its pixels."""
 
-    packed = pixels.astype(np.int32) @ np.array([65536, 256, 1], dtype=np.int32)
-    values, places = np.unique(packed, return_inverse=True)
-    colors = np.stack([values >> 16, (values >> 8) & 255, values & 255], axis=1)
-    nearest = KDTree(palette.astype(float)).query(colors.astype(float))[1].astype(np.uint8)
-    return np.take(nearest, places)
+    def __init__(self, palette: Palette) -> None:
+        from scipy.spatial import KDTree
+
+        self._tree = KDTree(palette.astype(float))
+        self._found = np.zeros(1 << 24, dtype=np.uint8)
+        self._is_known = np.zeros(1 << 24, dtype=np.bool_)
+
+    def find(self, pixels: UInt8[np.ndarray, "pixels 3"]) -> UInt8[np.ndarray, " pixels"]:
+        """Number of the nearest color for each pixel."""
+        packed = pixels.astype(np.int32) @ np.array([65536, 256, 1], dtype=np.int32)
+        values = np.unique(packed[~self._is_known[packed]])
+        colors = np.stack([values >> 16, (values >> 8) & 255, values & 255], axis=1)
+        self._found[values], self._is_known[values] = self._tree.query(colors.astype(float))[1], True
+        return self._found[packed]
 
 
 def _changed_box(indices: Indices, last: Indices, clear: int) -> tuple[tuple[int, int, int, int], Indices]:
@@ -214,13 +222,14 @@ def _check(robot: Robot, frames: Sequence[Frame], step: float, width: int) -> No
 def _draw_frames(
     robot: Robot, frames: Sequence[Frame], width: int, progress: Progress | None
 ) -> Iterator[tuple[bytes, tuple]]:
-    """Every picture, packed: a long film would not fit into memory otherwise."""
+    """Every picture, packed where many are kept: a long film would not fit into memory otherwise."""
+    few = len(frames) * width**2 < 1e8
     sheet = FramePictures(robot, frames, width=width)
     last, packed = None, (b"", ())
     for index, frame in enumerate(frames):
         picture = sheet.draw(frame)
         if picture is not last:
-            last, packed = picture, (zlib.compress(picture.tobytes(), 1), picture.shape)
+            last, packed = picture, (zlib.compress(picture.tobytes(), 0 if few else 1), picture.shape)
         yield packed
         if progress is not None:
             progress("drawing", index + 1, len(frames))

@@ -17,6 +17,7 @@ from hydrostat.plot.picture_file import figure_pixels
 from hydrostat.plot.robot_figures import draw_loads, draw_rods, load_reach
 from hydrostat.plot.sheet import Spread
 from hydrostat.plot.skin import outer_points
+from hydrostat.plot.strokes import StrokeLayers
 from hydrostat.plot.targets import draw_misses, target_places, target_points
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import Robot, rims
@@ -54,6 +55,8 @@ class FramePictures:
         self._sheet.figure.set_dpi(self._dpi)
         if robot.cables:
             self._scale.draw_bar(self._sheet, of="cable tension")
+        self._layers = StrokeLayers(self._sheet.axes)
+        self._sheet = replace(self._sheet, layers=self._layers)
         self._still = set(self._artists())
         self._last: tuple[Frame, Picture] | None = None
 
@@ -61,6 +64,7 @@ class FramePictures:
         """The picture of a frame; one that shows the same as the frame before is not drawn again."""
         if self._last is not None and _alike(self._last[0], frame):
             return self._last[1]
+        self._layers.clear()
         for artist in self._artists():
             if artist not in self._still:
                 artist.remove()

@@ -12,6 +12,7 @@ from matplotlib.path import Path
 
 from hydrostat.arrays import Float
 from hydrostat.drawing import Color
+from hydrostat.plot.strokes import StrokeLayers
 
 Place = Float[np.ndarray, " 2"]  # one place, in millimeters unless its function says otherwise
 Places = Float[np.ndarray, "_ 2"]  # places, one row each, in millimeters unless their function says otherwise
@@ -38,10 +39,13 @@ class PictureSheet:
     high: np.ndarray  # upper right corner [mm]
     scale: float  # millimeters of the body that one point (1/72 inch) on the picture shows
     kept: tuple[tuple[float, float, float, float], ...] = ()  # boxes without labels: left, lower, right, upper [mm]
+    layers: StrokeLayers | None = None  # draw lines faster where there are hundreds in each frame
 
     def curve(self, points: Places, **style: object) -> None:
         """A line through points [mm]; rows of NaN break it."""
         look: dict[str, object] = {"solid_capstyle": "round", "solid_joinstyle": "round", "clip_on": False, **style}
+        if self.layers is not None and self.layers.take(points, look):
+            return
         line = Line2D if look["clip_on"] else _Unclipped
         self.axes.add_artist(line(points[:, 0], points[:, 1], **look))  # pyright: ignore[reportArgumentType]
 
