@@ -50,8 +50,9 @@ def identify(
 
     Parameters: young, poisson, density, stiffness (of cables), zero and gain (of winches), friction, pins, gravity,
     rods, frame (of the measurement). Writes the fitted robot, parameters.csv with 95 % intervals and identified.png.
-    Every fifth of ten or more rows is also predicted by a fit that did not see it. With --suggest, the command prints
-    file names of photographs to take, the most informative first.
+    Every fifth of ten or more rows is also predicted by a fit that did not see it. A correction of the contractions is
+    written if it predicts such rows better: correction.json. With --suggest, the command prints file names of
+    photographs to take, the most informative first.
 
     Example: hydrostat identify my_starfish measured.csv --out build/fitted
     """
@@ -157,6 +158,10 @@ def _write(path: Path, table: "Measurements", found: "IdentifiedRobot", out: Pat
     head = ["parameter", "unit", "assumed", "fitted", "low_95", "high_95", "shown"]
     replace_file(out / "parameters.csv", csv_text(head, rows))
     save_png(figure, out / "identified.png")
+    if found.correction is None:
+        (out / "correction.json").unlink(missing_ok=True)
+    else:
+        replace_file(out / "correction.json", found.correction.text())
 
 
 def _print_values(found: "IdentifiedRobot") -> None:
@@ -231,4 +236,9 @@ def _print_errors(found: "IdentifiedRobot", table: "Measurements", seconds: floa
         print(
             f"held out ({plural(len(found.held_out), 'row')}): {1e3 * rms(found.held_out_before):.2f} mm as assumed, "
             f"{1e3 * rms(found.held_out_after):.2f} mm by a fit that did not see them"
+        )
+    if found.correction is not None:
+        print(
+            f"correction of contractions: {1e3 * found.correction.before:.2f} mm without, "
+            f"{1e3 * found.correction.after:.2f} mm with it, on rows that it did not see (correction.json)"
         )

@@ -9,9 +9,11 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.control.bus_link import BusLink
 from hydrostat.control.calibration import Calibration
+from hydrostat.control.corrected_link import CorrectedLink
 from hydrostat.control.guard import TensionGuard
 from hydrostat.control.motors import Motors
 from hydrostat.control.open_bus import EMULATED, open_bus
+from hydrostat.identification import ContractionMap
 from hydrostat.robot import Robot
 
 Pulls = Callable[[Vector], Vector]
@@ -28,6 +30,8 @@ def arm_motors(
 ) -> Motors:
     """Motors that turn as they are told from now on, watched by a deadline and a guard.
 
+    A correction.json in the folder, which `hydrostat identify` writes, corrects what they are told.
+
     Args:
         folder: robot folder with motors.toml; emulated motors need none.
         robot: robot whose winches the motors turn.
@@ -40,16 +44,29 @@ def arm_motors(
         InputError: no such port or calibration.
         HydrostatError: a motor is silent, or wrong.
     """
+    correction = ContractionMap.read(folder, robot)
     found = Calibration.emulate if port == EMULATED else Calibration.read
     calibration = found(folder, robot)
-    bus = open_bus(port, robot, calibration, pulls)
+    felt, known = pulls, known or pulls
+    if correction is not None:
+        felt, known = (_follow(correction, each) for each in (pulls, known))
+        log("correction.json corrects contractions")
+    bus = open_bus(port, robot, calibration, felt)
     link = BusLink(bus, robot.winches, calibration, log=log)
     try:
         constants = np.array([fact.constant for fact in link.identify()])
-        link.guard = TensionGuard(known or pulls, constants, calibration.labels)
+        link.guard = TensionGuard(known, constants, calibration.labels)
         link.arm()
         places = link.read(time.monotonic())
     except BaseException:
         link.close()
         raise
-    return Motors(robot.winches, link, places=places, fastest=link.limits.speed)
+    if correction is None:
+        return Motors(robot.winches, link, places=places, fastest=link.limits.speed)
+    outer, places = CorrectedLink(link, correction), correction.effective(places)
+    return Motors(robot.winches, outer, places=places, fastest=link.limits.speed)
+
+
+def _follow(correction: ContractionMap, pulls: Pulls) -> Pulls:
+    """Pulls of winches by commanded contractions [m]."""
+    return lambda commands: pulls(correction.effective(commands))

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
+    from hydrostat.identification.contraction_map import ContractionMap
     from hydrostat.identification.fit import FittedModel, fit_model
     from hydrostat.identification.identified_robot import IdentifiedRobot, identify
     from hydrostat.identification.measurements import Measurements, rms
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
     from hydrostat.identification.suggest_measurements import suggest_measurements
 
 __all__ = [
+    "ContractionMap",
     "FittedModel",
     "IdentificationModel",
     "IdentifiedRobot",

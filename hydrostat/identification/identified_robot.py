@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrostat.errors import InputError
+from hydrostat.identification.contraction_map import ContractionMap, fit_contraction_map
 from hydrostat.identification.fit import FittedModel, fit_model
 from hydrostat.identification.kinds import named_model
 from hydrostat.identification.measurements import Measurements
@@ -31,6 +32,7 @@ class IdentifiedRobot:
         held_out: rows that a second fit did not see; empty with fewer than ten rows.
         held_out_before: distances in these rows before the fit [m].
         held_out_after: the same, by the fit that did not see them.
+        correction: map of contractions that predicts held-out poses better; None if none does.
     """
 
     fitted: FittedModel
@@ -42,6 +44,7 @@ class IdentifiedRobot:
     held_out: np.ndarray
     held_out_before: np.ndarray
     held_out_after: np.ndarray
+    correction: ContractionMap | None
 
     @property
     def unknown(self) -> tuple[str, ...]:
@@ -94,6 +97,7 @@ def identify(
         held_out=held_out,
         held_out_before=held_before,
         held_out_after=held_after,
+        correction=fit_contraction_map(fitted, changed, measurements),
     )
 
 

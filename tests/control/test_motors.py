@@ -1,16 +1,19 @@
 """Oracles: the commands that arrive at a link, and what a motor that goes at its speed has taken in by then."""
 
+import time
 from dataclasses import replace
 from math import inf
+from pathlib import Path
 
 import numpy as np
 import pytest
-from builders import strip_robot
+from builders import gallery_robot, strip_robot
 
 from hydrostat.arrays import Vector
-from hydrostat.control import Link, Motors, SimulatedLink
+from hydrostat.control import EMULATED, Link, Motors, SimulatedLink, arm_motors
 from hydrostat.control.link import SILENCE
 from hydrostat.errors import HydrostatError, InputError
+from hydrostat.identification import ContractionMap
 from hydrostat.robot import Robot, Winch
 from hydrostat.simulation import ProfileTable
 
@@ -162,3 +165,28 @@ def test_tables_are_checked_row_by_row(strip: Robot, rows: str, speed: float, wo
         assert words in str(caught.value)
     else:
         motors.check(table, speed=speed)
+
+
+@pytest.mark.slow
+def test_armed_motors_follow_a_correction(tmp_path: Path) -> None:
+    """Emulated motors of a robot whose model wants 10 % more than is commanded. Oracle: the map, and what is read."""
+    robot = gallery_robot("starfish")
+    count = len(robot.winches)
+    weights = np.zeros((count + count * (count + 1) // 2, count))
+    weights[:count] = 0.1 * np.eye(count)
+    names, travel = tuple(winch.name for winch in robot.winches), np.array([winch.travel for winch in robot.winches])
+    made = ContractionMap(winches=names, travel=travel, weights=weights, before=1.0, after=0.5)
+    (tmp_path / "correction.json").write_bytes(made.text())
+    lines = list[str]()
+    motors = arm_motors(tmp_path, robot, EMULATED, lambda taken: 0.0 * taken, log=lines.append)
+    try:
+        assert "correction.json corrects contractions" in lines
+        motors.ask(np.array([0.0055, 0.0, 0.0]))
+        until = time.monotonic() + 20
+        while motors.drive(time.monotonic()) or motors.is_moving:
+            assert time.monotonic() < until
+            time.sleep(0.02)
+        inner = motors.link._link.read(time.monotonic())
+        assert inner[0] == pytest.approx(0.005, abs=3e-4)
+    finally:
+        motors.link.close()

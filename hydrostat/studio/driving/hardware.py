@@ -125,6 +125,8 @@ class Hardware:
                 raise HydrostatError(f"{port}: the connection changed meanwhile. Connect again")
             self._link, self.port = link, port
         unjudged = not_judged(np.array([fact.constant for fact in facts]), names)
+        if folder is not None and (folder / "correction.json").exists():
+            self._say("correction.json is not used in the studio. Use hydrostat play or drive")
         missing = "" if link.state is LinkState.CALIBRATED else _CALIBRATE
         self._say(f"{port}: {len(facts)} motors answered{missing}" + (f"; {unjudged}" if unjudged else ""))
 
