@@ -1,4 +1,4 @@
-"""`tags_pdf`: pages to print: the sheets of the board, and a tag for each marker."""
+"""`tags_pdf`: pages to print: the sheets of the board, a tag for each marker, and where the tags go."""
 
 import json
 import math
@@ -27,6 +27,9 @@ MARGIN = 12.0
 GAP, NAME = 5.0, 4.0
 """Distance of labels, and height of the name on each [mm]."""
 
+NEXT_TO = 20.0, 3.6
+"""Distances at which two labels of the map would cover one another [mm]."""
+
 SMALLEST, LARGEST_SIDE = 4e-3, 80e-3
 """Sides that a marker's tag may have [m]."""
 
@@ -39,7 +42,7 @@ STEPS = (
 
 
 def tags_pdf(robot: Robot, paper: Paper = Paper.A4, side: float = MARKER_SIDE) -> bytes:
-    """Sheets of the board and tags of the markers, in true size.
+    """Sheets of the board and tags of the markers, in true size, and a page with their places.
 
     Args:
         robot: robot to measure.
@@ -63,6 +66,7 @@ def tags_source(robot: Robot, paper: Paper, side: float) -> str:
     sheets = count_sheets(robot)
     pages = [_board_page(robot, sheet, sheets, (width, height)) for sheet in range(sheets)]
     pages += _marker_pages(robot, side, (width, height))
+    pages.append(_map_page(robot, side, (width, height)))
     head = [
         f"#set document(title: {json.dumps(f'{robot.name} - tags')}, date: none)",
         f"#set page(width: {width}mm, height: {height}mm, margin: 0mm)",
@@ -137,6 +141,52 @@ def _marker_pages(robot: Robot, side: float, paper: tuple[float, float]) -> Iter
         yield "\n".join([_picture(paths, paper), *lines])
 
 
+def _map_page(robot: Robot, side: float, paper: tuple[float, float]) -> str:
+    """Page with the body, drawn to fit, and the place of each tag; a body in space along its shortest axis."""
+    mesh, top = robot.body.mesh, MARGIN + 22.0
+    sides = mesh.nodes.max(axis=0) - mesh.nodes.min(axis=0)
+    axes = sorted(np.argsort(-sides, kind="stable")[:2].tolist())
+    low, size = mesh.nodes.min(axis=0)[axes], sides[axes]
+    room = np.array([paper[0] - 2 * MARGIN - 30, paper[1] - top - MARGIN - 20])
+    scale = float((room / size).min())
+    corner = np.array([MARGIN + 15 + (room[0] - scale * size[0]) / 2, top + 10 + scale * size[1]])
+
+    def place(points: np.ndarray) -> np.ndarray:
+        return corner + scale * (points - low) * [1, -1]
+
+    faces = place(mesh.nodes[:, axes])[mesh.boundary]
+    if mesh.dim == 3:  # those on one side alone, as the others would cancel their fill
+        one, other = faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0]
+        faces = faces[one[:, 0] * other[:, 1] > one[:, 1] * other[:, 0]]
+    drawn = "".join("M" + "L".join(f"{x:.3f} {y:.3f}" for x, y in face) for face in faces)
+    look = 'fill="#ddd" stroke="#ddd"' if mesh.dim == 3 else 'fill="none" stroke="#888"'
+    half, lines, labels = scale * side / 2, [], list[tuple[float, float]]()
+    shapes = [f'<path d="{drawn}" {look} stroke-width="0.4" stroke-linecap="round"/>']
+    for name, number in marker_tags(robot).items():
+        at = next(marker.at for marker in robot.markers if marker.name == name)
+        x, y = place(np.array(at)[axes]).tolist()
+        square = _square(x - half, y - half, 2 * half)
+        shapes.append(f'<path d="{square}" fill="white" stroke="black" stroke-width="0.4"/>')
+        shapes.append(f'<path d="M{x - 1} {y}h2M{x} {y - 1}v2" stroke="black" stroke-width="0.3"/>')
+        below = y + half + 0.8
+        while any(abs(x - near) < NEXT_TO[0] and abs(below - down) < NEXT_TO[1] for near, down in labels):
+            below += NEXT_TO[1]
+        labels.append((x, below))
+        text = f"box(fill: white, text(size: 8pt)[#{json.dumps(f'{name} ({number})')}])"
+        lines.append(f"#at({x - 20}, {below}, box(width: 40mm, align(center, {text})))")
+    title = f"{robot.name}: where the tags go"
+    seen = "" if mesh.dim == 2 else f" Seen along {'xyz'[3 - sum(axes)]}; labels on the tags state all coordinates."
+    note = f"Not to scale. The cross is the marker, the number that of the tag.{seen}"
+    return "\n".join(
+        [
+            _svg(shapes, paper),
+            *lines,
+            f'#at({MARGIN}, {MARGIN - 2}, text(size: 14pt, weight: "bold")[#{json.dumps(title)}])',
+            f"#at({MARGIN}, {MARGIN + 7}, box(width: {paper[0] - 2 * MARGIN}mm)[#{json.dumps(note)}])",
+        ]
+    )
+
+
 def _tag_path(number: int, corner: tuple[float, float], side: float) -> str:
     """Black of a tag as a path of SVG, its white cells as holes; corner: upper left [mm]."""
     cell = side / CELLS
@@ -150,7 +200,10 @@ def _square(x: float, y: float, side: float) -> str:
 
 
 def _picture(paths: Iterable[str], paper: tuple[float, float]) -> str:
+    return _svg([f'<path d="{path}" fill="black" fill-rule="evenodd"/>' for path in paths], paper)
+
+
+def _svg(shapes: Iterable[str], paper: tuple[float, float]) -> str:
     width, height = paper
-    shapes = "".join(f'<path d="{path}" fill="black" fill-rule="evenodd"/>' for path in paths)
-    svg = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}">{shapes}</svg>'
+    svg = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}">{"".join(shapes)}</svg>'
     return f'#at(0, 0, image(bytes({json.dumps(svg)}), format: "svg", width: {width}mm, height: {height}mm))'

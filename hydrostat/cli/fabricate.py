@@ -68,7 +68,8 @@ def fabricate(
     """Write a build kit: patterns, parts, lists and assembly sheet.
 
     Start with assembly_sheet.pdf. pattern/ is for a laser cutter, or a printer and scissors. parts/ and mould/ are for
-    a 3D printer. lists/ holds the bill of materials and the cable lengths. manifest.json records the inputs.
+    a 3D printer. lists/ holds the bill of materials and the cable lengths. tags.pdf holds tags to measure the robot by
+    photographs. manifest.json records the inputs.
 
     Example: hydrostat fabricate gallery:starfish --out build/kit
     """
@@ -99,6 +100,8 @@ def fabricate(
     kit = _build_or_report(robot, loaded, options, out)
     kit.write(out)
     print_kit(kit)
+    if loaded.markers:
+        print("Tags for photographs, with their places: tags.pdf")
     for drive in loaded.drives:
         print(f"warning: the kit has no servo or stage for drive {drive.name}; add your own")
     if kept is not None:
@@ -109,13 +112,15 @@ def fabricate(
 
 def _build_or_report(folder: Path, robot: "Robot", options: "KitOptions", out: Path) -> "Kit":
     """The kit; else the reasons are printed, and a command that fixes them (InputError: it cannot be built well)."""
+    from hydrostat.camera import tags_pdf
     from hydrostat.cli.remedies import kit_remedy
     from hydrostat.errors import in_words
     from hydrostat.fabrication import UnbuildableError, build_kit
 
+    added = {"tags.pdf": tags_pdf(robot, options.paper)} if robot.markers else {}
     try:
         with progress_bar() as progress:
-            return build_kit(robot, options=options, progress=progress)
+            return build_kit(robot, options=options, progress=progress, added=added)
     except UnbuildableError as error:
         for reason in error.reasons:
             print(f"error: {in_words(reason)}")

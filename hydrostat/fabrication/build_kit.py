@@ -1,5 +1,6 @@
 """`build_kit`: from a robot to everything that it is built from."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from hydrostat.fabrication.body_work import foam_work, plush_work
@@ -41,8 +42,20 @@ def write_kit(
     return kit
 
 
-def build_kit(robot: Robot, *, options: KitOptions | None = None, progress: Progress | None = None) -> Kit:
-    """Make the kit of a robot; the same robot and options give the same bytes. `progress` is called with each stage.
+def build_kit(
+    robot: Robot,
+    *,
+    options: KitOptions | None = None,
+    progress: Progress | None = None,
+    added: Mapping[str, bytes] | None = None,
+) -> Kit:
+    """Make the kit of a robot; the same robot and options give the same bytes.
+
+    Args:
+        robot: robot to build.
+        options: choices of the builder.
+        progress: called with each stage.
+        added: more files of the kit by path, such as tags of the camera.
 
     Raises:
         UnbuildableError: the robot cannot be built well (unless `force`).
@@ -63,6 +76,7 @@ def build_kit(robot: Robot, *, options: KitOptions | None = None, progress: Prog
         raise UnbuildableError(findings.problems)
     tell("Files")
     files, summary = _files(plan, lists, findings), (*_summary(plan, lists), *_cable_summary(plan))
+    files |= added or {}
     facts = {
         "method": plan.method,
         "motor": plan.rigid.motor.key,

@@ -252,8 +252,9 @@ def test_printed_pages_hold_the_tags_in_true_size() -> None:
         pages = typst.compile(
             tags_source(robot, paper, 0.015).encode(), format="png", ppi=dots, ignore_system_fonts=True
         )
-        board, *_, markers = [np.array(Image.open(io.BytesIO(page)).convert("L")) for page in pages]
-        assert len(pages) == 3
+        board, *_, markers, places = [np.array(Image.open(io.BytesIO(page)).convert("L")) for page in pages]
+        assert len(pages) == 4
+        assert not find_tags(places, "map")
         middle = np.array(PAPERS[paper]) * mm / 2 - 0.5
         tags = find_tags(board, "page")
         assert sorted(tags) == list(range(35))

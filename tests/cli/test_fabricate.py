@@ -28,6 +28,7 @@ def test_a_plush_kit(run: Run, tmp_path: Path, starfish: Path) -> None:
     files = {path.relative_to(tmp_path).as_posix() for path in tmp_path.rglob("*") if path.is_file()}
     assert files == {*told["files"], "manifest.json"}
     assert {"pattern/pattern.svg", "pattern/pattern_a4.pdf", "parts/plate_1.3mf", "lists/cable_cuts.csv"} <= files
+    assert "tags.pdf" in files
 
 
 BAD = {

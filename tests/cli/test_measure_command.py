@@ -15,7 +15,7 @@ def test_tags_are_printed_with_their_names(run: Run, tmp_path: Path, starfish: P
     file = tmp_path / "tags.pdf"
     assert run("measure", starfish, "--print", file, "--paper", "letter")[0] == 0
     pages = PdfReader(file).pages
-    assert len(pages) == 5
+    assert len(pages) == 6
     assert [float(side) for side in pages[0].mediabox[2:]] == pytest.approx([612, 792], abs=0.5)
     words = pages[-1].extract_text()
     assert all(name in words for name in ("top", "left_foot", "right_foot"))
