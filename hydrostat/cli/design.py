@@ -14,7 +14,7 @@ from hydrostat.cli.design_record import open_record, write_record
 from hydrostat.cli.design_results import STALE, print_front, print_poses, write_kit, write_results
 from hydrostat.cli.design_wishes import DesignArguments, parse_request
 from hydrostat.cli.fabricate import print_kit
-from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result_folder
+from hydrostat.cli.folders import OutFolder, RobotFolder, folder_of, require_folder, result_folder
 from hydrostat.cli.options import DefaultText
 from hydrostat.cli.remedies import body_refusals, design_remedy
 from hydrostat.cli.waiting import one_interrupt, progress_bar, read_robot
@@ -194,6 +194,7 @@ def design(
         time=time_limit,
         fibres=fibres,
         knobs=knob or [],
+        measured=folder_of(robot) / "tolerances.toml",
         file=constraints,
         limits={
             "cables_per_winch": cables_per_winch,

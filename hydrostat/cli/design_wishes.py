@@ -31,6 +31,7 @@ class DesignArguments:
     time: str | None = None
     fibres: str | None = None
     knobs: Sequence[str] = ()
+    measured: Path | None = None  # file of tolerances that a measurement wrote, if there is one
     file: Path | None = None  # of constraints; what follows comes before it
     limits: Mapping[str, str | int | None] = field(default_factory=dict)  # by the fields of `Constraints`
     stepped: bool = False
@@ -75,7 +76,12 @@ def _uncertainty(robot: "Robot", typed: DesignArguments) -> "BuildTolerances | N
 
     if typed.as_modelled:
         return BuildTolerances.none()
-    return None if typed.file is None else read_uncertainty(typed.file, robot)
+    if typed.file is not None:
+        return read_uncertainty(typed.file, robot)
+    if typed.measured is None or not typed.measured.exists():
+        return None
+    print(f"note: build tolerances are those of {typed.measured}.")
+    return read_uncertainty(typed.measured, robot)
 
 
 def _constraints(robot: "Robot", typed: DesignArguments) -> "Constraints":

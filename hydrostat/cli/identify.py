@@ -137,6 +137,7 @@ class _Lines:
 def _write(path: Path, table: "Measurements", found: "IdentifiedRobot", out: Path) -> None:
     from hydrostat.cli.options import load_matplotlib
     from hydrostat.files import csv_text, read_text, replace_file
+    from hydrostat.identification import identified_tolerances
     from hydrostat.robot import merged_text, save_robot
 
     load_matplotlib()
@@ -158,6 +159,7 @@ def _write(path: Path, table: "Measurements", found: "IdentifiedRobot", out: Pat
     head = ["parameter", "unit", "assumed", "fitted", "low_95", "high_95", "shown"]
     replace_file(out / "parameters.csv", csv_text(head, rows))
     save_png(figure, out / "identified.png")
+    replace_file(out / "tolerances.toml", identified_tolerances(found))
     if found.correction is None:
         (out / "correction.json").unlink(missing_ok=True)
     else:

@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from hydrostat.identification.contraction_map import ContractionMap
     from hydrostat.identification.fit import FittedModel, fit_model
     from hydrostat.identification.identified_robot import IdentifiedRobot, identify
+    from hydrostat.identification.identified_tolerances import identified_tolerances
     from hydrostat.identification.measurements import Measurements, rms
     from hydrostat.identification.model import IdentificationModel, Parameter
     from hydrostat.identification.read import read_measurements
@@ -21,6 +22,7 @@ __all__ = [
     "Measurements",
     "Parameter",
     "fit_model",
+    "identified_tolerances",
     "identify",
     "read_measurements",
     "rms",

@@ -1,11 +1,12 @@
 """Requests for a design, typed and wished for in the studio. Oracle: the record that both of them fill."""
 
 from dataclasses import replace
+from pathlib import Path
 
 from builders import gallery_robot, strip_robot
 
 from hydrostat.cli.design_wishes import DesignArguments, parse_request
-from hydrostat.design import DesignMethod, DesignRequest, RouteOptions, TreeOptions
+from hydrostat.design import BuildTolerances, DesignMethod, DesignRequest, RouteOptions, TreeOptions
 from hydrostat.project import Wishes
 from hydrostat.robot import PoseTarget, Robot
 from hydrostat.studio import wished_request
@@ -39,3 +40,19 @@ def test_knobs_of_the_thesis_have_the_same_names_everywhere() -> None:
     typed = DesignArguments(method="chang2018", knobs=[f"{name}={value}" for name, value in knobs.items()])
     wished = wished_request(starfish, Wishes.of(method=DesignMethod.CHANG2018, **knobs))
     assert wished == parse_request(starfish, typed)
+
+
+def test_measured_tolerances_are_taken_unless_a_file_is_given(tmp_path: Path) -> None:
+    measured, given = tmp_path / "tolerances.toml", tmp_path / "limits.toml"
+    assert parse_request(robot(), DesignArguments(measured=measured)).uncertainty is None
+    measured.write_text("[built]\nyoung = 0.02\n")
+    given.write_text("[built]\nyoung = 0.3\n")
+    for typed, young in (
+        (DesignArguments(measured=measured), 0.02),
+        (DesignArguments(measured=measured, file=given), 0.3),
+    ):
+        uncertainty = parse_request(robot(), typed).uncertainty
+        assert uncertainty is not None
+        assert uncertainty.young == young
+    exact = parse_request(robot(), DesignArguments(measured=measured, as_modelled=True)).uncertainty
+    assert exact == BuildTolerances.none()

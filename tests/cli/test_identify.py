@@ -1,10 +1,13 @@
 """`hydrostat identify`. Oracle: measurements that a robot with other spools would give."""
 
+import csv
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+import pytest
 
+from hydrostat.design import BuildTolerances, read_uncertainty
 from hydrostat.robot import gallery_folder, load_robot
 from hydrostat.simulation import Simulation
 
@@ -34,6 +37,11 @@ def test_spools_are_found_and_doubtful_rows_named(run: Run, tmp_path: Path) -> N
     assert np.abs(np.array(found) - gains).max() < 1e-4
     assert {"parameters.csv", "identified.png", "robot.toml"} <= {file.name for file in out.iterdir()}
     assert "# A plush starfish" in (out / "robot.toml").read_text()
+    rows = list(csv.DictReader((out / "parameters.csv").read_text().splitlines()))
+    wide = max(np.log(float(row["high_95"]) / float(row["low_95"])) / (2 * 1.96) for row in rows)
+    tolerances = read_uncertainty(out / "tolerances.toml", fitted)
+    assert tolerances.spool == pytest.approx(wide, rel=0.02, abs=1e-6)
+    assert tolerances.young == BuildTolerances().young
     table.write_text("\n".join([*lines[:-1], "400" + lines[-1][lines[-1].index(",") :]]) + "\n")
     code, text, _ = run("identify", "gallery:starfish", table, "--fit", "gain", "--out", out)
     assert code == 0
