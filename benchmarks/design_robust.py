@@ -152,7 +152,7 @@ def compute_row(job: Job) -> Row:
         "built": 1e3 * built.most,
         "corrected_median": 1e3 * corrected.median,
         "corrected": 1e3 * corrected.most,
-        "rough": rough,
+        "rough_error": rough,
         "held_out_error": 1e3 * float(np.sqrt(np.mean(np.square(unseen)))) if unseen else None,
         "holes": sum(len(cable.points) - 1 for cable in found.cables),
         "crossings": crossed(found),
@@ -166,27 +166,31 @@ def words(row: Row) -> str:
     begin = f"| {row['body']} | {row['method']} |"
     if not row["found"]:
         return f"{begin} none found |"
-    errors = ("model", "built_median", "built", "corrected_median", "corrected", "rough", "held_out_error")
+    errors = ("model", "built_median", "built", "corrected_median", "corrected", "rough_error", "held_out_error")
     told = ["" if row[name] is None else f"{row[name]:.2f}" for name in errors]
     told += [str(row[name]) for name in ("holes", "crossings", "sharp")]
     return f"{begin} {row['counts']} | {' | '.join(told)} | {row['pull']:.1f} | {row['seconds']:.0f} |"
 
 
 def share_table(rows: Iterable[Row]) -> list[str]:
-    """Lines of the table of shares: as-built error of the routes over that of the better of hand and trees."""
-    built: dict[str, dict[str, float]] = {}
+    """Lines of the table of shares: error of the routes over the better of hand and trees, 90 % and median of draws."""
+    found: dict[str, dict[str, Row]] = {}
     for row in rows:
         if row["found"]:
-            built.setdefault(row["body"], {})[row["method"]] = row["built"]
-    lines, shares = ["| body | hand | trees | routes | share |", "|" + "---|" * 5], []
-    for name, own in built.items():
+            found.setdefault(row["body"], {})[row["method"]] = row
+    lines, shares = ["| body | hand | trees | routes | share | share of medians |", "|" + "---|" * 6], []
+    for name, own in found.items():
         others = [own[method] for method in ("hand", "trees") if method in own]
         if "routes" not in own or not others:
             continue
-        shares.append(own["routes"] / min(others))
-        told = [f"{own[method]:.2f}" if method in own else "" for method in ("hand", "trees", "routes")]
-        lines.append(f"| {name} | {' | '.join(told)} | {shares[-1]:.2f} |")
-    return [*lines, f"| median of {len(shares)} | | | | {np.median(shares):.2f} |"] if shares else []
+        pair = [own["routes"][part] / min(other[part] for other in others) for part in ("built", "built_median")]
+        shares.append(pair)
+        told = [f"{own[method]['built']:.2f}" if method in own else "" for method in ("hand", "trees", "routes")]
+        lines.append(f"| {name} | {' | '.join(told)} | {pair[0]:.2f} | {pair[1]:.2f} |")
+    if not shares:
+        return []
+    most, median = np.median(shares, axis=0)
+    return [*lines, f"| median of {len(shares)} | | | | {most:.2f} | {median:.2f} |"]
 
 
 def sharp_turns(robot: Robot) -> int:

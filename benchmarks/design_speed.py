@@ -21,6 +21,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from design_bodies import BODIES, body_robot
 from machine import machine
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from hydrostat.design import DesignRequest, DesignStage, Network, find_network
 from hydrostat.errors import HydrostatError
@@ -86,12 +87,17 @@ def row(name: str, copies: int) -> tuple[str, Course]:
 def draw(courses: dict[str, Course], file: Path) -> None:
     """Draw the error as built over time, one line a body."""
     figure, axes = plt.subplots(figsize=(7, 4.2), layout="constrained")
-    for name, course in courses.items():
+    worst_first = sorted(courses.items(), key=lambda pair: -min(pair[1].errors, default=0.0))
+    for name, course in worst_first:
         if course.seconds:
             best = np.minimum.accumulate(1e3 * np.array(course.errors))
             axes.step(course.seconds, best, where="post", label=name, marker=".")
     axes.set(xscale="log", yscale="log", xlabel="CPU time [s]", ylabel="error expected as built [mm]")
-    axes.legend(frameon=False, ncols=2, fontsize=8)
+    axes.legend(frameon=False, fontsize=8, loc="center left", bbox_to_anchor=(1.0, 0.5))
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter(NullFormatter())
     axes.spines[["top", "right"]].set_visible(False)
     file.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(file, dpi=150)

@@ -178,7 +178,7 @@ def _of_bytes(content: bytes, path: Path, wish: NewRobotWish, material: str, *, 
         nodes=wish.nodes,
         material=material,
     )
-    notes = (*(f"surface: {line}" for line in sketch.healing.lines()), *(f"note: {line}" for line in sketch.notes))
+    notes = tuple(f"surface: {line}" for line in sketch.healing.lines())
     return BegunRobot(sketch.robot, notes, sketch)
 
 
