@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from hydrostat.geometry.sizing import size_for
     from hydrostat.geometry.surface import Solid, Surface
     from hydrostat.geometry.tetrahedra.manifold import euler
+    from hydrostat.geometry.tetrahedra.small_holes import HOLE_SHARE, fill_small_holes
     from hydrostat.geometry.tetrahedra.tetrahedralize import CLOSE, fit, tetrahedralize
     from hydrostat.geometry.thickness import Thickness
     from hydrostat.geometry.triangles.triangulate import triangulate
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
 __all__ = [
     "CLOSE",
     "DRAWN_HINT",
+    "HOLE_SHARE",
     "OUTLINE_SUFFIXES",
     "SURFACE_SUFFIXES",
     "Anchors",
@@ -59,6 +61,7 @@ __all__ = [
     "contrast",
     "crossing_pairs",
     "euler",
+    "fill_small_holes",
     "find_crossings",
     "fit",
     "heal",

@@ -7,6 +7,19 @@ import numpy as np
 from hydrostat.errors import InputError, SurfaceError
 from hydrostat.geometry.mesh import Mesh
 
+
+class TooManyNodesError(SurfaceError):
+    """Mesh that needs many more nodes than were asked for.
+
+    Attributes:
+        count: number of nodes that it would have at least.
+    """
+
+    def __init__(self, message: str, count: int = 0) -> None:
+        super().__init__(message)
+        self.count = count
+
+
 FEWEST, MOST = 10, 200_000  # nodes that may be asked for
 CLOSE = 0.1  # how far the number may be off, as a fraction of it
 
@@ -15,7 +28,15 @@ _DENSITY = {2: (1.2, 0.6), 3: (1.6, 1.2)}
 """Nodes in a square or cube of the element size, and on a piece of the boundary as long or large, in 2D and 3D."""
 
 
-def size_for(nodes: int, make: Callable[[float], Mesh], *, content: float, rim: float = 0.0, dim: int) -> float:
+def size_for(
+    nodes: int,
+    make: Callable[[float], Mesh],
+    *,
+    content: float,
+    rim: float = 0.0,
+    dim: int,
+    is_hasty: bool = False,
+) -> float:
     """Element size [m], to three digits, with which a mesh has a number of nodes to within a tenth.
 
     Steps on logarithms, kept between the sizes that gave too many and too few. Bodies of few elements, or with thin
@@ -27,9 +48,11 @@ def size_for(nodes: int, make: Callable[[float], Mesh], *, content: float, rim: 
         content: area [m^2] or volume [m^3] of the body.
         rim: length [m] or area [m^2] of its boundary, for a better first guess.
         dim: 2 or 3.
+        is_hasty: settle for a number within a quarter after a few meshes, as of a file that nobody knows.
 
     Raises:
-        InputError: fewer nodes than a body so thin can have, or no mesh at all.
+        InputError: fewer nodes than a body so thin can have, or no mesh at all. Where `make` raises only
+            TooManyNodesError, the first guess is returned.
     """
     if not FEWEST <= nodes <= MOST:
         raise InputError(f"the number of nodes must be from {FEWEST} to {MOST}, not {nodes}")
@@ -37,15 +60,19 @@ def size_for(nodes: int, make: Callable[[float], Mesh], *, content: float, rim: 
     size, low, high = _guess(nodes, content, rim, dim), 0.0, np.inf
     refused: InputError | None = None
     tried: dict[float, int] = {}
+    above: dict[float, int] = {}
     tries = 8
     # a size refused whose element has less than this share of the body is too fine, others are too coarse
     fine = 0.01
     for _ in range(tries):
         size = _three_digits(size)
-        if size in tried or size in (low, high):
+        if size in tried or size in (low, high) or (is_hasty and _is_enough(tried, above, nodes)):
             break
         try:
             tried[size] = count = len(make(size).nodes)
+        except TooManyNodesError as error:
+            refused, count = error, error.count
+            above[size] = count
         except InputError as error:
             refused = error
             count = 0 if isinstance(error, SurfaceError) or size**dim > fine * content else 10 * MOST
@@ -55,9 +82,19 @@ def size_for(nodes: int, make: Callable[[float], Mesh], *, content: float, rim: 
         size *= (max(count, 0.3 * nodes) / nodes) ** (1 / dim)
         if not low < size < high:
             size = np.sqrt(low * high) if low > 0 and high < np.inf else 1.3 * low if low > 0 else 0.7 * high
+    if not tried and above:
+        return next(iter(above))  # the first guess, by volume and area
     if not tried:
         raise InputError(f"no element size gives about {nodes} nodes: {refused}")
     return min(tried, key=lambda size: abs(np.log(max(tried[size], 1) / nodes)))
+
+
+def _is_enough(tried: dict[float, int], above: dict[float, int], nodes: int) -> bool:
+    """Return True if a number is near enough for the nodes that were made to find it."""
+    best = min((abs(count / nodes - 1) for count in tried.values()), default=np.inf)
+    made = sum(tried.values()) + sum(above.values())
+    quick = 2000  # so many nodes are made in a second or two
+    return made >= max(quick, nodes * (2.2 if best <= 0.25 else 7.0 if tried else 4.0))
 
 
 def _check_thin(nodes: int, content: float, rim: float, dim: int) -> None:

@@ -17,6 +17,7 @@ class Surface:
     vertices: Float[np.ndarray, "vertices 3"]  # places [m], (vertices, 3); kept as a read-only copy
     # indices of three vertices each, (triangles, 3); seen from outside they turn counter-clockwise
     triangles: Int[np.ndarray, "triangles 3"]
+    notes: tuple[str, ...] = ()  # what the reader of its file left out
 
     def __post_init__(self) -> None:
         vertices = np.array(self.vertices, dtype=float, order="C")
@@ -87,15 +88,20 @@ def spread_points(surface: Surface, spacing: float) -> tuple[Float[np.ndarray, "
     return np.einsum("pc,pcd->pd", weights, surface.vertices[surface.triangles[owner]]), owner
 
 
+_RAY_SIZE = 1e6
+"""Size to which a surface is scaled for rays: libigl takes triangles of less than about 1e-6 square units for flat."""
+
+
 @dataclass(frozen=True, eq=False)
 class Solid:
     """Inside of a surface, by its winding number (Jacobson et al. 2013; fast: Barill et al. 2018)."""
 
     surface: Surface  # closed, oriented outward
+    clean: bool = False  # no part crosses or overlaps another, so that the nearest triangle tells the side of a point
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the state that is sent to another process: without the trees, which are rebuilt there."""
-        return {"surface": self.surface}
+        return {"surface": self.surface, "clean": self.clean}
 
     def winding(self, points: Points) -> Vector:
         """Winding number of the surface about each point: 1 inside, 0 outside, in between near holes."""
@@ -107,7 +113,60 @@ class Solid:
 
     def distances(self, points: Points) -> Vector:
         """Distance of points from the surface [m], negative inside."""
-        return np.where(self.inside(points), -1.0, 1.0) * self.gaps(points)
+        if not self.clean:
+            return np.where(self.inside(points), -1.0, 1.0) * self.gaps(points)
+        squares, triangles, places = self._nearest(points)
+        heights = np.einsum("pd,pd->p", points - places, self._normals_at(places, triangles))
+        gaps, inside = np.sqrt(squares), heights < 0.0
+        on = gaps < 1e-6 * self.surface.size  # too near for rounding
+        inside[on] = self.inside(points[on])
+        return np.where(inside, -1.0, 1.0) * gaps
+
+    def _normals_at(self, places: Points, triangles: Int[np.ndarray, " points"]) -> Points:
+        """Pseudonormals of places on triangles: those of the edge or corner where they lie on one.
+
+        Their sides are right for all points that are nearest to the place (Baerentzen and Aanaes 2005).
+        """
+        corners = self.surface.vertices[self.surface.triangles[triangles]]
+        result = self.normals[triangles].copy()
+        near = 1e-7
+        heights = np.stack(
+            [
+                np.linalg.norm(np.cross(corners[:, (k + 1) % 3] - places, corners[:, (k + 2) % 3] - places), axis=1)
+                for k in range(3)
+            ],
+            axis=1,
+        )
+        on_edge = heights < near * np.linalg.norm(self.surface.crosses[triangles], axis=1, keepdims=True)
+        edges, vertices = self._edge_normals, self._vertex_normals
+        for side in range(3):  # opposite to the corner of this number
+            some = on_edge[:, side]
+            result[some] = edges[triangles[some], side]
+        for corner in range(3):
+            some = on_edge[:, (corner + 1) % 3] & on_edge[:, (corner + 2) % 3]
+            result[some] = vertices[self.surface.triangles[triangles[some], corner]]
+        return result
+
+    @cached_property
+    def _edge_normals(self) -> Float[np.ndarray, "triangles 3 3"]:
+        """Sum of the normals at the edge opposite to each corner of each triangle."""
+        ends = self.surface.triangles[:, [1, 2, 0]], self.surface.triangles[:, [2, 0, 1]]
+        count = len(self.surface.vertices)
+        keys = (np.minimum(*ends) * count + np.maximum(*ends)).ravel()
+        _, which = np.unique(keys, return_inverse=True)
+        normals = np.repeat(self.normals, 3, axis=0)
+        total = np.stack([np.bincount(which, axis) for axis in normals.T], axis=1)
+        return total[which].reshape(-1, 3, 3)
+
+    @cached_property
+    def _vertex_normals(self) -> Float[np.ndarray, "vertices 3"]:
+        """Sum of the normals at each vertex, weighted by the angles of their triangles there."""
+        corners = self.surface.vertices[self.surface.triangles]
+        one, two = np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners
+        angles = np.arctan2(np.linalg.norm(np.cross(one, two), axis=2), np.einsum("tcd,tcd->tc", one, two))
+        weighted = (angles[:, :, None] * self.normals[:, None]).reshape(-1, 3)
+        at, count = self.surface.triangles.ravel(), len(self.surface.vertices)
+        return np.stack([np.bincount(at, axis, minlength=count) for axis in weighted.T], axis=1)
 
     def gaps(self, points: Points) -> Vector:
         """Distance of points from the surface [m], inside or outside alike."""
@@ -117,6 +176,15 @@ class Solid:
         """Nearest place of the surface to each point [m], and the triangle that it is on."""
         _, triangles, places = self._nearest(points)
         return places, triangles.astype(np.int64)  # from long long, another type to NumPy
+
+    def first_hits(self, starts: Points, directions: Points, reach: float) -> tuple[Int[np.ndarray, " points"], Vector]:
+        """First triangle that a ray from each point meets, -1 for none, and the length of the ray until there [m]."""
+        tree, vertices = self._ray_tree
+        scale = _RAY_SIZE / self.surface.size
+        found, lengths, _ = tree.intersect_ray_first(
+            vertices, self.surface.triangles, scale * starts, np.ascontiguousarray(directions), scale * reach
+        )
+        return found.astype(np.int64), lengths / scale
 
     @cached_property
     def normals(self) -> Float[np.ndarray, "triangles 3"]:
@@ -138,6 +206,15 @@ class Solid:
         tree = igl.AABB()
         tree.init(self.surface.vertices, self.surface.triangles)
         return tree
+
+    @cached_property
+    def _ray_tree(self) -> tuple[Any, Points]:
+        """Tree of the surface, scaled, and its vertices."""
+        import igl
+
+        tree, vertices = igl.AABB(), self.surface.vertices * (_RAY_SIZE / self.surface.size)
+        tree.init(vertices, self.surface.triangles)
+        return tree, vertices
 
     @cached_property
     def _winding_tree(self) -> Any:

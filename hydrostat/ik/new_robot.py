@@ -178,7 +178,7 @@ def _of_bytes(content: bytes, path: Path, wish: NewRobotWish, material: str, *, 
         nodes=wish.nodes,
         material=material,
     )
-    notes = tuple(f"surface: {line}" for line in sketch.healing.lines())
+    notes = (*(f"surface: {line}" for line in sketch.healing.lines()), *(f"note: {line}" for line in sketch.notes))
     return BegunRobot(sketch.robot, notes, sketch)
 
 

@@ -28,6 +28,7 @@ class SurfaceSketch:
     robot: Robot  # robot whose body file is the input if that was clean, else the healed surface as PLY
     before: Surface  # surface before healing
     healing: Healing  # report of the healing
+    notes: tuple[str, ...] = ()  # notes on the mesh
 
     @staticmethod
     def of_scan(
@@ -56,7 +57,7 @@ class SurfaceSketch:
         Raises:
             InputError: the file is no body.
         """
-        from hydrostat.geometry import read_surface, tetrahedralize, write_ply
+        from hydrostat.geometry import HOLE_SHARE, fill_small_holes, read_surface, tetrahedralize, write_ply
 
         known, nodes = get_material(material), NODES if nodes is None else nodes
         before = read_surface(content, name=file, size=size)
@@ -66,12 +67,12 @@ class SurfaceSketch:
         healing = heal(before, resolution=(element_size or _guess(before, nodes)) / 4)
         closed, meshes = healing.surface, {}
 
-        def fill(trial: float) -> Mesh:
+        def fill(trial: float, most: float = 1.6) -> Mesh:
             told(f"filling it with elements of {1e3 * trial:.3g} mm" + f", try {len(meshes) + 1}" * bool(meshes))
-            meshes[trial] = tetrahedralize(closed, trial)
+            meshes[trial] = tetrahedralize(closed, trial, most_nodes=np.inf if element_size else most * nodes)
             return meshes[trial]
 
-        length = element_size or size_for(nodes, fill, content=closed.volume, rim=closed.area, dim=3)
+        length = element_size or size_for(nodes, fill, content=closed.volume, rim=closed.area, dim=3, is_hasty=True)
         if not healing.clean:
             content, file, size = write_ply(closed), f"{PurePath(file).stem}_healed.ply", None
         body = Body(
@@ -81,11 +82,12 @@ class SurfaceSketch:
             material=known,
             size=size,
             element_size=length,
-            mesh=meshes[length] if length in meshes else fill(length),
+            mesh=meshes[length] if length in meshes else fill(length, 4.0),
             healing=healing,
         )
         told("finding ends, winches and cables")
-        return SurfaceSketch(_first_robot(body, name), before, healing)
+        filled = fill_small_holes(closed, HOLE_SHARE * length).describe(length)
+        return SurfaceSketch(_first_robot(body, name), before, healing, (filled,) if filled else ())
 
 
 def _silent(stage: str) -> None:

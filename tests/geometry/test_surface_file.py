@@ -21,6 +21,7 @@ from geometry.surface_writers import (
 from hydrostat.errors import SurfaceError
 from hydrostat.geometry.files.soup import MOST_BYTES, MOST_TEXT_BYTES
 from hydrostat.geometry.files.surface_file import SURFACE_SUFFIXES, read_surface, write_ply
+from hydrostat.geometry.healing.heal import heal
 from hydrostat.geometry.surface import Surface
 
 WRITERS = {
@@ -159,7 +160,11 @@ def test_strips_remarks_and_supports() -> None:
         objects = f'<object id="1" type="model">{box}</object><object id="2" type="{kind}">{pillar}</object>'
         items = '<item objectid="1"/><item objectid="2"/>'
         content = archive({"3D/3dmodel.model": model_xml(objects, items)})
-        assert read_surface(content, name="a.3mf").volume == pytest.approx(1e-6)
+        surface = read_surface(content, name="a.3mf")
+        assert surface.volume == pytest.approx(1e-6)
+        healed = heal(surface, resolution=1e-3)
+        assert healed.clean
+        assert "found: 1 object of type support, left out" in healed.lines()
 
 
 def test_numbers_in_stl_that_are_the_same_place_are_one_vertex() -> None:

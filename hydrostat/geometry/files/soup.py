@@ -21,6 +21,7 @@ class Soup:
     vertices: Float[np.ndarray, "vertices 3"]  # places in the file's own unit
     triangles: Int[np.ndarray, "triangles 3"]  # indices of three vertices each, as declared, not yet checked
     unit: float | None = None  # meters of one coordinate, None where the file has no unit
+    notes: tuple[str, ...] = ()  # what was left out
 
 
 def check_count(name: str, what: str, count: int, *, room: float, most: int = MOST_TRIANGLES) -> None:

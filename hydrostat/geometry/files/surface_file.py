@@ -112,4 +112,4 @@ def _surface(soup: Soup, name: str, unit: float, size: float | None) -> Surface:
             f"{name}: is {1e3 * extent * scale:.3g} mm large, which no robot is: give its size, or the "
             "unit of its numbers"
         )
-    return Surface(vertices * scale, triangles.reshape(-1, 3))
+    return Surface(vertices * scale, triangles.reshape(-1, 3), soup.notes)

@@ -12,6 +12,7 @@ import numpy as np
 
 from hydrostat.errors import SurfaceError
 from hydrostat.geometry.files.soup import MOST_TEXT_BYTES, MOST_TRIANGLES, Soup, check_count
+from hydrostat.units import plural
 
 _MOST_DEPTH = 50
 _METERS = {
@@ -188,7 +189,11 @@ def _read_objects(model: _Model, name: str) -> Soup:
     if not model.items:
         raise SurfaceError(f"{name}: builds nothing: export the surface again as 3MF or STL")
     places, triangles, vertex_count, triangle_count = [np.zeros((0, 3))], [np.zeros((0, 3), dtype=np.int64)], 0, 0
+    supports = 0
     for found, transform in _meshes(model, name):
+        if found.support:
+            supports += 1
+            continue
         points = np.array(found.places).reshape(-1, 3)
         corners = np.array(found.corners, dtype=np.int64).reshape(-1, 3)
         if len(corners) and (corners.min() < 0 or corners.max() >= len(points)):
@@ -201,7 +206,8 @@ def _read_objects(model: _Model, name: str) -> Soup:
             places.append(points @ transform[:3, :3] + transform[3, :3])
         triangles.append(vertex_count + (corners[:, ::-1] if turn else corners))
         vertex_count += len(points)
-    return Soup(np.concatenate(places), np.concatenate(triangles), _METERS[model.unit])
+    notes = (f"{plural(supports, 'object')} of type support, left out",) if supports else ()
+    return Soup(np.concatenate(places), np.concatenate(triangles), _METERS[model.unit], notes)
 
 
 def _meshes(model: _Model, name: str) -> Iterator[tuple[_Object, np.ndarray]]:
@@ -217,6 +223,6 @@ def _meshes(model: _Model, name: str) -> Iterator[tuple[_Object, np.ndarray]]:
         if depth > _MOST_DEPTH or placed > most_placed:
             raise SurfaceError(f"{name}: its objects hold themselves, or too many others: export it again as STL")
         found = model.objects[key]
-        if found.corners and not found.support:
+        if found.corners:
             yield found, transform
         stack.extend((child, at @ transform, depth + 1) for child, at in reversed(found.parts))

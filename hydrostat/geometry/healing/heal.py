@@ -55,7 +55,8 @@ def heal(surface: Surface, *, resolution: float) -> Healing:
     keep = shells.of_role(Role.BODY, Role.CAVITY)[shells.label]
     kept = shells.surface.part(keep)
     removed = pieces_of(shells)
-    found = describe_faults(welded, turned, holes, int(flipped.sum()), crossing, shells, sliver_count(filled))
+    faults = describe_faults(welded, turned, holes, int(flipped.sum()), crossing, shells, sliver_count(filled))
+    found = (*surface.notes, *faults)
     done = _describe_repairs(welded, int(flipped.sum()), shells, int(small.sum()))
     if _is_closed(kept) and not keep[crossing].any() and shells.of_role(Role.BODY).sum() == 1:
         patched = np.linalg.norm(filled.crosses, axis=1)[len(triangles) :].sum() / 2 / filled.area

@@ -7,8 +7,10 @@ import numpy as np
 from hydrostat.arrays import Bool, Elements, Float, Int, Nodes, Points, Vector
 from hydrostat.errors import InputError, SurfaceError
 from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry.sizing import TooManyNodesError
 from hydrostat.geometry.surface import Solid, Surface, covering_points
 from hydrostat.geometry.tetrahedra.manifold import euler, manifold
+from hydrostat.geometry.tetrahedra.small_holes import HOLE_SHARE, fill_small_holes
 from hydrostat.geometry.tetrahedra.stuffing import (
     MEAN_EDGE,
     PAIRS,
@@ -135,43 +137,51 @@ _ADVICE = 0.7
 """Largest advised size, as a share of one that was too large; repeated advice then ends at a size that works."""
 
 
+_MANY, _CLOSE_ENOUGH = 2.5, 0.5
+"""Finer elements that gave so many times the nodes suffice for a boundary as near as this, in element sizes."""
+
 _FEWEST, _MOST, _MOST_CELLS = 20, 400_000, 2_000_000
 """Elements, and cells of the lattice over the bounding box: what fits into memory."""
 
 
-def tetrahedralize(surface: Surface, element_size: float) -> Mesh:
+def tetrahedralize(surface: Surface, element_size: float, *, most_nodes: float = np.inf) -> Mesh:
     """Fill a closed surface, oriented outward, with tetrahedra whose edges have about the element size [m] in the mean.
 
     A lattice is cut along the surface (`stuffing.py`), then its nodes move until the elements are well shaped and their
     outer faces lie on the surface (`improve.py`). Where that fails, as the body or a gap is thinner than the elements,
-    they are made smaller. The same surface and size give the same mesh.
+    they are made smaller, until the boundary is nearer than a quarter of an element; than half of one where that takes
+    many nodes. Holes narrower than `HOLE_SHARE` elements are filled. The same surface and size give the same mesh.
 
     Raises:
         InputError: so large that the body has too few elements, or so small that it has too many.
+        TooManyNodesError: more nodes than `most_nodes`, because of places that need finer elements.
+            With that limit it is a SurfaceError, too, if the boundary stays farther than half an element somewhere.
         SurfaceError: the body is much thinner than the elements; the message says where, and what to take.
     """
-    solid = Solid(surface)
     _check_element_size(surface, element_size)
+    surface = fill_small_holes(surface, HOLE_SHARE * element_size).surface
+    solid = Solid(surface, clean=True)
     cell = element_size / MEAN_EDGE
     nodes, elements = _trim_elements(
         solid, *lattice(surface.box, cell, lambda middles: solid.distances(middles) < 2 * cell), cell
     )
-    draft = _stuff_lattice(solid, nodes, elements, element_size)
+    draft = first = _stuff_lattice(solid, nodes, elements, element_size, most_nodes)
     whole = 0.7  # if a lattice takes less of the volume, then finer elements in some places do not help
     if draft.whole < whole:
         raise SurfaceError(f"much of the body is thinner than {_advice(surface, element_size)}")
     finer = 4  # rounds of finer elements where the boundary is not close
     bisections = 2  # of the longest edges, in each round; three halve the elements
     for size in element_size / 2.0 ** (np.arange(finer) * bisections / 3):
-        if not len(draft.places):
+        many = len(draft.mesh.nodes) > _MANY * len(first.mesh.nodes)
+        if not len(draft.places) or (many and draft.is_alike and draft.farthest <= _CLOSE_ENOUGH):
             break
         for _ in range(bisections):
             nodes, elements = bisect(nodes, elements, _too_long_near(nodes, elements, draft.places, size))
-        draft = _stuff_lattice(solid, nodes, elements, element_size)
-    if draft.lost > _CRUMB:
+        draft = _stuff_lattice(solid, nodes, elements, element_size, most_nodes, draft.places)
+    if draft.lost > _CRUMB or (most_nodes < np.inf and draft.farthest > _CLOSE_ENOUGH):
         x, y, z = 1e3 * draft.places[0]
         raise SurfaceError(
-            f"near ({x:.4g}, {y:.4g}, {z:.4g}) mm the body is thinner than {_advice(surface, element_size)}"
+            f"near ({x:.4g}, {y:.4g}, {z:.4g}) mm the body or a gap is thinner than {_advice(surface, element_size)}"
         )
     return draft.mesh
 
@@ -185,9 +195,18 @@ class _Filling:
     lost: float  # volume of the other parts, as a share of the solid's
     # where the lattice should be finer [m]: the body breaks, a gap is narrow, or its boundary is not close
     places: Points
+    farthest: float = np.inf  # largest distance of its boundary from the surface [element sizes]
+    is_alike: bool = False  # its boundary has as many handles as the surface
 
 
-def _stuff_lattice(solid: Solid, nodes: Nodes, elements: Elements, element_size: float) -> _Filling:
+def _stuff_lattice(
+    solid: Solid,
+    nodes: Nodes,
+    elements: Elements,
+    element_size: float,
+    most_nodes: float,
+    refined: Points | None = None,
+) -> _Filling:
     distances = solid.distances(nodes)
     inner = stuff(solid, nodes, elements, distances)
     if not len(inner[1]):
@@ -198,6 +217,8 @@ def _stuff_lattice(solid: Solid, nodes: Nodes, elements: Elements, element_size:
         if bridging.any():
             inner = stuff(solid, nodes, elements[~bridging], distances)
             mesh, breaks = manifold(*inner)
+    if len(mesh.nodes) > most_nodes:
+        raise TooManyNodesError(_describe_excess(element_size, len(mesh.nodes), refined), len(mesh.nodes))
     whole = float(signed_volumes(*inner).sum()) / solid.surface.volume
     lost = whole - float(mesh.volumes.sum()) / solid.surface.volume
     if lost > _CRUMB:
@@ -205,7 +226,20 @@ def _stuff_lattice(solid: Solid, nodes: Nodes, elements: Elements, element_size:
     mesh = improve(mesh, solid, element_size=element_size, stages=_STAGES)
     found = fit(mesh, solid, element_size / 3)
     far = found.places[found.distances > CLOSE * element_size]
-    return _Filling(mesh, whole, lost, np.concatenate([far, gaps, *([breaks] if len(far) else [])]))
+    places = np.concatenate([far, gaps, *([breaks] if len(far) else [])])
+    is_alike = euler(mesh.boundary) == euler(solid.surface.triangles)
+    return _Filling(mesh, whole, lost, places, found.largest / element_size, is_alike)
+
+
+def _describe_excess(element_size: float, count: int, refined: Points | None) -> str:
+    """Complaint of too many nodes, with a place that needs finer elements."""
+    fine = ""
+    if refined is not None:
+        nearest = refined[np.argmin(np.linalg.norm(refined - np.median(refined, axis=0), axis=1))]
+        x, y, z = (f"{round(1e3 * value, 1) + 0.0:g}" for value in nearest)
+        fine = f", as a wall or gap near ({x}, {y}, {z}) mm is thinner"
+    need = int(float(f"{1.05 * count:.1e}"))
+    return f"elements of {1e3 * element_size:.3g} mm make more than {count} nodes{fine}. Ask for {need} nodes or more"
 
 
 def _advice(surface: Surface, element_size: float) -> str:

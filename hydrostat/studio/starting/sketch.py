@@ -68,7 +68,7 @@ def _sketch(report: Report, draft: BodyDraft) -> Sketch:
         material=draft.material,
         tell=lambda stage: report.progress(stage, 0, 2),
     )
-    return _with_pictures(report, draft, sketch.robot, (*lines, *sketch.healing.lines()), sketch)
+    return _with_pictures(report, draft, sketch.robot, (*lines, *sketch.healing.lines(), *sketch.notes), sketch)
 
 
 def _here(words: str) -> str:
