@@ -89,7 +89,7 @@ def train(
     goals: Annotated[int, typer.Option(metavar="N", help="Number of unseen goals for evaluation.")] = 100,
     seed: Annotated[int, typer.Option(help="Random seed.")] = 0,
     contact: Annotated[bool, typer.Option("--contact", help="Enable self-contact.")] = False,
-    together: Annotated[int, typer.Option(metavar="N", help="Number of parallel environments.")] = 4,
+    num_envs: Annotated[int, typer.Option(metavar="N", help="Number of parallel environments.")] = 4,
     processes: Annotated[
         int, typer.Option(metavar="N", help="Processes that run the environments. The curve is the same.")
     ] = 1,
@@ -158,7 +158,11 @@ def train(
     if networks is not None:
         env.learn_in(networks, exact=exact)
     options = training.TrainOptions(
-        method=training.TrainMethod(method), steps=steps, seed=seed, every=max(1, steps // 10), together=together
+        method=training.TrainMethod(method),
+        steps=steps,
+        seed=seed,
+        eval_interval=max(1, steps // 10),
+        num_envs=num_envs,
     )
     training.begun_curve(out, options, resume=resume)
     progress, began = report_progress(), time.process_time()

@@ -42,10 +42,10 @@ class TrainOptions:
         layers: hidden layers of actor and critic.
         batch: transitions of an update.
         updates: gradient steps after each action.
-        rate: learning rate.
+        learning_rate: step size of the optimizer, Adam.
         noise: standard deviation of what is added to actions (DDPG, TD3).
-        every: actions from one evaluation to the next; or a few more, as no episode is cut short.
-        together: episodes side by side; their actions are learned from together.
+        eval_interval: actions from one evaluation to the next; or a few more, as no episode is cut short.
+        num_envs: episodes side by side; their actions are learned from together.
 
     Raises:
         InputError: a number that cannot be.
@@ -57,13 +57,13 @@ class TrainOptions:
     layers: tuple[int, ...] = (256, 256, 256)
     batch: int = 256
     updates: int = 1
-    rate: float = 1e-3
+    learning_rate: float = 1e-3
     noise: float = 0.1
-    every: int = 1_000
-    together: int = 4
+    eval_interval: int = 1_000
+    num_envs: int = 4
 
     def __post_init__(self) -> None:
-        for name in ("steps", "batch", "updates", "every", "together"):
+        for name in ("steps", "batch", "updates", "eval_interval", "num_envs"):
             if getattr(self, name) < 1:
                 raise InputError(f"{name} must be 1 or more, not {getattr(self, name)}")
         if not 0 <= self.noise <= 1:
@@ -182,8 +182,8 @@ def train(
         HydrostatError: stable-baselines3 is not there, or sb3-contrib where the method is of it.
         InputError: there is no checkpoint to go on from, or one of other options; more processes than episodes.
     """
-    if not 1 <= processes <= options.together:
-        raise InputError(f"processes must be 1 to {options.together}, the episodes side by side, not {processes}")
+    if not 1 <= processes <= options.num_envs:
+        raise InputError(f"processes must be 1 to {options.num_envs}, the episodes side by side, not {processes}")
     curve, listener = begun_curve(out, options, resume=resume), listener or Listener()
     with _copies(env, options, processes) as copies:
         learner = _learner(env, copies, options)
@@ -192,7 +192,7 @@ def train(
         out.mkdir(parents=True, exist_ok=True)
         learner.tensorboard_log = str(out / "tensorboard") if find_spec("tensorboard") else None
         while learner.num_timesteps < options.steps:
-            _stretch(learner, options, env.steps * options.together, listener.progress)
+            _stretch(learner, options, env.steps * options.num_envs, listener.progress)
             act = lambda seen: learner.predict(seen, deterministic=True)[0]  # noqa: E731
             left = judge(judge_in or env, act, goals, progress=listener.progress)
             point = CurvePoint(
@@ -225,10 +225,10 @@ def begun_curve(out: Path, options: TrainOptions, *, resume: bool) -> list[Curve
     with name_damage(out / "curve.json"):
         kept = json.loads((out / "curve.json").read_text())
         curve = [CurvePoint(**each) for each in kept["curve"]]
-        made = dict(kept["options"])
+        made = {_RENAMED.get(name, name): value for name, value in kept["options"].items()}
     for name, value in json.loads(json.dumps(asdict(options))).items():
         was = made.get(name)
-        if was != value and name not in ("steps", "every"):
+        if was != value and name not in ("steps", "eval_interval"):
             raise InputError(f"{out}: this was begun with {name} = {was}, not {value}; go on with the same")
     if not curve:
         raise InputError(f"{out}: no checkpoint to resume from. Start without --resume.")
@@ -240,7 +240,7 @@ def _copies(env: GoalEnv, options: TrainOptions, processes: int) -> Iterator[Any
     """Episodes side by side, until no more are needed (HydrostatError: stable-baselines3 is not installed)."""
     from hydrostat.training.side_by_side import SideBySide
 
-    copies = SideBySide(env, options.together, processes=processes)
+    copies = SideBySide(env, options.num_envs, processes=processes)
     try:
         yield copies
     finally:
@@ -249,7 +249,7 @@ def _copies(env: GoalEnv, options: TrainOptions, processes: int) -> Iterator[Any
 
 def _stretch(model: Any, options: TrainOptions, whole: int, progress: Progress) -> None:
     """Learn from as many actions as are due until the next evaluation, in whole episodes of so many together."""
-    due = min(options.every, options.steps - model.num_timesteps)
+    due = min(options.eval_interval, options.steps - model.num_timesteps)
     model._last_obs = None  # each stretch begins with episodes of its own
 
     def report_progress(*_: object) -> bool:
@@ -268,7 +268,7 @@ def _learner(env: GoalEnv, copies: Any, options: TrainOptions) -> Any:
     from stable_baselines3.common.vec_env import VecMonitor
 
     torch.set_num_threads(1)
-    whole, size = env.steps * options.together, env.action_space.shape[0]  # type: ignore[index]
+    whole, size = env.steps * options.num_envs, env.action_space.shape[0]  # type: ignore[index]
     more: dict[str, Any] = {}
     if options.method in (TrainMethod.DDPG, TrainMethod.TD3):
         more["action_noise"] = NormalActionNoise(np.zeros(size), np.full(size, options.noise))
@@ -278,10 +278,10 @@ def _learner(env: GoalEnv, copies: Any, options: TrainOptions) -> Any:
         replay_buffer_class=HerReplayBuffer,
         replay_buffer_kwargs={"n_sampled_goal": 4, "goal_selection_strategy": "future"},
         policy_kwargs={"net_arch": list(options.layers), "activation_fn": torch.nn.SiLU},
-        learning_rate=options.rate,
+        learning_rate=options.learning_rate,
         batch_size=options.batch,
         gamma=max(1.0 - 1.0 / env.steps, 0.0),
-        gradient_steps=options.updates * options.together,
+        gradient_steps=options.updates * options.num_envs,
         learning_starts=max(100, 2 * whole),
         buffer_size=max(options.steps, 1_000),
         seed=options.seed,
@@ -324,3 +324,7 @@ def _keep(model: Any, options: TrainOptions, curve: list[CurvePoint], out: Path)
     told = {"options": asdict(options), "curve": [asdict(each) for each in curve]}
     replace_file(out / "curve.json", (json.dumps(told, indent=1) + "\n").encode())
     drop_others(folder)
+
+
+_RENAMED = {"rate": "learning_rate", "every": "eval_interval", "together": "num_envs"}
+"""Options that runs of before wrote by other names."""

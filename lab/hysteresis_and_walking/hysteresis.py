@@ -86,7 +86,8 @@ def policies(make: Callable[[], HysteresisEnv], actions: int, seeds: int) -> tup
     used = 0
     for seed in range(seeds):
         env = make()
-        few, options = held_out_goals(make(), 2, seed + 100), TrainOptions(steps=actions, seed=seed, every=actions)
+        few = held_out_goals(make(), 2, seed + 100)
+        options = TrainOptions(steps=actions, seed=seed, eval_interval=actions)
         with TemporaryDirectory() as folder:
             learner, curve = train(env, few, options, Path(folder))
         used = curve[-1].equilibria

@@ -105,7 +105,7 @@ def learned(options: WalkOptions, method: TrainMethod) -> Callable[[Draws, int, 
         short = WalkEnv(str(PUPPY), options=replace(options, steps=1))  # the curve on the way is not looked at
         actions = budget // env.beat
         asked = TrainOptions(
-            method=method, steps=actions, seed=seed, layers=(64, 64), updates=2, every=actions, together=1
+            method=method, steps=actions, seed=seed, layers=(64, 64), updates=2, eval_interval=actions, num_envs=1
         )
         with TemporaryDirectory() as out:
             model, curve = train(env, draws[:1], asked, Path(out), judge_in=short)

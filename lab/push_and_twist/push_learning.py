@@ -174,7 +174,12 @@ def learned(far: float, actions: int, updates: int, out: Path) -> tuple[Act, int
     """A policy by TQC with hindsight, and the time steps that it cost."""
     env, judge_in = made(far), made(far)
     options = TrainOptions(
-        method=TrainMethod.TQC, steps=actions, every=max(1, actions // 2), layers=(64, 64), updates=updates, rate=1e-3
+        method=TrainMethod.TQC,
+        steps=actions,
+        eval_interval=max(1, actions // 2),
+        layers=(64, 64),
+        updates=updates,
+        learning_rate=1e-3,
     )
     few = held_out_goals(judge_in, 4, 1)
     model, curve = train(

@@ -171,7 +171,12 @@ def learned(body: str, keys: np.ndarray, actions: int, out: Path, *, again: bool
     AddedTo.keys = keys
     few = held_out_goals(judge_in, 4, 1)
     options = TrainOptions(
-        method=TrainMethod.TQC, steps=actions, every=max(1, actions // 4), layers=(64, 64), updates=4, rate=1e-3
+        method=TrainMethod.TQC,
+        steps=actions,
+        eval_interval=max(1, actions // 4),
+        layers=(64, 64),
+        updates=4,
+        learning_rate=1e-3,
     )
 
     def tell(point: object) -> None:

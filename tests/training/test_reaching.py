@@ -203,7 +203,9 @@ def test_it_learns_and_a_run_that_was_killed_goes_on_the_same_way(goals: Goals, 
     pytest.importorskip("stable_baselines3", reason="stable-baselines3 is not installed")
 
     def run(steps: int, out: str, *, resume: bool = False) -> list:
-        options = TrainOptions(method=TrainMethod.SAC, steps=steps, every=152, layers=(32, 32), batch=64, rate=3e-3)
+        options = TrainOptions(
+            method=TrainMethod.SAC, steps=steps, eval_interval=152, layers=(32, 32), batch=64, learning_rate=3e-3
+        )
         return train(straight(), goals, options, tmp_path / out, resume=resume)[1]
 
     whole = run(456, "whole")
@@ -227,7 +229,7 @@ def test_the_curve_is_the_same_whoever_works(goals: Goals, tmp_path: Path) -> No
         robot = gallery_robot("starfish")
         world = MixedWorld(Straight(), ExactWorld(robot), every=3)
         env = ReachEnv(robot, world=world, options=ReachOptions(steps=3))
-        options = TrainOptions(method=TrainMethod.DDPG, steps=steps, every=50, layers=(8,), batch=16)
+        options = TrainOptions(method=TrainMethod.DDPG, steps=steps, eval_interval=50, layers=(8,), batch=16)
         more = {"resume": resume, "processes": processes, "judge_in": straight(steps=3)}
         return train(env, goals, options, tmp_path / out, **more)[1]  # type: ignore[arg-type]
 
@@ -283,7 +285,10 @@ def test_what_does_not_fit_a_checkpoint_is_told(goals: Goals, tmp_path: Path) ->
     with pytest.raises(InputError, match=r"curve.json: is missing or damaged; begin again, without --resume"):
         train(straight(), goals, TrainOptions(), tmp_path, resume=True)
     point = CurvePoint(steps=4, equilibria=8, mean=0.0, median=0.0, worst=0.0, success=0.0)
-    whole = json.dumps({"options": asdict(TrainOptions()), "curve": [asdict(point)]})
+    told = asdict(TrainOptions())
+    before = {"learning_rate": "rate", "eval_interval": "every", "num_envs": "together"}  # names of earlier versions
+    told = {before.get(name, name): value for name, value in told.items()}
+    whole = json.dumps({"options": told, "curve": [asdict(point)]})
     (tmp_path / "curve.json").write_text(whole)
     (tmp_path / "checkpoint-4").mkdir()
     (tmp_path / "checkpoint-4" / "weights.pt").write_bytes(b"PK half of it")
@@ -363,7 +368,7 @@ def test_a_policy_runs_without_torch_and_answers_the_same(method: str, goals: Go
 def test_tensorboard_reads_what_the_curve_says_and_how_far_it_is_is_told(goals: Goals, tmp_path: Path) -> None:
     pytest.importorskip("sb3_contrib", reason="sb3-contrib is not installed")
     reader = pytest.importorskip("tensorboard.backend.event_processing.event_accumulator", reason="no tensorboard")
-    options = TrainOptions(method=TrainMethod.TQC, steps=60, every=30, layers=(8,), batch=16)
+    options = TrainOptions(method=TrainMethod.TQC, steps=60, eval_interval=30, layers=(8,), batch=16)
     heard: list[tuple[str, int, int]] = []
     listener = Listener(progress=lambda *words: heard.append(words))
     curve = train(straight(), goals, options, tmp_path, listener=listener)[1]
