@@ -35,8 +35,8 @@ def new(
         typer.Option(
             "--from",
             metavar="SOURCE",
-            help="Source: gallery:NAME, a drawing (SVG, DXF, PNG, JPG), a scan or CAD model (STL, OBJ, PLY, OFF, 3MF), "
-            "or a tetrahedral mesh (VTK, VTU, MSH).",
+            help="Source: gallery:NAME, a drawing (SVG, DXF, PNG, JPG), a scan or CAD model (STL, OBJ, PLY, OFF, 3MF, "
+            "STEP), or a tetrahedral mesh (VTK, VTU, MSH).",
         ),
     ],
     size: Annotated[str | None, typer.Option(help="Length of the longest side, e.g. 190mm.")] = None,
@@ -55,7 +55,7 @@ def new(
     ] = None,
     part: Annotated[
         int | None,
-        typer.Option(metavar="N", help="Closed shape of a drawing that is the body; 1 has the largest area."),
+        typer.Option(metavar="N", help="Shape of a drawing, or body of a STEP file, to use; 1 is the largest."),
     ] = None,
     within: Annotated[
         str | None, typer.Option(metavar="TIME", help="Time limit for reading, healing and meshing the file.")

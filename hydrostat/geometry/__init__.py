@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from hydrostat.geometry.files.ply_file import write_ply
     from hydrostat.geometry.files.rings import DRAWN_HINT
     from hydrostat.geometry.files.silhouette import contrast
-    from hydrostat.geometry.files.surface_file import SURFACE_SUFFIXES, read_surface
+    from hydrostat.geometry.files.surface_file import STEP_SUFFIXES, SURFACE_SUFFIXES, convert_step, read_surface
     from hydrostat.geometry.files.vtu_file import write_vtu
     from hydrostat.geometry.healing.faults import crossing_pairs
     from hydrostat.geometry.healing.heal import heal
@@ -39,6 +39,7 @@ __all__ = [
     "DRAWN_HINT",
     "HOLE_SHARE",
     "OUTLINE_SUFFIXES",
+    "STEP_SUFFIXES",
     "SURFACE_SUFFIXES",
     "Anchors",
     "BoundaryTree",
@@ -59,6 +60,7 @@ __all__ = [
     "clearance",
     "contour",
     "contrast",
+    "convert_step",
     "crossing_pairs",
     "euler",
     "fill_small_holes",

@@ -24,7 +24,7 @@ from hydrostat.robot import (
 )
 
 MESH_SUFFIXES = (".vtk", ".vtu", ".msh")
-CAD_SUFFIXES = (".step", ".stp", ".iges", ".igs", ".f3d", ".sldprt")
+CAD_SUFFIXES = (".iges", ".igs", ".f3d", ".sldprt")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,7 +39,7 @@ class NewRobotWish:
     inflate: float | None = None  # inflate a drawing to a 3D body of this thickness
     material: str | None = None  # name in the material table
     inner: Inner | str | None = None  # shapes in a drawn body: holes, or lines drawn on it
-    drawing_part: int | None = None  # number of the closed shape of a drawing that is the body, the largest area is 1
+    drawing_part: int | None = None  # number of the shape of a drawing or STEP file that is the body, 1 is the largest
 
     def __post_init__(self) -> None:
         longest = 20.0  # nothing of a robot is longer [m]
@@ -68,12 +68,13 @@ class NewRobotWish:
 
         `run` does the part that reads, heals and meshes what may be a stranger's file, perhaps within limits.
         """
-        from hydrostat.geometry import OUTLINE_SUFFIXES, SURFACE_SUFFIXES
+        from hydrostat.geometry import OUTLINE_SUFFIXES, STEP_SUFFIXES, SURFACE_SUFFIXES
 
         if is_of_gallery(source):
             return BegunRobot(_of_gallery(source, self))
         path = path_of(source, 'a robot begins from the path of a file, or "gallery:NAME"')
-        kinds = {OUTLINE_SUFFIXES: _of_drawing, SURFACE_SUFFIXES: _of_surface, MESH_SUFFIXES: _of_mesh}
+        surfaces = (*SURFACE_SUFFIXES, *STEP_SUFFIXES)
+        kinds = {OUTLINE_SUFFIXES: _of_drawing, surfaces: _of_surface, MESH_SUFFIXES: _of_mesh}
         for suffixes, make in kinds.items():
             if path.suffix.lower() in suffixes:
                 if not path.is_file():
@@ -82,7 +83,7 @@ class NewRobotWish:
         if path.is_dir():
             raise InputError(f"{source}: is a folder; name a file, or copy the folder if it is a robot")
         if path.suffix.lower() in CAD_SUFFIXES:
-            raise InputError(f"{source}: CAD files are not read; export it as STL or 3MF")
+            raise InputError(f"{source}: this CAD format is not read; export it as STEP, STL or 3MF")
         known = ", ".join(ending for suffixes in kinds for ending in suffixes)
         raise InputError(f"{source}: cannot be read; a robot begins from gallery:NAME or a file that ends in {known}")
 
@@ -114,8 +115,8 @@ def new_robot(source: str | Path, **wished: Unpack[_Wished]) -> Robot:
     """Make a first robot from a file, with sensible numbers where none are given; `save_robot` keeps it.
 
     Args:
-        source: a drawing (SVG, DXF, PNG, JPG), a scan or CAD model (STL, OBJ, PLY, OFF, 3MF), a ready mesh (VTK, VTU,
-            MSH), or "gallery:NAME".
+        source: a drawing (SVG, DXF, PNG, JPG), a scan or CAD model (STL, OBJ, PLY, OFF, 3MF, STEP), a ready mesh (VTK,
+            VTU, MSH), or "gallery:NAME".
         wished: `name`, `size`, `element_size`, `nodes`, `thickness`, `inflate`, `material`, `inner` ("holes" or
             "drawn") and `drawing_part`; lengths in meters.
 
@@ -164,8 +165,17 @@ def _of_drawing(path: Path, wish: NewRobotWish) -> BegunRobot:
 
 
 def _of_surface(path: Path, wish: NewRobotWish) -> BegunRobot:
-    wish.refuse("is only for drawings", "thickness", "inflate", "inner", "drawing_part")
-    return _of_bytes(read_stranger(path), path, wish, wish.material or "flexfoam-it x", size=wish.size)
+    from hydrostat.geometry import STEP_SUFFIXES, convert_step
+
+    wish.refuse("is only for drawings", "thickness", "inflate", "inner")
+    content, material, notes = read_stranger(path), wish.material or "flexfoam-it x", ()
+    if path.suffix.lower() in STEP_SUFFIXES:
+        content, notes = convert_step(content, name=path.name, part=wish.drawing_part)
+        path = path.with_suffix(".ply")
+    else:
+        wish.refuse("is only for drawings and STEP files", "drawing_part")
+    begun = _of_bytes(content, path, wish, material, size=wish.size)
+    return replace(begun, notes=(*(f"note: {note}" for note in notes), *begun.notes))
 
 
 def _of_bytes(content: bytes, path: Path, wish: NewRobotWish, material: str, *, size: float | None) -> BegunRobot:

@@ -186,11 +186,11 @@ def _model(objects: str, items: str = '<item objectid="1"/>', **options: str) ->
 
 
 _BAD = {
-    "no such format": ("a.step", b"ISO-10303-21;", "export it as STL"),
+    "no such format": ("a.iges", b"S      1", "export it as STL"),
     "no suffix": ("body", _STL, "stl, .obj"),
     "empty": ("a.stl", b" \n", "is empty"),
     "too large": ("a.stl", b"x" * (MOST_BYTES + 1), "at most 120 MB"),
-    "step as stl": ("a.stl", b"ISO-10303-21;" * 20, "STEP"),
+    "step as stl": ("a.stl", b"ISO-10303-21;" * 20, "rename it to end with .step"),
     "gltf": ("a.obj", b"glTF\2\0\0\0", "glTF"),
     "ply as stl": ("a.stl", _PLY, "rename it"),
     "3mf as obj": ("a.obj", _3MF, "rename it"),

@@ -1,7 +1,7 @@
-"""Surfaces from files that nobody vouches for: STL, OBJ, PLY, OFF and 3MF.
+"""Surfaces from files that nobody vouches for: STL, OBJ, PLY, OFF and 3MF, and STEP by Open CASCADE.
 
-All are read by a few lines of NumPy each, which hold every declared count against the bytes that are there before
-anything of that size is made. A general library did neither, took a second to load and needs two more for 3MF.
+All but STEP are read by a few lines of NumPy each, which hold every declared count against the bytes that are there
+before anything of that size is made. A general library did neither, took a second to load and needs two more for 3MF.
 """
 
 from pathlib import PurePath
@@ -11,6 +11,7 @@ import numpy as np
 from hydrostat.errors import SurfaceError
 from hydrostat.geometry.files.ply_file import read_ply, write_ply
 from hydrostat.geometry.files.soup import MOST_BYTES, Soup, check_count
+from hydrostat.geometry.files.step_file import read_step
 from hydrostat.geometry.files.stl_obj_off_files import (
     OFF_HEAD,
     fits_binary_stl,
@@ -22,14 +23,15 @@ from hydrostat.geometry.files.stl_obj_off_files import (
 from hydrostat.geometry.files.threemf_file import read_3mf
 from hydrostat.geometry.surface import Surface
 
-__all__ = ["SURFACE_SUFFIXES", "read_surface", "write_ply"]
+__all__ = ["STEP_SUFFIXES", "SURFACE_SUFFIXES", "convert_step", "read_surface", "write_ply"]
 
 _READERS = {".stl": read_stl, ".obj": read_obj, ".ply": read_ply, ".off": read_off, ".3mf": read_3mf}
 
 SURFACE_SUFFIXES = tuple(_READERS)  # endings of the files that are read as surfaces
+STEP_SUFFIXES = (".step", ".stp")  # and those that need the extra `cad`
 
 _STRANGERS = {
-    b"ISO-10303": "a STEP file: export it from CAD as STL",
+    b"ISO-10303": "a STEP file: rename it to end with .step",
     b"glTF": "a glTF file: export it as STL or PLY",
     b"# vtk": "a VTK file: rename it to end with .vtk",
     b"$MeshFormat": "a Gmsh file: rename it to end with .msh",
@@ -37,16 +39,18 @@ _STRANGERS = {
 }
 
 
-def read_surface(content: bytes, *, name: str, unit: float = 1e-3, size: float | None = None) -> Surface:
+def read_surface(
+    content: bytes, *, name: str, unit: float = 1e-3, size: float | None = None, part: int | None = None
+) -> Surface:
     """Read the surface in a file, with all its faults, which `heal` repairs.
 
-    The ending of its name tells the format. A coordinate counts `unit` meters where the file has no unit (all but 3MF);
-    `size`, the longest side of the bounding box [m], overrules any unit. Raises SurfaceError: another ending, another
-    content than the ending says, empty, too large, damaged, cut short, without triangles, with coordinates that are no
-    numbers, or without a size.
+    The ending of its name tells the format. A coordinate counts `unit` meters where the file has no unit (all but 3MF
+    and STEP); `size`, the longest side of the bounding box [m], overrules any unit. `part` is the number of a body in a
+    STEP file, the largest volume is 1. Raises SurfaceError: another ending, other content than the ending says, empty,
+    too large, damaged, cut short, without triangles, with coordinates that are no numbers, or without a size.
     """
     suffix = PurePath(name).suffix.lower()
-    if suffix not in _READERS:
+    if suffix not in (*_READERS, *STEP_SUFFIXES):
         raise SurfaceError(f"{name}: surfaces are read from {', '.join(SURFACE_SUFFIXES)} files: export it as STL")
     for key, length in (("unit", unit), ("size", size)):
         if length is not None and not 0.0 < length < np.inf:
@@ -58,6 +62,8 @@ def read_surface(content: bytes, *, name: str, unit: float = 1e-3, size: float |
             f"{name}: the file has {len(content) / 1e6:.0f} MB, at most {MOST_BYTES / 1e6:.0f} MB are read: "
             "save it as binary STL or PLY, or simplify the surface"
         )
+    if suffix in STEP_SUFFIXES:
+        return _surface(read_step(content, name, part), name, unit, size)
     _check_kind(content, name, suffix)
     return _surface(_READERS[suffix](content, name), name, unit, size)
 
@@ -113,3 +119,9 @@ def _surface(soup: Soup, name: str, unit: float, size: float | None) -> Surface:
             "unit of its numbers"
         )
     return Surface(vertices * scale, triangles.reshape(-1, 3), soup.notes)
+
+
+def convert_step(content: bytes, *, name: str, part: int | None = None) -> tuple[bytes, tuple[str, ...]]:
+    """Convert a body of a STEP file to PLY in millimeters, with notes; see `read_step` for errors."""
+    surface = read_surface(content, name=name, part=part)
+    return write_ply(surface), surface.notes

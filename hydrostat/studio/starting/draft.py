@@ -5,15 +5,15 @@ from dataclasses import dataclass, field
 from pathlib import PurePath
 
 from hydrostat.errors import InputError
-from hydrostat.geometry import OUTLINE_SUFFIXES, SURFACE_SUFFIXES, Inner
+from hydrostat.geometry import OUTLINE_SUFFIXES, STEP_SUFFIXES, SURFACE_SUFFIXES, Inner
 from hydrostat.given import check_name
 from hydrostat.robot import Material, get_material
 from hydrostat.units import quote
 
-UPLOAD_SUFFIXES = (*OUTLINE_SUFFIXES, *SURFACE_SUFFIXES)  # endings of files that may be brought
+UPLOAD_SUFFIXES = (*OUTLINE_SUFFIXES, *SURFACE_SUFFIXES, *STEP_SUFFIXES)  # endings of files that may be brought
 MOST_BYTES = 190_000_000  # of a file that is brought; with what goes round it, no request has more than 200 MB
 PICTURES = (".png", ".jpg", ".jpeg")  # endings of files of pixels
-_CAD = (".step", ".stp", ".iges", ".igs", ".f3d", ".sldprt")
+_CAD = (".iges", ".igs", ".f3d", ".sldprt")
 
 THRESHOLDS = (5.0, 250.0)  # least and most difference in color from the ground that may be asked for, of 441
 SMOOTHINGS = (0.0, 20.0)  # likewise how far the edge is smoothed [pixels]
@@ -50,6 +50,7 @@ class BodyDraft:
     thickness: float | None = None  # of a flat body [m]
     inflate: float | None = None  # thickness to blow a drawing up to [m]
     inner: Inner = Inner.HOLES  # what shapes within a drawing are
+    part: int | None = None  # number of the shape of a drawing or STEP file that is the body; 1 is the largest
     reading: PhotoReading = PhotoReading()  # of a picture
 
     def __post_init__(self) -> None:
@@ -103,7 +104,7 @@ def safe_name(name: str) -> str:
     if suffix not in UPLOAD_SUFFIXES:
         shown = quote(plain if len(plain) <= 60 else plain[:28] + "..." + plain[-28:])
         if suffix in _CAD:
-            raise InputError(f"{shown}: CAD files are not supported. Export it as STL or 3MF")
+            raise InputError(f"{shown}: this CAD format is not supported. Export it as STEP, STL or 3MF")
         raise InputError(f"{shown}: file type not supported. Available: {', '.join(UPLOAD_SUFFIXES)}")
     longest_stem = 40
     stem = re.sub(r"[^\w-]+", "_", stem)[:longest_stem].strip("_-")

@@ -1,14 +1,20 @@
 """`make_sketch`: a robot of a draft, with its pictures. Runs in a process of its own."""
 
+import re
 from dataclasses import dataclass, replace
+from html import escape
 from pathlib import PurePath
 
-from hydrostat.errors import InputError
+import numpy as np
+
+from hydrostat.errors import InputError, SeveralPartsError
 from hydrostat.geometry import DRAWN_HINT
 from hydrostat.robot import Robot, SurfaceSketch, inflate_outline, sketch_robot
 from hydrostat.studio.jobs import Report
 from hydrostat.studio.starting.draft import BodyDraft
 from hydrostat.studio.starting.photo import Backdrop, backdrop, cut_out
+
+_CHOICE = re.compile(r": choose one by --part N.*")
 
 MOST_MEMORY = 6 * 2**30  # the process may have so much memory [bytes]; a file that needs more is refused
 
@@ -26,6 +32,32 @@ class Sketch:
     behind: Backdrop | None = None  # the picture that a flat body was read from; None: it was no picture
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PartChoice:
+    """Shapes of a file, one of which is the body."""
+
+    file: str  # name of the file
+    rings: dict[int, np.ndarray]  # corners of each by its number [mm], y up
+
+    def picture(self, chosen: int | None) -> str:
+        """Draw the shapes with their numbers as SVG; each is an element with `data-part`."""
+        corners = np.concatenate(list(self.rings.values()))
+        (left, low), (right, high) = corners.min(axis=0), corners.max(axis=0)
+        size = max(right - left, high - low)
+        edge = 0.04 * size
+        box = f"{left - edge:.2f} {-high - edge:.2f} {right - left + 2 * edge:.2f} {high - low + 2 * edge:.2f}"
+        shapes = []
+        for number, ring in self.rings.items():
+            path = "M" + " L".join(f"{x:.2f},{-y:.2f}" for x, y in ring) + "Z"
+            x, y = (ring.min(axis=0) + ring.max(axis=0)) / 2
+            kind = ' class="start-part-chosen"' if number == chosen else ""
+            shapes.append(
+                f'<g data-part="{number}"{kind}><path d="{path}" vector-effect="non-scaling-stroke"/>'
+                f'<text x="{x:.2f}" y="{-y:.2f}" font-size="{0.07 * size:.2f}">{number}</text></g>'
+            )
+        return f'<svg viewBox="{box}" role="img" aria-label="Shapes of {escape(self.file)}">{"".join(shapes)}</svg>'
+
+
 def make_sketch(report: Report, draft: BodyDraft) -> Sketch:
     """Read, heal, mesh and draw (InputError: no body can be made of it; one line says why)."""
     _limit_memory()
@@ -35,12 +67,17 @@ def make_sketch(report: Report, draft: BodyDraft) -> Sketch:
         raise InputError(f"{draft.file}: needs more than {MOST_MEMORY >> 30} GB of memory. Simplify it") from None
     except RecursionError:
         raise InputError(f"{draft.file}: nested too deep. Export it again") from None
+    except SeveralPartsError as error:
+        rings = {number: 1e3 * np.asarray(ring) for number, ring in error.parts.items()}
+        if rings:
+            report.part(PartChoice(file=draft.file, rings=rings))
+        raise InputError(_CHOICE.sub(". Click the one that is the body", str(error))) from None
     except InputError as error:
         raise InputError(_here(str(error))) from None
 
 
 def _sketch(report: Report, draft: BodyDraft) -> Sketch:
-    from hydrostat.geometry import read_drawing
+    from hydrostat.geometry import STEP_SUFFIXES, convert_step, read_drawing
 
     report.progress("reading", 0, 2)
     file, content, size, lines = draft.file, draft.content, draft.size, ()
@@ -49,7 +86,7 @@ def _sketch(report: Report, draft: BodyDraft) -> Sketch:
         if draft.is_picture and not draft.reading.plain:
             read_drawing(content, name=file, size=size)  # a file that is no picture is told as such
             file, content = f"{PurePath(file).stem}.png", cut_out(content, draft.reading)
-        drawing = read_drawing(content, name=file, size=size, inner=draft.inner)
+        drawing = read_drawing(content, name=file, size=size, inner=draft.inner, part=draft.part)
         lines = tuple(map(_here, drawing.notes))
         if draft.is_picture:
             behind = backdrop(draft.content, content, name=file, size=size)
@@ -58,6 +95,9 @@ def _sketch(report: Report, draft: BodyDraft) -> Sketch:
             return replace(made, behind=behind)
         report.progress("inflating the outline", 0, 2)
         content, file, size = inflate_outline(drawing.outline, draft.inflate), f"{PurePath(file).stem}.ply", None
+    elif file.endswith(STEP_SUFFIXES):
+        content, lines = convert_step(content, name=file, part=draft.part)
+        file = f"{PurePath(file).stem}.ply"
     sketch = SurfaceSketch.of_scan(
         content,
         file=file,
@@ -88,6 +128,7 @@ def _flat(report: Report, draft: BodyDraft, file: str, content: bytes) -> Robot:
         nodes=draft.nodes,
         material=draft.material,
         inner=draft.inner,
+        drawing_part=draft.part,
     )
 
 

@@ -25,7 +25,7 @@ from hydrostat.studio.starting.draft import BodyDraft, new_draft
 from hydrostat.studio.starting.loops import fit_loops
 from hydrostat.studio.starting.outlining import Outlining
 from hydrostat.studio.starting.shelf import Card, Recent, card_of, robots_in, told_apart
-from hydrostat.studio.starting.sketch import Sketch, make_sketch
+from hydrostat.studio.starting.sketch import PartChoice, Sketch, make_sketch
 from hydrostat.studio.view.robot_things import robot_things
 from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
 from hydrostat.units import quote
@@ -133,6 +133,7 @@ class Starter(Stage):
         self.autosave = Autosave(document, None if state is None else state / "work")  # keeps the work of the session
         self.draft: BodyDraft | None = None  # what is to become a robot; None: nothing was brought
         self.sketch: Sketch | None = None  # what was made of a draft, perhaps one before the present; None: nothing yet
+        self.choice: PartChoice | None = None  # shapes of the draft's file that may be the body; None: no choice
         self.problem = ""  # why nothing can be made of the draft; "" if something can
         self.outlining: Outlining | None = None  # the outline that is drawn; None: none
         self._recent = Recent(None if state is None else state / "recent.json")
@@ -197,7 +198,7 @@ class Starter(Stage):
         """Mesh a file that a person brings, as a job (InputError: empty, too large, no known kind, or other work)."""
         draft = new_draft(name, content)
         with self._lock:
-            self.sketch = None
+            self.sketch = self.choice = None
             self._take(draft)
 
     def revise(self, **changes: Any) -> None:
@@ -225,7 +226,7 @@ class Starter(Stage):
     def drop(self) -> None:
         """Begin with nothing again."""
         with self._lock:
-            self.draft = self.sketch = self.outlining = None
+            self.draft = self.sketch = self.outlining = self.choice = None
             self.problem = ""
             self._end()
         self._document.bell.ring(Topic.JOB)
@@ -312,7 +313,9 @@ class Starter(Stage):
     def _begin(self, draft: BodyDraft) -> None:
         self._working = draft
         try:
-            self._jobs.start(TITLE, make_sketch, draft, on_done=self._on_found, on_end=self._on_end)
+            self._jobs.start(
+                TITLE, make_sketch, draft, on_part=self._on_choice, on_done=self._on_found, on_end=self._on_end
+            )
         except InputError as error:
             self._working, self.problem = None, str(error)
 
@@ -321,6 +324,11 @@ class Starter(Stage):
         if self._working is not None:
             self._jobs.stop()
             self._jobs.stop()  # asked twice, it is ended at once
+
+    def _on_choice(self, choice: PartChoice) -> None:
+        with self._lock:
+            if self.draft is not None and self.draft.file == choice.file:
+                self.choice = choice
 
     def _on_found(self, sketch: Sketch) -> None:
         with self._lock:

@@ -401,3 +401,22 @@ def test_a_class_each_with_a_robot_and_who_watches(studio: Studio, window: Open,
         assert one.evaluate("document.activeElement.getAttribute('role')") == "option"
         for page in (one, two, watcher):
             quiet(page)
+
+
+def test_a_click_chooses_the_part_of_a_drawing(studio: Studio, window: Open, tmp_path: Path) -> None:
+    """Oracle: the size of the smaller of two rectangles, 60 x 40 mm, whose picture was clicked."""
+    file = tmp_path / "two parts.svg"
+    file.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="200mm" height="60mm" viewBox="0 0 200 60">'
+        '<rect x="5" y="5" width="100" height="50"/><rect x="130" y="10" width="60" height="40"/></svg>'
+    )
+    with studio() as address:
+        page = window(address)
+        page.locator("input[type=file]").first.set_input_files(str(file))
+        page.get_by_test_id("problem").filter(has_text="Click the one that is the body").wait_for()
+        page.locator("[data-testid=parts] [data-part='2'] path").click()
+        page.get_by_test_id("sketch-words").filter(has_text=re.compile("^60 mm")).wait_for()
+        page.locator("[data-testid=parts] .start-part-chosen[data-part='2']").wait_for()
+        page.get_by_test_id("make-robot").click()
+        wait_for_view(page)
+        quiet(page)

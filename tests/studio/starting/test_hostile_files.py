@@ -149,7 +149,7 @@ def test_a_wrong_file_ends_in_one_line(name: str) -> None:
         "a" * 5000,
         "\0",
         "../../etc/passwd",
-        "a.step",
+        "a.iges",
         "a.svg\0.png.sh",
         "..",
         "/",

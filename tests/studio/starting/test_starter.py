@@ -52,6 +52,31 @@ def desk() -> Iterator[Desk]:
     made.document.judge.skins.close()
 
 
+TWO = SQUARE % b'<rect x="2" y="2" width="50" height="50"/><rect x="60" y="5" width="35" height="40"/>'
+
+
+@pytest.mark.slow
+def test_a_drawing_of_two_parts_offers_both(desk: Desk) -> None:
+    """Oracle: the sizes of both rectangles; the choice stays when another number is asked for."""
+    desk.starter.bring("two.svg", TWO)
+    desk.settle()
+    assert desk.starter.problem.endswith("Click the one that is the body")
+    choice = desk.starter.choice
+    assert choice is not None
+    assert sorted(round(float((ring.max(axis=0) - ring.min(axis=0)).max())) for ring in choice.rings.values()) == [
+        40,
+        50,
+    ]
+    desk.starter.revise(part=2)
+    desk.settle()
+    desk.starter.revise(thickness=0.02)
+    desk.settle()
+    assert desk.starter.sketch is not None
+    assert desk.starter.sketch.robot.body.drawing_part == 2
+    assert desk.starter.sketch.robot.body.outline.size == pytest.approx(0.04)
+    assert 'data-part="2" class="start-part-chosen"' in choice.picture(2)
+
+
 def test_each_gallery_robot_has_a_small_picture_and_words() -> None:
     """Oracle: the gallery itself."""
     cards = gallery_cards()

@@ -2,9 +2,10 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
-from nicegui import ui
+from nicegui import events, ui
 
 from hydrostat.errors import HydrostatError, in_words
 from hydrostat.geometry import Inner
@@ -16,7 +17,7 @@ from hydrostat.studio.skins import SewnSkin
 from hydrostat.studio.stage import StageName
 from hydrostat.studio.starting.draft import SMOOTHINGS, THRESHOLDS, BodyDraft, PhotoReading, material_words, young_words
 from hydrostat.studio.starting.photo import overlay
-from hydrostat.studio.starting.sketch import Sketch
+from hydrostat.studio.starting.sketch import PartChoice, Sketch
 
 LEVELS = ("Coarse", "Medium", "Fine")
 ICONS = {
@@ -40,6 +41,7 @@ def draft_view(page: WindowPage) -> Callable[[], None]:
     with ui.element("div").classes("start-split"):
         with ui.column().classes("w-full gap-4"):
             show_state = _state(page)
+            show_parts = _parts(page)
             show_photo = _photo(page)
             show_pictures, show_skin = _pictures(), _skin()
         with ui.element("div").classes("start-card"):
@@ -49,6 +51,7 @@ def draft_view(page: WindowPage) -> Callable[[], None]:
         draft = starter.draft
         title.set_text("" if draft is None else draft.file)
         show_state()
+        show_parts()
         show_photo()
         show_pictures(starter.sketch)
         show_skin(starter.skin)
@@ -78,6 +81,50 @@ def _state(page: WindowPage) -> Callable[[], None]:
         problem.set_text(starter.problem)
 
     return refresh
+
+
+def _parts(page: WindowPage) -> Callable[[], None]:
+    """Build the picture of the shapes that may be the body; a click chooses one."""
+    starter = page.session.starter
+    with ui.element("div").classes("start-card") as card:
+        ui.label("Click the shape that is the body").classes("start-head")
+        view = ui.html("", sanitize=False).classes("start-parts").props('data-testid="parts"')
+        with ui.row().classes("gap-2") as buttons:
+            pass
+    shown: tuple[PartChoice | None, int | None] = (None, None)
+
+    def choose(part: int) -> None:
+        page.act(lambda: starter.revise(part=part))
+
+    def clicked(event: events.GenericEventArguments) -> None:
+        part = sent_number(event.args)
+        if part is not None and starter.choice is not None and part in starter.choice.rings:
+            choose(int(part))
+
+    view.on("click", clicked, js_handler=_CLICKED_PART)
+
+    def refresh() -> None:
+        nonlocal shown
+        choice, draft = starter.choice, starter.draft
+        card.set_visibility(choice is not None)
+        now = (choice, None if draft is None else draft.part)
+        if choice is None or now == shown:
+            return
+        shown = now
+        view.set_content(choice.picture(now[1]))
+        buttons.clear()
+        with buttons:
+            for number in choice.rings:
+                button = ui.button(f"Shape {number}", on_click=partial(choose, number))
+                button.props(f"no-caps dense padding='2px 12px' {'unelevated' if number == now[1] else 'outline'}")
+
+    return refresh
+
+
+_CLICKED_PART = """(event) => {
+    const part = event.target.closest('[data-part]');
+    if (part) emit(Number(part.dataset.part));
+}"""
 
 
 def _photo(page: WindowPage) -> Callable[[], None]:

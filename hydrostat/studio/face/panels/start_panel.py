@@ -105,7 +105,7 @@ async def _confirm_outside(page: WindowPage, found: Reshaped) -> bool:
 
 STYLE = Path(__file__).parents[1] / "static" / "start.css"
 
-KINDS = ("SVG", "DXF", "PNG", "JPG", "STL", "OBJ", "PLY", "OFF", "3MF", "ZIP")
+KINDS = ("SVG", "DXF", "PNG", "JPG", "STL", "OBJ", "PLY", "OFF", "3MF", "STEP", "ZIP")
 
 
 def shelf_view(page: WindowPage) -> Callable[[], None]:
