@@ -43,6 +43,7 @@ STUDIES: dict[str, str] = {
     "reinforcement/learning_costs": "",
     "sewn/sewn": "whale fish --size 200,60",
     "shared_body/shared_body": "",
+    "strangers/strangers": "kinds reports",
     "teleoperation/glove": "",
     "teleoperation/glove_delay": "--moves 5",
     "teleoperation/ten_winches": "--seconds 10",
