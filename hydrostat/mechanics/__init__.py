@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from hydrostat.mechanics.fibre import FibreEnergy
     from hydrostat.mechanics.foam_solid import FoamLaw, FoamSolid
     from hydrostat.mechanics.inertia import SCHEMES, InertiaEnergy
+    from hydrostat.mechanics.inversion_barrier import InversionBarrier
     from hydrostat.mechanics.moment_energy import MomentEnergy
     from hydrostat.mechanics.neo_hookean import NeoHookean
     from hydrostat.mechanics.newton import minimize
@@ -57,6 +58,7 @@ __all__ = [
     "FrictionCableEnergy",
     "GuideEnergy",
     "InertiaEnergy",
+    "InversionBarrier",
     "LoadEnergy",
     "LowRankStiffness",
     "MaxwellBranches",

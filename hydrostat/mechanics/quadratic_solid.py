@@ -175,12 +175,18 @@ class QuadraticSolid(Energy):
 
 
 def _quadrature(dim: int) -> tuple[Float[np.ndarray, "points corners dim"], float]:
-    """Slopes of the shape functions in the unit simplex at points that integrate quadratics exactly; their weight."""
+    """Slopes of the shape functions at points that integrate quadratics exactly, and the weight of each point."""
     outer = 2 / 3 if dim == 2 else (5 + 3 * 5**0.5) / 20
     points = np.full((dim + 1, dim + 1), (1 - outer) / dim)
     np.fill_diagonal(points, outer)
+    return shape_slopes(points), 1 / 6 if dim == 2 else 1 / 24
+
+
+def shape_slopes(points: Float[np.ndarray, "points barycentric"]) -> Float[np.ndarray, "points corners dim"]:
+    """Slopes of the quadratic shape functions in the unit simplex, at points of barycentric coordinates."""
+    dim = points.shape[1] - 1
     own = np.concatenate([-np.ones((1, dim)), np.eye(dim)])  # slopes of the barycentric coordinates
     corners = (4 * points - 1)[:, :, None] * own
     pairs = [(points[:, [one]], own[two], points[:, [two]], own[one]) for one, two in combinations(range(dim + 1), 2)]
     middles = np.stack([4 * (a * b + c * d) for a, b, c, d in pairs], axis=1)
-    return np.concatenate([corners, middles], axis=1), 1 / 6 if dim == 2 else 1 / 24
+    return np.concatenate([corners, middles], axis=1)

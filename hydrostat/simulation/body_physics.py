@@ -19,6 +19,7 @@ from hydrostat.mechanics import (
     Factorization,
     FoamSolid,
     GuideEnergy,
+    InversionBarrier,
     NeoHookean,
     ObstacleEnergy,
     PatchVolume,
@@ -96,6 +97,7 @@ class BodyPhysics:
         if thin and solid.any():
             energies.append(_plane_stress(self.elastic, self.rest_unknowns, lame))
         energies += _foams(robot, self.elastic, self.rest_unknowns)
+        energies += _barriers(body, self.elastic, self.rest_unknowns)
         if robot.gravity is not None:
             energies.append(WeightEnergy(self.rest_unknowns, self._heavy[:, None] * np.array(robot.gravity)))
         self.rods = [_rod_energy(robot, rod, self.rest_unknowns) for rod in robot.rods]
@@ -288,6 +290,14 @@ def _foams(robot: Robot, elastic: NeoHookean | QuadraticSolid, rest: Nodes) -> l
         points = {"gradients": gradients[own], "volumes": volumes[own]}
         found.append(FoamSolid(rest, elastic.stencils[own], **points, **given))
     return found
+
+
+def _barriers(body: Body, elastic: NeoHookean | QuadraticSolid, rest: Nodes) -> list[InversionBarrier]:
+    """Barrier against the inversion of quadratic elements; none is needed for linear ones, whose J is constant."""
+    if body.mesh.quadratic is None:
+        return []
+    mu, volumes = body.lame()[0][:: 2**body.mesh.dim], elastic.volumes.reshape(len(elastic.stencils), -1).sum(axis=1)
+    return [InversionBarrier(rest, elastic.stencils, mu=mu, volumes=volumes, materials=elastic.materials)]
 
 
 def _contact_parameters(robot: Robot) -> dict[str, Any]:

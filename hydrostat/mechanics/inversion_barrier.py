@@ -1,0 +1,263 @@
+"""`InversionBarrier`: energy that keeps quadratic elements from inverting away from their points of quadrature."""
+
+from collections.abc import Mapping
+from functools import cache
+from itertools import combinations, permutations, product
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+
+from hydrostat.arrays import Float, Int, Nodes, Vector
+from hydrostat.kernel import native
+from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, ScatterMap, nearest_semidefinite
+from hydrostat.mechanics.quadratic_solid import QuadraticElements, shape_slopes
+
+FREE = 0.3
+"""Ratio of volumes from which on the barrier is 0."""
+
+Coefficients = Float[np.ndarray, "elements coefficients"]
+
+
+class InversionBarrier(Energy):
+    """Sum of V mu phi(c) / m over m ratios c of each quadratic element: the Bernstein coefficients of J and its parts.
+
+    phi(c) = -ln(c / c0)^3 below c0 = `FREE`, 0 above; it has two continuous derivatives. J is a polynomial, quadratic
+    in a triangle and cubic in a tetrahedron, nowhere less than its least coefficient, so no element can invert. Nor can
+    its linear parts, by which pictures, cables and contact see it: their ratios are volume over volume at rest.
+    """
+
+    convex: ClassVar[bool] = False
+
+    def __init__(
+        self,
+        nodes: Nodes,
+        elements: QuadraticElements,
+        *,
+        mu: Vector,
+        volumes: Float[np.ndarray, " elements"],
+        materials: Int[np.ndarray, " elements"],
+    ) -> None:
+        """Elements on the rest shape `nodes`.
+
+        Args:
+            nodes: rest positions [m].
+            elements: nodes of each element: corners, then middles of edges.
+            mu: shear modulus of each element [Pa].
+            volumes: volume of each element [m^3].
+            materials: index of the material of each element, for `parameter_work`.
+        """
+        self.stencils, self.mu, self.materials = np.ascontiguousarray(elements), mu, materials
+        self.rest, self._at_rest = nodes, _coefficients(nodes[elements])
+        self._volumes = volumes / self._at_rest.shape[1]
+        self._last: tuple[Nodes, Coefficients] = (nodes[:0], self._at_rest)
+
+    def value(self, nodes: Nodes, controls: Vector) -> float:
+        found = self._shares(nodes)
+        if not found.min(initial=1.0) > 0.0:
+            return np.inf
+        low = self._low(nodes)
+        return float(self._stiffness(low) @ -(low.logs**3))
+
+    def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
+        blocks, low = np.zeros((*self.stencils.shape, nodes.shape[1])), self._low(nodes)
+        np.add.at(
+            blocks, low.elements, (self._stiffness(low) * low.slopes)[:, None, None] * self._gradients(nodes, low)
+        )
+        return blocks
+
+    def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
+        return self.projected_hessian(nodes, controls, 0.0)
+
+    def projected_hessian(self, nodes: Nodes, controls: Vector, share: float) -> HessianBlocks:
+        size = self.stencils.shape[1] * nodes.shape[1]
+        blocks = np.zeros((len(self.stencils), size, size))
+        chosen, found = self._blocks(nodes, share)
+        blocks[chosen] = found
+        return blocks
+
+    def add_gradient(self, nodes: Nodes, controls: Vector, total: Nodes) -> None:
+        """Add the forces of the elements that the barrier pushes, which are few."""
+        low = self._low(nodes)
+        if low.elements.size:
+            forces = (self._stiffness(low) * low.slopes)[:, None, None] * self._gradients(nodes, low)
+            np.add.at(total, self.stencils[low.elements], forces)
+
+    def add_hessian(self, nodes: Nodes, controls: Vector, share: float, places: ScatterMap) -> None:
+        """Add the blocks of these elements."""
+        chosen, found = self._blocks(nodes, share)
+        if chosen.size:
+            native.add_blocks(
+                np.ascontiguousarray(self.stencils[chosen]),
+                np.ascontiguousarray(places.slots[chosen]),
+                places.strides,
+                np.ascontiguousarray(found),
+                places.data,
+            )
+
+    def least_volume(self, nodes: Nodes) -> float:
+        """Least coefficient of J, at most 1."""
+        return float(self._shares(nodes).min(initial=1.0))
+
+    def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
+        """By mu of each material, and by the thickness."""
+        low = self._low(nodes)
+        along = (self._gradients(nodes, low) * field[self.stencils[low.elements]]).sum(axis=(1, 2))
+        works = self._volumes[low.elements] * low.slopes * along
+        count = int(self.materials.max(initial=-1)) + 1
+        return {
+            "mu": np.bincount(self.materials[low.elements], works, count).astype(float),  # of none: integers
+            "thickness": np.array([float(self.mu[low.elements] @ works)]),
+        }
+
+    def _shares(self, nodes: Nodes) -> Coefficients:
+        """Coefficients of J; the last ones are kept, as value, forces and Hessian follow one another."""
+        last, kept = self._last
+        if np.array_equal(last, nodes):
+            return kept
+        found = _coefficients(nodes[self.stencils]) / self._at_rest
+        self._last = nodes.copy(), found  # in one assignment, so that threads may share the energy
+        return found
+
+    def _low(self, nodes: Nodes) -> "_Low":
+        """Coefficients that the barrier pushes."""
+        found = self._shares(nodes)
+        elements, places = np.nonzero(found < FREE)
+        values = found[elements, places]
+        return _Low(elements, places, values, np.log(values / FREE))
+
+    def _stiffness(self, low: "_Low") -> Vector:
+        return (self.mu * self._volumes)[low.elements]
+
+    def _gradients(self, nodes: Nodes, low: "_Low") -> Blocks:
+        """Derivative of each low coefficient by the nodes of its element [1/m]: c is homogeneous in these."""
+        corners = nodes[self.stencils[low.elements]]
+        corners = corners - corners[:, :1]
+        bends = self._bends(corners, low)
+        flat = np.matmul(bends, corners.reshape(*bends.shape[:2], 1)) / (nodes.shape[1] - 1)
+        return flat.reshape(corners.shape)
+
+    def _bends(self, corners: Float[np.ndarray, "low corners dim"], low: "_Low") -> HessianBlocks:
+        """Second derivative of each low coefficient by the nodes of its element."""
+        dim, forms = corners.shape[2], _forms(corners.shape[2])[low.places]
+        if dim == 2:
+            found = 2 * np.einsum("pcd,ab->pcadb", forms, _permutation_signs(2))
+        else:
+            found = 6 * np.einsum("pcde,pek,abk->pcadb", forms, corners, _permutation_signs(3), optimize=True)
+        size = dim * corners.shape[1]
+        return found.reshape(len(corners), size, size) / self._at_rest[low.elements, low.places, None, None]
+
+    def _blocks(self, nodes: Nodes, share: float) -> tuple[Int[np.ndarray, " chosen"], HessianBlocks]:
+        """Elements that the barrier pushes, and the Hessian of each."""
+        low, size = self._low(nodes), self.stencils.shape[1] * nodes.shape[1]
+        chosen, owners = np.unique(low.elements, return_inverse=True)
+        blocks = np.zeros((len(chosen), size, size))
+        if chosen.size:
+            corners = nodes[self.stencils[low.elements]]
+            slopes = self._gradients(nodes, low).reshape(len(low.elements), size)
+            each = low.curvatures[:, None, None] * slopes[:, :, None] * slopes[:, None, :]
+            each += low.slopes[:, None, None] * self._bends(corners - corners[:, :1], low)
+            np.add.at(blocks, owners, self._stiffness(low)[:, None, None] * each)
+            if share:
+                blocks += share * (nearest_semidefinite(blocks) - blocks)
+        return chosen, blocks
+
+
+class _Low(NamedTuple):
+    """Coefficients below `FREE`: their element, place in it, value c, and ln(c / c0)."""
+
+    elements: Int[np.ndarray, " low"]
+    places: Int[np.ndarray, " low"]
+    values: Vector
+    logs: Vector
+
+    @property
+    def slopes(self) -> Vector:
+        """First derivative of phi."""
+        return -3 * self.logs**2 / self.values
+
+    @property
+    def curvatures(self) -> Vector:
+        """Second derivative of phi."""
+        return (3 * self.logs**2 - 6 * self.logs) / self.values**2
+
+
+def _coefficients(corners: Float[np.ndarray, "elements corners dim"]) -> Coefficients:
+    """Bernstein coefficients of det(dx / d xi), xi in the unit simplex, and d! times the volume of each part."""
+    count, _, dim = corners.shape
+    slopes, mixes = _spans(dim)
+    columns = np.matmul(slopes, corners).reshape(count, dim + 1, dim, dim)  # by corner, then axis
+    pointed = corners[:, PARTS[dim]]
+    edges = pointed[:, :, 1:] - pointed[:, :, :1]
+    if dim == 2:
+        mixed = _cross(columns[:, :, None, 0], columns[:, None, :, 1])
+        parts = _cross(edges[:, :, 0], edges[:, :, 1])
+    else:
+        normals = np.cross(columns[:, :, None, 0], columns[:, None, :, 1]).reshape(count, -1, dim)
+        mixed = np.matmul(normals, columns[:, :, 2].swapaxes(1, 2))
+        parts = (np.cross(edges[:, :, 0], edges[:, :, 1]) * edges[:, :, 2]).sum(axis=2)
+    return np.concatenate([mixed.reshape(count, -1) @ mixes, parts], axis=1)
+
+
+def _cross(one: np.ndarray, two: np.ndarray) -> np.ndarray:
+    return one[..., 0] * two[..., 1] - one[..., 1] * two[..., 0]
+
+
+@cache
+def _spans(dim: int) -> tuple[Float[np.ndarray, "columns corners"], Float[np.ndarray, "mixed coefficients"]]:
+    """Columns of dx / d xi at the corners by the nodes, and each coefficient as a mean of determinants of these.
+
+    A determinant takes its first column from one corner, its second from another, and so on.
+    """
+    slopes = shape_slopes(np.eye(dim + 1)).swapaxes(1, 2).reshape(dim * (dim + 1), -1)
+    mixed = [tuple(sorted(chosen)) for chosen in product(range(dim + 1), repeat=dim)]
+    found = sorted(set(mixed))
+    mixes = np.array([[float(one == other) for other in found] for one in mixed])
+    return slopes, mixes / mixes.sum(axis=0)
+
+
+@cache
+def _forms(dim: int) -> np.ndarray:
+    """Each coefficient and part as an alternating form of the nodes, (coefficients, corners, ..., corners)."""
+    slopes, mixes = _spans(dim)
+    axes = slopes.reshape(dim + 1, dim, -1).swapaxes(0, 1)
+    mixes = mixes.reshape(*[dim + 1] * dim, -1)
+    one = np.eye(slopes.shape[1])[PARTS[dim]]
+    edges = (one[:, 1:] - one[:, :1]).swapaxes(0, 1)
+    if dim == 2:
+        form, parts = np.einsum("ijm,ic,jd->mcd", mixes, *axes), np.einsum("mc,md->mcd", *edges)
+    else:
+        form = np.einsum("ijkm,ic,jd,ke->mcde", mixes, *axes, optimize=True)
+        parts = np.einsum("mc,md,me->mcde", *edges)
+    form, signs = np.concatenate([form, parts]), _permutation_signs(dim)
+    orders = list(permutations(range(dim)))
+    turned = [signs[order] * form.transpose(0, *(1 + place for place in order)) for order in orders]
+    return np.sum(turned, axis=0) / len(orders)
+
+
+@cache
+def _permutation_signs(dim: int) -> np.ndarray:
+    """Levi-Civita's symbol."""
+    found = np.zeros([dim] * dim)
+    for order in permutations(range(dim)):
+        found[order] = np.linalg.det(np.eye(dim)[list(order)])
+    return found
+
+
+def _parts_in_space() -> np.ndarray:
+    """Tetrahedra at the corners, then those around each of the three diagonals of the octahedron in between."""
+    middle = {pair: 4 + place for place, pair in enumerate(combinations(range(4), 2))}
+    parts = [
+        [own, *(middle[min(own, other), max(own, other)] for other in range(4) if other != own)] for own in range(4)
+    ]
+    for first, last in ((4, 9), (5, 8), (6, 7)):
+        sides = [node for node in range(4, 10) if node not in (first, last)]
+        parts += [[first, last, one, two] for one, two in combinations(sides, 2) if one + two != 13]  # 13: opposite
+    place = np.concatenate([np.eye(4), [(np.eye(4)[a] + np.eye(4)[b]) / 2 for a, b in middle]])[:, 1:]
+    found = np.array(parts)
+    flipped = np.linalg.det(place[found[:, 1:]] - place[found[:, :1]]) < 0
+    found[flipped, -2:] = found[flipped, :-3:-1]
+    return found
+
+
+PARTS = {2: np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2], [3, 5, 4]]), 3: _parts_in_space()}
+"""Linear parts of an element, by their nodes; in space, where its mesh has one diagonal, those of all three."""
