@@ -9,6 +9,8 @@ if TYPE_CHECKING:
     from hydrostat.identification.fit import FittedModel, fit_model
     from hydrostat.identification.identified_robot import IdentifiedRobot, identify
     from hydrostat.identification.identified_tolerances import identified_tolerances
+    from hydrostat.identification.kinds import named_model
+    from hydrostat.identification.marker_predictor import MarkerPredictor
     from hydrostat.identification.measurements import Measurements, rms
     from hydrostat.identification.model import IdentificationModel, Parameter
     from hydrostat.identification.read import read_measurements
@@ -19,11 +21,13 @@ __all__ = [
     "FittedModel",
     "IdentificationModel",
     "IdentifiedRobot",
+    "MarkerPredictor",
     "Measurements",
     "Parameter",
     "fit_model",
     "identified_tolerances",
     "identify",
+    "named_model",
     "read_measurements",
     "rms",
     "suggest_measurements",

@@ -11,6 +11,7 @@ from hydrostat.arrays import Float, Vector
 from hydrostat.errors import InputError
 from hydrostat.identification.marker_predictor import MarkerPrediction, MarkerPredictor
 from hydrostat.identification.measurements import Measurements, rms
+from hydrostat.identification.mesh_shift import estimate_mesh_shift
 from hydrostat.identification.model import IdentificationModel
 from hydrostat.robot import Robot
 
@@ -38,7 +39,10 @@ class FittedModel:
         model: robot and measurement as functions of the values.
         values: values by name.
         numbers: the same as coordinates of the fit: spreads from the start.
-        covariance: covariance of `numbers`; 1 on the diagonal where the measurements tell nothing.
+        covariance: covariance of `numbers` if errors were independent; 1 on the diagonal where the measurements tell
+            nothing.
+        spread: factor of the errors' variance by `spread_error`, as those of a model are alike in all rows.
+        mesh_shift: change of `numbers` that finer elements would make; 0 if it was not estimated.
         noise: standard deviation of a measured coordinate about the model [m], from the residuals.
         error: root mean square distance between predicted and measured markers of the fitted rows [m].
         failed: fitted rows without an equilibrium.
@@ -50,6 +54,8 @@ class FittedModel:
     values: dict[str, float]
     numbers: Vector
     covariance: Float[np.ndarray, "parameters parameters"]
+    spread: float
+    mesh_shift: Vector
     noise: float
     error: float
     failed: int
@@ -57,12 +63,24 @@ class FittedModel:
     message: str
 
     @property
+    def interval_covariance(self) -> Float[np.ndarray, "parameters parameters"]:
+        """Covariance of `numbers` with the errors of the model that are alike in all rows, for this mesh."""
+        prior = np.eye(len(self.numbers))
+        information = np.linalg.inv(self.covariance) - prior
+        return np.linalg.inv(information / self.spread + prior)
+
+    @property
     def intervals(self) -> dict[str, tuple[float, float]]:
-        """Intervals that hold each value with a probability of 95 %, if the model is right."""
-        half = 1.96 * np.sqrt(np.diag(self.covariance))
+        """Intervals that hold each value with a probability of about 95 %.
+
+        They follow from `interval_covariance`, and reach to the value that finer elements would give.
+        """
+        half = 1.96 * np.sqrt(np.diag(self.interval_covariance))
+        low = self.numbers + np.minimum(self.mesh_shift, 0.0) - half
+        high = self.numbers + np.maximum(self.mesh_shift, 0.0) + half
         return {
-            parameter.name: (parameter.from_fitted(number - width), parameter.from_fitted(number + width))
-            for parameter, number, width in zip(self.model.parameters, self.numbers, half, strict=True)
+            parameter.name: (parameter.from_fitted(one), parameter.from_fitted(other))
+            for parameter, one, other in zip(self.model.parameters, low, high, strict=True)
         }
 
     @property
@@ -93,6 +111,7 @@ def fit_model(
     *,
     noise: float | None = None,
     evaluations: int = 30,
+    refine: bool = True,
     progress: Callable[[str], None] | None = None,
 ) -> FittedModel:
     """Most probable values of the parameters: least squares over measured places and guesses.
@@ -106,6 +125,7 @@ def fit_model(
         measurements: rows of commands and places.
         noise: standard deviation of a measured coordinate about the model [m]; estimated if left out.
         evaluations: most evaluations of the model.
+        refine: estimate the shift by finer elements.
         progress: receives a line after each evaluation.
 
     Raises:
@@ -139,12 +159,32 @@ def fit_model(
         values=model.values(numbers),
         numbers=numbers,
         covariance=np.linalg.inv(jacobian.T @ jacobian),
+        spread=spread_error(fit.errors, fit.noise, len(measurements.commands), is_known=noise is not None),
+        mesh_shift=estimate_mesh_shift(model, measurements, numbers, fit.noise) if refine else np.zeros(len(numbers)),
         noise=fit.noise,
         error=rms(fit.distances),
         failed=fit.failed,
         iterations=fit.count,
         message=message,
     )
+
+
+def spread_error(errors: Vector, noise: float, rows: int, *, is_known: bool) -> float:
+    """Factor of the variance of errors by which errors of the model count more than independent noise.
+
+    An error of the model is alike in all rows, so that more rows do not average it out: they count as one. Without a
+    known noise, the whole residual is such an error, and the factor is the number of rows. With it, only the rest is.
+
+    Args:
+        errors: residuals [m].
+        noise: standard deviation of a measured coordinate [m].
+        rows: number of rows.
+        is_known: True if the noise was given, not estimated from the residuals.
+    """
+    if not is_known:
+        return float(max(rows, 1))
+    excess = float(np.mean((errors / noise) ** 2)) - 1.0 if len(errors) else 0.0
+    return 1.0 + rows * max(excess, 0.0)
 
 
 class _Fit:

@@ -82,6 +82,7 @@ def identify(
         part = fit_model(
             model,
             measurements.rows(kept),
+            refine=False,
             progress=progress and (lambda line: progress(f"without held-out rows, {line}")),
         )
         held_before, held_after = _distances(assumed, asked), _distances(part, asked)
@@ -109,6 +110,8 @@ def start_of(model: IdentificationModel) -> FittedModel:
         values=model.start,
         numbers=np.zeros(count),
         covariance=np.eye(count),
+        spread=1.0,
+        mesh_shift=np.zeros(count),
         noise=np.nan,
         error=np.nan,
         failed=0,

@@ -15,7 +15,8 @@ def identified_tolerances(found: IdentifiedRobot) -> bytes:
     out, so that the usual tolerances hold. Pins are left out as well: a design does not depend on them.
     """
     fitted, deviations, friction = found.fitted, dict[str, float](), ""
-    for parameter, variance in zip(fitted.model.parameters, np.diag(fitted.covariance).tolist(), strict=True):
+    widths = np.sqrt(np.diag(fitted.interval_covariance)).tolist()
+    for parameter, width in zip(fitted.model.parameters, widths, strict=True):
         if parameter.name in found.unknown:
             continue
         kind = parameter.name.rpartition(".")[2]
@@ -23,7 +24,7 @@ def identified_tolerances(found: IdentifiedRobot) -> bytes:
             low, high = (min(max(each, 0.0), 1.0) for each in fitted.intervals["friction"])
             friction = f"friction = [{low:.3g}, {high:.3g}]"
         elif kind in FIELDS and parameter.log:
-            deviation = parameter.spread * float(np.sqrt(variance))
+            deviation = parameter.spread * width
             deviations[FIELDS[kind]] = max(deviations.get(FIELDS[kind], 0.0), deviation)
     lines = [f"{field} = {deviation:.3g}" for field, deviation in deviations.items()]
     lines += [friction] if friction else []

@@ -212,3 +212,22 @@ def test_one_known_coordinate_of_a_marker_counts() -> None:
     seen[:, :, 0] = np.nan
     found = fit_model(model, replace(asked, places=seen))
     assert found.numbers == pytest.approx([0.4, -0.3], abs=0.02)
+
+
+@pytest.mark.slow
+def test_intervals_hold_the_error_of_the_mesh() -> None:
+    """A robot of half the element size. Oracle: its values, which intervals of independent errors would miss."""
+    robot, rng = strip(), np.random.default_rng(4)
+    fine = replace(robot, body=mesh_body(strip_mesh(16, 4)))
+    model = named_model(robot, ("young", "gain"))
+    young = 0.8 * model.start["body.young"]
+    hidden = replace(fine, body=replace(fine.body, material=replace(fine.body.material, young=young)))
+    asked = measured(hidden, rng.uniform(0.001, 0.012, (12, 2)))
+    seen = MarkerPredictor(named_model(hidden, ()), asked).predict(np.zeros(0), slopes=False).places
+    found = fit_model(model, replace(asked, places=seen + 1e-4 * rng.standard_normal(seen.shape)))
+    low, high = found.intervals["body.young"]
+    assert low < young < high
+    alone = replace(found, spread=1.0, mesh_shift=np.zeros_like(found.mesh_shift)).intervals["body.young"]
+    assert not alone[0] < young < alone[1]
+    exact = fit_model(model, replace(asked, places=seen), noise=1e-2, refine=False)
+    assert exact.spread == 1.0
