@@ -21,6 +21,7 @@ STUDIES: dict[str, str] = {
     "coarseness/coarseness": "",
     "designs/designs": "--bodies pig --random 20",
     "designs/drawn_networks": "puppy",
+    "faults/faults": "mutations --count 60",
     "flat_or_round/flat_or_round": "--bodies starfish",
     "gallery_poses/example_poses": "--quick",
     "gallery_poses/gallery_poses": "trunk",

@@ -90,7 +90,7 @@ class Timeline:
         profile = ProfileTable.read(content, robot, name=shown).profile
         times = profile.times - profile.times[0]
         if times[-1] > LONGEST:
-            raise InputError(f"{shown}: it lasts {times[-1]:.1f} s; a timeline may last {LONGEST:g} s")
+            raise InputError(f"{shown}: it lasts {times[-1]:.6g} s; a timeline may last {LONGEST:g} s")
         names = [winch.name for winch in robot.winches]
         kept = _essential_rows(times, profile.values)
         keys = tuple(

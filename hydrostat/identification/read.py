@@ -74,7 +74,8 @@ class _Columns:
             elif bare in winches:
                 self._winches[column] = winches.index(bare)
             elif name not in _SKIPPED:
-                allowed = ", ".join([f"{winch}_mm" for winch in winches] + list(places) + list(loads))
+                known = [f"{winch}_mm" for winch in winches] + list(places) + list(loads)
+                allowed = ", ".join(known[:8]) + (f" and {len(known) - 8} more" if len(known) > 8 else "")
                 mark = " Separate columns by commas." if ";" in name or "\t" in name else ""
                 raise InputError(f'{where}: unknown column "{name[:60]}". Available: {allowed}.{mark}')
         self._check_once(where)
@@ -87,7 +88,7 @@ class _Columns:
         if unmeasured := [marker for marker in self._loads.values() if marker not in self.markers]:
             raise InputError(f"{where}: {unmeasured[0]}_load_g needs the columns {unmeasured[0]}_x_mm ... as well")
         if not self.markers:
-            raise InputError(f"{where}: no column of a marker. Available: {', '.join(places)}.")
+            raise InputError(f"{where}: no column of a marker, such as {', '.join(list(places)[:4])}.")
 
     def _check_once(self, where: str) -> None:
         seen: set[object] = set()

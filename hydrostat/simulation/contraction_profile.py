@@ -153,7 +153,7 @@ class ProfileTable:
             )
         for column in head:
             if column not in (TIME, *names):
-                raise InputError(f'{name}, line 1: unknown winch "{column}". Available: {", ".join(names)}.')
+                raise InputError(f"{name}, line 1: unknown winch {quote(column)}. Available: {', '.join(names)}.")
         lines, times, values = [], [], []
         for line, row in rows[1:]:
             if any(cell.strip() for cell in row):

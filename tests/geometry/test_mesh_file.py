@@ -63,6 +63,16 @@ def test_a_kind_under_the_name_of_the_other_is_read(kind: str, suffix: str, tmp_
     assert len(read_mesh(path.rename(path.with_suffix(suffix)), unit=1e-3).elements) == len(_TETRAHEDRA)
 
 
+def test_a_block_without_elements_is_passed_over(tmp_path: Path) -> None:
+    path = written(tmp_path, "msh 4.1 text")
+    lines = path.read_text().splitlines()
+    head = lines.index("$Elements") + 1
+    blocks, *rest = lines[head].split()
+    lines[head : head + 1] = [" ".join([str(int(blocks) + 1), *rest]), "3 1 4 0"]
+    path.write_text("\n".join(lines) + "\n")
+    assert len(read_mesh(path, unit=1e-3).elements) == len(_TETRAHEDRA)
+
+
 @pytest.mark.parametrize("dim", [2, 3])
 @pytest.mark.parametrize("copies", [1, 1024])
 def test_what_is_written_is_read_by_us_and_by_meshio(dim: int, copies: int, tmp_path: Path) -> None:

@@ -164,7 +164,7 @@ def _elements(cursor: Cursor) -> _Found:
         count = int(cursor.numbers(1, "i8")[0])
         if kind not in _CORNERS:
             raise cursor.make_damage_error("has an element of a kind that is not known")
-        rows = cursor.numbers(count * (1 + _CORNERS[kind]), "i8").reshape(count, -1)
+        rows = cursor.numbers(count * (1 + _CORNERS[kind]), "i8").reshape(count, 1 + _CORNERS[kind])
         if kind in found:
             found[kind].append(rows[:, 1:].astype(np.int64))
     return found

@@ -28,7 +28,7 @@ from hydrostat.studio.starting.shelf import Card, Recent, card_of, robots_in, to
 from hydrostat.studio.starting.sketch import PartChoice, Sketch, make_sketch
 from hydrostat.studio.view.robot_things import robot_things
 from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
-from hydrostat.units import quote
+from hydrostat.units import printable, quote
 
 _BROKEN = (BadZipFile, EOFError, NotImplementedError, RuntimeError, OSError, zlib.error, LZMAError)
 
@@ -67,7 +67,7 @@ def unpack_robot(name: str, content: bytes) -> tuple[Work, str]:
         zlib.error,
         LZMAError,
     ) as error:
-        words = str(error).replace(f"{folder}/", "")
+        words = printable(str(error).replace(f"{folder}/", ""))[:120]
         raise InputError(f"{shown}: cannot be unpacked ({words}); download the robot again") from None
 
 
