@@ -3,6 +3,7 @@
 import time
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from math import inf
 from typing import ClassVar, Protocol, runtime_checkable
 
 from hydrostat.arrays import Vector
@@ -85,10 +86,12 @@ class Bus(ABC):
     Attributes:
         kind: words that begin every line about it.
         lost_position: True if motors are known to have lost their count since calibration.
+        silence: time without commands after which watchdogs may have fired that `restart_watchdog` begins again [s].
     """
 
     kind: ClassVar[str]
     lost_position: bool = False
+    silence: float = inf
 
     def mark(self) -> None:  # noqa: B027 - most motors know their angle by themselves
         """Remember that the motors are calibrated, where that can be lost (HydrostatError: it cannot be remembered)."""
@@ -110,6 +113,13 @@ class Bus(ABC):
         Raises:
             HydrostatError: one does not.
         """
+
+    def find_restarted(self) -> tuple[int, ...]:
+        """Return the places of armed motors whose torque is off: they lost power since. It never raises.
+
+        It is asked only where a motor does not pull or follow. Empty where the bus reports it with its readings.
+        """
+        return ()
 
     @abstractmethod
     def read(self) -> Reading:

@@ -18,6 +18,8 @@ from hydrostat.robot import Winch
 
 DEADLINE = 0.2
 """Told nothing for so long [s], motors are stopped by the watch on this side; their own watchdogs stop them sooner."""
+LATE = 0.08
+"""Time between two readings that counts at most while a motor does not follow [s]: beyond, this computer is late."""
 MAX_LEAD_TIME = 0.12
 """A goal is never further ahead of a motor than it turns in this time [s]: a dead host leaves it no further."""
 LOST = 0.2
@@ -104,7 +106,8 @@ class BusLink(Link):
         self._high = np.array([winch.travel for winch in winches], dtype=float)
         self._places = self._goal = np.zeros(len(winches))
         self._speed, self._sent = 0.0, -np.inf
-        self._mark, self._marked = np.zeros(len(winches)), np.zeros(len(winches))  # a place [m], and when it was [s]
+        self._mark, self._waits = np.zeros(len(winches)), np.zeros(len(winches))  # a place [m], time spent there [s]
+        self._judged = -np.inf  # time of the last reading while armed [s]
         self._began = clock()
         self._lock, self._over = threading.RLock(), threading.Event()
         self._watch: threading.Thread | None = None
@@ -140,7 +143,7 @@ class BusLink(Link):
                 self._judge(self._clock(), armed=False)
                 self._bus.arm(np.array([spool.current for spool in self._calibration.motors]))
             self._goal, self._speed, self._sent, self.why = self._places.copy(), 0.0, self._clock(), ""
-            self._marked[:] = self._sent
+            self._waits, self._judged = np.zeros_like(self._waits), self._sent
             if self.guard is not None:
                 self.guard.begin()
             self._to(LinkState.ARMED)
@@ -158,7 +161,7 @@ class BusLink(Link):
                 raise self._stop_with_error(LinkState.HOLD, f"motors must be {words}; re-arm them")
             since = self._clock() - self._sent
             if since > DEADLINE:
-                raise self._stop_with_error(LinkState.HOLD, f"no command for {since:.2f} s; re-arm the motors")
+                raise self._stop_with_error(LinkState.HOLD, _late(since))
             self._goal = np.clip(contractions, self._low, self._high)
             self._speed = min(speed, self.limits.speed, self._speed + self.limits.rise * max(since, 1e-3))
             ahead = self._speed * MAX_LEAD_TIME
@@ -167,6 +170,9 @@ class BusLink(Link):
                 self._speed = 0.0
             rates = max(self._speed, 1e-3) / self._calibration.radii(near)
             with self._stopping():
+                if since > self._bus.silence:  # this computer was late: fired watchdogs refuse goals
+                    with suppress(HydrostatError):  # a silent motor is named by the age of its reading
+                        self._bus.restart_watchdog()
                 self._bus.write(self._calibration.angles(near), rates)
             self._sent = self._clock()
             if self.state is not LinkState.ARMED:  # stopped by another thread, maybe before this was written
@@ -205,7 +211,7 @@ class BusLink(Link):
         if self.state is LinkState.ARMED and self._clock() - self._sent > DEADLINE:
             with self._lock:
                 if self.state is LinkState.ARMED and (since := self._clock() - self._sent) > DEADLINE:
-                    self._stop_with_error(LinkState.HOLD, f"no command for {since:.2f} s; re-arm the motors")
+                    self._stop_with_error(LinkState.HOLD, _late(since))
 
     def watch(self) -> None:
         """Keep the deadline from a thread of its own, whatever else this program is busy with; arming begins it."""
@@ -243,25 +249,34 @@ class BusLink(Link):
                 f"{self._names[index]} stands at {1e3 * self._places[index]:.1f} mm, beyond its limits of "
                 f"{1e3 * self._low[index]:.1f} to {1e3 * self._high[index]:.1f} mm; calibrate it again"
             )
-        if armed:
-            self._judge_following(now)
-        if armed and self.guard is not None:
+        if not armed:
+            return
+        words = self._judge_following(now)
+        if not words and self.guard is not None:
             radii = self._calibration.radii(self._places)
-            if words := self.guard.fault(self._places, self._taking(reading), radii, now):
-                raise HydrostatError(words)
+            words = self.guard.fault(self._places, self._taking(reading), radii, now)
+        if words:
+            lost = next((self._names[index] for index in self._bus.find_restarted()), None)
+            restarted = f"the motor of {lost} lost power and restarted: its torque is off. Check its plug and cable"
+            raise HydrostatError(words if lost is None else restarted)
 
-    def _judge_following(self, now: float) -> None:
-        """Raise that a motor stands away from its goal: it is stuck, or has lost its power and begun again."""
+    def _judge_following(self, now: float) -> str:
+        """Say that a motor stands away from its goal, such as a stuck one; "" for none.
+
+        Time in which this computer was late does not count, as motors then stand at goals close ahead.
+        """
         follows = np.abs(self._goal - self._places) < BEHIND
         follows |= np.abs(self._places - self._mark) > 1e-4
         self._mark = np.where(follows, self._places, self._mark)
-        self._marked = np.where(follows, now, self._marked)
-        if (waits := now - self._marked).max(initial=0.0) > PATIENCE:
-            index = int(waits.argmax())
-            raise HydrostatError(
-                f"{self._names[index]} does not follow: it stands at {1e3 * self._places[index]:.1f} mm and was told "
-                f"{1e3 * self._goal[index]:.1f} mm; its cable is held, it has lost power, or its current is too low"
-            )
+        self._waits = np.where(follows, 0.0, self._waits + min(now - self._judged, LATE))
+        self._judged = now
+        if self._waits.max(initial=0.0) <= PATIENCE:
+            return ""
+        index = int(self._waits.argmax())
+        return (
+            f"{self._names[index]} does not follow: it stands at {1e3 * self._places[index]:.1f} mm and was told "
+            f"{1e3 * self._goal[index]:.1f} mm; its cable is held, it has lost power, or its current is too low"
+        )
 
     def _taking(self, reading: Reading) -> Vector:
         """Currents, positive as cable is taken in [A]."""
@@ -321,3 +336,7 @@ class BusLink(Link):
     def _say(self, words: str) -> None:
         with suppress(Exception):
             self._log(f"{self._bus.kind}: {self._clock() - self._began:.3f} s: {words}")
+
+
+def _late(since: float) -> str:
+    return f"this computer is late: no command for {since:.2f} s; re-arm the motors"

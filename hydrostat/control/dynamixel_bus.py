@@ -73,6 +73,7 @@ class DynamixelBus(ServoBus):
     """Servos in extended position mode, bounded in current where they can be (modes 5 and 4)."""
 
     kind: ClassVar[str] = "dynamixel"
+    silence = 0.08  # watchdogs fire after 0.1 s
 
     def __init__(self, port: Port, numbers: Sequence[int], **rest: Any) -> None:
         """Servos on a port, by their numbers; the rest is as a `ServoBus` has it."""
@@ -160,6 +161,10 @@ class DynamixelBus(ServoBus):
             self._set(number, CURRENT, max(1, round(1e3 * min(current, model.stall))), 2)
         else:
             self._set(number, PWM, max(1, round(FULL_PWM * min(current / model.stall, 1.0))), 2)
+
+    def _has_torque(self, number: int) -> bool | None:
+        told = next((told for told in (self._get(number, TORQUE, 1) for _ in range(3)) if told is not None), None)
+        return None if told is None else told == 1
 
     def _steps(self, number: int) -> int:
         """Latest reported position of a servo [ticks]."""

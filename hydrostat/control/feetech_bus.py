@@ -149,6 +149,10 @@ class FeetechBus(ServoBus):
         rates = np.clip(np.rint(np.abs(speeds) / TICK), 1, 32767).astype(int).tolist()
         self._go(steps.astype(int).tolist(), rates, self._numbers)
 
+    def _has_torque(self, number: int) -> bool | None:
+        told = self._get(number, TORQUE, 1)
+        return None if told is None else told == b"\x01"
+
     def _hold(self, angles: dict[int, float]) -> None:
         steps = [round(angle / TICK) for angle in angles.values()]
         self._go(steps, [STANDING] * len(steps), tuple(angles))

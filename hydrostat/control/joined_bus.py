@@ -31,6 +31,11 @@ class JoinedBus(Bus):
         """True if motors of any part have lost their turn count."""
         return any(bus.lost_position for bus, _ in self._parts)
 
+    @property
+    def silence(self) -> float:  # type: ignore[override]
+        """Shortest of its parts [s]."""
+        return min(bus.silence for bus, _ in self._parts)
+
     def identify(self) -> tuple[MotorFacts, ...]:
         """Facts of the motors of all parts; each part tries its own watchdogs."""
         return self._whole(self._each(lambda bus, _: bus.identify()))
@@ -51,6 +56,10 @@ class JoinedBus(Bus):
     def restart_watchdog(self) -> None:
         """Let the watchdogs of all parts begin again."""
         self._each(lambda bus, _: bus.restart_watchdog())
+
+    def find_restarted(self) -> tuple[int, ...]:
+        """Return the places of motors of all parts whose torque is off."""
+        return tuple(int(places[index]) for bus, places in self._parts for index in bus.find_restarted())
 
     def read(self) -> Reading:
         """Return the latest reading of all motors."""

@@ -89,6 +89,18 @@ class ServoBus(Bus):
         """Their zeros are known."""
         self.lost_position = False
 
+    def find_restarted(self) -> tuple[int, ...]:
+        """Return the places of servos that were armed and whose torque is off now."""
+        found = list[int]()
+        with suppress(Exception), self._lock:
+            if self._holding:
+                found += [index for index, number in enumerate(self._numbers) if self._has_torque(number) is False]
+        return tuple(found)
+
+    @abstractmethod
+    def _has_torque(self, number: int) -> bool | None:
+        """Return the state of a servo's torque switch; None where it does not answer."""
+
     def _heard(self, reading: Reading) -> Reading:
         """Keep a reading as the last; a motor that holds and has jumped by a turn or so is at fault from then on.
 

@@ -20,7 +20,7 @@ WORDS = {
     "deaf": ("has not answered",),
     "stuck": ("does not follow",),
     "hot": ("too hot",),
-    "again": ("lost power", "does not follow", "slack or broken"),  # its torque is off, and no cable is felt
+    "again": ("lost power",),
     "unplugged": ("is gone",),
     "host dies": ("",),
     "host sleeps": ("no command for",),

@@ -104,7 +104,7 @@ def test_the_guard_names_board_and_cause_of_a_servo_that_lost_power_within_one_t
     goal = np.full(rig.count, 0.015)
     rig.go(goal, 1.0, speed=0.06)
     rig.chains[1].servos[0].begin_anew()
-    with pytest.raises(HydrostatError, match=r"\(board 2\): cable slack or broken, or its motor lost power"):
+    with pytest.raises(HydrostatError, match=r"the motor of winch \d \(board 2\) lost power and restarted"):
         rig.go(goal, 3.0, speed=0.06)
 
 
