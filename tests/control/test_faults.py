@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from fault_campaign import HARD, Campaign
+from several_boards import BoardsCampaign
 
 from hydrostat.control import bus_link
 from hydrostat.control.bus_link import BusLink
@@ -23,6 +24,17 @@ def test_ten_thousand_faults_leave_motors_within_limits_standing_in_time_and_tol
         campaign.run()
     assert not campaign.wrong
     assert min(campaign.count[kind] for kind in HARD) > 3
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", [Campaign, BoardsCampaign])
+def test_seeds_that_no_test_knows(kind: type[Campaign]) -> None:
+    """Two hundred faults of another seed each time, which is told on failure."""
+    seed = int(np.random.SeedSequence().generate_state(1)[0])
+    campaign = kind(np.random.default_rng(seed), seconds=2.0, share=0.25)
+    while campaign.injected < 200:
+        campaign.run()
+    assert not campaign.wrong, f"seed {seed}"
 
 
 def broken(monkeypatch: pytest.MonkeyPatch, bug: str) -> None:
