@@ -144,7 +144,7 @@ NEEDS = {"learn": "torch", "train": "stable_baselines3"}
 """Packages of extras without which a command is left out."""
 
 SIGNALS = (signal.SIGTERM, signal.SIGKILL, signal.SIGHUP, signal.SIGINT)
-PARTIAL = ("design", "sample", "train")
+PARTIAL = ("design", "pose", "sample", "train")
 """Commands whose results come one after another: of the others all files are there, or none."""
 
 
