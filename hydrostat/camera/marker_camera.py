@@ -3,6 +3,7 @@
 import threading
 import time
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
@@ -41,8 +42,17 @@ class CameraFrames:
     """Frames of a camera of this computer, by OpenCV."""
 
     def __init__(self, name: str) -> None:
-        """Open a camera by its number, device or address (HydrostatError: it gives no pictures)."""
+        """Open a camera by its number, device or address.
+
+        Raises:
+            InputError: no such number.
+            HydrostatError: it gives no pictures.
+        """
         cv2 = load_opencv()
+        if name.isdecimal() and len(name) > 2:
+            raise InputError(f"--camera {name}: must be the number of a camera, 0 to 99, its device or its address")
+        with suppress(AttributeError):  # its own lines would stand before ours
+            cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)
         self._gray = cv2.COLOR_BGR2GRAY
         self._cv2, self._camera = cv2, cv2.VideoCapture(int(name) if name.isdecimal() else name)
         self._camera.set(cv2.CAP_PROP_BUFFERSIZE, 1)
@@ -173,6 +183,12 @@ class MarkerCamera:
         self._frames.close()
 
     def _run(self) -> None:
+        try:
+            self._watch()
+        except Exception as error:  # noqa: BLE001 - whoever plays is told, whatever it was
+            self.trouble = f"the camera fails: {error!r:.80}"
+
+    def _watch(self) -> None:
         while self._is_open:
             pixels = self._frames.read()
             now = self._clock()

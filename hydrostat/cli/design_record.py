@@ -28,7 +28,7 @@ def write_record(
     record: "SearchRecord", network: "Network", out: Path, robot: "Robot", request: "DesignRequest"
 ) -> None:
     """Write the steps of a search that was stopped next to its results; remove those of one that is complete."""
-    if not network.complete and record.steps:
+    if not network.complete and (record.steps or record.known):
         record.write(out / _FILE, robot, request)
         print(f"To continue the search, run the same command with --resume ({out / _FILE})")
     elif network.complete:

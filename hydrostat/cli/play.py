@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from hydrostat.camera import MarkerCamera, PhotoOptions
     from hydrostat.control import LostAction, MarkerFeedback, Motors, Player
     from hydrostat.robot import Robot
-    from hydrostat.simulation import ContractionProfile
+    from hydrostat.simulation import ContractionProfile, ProfileTable
 
 SHOWN, LISTED = 0.1, 2.0  # time from one word on the progress to the next [s]: on a terminal, and where lines are kept
 
@@ -85,6 +85,8 @@ def play(
     fastest = control.FASTEST if port is None else control.LinkLimits().speed
     motors = control.Motors(loaded.winches, control.SimulatedLink(np.zeros(len(loaded.winches))), fastest=fastest)
     motors.check(table, speed=speed)  # before anything turns
+    if port is not None:
+        _check_corrected(motors, control.correct_table(table, folder_of(robot), loaded), speed)
     pulls = None if port is None else control.tensions_along(loaded, table.profile)
     with one_interrupt(""), _open_camera(wishes, loaded, table.profile, kind) as seen:  # arming turns motors, too
         if port is not None and pulls is not None:
@@ -101,6 +103,14 @@ def play(
         if seen is not None:
             _say(kind, seen.result())
     _say(kind, f"finished; motors holding at {_places(motors)}")
+
+
+def _check_corrected(motors: "Motors", table: "ProfileTable", speed: float) -> None:
+    """Refuse a table that motors cannot play once correction.json has changed it."""
+    try:
+        motors.check(table, speed=speed)
+    except InputError as error:
+        raise InputError(f"{error}, as correction.json corrects it") from None
 
 
 @dataclass(frozen=True, kw_only=True)

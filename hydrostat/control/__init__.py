@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from hydrostat.control.bus import Bus, Port, steady
     from hydrostat.control.bus_link import BusLink, LinkLimits, LinkState
     from hydrostat.control.calibration import CALIBRATION, EMULATED_CALIBRATION, Calibration, WinchMotor
+    from hydrostat.control.corrected_link import correct_table
     from hydrostat.control.dynamixel_bus import GOAL, TICK, DynamixelBus
     from hydrostat.control.emulated_feetech import EmulatedLine
     from hydrostat.control.emulated_servos import EmulatedChain, EmulatedServo, LiveChain
@@ -65,6 +66,7 @@ __all__ = [
     "build_images",
     "check_port",
     "check_ports",
+    "correct_table",
     "find_cable_zeros",
     "flash",
     "flash_command",

@@ -256,6 +256,7 @@ class BusLink(Link):
             radii = self._calibration.radii(self._places)
             words = self.guard.fault(self._places, self._taking(reading), radii, now)
         if words:
+            self._bus.halt()  # first: to ask takes longer where one is silent
             lost = next((self._names[index] for index in self._bus.find_restarted()), None)
             restarted = f"the motor of {lost} lost power and restarted: its torque is off. Check its plug and cable"
             raise HydrostatError(words if lost is None else restarted)

@@ -1,8 +1,21 @@
-"""`CorrectedLink`: motors that are commanded by the contractions of a model that measurements have corrected."""
+"""`CorrectedLink`: motors that are commanded by contractions of a model that measurements have corrected."""
+
+from dataclasses import replace
+from pathlib import Path
 
 from hydrostat.arrays import Vector
 from hydrostat.control.link import Link
 from hydrostat.identification import ContractionMap
+from hydrostat.robot import Robot
+from hydrostat.simulation import ProfileTable
+
+
+def correct_table(table: ProfileTable, folder: Path, robot: Robot) -> ProfileTable:
+    """Table of what motors are told for a table of contractions, by the correction.json of a robot folder, if any."""
+    correction = ContractionMap.read(folder, robot)
+    if correction is None:
+        return table
+    return replace(table, profile=replace(table.profile, values=correction.command(table.profile.values)))
 
 
 class CorrectedLink(Link):

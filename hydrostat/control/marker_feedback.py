@@ -4,6 +4,7 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import pairwise
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -36,8 +37,11 @@ FADE = 1.0
 SETTLE = 1.0
 """Time for which the last pose is still corrected [s]."""
 
-POSES = 150
-"""Equilibria along a profile, at most, beyond those of its rows."""
+SPACING = 0.02
+"""Largest change of a contraction from one equilibrium along a profile to the next, as a share of the travel."""
+
+POSES = 4000
+"""Largest number of equilibria along a profile."""
 
 
 class LostAction(StrEnum):
@@ -88,14 +92,13 @@ class MarkerPath:
         """Simulate the poses of a profile.
 
         Raises:
-            InputError: a robot without markers, or with drives.
+            InputError: a robot without markers, or with drives; a profile with too many equilibria.
             HydrostatError: a pose without equilibrium.
         """
         if not robot.markers:
             raise InputError(f"{robot.name}: no [[marker]] in robot.toml. Add one for each tag.")
         PinDrive.require_none(robot.drives, "corrections")
-        rows = profile.times[np.linspace(0, len(profile.times) - 1, min(len(profile.times), POSES)).astype(int)]
-        times = np.unique([0.0, *rows, *np.linspace(0.0, profile.times[-1], POSES // 2)])
+        times = _path_times(robot, profile)
         simulation, pose, places, jacobians = Simulation(robot), None, [], []
         for time in times.tolist():
             pose = simulation.solve(profile.at(time), start=pose, strict=False)
@@ -115,6 +118,27 @@ class MarkerPath:
         share = float(np.clip((time - self.times[place]) / length, 0.0, 1.0)) if length > 0 else 0.0
         places, slopes = ((1 - share) * each[place] + share * each[after] for each in (self.places, self.jacobians))
         return places, slopes
+
+
+def _path_times(robot: Robot, profile: ContractionProfile) -> Vector:
+    """Times between which no contraction changes by more than `SPACING` (InputError: there are too many)."""
+    travel = np.array([winch.travel or np.inf for winch in robot.winches])
+    fine, step = [0.0], 0.5 * SPACING * travel
+    values = np.vstack([profile.at(0.0), profile.values])
+    for start, end, one, other in zip([0.0, *profile.times], profile.times, values, values[1:], strict=False):
+        count = int(np.ceil((np.abs(other - one) / step).max(initial=1.0))) if end > start else 0
+        fine.extend(np.linspace(start, end, count + 1)[1:].tolist())
+    times, last = [0.0], values[0]
+    for time, after in pairwise(fine):
+        if (np.abs(profile.at(after) - last) > 2 * step).any():
+            times.append(time)
+            last = profile.at(time)
+    times += [fine[-1]] * (fine[-1] > times[-1])
+    if len(times) > POSES:
+        raise InputError(
+            f"--camera: the table needs {len(times)} simulated poses, {POSES} at most. Play a shorter one, repeated."
+        )
+    return np.array(times)
 
 
 @dataclass(frozen=True)

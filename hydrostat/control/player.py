@@ -120,7 +120,8 @@ class Player:
                 self.advance(clock(), seconds)
                 drive(corrected())
                 wait(TICK)
-            until = clock() + (0.0 if feedback is None else feedback.settle)
+            settles = feedback is not None and self.time >= seconds  # not where it was told to stop
+            until = clock() + (feedback.settle if feedback is not None and settles else 0.0)
             while clock() < until:
                 drive(corrected())
                 wait(TICK)

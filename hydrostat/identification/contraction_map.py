@@ -36,6 +36,12 @@ PENALTIES = tuple(10.0**power for power in range(-4, 3))
 ROUNDS = 20
 """Steps of the inverse of a map."""
 
+INEXACT = 1e-3
+"""Largest error of the inverse, as a share of the travel."""
+
+SAME = 5e-4
+"""Difference of lengths below which travel and cables are those of the robot that was measured [m]."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ContractionMap:
@@ -44,6 +50,7 @@ class ContractionMap:
     Attributes:
         winches: names of the winches.
         travel: travel of each [m].
+        lengths: rest length of each cable of the robot that was measured [m].
         weights: change of each contraction, as a share of its travel, by `features` of all.
         before: root mean square distance of held-out markers without the map [m].
         after: the same with it [m].
@@ -51,6 +58,7 @@ class ContractionMap:
 
     winches: tuple[str, ...]
     travel: Vector
+    lengths: Vector
     weights: Float[np.ndarray, "features winches"]
     before: float
     after: float
@@ -67,12 +75,20 @@ class ContractionMap:
             commands = contractions - (self.effective(commands) - commands)
         return commands
 
+    @property
+    def is_invertible(self) -> bool:
+        """True if `command` inverts `effective` within the travel, tried at 500 random contractions."""
+        shares = np.random.default_rng(0).uniform(size=(500, len(self.travel)))
+        missed = self.effective(self.command(shares * self.travel)) / self.travel - shares
+        return bool(np.abs(missed).max(initial=0.0) < INEXACT)
+
     def text(self) -> bytes:
         """Text of its file."""
         told = {
             "about": "Correction of contractions by hydrostat identify.",
             "winches": list(self.winches),
             "travel_m": self.travel.tolist(),
+            "cable_lengths_m": self.lengths.tolist(),
             "weights": self.weights.tolist(),
             "held_out_before_m": self.before,
             "held_out_after_m": self.after,
@@ -89,7 +105,7 @@ class ContractionMap:
         try:
             told = json.loads(read_stranger(file, most=1_000_000))
             winches, weights = tuple(told["winches"]), np.array(told["weights"], dtype=float)
-            travel = np.array(told["travel_m"], dtype=float)
+            travel, lengths = (np.array(told[name], dtype=float) for name in ("travel_m", "cable_lengths_m"))
             errors = float(told["held_out_before_m"]), float(told["held_out_after_m"])
         except (ValueError, KeyError, TypeError, RecursionError):
             raise InputError(f"{file}: is no correction. Remove it, or run `hydrostat identify` again.") from None
@@ -101,7 +117,21 @@ class ContractionMap:
             raise InputError(f"{file}: is no correction. Remove it, or run `hydrostat identify` again.")
         if not (travel > 0).all():
             raise InputError(f"{file}: travel_m must be above 0. Remove it, or run `hydrostat identify` again.")
-        return cls(winches=winches, travel=travel, weights=weights, before=errors[0], after=errors[1])
+        own = np.array([winch.travel for winch in robot.winches]), _cable_lengths(robot)
+        for one, other in zip((travel, lengths), own, strict=True):
+            if one.shape != other.shape or not (np.abs(one - other) < SAME).all():
+                raise InputError(
+                    f"{file}: is for other cables or travel. Remove it, or run `hydrostat identify` again."
+                )
+        found = cls(winches=winches, travel=travel, lengths=lengths, weights=weights, before=errors[0], after=errors[1])
+        if not found.is_invertible:
+            raise InputError(f"{file}: cannot be inverted. Remove it, or run `hydrostat identify` again.")
+        return found
+
+
+def _cable_lengths(robot: Robot) -> Vector:
+    """Rest length of each cable [m]."""
+    return np.array([cable.length for cable in robot.cables])
 
 
 def features(shares: Float[np.ndarray, "... winches"]) -> Float[np.ndarray, "... features"]:
@@ -122,7 +152,7 @@ def fit_contraction_map(fitted: FittedModel, robot: Robot, measurements: Measure
         measurements: rows of commands and places.
 
     Returns:
-        The map; None with fewer than ten rows, or if it does not win.
+        The map; None with fewer than ten rows, if it does not win, or if it cannot be inverted.
     """
     travel = np.array([winch.travel for winch in robot.winches])
     if len(measurements.commands) < LEAST or not len(travel) or not (travel > 0).all():
@@ -148,7 +178,15 @@ def fit_contraction_map(fitted: FittedModel, robot: Robot, measurements: Measure
         return None
     weights = _fit(rows, known, _choose_penalty(rows, known)).reshape(-1, len(travel))
     names = tuple(winch.name for winch in robot.winches)
-    return ContractionMap(winches=names, travel=travel, weights=weights, before=lengths[0], after=lengths[1])
+    found = ContractionMap(
+        winches=names,
+        travel=travel,
+        lengths=_cable_lengths(robot),
+        weights=weights,
+        before=lengths[0],
+        after=lengths[1],
+    )
+    return found if found.is_invertible else None
 
 
 Rows = list[tuple[np.ndarray, np.ndarray]]

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from hydrostat.mechanics.fibre import FibreEnergy
     from hydrostat.mechanics.foam_solid import FoamLaw, FoamSolid
     from hydrostat.mechanics.inertia import SCHEMES, InertiaEnergy
-    from hydrostat.mechanics.inversion_barrier import InversionBarrier
+    from hydrostat.mechanics.inversion_barrier import InversionBarrier, pushed_elements
     from hydrostat.mechanics.moment_energy import MomentEnergy
     from hydrostat.mechanics.neo_hookean import NeoHookean
     from hydrostat.mechanics.newton import minimize
@@ -87,6 +87,7 @@ __all__ = [
     "WeightEnergy",
     "grow_patches",
     "minimize",
+    "pushed_elements",
     "rod_points",
     "solve_thickening",
 ]

@@ -162,6 +162,11 @@ class InversionBarrier(Energy):
         return chosen, blocks
 
 
+def pushed_elements(rest: Nodes, elements: QuadraticElements, nodes: Nodes) -> Int[np.ndarray, " pushed"]:
+    """Return the quadratic elements that a barrier pushes at `nodes` [m], by their numbers."""
+    return np.flatnonzero((_coefficients(nodes[elements]) / _coefficients(rest[elements]) < FREE).any(axis=1))
+
+
 class _Low(NamedTuple):
     """Coefficients below `FREE`: their element, place in it, value c, and ln(c / c0)."""
 

@@ -9,11 +9,12 @@ import numpy as np
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh, find_crossings
-from hydrostat.mechanics import NewtonResult
+from hydrostat.mechanics import NewtonResult, pushed_elements
 from hydrostat.painters import draw_record, html_repr
 from hydrostat.robot import PinDrive, Robot
 from hydrostat.simulation.mesh_error import WORTH_A_NOTE, estimate_stiffening
 from hydrostat.simulation.strain import find_overstrain, node_strains, node_stresses
+from hydrostat.units import plural
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -63,7 +64,19 @@ class Equilibrium:
         if self.result.converged and not self.result.stable:
             told.append("unstable equilibrium (saddle point)")
         told.append(str(find_crossings(self.robot.body.mesh, self.nodes)))
+        told.append(self._squeezed())
         return (*filter(None, told), *([self.overstrain] if self.overstrain else []))
+
+    def _squeezed(self) -> str:
+        """Warning of quadratic elements that are held open by the barrier against inversion."""
+        mesh = self.robot.body.mesh
+        pushed = [] if mesh.quadratic is None else pushed_elements(mesh.nodes, mesh.quadratic, self.nodes)
+        if not len(pushed):
+            return ""
+        return (
+            f"{plural(len(pushed), 'element')} squeezed to less than 30 % at a corner and kept from inverting by extra "
+            "forces: tensions are too high. Contract less, or take smaller elements"
+        )
 
     @property
     def overstrain(self) -> str:

@@ -1,6 +1,6 @@
 """Contractions corrected by markers. Oracle: a hidden robot, on emulated servos in their own time."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -105,7 +105,7 @@ class Bench:
             [w.spool_radius * (s.angle - 1.0) for w, s in zip(self.robot.winches, self.servos, strict=True)]
         )
 
-    def _markers(self) -> dict[str, np.ndarray]:
+    def _markers(self) -> Mapping[str, np.ndarray]:
         self._pose = self.hidden.solve(GAINS * self.places, start=self._pose)
         return self._pose.markers
 
@@ -147,7 +147,8 @@ def test_a_hidden_material_is_corrected() -> None:
 def test_slopes_of_the_path_are_those_of_whole_solves() -> None:
     simulation, path = Simulation(strip()), MarkerPath.along(strip(), PROFILE)
     index, step = int(np.searchsorted(path.times, 1.0)), np.array([1e-6, 0.0])
-    more, less = (simulation.solve(PROFILE.at(1.0) + sign * step).markers for sign in (1, -1))
+    at = PROFILE.at(float(path.times[index]))
+    more, less = (simulation.solve(at + sign * step).markers for sign in (1, -1))
     slope = [(more[name] - less[name]) / 2e-6 for name in more]
     assert path.jacobians[index][:, :, 0] == pytest.approx(np.array(slope), rel=1e-3, abs=1e-4)
 
@@ -189,3 +190,72 @@ def test_wrong_markers_move_nothing_far() -> None:
 def test_a_robot_without_markers_is_refused() -> None:
     with pytest.raises(InputError, match="Add one for each tag"):
         MarkerPath.along(replace(strip(), markers=()), PROFILE)
+
+
+def swing(rows: int) -> ContractionProfile:
+    """One winch to and fro, in seconds."""
+    return ContractionProfile(times=np.arange(float(rows)), values=np.outer(np.arange(rows) % 2, [0.01, 0.0]))
+
+
+def test_a_long_path_is_as_fine_as_a_short_one() -> None:
+    """Oracle: markers of the equilibrium between two poses of the path. One of too many poses is refused at once."""
+    simulation, profile = Simulation(strip()), swing(12)
+    path = MarkerPath.along(strip(), profile)
+    for time in (0.31, 5.77, 10.5):
+        at = np.array(list(simulation.solve(profile.at(time)).markers.values()))
+        assert path.at(time)[0] == pytest.approx(at, abs=5e-5)
+    with pytest.raises(InputError, match="Play a shorter one"):
+        MarkerPath.along(strip(), swing(1200))
+
+
+class Sights:
+    """A camera whose newest sight is set by hand."""
+
+    def __init__(self) -> None:
+        self.newest: MarkerSight | None = None
+
+    def look(self) -> MarkerSight | None:
+        return self.newest
+
+    def show(self, time: float, *place: float) -> None:
+        self.newest = MarkerSight(time, {"tip": np.array(place)})
+
+
+def sighted() -> tuple[MarkerFeedback, Sights]:
+    """Feedback on one marker that is simulated to go 0.01 m/s in x; each winch moves it along one axis."""
+    robot = strip()
+    path = MarkerPath(
+        times=np.array([0.0, 10.0]),
+        places=np.array([[[0.0, 0.0]], [[0.1, 0.0]]]),
+        jacobians=np.tile(np.eye(2), (2, 1, 1, 1)),
+    )
+    camera = Sights()
+    return MarkerFeedback(replace(robot, markers=robot.markers[2:]), path, camera, lag=0.125), camera
+
+
+def test_a_perfect_robot_seen_late_is_not_corrected() -> None:
+    feedback, camera = sighted()
+    for now in np.arange(0.0, 3.0, 0.0625).tolist():
+        camera.show(now, 0.01 * max(now - 0.125, 0.0), 0.0)
+        assert feedback.correct(np.full(2, 0.01), now, now) == pytest.approx(np.full(2, 0.01), abs=1e-6)
+    assert max(feedback.errors) < 1e-6
+
+
+def test_a_correction_is_slow_and_unspoiled_by_what_is_no_number() -> None:
+    feedback, camera = sighted()
+    last = np.full(2, 0.01)
+    for now in np.arange(0.0, 2.0, 0.0625).tolist():
+        camera.show(now, np.nan, 0.0) if now < 1.0 else camera.show(now, 0.01 * (now - 0.125), -0.02)
+        command = feedback.correct(np.full(2, 0.01), now, now)
+        assert np.abs(command - last).max() <= 0.02 * 0.0625 + 1e-9
+        assert now >= 1.0 or (command == 0.01).all()
+        last = command
+    assert last[1] > 0.0125
+
+
+def test_a_correction_does_not_wind_up_at_a_limit() -> None:
+    feedback, camera = sighted()
+    for now in np.arange(0.0, 2.0, 0.0625).tolist():
+        camera.show(now, 0.01 * max(now - 0.125, 0.0), -0.02)
+        assert feedback.correct(np.array([0.01, 0.03]), now, now)[1] == pytest.approx(0.03)
+    assert feedback.correct(np.array([0.01, 0.02]), 2.0, 2.0)[1] == pytest.approx(0.02, abs=0.02 * 0.0625 + 1e-9)

@@ -71,7 +71,18 @@ def test_the_record_of_another_search_is_refused(tmp_path: Path) -> None:
         record.take("refined")
 
 
-@pytest.mark.parametrize("content", ["", "{", "[]", '{"steps": 3}', '{"steps": [{"step": 1}]}', '{"steps": [3]}'])
+@pytest.mark.parametrize(
+    "content",
+    [
+        "",
+        "{",
+        "[]",
+        '{"steps": 3}',
+        '{"steps": [{"step": 1}]}',
+        '{"steps": [3]}',
+        '{"steps": [{"step": "a", "tried": 1}]}',
+    ],
+)
 def test_a_file_that_is_no_record_is_refused(content: str, tmp_path: Path) -> None:
     file = tmp_path / "search.json"
     file.write_text(content)
@@ -87,3 +98,11 @@ def test_a_network_that_cannot_be_read_is_one_line(tmp_path: Path, unchecked: No
     record = SearchRecord.read(file, ROBOT, REQUEST)
     with pytest.raises(InputError, match="a network cannot be read"):
         search(record)
+
+
+def test_a_search_that_is_stopped_while_it_resumes_forgets_nothing(tmp_path: Path) -> None:
+    known = [{"step": str(number), "tried": 1, "networks": None} for number in range(5)]
+    record = SearchRecord(known)
+    record.add(known[0])
+    record.write(tmp_path / "search.json", ROBOT, REQUEST)
+    assert SearchRecord.read(tmp_path / "search.json", ROBOT, REQUEST).known == tuple(known)

@@ -71,10 +71,10 @@ def test_noise_alone_is_not_corrected() -> None:
     ("text", "words"),
     [
         ("[", "is no correction"),
-        ('{"winches": ["left"], "travel_m": [1], "weights": [[0], [0]], "held_out_before_m": 1, '
+        ('{"winches": ["left"], "travel_m": [1], "cable_lengths_m": [], "weights": [[0], [0]], "held_out_before_m": 1, '
          '"held_out_after_m": 1}', "is for the winches left"),
-        ('{"winches": ["up", "down"], "travel_m": [1, 1], "weights": [[0], [0]], "held_out_before_m": 1, '
-         '"held_out_after_m": 1}', "is no correction"),
+        ('{"winches": ["up", "down"], "travel_m": [1, 1], "cable_lengths_m": [], "weights": [[0], [0]], '
+         '"held_out_before_m": 1, "held_out_after_m": 1}', "is no correction"),
     ],
 )  # fmt: skip
 def test_other_files_are_refused(tmp_path: Path, text: str, words: str) -> None:
@@ -87,7 +87,29 @@ def test_other_files_are_refused(tmp_path: Path, text: str, words: str) -> None:
 def test_changes_are_bounded() -> None:
     count = len(features(np.zeros(2)))
     wild = ContractionMap(
-        winches=("up", "down"), travel=np.full(2, 0.02), weights=np.full((count, 2), 50.0), before=1.0, after=1.0
+        winches=("up", "down"),
+        travel=np.full(2, 0.02),
+        lengths=np.zeros(0),
+        weights=np.full((count, 2), 50.0),
+        before=1.0,
+        after=1.0,
     )
     assert wild.effective(np.full(2, 0.01)) == pytest.approx(0.01 + 0.2 * 0.02)
     assert replace(wild, weights=0 * wild.weights).command(np.full(2, 0.01)) == pytest.approx(0.01)
+
+
+def test_a_map_of_another_robot_or_without_inverse_is_refused(tmp_path: Path) -> None:
+    robot, count = strip(), len(features(np.zeros(2)))
+    lengths, weights = np.array([cable.length for cable in robot.cables]), np.zeros((count, 2))
+    made = ContractionMap(
+        winches=("up", "down"), travel=np.full(2, 0.02), lengths=lengths, weights=weights, before=1.0, after=0.5
+    )
+    (tmp_path / "correction.json").write_bytes(made.text())
+    assert ContractionMap.read(tmp_path, robot) is not None
+    (tmp_path / "correction.json").write_bytes(replace(made, lengths=lengths + 0.001).text())
+    with pytest.raises(InputError, match="is for other cables or travel"):
+        ContractionMap.read(tmp_path, robot)
+    weights[0] = 4.0  # fixed-point steps converge only where the change rises less than the command
+    (tmp_path / "correction.json").write_bytes(replace(made, weights=weights).text())
+    with pytest.raises(InputError, match="cannot be inverted"):
+        ContractionMap.read(tmp_path, robot)

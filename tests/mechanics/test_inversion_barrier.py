@@ -4,11 +4,13 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from builders import gallery_robot
 from states import CONTROLS, rough_mesh
 
 from hydrostat.mechanics import InversionBarrier
 from hydrostat.mechanics.inversion_barrier import FREE
 from hydrostat.mechanics.quadratic_solid import shape_slopes
+from hydrostat.simulation import Simulation
 from hydrostat.testing import check_energy
 
 NONE = np.zeros(CONTROLS)
@@ -86,3 +88,13 @@ def test_work_by_moduli() -> None:
     works = energy.parameter_work(nodes, field)
     assert works["mu"][1] == pytest.approx((work(7010) - work(6990)) / 20, rel=1e-8)
     assert works["thickness"][0] == pytest.approx(work(7e3), rel=1e-12)
+
+
+def test_a_pose_that_the_barrier_holds_open_is_warned_of() -> None:
+    """Full extension squeezes a corner of the finger to less than 30 %. Oracle: the energy of the barrier itself."""
+    simulation = Simulation(gallery_robot("finger"))
+    barrier = next(energy for energy in simulation.assembly.energies if isinstance(energy, InversionBarrier))
+    for contraction, is_pushed in ((0.004, False), (0.014, True)):
+        pose = simulation.solve({"extend": contraction})
+        assert (barrier.value(pose.nodes, pose.controls) > 0) is is_pushed
+        assert any("kept from inverting" in line for line in pose.warnings) is is_pushed

@@ -107,6 +107,8 @@ class Bench:
             if found is None:
                 left = items[number:]
                 break
+            if len(found) != 1:
+                raise InputError(f"record of the search: {words}: {len(found)} networks instead of 1")
             yield found[0]
         else:
             return

@@ -62,7 +62,8 @@ class SearchRecord:
 
     def write(self, file: Path, robot: Robot, request: DesignRequest) -> None:
         """Write it as JSON, with the robot and the request (InputError: it cannot be written)."""
-        steps = ",\n".join(json.dumps(step, default=np.ndarray.tolist) for step in self.steps)
+        every = [*self.steps, *self.known[len(self.steps) :]]  # a search that stops early forgets no known step
+        steps = ",\n".join(json.dumps(step, default=np.ndarray.tolist) for step in every)
         head = json.dumps(_identity(robot, request), indent=1)[:-2]
         replace_file(file, f'{head},\n "steps": [\n{steps}\n]\n}}\n'.encode())
 
@@ -74,7 +75,12 @@ class SearchRecord:
         try:
             read = json.loads(content)
             steps = read["steps"]
-            known = all(isinstance(step["step"], str) and isinstance(step["tried"], int) for step in steps)
+            known = all(
+                isinstance(step["step"], str)
+                and isinstance(step["tried"], int)
+                and isinstance(step["networks"], list | None)
+                for step in steps
+            )
         except (ValueError, TypeError, LookupError, RecursionError):
             read, steps, known = {}, [], False
         if not known:
