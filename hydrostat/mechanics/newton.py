@@ -68,6 +68,7 @@ class _EnergyDescent:
         left: residual as a share of the largest applied force.
         fast: True if the last step reduced the residual strongly.
         saddles: number of saddles left so far.
+        is_first: True until a Hessian is factorized.
         last: Hessian of the last step, if nothing was removed from it.
         sharp: True if that step began close enough to the end that `last` serves as the Hessian there.
         error: estimated distance of the last iterate from equilibrium [m].
@@ -86,7 +87,7 @@ class _EnergyDescent:
         self.assembly, self.controls = assembly, controls
         self.noise, self.options, self.warp = round_off, options, warp
         self.projection, self.damping = Projection(), 0.0
-        self.whole = self.fast = False
+        self.whole, self.fast, self.is_first = False, False, True
         self.left = np.inf
         self.saddles = 0
         self.last: Stiffness | None = None
@@ -224,12 +225,11 @@ class _EnergyDescent:
         return stiffness if stiffness.definite else None
 
     def _definite_hessian(self, place: _Iterate) -> Stiffness | None:
-        """Hessian, or a definite matrix in its place where it is not definite.
-
-        None where nothing helps: the Hessian is not finite, or 0.
-        """
+        """Hessian, or a definite matrix in its place; None where nothing helps: it is not finite, or 0."""
         first = place.assembly.projects_first
-        self.projection = Projection() if self.fast else self.projection.with_smaller_shares(projects_first=first)
+        left, self.is_first = self.left if self.is_first else 0.0, False
+        begin = Projection() if self.fast else self.projection
+        self.projection = begin.with_smaller_shares(projects_first=first, left=left)
         while True:
             shares = self.projection
             stiffness = place.assembly.stiffness(

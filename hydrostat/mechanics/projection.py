@@ -32,8 +32,14 @@ class Projection:
         """True if nothing negative is left."""
         return self.late == 1.0
 
-    def with_smaller_shares(self, *, projects_first: bool) -> "Projection":
-        """Return smaller shares, to begin the next step with."""
+    def with_smaller_shares(self, *, projects_first: bool, left: float = 0.0) -> "Projection":
+        """Return smaller shares, to begin the next step with.
+
+        Of a first Hessian `left` is the residual, as a share of the largest applied force. Far from equilibrium, as
+        after the prediction, it is seldom definite with small shares, and a step with all of them is as good.
+        """
+        if left > _FAR and not projects_first:
+            return Projection(late=1.0)
         if self.late > _LEAST:
             return Projection(float(projects_first), self.late / 16)
         return Projection(self.early if self.raised and projects_first else 0.0)
@@ -51,6 +57,9 @@ class Projection:
 
 _MANY = 7
 """From this number of negative eigenvalues on, contact's share alone or 1/8 of the others' seldom suffice."""
+
+_FAR = 0.3
+"""With a larger residual all that is negative is taken out of a first Hessian."""
 
 _LEAST = 1 / 32
 """Below this share of what is negative, the full Hessian is tried."""
