@@ -113,7 +113,7 @@ class Bench:
         """Newest frame that has arrived."""
         if self.chain.now >= self._framed + FRAME:
             self._framed = self.chain.now
-            if seen := self._see(self._markers(), self.player.time):
+            if seen := self._see(dict(self._markers()), self.player.time):
                 self._sights.append(MarkerSight(self.chain.now + LAG, seen))
         return next((each for each in reversed(self._sights) if each.time <= self.chain.now), None)
 
