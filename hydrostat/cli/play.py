@@ -48,7 +48,7 @@ def play(
         str, typer.Option(metavar="TIME", help="Time from a command until a frame with its effect arrives.")
     ] = "100ms",
     lost: Annotated[
-        str, typer.Option(metavar="hold|open", help="Without a marker in sight, hold or go on without correction.")
+        str, typer.Option(metavar="hold|continue", help="Without a marker in sight, hold or go on uncorrected.")
     ] = "hold",
     tag: TagSide = "15mm",
     height: TagHeight = None,

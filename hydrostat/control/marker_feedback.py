@@ -48,7 +48,7 @@ class LostAction(StrEnum):
     """Reaction to a camera that sees no marker."""
 
     HOLD = "hold"
-    OPEN = "open"
+    CONTINUE = "continue"
 
 
 @dataclass(frozen=True, eq=False)

@@ -119,7 +119,7 @@ class Bench:
 
     def play(self, lost: LostAction | None = LostAction.HOLD) -> float:
         """Play; returns the mean distance of the markers in truth from their simulated places at the end [m]."""
-        made = MarkerFeedback(self.robot, self.path, self, lag=LAG, lost=lost or LostAction.OPEN, log=self.log.append)
+        made = MarkerFeedback(self.robot, self.path, self, lag=LAG, lost=lost or LostAction.CONTINUE, log=self.log.append)
         self.feedback = made
         self.player.run(
             self.motors,
@@ -167,7 +167,7 @@ def test_a_lost_camera_holds_or_goes_on() -> None:
     assert any("motors hold until one is" in line for line in bench.log)
     assert np.ptp(bench.commands[-200:], axis=0).max() < 1e-9
     bench = Bench(see)
-    bench.play(LostAction.OPEN)
+    bench.play(LostAction.CONTINUE)
     assert any("going on without correction" in line for line in bench.log)
     assert bench.commands[-1] == pytest.approx(PROFILE.at(3.5), abs=2e-4)
 
@@ -176,10 +176,10 @@ def test_a_lost_camera_holds_or_goes_on() -> None:
 def test_wrong_markers_move_nothing_far() -> None:
     """Misread markers count for nothing; a constant error ends at the bound, within all limits."""
     bench = Bench(lambda places, _: {name: at + 0.1 for name, at in places.items()})
-    bench.play(LostAction.OPEN)
+    bench.play(LostAction.CONTINUE)
     assert np.abs(bench.commands[-1] - PROFILE.at(3.5)).max() < 1e-9
     bench = Bench(lambda places, _: {name: at + np.array([0.0, -0.03]) for name, at in places.items()})
-    bench.play(LostAction.OPEN)
+    bench.play(LostAction.CONTINUE)
     assert any("at its bound of 6 mm" in line for line in bench.log)
     corrections = np.array(bench.commands) - PROFILE.at(3.5)
     assert np.abs(corrections[-1]).max() <= 0.006 + 1e-9
