@@ -35,11 +35,14 @@ def write_results(network: "Network", folder: Path) -> None:
 
 def write_kit(network: "Network", folder: Path) -> "Kit":
     """The fabrication kit, in which what cannot be built well is told; its poses keep to the design's tension."""
-    from hydrostat.fabrication import KitOptions, write_kit
+    from hydrostat.camera import tags_pdf
+    from hydrostat.fabrication import KitOptions, build_kit
 
-    limits = network.constraints
+    limits, robot = network.constraints, network.robot
     options = KitOptions(force=True, tension=limits.tension_limit, torque=limits.torque)
-    return write_kit(network.robot, folder, options=options)
+    kit = build_kit(robot, options=options, added={"tags.pdf": tags_pdf(robot, options.paper)} if robot.markers else {})
+    kit.write(folder)
+    return kit
 
 
 def designed_tension(robot: "Robot", folder: Path) -> float | None:

@@ -35,8 +35,8 @@ def new(
         typer.Option(
             "--from",
             metavar="SOURCE",
-            help="Source: gallery:NAME, a drawing (SVG, DXF, PNG, JPG), a scan or CAD model (STL, OBJ, PLY, OFF, 3MF, "
-            "STEP), or a tetrahedral mesh (VTK, VTU, MSH).",
+            help="Source: gallery:NAME, drawing (SVG, DXF, PNG, JPG), scan or CAD model (STL, OBJ, PLY, OFF, 3MF, "
+            "STEP), or tetrahedral mesh (VTK, VTU, MSH).",
         ),
     ],
     size: Annotated[str | None, typer.Option(help="Length of the longest side, e.g. 190mm.")] = None,

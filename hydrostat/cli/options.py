@@ -324,6 +324,8 @@ def _split_value(option: str, text: str, form: str) -> tuple[str, str]:
     name, equals, value = (part.strip() for part in text.partition("="))
     if not equals:
         raise InputError(f'{option} {text}: missing "=". Write {form}.')
+    if "," in value and "=" in value:
+        raise InputError(f"{option} {text}: more than one value. Repeat {option} for each.")
     return name, value
 
 

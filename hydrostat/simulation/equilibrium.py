@@ -64,10 +64,10 @@ class Equilibrium:
         if self.result.converged and not self.result.stable:
             told.append("unstable equilibrium (saddle point)")
         told.append(str(find_crossings(self.robot.body.mesh, self.nodes)))
-        told.append(self._squeezed())
+        told.append(self._warn_of_corners())
         return (*filter(None, told), *([self.overstrain] if self.overstrain else []))
 
-    def _squeezed(self) -> str:
+    def _warn_of_corners(self) -> str:
         """Warning of quadratic elements that are held open by the barrier against inversion."""
         mesh = self.robot.body.mesh
         pushed = [] if mesh.quadratic is None else pushed_elements(mesh.nodes, mesh.quadratic, self.nodes)

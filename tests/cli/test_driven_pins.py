@@ -72,6 +72,7 @@ def test_the_angle_of_a_pose_is_printed(bar: Path, run: Run) -> None:
         ("leg=3deg", '--move leg=3deg: unknown drive "leg". Available: servo.'),
         ("servo=3mm", '--move servo=3mm: "mm" does not measure an angle'),
         ("servo", '--move servo: missing "=". Write DRIVE=VALUE'),
+        ("servo=1deg,other=2deg", "--move servo=1deg,other=2deg: more than one value. Repeat --move for each."),
     ],
 )
 def test_what_is_wrong_is_told_in_one_line(value: str, told: str, bar: Path, run: Run) -> None:

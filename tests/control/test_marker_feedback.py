@@ -119,7 +119,9 @@ class Bench:
 
     def play(self, lost: LostAction | None = LostAction.HOLD) -> float:
         """Play; returns the mean distance of the markers in truth from their simulated places at the end [m]."""
-        made = MarkerFeedback(self.robot, self.path, self, lag=LAG, lost=lost or LostAction.CONTINUE, log=self.log.append)
+        made = MarkerFeedback(
+            self.robot, self.path, self, lag=LAG, lost=lost or LostAction.CONTINUE, log=self.log.append
+        )
         self.feedback = made
         self.player.run(
             self.motors,
