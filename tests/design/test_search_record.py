@@ -16,7 +16,7 @@ ROBOT = strip_robot(columns=10, rows=3).with_network((), ())
 POSES = tuple(
     PoseTarget(name=name, targets={"tip": tip}) for name, tip in (("up", (0.18, 0.06)), ("down", (0.185, -0.05)))
 )
-QUICK = RouteOptions(starts=1, exchanges=2, polish=4, trials=2, steps=2, hops=6)
+QUICK = RouteOptions(starts=1, exchanges=1, polish=2, trials=2, steps=2, hops=6)
 REQUEST = DesignRequest(poses=POSES, winches=2, cables=3, options=QUICK)
 
 

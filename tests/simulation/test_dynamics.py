@@ -309,7 +309,7 @@ def test_a_step_that_fails_is_cut_in_two(viscous_strip: hs.Simulation) -> None:
     start = viscous_strip.motion_at_rest()
     whole = viscous_strip.step(start, {"up": 0.02}, 0.04)
     assert whole.result.iterations > 8
-    hasty = hs.Simulation(viscous_strip.robot, options=hs.NewtonOptions(iterations=5))
+    hasty = hs.Simulation(viscous_strip.robot, options=hs.NewtonOptions(iterations=4))
     with pytest.raises(hs.NotConvergedError, match="iteration limit"):
         hasty.step(start, {"up": 0.02}, 0.04, options=hs.StepOptions(halvings=0))
     cut = hasty.step(start, {"up": 0.02}, 0.04)
