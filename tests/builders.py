@@ -1,6 +1,7 @@
 """Small meshes and robots, made in code; robots of the gallery, read once."""
 
 import tomllib
+from collections.abc import Mapping, Sequence
 from functools import cache
 from itertools import permutations
 from typing import Any
@@ -93,6 +94,26 @@ def strip_robot(
             Cable(winch="down", points=tuple(lower)),
         ),
         markers=(Marker(name="tip", at=(0.2, 0.0)),),
+        poses={},
+    )
+
+
+def routed_strip(
+    routes: Mapping[str, Sequence[tuple[float, float]]],
+    *,
+    slack: float = 0.0,
+    gravity: tuple[float, float] | None = None,
+    **winch: float,
+) -> Robot:
+    """A coarse strip 200 x 50 mm on soft pins at its left end, with a cable for each winch, and three markers."""
+    return Robot(
+        name="strip",
+        body=mesh_body(strip_mesh(8, 2)),
+        pins=(Pin(box=((-0.001, -1.0), (0.001, 1.0)), stiffness=3e3),),
+        gravity=gravity,
+        winches=tuple(Winch(name=name, at=route[0], **winch) for name, route in routes.items()),
+        cables=tuple(Cable(winch=name, points=tuple(route), slack=slack) for name, route in routes.items()),
+        markers=tuple(Marker(name=name, at=(x, 0.0)) for name, x in (("root", 0.03), ("middle", 0.11), ("tip", 0.19))),
         poses={},
     )
 

@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from hydrostat.camera.marker_camera import CameraFrames, MarkerCamera
     from hydrostat.camera.measure_photos import PhotoMeasurements, PhotoOptions, measure_photos
     from hydrostat.camera.photo import Photo, read_colors
-    from hydrostat.camera.print_tags import tags_pdf
+    from hydrostat.camera.print_tags import tag_files, tags_pdf
     from hydrostat.camera.table_text import table_text
 
 __all__ = [
@@ -20,6 +20,7 @@ __all__ = [
     "measure_photos",
     "read_colors",
     "table_text",
+    "tag_files",
     "tags_pdf",
 ]
 

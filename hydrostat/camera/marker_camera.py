@@ -185,7 +185,7 @@ class MarkerCamera:
     def _run(self) -> None:
         try:
             self._watch()
-        except Exception as error:  # noqa: BLE001 - whoever plays is told, whatever it was
+        except Exception as error:  # noqa: BLE001 - the line about a lost marker ends with it
             self.trouble = f"the camera fails: {error!r:.80}"
 
     def _watch(self) -> None:

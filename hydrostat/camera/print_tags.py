@@ -1,4 +1,4 @@
-"""`tags_pdf`: pages to print: the sheets of the board, a tag for each marker, and where the tags go."""
+"""`tags_pdf`, `tag_files`: pages to print: the sheets of the board, a tag for each marker, and where the tags go."""
 
 import json
 import math
@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
+from hydrostat.arrays import Points
 from hydrostat.camera.tags import (
     CELLS,
     MARKER_SIDE,
@@ -18,7 +19,7 @@ from hydrostat.camera.tags import (
 )
 from hydrostat.errors import InputError
 from hydrostat.fabrication import PAPERS, Paper
-from hydrostat.robot import Robot
+from hydrostat.robot import Body, Robot
 from hydrostat.units import MILLIMETERS
 
 MARGIN = 12.0
@@ -55,6 +56,11 @@ def tags_pdf(robot: Robot, paper: Paper = Paper.A4, side: float = MARKER_SIDE) -
     import typst  # Imported here: a measurement sets no page.
 
     return typst.compile(tags_source(robot, paper, side).encode(), format="pdf", ignore_system_fonts=True)
+
+
+def tag_files(robot: Robot, paper: Paper) -> dict[str, bytes]:
+    """Pages of tags as files of a kit, by their path; none for a robot without markers."""
+    return {"tags.pdf": tags_pdf(robot, paper)} if robot.markers else {}
 
 
 def tags_source(robot: Robot, paper: Paper, side: float) -> str:
@@ -154,11 +160,9 @@ def _map_page(robot: Robot, side: float, paper: tuple[float, float]) -> str:
     def place(points: np.ndarray) -> np.ndarray:
         return corner + scale * (points - low) * [1, -1]
 
-    faces = place(mesh.nodes[:, axes])[mesh.boundary]
-    if mesh.dim == 3:  # those on one side alone, as the others would cancel their fill
-        one, other = faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0]
-        faces = faces[one[:, 0] * other[:, 1] > one[:, 1] * other[:, 0]]
-    drawn = "".join("M" + "L".join(f"{x:.3f} {y:.3f}" for x, y in face) for face in faces)
+    drawn = "".join(
+        "M" + "L".join(f"{x:.3f} {y:.3f}" for x, y in place(line)) for line in _body_lines(robot.body, axes)
+    )
     look = 'fill="#ddd" stroke="#ddd"' if mesh.dim == 3 else 'fill="none" stroke="#888"'
     half, lines, labels = scale * side / 2, [], list[tuple[float, float]]()
     shapes = [f'<path d="{drawn}" {look} stroke-width="0.4" stroke-linecap="round"/>']
@@ -185,6 +189,18 @@ def _map_page(robot: Robot, side: float, paper: tuple[float, float]) -> str:
             f"#at({MARGIN}, {MARGIN + 7}, box(width: {paper[0] - 2 * MARGIN}mm)[#{json.dumps(note)}])",
         ]
     )
+
+
+def _body_lines(body: Body, axes: list[int]) -> list[Points]:
+    """Lines that draw a body along two axes [m]: its outline, or its faces on one side, as others cancel their fill."""
+    mesh, outline = body.mesh, body.outline
+    if outline is not None:
+        return [np.array(ring.coords) for ring in (outline.polygon.exterior, *outline.polygon.interiors)]
+    faces = mesh.nodes[:, axes][mesh.boundary]
+    if mesh.dim == 3:
+        one, other = faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0]
+        faces = faces[one[:, 0] * other[:, 1] < one[:, 1] * other[:, 0]]
+    return list(faces)
 
 
 def _tag_path(number: int, corner: tuple[float, float], side: float) -> str:

@@ -97,7 +97,7 @@ def _stops(simulation: "Simulation", names: list[str], progress: Progress) -> "l
         reached.append(solve_ik(simulation, simulation.robot.pose(pose)))
         progress("solving poses", index + 1, len(names))
     for found in reached:
-        print(f"{found.pose_target.name}: rms error {1e3 * found.rms_error:.2f} mm; {found.ending}")
+        print(f"{found.pose_target.name}: rms error {1e3 * found.rms_error:.2f} mm; {found.outcome}")
     return Stop.for_poses(reached)
 
 

@@ -35,12 +35,12 @@ def write_results(network: "Network", folder: Path) -> None:
 
 def write_kit(network: "Network", folder: Path) -> "Kit":
     """The fabrication kit, in which what cannot be built well is told; its poses keep to the design's tension."""
-    from hydrostat.camera import tags_pdf
+    from hydrostat.camera import tag_files
     from hydrostat.fabrication import KitOptions, build_kit
 
     limits, robot = network.constraints, network.robot
     options = KitOptions(force=True, tension=limits.tension_limit, torque=limits.torque)
-    kit = build_kit(robot, options=options, added={"tags.pdf": tags_pdf(robot, options.paper)} if robot.markers else {})
+    kit = build_kit(robot, options=options, added=tag_files(robot, options.paper))
     kit.write(folder)
     return kit
 

@@ -112,15 +112,14 @@ def fabricate(
 
 def _build_or_report(folder: Path, robot: "Robot", options: "KitOptions", out: Path) -> "Kit":
     """The kit; else the reasons are printed, and a command that fixes them (InputError: it cannot be built well)."""
-    from hydrostat.camera import tags_pdf
+    from hydrostat.camera import tag_files
     from hydrostat.cli.remedies import kit_remedy
     from hydrostat.errors import in_words
     from hydrostat.fabrication import UnbuildableError, build_kit
 
-    added = {"tags.pdf": tags_pdf(robot, options.paper)} if robot.markers else {}
     try:
         with progress_bar() as progress:
-            return build_kit(robot, options=options, progress=progress, added=added)
+            return build_kit(robot, options=options, progress=progress, added=tag_files(robot, options.paper))
     except UnbuildableError as error:
         for reason in error.reasons:
             print(f"error: {in_words(reason)}")

@@ -3,9 +3,8 @@
 import shutil
 import sys
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass
+from collections.abc import Callable
+from functools import partial
 from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -15,14 +14,13 @@ import typer
 from hydrostat.cli.folders import RobotFolder, folder_of
 from hydrostat.cli.measure import TagHeight, TagSide, photo_options
 from hydrostat.cli.options import MotorPort
+from hydrostat.cli.play_camera import CameraFeedback, CameraOptions, open_camera, require_rest
 from hydrostat.cli.waiting import one_interrupt, read_robot
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.units import plural
 
 if TYPE_CHECKING:
-    from hydrostat.camera import MarkerCamera, PhotoOptions
-    from hydrostat.control import LostAction, MarkerFeedback, Motors, Player
-    from hydrostat.robot import Robot
+    from hydrostat.control import Motors, Player
     from hydrostat.simulation import ContractionProfile, ProfileTable
 
 SHOWN, LISTED = 0.1, 2.0  # time from one word on the progress to the next [s]: on a terminal, and where lines are kept
@@ -69,7 +67,7 @@ def play(
 
     if port is not None:
         control.check_port(port)
-    wishes = None if camera is None else _CameraWishes.read(camera, port, lag, lost, photo_options(tag, height))
+    seen_by = None if camera is None else CameraOptions.read(camera, port, lag, lost, photo_options(tag, height))
     if loop < 0:
         raise InputError(f"--repeat {loop}: must be 0 or more. 0 plays until you stop it.")
     player = control.Player()
@@ -88,20 +86,21 @@ def play(
     if port is not None:
         _check_corrected(motors, control.correct_table(table, folder_of(robot), loaded), speed)
     pulls = None if port is None else control.tensions_along(loaded, table.profile)
-    with one_interrupt(""), _open_camera(wishes, loaded, table.profile, kind) as seen:  # arming turns motors, too
+    eye = open_camera(seen_by, loaded, table.profile, partial(_say, kind))
+    with one_interrupt(""), eye as seen:  # arming turns motors, too
         if port is not None and pulls is not None:
             motors = control.arm_motors(folder_of(robot), loaded, port, pulls, log=lambda line: print(line, flush=True))
         try:
             if seen is not None:
-                _require_rest(motors)
+                require_rest(motors)
             often = {0: "until stopped", 1: "once"}.get(loop, f"{loop} times")
             seconds, winches = float(table.profile.times[-1]), plural(len(motors.names), "winch")
             _say(kind, f"{moves} on {loaded.name}, {winches}: {seconds:.2f} s, {often}, at {speed:g}x")
             _play(kind, motors, table.profile, player, seen)
         finally:
             motors.link.close()
-        if seen is not None:
-            _say(kind, seen.result())
+        for line in [] if seen is None else seen.report():
+            _say(kind, line)
     _say(kind, f"finished; motors holding at {_places(motors)}")
 
 
@@ -113,99 +112,8 @@ def _check_corrected(motors: "Motors", table: "ProfileTable", speed: float) -> N
         raise InputError(f"{error}, as correction.json corrects it") from None
 
 
-@dataclass(frozen=True, kw_only=True)
-class _CameraWishes:
-    """Options of a camera that corrects contractions."""
-
-    name: str
-    lag: float
-    lost: "LostAction"
-    options: "PhotoOptions"
-
-    @classmethod
-    def read(cls, name: str, port: str | None, lag: str, lost: str, options: "PhotoOptions") -> "_CameraWishes":
-        """Check the options (InputError: no motors, or no such value)."""
-        from hydrostat.cli.options import positive
-        from hydrostat.closed_set import parse_choice
-        from hydrostat.control import LostAction
-        from hydrostat.units import TIME
-
-        if port is None:
-            raise InputError("--camera: simulated motors move no robot. Add --motors.")
-        most, seconds = 0.5, positive("--lag", lag, TIME, zero=True)
-        if seconds > most:
-            raise InputError(f"--lag {lag}: must be {1e3 * most:g} ms or less")
-        return cls(name=name, lag=seconds, lost=parse_choice(LostAction, lost, what="--lost"), options=options)
-
-
-@dataclass(frozen=True, kw_only=True)
-class _SeeingPlayer:
-    """Camera, and the feedback that it gives."""
-
-    camera: "MarkerCamera"
-    feedback: "MarkerFeedback"
-
-    def result(self) -> str:
-        """Errors and rate, in words."""
-        import numpy as np
-
-        found, slow = self.feedback, 15.0
-        if not found.errors:
-            return "warning: the camera saw no marker, so nothing was corrected. " + self.camera.trouble
-        half = len(found.errors) // 2
-        text = (
-            f"markers {1e3 * np.mean(found.errors[half:]):.1f} mm from the simulation in the second half, about "
-            f"{1e3 * np.mean(found.open_errors[half:]):.1f} mm without correction; {found.rate:.0f} frames a second"
-        )
-        return text if found.rate >= slow else f"{text}. warning: below {slow:g}, take smaller pictures or more light"
-
-
-@contextmanager
-def _open_camera(
-    wishes: _CameraWishes | None, robot: "Robot", profile: "ContractionProfile", kind: str
-) -> Iterator[_SeeingPlayer | None]:
-    """Calibrate a camera by the robot at rest; None without a camera.
-
-    Armed motors wait for nobody, so that everything slow is done before.
-    """
-    if wishes is None:
-        yield None
-        return
-    from hydrostat import camera, control
-    from hydrostat.simulation import Simulation
-
-    frames = camera.CameraFrames(wishes.name)
-    try:
-        path = control.MarkerPath.along(robot, profile)
-        source = camera.MarkerCamera(frames, Simulation(robot).rest, control.MarkerSight, wishes.options)
-    except BaseException:
-        frames.close()
-        raise
-
-    def log(text: str) -> None:
-        _say(kind, f"{text} ({source.trouble})" if source.trouble else text)
-
-    try:
-        feedback = control.MarkerFeedback(robot, path, source, lag=wishes.lag, lost=wishes.lost, log=log)
-        yield _SeeingPlayer(camera=source, feedback=feedback)
-    finally:
-        source.close()
-
-
-def _require_rest(motors: "Motors") -> None:
-    """Check that the robot was at rest when the camera was calibrated (InputError: a winch has contracted)."""
-    import numpy as np
-
-    index, most = int(np.abs(motors.places).argmax()), 2e-3
-    if abs(motors.places[index]) > most:
-        raise InputError(
-            f"--camera: {motors.names[index]} stands at {1e3 * motors.places[index]:.1f} mm. Begin at rest: pay its "
-            "cable out first."
-        )
-
-
 def _play(
-    kind: str, motors: "Motors", profile: "ContractionProfile", player: "Player", seen: _SeeingPlayer | None
+    kind: str, motors: "Motors", profile: "ContractionProfile", player: "Player", seen: CameraFeedback | None
 ) -> None:
     """Play, and say how it was stopped, if it was."""
     import numpy as np

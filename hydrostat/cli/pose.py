@@ -148,7 +148,7 @@ def _write(
 
 def _print_reached(loaded: "Robot", reached: "IKResult", title: str, seconds: float) -> None:
     """Print what was reached, and what keeps it from more."""
-    print(f"{title}: rms error {1e3 * reached.rms_error:.2f} mm; {reached.ending} ({1e3 * seconds:.0f} ms)")
+    print(f"{title}: rms error {1e3 * reached.rms_error:.2f} mm; {reached.outcome} ({1e3 * seconds:.0f} ms)")
     if len(reached.errors) > 1:
         markers = ", ".join(f"{name} {1e3 * error:.2f} mm" for name, error in reached.errors.items())
         print(f"  marker errors: {markers}")

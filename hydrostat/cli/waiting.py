@@ -192,7 +192,7 @@ class _LastingOutput:
     """Text stream that drops what it cannot write for some errors: work outlives a closed terminal or pipe."""
 
     def __init__(self, stream: Any, errors: type[OSError]) -> None:
-        self._stream, self.errors = stream, errors
+        self._stream, self.dropped = stream, errors
 
     def write(self, text: str) -> int:
         """Write text, to nowhere if nobody reads it any more."""
@@ -209,7 +209,7 @@ class _LastingOutput:
     def _try(self, act: Callable[[], object]) -> None:
         try:
             act()
-        except self.errors:
+        except self.dropped:
             with suppress(OSError, ValueError):
                 nowhere = os.open(os.devnull, os.O_WRONLY)
                 os.dup2(nowhere, self._stream.fileno())
@@ -221,7 +221,7 @@ def outlive_readers(*, errors: type[OSError] = BrokenPipeError) -> None:
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
         if isinstance(stream, _LastingOutput):
-            stream.errors = errors
+            stream.dropped = errors
         elif stream is not None:
             setattr(sys, name, _LastingOutput(stream, errors))
 

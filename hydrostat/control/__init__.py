@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from hydrostat.control.firmware_build import board_kind, build_images, check_ports, flash, flash_command, on_boards
     from hydrostat.control.guard import TensionGuard, not_judged
     from hydrostat.control.link import Link, SimulatedLink
-    from hydrostat.control.marker_feedback import LostAction, MarkerFeedback, MarkerPath, MarkerSight
+    from hydrostat.control.marker_feedback import LostAction, MarkerFeedback, MarkerSight
+    from hydrostat.control.marker_path import MarkerPath
     from hydrostat.control.model_tensions import TensionLookup, WinchPull, tensions_along, winch_tensions
     from hydrostat.control.motors import FASTEST, Motors
     from hydrostat.control.open_bus import EMULATED, add_cable_layers, check_port, open_bus, open_line

@@ -30,7 +30,7 @@ def arm_motors(
 ) -> Motors:
     """Motors that turn as they are told from now on, watched by a deadline and a guard.
 
-    A correction.json in the folder, which `hydrostat identify` writes, corrects what they are told.
+    A correction.json in the folder, which `hydrostat identify` writes, corrects their commands.
 
     Args:
         folder: robot folder with motors.toml; emulated motors need none.

@@ -11,7 +11,7 @@ from hydrostat.simulation import ProfileTable
 
 
 def correct_table(table: ProfileTable, folder: Path, robot: Robot) -> ProfileTable:
-    """Table of what motors are told for a table of contractions, by the correction.json of a robot folder, if any."""
+    """Table of commands to motors for a table of contractions, by the correction.json of a robot folder, if any."""
     correction = ContractionMap.read(folder, robot)
     if correction is None:
         return table

@@ -4,16 +4,15 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from itertools import pairwise
 from typing import Protocol, runtime_checkable
 
 import numpy as np
 
-from hydrostat.arrays import Float, Vector
-from hydrostat.errors import HydrostatError, InputError
+from hydrostat.arrays import Vector
+from hydrostat.control.marker_path import MarkerPath
+from hydrostat.errors import HydrostatError
 from hydrostat.ik import CORRECTION_DAMPING
-from hydrostat.robot import PinDrive, Robot
-from hydrostat.simulation import ContractionProfile, Simulation
+from hydrostat.robot import Robot
 from hydrostat.units import plural
 
 GAIN = 3.0
@@ -36,12 +35,6 @@ FADE = 1.0
 
 SETTLE = 1.0
 """Time for which the last pose is still corrected [s]."""
-
-SPACING = 0.02
-"""Largest change of a contraction from one equilibrium along a profile to the next, as a share of the travel."""
-
-POSES = 4000
-"""Largest number of equilibria along a profile."""
 
 
 class LostAction(StrEnum):
@@ -71,74 +64,6 @@ class MarkerSource(Protocol):
     def look(self) -> MarkerSight | None:
         """Return the newest sight at once; None before the first."""
         ...
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class MarkerPath:
-    """Simulated markers along a profile, with their exact slopes by the contractions.
-
-    Attributes:
-        times: times of the profile [s].
-        places: places of all markers [m].
-        jacobians: slopes dx/da of these places.
-    """
-
-    times: Vector
-    places: Float[np.ndarray, "times markers dim"]
-    jacobians: Float[np.ndarray, "times markers dim winches"]
-
-    @classmethod
-    def along(cls, robot: Robot, profile: ContractionProfile) -> "MarkerPath":
-        """Simulate the poses of a profile.
-
-        Raises:
-            InputError: a robot without markers, or with drives; a profile with too many equilibria.
-            HydrostatError: a pose without equilibrium.
-        """
-        if not robot.markers:
-            raise InputError(f"{robot.name}: no [[marker]] in robot.toml. Add one for each tag.")
-        PinDrive.require_none(robot.drives, "corrections")
-        times = _path_times(robot, profile)
-        simulation, pose, places, jacobians = Simulation(robot), None, [], []
-        for time in times.tolist():
-            pose = simulation.solve(profile.at(time), start=pose, strict=False)
-            if not pose.result.converged:
-                raise HydrostatError(
-                    f"the simulated robot reaches no equilibrium at {time:.2f} s. Play without --camera."
-                )
-            places.append(simulation.marker_anchors.positions(pose.nodes))
-            jacobians.append(simulation.marker_jacobian(pose))
-        return cls(times=times, places=np.array(places), jacobians=np.array(jacobians))
-
-    def at(self, time: float) -> tuple[np.ndarray, np.ndarray]:
-        """Places and slopes at a time [s], linear between poses."""
-        place = int(np.clip(np.searchsorted(self.times, time) - 1, 0, max(len(self.times) - 2, 0)))
-        after = min(place + 1, len(self.times) - 1)
-        length = self.times[after] - self.times[place]
-        share = float(np.clip((time - self.times[place]) / length, 0.0, 1.0)) if length > 0 else 0.0
-        places, slopes = ((1 - share) * each[place] + share * each[after] for each in (self.places, self.jacobians))
-        return places, slopes
-
-
-def _path_times(robot: Robot, profile: ContractionProfile) -> Vector:
-    """Times between which no contraction changes by more than `SPACING` (InputError: there are too many)."""
-    travel = np.array([winch.travel or np.inf for winch in robot.winches])
-    fine, step = [0.0], 0.5 * SPACING * travel
-    values = np.vstack([profile.at(0.0), profile.values])
-    for start, end, one, other in zip([0.0, *profile.times], profile.times, values, values[1:], strict=False):
-        count = int(np.ceil((np.abs(other - one) / step).max(initial=1.0))) if end > start else 0
-        fine.extend(np.linspace(start, end, count + 1)[1:].tolist())
-    times, last = [0.0], values[0]
-    for time, after in pairwise(fine):
-        if (np.abs(profile.at(after) - last) > 2 * step).any():
-            times.append(time)
-            last = profile.at(time)
-    times += [fine[-1]] * (fine[-1] > times[-1])
-    if len(times) > POSES:
-        raise InputError(
-            f"--camera: the table needs {len(times)} simulated poses, {POSES} at most. Play a shorter one, repeated."
-        )
-    return np.array(times)
 
 
 @dataclass(frozen=True)
@@ -223,7 +148,7 @@ class MarkerFeedback:
         step = now - self._past[-1].now if self._past else 0.0
         sight = self._source.look()
         if sight is not None and (self._seen is None or sight.time > self._seen):
-            self._take(sight, now)
+            self._take(sight)
         self._watch(now)
         if not self.is_waiting:
             self._advance(step)
@@ -243,7 +168,7 @@ class MarkerFeedback:
         move = np.clip(move, -FASTEST_CORRECTION * step, FASTEST_CORRECTION * step)
         self._correction = np.clip(self._correction + move, -self._bound, self._bound)
 
-    def _take(self, sight: MarkerSight, now: float) -> None:
+    def _take(self, sight: MarkerSight) -> None:
         """Aim at the correction that would have removed the errors of a frame."""
         before = next((past for past in reversed(self._past) if past.now <= sight.time - self._lag), None)
         if before is None:

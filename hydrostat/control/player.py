@@ -107,7 +107,7 @@ class Player:
                 wait(TICK)
                 drive(contractions)
 
-        def corrected() -> Vector:
+        def next_command() -> Vector:
             planned = profile.at(self.time)
             return planned if feedback is None else feedback.correct(planned, self.time, clock())
 
@@ -118,14 +118,14 @@ class Player:
                 if feedback is not None and feedback.is_waiting:
                     self._seen = clock()
                 self.advance(clock(), seconds)
-                drive(corrected())
+                drive(next_command())
                 wait(TICK)
-            settles = feedback is not None and self.time >= seconds  # not where it was told to stop
-            until = clock() + (feedback.settle if feedback is not None and settles else 0.0)
+            has_ended = self.time >= seconds  # not where it was stopped on the way
+            until = clock() + (feedback.settle if feedback is not None and has_ended else 0.0)
             while clock() < until:
-                drive(corrected())
+                drive(next_command())
                 wait(TICK)
-            arrive(corrected())
+            arrive(next_command())
         finally:
             self.stop()
             motors.hold()

@@ -86,7 +86,7 @@ def find_network(
 ) -> Network:
     """Find the network that a request asks for; `design_cables` for one that is made already.
 
-    `watch` is told each better network that is found on the way. `record` keeps the steps of a search for routes, and
+    `watch` receives each better network that is found on the way. `record` keeps the steps of a search for routes, and
     begins with those that it knows; parts with contact have none. The cables of a flat robot that does not say where
     they run are designed to be sewn in pairs (`assign_cable_sides`), and the network's robot says so.
 

@@ -93,7 +93,7 @@ def _is_enough(tried: dict[float, int], above: dict[float, int], nodes: int) -> 
     """Return True if a number is near enough for the nodes that were made to find it."""
     best = min((abs(count / nodes - 1) for count in tried.values()), default=np.inf)
     made = sum(tried.values()) + sum(above.values())
-    quick = 2000  # so many nodes are made in a second or two
+    quick = 2000  # nodes that are made in a second or two
     return made >= max(quick, nodes * (2.2 if best <= 0.25 else 7.0 if tried else 4.0))
 
 

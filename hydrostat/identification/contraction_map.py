@@ -1,4 +1,4 @@
-"""`ContractionMap`: contractions that a model needs for those that are commanded, fitted to what it leaves over."""
+"""`ContractionMap`: contractions that a model needs for those that are commanded, from a file or a fit."""
 
 import json
 from dataclasses import dataclass
@@ -9,29 +9,13 @@ import numpy as np
 from hydrostat.arrays import Float, Vector
 from hydrostat.errors import InputError
 from hydrostat.files import read_stranger
-from hydrostat.identification.fit import FittedModel
-from hydrostat.identification.marker_predictor import MarkerPredictor
-from hydrostat.identification.measurements import Measurements, rms
 from hydrostat.robot import Robot
-from hydrostat.simulation import Simulation
 
 FILE = "correction.json"
 """Its file in a robot folder."""
 
 BOUND = 0.2
 """Largest change of a contraction, as a share of the winch's travel."""
-
-GAINED = 0.9
-"""Share of the held-out error that must remain at most for a correction to be kept."""
-
-FOLDS = 5
-"""Parts of the rows, each of which is held out once."""
-
-LEAST = 10
-"""Rows from which on a correction is fitted."""
-
-PENALTIES = tuple(10.0**power for power in range(-4, 3))
-"""Penalties of the weights to choose from, as multiples of the mean square of the inputs."""
 
 ROUNDS = 20
 """Steps of the inverse of a map."""
@@ -117,7 +101,7 @@ class ContractionMap:
             raise InputError(f"{file}: is no correction. Remove it, or run `hydrostat identify` again.")
         if not (travel > 0).all():
             raise InputError(f"{file}: travel_m must be above 0. Remove it, or run `hydrostat identify` again.")
-        own = np.array([winch.travel for winch in robot.winches]), _cable_lengths(robot)
+        own = np.array([winch.travel for winch in robot.winches]), cable_lengths(robot)
         for one, other in zip((travel, lengths), own, strict=True):
             if one.shape != other.shape or not (np.abs(one - other) < SAME).all():
                 raise InputError(
@@ -129,7 +113,7 @@ class ContractionMap:
         return found
 
 
-def _cable_lengths(robot: Robot) -> Vector:
+def cable_lengths(robot: Robot) -> Vector:
     """Rest length of each cable [m]."""
     return np.array([cable.length for cable in robot.cables])
 
@@ -138,105 +122,3 @@ def features(shares: Float[np.ndarray, "... winches"]) -> Float[np.ndarray, "...
     """Contractions as shares of the travel, and their products."""
     one, other = np.triu_indices(shares.shape[-1])
     return np.concatenate([shares, shares[..., one] * shares[..., other]], axis=-1)
-
-
-def fit_contraction_map(fitted: FittedModel, robot: Robot, measurements: Measurements) -> ContractionMap | None:
-    """Fit a map to the errors that a fitted model leaves, by its exact slopes (ridge regression).
-
-    The map is kept only if it predicts rows that it did not see with at most 90 % of the model's error. In each fold
-    the penalty is chosen without the rows that are held out.
-
-    Args:
-        fitted: fitted model.
-        robot: fitted robot.
-        measurements: rows of commands and places.
-
-    Returns:
-        The map; None with fewer than ten rows, if it does not win, or if it cannot be inverted.
-    """
-    travel = np.array([winch.travel for winch in robot.winches])
-    if len(measurements.commands) < LEAST or not len(travel) or not (travel > 0).all():
-        return None
-    values = fitted.values
-    rest = fitted.model.contractions(values, np.zeros((1, len(travel))))
-    commands = fitted.model.contractions(values, measurements.commands) - rest
-    rows = _error_rows(fitted, measurements, features(commands / travel), travel)
-    known = [row for row, (errors, _) in enumerate(rows) if len(errors)]
-    if len(known) < LEAST:
-        return None
-    before, after = [], []
-    for fold in range(FOLDS):
-        seen = [row for place, row in enumerate(known) if place % FOLDS != fold]
-        weights = _fit(rows, seen, _choose_penalty(rows, seen))
-        for row in (row for place, row in enumerate(known) if place % FOLDS == fold):
-            errors, slopes = rows[row]
-            before.append(errors)
-            after.append(errors + slopes @ weights)
-    dim = measurements.places.shape[2]
-    lengths = [rms(np.linalg.norm(np.concatenate(each).reshape(-1, dim), axis=1)) for each in (before, after)]
-    if lengths[1] > GAINED * lengths[0]:
-        return None
-    weights = _fit(rows, known, _choose_penalty(rows, known)).reshape(-1, len(travel))
-    names = tuple(winch.name for winch in robot.winches)
-    found = ContractionMap(
-        winches=names,
-        travel=travel,
-        lengths=_cable_lengths(robot),
-        weights=weights,
-        before=lengths[0],
-        after=lengths[1],
-    )
-    return found if found.is_invertible else None
-
-
-Rows = list[tuple[np.ndarray, np.ndarray]]
-"""Errors of the measured markers of each row [m], and their slopes by all weights."""
-
-
-def _error_rows(fitted: FittedModel, measurements: Measurements, inputs: np.ndarray, travel: Vector) -> Rows:
-    """Predicted less measured coordinates, with the slopes of the markers by the weights of a map."""
-    predictor = MarkerPredictor(fitted.model, measurements)
-    places = predictor.predict(fitted.numbers, slopes=False).places
-    step, rows = 1e-6, Rows()
-    for row, pose in enumerate(predictor.poses):
-        whole = np.isfinite(measurements.places[row]).all(axis=1)
-        if pose is None or not whole.any() or not np.isfinite(places[row]).all():
-            rows.append((np.zeros(0), np.zeros((0, inputs.shape[1] * len(travel)))))
-            continue
-        simulation = Simulation(pose.robot)
-        order = [[marker.name for marker in pose.robot.markers].index(name) for name in measurements.markers]
-        jacobian = simulation.marker_jacobian(pose)[order]
-        at = np.array([pose.markers[name] for name in measurements.markers])
-        turned = np.stack(
-            [
-                (fitted.model.places(fitted.values, at + step * column) - fitted.model.places(fitted.values, at)) / step
-                for column in np.moveaxis(jacobian, 2, 0)
-            ],
-            axis=2,
-        )
-        by_weights = np.einsum("mdw,f->mdfw", turned * travel, inputs[row])[whole]
-        errors = (places[row] - measurements.places[row])[whole]
-        rows.append((errors.ravel(), by_weights.reshape(errors.size, -1)))
-    return rows
-
-
-def _fit(rows: Rows, chosen: list[int], penalty: float) -> Vector:
-    """Weights with the least squares of errors and a penalty."""
-    errors, slopes = (np.concatenate([rows[row][part] for row in chosen]) for part in (0, 1))
-    size = penalty * float((slopes**2).sum()) / slopes.shape[1]
-    return -np.linalg.solve(slopes.T @ slopes + max(size, 1e-30) * np.eye(slopes.shape[1]), slopes.T @ errors)
-
-
-def _choose_penalty(rows: Rows, chosen: list[int]) -> float:
-    """Penalty with the least error of rows that are left out in turn."""
-
-    def left_out(penalty: float) -> float:
-        total = 0.0
-        for fold in range(FOLDS):
-            weights = _fit(rows, [row for place, row in enumerate(chosen) if place % FOLDS != fold], penalty)
-            for row in chosen[fold::FOLDS]:
-                errors, slopes = rows[row]
-                total += float(((errors + slopes @ weights) ** 2).sum())
-        return total
-
-    return min(PENALTIES, key=left_out)

@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrostat.errors import InputError
-from hydrostat.identification.contraction_map import ContractionMap, fit_contraction_map
+from hydrostat.identification.contraction_map import ContractionMap
 from hydrostat.identification.fit import FittedModel, fit_model
+from hydrostat.identification.fit_contraction_map import fit_contraction_map
 from hydrostat.identification.kinds import named_model
 from hydrostat.identification.measurements import Measurements
 from hydrostat.identification.model import IdentificationModel

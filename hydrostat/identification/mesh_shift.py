@@ -38,13 +38,13 @@ def estimate_mesh_shift(
     if finer is None or not len(numbers):
         return np.zeros(len(numbers))
 
-    def refined(values: Values) -> Robot:
+    def make_finer(values: Values) -> Robot:
         robot = _refine(model.robot(values))
         assert robot is not None
         return robot
 
     coarse = MarkerPredictor(model, rows).predict(numbers, slopes=True)
-    fine = MarkerPredictor(replace(model, robot=refined), rows).predict(numbers, slopes=False)
+    fine = MarkerPredictor(replace(model, robot=make_finer), rows).predict(numbers, slopes=False)
     assert coarse.jacobian is not None
     moved = fine.places - coarse.places
     known = np.isfinite(moved) & np.isfinite(rows.places)

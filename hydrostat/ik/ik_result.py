@@ -67,7 +67,7 @@ class IKResult:
         return max(self.errors.values(), default=0.0) <= CLOSE * self.pose.robot.body.mesh.size
 
     @property
-    def ending(self) -> str:
+    def outcome(self) -> str:
         """Reason why the search ended, in words; at an optimum that is close to its targets, how close."""
         if self.status is not IKStatus.LOCAL_OPTIMUM or not (self.errors and self.is_close):
             return str(self.status)
@@ -76,7 +76,7 @@ class IKResult:
     def __repr__(self) -> str:
         """Return a one-line summary."""
         goal = "objectives" if self.target is None else repr(self.target.name)
-        return f"<IKResult for {goal}: rms error {1e3 * self.rms_error:.3g} mm; {self.ending}; {self.pose!r}>"
+        return f"<IKResult for {goal}: rms error {1e3 * self.rms_error:.3g} mm; {self.outcome}; {self.pose!r}>"
 
     def _repr_html_(self) -> str:
         """Summary, warnings and a picture, for a notebook."""

@@ -60,9 +60,7 @@ class InversionBarrier(Energy):
 
     def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
         blocks, low = np.zeros((*self.stencils.shape, nodes.shape[1])), self._low(nodes)
-        np.add.at(
-            blocks, low.elements, (self._stiffness(low) * low.slopes)[:, None, None] * self._gradients(nodes, low)
-        )
+        np.add.at(blocks, low.elements, self._forces(nodes, low))
         return blocks
 
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
@@ -79,8 +77,7 @@ class InversionBarrier(Energy):
         """Add the forces of the elements that the barrier pushes, which are few."""
         low = self._low(nodes)
         if low.elements.size:
-            forces = (self._stiffness(low) * low.slopes)[:, None, None] * self._gradients(nodes, low)
-            np.add.at(total, self.stencils[low.elements], forces)
+            np.add.at(total, self.stencils[low.elements], self._forces(nodes, low))
 
     def add_hessian(self, nodes: Nodes, controls: Vector, share: float, places: ScatterMap) -> None:
         """Add the blocks of these elements."""
@@ -127,6 +124,10 @@ class InversionBarrier(Energy):
 
     def _stiffness(self, low: "_Low") -> Vector:
         return (self.mu * self._volumes)[low.elements]
+
+    def _forces(self, nodes: Nodes, low: "_Low") -> Blocks:
+        """Derivative of the energy of each low coefficient by the nodes of its element [N]."""
+        return (self._stiffness(low) * low.slopes)[:, None, None] * self._gradients(nodes, low)
 
     def _gradients(self, nodes: Nodes, low: "_Low") -> Blocks:
         """Derivative of each low coefficient by the nodes of its element [1/m]: c is homogeneous in these."""

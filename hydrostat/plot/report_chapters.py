@@ -174,7 +174,7 @@ REACHED = (  # head and words of the chapter on the poses
 def reached_part(robot: Robot, reached: IKResult, index: int, *notes: Html) -> Html:
     """A pose as the winches reach it, beside tables of markers, winches and cables; below them what is to be minded."""
     figure = draw_reached(robot, reached, title="", width=NARROW)
-    note = f": {MILLIMETERS * reached.rms_error:.2f} mm rms; {reached.ending}"
+    note = f": {MILLIMETERS * reached.rms_error:.2f} mm rms; {reached.outcome}"
     tables = {
         "Markers": marker_table(robot, reached),
         "Winches": contraction_table(robot, reached),

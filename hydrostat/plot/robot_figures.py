@@ -223,7 +223,7 @@ def _reached_note(reached: IKResult, names: list[str]) -> str:
     parts += [f"{shorten(name)} error {MILLIMETERS * error:.2f} mm" for name, error in others.items()]
     drives = zip(reached.pose.robot.drives, reached.pose.drives, strict=True)
     parts += [f"{shorten(drive.name)} {drive.format_value(value)}" for drive, value in drives]
-    return ", ".join(parts) or reached.ending
+    return ", ".join(parts) or reached.outcome
 
 
 def _draw_wanted(sheet: PictureSheet, ring: Places) -> None:

@@ -1,11 +1,14 @@
 """A camera that corrects a robot that plays. Oracle: a renderer of its own, and a hidden robot of another material."""
 
+import re
+import sys
 import time
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
-from builders import mesh_body, strip_mesh
+from builders import routed_strip
 
 pytest.importorskip("cv2", reason="extra photos (OpenCV) is not installed")
 
@@ -13,9 +16,10 @@ from photographs import Camera, Scene, photograph
 
 from hydrostat.camera import MarkerCamera
 from hydrostat.camera.marker_camera import MarkerView
+from hydrostat.cli.main import main
 from hydrostat.control import MarkerFeedback, MarkerPath, MarkerSight, Motors, Player, SimulatedLink
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.robot import Cable, Marker, Pin, Robot, Winch
+from hydrostat.robot import Robot
 from hydrostat.simulation import ContractionProfile, Simulation
 
 UPPER = ((0.0083, 0.0137), (0.0587, 0.0161), (0.1129, 0.0147), (0.1833, 0.0143))
@@ -25,17 +29,9 @@ PROFILE = ContractionProfile(times=np.array([0.0, 0.6, 1.0]), values=np.array([[
 
 def strip(young: float = 1.0) -> Robot:
     """A flat strip that sags, with one cable; Young's modulus over that of the model."""
-    body = mesh_body(strip_mesh(8, 2))
-    return Robot(
-        name="strip",
-        body=replace(body, material=replace(body.material, young=young * body.material.young)),
-        pins=(Pin(box=((-0.001, -1.0), (0.001, 1.0)), stiffness=3e3),),
-        gravity=(0.0, -9.81),
-        winches=(Winch(name="up", at=UPPER[0], travel=0.06, release=0.005),),
-        cables=(Cable(winch="up", points=UPPER),),
-        markers=tuple(Marker(name=name, at=(x, 0.0)) for name, x in (("root", 0.03), ("middle", 0.11), ("tip", 0.19))),
-        poses={},
-    )
+    robot = routed_strip({"up": UPPER}, gravity=(0.0, -9.81), travel=0.06, release=0.005)
+    material = robot.body.material
+    return replace(robot, body=replace(robot.body, material=replace(material, young=young * material.young)))
 
 
 def render(robot: Robot, pose: object, seed: int = 0) -> np.ndarray:
@@ -125,3 +121,44 @@ def test_a_camera_looks_in_a_thread_and_says_what_is_wrong() -> None:
         MarkerView([np.full_like(frame, 90)], pose)
     with pytest.raises(HydrostatError, match="gives no pictures"):
         MarkerCamera(Frames([frame] * 2), pose, MarkerSight)
+
+
+class StillFrames:
+    """A camera that shows one picture for ever, 30 times a second."""
+
+    def __init__(self, frame: np.ndarray) -> None:
+        self._frame = frame
+
+    def read(self) -> np.ndarray:
+        time.sleep(1 / 30)
+        return self._frame
+
+    def close(self) -> None:
+        """There is nothing to release."""
+
+
+@pytest.mark.slow
+def test_play_corrects_emulated_motors_by_a_camera(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A picture that never changes. Oracle: it is as far from the simulation as the simulated markers have moved."""
+    rest = Simulation(strip()).rest
+    moved = Simulation(strip()).solve({"up": 0.006}).markers
+    away = 1e3 * np.mean([np.linalg.norm(at - rest.markers[name]) for name, at in moved.items()])
+    frame = render(strip(), rest)
+    monkeypatch.setattr("hydrostat.robot.load_robot", lambda _: strip(), raising=False)
+    monkeypatch.setattr("hydrostat.camera.CameraFrames", lambda _: StillFrames(frame), raising=False)
+    table = tmp_path / "moves.csv"
+    table.write_text("time_s,up_mm\n0,0\n0.3,6\n1.5,6\n")
+    options = ["--motors", "emulated", "--camera", "0"]
+    monkeypatch.setattr(sys, "argv", ["hydrostat", "play", str(tmp_path), str(table), *options])
+    with pytest.raises(SystemExit) as stop:
+        main()
+    output = capsys.readouterr()
+    assert (stop.value.code or 0, output.err) == (0, "")
+    told = re.search(r"emulated: markers (\S+) mm from the simulation in the second half", output.out)
+    assert told is not None, output.out
+    assert float(told[1]) == pytest.approx(away, abs=1.0)  # one view does not show the focal length
+    command = re.search(r"motors holding at up (\S+) mm", output.out)
+    assert command is not None, output.out
+    assert float(command[1]) > 6.0 + 3.0  # more is taken in, as the tip seems to stay

@@ -5,11 +5,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders import mesh_body, strip_mesh
+from builders import gallery_robot, routed_strip
 
 pytest.importorskip("cv2", reason="extra photos (OpenCV) is not installed")
 
 import io
+import re
 
 import typst
 from photographs import Camera, Scene, board_plane, photograph, tag_corners, tag_plane, wall_plane
@@ -25,7 +26,7 @@ from hydrostat.errors import InputError
 from hydrostat.fabrication import PAPERS, Paper
 from hydrostat.identification import fit_model, named_model, read_measurements
 from hydrostat.plot import draw_photo_overlay, save_png
-from hydrostat.robot import Cable, Load, Marker, Pin, Robot, Winch
+from hydrostat.robot import Load, Robot
 from hydrostat.simulation import Simulation
 
 UPPER = ((0.0083, 0.0137), (0.0587, 0.0161), (0.1129, 0.0147), (0.1833, 0.0143))
@@ -33,17 +34,7 @@ UPPER = ((0.0083, 0.0137), (0.0587, 0.0161), (0.1129, 0.0147), (0.1833, 0.0143))
 
 def strip(**changes: object) -> Robot:
     """A flat strip, held at its left end, with weight and a cable above its middle."""
-    robot = Robot(
-        name="strip",
-        body=mesh_body(strip_mesh(8, 2)),
-        pins=(Pin(box=((-0.001, -1.0), (0.001, 1.0)), stiffness=3e3),),
-        gravity=(0.0, -9.81),
-        winches=(Winch(name="up", at=UPPER[0]),),
-        cables=(Cable(winch="up", points=UPPER, slack=0.001),),
-        markers=tuple(Marker(name=name, at=(x, 0.0)) for name, x in (("root", 0.03), ("middle", 0.11), ("tip", 0.19))),
-        poses={},
-    )
-    return replace(robot, **changes)
+    return replace(routed_strip({"up": UPPER}, gravity=(0.0, -9.81), slack=0.001), **changes)
 
 
 def save(pixels: np.ndarray, file: Path) -> Path:
@@ -283,3 +274,16 @@ def test_the_overlay_draws_markers_where_the_photograph_shows_them(rest: Path, t
     for name, place in measured.pose.markers.items():  # type: ignore[union-attr]
         column, row = (scale * (found.project(0, place[None])[0] + 0.5)).astype(int)
         assert np.abs(drawn[row, column] - [255, 45, 135]).max() < 30, name
+
+
+def test_the_map_of_tags_is_upright() -> None:
+    """Oracle: the coordinates of the markers; on a page y counts downwards."""
+    robot = gallery_robot("starfish")
+    source = tags_source(robot, Paper.A4, 0.015)
+    labels = re.findall(r'#at\(([\d.]+), ([\d.]+), box\(width: 40mm.*?\[#"(\w+) \(', source)
+    places = np.array([[float(x), -float(y)] for x, y, _ in labels])
+    markers = {marker.name: marker.at for marker in robot.markers}
+    assert {name for _, _, name in labels} == set(markers)
+    wanted = np.array([markers[name] for _, _, name in labels])
+    scale = np.ptp(places[:, 0]) / np.ptp(wanted[:, 0])
+    assert places - places[0] == pytest.approx(scale * (wanted - wanted[0]), abs=0.1)

@@ -164,7 +164,7 @@ def test_a_motor_that_restarts_is_not_told_as_a_broken_cable(models: tuple[int, 
 
 @pytest.mark.parametrize("late", [0.12, 0.18])
 def test_a_computer_that_is_late_again_and_again_loses_no_motor(late: float) -> None:
-    """Watchdogs of servos fire after 0.1 s; until the deadline of 0.2 s motors go on when they are told again."""
+    """Watchdogs of servos fire after 0.1 s; until the deadline of 0.2 s motors go on with the next command."""
     rig = Rig()
     rig.begin()
     for _ in range(12):

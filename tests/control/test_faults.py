@@ -29,7 +29,7 @@ def test_ten_thousand_faults_leave_motors_within_limits_standing_in_time_and_tol
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", [Campaign, BoardsCampaign])
 def test_seeds_that_no_test_knows(kind: type[Campaign]) -> None:
-    """Two hundred faults of another seed each time, which is told on failure."""
+    """Two hundred faults of another seed each time, which a failure prints."""
     seed = int(np.random.SeedSequence().generate_state(1)[0])
     campaign = kind(np.random.default_rng(seed), seconds=2.0, share=0.25)
     while campaign.injected < 200:

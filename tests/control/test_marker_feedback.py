@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from builders import mesh_body, strip_mesh
+from builders import routed_strip
 
 from hydrostat.control import (
     BusLink,
@@ -24,31 +24,17 @@ from hydrostat.control import (
     WinchMotor,
 )
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.robot import Cable, Marker, Pin, Robot, Winch
+from hydrostat.robot import Robot
 from hydrostat.simulation import ContractionProfile, Simulation
 
-ROUTES = [[(0.01, y), (0.07, y), (0.13, y), (0.19, y)] for y in (0.014, -0.014)]
+ROUTES = {name: [(0.01, y), (0.07, y), (0.13, y), (0.19, y)] for name, y in (("up", 0.014), ("down", -0.014))}
 GAINS = np.array([0.88, 1.0])  # spool radii of the hidden robot, over those of its model
 FRAME, LAG = 1 / 15, 0.1  # time between frames, and from a command to a frame with its effect [s]
 
 
 def strip() -> Robot:
     """A strip that is held at its left end, sags under its weight, and has a cable above and one below."""
-    return Robot(
-        name="strip",
-        body=mesh_body(strip_mesh(8, 2)),
-        pins=(Pin(box=((-0.001, -1.0), (0.001, 1.0)), stiffness=3e3),),
-        gravity=(0.0, -9.81),
-        winches=tuple(
-            Winch(name=name, at=route[0], travel=0.03, release=0.002)
-            for name, route in zip(("up", "down"), ROUTES, strict=True)
-        ),
-        cables=tuple(
-            Cable(winch=name, points=tuple(route)) for name, route in zip(("up", "down"), ROUTES, strict=True)
-        ),
-        markers=tuple(Marker(name=name, at=(x, 0.0)) for name, x in (("root", 0.03), ("middle", 0.11), ("tip", 0.19))),
-        poses={},
-    )
+    return routed_strip(ROUTES, gravity=(0.0, -9.81), travel=0.03, release=0.002)
 
 
 def hidden_strip() -> Robot:

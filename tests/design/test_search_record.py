@@ -21,7 +21,7 @@ REQUEST = DesignRequest(poses=POSES, winches=2, cables=3, options=QUICK)
 
 
 def search(record: SearchRecord, stop: int | None = None) -> Network:
-    """Search; stopped when so many steps are done."""
+    """Search; stopped after a number of steps."""
 
     def watch(_: DesignStage) -> None:
         if stop is not None and len(record.steps) >= stop:

@@ -1,33 +1,25 @@
 """A correction of contractions. Oracle: a robot whose spools are known to wind otherwise than its model says."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from builders import mesh_body, strip_mesh
+from builders import routed_strip
 
 from hydrostat.errors import InputError
 from hydrostat.identification import ContractionMap, Measurements, identify
 from hydrostat.identification.contraction_map import features
-from hydrostat.robot import Cable, Marker, Pin, Robot, Winch
+from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 
-ROUTES = [[(0.01, y), (0.07, y), (0.13, y), (0.19, y)] for y in (0.014, -0.014)]
+ROUTES = {name: [(0.01, y), (0.07, y), (0.13, y), (0.19, y)] for name, y in (("up", 0.014), ("down", -0.014))}
 
 
 def strip() -> Robot:
     """A strip with a cable above and one below, and three markers."""
-    names = ("up", "down")
-    return Robot(
-        name="strip",
-        body=mesh_body(strip_mesh(8, 2)),
-        pins=(Pin(box=((-0.001, -1.0), (0.001, 1.0)), stiffness=3e3),),
-        winches=tuple(Winch(name=name, at=route[0], travel=0.02) for name, route in zip(names, ROUTES, strict=True)),
-        cables=tuple(Cable(winch=name, points=tuple(route)) for name, route in zip(names, ROUTES, strict=True)),
-        markers=tuple(Marker(name=name, at=(x, 0.0)) for name, x in (("root", 0.03), ("middle", 0.11), ("tip", 0.19))),
-        poses={},
-    )
+    return routed_strip(ROUTES, travel=0.02)
 
 
 def wind(commands: np.ndarray) -> np.ndarray:
@@ -35,7 +27,7 @@ def wind(commands: np.ndarray) -> np.ndarray:
     return commands * (1 + 0.25 * commands / 0.02)
 
 
-def rows(true: object, noise: float, count: int = 15) -> Measurements:
+def rows(true: Callable[[np.ndarray], np.ndarray], noise: float, count: int = 15) -> Measurements:
     """Measured poses of the strip at contractions that are others than commanded."""
     rng = np.random.default_rng(4)
     commands = rng.uniform(0.002, 0.015, (count, 2)) * (rng.random((count, 2)) < 0.7)

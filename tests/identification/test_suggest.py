@@ -6,12 +6,12 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from builders import mesh_body, strip_mesh
+from builders import routed_strip
 
 from hydrostat.errors import InputError
 from hydrostat.identification import suggest_measurements
 from hydrostat.identification.suggest_measurements import choose_measurements
-from hydrostat.robot import Cable, Marker, Pin, Robot, Winch
+from hydrostat.robot import Robot
 
 UPPER = ((0.0083, 0.0137), (0.0587, 0.0161), (0.1129, 0.0147), (0.1833, 0.0143))
 
@@ -26,17 +26,9 @@ def test_the_choice_is_that_of_all_subsets(seed: int) -> None:
 
 
 def strip() -> Robot:
-    """A flat strip with a cable and weight."""
-    return Robot(
-        name="strip",
-        body=mesh_body(strip_mesh(8, 2)),
-        pins=(Pin(box=((-0.001, -1.0), (0.001, 1.0)), stiffness=3e3),),
-        gravity=(0.0, -9.81),
-        winches=(Winch(name="up", at=UPPER[0], travel=0.02),),
-        cables=(Cable(winch="up", points=UPPER, slack=0.001),),
-        markers=(Marker(name="middle", at=(0.11, 0.0)), Marker(name="tip", at=(0.19, 0.0))),
-        poses={},
-    )
+    """A flat strip with a cable and weight, and two markers."""
+    robot = routed_strip({"up": UPPER}, gravity=(0.0, -9.81), slack=0.001, travel=0.02)
+    return replace(robot, markers=robot.markers[1:])
 
 
 @pytest.mark.slow

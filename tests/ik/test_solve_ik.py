@@ -129,7 +129,7 @@ def test_scipy_finds_nothing_better(name: str, unchecked: None) -> None:
     assert reached.optimality < 1e-3
     size = robot.body.mesh.size
     for error, words in ((2.1e-4, "reached within 0.3 mm"), (9.5e-6, "reached within 0.01 mm"), (4e-3 * size, None)):
-        assert replace(reached, errors={"tip": error}).ending == (words or "local optimum: target not reached")
+        assert replace(reached, errors={"tip": error}).outcome == (words or "local optimum: target not reached")
 
 
 def test_optimality_tells_an_optimum_from_a_pose_on_the_way() -> None:

@@ -30,7 +30,7 @@ def design_fewest(
 
     Each number of winches is searched by itself. It ends, as it may, with fewer cables than are allowed. Of networks
     that miss the tolerance the best one is returned, those whose kit would be refused last. Locked winches count;
-    `watch` is told each better network on the way, whatever its number of winches; `record` keeps the steps.
+    `watch` receives each better network on the way, whatever its number of winches; `record` keeps the steps.
     """
     size = robot.body.mesh.size
     constraints, options, cables = request.constraints, request.route_options, request.cables

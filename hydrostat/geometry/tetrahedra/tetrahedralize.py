@@ -138,7 +138,7 @@ _ADVICE = 0.7
 
 
 _MANY, _CLOSE_ENOUGH = 2.5, 0.5
-"""Finer elements that gave so many times the nodes suffice for a boundary as near as this, in element sizes."""
+"""Multiple of the first number of nodes from which on a boundary as near as this suffices, in element sizes."""
 
 _FEWEST, _MOST, _MOST_CELLS = 20, 400_000, 2_000_000
 """Elements, and cells of the lattice over the bounding box: what fits into memory."""

@@ -54,7 +54,7 @@ class KeyPose:
             head += f"; markers up to {1e3 * self.path_deviation:.2f} mm off a straight path"
         lines = [head]
         if self.found is not None:
-            lines[0] += f"; {self.found.ending}"
+            lines[0] += f"; {self.found.outcome}"
             lines += [f"  {words}" for words in self.found.active_limits]
         if self.free_error is not None:
             lines.append(f"  a search from rest reaches {1e3 * self.free_error:.2f} mm, on another branch")

@@ -96,12 +96,12 @@ def _parts(page: WindowPage) -> Callable[[], None]:
     def choose(part: int) -> None:
         page.act(lambda: starter.revise(part=part))
 
-    def clicked(event: events.GenericEventArguments) -> None:
+    def choose_clicked(event: events.GenericEventArguments) -> None:
         part = sent_number(event.args)
         if part is not None and starter.choice is not None and part in starter.choice.rings:
             choose(int(part))
 
-    view.on("click", clicked, js_handler=_CLICKED_PART)
+    view.on("click", choose_clicked, js_handler=_CLICKED_PART)
 
     def refresh() -> None:
         nonlocal shown
