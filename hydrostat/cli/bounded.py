@@ -97,7 +97,7 @@ def _read_child(child: int, reader: int, file: str, words: str, seconds: float, 
         spent, taken = _usage_of(usage, now - began)
         if spent > seconds:
             raise InputError(
-                f"{file}: time limit reached ({seconds:.3g} s). Simplify it or allow more time, e.g. --within 2min."
+                f"{file}: time limit reached ({seconds:.3g} s). Simplify it or allow more time, e.g. --timeout 2min."
             )
         if taken > memory:
             raise InputError(f"{file}: memory limit reached ({1e-9 * memory:.2g} GB). Simplify the file.")

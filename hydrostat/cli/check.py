@@ -21,9 +21,9 @@ def check(
             "--thorough", help="Also compute marker workspaces and the out-of-plane motion of a stuffed body."
         ),
     ] = False,
-    filled: Annotated[
+    stuffed: Annotated[
         bool,
-        typer.Option("--filled", help="Also simulate the stuffed 3D body. Slow."),
+        typer.Option("--stuffed", help="Also simulate the stuffed 3D body. Slow."),
     ] = False,
 ) -> None:
     """Check a robot: report errors and warnings.
@@ -53,14 +53,14 @@ def check(
         from hydrostat.design import Craft
 
         print(f"build: {Craft.of_robot(found, ())}; more if poses need stronger motors")
-    if filled:
+    if stuffed:
         _print_filled(found)
     elif words and thorough:
         _print_out_of_plane(found)
     reaches = bool(found.markers and found.cables)
     if reaches and thorough:
         _print_reach(found)
-    left_out = ["marker workspaces"] * reaches + ["out-of-plane motion"] * (bool(words) and not filled)
+    left_out = ["marker workspaces"] * reaches + ["out-of-plane motion"] * (bool(words) and not stuffed)
     if left_out and not thorough:
         print(f"not computed: {' and '.join(left_out)}. Add --thorough. Loads of poses: hydrostat fabricate.")
     _print_judgement(found)
@@ -138,7 +138,7 @@ def _print_out_of_plane(robot: "Robot") -> None:
 
     if not is_filled_motion_fast(robot, len(robot.poses)):
         if robot.body.outline is not None and robot.poses:
-            print("3D effect when stuffed: not computed (slow). Run hydrostat check --filled")
+            print("3D effect when stuffed: not computed (slow). Run hydrostat check --stuffed")
         return
     try:
         print(f"3D effect when stuffed: {filled_motion(robot, _full_contractions(robot))}")
@@ -152,9 +152,9 @@ def _print_filled(robot: "Robot") -> None:
     from hydrostat.simulation import filled_motion
 
     if robot.body.outline is None:
-        raise InputError("--filled: needs a flat robot with a drawing. Remove it.")
+        raise InputError("--stuffed: needs a flat robot with a drawing. Remove it.")
     if not robot.poses or not robot.cables:
-        raise InputError("--filled: needs at least one [[pose]] and one [[cable]]. Add them or remove --filled.")
+        raise InputError("--stuffed: needs at least one [[pose]] and one [[cable]]. Add them or remove --stuffed.")
     pulled = _full_contractions(robot)
     print("Stuffed 3D body, contractions of the flat model (maximum over markers and poses):")
     for face in Face:

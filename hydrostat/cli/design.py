@@ -80,7 +80,7 @@ LockWinch = Annotated[list[str] | None, typer.Option(metavar="NAME", help="Keep 
 LockCable = Annotated[
     list[str] | None, typer.Option(metavar="NAME", help="Keep this cable, by name or number from 1. Repeatable.")
 ]
-Improve = Annotated[bool, typer.Option("--improve", help="Warm-start from the robot's own network.")]
+WarmStart = Annotated[bool, typer.Option("--warm-start", help="Warm-start from the robot's own network.")]
 Simplicity = Annotated[
     float | None,
     _option(
@@ -89,7 +89,7 @@ Simplicity = Annotated[
         "RouteOptions.simplicity",
     ),
 ]
-Reach = Annotated[
+WorkspaceWeight = Annotated[
     float | None,
     _option(
         None,
@@ -97,15 +97,15 @@ Reach = Annotated[
         "RouteOptions.reach",
     ),
 ]
-AsModelled = Annotated[
+Ideal = Annotated[
     bool,
     typer.Option(
-        "--as-modelled",
+        "--ideal",
         help="Assume a perfect build: no position error of holes and no cable friction.",
     ),
 ]
-Filled = Annotated[
-    bool, typer.Option("--filled", help="Re-rank the best designs on the stuffed 3D body instead of the flat model.")
+Stuffed = Annotated[
+    bool, typer.Option("--stuffed", help="Re-rank the best designs on the stuffed 3D body instead of the flat model.")
 ]
 Tolerance = Annotated[
     str | None,
@@ -119,7 +119,7 @@ Time = Annotated[
     str | None,
     typer.Option(
         "--time",
-        "--within",
+        "--timeout",
         metavar="TIME",
         help="Maximum search time. Keeps the best network so far.",
         show_default="none",
@@ -128,7 +128,7 @@ Time = Annotated[
 Fibres = Annotated[
     str | None, _option("edges|elements", "Location of muscles for --method trees.", "TreeOptions.fibres")
 ]
-Knobs = Annotated[
+TreeOptionTexts = Annotated[
     list[str] | None,
     typer.Option(
         metavar="NAME=VALUE",
@@ -157,15 +157,15 @@ def design(
     symmetric: Symmetric = None,
     lock_winch: LockWinch = None,
     lock_cable: LockCable = None,
-    improve: Improve = False,
+    warm_start: WarmStart = False,
     tolerance: Tolerance = None,
     simplicity: Simplicity = None,
-    reach: Reach = None,
-    as_modelled: AsModelled = False,
-    filled: Filled = False,
+    workspace_weight: WorkspaceWeight = None,
+    ideal: Ideal = False,
+    stuffed: Stuffed = False,
     time_limit: Time = None,
     fibres: Fibres = None,
-    knob: Knobs = None,
+    tree_option: TreeOptionTexts = None,
     kit: WithKit = False,
     resume: Resume = False,
 ) -> None:
@@ -185,15 +185,15 @@ def design(
         winches=winches,
         cables=cables,
         method=method,
-        improve=improve,
+        improve=warm_start,
         tolerance=tolerance,
         simplicity=simplicity,
-        reach=reach,
-        as_modelled=as_modelled,
-        filled=filled,
+        reach=workspace_weight,
+        ideal=ideal,
+        filled=stuffed,
         time=time_limit,
         fibres=fibres,
-        knobs=knob or [],
+        tree_options=tree_option or [],
         measured=folder_of(robot) / "tolerances.toml",
         file=constraints,
         limits={

@@ -26,11 +26,11 @@ class DesignArguments:
     tolerance: str | None = None
     simplicity: float | None = None
     reach: float | None = None
-    as_modelled: bool = False
+    ideal: bool = False
     filled: bool = False
     time: str | None = None
     fibres: str | None = None
-    knobs: Sequence[str] = ()
+    tree_options: Sequence[str] = ()
     measured: Path | None = None  # file of tolerances that a measurement wrote, if there is one
     file: Path | None = None  # of constraints; what follows comes before it
     limits: Mapping[str, str | int | None] = field(default_factory=dict)  # by the fields of `Constraints`
@@ -74,7 +74,7 @@ def _uncertainty(robot: "Robot", typed: DesignArguments) -> "BuildTolerances | N
     """The tolerances that are asked for; None for the usual ones."""
     from hydrostat.design import BuildTolerances, read_uncertainty
 
-    if typed.as_modelled:
+    if typed.ideal:
         return BuildTolerances.none()
     if typed.file is not None:
         return read_uncertainty(typed.file, robot)
@@ -126,15 +126,15 @@ def _options(
     if typed.tolerance is not None and not open_winches:
         raise InputError("--tolerance: needs --winches auto. Add it.")
     fibres = None if typed.fibres is None else parse_choice(FibreKind, typed.fibres, what="--fibres")
-    for name, given in (("fibres", typed.fibres), ("knob", typed.knobs)):
+    for name, given in (("fibres", typed.fibres), ("tree-option", typed.tree_options)):
         if given and not trees:
             raise InputError(f"--{name}: needs --method trees or chang2018. Add it.")
-    for name, given in (("simplicity", typed.simplicity), ("reach", typed.reach)):
+    for name, given in (("simplicity", typed.simplicity), ("workspace-weight", typed.reach)):
         if given is not None and trees:
             raise InputError(f"--{name}: not available with --method {method}. Use --method routes.")
     if trees:
-        one = typed.knobs or method is DesignMethod.CHANG2018
-        options = TreeOptions.single(**dict(map(_knob, typed.knobs))) if one else TreeOptions()
+        one = typed.tree_options or method is DesignMethod.CHANG2018
+        options = TreeOptions.single(**dict(map(_tree_option, typed.tree_options))) if one else TreeOptions()
         return replace(options, fibres=fibres or options.fibres)
     tolerance = None if typed.tolerance is None else positive("--tolerance", typed.tolerance, LENGTH)
     simplicity = RouteOptions.simplicity if typed.simplicity is None else typed.simplicity
@@ -142,22 +142,22 @@ def _options(
     return RouteOptions(tolerance=tolerance, simplicity=simplicity, reach=reach)
 
 
-def _knob(text: str) -> tuple[str, Any]:
-    """A knob of trees and its value."""
-    from hydrostat.design import TreeKnobs
+def _tree_option(text: str) -> tuple[str, Any]:
+    """Return a setting of trees and its value."""
+    from hydrostat.design import TreeSettings
 
     name, _, value = text.partition("=")
-    kinds = get_type_hints(TreeKnobs)
+    kinds = get_type_hints(TreeSettings)
     kind = kinds.get(name)
     if kind is None:
         *names, last = kinds
         raise InputError(
-            f"--knob {text}: unknown setting. Write {', '.join(names)} or {last} with a value, e.g. phi=0.5."
+            f"--tree-option {text}: unknown setting. Write {', '.join(names)} or {last} with a value, e.g. phi=0.5."
         )
     try:
         return name, kind(value)
     except ValueError:
-        raise InputError(f"--knob {text}: must be {'a whole number' if kind is int else 'a number'}") from None
+        raise InputError(f"--tree-option {text}: must be {'a whole number' if kind is int else 'a number'}") from None
 
 
 def _winch(name: str, robot: "Robot") -> str:

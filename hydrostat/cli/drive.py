@@ -36,9 +36,9 @@ def drive(
         ),
     ] = "keys",
     port: MotorPort = None,
-    tips: Annotated[bool, typer.Option("--tips", help="Move fingertips (markers) instead of winches.")] = False,
+    markers: Annotated[bool, typer.Option("--markers", help="Move fingertips (markers) instead of winches.")] = False,
     model: Annotated[
-        Path | None, typer.Option(metavar="MODEL", help="Trained model to warm-start each move, with --tips.")
+        Path | None, typer.Option(metavar="MODEL", help="Trained model to warm-start each move, with --markers.")
     ] = None,
     known: Annotated[
         Path | None, typer.Option("--map", metavar="FILE", help="Hand-to-robot map written by `hydrostat mimic`.")
@@ -54,7 +54,7 @@ def drive(
     watchdog and a tension guard protect the robot. Motors hold when the input is lost, and stop at the end, on Ctrl-C,
     on SIGTERM, when the terminal closes and on any error.
 
-    With --tips you move markers, and inverse kinematics computes the contractions while you drive.
+    With --markers you move markers, and inverse kinematics computes the contractions while you drive.
 
     Example: hydrostat drive gallery:starfish --source keys
     """
@@ -62,8 +62,8 @@ def drive(
 
     if port is not None:
         control.check_port(port)
-    if model is not None and not tips:
-        raise InputError("--model: needs --tips. Add it.")
+    if model is not None and not markers:
+        raise InputError("--model: needs --markers. Add it.")
     if not seconds >= 0:
         raise InputError(f"--seconds {seconds:g}: must not be negative")
     smooth = teleop.Smoothing(least=smoothing) if smoothing else None
@@ -71,7 +71,7 @@ def drive(
     networks, loaded = (None, loaded) if model is None else read_model(model, loaded)
     learned = None if known is None else teleop.HandMap.open(known)
     simulation, kind = prepare_physics(loaded), "simulated" if port is None else port.partition(":")[0]
-    way = _way(simulation, networks, tips=tips, guarded=port is not None)
+    way = _way(simulation, networks, markers=markers, guarded=port is not None)
     with one_interrupt(""):  # arming turns motors, too
         asked: DriveSource | None = None
         motors: Motors | None = None
@@ -82,7 +82,7 @@ def drive(
             shown = _Shown(kind, motors)
             _run(
                 shown,
-                f"driving {'fingertips' if tips else 'winches'} of {loaded.name} with {source}",
+                f"driving {'fingertips' if markers else 'winches'} of {loaded.name} with {source}",
                 way,
                 asked,
                 seconds,
@@ -111,12 +111,12 @@ def _run(shown: "_Shown", what: str, way: "CommandMapper", source: "DriveSource"
     shown.end("ended")
 
 
-def _way(simulation: "Simulation", networks: "LearnedModel | None", *, tips: bool, guarded: bool) -> "CommandMapper":
+def _way(simulation: "Simulation", networks: "LearnedModel | None", *, markers: bool, guarded: bool) -> "CommandMapper":
     """From what is asked for to contractions, from where the body is at rest."""
     from hydrostat import control, teleop
 
     begin = teleop.WinchMapper.list_channels(simulation.robot).rest
-    if tips:
+    if markers:
         rate = control.LinkLimits().speed if guarded else control.FASTEST
         return teleop.MarkerMapper(simulation, begin, model=networks, rate=rate)
     return teleop.WinchMapper(simulation, begin, solves=guarded)

@@ -35,7 +35,7 @@ def mimic(
         int, typer.Option("--count", metavar="N", help="Total number of poses, including earlier ones in DIR.")
     ] = 60,
     worn: Annotated[bool, typer.Option("--worn", help="Record without prompts: the robot wears the glove.")] = False,
-    tips: Annotated[bool, typer.Option("--tips", help="Learn fingertip positions instead of contractions.")] = False,
+    markers: Annotated[bool, typer.Option("--markers", help="Learn marker positions instead of contractions.")] = False,
     port: MotorPort = None,
 ) -> None:
     """Teach a hand-to-robot map with a glove or camera.
@@ -61,7 +61,7 @@ def mimic(
     hand = teleop.open_hand(glove, wearer)
     try:
         simulation = prepare_physics(loaded)
-        lesson = _lesson(simulation, hand, out, tips=tips)
+        lesson = _lesson(simulation, hand, out, markers=markers)
         show = wearer.person.mimic if emulated else lambda _: None
         with (
             one_interrupt(""),  # arming turns motors, too
@@ -75,7 +75,7 @@ def mimic(
                 held = session.take(lesson.count, asks=not (worn or emulated))
                 if held is None:
                     break
-                lesson.take(held, _markers(simulation, session.motors.places) if tips else session.motors.places)
+                lesson.take(held, _markers(simulation, session.motors.places) if markers else session.motors.places)
                 lesson.made.save(out / PAIRS)
                 session.say(lesson.summary())
     except (KeyboardInterrupt, SystemExit):
@@ -83,10 +83,10 @@ def mimic(
         raise typer.Exit(130) from None
     finally:
         hand.close()
-    _done(lesson, loaded.name, out, glove, tips=tips)
+    _done(lesson, loaded.name, out, glove, markers=markers)
 
 
-def _lesson(simulation: "Simulation", hand: "HandSource", out: Path, *, tips: bool) -> "LessonPoses":
+def _lesson(simulation: "Simulation", hand: "HandSource", out: Path, *, markers: bool) -> "LessonPoses":
     """A lesson that goes on where that of the folder ended, if there is one."""
     import numpy as np
 
@@ -95,7 +95,7 @@ def _lesson(simulation: "Simulation", hand: "HandSource", out: Path, *, tips: bo
     channels = teleop.WinchMapper.list_channels(simulation.robot)
     answers = pool = teleop.LessonPoses.pool(channels)
     names = channels.names
-    if tips:
+    if markers:
         names = teleop.MarkerMapper.list_channels(simulation).names
         pool = pool[:: len(pool) // TIPS]
         print("solving candidate poses ...", flush=True)
@@ -105,7 +105,7 @@ def _lesson(simulation: "Simulation", hand: "HandSource", out: Path, *, tips: bo
     if (out / PAIRS).exists():
         made = teleop.Mimicry.open(out / PAIRS)
         if (made.sensors, made.outputs) != (hand.names, names):
-            raise InputError(f"{out / PAIRS}: recorded with another hand, robot or --tips setting. Give another --out.")
+            raise InputError(f"{out / PAIRS}: recorded with another hand, robot or --markers. Give another --out.")
     out.mkdir(parents=True, exist_ok=True)
     return teleop.LessonPoses(made, pool, answers)
 
@@ -194,7 +194,7 @@ class _Session:
         return "q" if not line else line.strip().lower()
 
 
-def _done(lesson: "LessonPoses", robot: str, out: Path, glove: str, *, tips: bool) -> None:
+def _done(lesson: "LessonPoses", robot: str, out: Path, glove: str, *, markers: bool) -> None:
     """Write what was learned."""
     from hydrostat import teleop
 
@@ -215,4 +215,4 @@ def _done(lesson: "LessonPoses", robot: str, out: Path, glove: str, *, tips: boo
         print(f"note: {none}")
     print(f"Wrote {', '.join(written)} in {out}")
     source = glove if glove.startswith("camera:") else f"glove:{glove}"
-    print(f"Drive with it: hydrostat drive ROBOT --source {source} --map {out / MAP}{' --tips' if tips else ''}")
+    print(f"Drive with it: hydrostat drive ROBOT --source {source} --map {out / MAP}{' --markers' if markers else ''}")

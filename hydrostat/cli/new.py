@@ -57,7 +57,7 @@ def new(
         int | None,
         typer.Option(metavar="N", help="Shape of a drawing, or body of a STEP file, to use; 1 is the largest."),
     ] = None,
-    within: Annotated[
+    timeout: Annotated[
         str | None, typer.Option(metavar="TIME", help="Time limit for reading, healing and meshing the file.")
     ] = None,
 ) -> None:
@@ -86,7 +86,7 @@ def new(
         inner=_inner(inner),
         drawing_part=part,
     )
-    seconds = parse_optional("--within", within, TIME) or SECONDS + SECONDS_A_NODE * (nodes or 0)
+    seconds = parse_optional("--timeout", timeout, TIME) or SECONDS + SECONDS_A_NODE * (nodes or 0)
     with _made_whole(name) as folder:
         with _blaming_the_option(name):
             lines = _begin(source, folder, wish, seconds)

@@ -39,7 +39,7 @@ def pose(
         int | None,
         typer.Option(metavar="N", help="Random restarts if the target is not reached.", show_default="3"),
     ] = None,
-    within: Annotated[
+    timeout: Annotated[
         str | None,
         typer.Option(metavar="TIME", help="Time limit per search. Returns the best pose so far.", show_default="none"),
     ] = None,
@@ -62,7 +62,7 @@ def pose(
     from hydrostat.units import TIME
 
     require_folder(out)
-    limits, patience = pose_limits(tension, torque, equal), parse_optional("--within", within, TIME)
+    limits, patience = pose_limits(tension, torque, equal), parse_optional("--timeout", timeout, TIME)
     if restarts is not None and restarts < 0:
         raise InputError(f"--restarts {restarts}: must be 0 or more")
     options = IKOptions() if restarts is None else IKOptions(restarts=restarts)

@@ -22,7 +22,7 @@ def sample(
     contact: Annotated[
         bool, typer.Option("--contact", help="Enable self-contact even if robot.toml has no [contact].")
     ] = False,
-    draw: Annotated[
+    sampling: Annotated[
         str,
         typer.Option(
             metavar="WAY,WAY",
@@ -30,7 +30,7 @@ def sample(
         ),
     ] = "box",
     tension: Annotated[
-        str | None, typer.Option(metavar="FORCE", help="Maximum cable tension for --draw tension.")
+        str | None, typer.Option(metavar="FORCE", help="Maximum cable tension for --sampling tension.")
     ] = None,
     seed: Annotated[int, typer.Option(help="Random seed.")] = 0,
     nodes: Annotated[bool, typer.Option("--save-nodes", help="Also save all node positions.")] = False,
@@ -65,7 +65,7 @@ def sample(
     if export is not None:
         check_export(export)
     part = _part(shard)
-    draws = tuple(parse_choice(SamplingScheme, each.strip(), what="--draw") for each in draw.split(","))
+    draws = tuple(parse_choice(SamplingScheme, each.strip(), what="--sampling") for each in sampling.split(","))
     most = parse_optional("--tension", tension, FORCE)
     loaded = read_robot(robot)
     plan = SamplePlan.of_robot(

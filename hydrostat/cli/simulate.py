@@ -55,7 +55,7 @@ def simulate(
     play: Annotated[
         Path | None, typer.Option(metavar="FILE.csv", help="Contractions over time: columns time_s, WINCH ... [mm].")
     ] = None,
-    within: Annotated[
+    timeout: Annotated[
         str | None,
         typer.Option(
             metavar="TIME", help="Time limit for the solver. On timeout, print a diagnosis.", show_default="none"
@@ -84,8 +84,8 @@ def simulate(
     given, forces = contractions(loaded, contract), pulls(loaded, pull)
     if both := sorted(given.keys() & forces.keys()):
         raise InputError(f"--pull {both[0]}: --contract is given for this winch, too. Remove one of them.")
-    if forces and (dynamic or within is not None):
-        raise InputError(f"--pull: not available with {'--dynamic' if dynamic else '--within'}. Remove one of them.")
+    if forces and (dynamic or timeout is not None):
+        raise InputError(f"--pull: not available with {'--dynamic' if dynamic else '--timeout'}. Remove one of them.")
     driven = moves(loaded, move)
     if driven and (dynamic or forces):
         raise InputError(f"--move: not available with {'--dynamic' if dynamic else '--pull'}. Remove one of them.")
@@ -93,9 +93,9 @@ def simulate(
         raise InputError("--jacobian: not available with --dynamic. Remove one of them.")
     if not dynamic and (play is not None or duration is not None):
         raise InputError("--play and --duration: need --dynamic. Add it.")
-    if dynamic and within is not None:
-        raise InputError("--within: not available with --dynamic. Remove one of them.")
-    limit = parse_optional("--within", within, TIME)
+    if dynamic and timeout is not None:
+        raise InputError("--timeout: not available with --dynamic. Remove one of them.")
+    limit = parse_optional("--timeout", timeout, TIME)
     with print_profile(profile, "preparing"):
         simulation = prepare_physics(loaded)
     if dynamic:

@@ -37,7 +37,7 @@ def train(
         Path | None,
         typer.Option(metavar="MODEL", help="Train in a model from `hydrostat learn` instead of the simulator."),
     ] = None,
-    exact: Annotated[
+    simulator_every: Annotated[
         int, typer.Option(metavar="N", help="Run every Nth episode in the simulator, with --model. 0 = none.")
     ] = 0,
     tolerance: Annotated[
@@ -132,8 +132,8 @@ def train(
     methods = [str(each) for each in training.TrainMethod]
     if method not in methods:
         raise InputError(f"--method {method}: unknown method. Available: {', '.join(methods)}.")
-    if exact and model is None:
-        raise InputError("--exact: needs --model. Without it every episode runs in the simulator.")
+    if simulator_every and model is None:
+        raise InputError("--simulator-every: needs --model. Without it every episode runs in the simulator.")
     if at and not thing:
         raise InputError("--at: needs --object. Move an [[obstacle]] of the robot in robot.toml.")
     made, loaded = training.task_of(task).env, read_robot(robot)
@@ -156,7 +156,7 @@ def train(
         print(f"Evaluation episodes: {judged.page.address}", flush=True)
     networks = None if model is None else LearnedModel.load(model)
     if networks is not None:
-        env.learn_in(networks, exact=exact)
+        env.learn_in(networks, exact=simulator_every)
     options = training.TrainOptions(
         method=training.TrainMethod(method),
         steps=steps,

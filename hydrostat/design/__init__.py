@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     )
     from hydrostat.design.polyline import nearest_shares, turns
     from hydrostat.design.region import Region
-    from hydrostat.design.request import DesignMethod, DesignRequest, RouteOptions, TreeKnobs, TreeOptions
+    from hydrostat.design.request import DesignMethod, DesignRequest, RouteOptions, TreeOptions, TreeSettings
     from hydrostat.design.review_robot import review_robot
     from hydrostat.design.routes.finalists import kit_fits
     from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
@@ -72,8 +72,8 @@ __all__ = [
     "RouteTrace",
     "SearchRecord",
     "Severity",
-    "TreeKnobs",
     "TreeOptions",
+    "TreeSettings",
     "TreeTrace",
     "WinchSite",
     "Zone",

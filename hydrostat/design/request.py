@@ -109,8 +109,8 @@ ROUTE_RANGES = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class TreeKnobs:
-    """Knobs of the thesis's search, one value of each (R46)."""
+class TreeSettings:
+    """Settings of one winch tree, one value of each (R46)."""
 
     threshold: int = 60  # number of candidate fibres (R39)
     distance: float = 1.5  # largest gap between two fibres that are joined, in mean mesh edges (R40)
@@ -171,12 +171,12 @@ class TreeOptions:
     def single(
         cls,
         *,
-        threshold: int = TreeKnobs.threshold,
-        distance: float = TreeKnobs.distance,
-        steps: int = TreeKnobs.steps,
-        phi: float = TreeKnobs.phi,
+        threshold: int = TreeSettings.threshold,
+        distance: float = TreeSettings.distance,
+        steps: int = TreeSettings.steps,
+        phi: float = TreeSettings.phi,
     ) -> Self:
-        """The thesis's search as it stands: one value of each of `TreeKnobs`, no network chosen by its pose error."""
+        """Return the options of the thesis: one value of each of `TreeSettings`, no choice by pose error."""
         return cls(
             thresholds=(threshold,),
             distances=(distance,),
@@ -204,7 +204,7 @@ KNOB_RANGES = {
     "steps": TREE_RANGES["growth_steps"],
     "phi": TREE_RANGES["phis"],
 }
-"""Allowed values of each of `TreeKnobs`."""
+"""Allowed values of each of `TreeSettings`."""
 
 
 @dataclass(frozen=True, kw_only=True)

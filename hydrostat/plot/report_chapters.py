@@ -64,7 +64,7 @@ def _flat_commands_text(network: Network) -> str:
     if network.robot.body.outline is None:
         return "How far it leaves the plane is told of drawings only, and this body is a mesh."
     if not is_filled_motion_fast(network.robot, len(pulled)):
-        return "How far it leaves the plane takes long to find here: hydrostat check ROBOT --filled tells it."
+        return "How far it leaves the plane takes long to find here: hydrostat check ROBOT --stuffed tells it."
     try:
         found = filled_motion(network.robot, pulled)
     except HydrostatError as error:

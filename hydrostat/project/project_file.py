@@ -10,7 +10,7 @@ from pydantic import ConfigDict, ValidationError, create_model
 
 from hydrostat import units
 from hydrostat.control import Timeline
-from hydrostat.design import Constraints, RouteOptions, TreeKnobs
+from hydrostat.design import Constraints, RouteOptions, TreeSettings
 from hydrostat.errors import InputError
 from hydrostat.files import read_stranger, replace_file
 from hydrostat.project.wishes import ELSEWHERE, Wishes
@@ -32,7 +32,7 @@ MORE = tuple(one.name for one in fields(Constraints) if one.name not in (*KEYS, 
 def _wishes_table() -> type:
     """Record with the wishes as they stand in the file, side by side; pydantic names it in complaints."""
     usual, hints = Wishes(), {"stepped": bool}
-    for record in (RouteOptions, TreeKnobs, Constraints, Wishes):
+    for record in (RouteOptions, TreeSettings, Constraints, Wishes):
         hints |= get_type_hints(record)
     forms = [(name, hints[name], field(default=usual.value(name))) for name in (*KEYS, *MORE)]
     ratio = ("spool_ratio", float | None, field(default=None))  # None: as "stepped" says

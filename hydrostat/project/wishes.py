@@ -11,8 +11,8 @@ from hydrostat.design import (
     DesignMethod,
     DesignRequest,
     RouteOptions,
-    TreeKnobs,
     TreeOptions,
+    TreeSettings,
     Zone,
 )
 from hydrostat.errors import InputError
@@ -49,7 +49,7 @@ class Wishes:
     kept_cables: tuple[str, ...] = ()  # names of the robot's own cables that stay, and their winches with them
     method: DesignMethod = DesignRequest.method  # routes, ours, or the thesis's winch trees
     options: RouteOptions = field(default_factory=RouteOptions)  # of the search for routes
-    knobs: TreeKnobs = field(default_factory=TreeKnobs)  # of the search for winch trees
+    knobs: TreeSettings = field(default_factory=TreeSettings)  # of the search for winch trees
 
     def __post_init__(self) -> None:
         make_member(self, "method", DesignMethod)
@@ -123,7 +123,7 @@ ELSEWHERE = (*Paint, "locked_winches", "locked_cables", "spool_ratio")
 WISH_RANGES = {
     **Constraints.ranges(),
     **{name: RouteOptions.ranges()[name] for name in OPTIONS},
-    **TreeKnobs.ranges(),
+    **TreeSettings.ranges(),
 }
 """Allowed values of the numbers in the records of `Wishes`."""
 
@@ -132,7 +132,7 @@ def _record(name: str) -> str:
     """Field of `Wishes` that holds the record with a value; "" for its own values."""
     if name in OWN:
         return ""
-    return "knobs" if name in TreeKnobs.ranges() else "options" if name in OPTIONS else "constraints"
+    return "knobs" if name in TreeSettings.ranges() else "options" if name in OPTIONS else "constraints"
 
 
 def _check(name: str, value: Any) -> None:

@@ -45,7 +45,7 @@ class HandMap:
         if self.outputs != channels:
             raise InputError(
                 f"--map: it was learned of {self.robot} for {', '.join(self.outputs[:3])} ..., and here are "
-                f"{', '.join(channels[:3])} ...: use --tips as `hydrostat mimic` did, and the same robot"
+                f"{', '.join(channels[:3])} ...: use --markers as `hydrostat mimic` did, and the same robot"
             )
 
     def save(self, path: Path) -> Path:

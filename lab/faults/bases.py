@@ -261,7 +261,7 @@ def give(kind: str, name: str, content: bytes, folder: Path) -> Callable[[], obj
             shutil.copy(path, folder / "robot")
         (folder / "robot" / "robot.toml").write_bytes(content)
         if name == "all":
-            return command("simulate", "robot", "--contract", "left=3mm", "--within", "20s", "--out", "made")
+            return command("simulate", "robot", "--contract", "left=3mm", "--timeout", "20s", "--out", "made")
         return command("check", "robot")
     path = folder / name
     path.write_bytes(content)

@@ -45,7 +45,9 @@ def reproduce(
     ],
     out: OutFolder,
     size: Annotated[str, typer.Option(metavar="minutes|hour|full", help="Sampling effort.")] = "minutes",
-    draw: Annotated[str, typer.Option(metavar="WAY,WAY", help="Sampling strategies: box, antagonist, faces.")] = "box",
+    sampling: Annotated[
+        str, typer.Option(metavar="WAY,WAY", help="Sampling strategies: box, antagonist, faces.")
+    ] = "box",
     robots: Annotated[
         str | None,
         typer.Option(metavar="NAME,NAME", help="Gallery robots or robot folders.", show_default="by --size"),
@@ -103,7 +105,7 @@ def reproduce(
     for name in asked:
         if name not in there:
             raise InputError(f'unknown table or figure "{name}". Available: all, {", ".join(there)}.')
-    study, bodies = _study(parse_choice(Size, size, what="--size"), draw, robots, counts, targets, seeds)
+    study, bodies = _study(parse_choice(Size, size, what="--size"), sampling, robots, counts, targets, seeds)
     require_folder(out)
     out.mkdir(parents=True, exist_ok=True)
     if tables := [name for name in asked if name in THINGS]:
@@ -133,7 +135,7 @@ def _compare(asked: "Sequence[str]", study: "Study", bodies: "Sequence[str]", ou
 
 
 def _study(
-    size: Size, draw: str, robots: str | None, counts: str | None, targets: int | None, seeds: int | None
+    size: Size, sampling: str, robots: str | None, counts: str | None, targets: int | None, seeds: int | None
 ) -> "tuple[Study, list[str]]":
     """Return the methods to compare, as a study, and the names of the robots."""
     from hydrostat.learning import LearnOptions, SamplingScheme
@@ -141,10 +143,10 @@ def _study(
 
     usual, draws = (
         _SIZES[size],
-        tuple(parse_choice(SamplingScheme, each.strip(), what="--draw") for each in draw.split(",")),
+        tuple(parse_choice(SamplingScheme, each.strip(), what="--sampling") for each in sampling.split(",")),
     )
     if SamplingScheme.TENSION in draws:
-        raise InputError("--draw tension: only for hydrostat sample. Allowed here: box, antagonist, faces.")
+        raise InputError("--sampling tension: only for hydrostat sample. Allowed here: box, antagonist, faces.")
     study = Study(
         draws=draws,
         counts=tuple(usual.counts if counts is None else _numbers(counts)),

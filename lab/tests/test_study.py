@@ -120,8 +120,8 @@ def test_the_tables_and_figures_of_the_thesis(
         reproduce.reproduce(["all"], tmp_path, counts="1,x")
     with pytest.raises(InputError, match=r"--counts 10,100: too few samples\. The minimum is 20"):
         reproduce.reproduce(["all"], tmp_path, counts="10,100")
-    with pytest.raises(InputError, match="--draw tension: only for hydrostat sample"):
-        reproduce.reproduce(["all"], tmp_path, draw="box,tension")
+    with pytest.raises(InputError, match="--sampling tension: only for hydrostat sample"):
+        reproduce.reproduce(["all"], tmp_path, sampling="box,tension")
 
 
 def test_options_of_a_size() -> None:

@@ -98,13 +98,13 @@ def test_a_solve_that_does_not_converge_ends_with_code_1(
 
 @pytest.mark.slow
 def test_a_pose_that_is_not_found_in_time_tells_what_is_in_the_way(run: Run, starfish: Path, tmp_path: Path) -> None:
-    code, out, _ = run("simulate", starfish, "--contract", "left=12mm", "--within", "0.001ms", "--out", tmp_path)
+    code, out, _ = run("simulate", starfish, "--contract", "left=12mm", "--timeout", "0.001ms", "--out", tmp_path)
     assert code == 1
     assert "time limit reached" in out
     assert "not converged: highest tension" in out
-    code, _, err = run("simulate", starfish, "--dynamic", "--within", "1s", "--out", tmp_path)
+    code, _, err = run("simulate", starfish, "--dynamic", "--timeout", "1s", "--out", tmp_path)
     assert code == 2
-    assert "--within" in err
+    assert "--timeout" in err
 
 
 def test_no_command_takes_in_all_of_a_cable() -> None:

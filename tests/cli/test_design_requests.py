@@ -37,7 +37,7 @@ def test_the_same_typed_and_wished_is_the_same_request(unchecked: None) -> None:
 def test_knobs_of_the_thesis_have_the_same_names_everywhere() -> None:
     starfish = gallery_robot("starfish")
     knobs = {"threshold": 40, "distance": 2.5, "steps": 8, "phi": 0.3}
-    typed = DesignArguments(method="chang2018", knobs=[f"{name}={value}" for name, value in knobs.items()])
+    typed = DesignArguments(method="chang2018", tree_options=[f"{name}={value}" for name, value in knobs.items()])
     wished = wished_request(starfish, Wishes.of(method=DesignMethod.CHANG2018, **knobs))
     assert wished == parse_request(starfish, typed)
 
@@ -54,5 +54,5 @@ def test_measured_tolerances_are_taken_unless_a_file_is_given(tmp_path: Path) ->
         uncertainty = parse_request(robot(), typed).uncertainty
         assert uncertainty is not None
         assert uncertainty.young == young
-    exact = parse_request(robot(), DesignArguments(measured=measured, as_modelled=True)).uncertainty
+    exact = parse_request(robot(), DesignArguments(measured=measured, ideal=True)).uncertainty
     assert exact == BuildTolerances.none()

@@ -66,7 +66,7 @@ def test_messages_move_fingertips(run: Run, starfish: Path) -> None:
     thread = threading.Thread(target=tell)
     thread.start()
     try:
-        code, out, err = run("drive", starfish, "--source", "osc:9321", "--tips", "--seconds", 2)
+        code, out, err = run("drive", starfish, "--source", "osc:9321", "--markers", "--seconds", 2)
     finally:
         over.set()
         thread.join()
@@ -84,7 +84,7 @@ def test_messages_move_fingertips(run: Run, starfish: Path) -> None:
         (("--source", "pedals"), "--source pedals: unknown source. Available: keys, gamepad:0"),
         (("--source", "glove:/dev/ttyUSB0"), "needs --map FILE; `hydrostat mimic` makes it"),
         (("--map", "none.json"), "none.json: cannot be read"),
-        (("--model", "none.model"), "--model: needs --tips. Add it."),
+        (("--model", "none.model"), "--model: needs --markers. Add it."),
         (("--motors", "nonsense"), "--motors nonsense: write emulated"),
         (("--seconds", -1), "--seconds -1: must not be negative"),
     ],

@@ -45,7 +45,7 @@ def test_a_lesson_with_an_emulated_glove_and_a_drive_by_it(run: Run, starfish: P
     assert (code, err) == (0, "")
     moved = [float(word) for word in re.findall(r"right (-?\d+\.\d) mm", told)]
     assert max(moved) > 1.0  # the emulated hand closes by itself
-    code, _, err = run("drive", starfish, *options, "--tips")
+    code, _, err = run("drive", starfish, *options, "--markers")
     assert code == 2
     assert "--map: it was learned of starfish for right, left, feet" in err
 

@@ -32,7 +32,7 @@ def test_a_few_actions_are_judged_and_counted(run: Run, starfish: Path, tmp_path
     ("words", "told"),
     [
         (["--method", "magic"], "--method magic: unknown method. Available: ddpg-her, td3-her, sac-her, tqc-her"),
-        (["--exact", 3], "--exact: needs --model"),
+        (["--simulator-every", 3], "--simulator-every: needs --model"),
         (["--horizon", 0], "steps must be 1 or more, not 0"),
         (["--marker", "nose"], 'unknown marker "nose". Available: '),
         (["--pair", "left,nose"], 'unknown winch "nose". Available: '),

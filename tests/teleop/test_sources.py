@@ -264,7 +264,7 @@ def test_maps_are_kept_and_fit_one_hand_and_robot(tmp_path: Path) -> None:
     sensors = np.linspace(0, 1, SENSORS)
     assert known(sensors) == straight()(sensors)
     assert (known.sensors, known.outputs, known.poses) == (CyberGlove.names, WINCHES.names, 3)
-    with pytest.raises(InputError, match="use --tips"):
+    with pytest.raises(InputError, match="use --markers"):
         known.check(CyberGlove.names, TIPS.names)
     with pytest.raises(InputError, match="another kind of hand"):
         known.check(HandLandmarks.names, WINCHES.names)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from hydrostat.design import DesignRequest, RouteOptions, TreeKnobs
+from hydrostat.design import DesignRequest, RouteOptions, TreeSettings
 from hydrostat.drawing import Color
 from hydrostat.errors import InputError
 from hydrostat.project import Paint, Wishes
@@ -44,7 +44,7 @@ TITLE = "Designing cables"
 
 MODULE = "hydrostat.studio.designing.design_work"
 
-LIVE = frozenset({"method", "winches", "cables", *TreeKnobs.ranges()})
+LIVE = frozenset({"method", "winches", "cables", *TreeSettings.ranges()})
 """Wishes that act immediately where the thesis's search is chosen."""
 
 
