@@ -34,6 +34,7 @@ MANY_PARAMETERS = {
     "hydrostat/cli/pose.py:pose": "a parameter is an option of the command line",
     "hydrostat/cli/grasp.py:grasp": "a parameter is an option of the command line",
     "hydrostat/cli/measure.py:measure": "a parameter is an option of the command line",
+    "hydrostat/cli/compare.py:compare": "a parameter is an option of the command line",
     "hydrostat/cli/play.py:play": "a parameter is an option of the command line",
     "lab/hydrostat_lab/reproduce.py:reproduce": "a parameter is an option of the command line",
     "hydrostat/cli/sample.py:sample": "a parameter is an option of the command line",

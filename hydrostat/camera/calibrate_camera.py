@@ -21,8 +21,18 @@ FOCAL_TRUST = 0.05
 CENTER_SPREAD, DISTORTION_SPREAD = 0.02, 0.15
 """Spread of the principal point over the longer side, and of coefficients of distortion."""
 
+LENS_TRUST = 0.01, 0.002, 0.01
+"""Spread of a lens that other photographs showed, as focus moves it: focal length, principal point, distortion."""
+
 COVERED = 1.0
 """Distance of a corner [pixels] from which on it counts as covered, if others are closer."""
+
+SCALES = (0.5,), (20.0, 3.0, 0.5)
+"""Errors [pixels] from which on corners count less, one fit after another, of two tries; the better one counts.
+
+The first keeps to a first guess of which most is right, as if a sheet has moved. The second is for a guess that is far
+from all, as by another focal length.
+"""
 
 LENS = 5
 """Numbers of a lens."""
@@ -48,7 +58,11 @@ class CameraCalibration:
 
 
 def calibrate_camera(
-    tags: Sequence[Mapping[int, Corners]], size: tuple[int, int], *, focal: float | None = None
+    tags: Sequence[Mapping[int, Corners]],
+    size: tuple[int, int],
+    *,
+    focal: float | None = None,
+    known: Lens | None = None,
 ) -> CameraCalibration:
     """Calibrate a camera from the board in its photographs (least squares with a Cauchy loss, as tags may be covered).
 
@@ -56,27 +70,20 @@ def calibrate_camera(
         tags: tags in each photograph; each has at least one of the board.
         size: width and height of all photographs [pixels].
         focal: focal length [pixels] that the files say; a usual one if left out.
+        known: lens that other photographs of the camera showed, for pictures of this size.
 
     Raises:
         InputError: sheets of which no photograph shows two together.
     """
     long = max(size)
-    start = focal or FOCAL * long
-    spread = FOCAL_TRUST if focal else FOCAL_SPREAD
-    lens = Lens(start, ((size[0] - 1) / 2, (size[1] - 1) / 2), (0.0, 0.0))
-    sheets, views = _first_guess(tags, lens)
-    problem = _Problem(tags, sorted(sheets), lens, spread, CENTER_SPREAD * long)
-    found = least_squares(
-        problem.residuals,
-        problem.pack(sheets, views),
-        jac=problem.jacobian,  # pyright: ignore[reportArgumentType] (a function)
-        loss="cauchy",
-        f_scale=0.5,
-        x_scale="jac",
-        max_nfev=60,
-    )
-    lens, sheets, views = problem.unpack(found.x)
-    away = np.linalg.norm(problem.residuals(found.x)[:-LENS].reshape(-1, 2), axis=1)
+    start = known or Lens(focal or FOCAL * long, ((size[0] - 1) / 2, (size[1] - 1) / 2), (0.0, 0.0))
+    trust = (FOCAL_TRUST if focal else FOCAL_SPREAD, CENTER_SPREAD, DISTORTION_SPREAD) if known is None else LENS_TRUST
+    sheets, views = _first_guess(tags, start)
+    spreads = np.array([trust[0], *[trust[1] * long] * 2, *[trust[2]] * 2])
+    problem = _Problem(tags, sorted(sheets), start, spreads)
+    numbers = problem.solve(problem.pack(sheets, views))
+    lens, sheets, views = problem.unpack(numbers)
+    away = np.linalg.norm(problem.residuals(numbers)[:-LENS].reshape(-1, 2), axis=1)
     good = away <= max(COVERED, 5 * float(np.median(away)))
     errors = [float(np.sqrt((away[(problem.photo == photo) & good] ** 2).mean())) for photo in range(len(views))]
     wrong = {
@@ -160,14 +167,9 @@ class _Problem:
     """Residuals of all corners of the board, and of what is known before; numbers: lens, sheets, views."""
 
     def __init__(
-        self,
-        tags: Sequence[Mapping[int, Corners]],
-        sheets: list[int],
-        lens: Lens,
-        spread: float,
-        center_spread: float,
+        self, tags: Sequence[Mapping[int, Corners]], sheets: list[int], lens: Lens, spreads: np.ndarray
     ) -> None:
-        self._start, self._spread, self._center_spread = lens, spread, center_spread
+        self._start, self._spreads = lens, spreads
         self._sheets = sheets
         photo, sheet, flat, pixels = [], [], [], []
         for index, each in enumerate(tags):
@@ -197,13 +199,33 @@ class _Problem:
         lens = Lens(
             float(self._start.focal * np.exp(numbers[0])),
             (self._start.center[0] + float(numbers[1]), self._start.center[1] + float(numbers[2])),
-            (float(numbers[3]), float(numbers[4])),
+            (self._start.distortion[0] + float(numbers[3]), self._start.distortion[1] + float(numbers[4])),
         )
         parts = numbers[LENS : LENS + 3 * (len(self._sheets) - 1)].reshape(-1, 3)
         poses = numbers[LENS + parts.size :].reshape(-1, 6)
         turns = Rotation.from_rotvec(poses[:, :3]).as_matrix()
         views = [View(turn, pose[3:]) for turn, pose in zip(turns, poses, strict=True)]
         return lens, dict(zip(self._sheets, [np.zeros(3), *parts], strict=True)), views
+
+    def solve(self, start: np.ndarray) -> np.ndarray:
+        """Numbers with the smallest loss, of the tries from a first guess."""
+        best = (np.inf, start)
+        for scales in SCALES:
+            numbers, cost = start, np.inf
+            for scale in scales:
+                found = least_squares(
+                    self.residuals,
+                    numbers,
+                    jac=self.jacobian,  # pyright: ignore[reportArgumentType] (a function)
+                    loss="cauchy",
+                    f_scale=scale,
+                    x_scale="jac",
+                    ftol=1e-8 if scale == scales[-1] else 1e-2,
+                    max_nfev=60,
+                )
+                numbers, cost = found.x, float(found.cost)
+            best = min(best, (cost, numbers), key=lambda one: one[0])
+        return best[1]
 
     def _project_corners(self, numbers: np.ndarray) -> Pixels:
         lens, sheets, views = self.unpack(numbers)
@@ -217,8 +239,8 @@ class _Problem:
 
     def residuals(self, numbers: np.ndarray) -> np.ndarray:
         """Distances of corners [pixels], then deviations of the lens in spreads."""
-        scale = np.array([self._spread, self._center_spread, self._center_spread, *[DISTORTION_SPREAD] * 2])
-        return np.concatenate([(self._project_corners(numbers) - self._pixels).ravel(), numbers[:LENS] / scale])
+        away = (self._project_corners(numbers) - self._pixels).ravel()
+        return np.concatenate([away, numbers[:LENS] / self._spreads])
 
     def jacobian(self, numbers: np.ndarray) -> np.ndarray:
         """Slopes by central differences; numbers of all views are changed together, as they share no corner."""
@@ -236,6 +258,5 @@ class _Problem:
                 rows = 2 * np.arange(count)
                 for axis in (0, 1):
                     slopes[rows + axis, column + 6 * self.photo] = slope[:, axis]
-        scale = [self._spread, self._center_spread, self._center_spread, *[DISTORTION_SPREAD] * 2]
-        slopes[2 * count + np.arange(LENS), np.arange(LENS)] = 1 / np.array(scale)
+        slopes[2 * count + np.arange(LENS), np.arange(LENS)] = 1 / self._spreads
         return slopes

@@ -6,23 +6,15 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from typing import Any, Protocol, runtime_checkable
 
-import numpy as np
-
 from hydrostat.arrays import Vector
-from hydrostat.camera.calibrate_camera import calibrate_camera
-from hydrostat.camera.find_tags import Corners, Gray, find_tags, load_opencv
-from hydrostat.camera.locate_tags import align_places, locate_in_space, locate_on_plane, pairs_of
-from hydrostat.camera.measure_photos import LEAST, PhotoOptions
-from hydrostat.camera.tags import marker_tags, sheet_of
+from hydrostat.camera.find_tags import Gray, load_opencv
+from hydrostat.camera.marker_view import MarkerView
+from hydrostat.camera.measure_photos import PhotoOptions
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.simulation import Equilibrium
-from hydrostat.units import plural
 
 FRAMES = 5
 """Frames whose corners are averaged before the robot moves."""
-
-MOVED = 3.0
-"""Shift of the board at which the camera or the board counts as moved [pixels]."""
 
 
 @runtime_checkable
@@ -67,70 +59,6 @@ class CameraFrames:
     def close(self) -> None:
         """Release the camera."""
         self._camera.release()
-
-
-class MarkerView:
-    """Fixed camera before a robot on its board: places of markers in each frame."""
-
-    def __init__(self, frames: list[Gray], pose: Equilibrium, options: PhotoOptions | None = None) -> None:
-        """Calibrate the camera by frames of a robot that stands in a simulated pose.
-
-        Args:
-            frames: frames in which nothing moves.
-            pose: simulated pose of the robot in them.
-            options: numbers that frames do not show.
-
-        Raises:
-            InputError: too few tags of the board or of markers.
-        """
-        robot, self._options = pose.robot, options or PhotoOptions()
-        self._numbers, self._dim = marker_tags(robot), robot.body.mesh.dim
-        found = [find_tags(pixels, "camera") for pixels in frames]
-        tags = {
-            number: np.mean([each[number] for each in found], axis=0)
-            for number in set.intersection(*(set(each) for each in found))
-        }
-        self._board = {number: corners for number, corners in tags.items() if sheet_of(number) is not None}
-        if len(self._board) < LEAST:
-            raise InputError(
-                f"--camera: {plural(len(self._board), 'tag')} of the board in sight. Show at least {LEAST} whole tags, "
-                "in focus."
-            )
-        calibration = calibrate_camera([tags], (frames[0].shape[1], frames[0].shape[0]))
-        self._lens, self._view = calibration.lens, calibration.views[0]
-        thickness = robot.body.thickness or 0.0
-        self._height = thickness if self._options.height is None else self._options.height
-        self._turn, self._shift = np.eye(self._dim), np.zeros(self._dim)
-        places, targets = pairs_of(self._locate(tags), pose.markers)
-        if len(places) < self._dim:
-            raise InputError(
-                f"--camera: {plural(len(places), 'marker')} of {robot.name} in sight. Show at least {self._dim}."
-            )
-        self._turn, self._shift = align_places(places, targets)
-
-    def find(self, pixels: Gray) -> dict[str, Vector]:
-        """Places of the markers in sight, in the frame of the robot [m].
-
-        Raises:
-            InputError: a tag is there twice, or the camera or the board has moved.
-        """
-        tags = find_tags(pixels, "camera", refine=self._numbers.values())
-        both = [number for number in self._board if number in tags]
-        moved = [np.linalg.norm((tags[number] - self._board[number]).mean(axis=0)) for number in both]
-        if both and np.median(moved) > MOVED:
-            raise InputError("camera: the camera or the board has moved")
-        return self._locate(tags)
-
-    def _locate(self, tags: Mapping[int, Corners]) -> dict[str, Vector]:
-        found = {}
-        for name, number in self._numbers.items():
-            if number in tags:
-                if self._dim == 2:
-                    at = locate_on_plane(tags[number], self._lens, self._view, self._height)[0][:2]
-                else:
-                    at = locate_in_space([(tags[number], self._view)], self._lens, self._options.side)[0]
-                found[name] = self._turn @ at + self._shift
-        return found
 
 
 class MarkerCamera:

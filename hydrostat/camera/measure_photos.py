@@ -9,7 +9,8 @@ import numpy as np
 from hydrostat.arrays import Float
 from hydrostat.camera.calibrate_camera import CameraCalibration, calibrate_camera
 from hydrostat.camera.find_tags import Corners, find_tags, load_opencv
-from hydrostat.camera.lens import Lens, View
+from hydrostat.camera.lens import View
+from hydrostat.camera.lens_file import LensFile
 from hydrostat.camera.locate_tags import align_places, locate_in_space, locate_on_plane, pairs_of
 from hydrostat.camera.photo import Photo, read_pixels
 from hydrostat.camera.photo_warnings import (
@@ -40,10 +41,12 @@ class PhotoOptions:
     Attributes:
         side: side of the black square of the markers' tags [m].
         height: height of these tags above the board [m], for flat robots; the thickness of the body if left out.
+        lens: lens that other photographs of the camera showed; found from the given ones alone if left out.
     """
 
     side: float = MARKER_SIDE
     height: float | None = None
+    lens: LensFile | None = None
 
     def __post_init__(self) -> None:
         check_positive("side", self.side, "m")
@@ -85,7 +88,7 @@ class PhotoMeasurements:
         measurements: a row for each photograph; in space one for each pose.
         rows: photographs of each row, by index.
         photos: the photographs.
-        lens: the camera.
+        camera: the camera, with the size of its pictures.
         height: height of the tags above the board [m]; 0 in space.
         turn: rotation from the frame of the board to that of the robot, (dim, dim).
         shift: place of the board's origin in the frame of the robot [m].
@@ -97,7 +100,7 @@ class PhotoMeasurements:
     measurements: Measurements
     rows: list[list[int]]
     photos: list[MeasuredPhoto]
-    lens: Lens
+    camera: LensFile
     height: float
     turn: Float[np.ndarray, "dim dim"]
     shift: Float[np.ndarray, " dim"]
@@ -110,7 +113,7 @@ class PhotoMeasurements:
         board = (points - self.shift) @ self.turn
         if board.shape[1] == 2:
             board = np.column_stack([board, np.full(len(board), self.height)])
-        return self.lens.project(self.photos[index].view.to_camera(board))
+        return self.camera.lens.project(self.photos[index].view.to_camera(board))
 
 
 def measure_photos(robot: Robot, photos: Sequence[Photo], options: PhotoOptions | None = None) -> PhotoMeasurements:
@@ -133,7 +136,7 @@ def measure_photos(robot: Robot, photos: Sequence[Photo], options: PhotoOptions 
     names = marker_tags(robot)
     tags, size, focal = _read(photos)
     markers = [_markers_in(found, names, photo.name) for found, photo in zip(tags, photos, strict=True)]
-    calibration = calibrate_camera(tags, size, focal=focal)
+    calibration = calibrate_camera(tags, size, focal=focal, known=options.lens and options.lens.scale_to(size))
     check_sheets(photos, calibration)
     flat = robot.body.mesh.dim == 2
     height = (options.height if options.height is not None else robot.body.thickness or 0.0) if flat else 0.0
@@ -161,7 +164,7 @@ def measure_photos(robot: Robot, photos: Sequence[Photo], options: PhotoOptions 
         measurements=_table(robot, [photos[row[0]] for row in rows], places),
         rows=rows,
         photos=measured,
-        lens=calibration.lens,
+        camera=LensFile(lens=calibration.lens, size=size),
         height=height,
         turn=turn,
         shift=shift,

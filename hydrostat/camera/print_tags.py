@@ -5,6 +5,7 @@ import math
 from collections.abc import Iterable, Iterator
 
 import numpy as np
+from shapely import box
 
 from hydrostat.arrays import Points
 from hydrostat.camera.tags import (
@@ -31,6 +32,9 @@ GAP, NAME = 5.0, 4.0
 NEXT_TO = 20.0, 3.6
 """Distances at which two labels of the map would cover one another [mm]."""
 
+OVERHANG = 0.5
+"""Share of a label on the body below which it bends or peels."""
+
 SMALLEST, LARGEST_SIDE = 4e-3, 80e-3
 """Sides that a marker's tag may have [m]."""
 
@@ -56,6 +60,25 @@ def tags_pdf(robot: Robot, paper: Paper = Paper.A4, side: float = MARKER_SIDE) -
     import typst  # Imported here: a measurement sets no page.
 
     return typst.compile(tags_source(robot, paper, side).encode(), format="pdf", ignore_system_fonts=True)
+
+
+def find_overhangs(robot: Robot, side: float = MARKER_SIDE) -> list[str]:
+    """Markers of a flat robot whose tags lie on the body by less than half, with their white rims.
+
+    Args:
+        robot: robot to measure.
+        side: side of the black square of a marker's tag [m].
+    """
+    outline = robot.body.outline
+    if outline is None:
+        return []
+    half = side * (CELLS + 2) / CELLS / 2
+    on_body = {
+        marker.name: outline.polygon.intersection(box(x - half, y - half, x + half, y + half)).area / (2 * half) ** 2
+        for marker in robot.markers
+        for x, y in [marker.at[:2]]
+    }
+    return [name for name, share in on_body.items() if share < OVERHANG]
 
 
 def tag_files(robot: Robot, paper: Paper) -> dict[str, bytes]:

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
-from hydrostat.cli.measure import TagHeight, TagSide, draw_photos, photo_options, print_photos
+from hydrostat.cli.measure import KnownLens, TagHeight, TagSide, draw_photos, photo_options, print_photos
 from hydrostat.cli.options import AddedLoads, Contract, contractions, loads
 from hydrostat.cli.waiting import read_robot
 
@@ -27,6 +27,7 @@ def compare(
     ] = None,
     tag: TagSide = "15mm",
     height: TagHeight = None,
+    lens: KnownLens = None,
 ) -> None:
     """Compare a photograph with the simulated pose.
 
@@ -44,6 +45,6 @@ def compare(
     photos = [Photo(file=photo, contractions=contractions(loaded, contract), masses={}, loads=added)]
     if rest is not None:
         photos.append(Photo(file=rest, contractions={}, masses={}))
-    found = measure_photos(loaded, photos, photo_options(tag, height))
+    found = measure_photos(loaded, photos, photo_options(tag, height, lens))
     print_photos(found)
     draw_photos(found, out)

@@ -9,7 +9,7 @@ import typer
 
 from hydrostat.cli.folders import RobotFolder, folder_of, require_folder
 from hydrostat.cli.options import MostTension, parse_optional, positive
-from hydrostat.cli.waiting import read_robot
+from hydrostat.cli.waiting import ProgressLines, read_robot
 from hydrostat.errors import InputError
 from hydrostat.units import plural
 
@@ -77,7 +77,7 @@ def identify(
     loaded = read_robot(robot)
     table = read_measurements(measurements, loaded)
     began = time.process_time()
-    found = identify_robot(loaded, table, fit=names, progress=_Lines())
+    found = identify_robot(loaded, table, fit=names, progress=ProgressLines())
     _write(robot, table, found, out)
     _print_values(found)
     _print_errors(found, table, time.process_time() - began)
@@ -119,19 +119,6 @@ def _suggest(
 
 HIDDEN = 0.7
 """Uncertainty of a parameter over that of its guess from which on measurements do not show it."""
-
-
-class _Lines:
-    """Prints a line at most every two seconds."""
-
-    def __init__(self) -> None:
-        self._last = time.monotonic()
-
-    def __call__(self, line: str) -> None:
-        often = 2.0
-        if time.monotonic() - self._last > often:
-            print(f"  {line}", flush=True)
-            self._last = time.monotonic()
 
 
 def _write(path: Path, table: "Measurements", found: "IdentifiedRobot", out: Path) -> None:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrostat.cli.folders import RobotFolder, folder_of
-from hydrostat.cli.measure import TagHeight, TagSide, photo_options
+from hydrostat.cli.measure import KnownLens, TagHeight, TagSide, photo_options
 from hydrostat.cli.options import MotorPort
 from hydrostat.cli.play_camera import CameraFeedback, CameraOptions, open_camera, require_rest
 from hydrostat.cli.waiting import one_interrupt, read_robot
@@ -50,6 +50,7 @@ def play(
     ] = "hold",
     tag: TagSide = "15mm",
     height: TagHeight = None,
+    lens: KnownLens = None,
 ) -> None:
     """Play a table of contractions on the motors in real time.
 
@@ -67,7 +68,7 @@ def play(
 
     if port is not None:
         control.check_port(port)
-    seen_by = None if camera is None else CameraOptions.read(camera, port, lag, lost, photo_options(tag, height))
+    seen_by = None if camera is None else CameraOptions.read(camera, port, lag, lost, photo_options(tag, height, lens))
     if loop < 0:
         raise InputError(f"--repeat {loop}: must be 0 or more. 0 plays until you stop it.")
     player = control.Player()

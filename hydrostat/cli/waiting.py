@@ -234,3 +234,17 @@ def heed_interrupts() -> None:
     """
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN and current_thread() is main_thread():
         signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+class ProgressLines:
+    """Progress of long work as lines, at most one every two seconds."""
+
+    def __init__(self) -> None:
+        self._last = time.monotonic()
+
+    def __call__(self, line: str) -> None:
+        """Print a line if the last one is old enough."""
+        often = 2.0
+        if time.monotonic() - self._last > often:
+            print(f"  {line}", flush=True)
+            self._last = time.monotonic()

@@ -36,6 +36,7 @@ def _draw_view(axes: Axes, places: list[np.ndarray]) -> None:
     for predicted, color in ((before, ASSUMED), (after, FITTED)):
         for start, end in zip(seen, predicted, strict=True):
             axes.plot(*np.array([start, end]).T, color=color, linewidth=0.8, zorder=1)
-    axes.scatter(*before.T, s=12, color=ASSUMED, label="as assumed", zorder=2)
-    axes.scatter(*after.T, s=12, color=FITTED, label="fitted", zorder=3)
-    axes.scatter(*seen.T, s=14, facecolors="none", edgecolors=Color.INK, linewidths=0.9, label="measured", zorder=4)
+    # Sizes differ, so that each dot shows where all three are at one place.
+    axes.scatter(*before.T, s=26, color=ASSUMED, label="as assumed", zorder=2)
+    axes.scatter(*after.T, s=7, color=FITTED, label="fitted", zorder=3)
+    axes.scatter(*seen.T, s=48, facecolors="none", edgecolors=Color.INK, linewidths=0.7, label="measured", zorder=4)

@@ -15,7 +15,7 @@ pytest.importorskip("cv2", reason="extra photos (OpenCV) is not installed")
 from photographs import Camera, Scene, photograph
 
 from hydrostat.camera import MarkerCamera
-from hydrostat.camera.marker_camera import MarkerView
+from hydrostat.camera.marker_view import MarkerView
 from hydrostat.cli.main import main
 from hydrostat.control import MarkerFeedback, MarkerPath, MarkerSight, Motors, Player, SimulatedLink
 from hydrostat.errors import HydrostatError, InputError
