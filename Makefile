@@ -10,7 +10,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 # Tests start the package some forty times: it is compiled once, even where bytecode is not to be written (empty: it is).
 test test-all quick: export PYTHONDONTWRITEBYTECODE =
 
-.PHONY: help demo studio test test-all quick check lint lint-js fix bench studies pictures wheels wheels-arm clean
+.PHONY: help demo studio test test-all quick check lint lint-js fix bench studies docs pictures wheels wheels-arm clean
 
 help:
 	@echo "make demo      design the cables of the starfish; results in build/starfish"
@@ -22,6 +22,7 @@ help:
 	@echo "make fix       format and repair what ruff can repair"
 	@echo "make bench     timings and figures of quality; prints tables ($(NEED_MORE), which need more, run by hand)"
 	@echo "make studies   studies in lab/ in small sizes, about 6 minutes; prints tables (the others run by hand: lab/README.md)"
+	@echo "make docs      build the documentation site, build/docs/index.html"
 	@echo "make pictures  draw the pictures of the README again"
 	@echo "make wheels    build a wheel for Linux into dist/"
 	@echo "make wheels-arm  build a wheel for Linux on ARM by a cross-compiler, and solve a robot with it in an emulator"
@@ -67,6 +68,11 @@ bench: $(VENV)/test.installed
 studies: $(VENV)/lab.installed
 	$(BIN)/python lab/run_studies.py
 
+# Every warning is an error. The examples run, about a minute.
+docs: $(VENV)/docs.installed
+	$(BIN)/sphinx-build -q -W --keep-going -b html docs build/docs
+	@echo "Wrote build/docs/index.html"
+
 pictures: $(VENV)/demo.installed
 	$(BIN)/python docs/pictures.py
 
@@ -105,6 +111,10 @@ $(VENV)/test.installed: $(VENV)/demo.installed
 
 $(VENV)/lab.installed: $(VENV)/test.installed lab/pyproject.toml
 	$(INSTALL) --editable lab
+	touch $@
+
+$(VENV)/docs.installed: $(VENV)/demo.installed
+	$(INSTALL) --editable ".[docs]"
 	touch $@
 
 $(VENV)/check.installed: $(VENV)/test.installed

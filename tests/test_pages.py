@@ -15,7 +15,12 @@ from hydrostat.design import BuildTolerances, Constraints
 ROOT = Path(__file__).parents[1]
 FRONT = ("README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md")
 LONGEST = {"README.md": 1200, "ARCHITECTURE.md": 2500, "CHANGELOG.md": 800}  # words
-PAGES = sorted(str(path.relative_to(ROOT)) for path in [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md")])
+WRITTEN = (ROOT / "docs/generated", ROOT / "docs/examples")  # by `make docs`, in no repository
+PAGES = sorted(
+    str(path.relative_to(ROOT))
+    for path in [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md")]
+    if path.parent not in WRITTEN
+)
 
 
 def read(page: str) -> str:

@@ -61,7 +61,7 @@ class Tracker:
     Every pose is a stable equilibrium within all limits, so its contractions can be sent to motors at once; with an
     accuracy its nodes may be so far from it [m]. Slack cables are kept just short of taut, so that they can join
     without a delay. Where cables rub, each update goes straight on from the pose before: its poses are those of a robot
-    to which they are sent one after the other.
+    to which they are sent one after the other::
 
         tracker = hs.Tracker(simulation, limits=hs.Limits(rate=0.1))
         while True:

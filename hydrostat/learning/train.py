@@ -160,7 +160,7 @@ def loss_weights(coordinates: int, outputs: int, options: LearnOptions) -> tuple
 def sobolev_loss(
     numbers: Numbers,
     points: Tensor,
-    ways: Tensor | None,
+    ways: "Tensor | None",
     outputs: Tensor,
     slopes: Tensor,
     weights: tuple[Tensor, Tensor],
@@ -178,7 +178,7 @@ def sobolev_loss(
     return loss.mean(1).sum()
 
 
-def answer(numbers: Numbers, points: Tensor, ways: Tensor | None) -> tuple[Tensor, Tensor | None]:
+def answer(numbers: Numbers, points: Tensor, ways: "Tensor | None") -> "tuple[Tensor, Tensor | None]":
     """Compute outputs at points (members, batch, inputs) and their changes along ways (members, batch, ways, ...).
 
     Slopes go forward with the values, as by `torch.func.jvp`, along several ways at once.

@@ -77,7 +77,7 @@ class StateJacobian:
 
 
 class Residual(ABC):
-    """Objective on one robot: 1/2 |residual|^2, a residual in meters.
+    """Objective on one robot: half the square of a residual in meters.
 
     `hydrostat.testing.check_objective` tells whether a term is right.
     """

@@ -99,7 +99,8 @@ def test_a_pose_that_is_dragged_streams_its_iterates(session: Session) -> None:
     hardware.arm()
     session.poser.set_mode(Mode.CABLES)
     session.poser.show_pose("wave")
-    for _ in range(40):
+    end = time.monotonic() + 30.0  # a busy computer may let the emulated motors wait
+    while time.monotonic() < end and (len(told) < 40 or max(hardware.places.values()) <= 1e-3):
         hardware.beat()
         session.step(time.monotonic())
         told.append(hardware._goal.copy())
