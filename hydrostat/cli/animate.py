@@ -70,7 +70,7 @@ def animate(
     simulation = prepare_physics(loaded)
     each_way, usual, least_way = 2.0, 12.0, 0.5  # time of a way, most of a whole film, least of a way [s]
     with progress_bar() as progress:
-        stops = _stops(simulation, name or list(loaded.poses), progress)
+        stops = find_stops(simulation, name or list(loaded.poses), progress)
         ways = len(stops) + 1
         length = max(min(each_way * ways, usual), least_way * ways) if seconds is None else seconds
         made = Film.of_stops(simulation, stops, seconds=length, progress=progress)
@@ -85,7 +85,7 @@ def animate(
     print("Wrote " + ", ".join(str(file) for file in files))
 
 
-def _stops(simulation: "Simulation", names: list[str], progress: Progress) -> "list[Stop]":
+def find_stops(simulation: "Simulation", names: list[str], progress: Progress) -> "list[Stop]":
     """Find what the winches reach of each pose; without poses one winch after the other."""
     from hydrostat.ik import solve_ik
     from hydrostat.plot import Stop

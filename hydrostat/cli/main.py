@@ -17,6 +17,7 @@ from hydrostat.cli.check import check
 from hydrostat.cli.compare import compare
 from hydrostat.cli.design import design
 from hydrostat.cli.drive import drive
+from hydrostat.cli.export import export
 from hydrostat.cli.fabricate import fabricate
 from hydrostat.cli.firmware import firmware
 from hydrostat.cli.grasp import grasp
@@ -87,6 +88,7 @@ for command in (
     drive,
     mimic,
     animate,
+    export,
     design,
     fabricate,
     measure,

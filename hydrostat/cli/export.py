@@ -1,0 +1,88 @@
+"""`hydrostat export`."""
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from hydrostat.cli.animate import find_stops
+from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result_folder
+from hydrostat.cli.waiting import prepare_physics, progress_bar, read_robot
+from hydrostat.errors import InputError
+
+if TYPE_CHECKING:
+    from hydrostat.robot import Robot
+
+
+def export(
+    robot: RobotFolder,
+    out: OutFolder,
+    mjcf: Annotated[bool, typer.Option("--mjcf", help="Write robot.xml, a model for MuJoCo 4.")] = False,
+    usd: Annotated[bool, typer.Option("--usd", help="Write robot.usda, a film of the robot as a USD scene.")] = False,
+    trials: Annotated[
+        int,
+        typer.Option(
+            metavar="N", min=0, max=1000, help="Poses in which the MuJoCo model is measured; 0 measures none."
+        ),
+    ] = 5,
+) -> None:
+    """Write a robot for other simulators and renderers.
+
+    The MuJoCo model holds the body as deformable elements and the cables as tendons. Its first lines state its error
+    against hydrostat. The USD scene shows the film of `animate`. Measuring needs the extra export (MuJoCo).
+
+    Example: hydrostat export gallery:starfish --mjcf --out build/starfish
+    """
+    if not mjcf and not usd:
+        raise InputError("export needs --mjcf or --usd, or both")
+    require_folder(out)
+    loaded = read_robot(robot)
+    if not loaded.cables:
+        raise InputError(f"{robot}: no cables. Add winches and cables, or run `hydrostat design`.")
+    texts = {}
+    if mjcf:
+        texts["robot.xml"] = _mjcf(loaded, trials)
+    if usd:
+        texts["robot.usda"] = _usd(loaded)
+    with result_folder(out) as folder:
+        for name, text in texts.items():
+            (folder / name).write_text(text)
+    print("Wrote " + ", ".join(str(out / name) for name in texts))
+
+
+def _mjcf(robot: "Robot", trials: int) -> str:
+    """Model with its error, which is also printed."""
+    from importlib.util import find_spec
+
+    from hydrostat.export import find_omissions, measure_mjcf, mjcf_text
+    from hydrostat.version import __version__, install_command
+
+    mjcf_text(robot)  # rejects robots before poses are measured
+    share, told = 1.0, "error not measured"
+    if find_spec("mujoco") is None:
+        told += f": {install_command('export')}"
+    elif trials:
+        with progress_bar() as progress:
+            found = measure_mjcf(robot, trials, progress=progress)
+        share, told = found.share or share, found.describe()
+    omitted = find_omissions(robot)
+    lines = [told, *([f"left out: {', '.join(omitted)}"] if omitted else [])]
+    for line in lines:
+        print(f"MuJoCo model: {line}")
+    controls = "controls: contraction of the winch of each cable [m]"
+    winches = [
+        f"winch {winch.name}: {', '.join(cable.name for cable in robot.cables if cable.winch == winch.name)}"
+        for winch in robot.winches
+    ]
+    return mjcf_text(robot, remarks=[f"hydrostat {__version__}", *lines, controls, *winches], range_share=share)
+
+
+def _usd(robot: "Robot") -> str:
+    from hydrostat.export import usd_text
+    from hydrostat.plot import Film
+
+    simulation = prepare_physics(robot)
+    with progress_bar() as progress:
+        stops = find_stops(simulation, list(robot.poses), progress)
+        seconds = min(2.0 * (len(stops) + 1), 12.0)
+        film = Film.of_stops(simulation, stops, seconds=seconds, progress=progress)
+    return usd_text(robot, [frame.nodes for frame in film.frames], step=film.step)
