@@ -50,9 +50,9 @@ def check(
     if words := describe_cable_side(found):
         print(f"cables: {words}")
     if found.cables:
-        from hydrostat.design import Craft
+        from hydrostat.design import BuildCost
 
-        print(f"build: {Craft.of_robot(found, ())}; more if poses need stronger motors")
+        print(f"build: {BuildCost.of_robot(found, ())}; more if poses need stronger motors")
     if stuffed:
         _print_filled(found)
     elif words and thorough:

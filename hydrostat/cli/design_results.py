@@ -93,7 +93,7 @@ def print_poses(network: "Network", seconds: float) -> tuple[str, ...]:
     from rich.console import Console
     from rich.table import Table
 
-    from hydrostat.design import Craft, corrected_error
+    from hydrostat.design import BuildCost, corrected_error
     from hydrostat.geometry import find_crossings
     from hydrostat.ik import unconstrained_motion
     from hydrostat.robot import describe_cable_side
@@ -119,7 +119,7 @@ def print_poses(network: "Network", seconds: float) -> tuple[str, ...]:
         f"expected as-built error {1e3 * network.built:.2f} mm{after} "
         f"({plural(network.tried, 'candidate')}, {seconds:.1f} s)"
     )
-    print(f"build: {Craft.of_robot(robot, network.reached)}")
+    print(f"build: {BuildCost.of_robot(robot, network.reached)}")
     if words := describe_cable_side(robot):
         print(f"cables: {words}")
     _print_filled(network)
@@ -164,16 +164,16 @@ def print_front(network: "Network") -> None:
     from rich.console import Console
     from rich.table import Table
 
-    from hydrostat.design import Craft, on_front, size_of
+    from hydrostat.design import BuildCost, on_front, size_of
 
     console, best = Console(), network.best_by_winches()
     if len(best) > 1:
         motors = Table(title="best network for each number of winches", title_justify="left")
-        work = Craft.cable_work(network.robot)
+        work = BuildCost.cable_work(network.robot)
         for name in ("winches", "cables", "as-built error", "motors", work, "price"):
             motors.add_column(name, justify="right")
         for winches, one in best.items():
-            effort = Craft.of_robot(one.robot, one.reached)
+            effort = BuildCost.of_robot(one.robot, one.reached)
             values = (f"{effort.motors} × {effort.motor}", f"{effort.minutes:.0f} min", f"{effort.price:.0f} USD")
             motors.add_row(str(winches), str(len(one.robot.cables)), f"{1e3 * one.built:.2f} mm", *values)
         console.print(motors)

@@ -5,13 +5,13 @@ from typing import TYPE_CHECKING
 from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
+    from hydrostat.design.build_cost import BuildCost, front
     from hydrostat.design.buildable import violations
     from hydrostat.design.built_error import built_errors, expected_error
     from hydrostat.design.cable_sides import assign_cable_sides
     from hydrostat.design.constraints import Constraints, Range
     from hydrostat.design.constraints_file import cable_name, read_constraints, read_uncertainty
     from hydrostat.design.corrected_error import corrected_errors
-    from hydrostat.design.craft import Craft, front
     from hydrostat.design.design_cables import design_cables, find_network
     from hydrostat.design.filled_reach import FilledReach
     from hydrostat.design.finding import Diagnostic, Severity, places_in
@@ -49,11 +49,11 @@ if TYPE_CHECKING:
 __all__ = [
     "Activation",
     "Alternative",
+    "BuildCost",
     "BuildTolerances",
     "CableRoute",
     "Certificate",
     "Constraints",
-    "Craft",
     "DesignMethod",
     "DesignRequest",
     "DesignStage",

@@ -47,33 +47,33 @@ class RouteOptions:
     Raises InputError for a number out of its range.
 
     Attributes:
-        enough: rms error, as a fraction of the body's size, at which nothing more is sought.
+        stop_error: rms error, as a fraction of the body's size, at which nothing more is sought.
         tolerance: rms error of each pose [m] that the fewest winches must reach where their number is left open; a
             hundredth of the body's size if left out.
         spacing: distance between via points, in mean mesh edges.
-        hops: maximum number of edges of a path that is priced.
+        max_edges: maximum number of edges of a path that is priced.
         lead_penalty: share of the promised gain that a lead as long as the body costs.
         trials: number of paths with solved networks before one is added.
         starts: patience of the growth: more sketches are refined, and more cables may fail in a row before it ends.
         exchanges: most cables that are taken out, one at a time, for the best to be put in their place.
         steps: steps of refinement after each cable.
-        polish: steps of refinement of a whole network.
+        refine_steps: steps of refinement of a whole network.
         simplicity: weight of a simple network: at 1 a cable must lower the error as built by 2 %, a winch by
             4 %, a hole by 0.3 %; 0 keeps all that help at all.
         reach: weight of the workspace: displacements of the markers in every direction within
             travel and tension: a network that reaches twice as far may miss the poses by 2^reach times as much.
     """
 
-    enough: float = 1e-4
+    stop_error: float = 1e-4
     tolerance: float | None = None
     spacing: float = 2.0
-    hops: int = 14
+    max_edges: int = 14
     lead_penalty: float = 0.3
     trials: int = 4
     starts: int = 1
     exchanges: int = 12
     steps: int = 5
-    polish: int = 60
+    refine_steps: int = 60
     simplicity: float = 1.0
     reach: float = 0.0
 
@@ -92,16 +92,16 @@ SECONDS = Range(above=True, unit="s")
 """Allowed time of a search."""
 
 ROUTE_RANGES = {
-    "enough": Range(),
+    "stop_error": Range(),
     "tolerance": Range(above=True, most=1.0, optional=True, unit="m"),
     "spacing": Range(least=0.5),
-    "hops": Range(whole=True, least=1),
+    "max_edges": Range(whole=True, least=1),
     "lead_penalty": Range(),
     "trials": Range(whole=True, least=1),
     "starts": Range(whole=True, least=1),
     "exchanges": Range(whole=True),
     "steps": Range(whole=True),
-    "polish": Range(whole=True),
+    "refine_steps": Range(whole=True),
     "simplicity": Range(most=20.0),
     "reach": Range(most=5.0),
 }

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
+from hydrostat.design.build_cost import BuildCost
 from hydrostat.design.corrected_error import expected_corrected_error
-from hydrostat.design.craft import Craft
 from hydrostat.design.network import Alternative, Network, RouteTrace, TreeTrace
 from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.ik import IKResult
@@ -23,7 +23,7 @@ def score_card(network: Network, *, version: str) -> dict[str, Any]:
         "rms_error_as_built": network.built,
         "rms_error_corrected": corrected_error(network),
         "rms_error_at_rest": network.rest_error,
-        "craft": Craft.of_robot(robot, network.reached).as_values,
+        "craft": BuildCost.of_robot(robot, network.reached).as_values,
         "tension_limit": network.constraints.tension_limit,
         "torque_limit": network.constraints.torque,
         "poses": {pose.pose_target.name: _pose_results(robot, pose) for pose in network.reached},
@@ -122,7 +122,7 @@ def _by_winches(one: Alternative | Network) -> dict[str, Any]:
         "winches": len(one.robot.winches),
         "cables": len(one.robot.cables),
         "rms_error_as_built": one.built,
-        "craft": Craft.of_robot(one.robot, one.reached).as_values,
+        "craft": BuildCost.of_robot(one.robot, one.reached).as_values,
     }
 
 
@@ -132,7 +132,7 @@ def _alternative(other: Alternative) -> dict[str, Any]:
         "cables": len(other.robot.cables),
         "rms_error": other.rms_error,
         "rms_error_as_built": other.built,
-        "craft": Craft.of_robot(other.robot, other.reached).as_values,
+        "craft": BuildCost.of_robot(other.robot, other.reached).as_values,
         "poses": {pose.pose_target.name: pose.rms_error for pose in other.reached},
         "robot": robot_hash(other.robot),
     }

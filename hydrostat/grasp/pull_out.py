@@ -130,7 +130,7 @@ def pull_out(
         raise InputError(f'"{thing.name}" has no mass; give it one, such as 58 g')
     full = replace(robot, obstacles=(*robot.obstacles, thing))
     body = BodyPhysics(full)
-    carriage = body.carriages[len(robot.obstacles)]
+    carriage = body.rigid_dofs[len(robot.obstacles)]
     place, axes = thing.frame()
     unit, dim = options.unit, len(place)
     whole = np.eye(dim)

@@ -133,9 +133,9 @@ class GuideEnergy(Energy):
 class CarriedWarp:
     """Steps along arcs for a soft body and for rigid bodies, whose axes rotate with the initial spin of the step."""
 
-    def __init__(self, body: Bend, count: int, carriages: tuple[RigidBodyDofs, ...]) -> None:
+    def __init__(self, body: Bend, count: int, rigid_dofs: tuple[RigidBodyDofs, ...]) -> None:
         """Take the warp of a soft body, its number of nodes, and the rigid bodies whose rows follow."""
-        self._body, self._count, self._carriages = body, count, carriages
+        self._body, self._count, self._rigid_dofs = body, count, rigid_dofs
 
     def __call__(self, nodes: Nodes, step: Nodes) -> Nodes:
         """Return the unknowns after a step [m]."""
@@ -143,7 +143,7 @@ class CarriedWarp:
         there[: self._count] = self._body(
             np.ascontiguousarray(nodes[: self._count]), np.ascontiguousarray(step[: self._count])
         )
-        for carriage in self._carriages:
+        for carriage in self._rigid_dofs:
             axes, rows = carriage.axes(nodes), carriage.rows[1:]
             there[rows] = carriage.length * _turn_axes(axes, step[rows] / carriage.length)
         return there

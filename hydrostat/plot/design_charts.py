@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from hydrostat.design import Alternative, Craft, DesignStage, Network, front
+from hydrostat.design import Alternative, BuildCost, DesignStage, Network, front
 from hydrostat.drawing import Color
 from hydrostat.plot.chart import new_chart
 from hydrostat.plot.labels import HALO
@@ -96,9 +96,9 @@ def draw_front(
     inches.
     """
     networks = [chosen, *(other for other in alternatives if other.robot != chosen.robot)]
-    below = f"minutes of {Craft.cable_work(chosen.robot)}"
+    below = f"minutes of {BuildCost.cable_work(chosen.robot)}"
     figure, axes = new_chart(below, "error once built [mm rms]", width=width, height=0.5 * width)
-    points = [(Craft.cable_minutes(one.robot), MILLIMETERS * one.built) for one in networks]
+    points = [(BuildCost.cable_minutes(one.robot), MILLIMETERS * one.built) for one in networks]
     best = front(points)
     axes.plot(*np.transpose([points[index] for index in best]), color=Color.GHOST, linewidth=1.2, zorder=2)
     _draw_dots(axes, networks, points, set(best))

@@ -6,8 +6,8 @@ import numpy as np
 
 from hydrostat.design import (
     Alternative,
+    BuildCost,
     Certificate,
-    Craft,
     FilledReach,
     Network,
     RouteTrace,
@@ -275,11 +275,11 @@ def alternative_chapters(network: Network) -> list[Chapter]:
     others = network.alternatives
     if not others:
         return []
-    efforts = {Craft.cable_minutes(one.robot) for one in (*others, network)}
+    efforts = {BuildCost.cable_minutes(one.robot) for one in (*others, network)}
     words = "Other networks that were found on the way, each with its error over all poses."
     parts: list[Html] = []
     if len(efforts) > 1:
-        work = Craft.cable_work(network.robot)
+        work = BuildCost.cable_work(network.robot)
         words += (
             f" More {work} reaches more: the curve tells how much. The number at a dot counts cables. A filled dot "
             "lies on the Pareto front: no network that takes as few minutes is better."
@@ -302,10 +302,10 @@ def _winch_table(best: Mapping[int, Alternative | Network]) -> Html:
     """Table of as-built error and effort by the number of winches."""
     rows = []
     for winches, one in best.items():
-        effort = Craft.of_robot(one.robot, one.reached)
+        effort = BuildCost.of_robot(one.robot, one.reached)
         made = (effort.motors, f"{effort.minutes:.0f}", f"{effort.price:.0f}")
         rows.append((winches, len(one.robot.cables), millimeters(one.built), *made))
-    work = Craft.cable_work(next(iter(best.values())).robot)
+    work = BuildCost.cable_work(next(iter(best.values())).robot)
     heads = ("winches", "cables", "error once built [mm]", "motors", f"{work} [min]", "price [USD]")
     return table(heads, rows, numbers=range(len(heads)))
 
@@ -347,7 +347,7 @@ def _pictures(network: Network, others: Sequence[Alternative]) -> Html:
         robot = other.robot
         head = f"{plural(len(robot.winches), 'winch')}, {plural(len(robot.cables), 'cable')}"
         figure = draw_stage(robot, like=network.robot, frame=frame)
-        told = f": {_rms_text(other.built)} once built; {Craft.of_robot(robot, other.reached)}"
+        told = f": {_rms_text(other.built)} once built; {BuildCost.of_robot(robot, other.reached)}"
         pictures.append(picture(figure, f"alternative-{index}", head, told))
     return grid(*pictures, kind="tiny")
 

@@ -56,7 +56,7 @@ class BodyPhysics:
         masses: lumped mass of each node [kg], (nodes,): each element shares its mass evenly among its corners, a hung
             mass by its anchor.
         inertias: mass of each unknown in motion [kg], (rows,).
-        carriages: rows of the unknowns of moving obstacles, by index of the obstacle.
+        rigid_dofs: rows of the unknowns of moving obstacles, by index of the obstacle.
         guides: index of each energy that keeps an obstacle on its path, with the obstacle.
         load_paths: index of each energy of a load that varies in time, with the load.
         own_contact: index of the self-contact energy among all energies of a simulation; None if self-contact is
@@ -78,13 +78,13 @@ class BodyPhysics:
         self.material, self.thickness = body.material, body.thickness
         mesh, thickness, solid = body.mesh, body.thickness or 1.0, ~body.element_foams
         lame = np.where(solid, body.lame()[1], 0.0)
-        self.carriages = _carriages(robot, in_time=in_time)
-        moving = [carriage.unknowns(*_begin(robot.obstacles[index])) for index, carriage in self.carriages.items()]
+        self.rigid_dofs = _rigid_dofs(robot, in_time=in_time)
+        moving = [carriage.unknowns(*_begin(robot.obstacles[index])) for index, carriage in self.rigid_dofs.items()]
         self.rest_unknowns = np.concatenate([mesh.nodes, *moving]) if moving else mesh.nodes
         patched, thin = body.volume is Volume.PATCH, body.plane is Plane.STRESS
         self.elastic = _elastic(robot, self.rest_unknowns, None if patched or thin else lame)
         self.pins = _pins(robot)
-        carried = [_obstacle_masses(robot.obstacles[index], carriage) for index, carriage in self.carriages.items()]
+        carried = [_obstacle_masses(robot.obstacles[index], carriage) for index, carriage in self.rigid_dofs.items()]
         own, hung = _masses(robot), hung_masses(robot)
         self.masses, self._hung = own + hung, hung
         self.inertias = np.concatenate([self.masses, *carried]) if carried else self.masses
@@ -113,15 +113,15 @@ class BodyPhysics:
         self.obstacles, self.guides = [], dict[int, Obstacle]()
         for index, obstacle in enumerate(robot.obstacles):
             self.obstacles.append(len(energies))
-            if index in self.carriages and obstacle.path:
+            if index in self.rigid_dofs and obstacle.path:
                 self.guides[len(energies) + 1] = obstacle
-            energies += self._obstacle_energies(robot, obstacle, self.carriages.get(index))
+            energies += self._obstacle_energies(robot, obstacle, self.rigid_dofs.get(index))
         self.assembly = Assembly(energies, rest=self.rest_unknowns, control_count=0)
 
     @property
     def node_count(self) -> int | None:
         """Number of unknowns that are nodes of the body; None if all are."""
-        return len(self._given[0].mesh.nodes) if self.carriages else None
+        return len(self._given[0].mesh.nodes) if self.rigid_dofs else None
 
     def fits(self, robot: Robot) -> bool:
         """Return True if this is the physics of a robot's body: same body, equal pins, gravity, contact and loads."""
@@ -150,7 +150,7 @@ class BodyPhysics:
         """Masses that gravity pulls at: not the axes of obstacles, which are at their middle, nor loads."""
         heavy = self.inertias.copy()
         heavy[: len(self._hung)] -= self._hung
-        for carriage in self.carriages.values():
+        for carriage in self.rigid_dofs.values():
             heavy[carriage.rows[1:]] = 0.0
         return heavy
 
@@ -165,7 +165,7 @@ class BodyPhysics:
             InputError: no pin, so it moves before friction on the ground can hold it; or an obstacle floats.
         """
         where, (_, _, _, _, obstacles, *_) = self.rest_unknowns if start is None else start, self._given
-        for index in () if guided else self.carriages:
+        for index in () if guided else self.rigid_dofs:
             met = self.assembly.energies[self.obstacles[index]]
             if not met.push(where).any():  # type: ignore[attr-defined]
                 raise InputError(
@@ -195,9 +195,9 @@ class BodyPhysics:
     @cached_property
     def warp(self) -> Bend:
         """Steps along arcs."""
-        if not self.carriages:
+        if not self.rigid_dofs:
             return self._body_warp
-        return CarriedWarp(self._body_warp, len(self._given[0].mesh.nodes), tuple(self.carriages.values()))
+        return CarriedWarp(self._body_warp, len(self._given[0].mesh.nodes), tuple(self.rigid_dofs.values()))
 
     @cached_property
     def _body_warp(self) -> Warp:
@@ -234,7 +234,7 @@ class BodyPhysics:
         springs += [energy.stiffest for energy in self.rods]
         rigid = np.isin(body.element_materials, [i for i, part in enumerate(body.parts, start=1) if part.is_rigid])
         springs += _spring_rates(body, rigid).tolist()
-        lengths = [carriage.length for carriage in self.carriages.values()]  # of axes, at which A A^T - I pulls
+        lengths = [carriage.length for carriage in self.rigid_dofs.values()]  # of axes, at which A A^T - I pulls
         springs += [2 * _RIGID * body.material.young * length * max(1.0, length / reach) for length in lengths]
         return scale, reach, max(springs, default=0.0), body.mesh.size
 
@@ -306,18 +306,18 @@ def _contact_parameters(robot: Robot) -> dict[str, Any]:
     return {"distance": robot.contact_distance, "young": body.material.young, "thickness": body.thickness}
 
 
-def _carriages(robot: Robot, *, in_time: bool) -> dict[int, RigidBodyDofs]:
+def _rigid_dofs(robot: Robot, *, in_time: bool) -> dict[int, RigidBodyDofs]:
     """Rows of the unknowns of obstacles that move, after those of the nodes: first of those with a mass."""
-    carriages, row, mesh = {}, len(robot.body.mesh.nodes), robot.body.mesh
+    rigid_dofs, row, mesh = {}, len(robot.body.mesh.nodes), robot.body.mesh
     for index, obstacle in enumerate(robot.obstacles):
         if obstacle.mass is not None:
-            carriages[index] = RigidBodyDofs(row, 2 * float(np.sqrt(obstacle.second_moments().max())), mesh.dim)
+            rigid_dofs[index] = RigidBodyDofs(row, 2 * float(np.sqrt(obstacle.second_moments().max())), mesh.dim)
             row += 1 + mesh.dim
     for index, obstacle in enumerate(robot.obstacles):
         if in_time and obstacle.path:
-            carriages[index] = RigidBodyDofs(row, mesh.size, mesh.dim)
+            rigid_dofs[index] = RigidBodyDofs(row, mesh.size, mesh.dim)
             row += 1 + mesh.dim
-    return carriages
+    return rigid_dofs
 
 
 def _begin(obstacle: Obstacle) -> tuple[Vector, Points]:

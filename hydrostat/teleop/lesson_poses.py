@@ -18,7 +18,7 @@ POOL = 400
 """Poses of which the next is chosen."""
 SHARE = 0.4
 """Largest share of its range that a winch takes in for a pose."""
-LATE = 2.0
+ARRIVAL_TIME = 2.0
 """Motors may take so much longer than at their largest speed [s]."""
 HOLD = 0.3
 """A person holds still for so long [s]; the readings of that time are averaged."""
@@ -69,7 +69,7 @@ def go_there(motors: Motors, contractions: Vector, beat: Callable[[], object]) -
     """Let motors go to contractions [m]; each beat drives them (HydrostatError: they do not get there)."""
     clock = time.monotonic
     motors.ask(contractions)
-    latest = clock() + float(np.abs(motors.command - motors.places).max(initial=0.0)) / motors.fastest + LATE
+    latest = clock() + float(np.abs(motors.command - motors.places).max(initial=0.0)) / motors.fastest + ARRIVAL_TIME
     beat()
     tick = 1 / 60  # Motors are told again after so long [s]
     while motors.is_moving:

@@ -87,7 +87,7 @@ class ManipulationWorld:
         )
         self.robot = replace(self._given, body=body, obstacles=(self.thing, *others))
         physics = BodyPhysics(self.robot)
-        self._carriage = physics.carriages[0]
+        self._carriage = physics.rigid_dofs[0]
         self.start, self._begun = self.thing.frame()
         along = self._physics.hold * np.eye(len(self.start))
         guide = GuideEnergy(self._carriage, place=self.start, axes=self._begun, along=along, turning=0.0)

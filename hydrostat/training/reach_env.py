@@ -11,8 +11,8 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.learning import LearnedModel
 from hydrostat.robot import PoseTarget, Robot
+from hydrostat.training.backends import Backend, ExactBackend, LearnedBackend, MixedBackend
 from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, finite_numbers, prepare_robot
-from hydrostat.training.worlds import ExactWorld, LearnedWorld, MixedWorld, World
 
 BEYOND = 1.02
 """An action of 1 / 1.02 takes in all: a network that ends in tanh can reach the limits (as in a learned model)."""
@@ -58,7 +58,7 @@ class ReachEnv(GoalEnv):
 
     Attributes:
         robot: robot that reaches.
-        world: simulator or networks that compute marker positions.
+        backend: simulator or networks that compute marker positions.
         options: options of the task.
         seen: observed coordinates of all markers.
         rest: coordinates of all markers at rest [m].
@@ -68,7 +68,7 @@ class ReachEnv(GoalEnv):
         self,
         robot: Robot | str,
         *,
-        world: World | None = None,
+        backend: Backend | None = None,
         options: ReachOptions | None = None,
         contact: bool = False,
         render_mode: str | None = None,
@@ -77,7 +77,7 @@ class ReachEnv(GoalEnv):
 
         Args:
             robot: itself, its folder, or a name such as gallery:cupping_hand.
-            world: simulator or networks that compute marker positions; the exact simulator if left out.
+            backend: simulator or networks that compute marker positions; the exact simulator if left out.
             options: options of the task.
             contact: True for self-contact if robot.toml does not set contact.
             render_mode: "rgb_array", "human" or None.
@@ -86,7 +86,7 @@ class ReachEnv(GoalEnv):
             InputError: a robot without winches or markers, or names that it does not have.
         """
         self.robot = prepare_robot(robot, contact)
-        self.world = world or ExactWorld(self.robot)
+        self.backend = backend or ExactBackend(self.robot)
         self.options, self.render_mode = options or ReachOptions(), render_mode
         robot_ = self.robot
         if not robot_.winches or not robot_.markers:
@@ -119,14 +119,14 @@ class ReachEnv(GoalEnv):
     ) -> tuple[dict[str, Vector], dict[str, Any]]:
         """Go to rest, with a new goal; or with the goal given in `options` as "goal", coordinates [m]."""
         super().reset(seed=seed)
-        self.world.begin()
+        self.backend.begin()
         given = dict(options or {})
         while "goal" not in given:
             given = {**(self.sample_episode(self.np_random) or {}), **given}
         goal = finite_numbers(given["goal"], len(self.seen), "a goal", "coordinates [m]")
         self._goal, self.taken_steps = self.rest.copy(), 0
         self._goal[self.seen] = goal
-        self.world.back()
+        self.backend.back()
         self._taken, self._at = self._find_start(given)
         self.moves = [(0.0, self._taken)]
         self.show()
@@ -141,7 +141,7 @@ class ReachEnv(GoalEnv):
             taken = np.clip(self._taken + change, self._low, self._high)
         else:
             taken = self.contractions(action)
-        reached = self.world.reach(taken)
+        reached = self.backend.reach(taken)
         if reached is not None:  # where no equilibrium is found the robot stays
             self._taken, self._at = taken, reached
         pace = 1.0  # From an action to the next, where motors play what was done at rest [s]
@@ -191,12 +191,12 @@ class ReachEnv(GoalEnv):
     @property
     def equilibria(self) -> int:
         """Equilibria of the exact simulator that were asked for."""
-        return self.world.equilibria
+        return self.backend.equilibria
 
     def sample_episode(self, random: np.random.Generator) -> dict[str, Any] | None:
         """Draw a goal: where random contractions lead from rest."""
-        self.world.back()
-        reached = self.world.reach(self.anywhere(random))
+        self.backend.back()
+        reached = self.backend.reach(self.anywhere(random))
         return None if reached is None else {"goal": reached[self.seen]}
 
     def anywhere(self, random: np.random.Generator) -> Vector:
@@ -206,17 +206,17 @@ class ReachEnv(GoalEnv):
     def learn_in(self, model: LearnedModel, *, exact: int = 0) -> None:
         """Ask networks where markers go, and the simulator in every so many episodes (InputError: of another robot)."""
         self._check(model)
-        networks = LearnedWorld(model)
-        self.world = MixedWorld(networks, self.world, every=exact) if exact else networks
+        networks = LearnedBackend(model)
+        self.backend = MixedBackend(networks, self.backend, every=exact) if exact else networks
 
     def get_state(self) -> dict[str, Any]:
         """State that the next episode depends on, and its cost until now."""
-        return {**super().get_state(), "world": self.world.get_state()}
+        return {**super().get_state(), "backend": self.backend.get_state()}
 
     def go_on(self, kept: Mapping[str, Any]) -> None:
         """Go on, from the next episode, where an environment was that has been kept."""
         super().go_on(kept)
-        self.world.go_on(kept["world"])
+        self.backend.go_on(kept["backend"])
 
     def picture(self) -> np.ndarray:
         """Picture of the robot and of its goal.
@@ -231,7 +231,7 @@ class ReachEnv(GoalEnv):
         goals = {markers[row].name: tuple(places[row]) for row in (self.seen[:: self._dim] // self._dim).tolist()}
         far = 1e3 * self._info()["distance"]
         words = f"{far:.1f} mm from the goal, after action {self.taken_steps} of {self.steps}"
-        return self._pictures.draw(self.world.pose, self._taken, PoseTarget(name="goal", targets=goals), words)
+        return self._pictures.draw(self.backend.pose, self._taken, PoseTarget(name="goal", targets=goals), words)
 
     def _check(self, model: LearnedModel) -> None:
         """Check that networks are of this robot (InputError: of another)."""
@@ -305,7 +305,7 @@ class HysteresisEnv(ReachEnv):
         robot: Robot | str,
         *,
         friction: float | None = CABLE_FRICTION,
-        world: World | None = None,
+        backend: Backend | None = None,
         options: ReachOptions | None = None,
         contact: bool = False,
         render_mode: str | None = None,
@@ -315,7 +315,7 @@ class HysteresisEnv(ReachEnv):
         Args:
             robot: itself, its folder, or a name such as gallery:cupping_hand.
             friction: coefficient mu of every cable; as in robot.toml if None.
-            world: simulator or networks that compute marker positions; if left out the exact simulator, from pose to
+            backend: simulator or networks that compute marker positions; if left out the exact simulator, from pose to
                 pose.
             options: options of the task.
             contact: True for self-contact if robot.toml does not set contact.
@@ -327,7 +327,7 @@ class HysteresisEnv(ReachEnv):
         self.given = prepare_robot(robot, contact)
         rubs = rubbing(self.given, friction)
         super().__init__(
-            rubs, world=world or ExactWorld(rubs, from_rest=False), options=options, render_mode=render_mode
+            rubs, backend=backend or ExactBackend(rubs, from_rest=False), options=options, render_mode=render_mode
         )
 
     @property
@@ -357,7 +357,7 @@ class HysteresisEnv(ReachEnv):
         start = np.asarray(given.get("start", taken), dtype=float)
         if start.shape != taken.shape:
             raise InputError(f"a start has {len(taken)} contractions, not {start.size}")
-        reached = self.world.reach(start) if start.any() else None
+        reached = self.backend.reach(start) if start.any() else None
         return (taken, at) if reached is None else (start, reached)
 
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from hydrostat.errors import HydrostatError
-from hydrostat.training.copies import Copies, CopiesElsewhere
+from hydrostat.training.env_copies import EnvCopies, RemoteEnvCopies
 from hydrostat.training.goal_env import GoalEnv
 from hydrostat.version import install_command
 
@@ -24,7 +24,7 @@ class SideBySide(VecEnv):
 
     def __init__(self, env: GoalEnv, count: int, *, processes: int = 1) -> None:
         """So many copies of an environment, shared by some processes; with one, all is done in this."""
-        made = Copies if processes == 1 else CopiesElsewhere
+        made = EnvCopies if processes == 1 else RemoteEnvCopies
         self._env, self._parts = env, np.array_split(np.arange(count), processes)
         self._workers = [made(env, len(part)) for part in self._parts]
         super().__init__(count, env.observation_space, env.action_space)

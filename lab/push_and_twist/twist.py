@@ -127,7 +127,7 @@ class Held:
         body = replace(robot.body, material=replace(robot.body.material, viscosity=VISCOSITY))
         self.robot = replace(robot, body=body, contact=Contact(), obstacles=(self.ball,))
         physics = BodyPhysics(self.robot)
-        self.carriage = physics.carriages[0]
+        self.carriage = physics.rigid_dofs[0]
         guide = GuideEnergy(self.carriage, place=self.begun, axes=self.begin, along=HOLD * np.eye(3), turning=0.0)
         self.simulation = Simulation(self.robot, body=physics, energies=[guide])
         self.motion = self.simulation.motion_at_rest()

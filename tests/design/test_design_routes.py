@@ -28,7 +28,7 @@ UP = PoseTarget(name="up", targets={"tip": (0.18, 0.06)})
 DOWN = PoseTarget(name="down", targets={"tip": (0.185, -0.05)})
 PINCH = PoseTarget(name="pinch", targets={"tip": (0.085, 0.045), "low": (0.085, -0.045)})
 SPREAD = PoseTarget(name="spread", targets={"tip": (0.095, 0.055), "low": (0.095, -0.055)})
-SMALL = RouteOptions(starts=1, exchanges=0, polish=4, trials=2, steps=3, hops=8)
+SMALL = RouteOptions(starts=1, exchanges=0, refine_steps=4, trials=2, steps=3, max_edges=8)
 
 
 def strip() -> Robot:
@@ -217,7 +217,7 @@ def test_search_and_judgement_end_with_their_time(
     request, deadline = DesignRequest(poses=(UP, DOWN), winches=2, cables=4), Deadline(allowed)
     robot = bare()
     search = routes.RouteSearch(robot, request, BodyPhysics(robot), no_progress, deadline=deadline)
-    deadline.clock = lambda: float(search.bench.solves)
+    deadline.clock = lambda: float(search.evaluator.solves)
     network = search.run()
     assert (network.timed_out, network.complete) == (True, False)
     assert network.tried == allowed + 1
@@ -308,7 +308,7 @@ def test_improving_never_does_worse(poses: tuple[PoseTarget, ...], unchecked: No
     """Oracle: the first stage, the robot's own network moved into the constraints, solved afresh."""
     limits = Constraints()
     network = design_cables(
-        strip(), poses, winches=2, cables=2, constraints=limits, options=replace(SMALL, polish=3), improve=True
+        strip(), poses, winches=2, cables=2, constraints=limits, options=replace(SMALL, refine_steps=3), improve=True
     )
     stage = network.trace.stages[0]  # type: ignore[union-attr]
     assert stage.words == "as it was"
@@ -319,7 +319,7 @@ def test_improving_never_does_worse(poses: tuple[PoseTarget, ...], unchecked: No
 
 def test_improving_keeps_what_cables_are_made_of(unchecked: None) -> None:
     own = deep(strip_robot(columns=10, rows=3, stiffness=2e3))
-    network = design_cables(own, [UP, DOWN], winches=2, cables=2, options=replace(SMALL, polish=1), improve=True)
+    network = design_cables(own, [UP, DOWN], winches=2, cables=2, options=replace(SMALL, refine_steps=1), improve=True)
     assert [cable.stiffness for cable in network.robot.cables] == [2e3, 4e3]
 
 
@@ -361,7 +361,7 @@ def test_progress_comes_to_its_end(unchecked: None) -> None:
 
 @pytest.mark.slow
 def test_a_design_with_all_shapes_checked() -> None:
-    options = replace(SMALL, hops=5, polish=1, steps=1)
+    options = replace(SMALL, max_edges=5, refine_steps=1, steps=1)
     network = design_cables(bare(), [UP], winches=1, cables=2, constraints=Constraints(slack=0.002), options=options)
     assert broken(network) == []
 

@@ -6,7 +6,15 @@ import numpy as np
 import pytest
 from builders import gallery_robot
 
-from hydrostat.design import Craft, DesignRequest, Network, RouteTrace, assign_cable_sides, design_cables, score_card
+from hydrostat.design import (
+    BuildCost,
+    DesignRequest,
+    Network,
+    RouteTrace,
+    assign_cable_sides,
+    design_cables,
+    score_card,
+)
 from hydrostat.design.design_cables import evaluate_stuffed
 from hydrostat.design.filled_reach import filled_reach
 from hydrostat.design.network import Alternative
@@ -55,7 +63,7 @@ def test_new_networks_run_where_a_builder_would_want_them() -> None:
 def test_craft_of_pairs_is_sewn_twice_by_the_same_motors() -> None:
     """Oracle: the craft of the same network on one face, doubled but for its motors."""
     starfish = gallery_robot("starfish")
-    one, both = Craft.of_robot(starfish, []), Craft.of_robot(assign_cable_sides(starfish), [])
+    one, both = BuildCost.of_robot(starfish, []), BuildCost.of_robot(assign_cable_sides(starfish), [])
     assert (both.holes, both.motors, both.motor) == (2 * one.holes, one.motors, one.motor)
     assert both.minutes == pytest.approx(2 * one.minutes)
     assert both.length == pytest.approx(2 * one.length)

@@ -9,7 +9,7 @@ from builders import strip_robot
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.region import Region
 from hydrostat.design.request import RouteOptions
-from hydrostat.design.routes.bench import Bench
+from hydrostat.design.routes.evaluator import Evaluator
 from hydrostat.design.routes.growth import Growth
 from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
 from hydrostat.design.routes.propose import Proposals
@@ -22,10 +22,12 @@ LIMITS = Constraints(winch_clearance=0.006, leads=False, cable_gap=0.0)
 def test_the_first_cable_is_nearly_the_best_of_all_short_ones(unchecked: None) -> None:
     """Each of one segment, from every place where a winch may stand; the grown one may be of up to two hops."""
     robot = strip_robot(columns=6, rows=2).with_network((), ())
-    bench = Bench(robot, [PoseTarget(name="up", targets={"tip": (0.199, 0.006)})], LIMITS)
+    evaluator = Evaluator(robot, [PoseTarget(name="up", targets={"tip": (0.199, 0.006)})], LIMITS)
     graph = RouteGraph.build(robot, Region.of_body(robot.body, LIMITS.clearance), LIMITS, spacing=0.03)
     # Far apart, so that paths of two hops stay straight and no point is moved.
-    growth = Growth(Proposals(bench, graph, RouteOptions(hops=2, trials=6, steps=0, starts=1), 0.06), lambda *_: None)
+    growth = Growth(
+        Proposals(evaluator, graph, RouteOptions(max_edges=2, trials=6, steps=0, starts=1), 0.06), lambda *_: None
+    )
     start = growth.evaluate(Layout(robot, LIMITS, (), ()))
     assert start is not None
     (grown, *_) = growth.grow_networks([start], winches=1, cables=1)
@@ -36,7 +38,7 @@ def test_the_first_cable_is_nearly_the_best_of_all_short_ones(unchecked: None) -
             continue
         stand = WinchSite(Winch(name="one", at=tuple(map(float, graph.points[first]))))
         line = CableRoute(0, graph.points[[first, last]])
-        found = bench.reach_poses(Layout(robot, LIMITS, (stand,), (line,)), start, iterations=6)
+        found = evaluator.reach_poses(Layout(robot, LIMITS, (stand,), (line,)), start, iterations=6)
         if found is not None:
             errors.append(found.error)
     assert len(errors) > 20
@@ -47,11 +49,11 @@ def test_the_first_cable_is_nearly_the_best_of_all_short_ones(unchecked: None) -
 @pytest.mark.parametrize("cables", [1, 2])
 def test_growth_stops_at_the_count(cables: int, unchecked: None) -> None:
     robot = strip_robot(columns=6, rows=2).with_network((), ())
-    bench = Bench(robot, [PoseTarget(name="up", targets={"tip": (0.18, 0.06)})], LIMITS)
+    evaluator = Evaluator(robot, [PoseTarget(name="up", targets={"tip": (0.18, 0.06)})], LIMITS)
     graph = RouteGraph.build(robot, Region.of_body(robot.body, LIMITS.clearance), LIMITS, spacing=0.03)
     noted: list[int] = []
     growth = Growth(
-        Proposals(bench, graph, RouteOptions(hops=4, trials=2, steps=1, starts=1), 0.05),
+        Proposals(evaluator, graph, RouteOptions(max_edges=4, trials=2, steps=1, starts=1), 0.05),
         lambda _, trial: noted.append(len(trial.layout.routes)),
     )
     start = growth.evaluate(Layout(robot, LIMITS, (), ()))

@@ -12,7 +12,7 @@ from builders import mesh_body, strip_mesh, strip_robot
 
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.region import Region
-from hydrostat.design.routes.price import Missed, PathLimits, PricedPath, price_paths
+from hydrostat.design.routes.price import PathLimits, PricedPath, PricingProblem, price_paths
 from hydrostat.design.routes.route_graph import RouteGraph
 from hydrostat.geometry import Anchors
 from hydrostat.kernel import native
@@ -121,7 +121,7 @@ def made_case(graph: RouteGraph, seed: int, *, poses: int = 2, rows: int = 4, mo
 
 def priced(graph: RouteGraph, case: dict[str, Any], limits: PathLimits, **options: Any) -> list[PricedPath]:
     lead = {"lead_penalty": options.pop("lead_penalty", 0.3), "leads": options.pop("leads", False)}
-    return price_paths(graph, Missed(**case), replace(limits, **lead), **{"count": 5, **options})
+    return price_paths(graph, PricingProblem(**case), replace(limits, **lead), **{"count": 5, **options})
 
 
 @pytest.mark.parametrize("hops", [1, 2])
@@ -134,7 +134,7 @@ def test_exact_for_one_and_two_edges(hops: int, seed: int) -> None:
         paths = [path for path in all_paths(graph, hops, 75.0) if winches is None or path[0] in winches]
         paths = [path for path in paths if _length(graph, path) <= longest]
         best = decreases(sums_along(graph, paths, case["moves"]), case).max()
-        found = priced(graph, case, PathLimits(hops=hops, turn=75.0, longest=longest), winches=winches)
+        found = priced(graph, case, PathLimits(max_edges=hops, turn=75.0, longest=longest), winches=winches)
         assert found[0].gain == pytest.approx(best)
 
 
@@ -153,7 +153,7 @@ def test_near_the_best_of_all_paths() -> None:
             case = made_case(graph, seed, poses=poses, most=most)
             mine = paths if winches is None else [path for path in paths if path[0] in winches]
             best = decreases(sums_along(graph, mine, case["moves"]), case).max()
-            found = priced(graph, case, PathLimits(hops=hops, turn=turn), winches=winches)
+            found = priced(graph, case, PathLimits(max_edges=hops, turn=turn), winches=winches)
             assert found[0].nodes in mine
             ratios.append(found[0].gain / best)
     assert max(ratios) <= 1 + 1e-9
@@ -175,7 +175,7 @@ def test_many_rows_that_move_in_few_patterns_give_nearly_the_gain_of_all(still: 
             case["residual"][-1] = 0.0
         paths = all_paths(graph, 2, 75.0)
         gains = decreases(sums_along(graph, paths, case["moves"]), case)
-        found = priced(graph, case, PathLimits(hops=2, turn=75.0))
+        found = priced(graph, case, PathLimits(max_edges=2, turn=75.0))
         assert found[0].gain == pytest.approx(gains.max(), rel=1e-2)
         assert gains[paths.index(found[0].nodes)] > 0.99 * gains.max()
 
@@ -183,7 +183,7 @@ def test_many_rows_that_move_in_few_patterns_give_nearly_the_gain_of_all(still: 
 def test_what_a_priced_path_says_of_itself() -> None:
     graph = cloud_graph(40, 1)
     case = made_case(graph, 1, poses=3, most=1.0)
-    found = priced(graph, case, PathLimits(hops=8, turn=75.0, longest=1.2), count=12)
+    found = priced(graph, case, PathLimits(max_edges=8, turn=75.0, longest=1.2), count=12)
     assert len(found) == 12
     gains = [path.gain for path in found]
     assert gains == sorted(gains, reverse=True)
@@ -222,7 +222,7 @@ def test_the_best_lead_of_all(seed: int, longest: float | None) -> None:
     leads = np.array([_length(graph, lead) for lead, _ in parts])
     gains = decreases(sums_along(graph, [bare for _, bare in parts], case["moves"]), case)
     gains *= np.maximum(1 - penalty * leads / graph.size, 0.0)
-    limits = PathLimits(hops=2, turn=75.0, longest=longest)
+    limits = PathLimits(max_edges=2, turn=75.0, longest=longest)
     found = priced(graph, case, limits, winches=winches, leads=True, lead_penalty=penalty)
     assert found[0].gain == pytest.approx(gains.max())
     for path in found:
@@ -234,7 +234,7 @@ def test_the_best_lead_of_all(seed: int, longest: float | None) -> None:
 def test_paths_unlike_one_another() -> None:
     """No two share more than 70 % of their edges, and no region of winches has more than its part of the paths."""
     graph = cloud_graph(60, 2)
-    found = priced(graph, made_case(graph, 2), PathLimits(hops=7, turn=75.0), count=8)
+    found = priced(graph, made_case(graph, 2), PathLimits(max_edges=7, turn=75.0), count=8)
     edges = [{frozenset(pair) for pair in pairwise(path.nodes)} for path in found]
     for row, some in enumerate(edges):
         for other in edges[:row]:
@@ -247,7 +247,7 @@ def test_paths_unlike_one_another() -> None:
 def test_like_paths_where_there_is_nothing_else() -> None:
     graph = grid_graph(5, 1)
     case = made_case(graph, 0)
-    found = priced(graph, case, PathLimits(hops=4, turn=75.0), winches=[0], count=10)
+    found = priced(graph, case, PathLimits(max_edges=4, turn=75.0), winches=[0], count=10)
     paths = [path for path in all_paths(graph, 4, 75.0) if path[0] == 0]
     useful = decreases(sums_along(graph, paths, case["moves"]), case) > 0
     assert {path.nodes for path in found} <= {path for path, good in zip(paths, useful, strict=True) if good}
@@ -263,7 +263,7 @@ def test_a_winch_in_the_world_is_where_a_cable_begins_and_nowhere_else() -> None
     for seed in range(5):
         case = made_case(graph, seed)
         for leads in (False, True):
-            found = priced(graph, case, PathLimits(hops=5, turn=140.0), leads=leads, count=30)
+            found = priced(graph, case, PathLimits(max_edges=5, turn=140.0), leads=leads, count=30)
             assert found
             for path in found:
                 whole = (*path.lead, *path.nodes[1:])
@@ -271,13 +271,13 @@ def test_a_winch_in_the_world_is_where_a_cable_begins_and_nowhere_else() -> None
                 assert max(whole[1:]) < 12
         paths = [path for path in all_paths(graph, 2, 90.0) if path[0] >= 12 and max(path[1:]) < 12]
         best = decreases(sums_along(graph, paths, case["moves"]), case).max()
-        assert priced(graph, case, PathLimits(hops=2, turn=90.0))[0].gain == pytest.approx(best)
+        assert priced(graph, case, PathLimits(max_edges=2, turn=90.0))[0].gain == pytest.approx(best)
 
 
 def test_the_same_twice() -> None:
     graph = cloud_graph(40, 3)
     case = made_case(graph, 3)
-    one, two = (priced(graph, case, PathLimits(hops=8, turn=75.0), leads=True) for _ in range(2))
+    one, two = (priced(graph, case, PathLimits(max_edges=8, turn=75.0), leads=True) for _ in range(2))
     assert [(path.nodes, path.lead, path.gain) for path in one] == [(path.nodes, path.lead, path.gain) for path in two]
 
 
@@ -297,7 +297,7 @@ def test_two_cables_chosen_one_by_one_are_nearly_the_best_pair() -> None:
         "ridge": np.full(1, 1e-3 * float((along**2).sum(axis=1).max())),
         "most": 20.0,
     }
-    limits = PathLimits(hops=3, turn=30.0)
+    limits = PathLimits(max_edges=3, turn=30.0)
     anywhere = {"winches": range(len(graph.points)), "count": 1}
     first = priced(graph, case, limits, **anywhere)[0]
     aim = first.moves / np.linalg.norm(first.moves)
@@ -344,7 +344,7 @@ def test_loops_do_not_crowd_out_paths() -> None:
         case["moves"] = np.random.default_rng(seed).normal(size=case["moves"].shape) + 0.5 * aim
         paths = [path for path in all_paths(graph, 7, 150.0) if path[0] == 5]
         best = decreases(sums_along(graph, paths, case["moves"]), case).max()
-        found = priced(graph, case, PathLimits(hops=7, turn=150.0), winches=[5])
+        found = priced(graph, case, PathLimits(max_edges=7, turn=150.0), winches=[5])
         assert {path.nodes for path in found} <= set(paths)
         ratios.append(found[0].gain / best)
     assert max(ratios) <= 1 + 1e-9

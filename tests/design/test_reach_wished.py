@@ -21,7 +21,7 @@ def designed(reach: float) -> Network:
         poses=(hs.PoseTarget(name="up", targets={"tip": (0.19, 0.03)}),),
         winches=2,
         cables=2,
-        options=RouteOptions(reach=reach, starts=1, exchanges=2, polish=15),
+        options=RouteOptions(reach=reach, starts=1, exchanges=2, refine_steps=15),
         constraints=Constraints(built_in=False),
     )
     return find_network(robot, request)

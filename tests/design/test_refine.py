@@ -11,8 +11,8 @@ from hydrostat.design.constraints import Constraints
 from hydrostat.design.region import Region
 from hydrostat.design.request import RouteOptions
 from hydrostat.design.routes.begin import add_mirror_image, layout_of
-from hydrostat.design.routes.bench import Bench, Trial
 from hydrostat.design.routes.certificate import certify
+from hydrostat.design.routes.evaluator import Evaluator, Trial
 from hydrostat.design.routes.layout import CableRoute, Layout
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.refine import RefineOptions, linear_model, refine
@@ -43,9 +43,9 @@ def poses_of(robot: Robot, contractions: list[tuple[float, ...]]) -> list[PoseTa
     return found
 
 
-def trial_at(bench: Bench, layout: Layout, contractions: list[tuple[float, ...]]) -> Trial:
+def trial_at(evaluator: Evaluator, layout: Layout, contractions: list[tuple[float, ...]]) -> Trial:
     simulation = Simulation(layout.robot())
-    return bench.trial(layout, simulation, [simulation.solve(np.array(pulled)) for pulled in contractions])
+    return evaluator.trial(layout, simulation, [simulation.solve(np.array(pulled)) for pulled in contractions])
 
 
 def of_a_pair() -> Layout:
@@ -78,17 +78,17 @@ def of_two_ways() -> Layout:
 def test_the_linear_model_agrees_with_finite_differences(made, unchecked: None) -> None:
     """All free numbers and all contractions: winches, via points, slack, ratios."""
     layout, pulled = made(), [(0.012, 0.006), (-0.015 if made is of_two_ways else 0.004, 0.015)]
-    bench = Bench(layout.source, poses_of(strip(), [(0.01, 0.0), (0.0, 0.01)]), layout.constraints)
-    trial = trial_at(bench, layout, pulled)
+    evaluator = Evaluator(layout.source, poses_of(strip(), [(0.01, 0.0), (0.0, 0.01)]), layout.constraints)
+    trial = trial_at(evaluator, layout, pulled)
     region = Region.of_body(layout.source.body, layout.constraints.clearance)
-    model = linear_model(bench, region, trial, effort=EFFORT, reach=0.006)
+    model = linear_model(evaluator, region, trial, effort=EFFORT, reach=0.006)
 
     def right(change: np.ndarray) -> np.ndarray:
         moved = layout.at(layout.numbers + layout.ties @ change[: model.free])
         pulls = np.array(pulled) + change[model.free :].reshape(len(pulled), -1)
-        at = trial_at(bench, moved, [tuple(one) for one in pulls])
+        at = trial_at(evaluator, moved, [tuple(one) for one in pulls])
         parts = [
-            np.concatenate([bench.residual(at.simulation, index, pose.nodes), EFFORT * pose.tensions])
+            np.concatenate([evaluator.residual(at.simulation, index, pose.nodes), EFFORT * pose.tensions])
             for index, pose in enumerate(at.poses)
         ]
         return np.concatenate(parts)
@@ -105,37 +105,37 @@ def test_the_linear_model_agrees_with_finite_differences(made, unchecked: None) 
         assert model.matrix[:rows, column] == pytest.approx(slope, abs=2e-3 * np.abs(slope).max() + 2e-5), column
 
 
-def hidden() -> tuple[Bench, Layout, Trial]:
+def hidden() -> tuple[Evaluator, Layout, Trial]:
     """Poses of a hidden network, and the same network with its via points displaced by up to 5 mm."""
     robot = strip()
     constraints = Constraints(winch_clearance=0.006, slack=0.005)
     poses = poses_of(robot, [(0.015, 0.0), (0.0, 0.012)])
-    bench, layout = Bench(robot, poses, constraints), layout_of(robot, constraints)
+    evaluator, layout = Evaluator(robot, poses, constraints), layout_of(robot, constraints)
     shifts = np.random.default_rng(5).uniform(-5e-3, 5e-3, layout.starts[-2])
     numbers = layout.numbers.copy()
     numbers[: len(shifts)] += shifts
     displaced = layout.at(numbers)
-    trial = bench.reach_poses(displaced, None)
+    trial = evaluator.reach_poses(displaced, None)
     assert trial is not None
-    return bench, displaced, trial
+    return evaluator, displaced, trial
 
 
 def test_refinement_finds_a_hidden_network_again(unchecked: None) -> None:
-    bench, _, trial = hidden()
-    region = Region.of_body(bench.source.body, bench.constraints.clearance)
-    found = refine(bench, region, trial, RefineOptions(iterations=60, effort=1e-4, straightness=0.0, progress=1e-4))
+    evaluator, _, trial = hidden()
+    region = Region.of_body(evaluator.source.body, evaluator.constraints.clearance)
+    found = refine(evaluator, region, trial, RefineOptions(iterations=60, effort=1e-4, straightness=0.0, progress=1e-4))
     assert trial.error > 5e-4
     assert found.error < 0.01 * trial.error
-    assert violations(found.layout.robot(), bench.constraints, region) == []
+    assert violations(found.layout.robot(), evaluator.constraints, region) == []
 
 
 def test_every_step_lowers_the_error_and_stays_buildable(unchecked: None) -> None:
-    bench, _, trial = hidden()
-    region = Region.of_body(bench.source.body, bench.constraints.clearance)
+    evaluator, _, trial = hidden()
+    region = Region.of_body(evaluator.source.body, evaluator.constraints.clearance)
     for _ in range(4):
-        found = refine(bench, region, trial, RefineOptions(iterations=1, effort=1e-4, straightness=0.0))
+        found = refine(evaluator, region, trial, RefineOptions(iterations=1, effort=1e-4, straightness=0.0))
         assert found.error < trial.error * (1 + 1e-6)
-        assert violations(found.layout.robot(), bench.constraints, region) == []
+        assert violations(found.layout.robot(), evaluator.constraints, region) == []
         for pose, stand in ((pose, stand) for pose in found.poses for stand in found.layout.sites):
             assert pose.contractions.min() >= -stand.winch.release - 1e-12
             assert pose.contractions.max() <= stand.winch.travel + 1e-12
@@ -143,17 +143,17 @@ def test_every_step_lowers_the_error_and_stays_buildable(unchecked: None) -> Non
 
 
 def test_it_ends_where_enough_is_reached(unchecked: None) -> None:
-    bench, _, trial = hidden()
-    region = Region.of_body(bench.source.body, bench.constraints.clearance)
-    assert refine(bench, region, trial, RefineOptions(enough=2 * trial.error)) is trial
+    evaluator, _, trial = hidden()
+    region = Region.of_body(evaluator.source.body, evaluator.constraints.clearance)
+    assert refine(evaluator, region, trial, RefineOptions(stop_error=2 * trial.error)) is trial
 
 
-def proposals(bench: Bench) -> Proposals:
-    mesh = bench.source.body.mesh
+def proposals(evaluator: Evaluator) -> Proposals:
+    mesh = evaluator.source.body.mesh
     spacing = float(np.linalg.norm(np.diff(mesh.nodes[mesh.edges], axis=1)[:, 0], axis=1).mean())
-    region = Region.of_body(bench.source.body, bench.constraints.clearance)
-    graph = RouteGraph.build(bench.source, region, bench.constraints, spacing=spacing)
-    return Proposals(bench, graph, RouteOptions(hops=6), 1.5 * spacing)
+    region = Region.of_body(evaluator.source.body, evaluator.constraints.clearance)
+    graph = RouteGraph.build(evaluator.source, region, evaluator.constraints, spacing=spacing)
+    return Proposals(evaluator, graph, RouteOptions(max_edges=6), 1.5 * spacing)
 
 
 @pytest.mark.slow
@@ -162,14 +162,14 @@ def test_the_slope_falls_towards_an_optimum(unchecked: None) -> None:
 
     It need not be nought there: via points end on edges of the mesh, where the error has no derivative.
     """
-    bench, _, trial = hidden()
-    targets = {**bench.targets[0].targets, "tip": (0.18, 0.04)}
-    bench = Bench(bench.source, [PoseTarget(name="other", targets=targets)], bench.constraints)
-    start = bench.reach_poses(trial.layout, None)
+    evaluator, _, trial = hidden()
+    targets = {**evaluator.targets[0].targets, "tip": (0.18, 0.04)}
+    evaluator = Evaluator(evaluator.source, [PoseTarget(name="other", targets=targets)], evaluator.constraints)
+    start = evaluator.reach_poses(trial.layout, None)
     assert start is not None
-    region = Region.of_body(bench.source.body, bench.constraints.clearance)
-    ended = refine(bench, region, start, RefineOptions(iterations=60, effort=0.0, progress=1e-7))
-    before, after = certify(proposals(bench), start), certify(proposals(bench), ended)
+    region = Region.of_body(evaluator.source.body, evaluator.constraints.clearance)
+    ended = refine(evaluator, region, start, RefineOptions(iterations=60, effort=0.0, progress=1e-7))
+    before, after = certify(proposals(evaluator), start), certify(proposals(evaluator), ended)
     assert before.slope > 0.02
     assert after.slope < 0.5 * before.slope
 
@@ -181,10 +181,10 @@ def test_what_one_more_cable_promises_comes_true(unchecked: None) -> None:
     reached = Simulation(source).solve(np.array([0.006])).markers
     shifts = {"tip": (-0.0006, -0.0008), "mid": (0.0, -0.0004), "low": (-0.0004, 0.0002)}
     targets = {name: tuple(map(float, np.add(place, shifts[name]))) for name, place in reached.items()}
-    bench = Bench(source, [PoseTarget(name="near", targets=targets)], Constraints(winch_clearance=0.006))
-    trial = bench.reach_poses(layout_of(source, bench.constraints), None)
+    evaluator = Evaluator(source, [PoseTarget(name="near", targets=targets)], Constraints(winch_clearance=0.006))
+    trial = evaluator.reach_poses(layout_of(source, evaluator.constraints), None)
     assert trial is not None
-    priced = proposals(bench)
+    priced = proposals(evaluator)
     promised = certify(priced, trial).further
     (best,) = priced.price_paths(trial, count=1)
     points = priced.graph.points
@@ -192,7 +192,7 @@ def test_what_one_more_cable_promises_comes_true(unchecked: None) -> None:
     stand = replace(trial.layout.sites[0], winch=replace(source.winches[0], name="new", at=tuple(points[best.winch])))
     added = replace(trial.layout, sites=(*trial.layout.sites, stand), routes=(*trial.layout.routes, line))
     assert best.lead == (best.winch,)
-    found = bench.reach_poses(added, trial)
+    found = evaluator.reach_poses(added, trial)
     assert found is not None
     drop = trial.error**2 - found.error**2
     assert drop > 0.2 * trial.error**2

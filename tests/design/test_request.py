@@ -69,7 +69,7 @@ def test_methods_and_muscles_are_of_closed_sets(unchecked: None) -> None:
 def test_the_request_as_values(unchecked: None) -> None:
     values = json.loads(json.dumps(DesignRequest(poses=(UP,), winches="auto").as_values()))
     assert (values["poses"], values["winches"], values["cables"], values["method"]) == (["up"], "auto", 6, "routes")
-    assert values["options"]["hops"] == RouteOptions().hops
+    assert values["options"]["max_edges"] == RouteOptions().max_edges
     assert values["constraints"]["tension"] == Constraints().tension
 
 

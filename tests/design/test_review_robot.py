@@ -13,7 +13,7 @@ from hydrostat.design.review_robot import review_robot
 from hydrostat.fabrication import MOTORS, Demand, KitOptions, UnbuildableError, build_kit
 from hydrostat.robot import Robot, find_risks, robot_hash
 
-SMALL = RouteOptions(starts=1, exchanges=0, polish=2, trials=2, steps=2, hops=6)
+SMALL = RouteOptions(starts=1, exchanges=0, refine_steps=2, trials=2, steps=2, max_edges=6)
 
 
 @cache

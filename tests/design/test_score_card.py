@@ -39,7 +39,7 @@ def test_a_grown_network_as_json() -> None:
         robot_hash(other.robot) for other in network.alternatives
     ]
     assert (read["request"]["method"], read["version"], read["complete"]) == ("routes", "1.2.3", True)
-    assert (read["request"]["poses"], read["request"]["options"]["hops"]) == (["up"], 14)
+    assert (read["request"]["poses"], read["request"]["options"]["max_edges"]) == (["up"], 14)
     assert (read["robot"], read["source_robot"]) == (robot_hash(network.robot), robot_hash(network.source))
 
 

@@ -8,7 +8,7 @@ import pytest
 from builders import strip_robot
 
 from hydrostat.design import DesignRequest, DesignStage, Network, RouteOptions, SearchRecord, find_network
-from hydrostat.design.routes.bench import Bench
+from hydrostat.design.routes.evaluator import Evaluator
 from hydrostat.errors import InputError
 from hydrostat.robot import PoseTarget, robot_hash
 
@@ -16,7 +16,7 @@ ROBOT = strip_robot(columns=10, rows=3).with_network((), ())
 POSES = tuple(
     PoseTarget(name=name, targets={"tip": tip}) for name, tip in (("up", (0.18, 0.06)), ("down", (0.185, -0.05)))
 )
-QUICK = RouteOptions(starts=1, exchanges=1, polish=2, trials=2, steps=2, hops=6)
+QUICK = RouteOptions(starts=1, exchanges=1, refine_steps=2, trials=2, steps=2, max_edges=6)
 REQUEST = DesignRequest(poses=POSES, winches=2, cables=3, options=QUICK)
 
 
@@ -45,8 +45,8 @@ def test_a_resumed_search_finds_the_same_network(
 
     resumed = SearchRecord.read(file, ROBOT, replace(REQUEST, seconds=100.0))
     solved = []
-    reach = Bench.reach_poses
-    monkeypatch.setattr(Bench, "reach_poses", lambda *given, **named: solved.append(0) or reach(*given, **named))
+    reach = Evaluator.reach_poses
+    monkeypatch.setattr(Evaluator, "reach_poses", lambda *given, **named: solved.append(0) or reach(*given, **named))
     network = search(resumed)
     assert network.complete
     assert robot_hash(network.robot) == robot_hash(unbroken.robot)

@@ -20,7 +20,7 @@ from hydrostat.robot import PoseTarget
 POSES = tuple(
     PoseTarget(name=name, targets={"tip": tip}) for name, tip in (("up", (0.18, 0.06)), ("down", (0.185, -0.05)))
 )
-QUICK = RouteOptions(starts=1, exchanges=1, polish=2, trials=2, steps=2, hops=6)
+QUICK = RouteOptions(starts=1, exchanges=1, refine_steps=2, trials=2, steps=2, max_edges=6)
 
 
 @pytest.fixture(autouse=True)

@@ -12,7 +12,7 @@ from hydrostat.design.constraints import Constraints
 from hydrostat.design.polyline import nearest_shares, resample
 from hydrostat.design.region import Region
 from hydrostat.design.request import RouteOptions
-from hydrostat.design.routes.bench import Bench, Trial
+from hydrostat.design.routes.evaluator import Evaluator, Trial
 from hydrostat.design.routes.growth import Growth
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.propose import Proposals
@@ -24,10 +24,10 @@ from hydrostat.simulation import Simulation
 
 def _begun(robot, constraints: Constraints, poses) -> tuple[Proposals, Trial]:
     robot = robot.with_network((), ())
-    bench = Bench(robot, list(poses), constraints)
+    evaluator = Evaluator(robot, list(poses), constraints)
     spacing = float(robot.body.mesh.edge_lengths.mean())
     graph = RouteGraph.build(robot, Region.of_body(robot.body, constraints.clearance), constraints, spacing=spacing)
-    proposals = Proposals(bench, graph, RouteOptions(), 2 * spacing)
+    proposals = Proposals(evaluator, graph, RouteOptions(), 2 * spacing)
     bare = Growth(proposals, lambda *_: None).evaluate(Layout(robot, constraints, (), ()))
     assert bare is not None
     return proposals, bare
@@ -60,7 +60,7 @@ def test_the_error_of_a_set_of_lines_is_that_of_nonnegative_least_squares(
     proposals, bare = starfish
     lines = list(draw_lines(proposals, [marker.at for marker in bare.layout.source.markers]))
     choice = LineChoice(proposals, bare, lines, 3, 5)
-    missed = [proposals.bench.residual(bare.simulation, index, pose.nodes) for index, pose in enumerate(bare.poses)]
+    missed = [proposals.evaluator.residual(bare.simulation, index, pose.nodes) for index, pose in enumerate(bare.poses)]
     chance = np.random.default_rng(5)
     for count in (1, 2, 3, 5, 5, 5):
         chosen = chance.choice(len(lines), count, replace=False).tolist()
@@ -71,7 +71,7 @@ def test_the_error_of_a_set_of_lines_is_that_of_nonnegative_least_squares(
 def _left(choice: LineChoice, chosen: list[int], pose: int, missed: np.ndarray) -> float:
     places = np.array([choice.lines[index].place for index in chosen])
     by_winch = np.equal.outer(places, np.unique(places)).astype(float)
-    ridge = 0.5 * np.linalg.norm(missed) / choice.proposals.bench.constraints.tension_limit
+    ridge = 0.5 * np.linalg.norm(missed) / choice.proposals.evaluator.constraints.tension_limit
     taut = np.ones(len(chosen), dtype=bool)
     for _ in range(6):
         own = np.array(chosen)[taut]
@@ -118,7 +118,7 @@ def test_sketches_are_within_the_counts_and_cross_nothing(starfish: tuple[Propos
             for other in layout.routes[index + 1 :]:
                 if route.winch != other.winch:
                     assert _apart(route.points, other.points) >= bare.layout.constraints.cable_gap - 2e-5
-    costs = [trial.cost for layout in drawn if (trial := proposals.bench.reach_poses(layout, None)) is not None]
+    costs = [trial.cost for layout in drawn if (trial := proposals.evaluator.reach_poses(layout, None)) is not None]
     assert min(costs) < 0.5 * bare.cost
 
 
@@ -126,9 +126,9 @@ def test_there_are_no_sketches_beside_cables_or_in_the_mirror(
     starfish: tuple[Proposals, Trial], unchecked: None
 ) -> None:
     proposals, bare = starfish
-    assert not sketches(*_begun(bare.layout.source, Constraints(mirror="x"), proposals.bench.targets), **COUNTS)
+    assert not sketches(*_begun(bare.layout.source, Constraints(mirror="x"), proposals.evaluator.targets), **COUNTS)
     (drawn,) = sketches(proposals, bare, **COUNTS)
-    trial = proposals.bench.reach_poses(drawn, None)
+    trial = proposals.evaluator.reach_poses(drawn, None)
     assert trial is not None
     assert not sketches(proposals, trial, **COUNTS)
 

@@ -142,7 +142,7 @@ def test_the_graph_lies_in_the_layer(depth: float, unchecked: None) -> None:
 
 def designed(depth: float) -> Network:
     robot = gallery_robot("trunk")
-    options = RouteOptions(starts=1, exchanges=0, steps=2, polish=2)
+    options = RouteOptions(starts=1, exchanges=0, steps=2, refine_steps=2)
     return design_cables(
         robot, [robot.pose("wave")], winches=1, cables=2, constraints=Constraints(depth=depth), options=options
     )

@@ -6,7 +6,7 @@ from builders import strip_robot
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.region import Region
 from hydrostat.design.request import RouteOptions
-from hydrostat.design.routes.bench import Bench
+from hydrostat.design.routes.evaluator import Evaluator
 from hydrostat.design.routes.growth import Growth
 from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
 from hydrostat.design.routes.propose import Proposals
@@ -22,25 +22,25 @@ UP = PoseTarget(name="up", targets={"tip": (0.18, 0.06)})
 def growth_of(tolerances: BuildTolerances, simplicity: float) -> Growth:
     robot = strip_robot(columns=10, rows=3).with_network((), ())
     graph = RouteGraph.build(robot, Region.of_body(robot.body, LIMITS.clearance), LIMITS, spacing=0.03)
-    bench = Bench(robot, [UP], LIMITS, tolerances)
-    return Growth(Proposals(bench, graph, RouteOptions(simplicity=simplicity), 0.05), lambda *_: None)
+    evaluator = Evaluator(robot, [UP], LIMITS, tolerances)
+    return Growth(Proposals(evaluator, graph, RouteOptions(simplicity=simplicity), 0.05), lambda *_: None)
 
 
 def line(growth: Growth, heights: list[float]) -> Layout:
     points = np.column_stack([np.linspace(0.03, 0.17, len(heights)), heights])
     site = WinchSite(Winch(name="one", at=tuple(map(float, points[0])), travel=0.06))
-    return Layout(growth.bench.source, LIMITS, (site,), (CableRoute(0, points),))
+    return Layout(growth.evaluator.source, LIMITS, (site,), (CableRoute(0, points),))
 
 
 def test_inner_holes_of_a_straight_cable_are_left_out(unchecked: None) -> None:
     """On its two ends it pulls as before: what it misses in the model stays the same, and fewer holes vary."""
     growth = growth_of(BuildTolerances(), 1.0)
-    trial = growth.bench.reach_poses(line(growth, [0.012] * 7), None)
+    trial = growth.evaluator.reach_poses(line(growth, [0.012] * 7), None)
     assert trial is not None
     thinner = remove_via_points(growth, trial)
     assert len(thinner.layout.routes[0].points) < 4
     assert thinner.cost <= 1.003**5 * trial.cost
-    again = growth.bench.reach_poses(thinner.layout, None)
+    again = growth.evaluator.reach_poses(thinner.layout, None)
     assert again is not None
     assert abs(again.cost - thinner.cost) < 0.01 * thinner.cost
 
@@ -49,7 +49,7 @@ def test_holes_that_matter_stay(unchecked: None) -> None:
     """Without its middle the cable would cross the neutral line of the strip, and bend it the other way round."""
     growth = growth_of(BuildTolerances.none(), 0.0)
     heights = [-0.01, 0.0, 0.012, 0.017, 0.012, 0.0, -0.01]
-    trial = growth.bench.reach_poses(line(growth, heights), None)
+    trial = growth.evaluator.reach_poses(line(growth, heights), None)
     assert trial is not None
     thinner = remove_via_points(growth, trial)
     assert thinner.cost <= trial.cost

@@ -136,7 +136,7 @@ def test_a_design_in_foam_can_be_built(unchecked: None) -> None:
         markers=(Marker(name="tip", at=(0.095, 0.0, 0.0)),),
         poses={"bend": PoseTarget(name="bend", targets={"tip": (0.08, 0.0, 0.04)})},
     )
-    quick = RouteOptions(starts=1, trials=2, polish=5, exchanges=0)
+    quick = RouteOptions(starts=1, trials=2, refine_steps=5, exchanges=0)
     network = design_cables(robot, robot.poses.values(), winches=1, cables=1, options=quick)
     limits = network.constraints
     kit = build_kit(network.robot, options=KitOptions(tension=limits.tension_limit, torque=limits.torque))

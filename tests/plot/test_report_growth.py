@@ -7,7 +7,7 @@ import pytest
 from plot.designs import SCRIPT, grown, hostile_network, plain_network, space_network
 from plot.test_report import Page
 
-from hydrostat.design import Alternative, Certificate, Craft, DesignStage, Network, on_front, score_card
+from hydrostat.design import Alternative, BuildCost, Certificate, DesignStage, Network, on_front, score_card
 from hydrostat.drawing import Color
 from hydrostat.plot import inline_svg
 from hydrostat.plot.design_charts import draw_front, draw_growth, stage_runs
@@ -176,8 +176,8 @@ def test_the_picture_of_the_front() -> None:
     """A cable of `sized` takes as many minutes as each other: dots stand at multiples of it, filled by brute force."""
     others = [sized(*other) for other in OTHERS]
     axes = draw_front(others, chosen(), tolerance=0.0045).axes[0]
-    each = Craft.cable_minutes(others[0].robot)
-    own = Craft.cable_minutes(chosen().robot)
+    each = BuildCost.cable_minutes(others[0].robot)
+    own = BuildCost.cable_minutes(chosen().robot)
     points = [(own, 6.0), *((each * cables, 1e3 * error) for _, cables, error in OTHERS)]
     dots = [line for line in axes.lines if line.get_markersize() == 5.5 and np.size(line.get_xdata())]
     drawn = {tuple(np.asarray(dot.get_xydata())[0].round(9)): dot for dot in dots}

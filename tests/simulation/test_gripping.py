@@ -65,7 +65,7 @@ class Drag:
 
     def __init__(self, robot: Robot) -> None:
         body = BodyPhysics(robot)
-        self.carriage: RigidBodyDofs = body.carriages[0]
+        self.carriage: RigidBodyDofs = body.rigid_dofs[0]
         self.at, self.axes = robot.obstacles[0].frame()
         across = np.eye(len(self.at))
         across[-1, -1] = 0.0
@@ -167,7 +167,7 @@ def test_it_flies_as_newton_says() -> None:
         block, at=(*block.at[:2], block.at[2] + 0.5), to=(*(block.to or ())[:2], (block.to or ())[2] + 0.5)
     )
     simulation = Simulation(replace(robot, obstacles=(lifted,)))
-    carriage, motion = simulation.body.carriages[0], simulation.motion_at_rest()
+    carriage, motion = simulation.body.rigid_dofs[0], simulation.motion_at_rest()
     assert motion.carried is not None
     places, speeds, others = motion.carried
     spin = np.cross(np.eye(3), np.array([3.0, 5.0, 2.0]))
@@ -203,7 +203,7 @@ def test_slopes_with_an_obstacle_that_moves(dim: int) -> None:
     full = replace(robot, contact=Contact(distance=1e-3), obstacles=(ball,))
     body = BodyPhysics(full)
     place, axes = ball.frame()
-    guide = GuideEnergy(body.carriages[0], place=place, axes=axes, along=30.0 * np.eye(dim), turning=1.0)
+    guide = GuideEnergy(body.rigid_dofs[0], place=place, axes=axes, along=30.0 * np.eye(dim), turning=1.0)
     simulation = Simulation(full, body=body, energies=[guide])
     winch = robot.winches[0].name
     pose = simulation.solve({winch: 0.03 if dim == 2 else 0.02})

@@ -52,7 +52,7 @@ def guided(obstacle: Obstacle, way: float) -> np.ndarray:
     robot = pressed(replace(obstacle, mass=0.01))
     body = BodyPhysics(robot)
     place, axes = robot.obstacles[0].frame()
-    guide = GuideEnergy(body.carriages[0], place=place, axes=axes, along=2e6 * np.eye(2), turning=2e6)
+    guide = GuideEnergy(body.rigid_dofs[0], place=place, axes=axes, along=2e6 * np.eye(2), turning=2e6)
     simulation, pose = Simulation(robot, body=body, energies=[guide]), None
     for share in np.linspace(0, 1, 9):
         moved = guide.with_target(place - (0.0, share * way), axes)

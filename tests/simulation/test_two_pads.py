@@ -52,7 +52,7 @@ def test_the_pull_is_twice_friction_times_the_press() -> None:
         return PinEnergy(stencils=top[:, None], weights=weights, targets=nodes[top] - (0.0, way), stiffness=stiffness)
 
     (place, axes), press = robot.obstacles[0].frame(), lid(0.0)
-    guide = GuideEnergy(body.carriages[0], place=place, axes=axes, along=np.diag([1e4, 100.0]), turning=1e3)
+    guide = GuideEnergy(body.rigid_dofs[0], place=place, axes=axes, along=np.diag([1e4, 100.0]), turning=1e3)
     simulation, pose = Simulation(robot, body=body, energies=[press, guide]), None
     for way in np.linspace(1.25e-4, 1e-3, 8):
         lower = lid(way)

@@ -76,6 +76,6 @@ def test_motors_get_there_or_it_is_told(monkeypatch: pytest.MonkeyPatch) -> None
     motors = Motors(winches, SimulatedLink(np.zeros(1)))
     go_there(motors, np.array([0.005]), lambda: motors.drive(time.monotonic()))
     assert motors.places == pytest.approx([0.005])
-    monkeypatch.setattr("hydrostat.teleop.lesson_poses.LATE", 0.1)
+    monkeypatch.setattr("hydrostat.teleop.lesson_poses.ARRIVAL_TIME", 0.1)
     with pytest.raises(HydrostatError, match="left: target not reached in time"):
         go_there(motors, np.array([0.02]), lambda: None)

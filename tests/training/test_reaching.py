@@ -31,12 +31,12 @@ from hydrostat.training import (  # noqa: E402
     portable_policy,
     train,
 )
-from hydrostat.training.worlds import ExactWorld, LearnedWorld, MixedWorld, World  # noqa: E402
+from hydrostat.training.backends import Backend, ExactBackend, LearnedBackend, MixedBackend  # noqa: E402
 
 Goals = list[dict[str, Any]]
 
 
-class Straight(LearnedWorld):
+class Straight(LearnedBackend):
     """Markers go with winches along straight lines."""
 
     def __init__(self, env_robot: object = None) -> None:
@@ -49,7 +49,7 @@ class Straight(LearnedWorld):
 
 
 def straight(**options: object) -> ReachEnv:
-    return ReachEnv(gallery_robot("starfish"), world=Straight(), options=ReachOptions(**options))
+    return ReachEnv(gallery_robot("starfish"), backend=Straight(), options=ReachOptions(**options))
 
 
 @pytest.mark.parametrize("incremental", [False, True])
@@ -59,7 +59,7 @@ def test_checkers_of_both_libraries_pass(incremental: bool) -> None:
     made = gymnasium.make(
         "hydrostat/Reach-v0",
         robot=gallery_robot("starfish"),
-        world=Straight(),
+        backend=Straight(),
         options=ReachOptions(steps=5, incremental=incremental),
     )
     check_env(made.unwrapped)
@@ -81,14 +81,14 @@ def test_exact_episodes_are_equilibria_and_are_counted() -> None:
     robot = gallery_robot("starfish")
     env = ReachEnv(robot, options=ReachOptions(steps=2))
     observation, _ = env.reset(seed=4)
-    assert env.world.equilibria == 1  # of the goal
+    assert env.backend.equilibria == 1  # of the goal
     action = np.array([0.3, -0.5, 0.1])
     observation, _, _, over, _ = env.step(action)
     high, low = (np.array([getattr(winch, name) for winch in robot.winches]) for name in ("travel", "release"))
     pose = Simulation(robot).solve(-low + 0.5 * (1.02 * action + 1.0) * (high + low))
     places = env.unit * observation["achieved_goal"] + env.rest[env.seen]
     assert places == pytest.approx(np.array(list(pose.markers.values())).ravel(), abs=1e-9)
-    assert (env.world.equilibria, over) == (2, False)
+    assert (env.backend.equilibria, over) == (2, False)
     assert env.step(action)[3]
 
 
@@ -131,7 +131,7 @@ def test_pictures_show_robot_and_goal_in_one_frame() -> None:
     robot = gallery_robot("starfish")
     name = robot.markers[0].name
     options = ReachOptions(steps=2, markers=[name])
-    env = ReachEnv(robot, world=Straight(), options=options, render_mode="rgb_array")
+    env = ReachEnv(robot, backend=Straight(), options=options, render_mode="rgb_array")
     shown = []
     for goal in (env.rest[:2], env.rest[:2] + 0.01):
         env.reset(options={"goal": goal})
@@ -172,12 +172,12 @@ def test_what_is_wrong_is_told(options: dict, told: str) -> None:
 
 
 def test_a_mixed_world_counts_exact_episodes_only() -> None:
-    exact = ExactWorld(gallery_robot("starfish"))
-    world: World = MixedWorld(Straight(), exact, every=3)
+    exact = ExactBackend(gallery_robot("starfish"))
+    backend: Backend = MixedBackend(Straight(), exact, every=3)
     for _ in range(7):
-        world.begin()
-        world.reach(np.zeros(3))
-    assert world.equilibria == 3
+        backend.begin()
+        backend.reach(np.zeros(3))
+    assert backend.equilibria == 3
 
 
 @pytest.fixture
@@ -187,7 +187,7 @@ def goals() -> Goals:
 
 def test_judging_costs_no_equilibria(goals: Goals) -> None:
     env = straight()
-    env.world.equilibria = 0
+    env.backend.equilibria = 0
     left = judge(env, lambda seen: np.zeros(3), goals)
     middle = Straight().reach(env.contractions(np.zeros(3)))
     by_hand = [np.linalg.norm((middle - goal["goal"]).reshape(-1, 2), axis=1).mean() for goal in goals]
@@ -227,8 +227,8 @@ def test_the_curve_is_the_same_whoever_works(goals: Goals, tmp_path: Path) -> No
 
     def run(processes: int, out: str, steps: int = 120, *, resume: bool = False) -> list:
         robot = gallery_robot("starfish")
-        world = MixedWorld(Straight(), ExactWorld(robot), every=3)
-        env = ReachEnv(robot, world=world, options=ReachOptions(steps=3))
+        backend = MixedBackend(Straight(), ExactBackend(robot), every=3)
+        env = ReachEnv(robot, backend=backend, options=ReachOptions(steps=3))
         options = TrainOptions(method=TrainMethod.DDPG, steps=steps, eval_interval=50, layers=(8,), batch=16)
         more = {"resume": resume, "processes": processes, "judge_in": straight(steps=3)}
         return train(env, goals, options, tmp_path / out, **more)[1]  # type: ignore[arg-type]

@@ -188,7 +188,7 @@ def test_a_human_sees_what_is_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
     """On a page of this machine, after each reset and step; copies that learn show nothing."""
     from urllib.request import urlopen
 
-    from hydrostat.training.copies import Copies
+    from hydrostat.training.env_copies import EnvCopies
 
     opened: list[str] = []
     monkeypatch.setattr("webbrowser.open", opened.append)
@@ -202,7 +202,7 @@ def test_a_human_sees_what_is_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
         assert answer.headers["x-number"] == "2"
         shown = np.asarray(Image.open(answer))
     assert (shown == env.picture()).all()
-    Copies(env, 1).ask("reset", [0])
+    EnvCopies(env, 1).ask("reset", [0])
     assert len(opened) == 1
     made.close()
 

@@ -7,7 +7,7 @@ from scipy.optimize import nnls
 
 from hydrostat.arrays import Vector
 from hydrostat.design.network import Certificate
-from hydrostat.design.routes.bench import Trial
+from hydrostat.design.routes.evaluator import Trial
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.refine import linear_model
 from hydrostat.design.routes.search_rules import RULES
@@ -22,10 +22,10 @@ def certify(proposals: Proposals, trial: Trial) -> Certificate:
     unbiased = replace(proposals, options=replace(proposals.options, lead_penalty=0.0))
     paths = unbiased.price_paths(trial, count=1)
     gain = paths[0].gain if paths else 0.0
-    model = linear_model(proposals.bench, proposals.graph.region, trial, effort=0.0, reach=RULES.holding_margin)
+    model = linear_model(proposals.evaluator, proposals.graph.region, trial, effort=0.0, reach=RULES.holding_margin)
     return Certificate(
         further=float(np.sqrt(max(trial.error**2 - 2 * gain, 0.0))),
-        paths=len(proposals.graph.edges) * 2 * proposals.options.hops,
+        paths=len(proposals.graph.edges) * 2 * proposals.options.max_edges,
         slope=_slope(model.matrix, model.right, model.rows[model.left <= RULES.holding_margin], trial.error),
     )
 

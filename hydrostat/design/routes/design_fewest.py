@@ -35,7 +35,7 @@ def design_fewest(
     size = robot.body.mesh.size
     constraints, options, cables = request.constraints, request.route_options, request.cables
     tolerance = RULES.usual_tolerance * size if options.tolerance is None else options.tolerance
-    sought = replace(options, enough=max(options.enough, RULES.safe_tolerance * tolerance / size))
+    sought = replace(options, stop_error=max(options.stop_error, RULES.safe_tolerance * tolerance / size))
     found: list[Network] = []
     body, better = BodyPhysics(robot), Better(watch)
     front: dict[Size, Alternative] = {}

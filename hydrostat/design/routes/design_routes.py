@@ -12,9 +12,9 @@ from hydrostat.design.network import Alternative, Certificate, DesignStage, Netw
 from hydrostat.design.region import Region
 from hydrostat.design.request import DesignRequest
 from hydrostat.design.routes.begin import layout_of
-from hydrostat.design.routes.bench import Bench, Trial
 from hydrostat.design.routes.certificate import certify
 from hydrostat.design.routes.deadline import Deadline, TimeUpError
+from hydrostat.design.routes.evaluator import Evaluator, Trial
 from hydrostat.design.routes.exchange import Exchanges
 from hydrostat.design.routes.final_judgement import FinalJudgement
 from hydrostat.design.routes.finalists import DIGITS, Finalists
@@ -75,7 +75,7 @@ class RouteSearch:
     """One search for a network of a given number of winches.
 
     Attributes:
-        bench: solves the poses of layouts.
+        evaluator: solves the poses of layouts.
         stages: networks on the way, as they are shown.
         passed: cost and layout of each of them.
         sizes: the best network of each size, by its numbers of winches and cables.
@@ -99,7 +99,7 @@ class RouteSearch:
         self.constraints, self.options = request.constraints, request.route_options
         if self.constraints.built_in and not request.improve and not self.constraints.stand_outside(robot):
             self.constraints = built_in(robot, self.constraints, winches=self.winches, cables=self.cables)
-        self.bench = Bench(
+        self.evaluator = Evaluator(
             robot,
             request.poses,
             self.constraints,
@@ -107,10 +107,10 @@ class RouteSearch:
             body,
             self.options.reach,
         )
-        self.bench.look, self.bench.time_left = self._look, self._time_left
+        self.evaluator.look, self.evaluator.time_left = self._look, self._time_left
         if robot.contact is None and not robot.obstacles:  # parts that touch are remembered, and not sent
-            self.bench.cores = min(THREADS, RULES.processes)
-            self.bench.record = record  # nor kept
+            self.evaluator.cores = min(THREADS, RULES.processes)
+            self.evaluator.record = record  # nor kept
         self.stages: list[DesignStage] = []
         self.passed: list[tuple[float, Layout]] = []
         self.found: list[Trial] = []
@@ -128,7 +128,7 @@ class RouteSearch:
             complete = False
             if self.best is None:
                 raise
-        self.bench.record = None  # networks are judged again
+        self.evaluator.record = None  # networks are judged again
         timed_out = not complete and self.deadline.is_over
         self.deadline = self.deadline.with_grace()
         judgement = self._judgement(complete)
@@ -152,7 +152,7 @@ class RouteSearch:
             built=network.built,
             alternatives=tuple(alternatives),
             trace=RouteTrace(stages=tuple(self.stages), certificate=certificate),
-            tried=self.bench.solves,
+            tried=self.evaluator.solves,
             seconds=_measure_cpu_time() - began,
             complete=complete,
             timed_out=timed_out,
@@ -178,7 +178,7 @@ class RouteSearch:
             raise InputError("1 cable: a mirrored network has its cables in pairs; ask for at least 2 cables")
         spacing = float(self.robot.body.mesh.edge_lengths.mean())
         graph = RouteGraph.build(self.robot, self.region, self.constraints, spacing=spacing)
-        self.proposals = Proposals(self.bench, graph, self.options, self.options.spacing * spacing)
+        self.proposals = Proposals(self.evaluator, graph, self.options, self.options.spacing * spacing)
         self.growth = growth = Growth(self.proposals, self._note_network)
         self.progress("Growing networks", 0, self._total)
         begun = growth.evaluate(self._beginning())
@@ -234,7 +234,7 @@ class RouteSearch:
         """Refine the best networks to the end, and the next only if it is nearly as good from rest."""
         grown.sort(key=lambda trial: trial.cost)
         whole = [trial for trial in grown if len(trial.layout.sites) >= self.winches] or grown
-        rested = list(self.bench.keep_each("from rest", growth.resolve_from_rest, whole[: RULES.refined + 1]))
+        rested = list(self.evaluator.keep_each("from rest", growth.resolve_from_rest, whole[: RULES.refined + 1]))
         rested.sort(key=lambda trial: trial.cost)
         refined: list[Trial] = []
         for rank, trial in enumerate(rested[: RULES.refined]):
@@ -262,7 +262,7 @@ class RouteSearch:
             fits = len(hint.winches) <= self.winches and len(hint.cables) <= self.cables
             if not fits or pushed is None or violations(pushed.robot(digits=DIGITS), self.constraints, self.region):
                 continue
-            trial = self.bench.reach_poses(pushed, None)
+            trial = self.evaluator.reach_poses(pushed, None)
             if trial is not None:
                 trials.append(growth.refine(trial))
                 self._note_network("winch trees, their via points moved", trials[-1])
@@ -280,7 +280,7 @@ class RouteSearch:
     @cached_property
     def finalists(self) -> Finalists:
         """Judges networks as their user will find them."""
-        return Finalists(self.robot, self.request, self.constraints, self.bench, self.region)
+        return Finalists(self.robot, self.request, self.constraints, self.evaluator, self.region)
 
     @cached_property
     def region(self) -> Region:
@@ -333,7 +333,7 @@ class RouteSearch:
         if size not in self.sizes or trial.cost < self.sizes[size].cost:
             self.sizes[size] = trial
         stage = DesignStage(
-            words=words, robot=trial.layout.robot(digits=DIGITS), error=trial.built_error, tried=self.bench.solves
+            words=words, robot=trial.layout.robot(digits=DIGITS), error=trial.built_error, tried=self.evaluator.solves
         )
         self.stages.append(stage)
         self.passed.append((trial.cost, trial.layout))
@@ -350,7 +350,9 @@ class RouteSearch:
     def _certificate(self, network: Alternative) -> Certificate | None:
         layout = layout_of(network.robot, self.constraints)
         poses = [reached.pose for reached in network.reached]
-        return certify(self.proposals, self.bench.trial(layout, Simulation(network.robot, body=self.bench.body), poses))
+        return certify(
+            self.proposals, self.evaluator.trial(layout, Simulation(network.robot, body=self.evaluator.body), poses)
+        )
 
 
 def _measure_cpu_time() -> float:

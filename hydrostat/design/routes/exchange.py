@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from hydrostat.design.routes.bench import Trial
+from hydrostat.design.routes.evaluator import Trial
 from hydrostat.design.routes.growth import Growth, predict_cost, without
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.propose import Additions
@@ -62,14 +62,14 @@ class Exchanges:
         """Cables that may be exchanged, by the cost without them."""
         numbers = range(len(trial.layout.routes))
         rests = [(number, rest) for number in numbers if (rest := self._rest(trial, number)) is not None]
-        solved = self.growth.bench.keep_each("a cable less", lambda pair: self._reach(pair[1], trial), rests)
+        solved = self.growth.evaluator.keep_each("a cable less", lambda pair: self._reach(pair[1], trial), rests)
         self._trial = trial
         self._known = {number: before for (number, _), before in zip(rests, solved, strict=True)}
         return [number for _, number in sorted((one.cost, number) for number, one in self._known.items() if one)]
 
     def _keep_exchange(self, before: Trial, additions: Additions, worst: float) -> Trial | None:
         """Exchange a cable, as a step of the search."""
-        return self.growth.bench.keep("a cable exchanged", lambda: [self._exchange(before, additions, worst)])[0]
+        return self.growth.evaluator.keep("a cable exchanged", lambda: [self._exchange(before, additions, worst)])[0]
 
     def _exchange(self, before: Trial, additions: Additions, worst: float) -> Trial | None:
         """The best network with another cable, from rest; None if its cost is not below `worst` [m]."""
@@ -103,7 +103,7 @@ class Exchanges:
         rest = self._rest(trial, number)
         if rest is None:
             return None
-        found = self.growth.bench.keep("a cable less", lambda: [self._reach(rest, trial, worst)])[0]
+        found = self.growth.evaluator.keep("a cable less", lambda: [self._reach(rest, trial, worst)])[0]
         if found is not None or worst == float("inf"):
             self._known[number] = found
         return found
@@ -112,12 +112,14 @@ class Exchanges:
         """A network without a cable, its poses sought from those with it."""
         places = {site.winch.name: number for number, site in enumerate(trial.layout.sites)}
         kept = [places[site.winch.name] for site in rest.sites]
-        return self.growth.bench.reach_poses(rest, trial, iterations=RULES.exchange_ik_steps, kept=kept, worst=worst)
+        return self.growth.evaluator.reach_poses(
+            rest, trial, iterations=RULES.exchange_ik_steps, kept=kept, worst=worst
+        )
 
     def _reach_from_rest(self, rest: Layout, worst: float) -> Trial | None:
         """A network with poses from rest, kept as a step of the search; None with an error above `worst` [m]."""
-        return self.growth.bench.keep(
-            "a cable left out", lambda: [self.growth.bench.reach_poses(rest, None, worst=worst)]
+        return self.growth.evaluator.keep(
+            "a cable left out", lambda: [self.growth.evaluator.reach_poses(rest, None, worst=worst)]
         )[0]
 
     def _worth(self, trial: Trial, rest: Layout) -> float:

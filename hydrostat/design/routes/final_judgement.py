@@ -5,8 +5,8 @@ from dataclasses import dataclass, field, replace
 
 from hydrostat.design.network import Alternative
 from hydrostat.design.routes.begin import layout_of
-from hydrostat.design.routes.bench import Trial
 from hydrostat.design.routes.deadline import TimeUpError
+from hydrostat.design.routes.evaluator import Trial
 from hydrostat.design.routes.finalists import Finalists, kit_fits
 from hydrostat.design.routes.growth import Growth
 from hydrostat.design.routes.layout import Layout
@@ -17,7 +17,7 @@ from hydrostat.errors import HydrostatError
 
 @dataclass(eq=False)
 class FinalJudgement:
-    """Judges networks, the best first; its time is that of the bench."""
+    """Judges networks, the best first; its time is that of the evaluator."""
 
     growth: Growth
     finalists: Finalists  # with the torque of the motors that hold the first network, once that is judged
@@ -80,8 +80,10 @@ class FinalJudgement:
         """The network with its winches as far apart as motors need that hold the poses for long; None if none is."""
         allowed = (1 + RULES.holding_cost) * network.built
         layout = replace(layout_of(network.robot, self.finalists.constraints), source=self.finalists.robot)
-        before = self.growth.bench.reach_poses(layout, None)
-        for times in RULES.holding_distances if before is not None else ():
+        before = self.growth.evaluator.reach_poses(layout, None)
+        if before is None:
+            return None
+        for times in RULES.holding_distances:
             moved = self.finalists.push_apart(before, times)
             if moved is None:
                 continue
@@ -96,23 +98,23 @@ class FinalJudgement:
 
     def _hold_weaker(self, network: Alternative, torque: float) -> Alternative | None:
         """The network refined until its poses ask for no more than a torque [N m]; None if that costs much."""
-        bench, usual = self.growth.bench, self.growth.bench.constraints
-        bench.constraints = replace(usual, torque=torque)
+        evaluator, usual = self.growth.evaluator, self.growth.evaluator.constraints
+        evaluator.constraints = replace(usual, torque=torque)
         try:
-            layout = layout_of(network.robot, bench.constraints)
-            trial = bench.reach_poses(layout, None)
-            finalists = replace(self.finalists, constraints=bench.constraints)
+            layout = layout_of(network.robot, evaluator.constraints)
+            trial = evaluator.reach_poses(layout, None)
+            finalists = replace(self.finalists, constraints=evaluator.constraints)
             allowed = (1 + RULES.holding_cost) * network.built
             refined = None if trial is None else self.growth.refine(trial, wanted=allowed)
             hopeful = refined is not None and refined.cost < RULES.unjudged_cost * allowed
             held = finalists.judge(refined.layout) if refined is not None and hopeful else None
         except BaseException:
-            bench.constraints = usual
+            evaluator.constraints = usual
             raise
         if held is not None and kit_fits(held) and held.built < allowed:
             self.finalists = finalists
             return held
-        bench.constraints = usual
+        evaluator.constraints = usual
         return None
 
     def _simpler(self) -> list[Trial]:

@@ -12,7 +12,7 @@ from hydrostat.design.constraints import Constraints
 from hydrostat.design.network import Alternative, Network
 from hydrostat.design.region import Region
 from hydrostat.design.request import DesignRequest
-from hydrostat.design.routes.bench import Bench, Trial
+from hydrostat.design.routes.evaluator import Evaluator, Trial
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.reach_from_rest import reach_from_rest
 from hydrostat.design.routes.refine import pushed_back
@@ -34,7 +34,7 @@ class Finalists:
     robot: Robot  # that is designed for
     request: DesignRequest
     constraints: Constraints  # of the search
-    bench: Bench
+    evaluator: Evaluator
     region: Region
     restarts: int = IKOptions.restarts  # of the search for each pose
 
@@ -43,13 +43,13 @@ class Finalists:
         robot = self.safe_robot(layout)
         if violations(robot, self.constraints, self.region):
             return None
-        self.bench.look()
-        simulation = Simulation(robot, body=self.bench.body)
+        self.evaluator.look()
+        simulation = Simulation(robot, body=self.evaluator.body)
         limits = self.constraints.limits
         try:
             options = IKOptions(restarts=self.restarts if restarts is None else restarts)
             reached = list(
-                self.bench.map(
+                self.evaluator.map(
                     lambda pose: reach_from_rest(simulation, pose, limits, options),
                     self.request.poses,
                     known=(simulation, robot, simulation.assembly, simulation.assembly.token),
@@ -59,7 +59,7 @@ class Finalists:
             return None
         if pulls(robot, reached, self.constraints):
             return None
-        built = expected_error(simulation, reached, self.bench.uncertainty)
+        built = expected_error(simulation, reached, self.evaluator.uncertainty)
         return Alternative(robot=robot, reached=tuple(reached), built=built)
 
     def safe_robot(self, layout: Layout) -> Robot:
@@ -69,14 +69,14 @@ class Finalists:
 
     def cost(self, network: Alternative) -> float:
         """The error as built, more where little else is in reach [m]."""
-        if not self.bench.reach:
+        if not self.evaluator.reach:
             return network.built
-        simulation = Simulation(network.robot, body=self.bench.body)
+        simulation = Simulation(network.robot, body=self.evaluator.body)
         slopes = [
             cable_sensitivities(simulation, one.pose, own)
-            for one, own in zip(network.reached, self.bench.markers, strict=True)
+            for one, own in zip(network.reached, self.evaluator.markers, strict=True)
         ]
-        return network.built * self.bench.nearness(network.robot, slopes)
+        return network.built * self.evaluator.nearness(network.robot, slopes)
 
     def _number_winches(self, layout: Layout) -> Layout:
         """Number new winches in their order; those of the robot keep their names."""
@@ -114,7 +114,7 @@ class Finalists:
     def push_apart(self, trial: Trial, times: float) -> Trial | None:
         """The network with winches apart by a multiple of the distance of the nearest two; None if it cannot be."""
         pushed = self._push_apart(trial.layout, times)
-        return self.bench.reach_poses(pushed, trial) if pushed else None
+        return self.evaluator.reach_poses(pushed, trial) if pushed else None
 
     def _push_apart(self, layout: Layout, times: float) -> Layout | None:
         """The layout with winches apart by a multiple of the distance of the nearest two, or of what they need."""

@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from hydrostat.design.polyline import turns
-from hydrostat.design.routes.bench import Bench, Trial
+from hydrostat.design.routes.evaluator import Evaluator, Trial
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.propose import Additions, Proposals
 from hydrostat.design.routes.refine import RefineOptions, refine
@@ -35,16 +35,16 @@ class Growth:
     note: Note  # receives every network on the way
 
     @property
-    def bench(self) -> Bench:
-        """The bench that solves layouts."""
-        return self.proposals.bench
+    def evaluator(self) -> Evaluator:
+        """The evaluator that solves layouts."""
+        return self.proposals.evaluator
 
     def evaluate(self, layout: Layout) -> Trial | None:
         """The trial of a layout as it is, even one without cables."""
         if layout.routes:
-            return self.bench.reach_poses(layout, None)
-        simulation = Simulation(layout.robot(), body=self.bench.body)
-        return self.bench.trial(layout, simulation, [simulation.rest] * len(self.bench.targets))
+            return self.evaluator.reach_poses(layout, None)
+        simulation = Simulation(layout.robot(), body=self.evaluator.body)
+        return self.evaluator.trial(layout, simulation, [simulation.rest] * len(self.evaluator.targets))
 
     def grow_networks(self, begun: Sequence[Trial], *, winches: int, cables: int) -> list[Trial]:
         """Add cables one by one, each time to the network whose prices promise the least cost (best-first search).
@@ -78,7 +78,7 @@ class Growth:
 
         return [
             _Promise(trial, additions, predict_cost(trial, additions.gain))
-            for trial, additions in zip(roomy, self.bench.map(price, roomy), strict=True)
+            for trial, additions in zip(roomy, self.evaluator.map(price, roomy), strict=True)
             if additions.paths
         ]
 
@@ -91,7 +91,7 @@ class Growth:
             layouts = self.build(trial, promise.additions, winches, best=best)
             return self.solve_layouts(trial, layouts, best=best)
 
-        solved = self.bench.keep("cables tried", try_cables)
+        solved = self.evaluator.keep("cables tried", try_cables)
         rough = unlike(self.refine_each(solved, directions=0, steps=RULES.growth_steps), best, self._rate)
         kept = rough[: 1 if trial.layout.routes else RULES.first_candidates]
         more = self.refine_each(kept, directions=0, steps=RULES.growth_more_steps)
@@ -118,8 +118,10 @@ class Growth:
 
         It ends early where a round gained less than what is left to a `wanted` cost [m]: later rounds gain less still.
         """
-        steps = self.proposals.options.polish
-        best = trial if trial.from_rest else self.bench.keep("from rest", lambda: [self.resolve_from_rest(trial)])[0]
+        steps = self.proposals.options.refine_steps
+        best = (
+            trial if trial.from_rest else self.evaluator.keep("from rest", lambda: [self.resolve_from_rest(trial)])[0]
+        )
         effort, round_size = 1.0, RULES.round_steps
         done = failed = 0
         while done < steps and failed < RULES.round_failures and best.cost > self.enough_error:
@@ -131,7 +133,7 @@ class Growth:
                 gain = 1.0 - found.cost / best.cost
                 best = found
                 hopeless = (1.0 - gain) * best.cost > wanted
-                if gain < RULES.round_gain or hopeless or best.built_error <= options.enough:
+                if gain < RULES.round_gain or hopeless or best.built_error <= options.stop_error:
                     break
             else:
                 effort, round_size, failed = 4.0 * effort, max(round_size // 2, 1), failed + 1
@@ -141,20 +143,20 @@ class Growth:
         """A network after some steps of refinement, its poses found from rest."""
 
         def refine_once() -> list[Trial]:
-            refined = refine(self.bench, self.proposals.graph.region, trial, options)
+            refined = refine(self.evaluator, self.proposals.graph.region, trial, options)
             return [self.resolve_from_rest(refined, worst=trial.cost)]
 
-        return self.bench.keep("refined, poses from rest", refine_once)[0]
+        return self.evaluator.keep("refined, poses from rest", refine_once)[0]
 
     def resolve_from_rest(self, trial: Trial, *, worst: float = np.inf) -> Trial:
         """The same network with poses found from rest: what its user will find; infinite errors above `worst` [m]."""
-        found = self.bench.reach_poses(trial.layout, None, iterations=60, worst=worst, hoped=trial)
+        found = self.evaluator.reach_poses(trial.layout, None, iterations=60, worst=worst, hoped=trial)
         return replace(trial, error=np.inf) if found is None else replace(found, from_rest=True)
 
     @property
     def enough_error(self) -> float:
         """Error at which nothing more is sought [m]."""
-        return self.proposals.options.enough * self.proposals.graph.size
+        return self.proposals.options.stop_error * self.proposals.graph.size
 
     def enough(self, trial: Trial, winches: int) -> bool:
         """True if the network is good enough."""
@@ -178,7 +180,7 @@ class Growth:
         kept: list[Trial] = []
         for layout in layouts:
             worst = self._rate(kept[-1]) / self._effort_factor(layout) if len(kept) == best else np.inf
-            found = self.bench.reach_poses(layout, trial, iterations=RULES.growth_ik_steps, worst=worst)
+            found = self.evaluator.reach_poses(layout, trial, iterations=RULES.growth_ik_steps, worst=worst)
             if found is not None:
                 kept = sorted([*kept, found], key=self._rate)[:best]
         return kept
@@ -199,15 +201,15 @@ class Growth:
         """Refine a network by a few steps: `steps`, or those of the options."""
         asked = self.proposals.options.steps
         options = replace(self._options(asked if steps is None else min(steps, asked)), directions=directions)
-        return refine(self.bench, self.proposals.graph.region, trial, options)
+        return refine(self.evaluator, self.proposals.graph.region, trial, options)
 
     def refine_each(self, trials: Sequence[Trial], *, directions: int = 2, steps: int | None = None) -> list[Trial]:
         """Refine some networks by a few steps each, shared by the cores."""
         work = partial(self.refine_briefly, directions=directions, steps=steps)
-        return list(self.bench.keep_each("refined", work, trials))
+        return list(self.evaluator.keep_each("refined", work, trials))
 
     def _options(self, steps: int) -> RefineOptions:
-        return RefineOptions(iterations=steps, enough=self.enough_error)
+        return RefineOptions(iterations=steps, stop_error=self.enough_error)
 
 
 def unlike(

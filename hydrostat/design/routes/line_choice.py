@@ -13,7 +13,7 @@ from scipy.spatial import KDTree
 
 from hydrostat.arrays import Bool, Vector
 from hydrostat.design.polyline import Route, resample
-from hydrostat.design.routes.bench import Trial
+from hydrostat.design.routes.evaluator import Trial
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.search_rules import RULES
 from hydrostat.geometry import locate
@@ -36,22 +36,22 @@ class LineChoice:
     def __init__(self, proposals: Proposals, bare: Trial, lines: Sequence[Line], winches: int, cables: int) -> None:
         """Find what each line does: `bare` is the trial of a layout without winches and cables."""
         self.proposals, self.lines, self.winches, self.cables = proposals, lines, winches, cables
-        bench, simulation = proposals.bench, bare.simulation
+        evaluator, simulation = proposals.evaluator, bare.simulation
         slopes = csc_array(hstack([csc_array(self._pull(line)[:, None]) for line in lines]))
         self.gives = np.eye(len(lines)) / Cable.stiffness  # contraction of each line by the tension of each [m/N]
         for first in range(0, len(lines), RULES.lines_at_once):
             some = slice(first, first + RULES.lines_at_once)
             self.gives[:, some] += slopes.T @ simulation.response(bare.poses[0], slopes[:, some].toarray())
-        missed = [bench.residual(simulation, index, pose.nodes) for index, pose in enumerate(bare.poses)]
+        missed = [evaluator.residual(simulation, index, pose.nodes) for index, pose in enumerate(bare.poses)]
         self.moves: list[np.ndarray] = []  # of the markers by the tension of each line, of each pose [m/N]
         for index in range(len(missed)):
-            rows = len(bench.markers[index]) * bare.layout.dim
+            rows = len(evaluator.markers[index]) * bare.layout.dim
             fields = bare.slopes[index].fields[:rows].reshape(rows, -1)
-            self.moves.append(-bench.weights[index][:, None] * (slopes.T @ fields.T).T)
+            self.moves.append(-evaluator.weights[index][:, None] * (slopes.T @ fields.T).T)
         self._grams = np.array([move.T @ move for move in self.moves])
         self._aims = np.array([move.T @ miss for move, miss in zip(self.moves, missed, strict=True)])
         self._squares = np.array([float(miss @ miss) for miss in missed])
-        self._ridges = RULES.line_effort * np.sqrt(self._squares) / bench.constraints.tension_limit
+        self._ridges = RULES.line_effort * np.sqrt(self._squares) / evaluator.constraints.tension_limit
         self._places = np.array([line.place for line in lines], dtype=np.int64)
         self._reverse = np.zeros(len(lines), dtype=bool)
         self._turned = 0  # maximum number of winches whose ways are all tried
@@ -75,7 +75,7 @@ class LineChoice:
 
     def _pull(self, line: Line) -> Vector:
         """Slope of its length by the nodes."""
-        mesh = self.proposals.bench.source.body.mesh
+        mesh = self.proposals.evaluator.source.body.mesh
         world = bool(self.proposals.graph.world[line.place])
         spans = np.diff(line.points, axis=0)
         units = spans / np.linalg.norm(spans, axis=1)[:, None]
@@ -169,7 +169,7 @@ class LineChoice:
 
     def _fitting(self, chosen: Sequence[int]) -> Bool[np.ndarray, " lines"]:
         """True for lines that can be built beside others."""
-        own, most = list(chosen), self.proposals.bench.constraints.cables_per_winch
+        own, most = list(chosen), self.proposals.evaluator.constraints.cables_per_winch
         fits: np.ndarray = np.logical_not(self._meets[own].any(axis=0))
         fits[own] = False
         places, counts = np.unique(self._places[own], return_counts=True)
@@ -185,7 +185,7 @@ class LineChoice:
         """Graph points too near to one another for two winches."""
         graph = self.proposals.graph
         used = np.unique(self._places)
-        gaps = np.where(graph.world[used], 1e-6, self.proposals.bench.constraints.winch_gap)
+        gaps = np.where(graph.world[used], 1e-6, self.proposals.evaluator.constraints.winch_gap)
         away = np.linalg.norm(graph.points[used, None] - graph.points[None, used], axis=2)
         crowded = np.zeros((len(graph.points),) * 2, dtype=bool)
         crowded[np.ix_(used, used)] = away < gaps[:, None]
@@ -194,7 +194,7 @@ class LineChoice:
     @cached_property
     def _meets(self) -> Bool[np.ndarray, "lines lines"]:
         """Lines that come too near to one another, but about a winch that both have."""
-        constraints, graph = self.proposals.bench.constraints, self.proposals.graph
+        constraints, graph = self.proposals.evaluator.constraints, self.proposals.graph
         near = RULES.meeting_gap * constraints.cable_gap
         meets = np.zeros((len(self.lines),) * 2, dtype=bool)
         if near == 0.0:

@@ -19,7 +19,7 @@ MarkerJacobian = Float[np.ndarray, "edges rows"]
 class PathLimits:
     """Limits of a path."""
 
-    hops: int  # most edges of its bare part
+    max_edges: int  # most edges of its bare part
     turn: float  # sharpest turn at a via point, lead included, in the rest shape [degrees]
     longest: float | None = None  # greatest rest length, lead included [m]; None: any
     leads: bool = True  # whether it may begin with a sheathed lead from its winch, which moves nothing
@@ -27,7 +27,7 @@ class PathLimits:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Missed:
+class PricingProblem:
     """Residual of each row, and its change by 1 N along each edge of a route graph."""
 
     residual: Float[np.ndarray, " rows"]  # target less marker of each row [m]
@@ -56,7 +56,7 @@ class PricedPath:
 
 def price_paths(
     graph: RouteGraph,
-    missed: Missed,
+    missed: PricingProblem,
     limits: PathLimits,
     *,
     count: int,
@@ -132,9 +132,9 @@ class _LeadStarts:
 class _PathSearch:
     """The two passes over one residual."""
 
-    def __init__(self, graph: RouteGraph, missed: Missed, limits: PathLimits, slots: int) -> None:
+    def __init__(self, graph: RouteGraph, missed: PricingProblem, limits: PathLimits, slots: int) -> None:
         self.graph, self.ridge, self.most = graph, missed.ridge, float(missed.most)
-        self.hops, self.slots = limits.hops, slots
+        self.max_edges, self.slots = limits.max_edges, slots
         self.turns, self.before = _turns(graph, limits.turn)
         poses = len(missed.ridge)
         moves, residual, pose_of_row = _compress_rows(missed)
@@ -168,13 +168,13 @@ class _PathSearch:
         labels, longer = np.empty((2, size, *self.moves.shape[1:]))
         sums, longer_sums = np.empty((2, size, 2 * len(self.ridge) + 2))
         marks, longer_marks = np.empty((2, size), dtype=np.int64)
-        values, parents = np.empty((self.hops, size)), np.empty((self.hops, size), dtype=np.int64)
+        values, parents = np.empty((self.max_edges, size)), np.empty((self.max_edges, size), dtype=np.int64)
         lengths, edge_of = graph.lengths, graph.edge_of
         best, ranked = np.empty((2, self.slots))
         chosen = np.empty(self.slots, dtype=np.int64)
-        gains = np.full((self.hops, size), -np.inf)
+        gains = np.full((self.max_edges, size), -np.inf)
         given = (self.moves, self.pulls, self.squares, self.ridge, self.most)
-        for hop in range(self.hops):
+        for hop in range(self.max_edges):
             if hop == 0:
                 native.first_labels(
                     graph.sources, graph.targets, edge_of, lengths, begins, rooms, self.moves, self.pulls, self.squares,
@@ -189,10 +189,10 @@ class _PathSearch:
             gains[hop, good] = values[hop, good] * np.repeat(factors, self.slots)[good]
             labels, longer, sums, longer_sums = longer, labels, longer_sums, sums
             marks, longer_marks = longer_marks, marks
-        flat = gains.reshape(self.hops, -1, self.slots).transpose(1, 0, 2).reshape(len(edge_of), -1)
+        flat = gains.reshape(self.max_edges, -1, self.slots).transpose(1, 0, 2).reshape(len(edge_of), -1)
         which = flat.argmax(axis=1)
         hops, slots = np.divmod(which, self.slots)
-        paths = np.empty((len(which), self.hops + 1), dtype=np.int64)
+        paths = np.empty((len(which), self.max_edges + 1), dtype=np.int64)
         ends = np.arange(len(which)) * self.slots + slots
         native.walk_back(parents, graph.sources, graph.targets, self.slots, hops, ends, paths)
         yield flat[np.arange(len(which)), which], paths
@@ -240,7 +240,7 @@ def _pick(
     return sorted(picked.items())
 
 
-def _compress_rows(missed: Missed) -> tuple[MarkerJacobian, Vector, Int[np.ndarray, " rows"]]:
+def _compress_rows(missed: PricingProblem) -> tuple[MarkerJacobian, Vector, Int[np.ndarray, " rows"]]:
     """Moves, residual and poses of fewer rows with nearly the same r.J and |J|: bodies move in few patterns.
 
     The rows of a pose are turned such that the first one is along the residual, whose products stay exact. Of the

@@ -11,9 +11,9 @@ from hydrostat.arrays import Vector
 from hydrostat.design.polyline import Route, nearest_shares, resample
 from hydrostat.design.request import RouteOptions
 from hydrostat.design.routes.begin import add_mirror_image
-from hydrostat.design.routes.bench import Bench, Trial
+from hydrostat.design.routes.evaluator import Evaluator, Trial
 from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
-from hydrostat.design.routes.price import Missed, PathLimits, PricedPath, price_paths
+from hydrostat.design.routes.price import PathLimits, PricedPath, PricingProblem, price_paths
 from hydrostat.design.routes.refine import pushed_back
 from hydrostat.design.routes.route_graph import RouteGraph
 from hydrostat.design.routes.search_rules import RULES
@@ -38,7 +38,7 @@ class Additions:
 class Proposals:
     """Region that new cables may use."""
 
-    bench: Bench  # solves layouts
+    evaluator: Evaluator  # solves layouts
     graph: RouteGraph  # of via points
     options: RouteOptions  # of the search
     spacing: float  # of via points [m]
@@ -67,15 +67,15 @@ class Proposals:
         winch is, in proportion to its contractions, or to its payouts if it is a `reverse` one. `free` is the graph
         without runs that meet cables, if it is known.
         """
-        bench, graph = self.bench, self._free_of(trial.layout) if free is None else free
+        evaluator, graph = self.evaluator, self._free_of(trial.layout) if free is None else free
         moves, residuals, owners, ridges = [], [], [], []
         for index, pose in enumerate(trial.poses):
             slopes = trial.slopes[index]
-            rows = len(bench.markers[index]) * trial.layout.dim
+            rows = len(evaluator.markers[index]) * trial.layout.dim
             fields = np.moveaxis(slopes.fields[:rows], 0, 2)
-            own = bench.weights[index] * graph.edge_moves(pose.nodes, fields)
-            residual = bench.residual(trial.simulation, index, pose.nodes)
-            known = _span(bench.weights[index][:, None] * slopes.contractions[:rows])
+            own = evaluator.weights[index] * graph.edge_moves(pose.nodes, fields)
+            residual = evaluator.residual(trial.simulation, index, pose.nodes)
+            known = _span(evaluator.weights[index][:, None] * slopes.contractions[:rows])
             moves.append(own - (own @ known) @ known.T)
             residuals.append(residual - known @ (known.T @ residual))
             owners.append(np.full(rows, index))
@@ -83,8 +83,8 @@ class Proposals:
                 moves.append(RULES.forbidden_moves * np.abs(moves[-1]).max(initial=1e-12) * graph.still[:, None])
                 residuals.append(np.zeros(1))
                 owners.append(np.array([index]))
-            ridges.append((self.effort * float(np.linalg.norm(residual)) / bench.constraints.tension_limit) ** 2)
-        constraints, options = bench.constraints, self.options
+            ridges.append((self.effort * float(np.linalg.norm(residual)) / evaluator.constraints.tension_limit) ** 2)
+        constraints, options = evaluator.constraints, self.options
         pulled = np.ones(len(ridges))
         way = -1.0 if reverse else 1.0
         taken = np.array([0.0 if shared is None else way * float(pose.contractions[shared]) for pose in trial.poses])
@@ -96,7 +96,7 @@ class Proposals:
         elif not idle.all():  # it is pulled alone where its winch does not turn the other way
             pulled = idle.astype(float)
         rows = np.concatenate(owners)
-        missed = Missed(
+        missed = PricingProblem(
             residual=np.concatenate(residuals),
             moves=np.concatenate(moves, axis=1) * pulled[rows],
             pose_of_row=np.zeros_like(rows) if follows else rows,
@@ -104,7 +104,7 @@ class Proposals:
             most=constraints.tension_limit,
         )
         limits = PathLimits(
-            hops=options.hops,
+            max_edges=options.max_edges,
             turn=self._turn,
             longest=constraints.longest,
             leads=constraints.leads,
@@ -115,7 +115,7 @@ class Proposals:
     @property
     def _turn(self) -> float:
         """The sharpest turn that via points at their spacing may have [degrees]."""
-        constraints = self.bench.constraints
+        constraints = self.evaluator.constraints
         turn = max(constraints.turn, RULES.coarse_turn)
         if constraints.bend_radius == 0.0:
             return turn
@@ -123,7 +123,7 @@ class Proposals:
 
     def _free_of(self, layout: Layout) -> RouteGraph:
         """The graph without the runs that would cross the cables there are, or come too near to them."""
-        gap = self.bench.constraints.cable_gap
+        gap = self.evaluator.constraints.cable_gap
         if gap == 0.0:
             return self.graph
         runs = self.graph.points[self.graph.edges]
@@ -143,7 +143,7 @@ class Proposals:
 
     def _one_side(self, runs: np.ndarray, gap: float) -> np.ndarray:
         """Runs that do not meet mirror images: they are on one side of the mirror, and none runs along it."""
-        mirror = self.bench.constraints.mirror
+        mirror = self.evaluator.constraints.mirror
         if mirror is None:
             return np.ones(len(runs), dtype=bool)
         off = runs[:, :, "xyz".index(mirror)]

@@ -11,7 +11,7 @@ from hydrostat.design.buildable import violations
 from hydrostat.design.cable_sides import assign_cable_sides
 from hydrostat.design.region import Region
 from hydrostat.design.request import DesignRequest
-from hydrostat.design.routes.bench import Bench, Trial
+from hydrostat.design.routes.evaluator import Evaluator, Trial
 from hydrostat.design.routes.finalists import Finalists, kit_fits
 from hydrostat.design.routes.growth import Growth
 from hydrostat.design.routes.layout import Layout
@@ -75,18 +75,18 @@ class QuickSearch:
 
     def prepare(self) -> None:
         """Draw the lines to all markers, which need no pose."""
-        self._draw_lines(self._proposals(Bench(self.robot, (), self.constraints)))
+        self._draw_lines(self._proposals(Evaluator(self.robot, (), self.constraints)))
 
     def propose(self, poses: Sequence[PoseTarget]) -> Iterator[RouteProposal]:
         """Propose a sketched network for some poses, then a refined one."""
         if self.constraints.mirror is not None or any(self.constraints.staying(self.robot)):
             return
         uncertainty = self.request.uncertainty or BuildTolerances.none()
-        bench = Bench(self.robot, tuple(poses), self.constraints, uncertainty, self.body)
-        proposals = self._proposals(bench)
+        evaluator = Evaluator(self.robot, tuple(poses), self.constraints, uncertainty, self.body)
+        proposals = self._proposals(evaluator)
         growth = Growth(proposals, lambda *_: None)
         finalists = Finalists(
-            self.robot, replace(self.request, poses=tuple(poses)), self.constraints, bench, self.region
+            self.robot, replace(self.request, poses=tuple(poses)), self.constraints, evaluator, self.region
         )
         bare = growth.evaluate(Layout(self.robot, self.constraints, (), ()))
         if bare is None:
@@ -94,14 +94,14 @@ class QuickSearch:
         lines = self._draw_lines(proposals)
         count = self._count(len(poses))
         drawn = sketches(proposals, bare, winches=self.winches, cables=self.cables, count=count, lines=lines)
-        first = _solve(bench, drawn[: RULES.quick_first])
+        first = _solve(evaluator, drawn[: RULES.quick_first])
         refined = [growth.refine_briefly(trial, directions=0) for trial in first[:1]]
         for trial in (*refined, *first):
             sketch = self._propose_trial(finalists, trial)
             if sketch is not None:
                 yield sketch
                 break
-        others = sorted([*first[1:], *_solve(bench, drawn[RULES.quick_first :])], key=_cost)
+        others = sorted([*first[1:], *_solve(evaluator, drawn[RULES.quick_first :])], key=_cost)
         refined += [growth.refine_briefly(trial, directions=0) for trial in others[: count - 1]]
         last = self._judge_best(growth, finalists, sorted(refined, key=_cost)[: RULES.quick_last])
         if last is not None:
@@ -118,9 +118,9 @@ class QuickSearch:
         spacing = float(self.robot.body.mesh.edge_lengths.mean())
         return RouteGraph.build(self.robot, self.region, self.constraints, spacing=spacing)
 
-    def _proposals(self, bench: Bench) -> Proposals:
+    def _proposals(self, evaluator: Evaluator) -> Proposals:
         options, spacing = self.request.route_options, float(self.robot.body.mesh.edge_lengths.mean())
-        return Proposals(bench, self.graph, options, options.spacing * spacing)
+        return Proposals(evaluator, self.graph, options, options.spacing * spacing)
 
     def _draw_lines(self, proposals: Proposals) -> list[Line]:
         """Lines to all markers, also to those that should stay where they are; to each they are drawn once."""
@@ -162,9 +162,9 @@ class QuickSearch:
         return best
 
 
-def _solve(bench: Bench, layouts: Sequence[Layout]) -> list[Trial]:
+def _solve(evaluator: Evaluator, layouts: Sequence[Layout]) -> list[Trial]:
     """Networks with their poses roughly solved, the best first."""
-    found = [bench.reach_poses(layout, None, iterations=RULES.quick_ik_steps) for layout in layouts]
+    found = [evaluator.reach_poses(layout, None, iterations=RULES.quick_ik_steps) for layout in layouts]
     return sorted((trial for trial in found if trial is not None), key=_cost)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from hydrostat.arrays import Float, Vector
 from hydrostat.design.region import Region
-from hydrostat.design.routes.bench import Bench, Trial
+from hydrostat.design.routes.evaluator import Evaluator, Trial
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.margins import margins
 from hydrostat.design.routes.search_rules import RULES
@@ -24,17 +24,17 @@ class RefineOptions:
     # and what does not matter to the poses should look as if it had been meant
     straightness: float = 0.1
     progress: float = 3e-3  # it ends after steps that lower the cost by less than this share
-    enough: float = 0.0  # error [m] at which it ends
+    stop_error: float = 0.0  # error [m] at which it ends
     directions: int = 2  # singular vectors of the tolerances that are followed; 0: the spread is left out of slopes
 
 
-def refine(bench: Bench, region: Region, trial: Trial, options: RefineOptions) -> Trial:
+def refine(evaluator: Evaluator, region: Region, trial: Trial, options: RefineOptions) -> Trial:
     """Levenberg and Marquardt over all numbers of a layout and the contractions of every pose at once.
 
     Residuals are linearized by the adjoint; limits of the layout, on contractions and tensions are rows of each step;
     a step is pushed back into what can be built before it is tried, and taken where the cost falls.
     """
-    return _Refinement(bench, region, options).run(trial)
+    return _Refinement(evaluator, region, options).run(trial)
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,16 +50,16 @@ class Model:
 
 
 class _Refinement:
-    def __init__(self, bench: Bench, region: Region, options: RefineOptions) -> None:
-        self.bench, self.region, self.options = bench, region, options
-        self.limit = bench.constraints.tension_limit
-        self.reach = RULES.point_step * bench.source.body.mesh.size
+    def __init__(self, evaluator: Evaluator, region: Region, options: RefineOptions) -> None:
+        self.evaluator, self.region, self.options = evaluator, region, options
+        self.limit = evaluator.constraints.tension_limit
+        self.reach = RULES.point_step * evaluator.source.body.mesh.size
         self.damping = RULES.first_damping
 
     def run(self, trial: Trial) -> Trial:
         idle = 0
         for _ in range(self.options.iterations):
-            if trial.built_error <= self.options.enough:
+            if trial.built_error <= self.options.stop_error:
                 break
             effort = (
                 self.options.effort
@@ -89,16 +89,16 @@ class _Refinement:
 
     def _excess(self, trial: Trial, tensions: Vector) -> Vector:
         """Tensions above their limit, and torques above theirs by the radius of spools [N]."""
-        over, torque = np.maximum(tensions - self.limit, 0.0), self.bench.constraints.torque
+        over, torque = np.maximum(tensions - self.limit, 0.0), self.evaluator.constraints.torque
         if torque is None:
             return over
         turned = np.abs(spool_arms(trial.simulation.robot) @ tensions)
-        return np.append(over, np.maximum(turned - torque, 0.0) / self.bench.constraints.spool_radius)
+        return np.append(over, np.maximum(turned - torque, 0.0) / self.evaluator.constraints.spool_radius)
 
     def _step(self, trial: Trial, effort: float, bend: float) -> Trial | None:
         """The first damped step that lowers the merit; None if none does. The damping follows what steps keep."""
         model = linear_model(
-            self.bench, self.region, trial, effort=effort, bend=bend, reach=self.reach,
+            self.evaluator, self.region, trial, effort=effort, bend=bend, reach=self.reach,
             directions=self.options.directions,
         )  # fmt: skip
         before = self._merit(trial, effort, bend)
@@ -148,14 +148,14 @@ class _Refinement:
             contractions.append(np.clip(pose.contractions + change, low, moved.travels))
         merit, bend = beaten
         room = merit - float(((bend * turns(moved)) ** 2).sum())
-        return self.bench.hold_contractions(moved, contractions, trial, worst=float(np.sqrt(max(room, 0.0))))
+        return self.evaluator.hold_contractions(moved, contractions, trial, worst=float(np.sqrt(max(room, 0.0))))
 
 
 def _pull_limits(
-    bench: Bench, trial: Trial, tensions: Vector, rises: Float[np.ndarray, "cables numbers"]
+    evaluator: Evaluator, trial: Trial, tensions: Vector, rises: Float[np.ndarray, "cables numbers"]
 ) -> Iterator[tuple[Float[np.ndarray, "limits numbers"], Vector]]:
     """Rows and room of the limits on tensions and torques that a pose is near."""
-    limit, torque = bench.constraints.tension_limit, bench.constraints.torque
+    limit, torque = evaluator.constraints.tension_limit, evaluator.constraints.torque
     near = tensions > 0.5 * limit
     yield rises[near], limit - tensions[near]
     if torque is not None:
@@ -166,7 +166,7 @@ def _pull_limits(
 
 
 def linear_model(
-    bench: Bench,
+    evaluator: Evaluator,
     region: Region,
     trial: Trial,
     *,
@@ -187,15 +187,15 @@ def linear_model(
         begin = free + winches * index
         own[:, begin : begin + winches] = slopes.contractions
         markers = len(own) - len(layout.routes)
-        matrix += [-bench.weights[index][:, None] * own[:markers], effort * own[markers:]]
-        right += [bench.residual(trial.simulation, index, pose.nodes), effort * pose.tensions]
-        for moved, changed in _solve_variations(bench, trial, index, directions):
+        matrix += [-evaluator.weights[index][:, None] * own[:markers], effort * own[markers:]]
+        right += [evaluator.residual(trial.simulation, index, pose.nodes), effort * pose.tensions]
+        for moved, changed in _solve_variations(evaluator, trial, index, directions):
             scattered = np.zeros((markers, count))
             scattered[:, :free] = changed[:, winches:] @ layout.ties
             scattered[:, begin : begin + winches] = changed[:, :winches]
             matrix.append(scattered)
             right.append(moved)
-        for row, left in _pull_limits(bench, trial, pose.tensions, own[markers:]):
+        for row, left in _pull_limits(evaluator, trial, pose.tensions, own[markers:]):
             rows.append(row)
             lefts.append(left)
         for winch in range(winches):
@@ -209,7 +209,7 @@ def linear_model(
                 lefts.append(np.array([left]))
     bends, slopes = turns(layout), turn_slopes(layout)
     # What friction adds to the variance falls with the turns, as if in proportion: so many times do they weigh more.
-    rubbed = sum(float(((w * one[:, -1]) ** 2).sum()) for w, one in zip(bench.weights, trial.columns, strict=True))
+    rubbed = sum(float(((w * one[:, -1]) ** 2).sum()) for w, one in zip(evaluator.weights, trial.columns, strict=True))
     bend = float(np.hypot(bend, np.sqrt(rubbed) / max(float(np.linalg.norm(bends)), 1e-9)))
     straight = np.zeros((len(bends), count))
     straight[:, :free] = bend * slopes @ layout.ties
@@ -218,7 +218,7 @@ def linear_model(
     geometry = margins(layout, region, reach=reach)
     tied = np.zeros((len(geometry.rows), count))
     tied[:, :free] = geometry.rows @ layout.ties
-    scale = np.full(count, RULES.contraction_step * bench.constraints.travel)
+    scale = np.full(count, RULES.contraction_step * evaluator.constraints.travel)
     scale[:free] = _scales(layout, reach)
     return Model(
         np.vstack(matrix), np.concatenate(right), np.vstack([*rows, tied]),
@@ -227,7 +227,7 @@ def linear_model(
 
 
 def _solve_variations(
-    bench: Bench, trial: Trial, index: int, most_directions: int
+    evaluator: Evaluator, trial: Trial, index: int, most_directions: int
 ) -> Iterator[tuple[Vector, np.ndarray]]:
     """Yield marker moves of a pose as built otherwise, and their Jacobians by contractions, then layout numbers.
 
@@ -235,7 +235,7 @@ def _solve_variations(
     right singular vector is held: then it is that of the move from here to a robot built with these tolerances. Only
     the strongest few are looked at, and of the tolerances only those of holes and spools.
     """
-    layout, pose, weight = trial.layout, trial.poses[index], bench.weights[index]
+    layout, pose, weight = trial.layout, trial.poses[index], evaluator.weights[index]
     places, cables, winches = layout.starts[-2], len(layout.routes), len(layout.sites)
     which = np.r_[0:places, places + cables : places + cables + winches]
     if not most_directions:
@@ -245,14 +245,14 @@ def _solve_variations(
     most = RULES.min_spread * trial.built_error
     for direction in range(min(most_directions, int((values > most).sum()))):
         numbers = layout.numbers.copy()
-        numbers[:places] += bench.uncertainty.sewing * right[direction, :places]
-        scale = 1.0 + bench.uncertainty.spool * right[direction, places:]
-        found = bench.solve_variation(layout.at(numbers), pose, scale * pose.contractions, index)
+        numbers[:places] += evaluator.uncertainty.sewing * right[direction, :places]
+        scale = 1.0 + evaluator.uncertainty.spool * right[direction, places:]
+        found = evaluator.solve_variation(layout.at(numbers), pose, scale * pose.contractions, index)
         if found is None:
             continue
         simulation, nodes, slopes = found
-        here = bench.residual(trial.simulation, index, pose.nodes)
-        moved = here - bench.residual(simulation, index, nodes)
+        here = evaluator.residual(trial.simulation, index, pose.nodes)
+        moved = here - evaluator.residual(simulation, index, nodes)
         markers = len(moved)
         own, other = (
             np.hstack([by[:markers], _by_numbers(layout, slope)[:markers]])

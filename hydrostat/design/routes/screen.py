@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from contextlib import closing
 
-from hydrostat.design.routes.bench import Trial
+from hydrostat.design.routes.evaluator import Trial
 from hydrostat.design.routes.growth import Growth, unlike
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.search_rules import RULES
@@ -19,12 +19,12 @@ def screen_sketches(
     """
 
     def solve(layout: Layout) -> Trial | None:
-        trial = growth.bench.reach_poses(layout, None, iterations=RULES.screen_ik_steps, rough=True)
+        trial = growth.evaluator.reach_poses(layout, None, iterations=RULES.screen_ik_steps, rough=True)
         return trial and growth.refine_briefly(trial, directions=0, steps=RULES.screen_steps)
 
     rough: list[Trial] = []
     least, idle = float("inf"), 0
-    with closing(growth.bench.keep_each("sketch", solve, drawn)) as trials:
+    with closing(growth.evaluator.keep_each("sketch", solve, drawn)) as trials:
         for trial in trials:
             if trial is None:
                 continue

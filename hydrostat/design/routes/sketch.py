@@ -9,7 +9,7 @@ from scipy.sparse.csgraph import dijkstra
 from hydrostat.arrays import Int, Points, Vector
 from hydrostat.design.polyline import Route, resample
 from hydrostat.design.region import MARGIN, Region
-from hydrostat.design.routes.bench import Trial
+from hydrostat.design.routes.evaluator import Trial
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.line_choice import Line, LineChoice
 from hydrostat.design.routes.propose import Proposals
@@ -127,7 +127,7 @@ def _beside(path: Route, proposals: Proposals, *, world: bool) -> Iterator[Route
     ramp = np.minimum(0.5 * np.arange(len(middle)), RULES.max_side_spacings) * spacing
     for side in _sides(along):
         reach = _reach(middle, side, ramp, proposals.graph.region)
-        wide = np.flatnonzero(reach >= RULES.side_gaps * proposals.bench.constraints.cable_gap)
+        wide = np.flatnonzero(reach >= RULES.side_gaps * proposals.evaluator.constraints.cable_gap)
         # At the thin end of a limb the lines of both sides would meet: they end before it.
         end = wide[-1] + 1 if len(wide) and wide[-1] > 1 else len(middle)
         for share, apart in RULES.sides:

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from hydrostat.design.routes.bench import Trial
+from hydrostat.design.routes.evaluator import Trial
 from hydrostat.design.routes.growth import Growth
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.refine import moves_of, pushed_back
@@ -40,10 +40,10 @@ def remove_via_points(growth: Growth, trial: Trial) -> Trial:
 
 def _by_cost(growth: Growth, trial: Trial, worth: float) -> list[Hole]:
     """Via points that may go and cost little, in the order of the cost without them by the linear model."""
-    layout, bench = trial.layout, growth.bench
+    layout, evaluator = trial.layout, growth.evaluator
     twins = {route.twin for route in layout.routes}
-    rows = [(weight, *moves_of(trial, pose)) for pose, weight in enumerate(bench.weights)]
-    missed = [bench.residual(trial.simulation, index, pose.nodes) for index, pose in enumerate(trial.poses)]
+    rows = [(weight, *moves_of(trial, pose)) for pose, weight in enumerate(evaluator.weights)]
+    missed = [evaluator.residual(trial.simulation, index, pose.nodes) for index, pose in enumerate(trial.poses)]
     found = []
     for number, route in enumerate(layout.routes):
         if route.kept is not None or route.twin is not None or number in twins:
@@ -72,7 +72,7 @@ def _to_line(points: np.ndarray) -> np.ndarray:
 
 def _without(growth: Growth, trial: Trial, holes: Sequence[Hole], allowed: float) -> Trial | None:
     """Leave out holes, as a step of the search."""
-    return growth.bench.keep("holes left out", lambda: [_solve_without(growth, trial, holes, allowed)])[0]
+    return growth.evaluator.keep("holes left out", lambda: [_solve_without(growth, trial, holes, allowed)])[0]
 
 
 def _solve_without(growth: Growth, trial: Trial, holes: Sequence[Hole], allowed: float) -> Trial | None:
@@ -90,7 +90,7 @@ def _solve_without(growth: Growth, trial: Trial, holes: Sequence[Hole], allowed:
     )
     if less is None:
         return None
-    found = growth.bench.reach_poses(less, trial, iterations=RULES.hole_ik_steps, worst=allowed)
+    found = growth.evaluator.reach_poses(less, trial, iterations=RULES.hole_ik_steps, worst=allowed)
     return found if found is not None and found.cost <= allowed else None
 
 

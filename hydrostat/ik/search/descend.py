@@ -27,12 +27,12 @@ class Curvature:
         """Estimate, if it is to be used."""
         return self._matrix if self._trusted else None
 
-    def doubt(self) -> bool:
+    def distrust(self) -> bool:
         """Distrust the matrix for the next step; return True if it had been used."""
         used, self._trusted = self._trusted and self._matrix is not None, False
         return used
 
-    def learn(self, old: LinearModel, new: LinearModel) -> None:
+    def update(self, old: LinearModel, new: LinearModel) -> None:
         """Take in a step from one model to the next."""
         if not old.alike(new):
             self._matrix, self._trusted = None, False
@@ -144,7 +144,7 @@ class _TrustRegionDescent:
     def _step(self) -> ModelStep:
         step = self.problem.step(self.state, self.weight, self.radius, self.curvature.matrix)
         if self.model is not None and step.model.values is not self.model.values:
-            self.curvature.learn(self.model, step.model)
+            self.curvature.update(self.model, step.model)
             if self.curvature.matrix is not None:
                 step = self.problem.step(self.state, self.weight, self.radius, self.curvature.matrix)
         self.model = step.model
@@ -154,7 +154,7 @@ class _TrustRegionDescent:
         """Return True if, after a failed step, there is more to try than a shorter one."""
         if not self.state.sharp and self._sharpen():
             return True  # what a state that does not rest yet promised may have been too good
-        return self.curvature.doubt()
+        return self.curvature.distrust()
 
     def _resize(self, ratio: float, step: Vector) -> None:
         """Update the trust radius after a step with a given ratio of actual to predicted decrease."""

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict
 
-from hydrostat.design import Craft
+from hydrostat.design import BuildCost
 from hydrostat.errors import InputError
 from hydrostat.fabrication import Demand
 from hydrostat.robot import Body, Cable, Face, PoseTarget, Robot, Winch
@@ -44,7 +44,7 @@ class CardRecord(BaseModel):
     reaches: tuple[ReachRecord, ...]
     error: float
     built: float
-    craft: Craft
+    craft: BuildCost
     complete: bool
     solved: tuple[str, ...]  # what the loads below are of, in words
     tensions: list[float]  # the largest of each cable [N]

@@ -8,7 +8,7 @@ import numpy as np
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.design import (
     Alternative,
-    Craft,
+    BuildCost,
     DesignRequest,
     DesignStage,
     Network,
@@ -45,7 +45,7 @@ class Solution:
     reaches: tuple[PoseResult, ...]  # what it reaches of each pose
     error: float  # root of the mean squared marker error over all poses [m]
     built: float  # the same, expected of a robot as it is built [m]
-    craft: Craft  # what it takes to sew and to motorise it
+    craft: BuildCost  # what it takes to sew and to motorise it
     demand: Demand  # what its poses ask of motors and cables
     torque: float | None = None  # torque limit of the design, which its kit keeps to [N m]; None: none
 
@@ -60,7 +60,7 @@ class Candidate:
     reaches: tuple[PoseResult, ...]  # what it reaches of each pose
     error: float  # root of the mean squared marker error over all poses [m]
     built: float  # the same, expected of a robot as it is built [m]
-    craft: Craft  # what it takes to sew and to motorise it
+    craft: BuildCost  # what it takes to sew and to motorise it
     demand: Demand  # what its poses ask of motors and cables
     complete: bool  # whether the search came to its end
     torque: float | None = None  # torque limit of the design, which its kit keeps to [N m]; None: none
@@ -114,7 +114,7 @@ def solution(found: Network | Alternative, torque: float | None) -> Solution:
         reaches=tuple(map(_reach, found.reached)),
         error=rms_error(found.reached),
         built=found.built,
-        craft=Craft.of_robot(found.robot, found.reached),
+        craft=BuildCost.of_robot(found.robot, found.reached),
         demand=Demand.of_results(found.robot, found.reached),
         torque=torque,
     )

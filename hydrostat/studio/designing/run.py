@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from hydrostat.design import Craft, DesignMethod, DesignRequest, RouteOptions, assign_cable_sides
+from hydrostat.design import BuildCost, DesignMethod, DesignRequest, RouteOptions, assign_cable_sides
 from hydrostat.project import Wishes
 from hydrostat.robot import PoseTarget, Robot
 from hydrostat.studio.designing.design_work import BestSoFar
@@ -63,7 +63,7 @@ class DesignRun:
             error=found.error,
             winches=len(found.winches),
             cables=len(found.cables),
-            minutes=Craft.cable_minutes(best),
+            minutes=BuildCost.cable_minutes(best),
             words=found.words,
             tried=found.tried,
         )

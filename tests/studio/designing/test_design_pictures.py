@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from builders import box_robot, strip_robot
 
-from hydrostat.design import Craft, DesignRequest
+from hydrostat.design import BuildCost, DesignRequest
 from hydrostat.fabrication import Demand
 from hydrostat.robot import PoseTarget, Robot
 from hydrostat.studio.designing.charts import BOTTOM, FRONT_HEIGHT, LEFT, Chart, front_chart, growth_chart, ticks
@@ -100,7 +100,7 @@ def test_a_design_that_has_found_nothing_yet_has_a_chart() -> None:
 
 def candidate(number: int, robot: Robot, *, minutes: float, built: float) -> Candidate:
     """A network that takes so long to sew and is so far off once built [mm]."""
-    craft = replace(Craft.of_robot(robot, []), minutes=minutes)
+    craft = replace(BuildCost.of_robot(robot, []), minutes=minutes)
     return Candidate(
         number=number,
         source=robot,

@@ -27,8 +27,8 @@ from hydrostat.studio.stage import StageName
 from hydrostat.studio.view.things import Dot, Look, Strand
 
 PATIENCE = 100.0
-FAST = RouteOptions(starts=1, exchanges=0, polish=2, trials=1, steps=1, hops=6)
-LONG = RouteOptions(enough=0.0, exchanges=1000)
+FAST = RouteOptions(starts=1, exchanges=0, refine_steps=2, trials=1, steps=1, max_edges=6)
+LONG = RouteOptions(stop_error=0.0, exchanges=1000)
 
 
 class Studio:

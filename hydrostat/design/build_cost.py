@@ -1,4 +1,4 @@
-"""`Craft`: what it takes to sew and to motorise a network, in plain units."""
+"""`BuildCost`: what it takes to sew and to motorise a network, in plain units."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -31,7 +31,7 @@ class SewingTimes:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Craft:
+class BuildCost:
     """Labour and money that a network asks of who builds it."""
 
     holes: int  # points that cables are led through, that of the stopper included, not where they begin
@@ -59,7 +59,7 @@ class Craft:
         return dict(vars(self))
 
     @staticmethod
-    def of_robot(robot: Robot, reached: Sequence[IKResult], *, times: SewingTimes | None = None) -> "Craft":
+    def of_robot(robot: Robot, reached: Sequence[IKResult], *, times: SewingTimes | None = None) -> "BuildCost":
         """Count what a network takes; the kind of motor follows from the tensions of the poses that it reaches.
 
         Cables in pairs are sewn twice: all but motors counts for both. Printed and cast bodies have no pairs.
@@ -80,17 +80,17 @@ class Craft:
             power = power_plan({winch.name: torque for winch, torque in pairs if winch.name in used}, motor)
             price += motors * motor.price + sum(item.cost for item in control_needs(power))
             key = motor.key
-        return Craft(
+        return BuildCost(
             holes=holes,
             crossings=twice * _crossings(robot),
             sharp_turns=twice * sum(_sharp(cable) for cable in cables),
             sheaths=sheaths,
             length=length,
-            minutes=Craft.cable_minutes(robot, times=times),
+            minutes=BuildCost.cable_minutes(robot, times=times),
             price=price,
             motors=motors,
             motor=key,
-            work=Craft.cable_work(robot),
+            work=BuildCost.cable_work(robot),
         )
 
     @staticmethod

@@ -1,4 +1,4 @@
-"""`World`: what an environment asks where markers go: the simulator, a network, or both in turn."""
+"""`Backend`: what an environment asks where markers go: the simulator, a network, or both in turn."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -12,7 +12,7 @@ from hydrostat.robot import Robot
 from hydrostat.simulation import Equilibrium, Simulation
 
 
-class World(ABC):
+class Backend(ABC):
     """Simulator or networks that compute marker positions for contractions.
 
     Attributes:
@@ -41,11 +41,11 @@ class World(ABC):
         return (self.equilibria,)
 
     def go_on(self, kept: Sequence[int]) -> None:
-        """Go on where a world was that has been kept."""
+        """Go on where a backend was that has been kept."""
         (self.equilibria,) = kept
 
 
-class ExactWorld(World):
+class ExactBackend(Backend):
     """Equilibria of the simulator, each from the one before: with friction the way counts."""
 
     def __init__(self, robot: Robot, *, from_rest: bool = True) -> None:
@@ -67,7 +67,7 @@ class ExactWorld(World):
         return np.array(list(pose.markers.values())).ravel()
 
 
-class LearnedWorld(World):
+class LearnedBackend(Backend):
     """Predictions of the networks of a learned model; they cost no equilibrium beyond its samples."""
 
     def __init__(self, model: LearnedModel) -> None:
@@ -82,10 +82,10 @@ class LearnedWorld(World):
         return self._model.predict(contractions)[0][: self._count]
 
 
-class MixedWorld(World):
+class MixedBackend(Backend):
     """A network, and the exact simulator in every so many episodes."""
 
-    def __init__(self, learned: World, exact: World, *, every: int) -> None:
+    def __init__(self, learned: Backend, exact: Backend, *, every: int) -> None:
         """Both, and how often the exact one is asked (InputError: not a number from 1)."""
         if every < 1:
             raise InputError(f"every must be 1 or more, not {every}")
@@ -98,7 +98,7 @@ class MixedWorld(World):
 
     @property
     def equilibria(self) -> int:  # type: ignore[override]
-        """Equilibria of the exact world."""
+        """Equilibria of the exact backend."""
         return self._worlds[1].equilibria
 
     def get_state(self) -> tuple[int, ...]:
@@ -123,5 +123,5 @@ class MixedWorld(World):
         return self._now.reach(contractions)
 
     @property
-    def _now(self) -> World:
+    def _now(self) -> Backend:
         return self._worlds[self._episode % self._every == 0]

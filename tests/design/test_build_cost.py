@@ -1,12 +1,12 @@
-"""Tests of `Craft.of_robot`; the oracle is counting by hand."""
+"""Tests of `BuildCost.of_robot`; the oracle is counting by hand."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from hydrostat.design import Craft
-from hydrostat.design.craft import SewingTimes, front
+from hydrostat.design import BuildCost
+from hydrostat.design.build_cost import SewingTimes, front
 from hydrostat.fabrication import MOTORS
 from hydrostat.robot import Cable, Face, Robot, gallery_folder, load_robot
 
@@ -29,7 +29,7 @@ BENT = ((0.0, 0.0), (0.03, 0.0), (0.03, 0.01), (0.07, 0.01))  # two turns of 90 
 
 
 def test_counts_by_hand(starfish: Robot) -> None:
-    found = Craft.of_robot(sewn(starfish, BENT, sheathed=((0, 1),)), [])
+    found = BuildCost.of_robot(sewn(starfish, BENT, sheathed=((0, 1),)), [])
     assert (found.holes, found.sharp_turns, found.sheaths, found.crossings, found.motors) == (3, 2, 1, 0, 1)
     assert found.length == pytest.approx(0.08)
     assert found.minutes == pytest.approx(3 + 2.5 + 3 * 1.5 + 3 + 2)
@@ -42,14 +42,14 @@ def test_five_holes_are_stitched_in_the_ten_minutes_of_the_sheet() -> None:
 
 def test_crossings_are_counted_but_not_beside_the_winch(starfish: Robot) -> None:
     over = ((0.0, 0.0), (0.04, -0.015), (0.04, 0.018))  # begins at the same winch, crosses the last segment of BENT
-    assert Craft.of_robot(sewn(starfish, BENT, over), []).crossings == 1
+    assert BuildCost.of_robot(sewn(starfish, BENT, over), []).crossings == 1
     apart = ((0.0, 0.0), (0.02, -0.015), (0.04, -0.015))
-    assert Craft.of_robot(sewn(starfish, BENT, apart), []).crossings == 0
+    assert BuildCost.of_robot(sewn(starfish, BENT, apart), []).crossings == 0
 
 
 def test_price_grows_by_the_line(starfish: Robot) -> None:
     short, long = ((0.0, 0.0), (0.03, 0.0)), ((0.0, 0.0), (0.06, 0.0))
-    more = Craft.of_robot(sewn(starfish, long), []).price - Craft.of_robot(sewn(starfish, short), []).price
+    more = BuildCost.of_robot(sewn(starfish, long), []).price - BuildCost.of_robot(sewn(starfish, short), []).price
     assert more == pytest.approx(0.03 * 6.95 / 91.44)  # 6.95 USD for 91.44 m
 
 
@@ -69,7 +69,7 @@ def test_no_front_of_nothing() -> None:
 
 
 def test_nothing_takes_nothing(starfish: Robot) -> None:
-    found = Craft.of_robot(starfish.with_network((), ()), [])
+    found = BuildCost.of_robot(starfish.with_network((), ()), [])
     assert set(found.as_values.values()) == {0, "", "sewing"}
 
 
@@ -78,7 +78,7 @@ def test_no_body_is_sewn_that_is_printed_or_cast(starfish: Robot) -> None:
     flat = replace(sewn(starfish, BENT), face=Face.PAIRS)
     told = {}
     for material in ("polyester fibre", "tpu 85a", "flexfoam-it x"):
-        found = Craft.of_robot(flat.with_material(material), [])
+        found = BuildCost.of_robot(flat.with_material(material), [])
         told[material] = found.work, found.minutes, found.holes
     assert told == {
         "polyester fibre": ("sewing", 2 * (3 + 2.5 + 3 * 1.5), 6),
@@ -90,7 +90,7 @@ def test_no_body_is_sewn_that_is_printed_or_cast(starfish: Robot) -> None:
 
 
 def test_motors_are_those_of_the_table(starfish: Robot) -> None:
-    found = Craft.of_robot(starfish, [])
+    found = BuildCost.of_robot(starfish, [])
     assert found.motor in {motor.key for motor in MOTORS}
     assert found.motors == len({cable.winch for cable in starfish.cables})
     assert np.isfinite(found.price)

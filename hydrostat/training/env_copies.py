@@ -1,4 +1,4 @@
-"""`Copies`: copies of an environment, here or in a process of their own; light to import, as processes do it."""
+"""`EnvCopies`: copies of an environment, here or in a process of their own; light to import, as processes do it."""
 
 import signal
 from collections.abc import Mapping
@@ -13,7 +13,7 @@ from hydrostat.errors import HydrostatError
 from hydrostat.training.goal_env import GoalEnv
 
 
-class Copies:
+class EnvCopies:
     """Copies of an environment, one after another."""
 
     def __init__(self, env: GoalEnv, count: int) -> None:
@@ -56,7 +56,7 @@ class Copies:
         env.go_on(kept)
 
 
-class CopiesElsewhere:
+class RemoteEnvCopies:
     """Copies of an environment in a process of their own."""
 
     def __init__(self, env: GoalEnv, count: int) -> None:
@@ -97,7 +97,7 @@ class CopiesElsewhere:
 def _work(pipe: Connection, env: GoalEnv, count: int) -> None:
     """Do what is asked until nobody asks any more; Ctrl-C is for the one who asks."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    copies = Copies(env, count)
+    copies = EnvCopies(env, count)
     while True:
         try:
             name, given = pipe.recv()

@@ -1,4 +1,4 @@
-"""`Bench`: what a network in the making does to every pose."""
+"""`Evaluator`: what a network in the making does to every pose."""
 
 from collections.abc import Callable, Generator, Sequence
 from contextlib import closing, suppress
@@ -50,7 +50,7 @@ class Trial:
 
     @property
     def as_values(self) -> Values:
-        """Plain values, from which a bench computes it again."""
+        """Plain values, from which an evaluator computes it again."""
         return {
             "layout": layout_values(self.layout),
             "poses": [{"contractions": pose.contractions, "nodes": pose.nodes} for pose in self.poses],
@@ -66,7 +66,7 @@ class Trial:
 
 
 @dataclass(eq=False)
-class Bench:
+class Evaluator:
     """Solves layouts for some poses."""
 
     source: Robot  # the robot that is designed for
