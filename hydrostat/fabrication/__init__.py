@@ -7,7 +7,7 @@ from hydrostat.lazy import open_package
 if TYPE_CHECKING:
     from hydrostat.fabrication.build_kit import build_kit, write_kit
     from hydrostat.fabrication.demand import Demand, shaft_torques
-    from hydrostat.fabrication.kit import Check, Kit, UnbuildableError, write_files
+    from hydrostat.fabrication.kit import Check, Kit, UnbuildableError
     from hydrostat.fabrication.kit_options import (
         MATERIAL_FIX,
         STUFFINGS,
@@ -80,7 +80,6 @@ __all__ = [
     "space_pattern",
     "unit_room",
     "winch_marks_of",
-    "write_files",
     "write_kit",
 ]
 

@@ -10,7 +10,6 @@ if TYPE_CHECKING:
     from hydrostat.plot.branch_figure import draw_branches
     from hydrostat.plot.calibration_page import write_calibration_page
     from hydrostat.plot.chart import new_chart, plain_axes, short_number
-    from hydrostat.plot.drawn_body import DrawnBody
     from hydrostat.plot.film import Film, Stop, trajectory_frames, upright
     from hydrostat.plot.frame import Attachments, Frame
     from hydrostat.plot.frame_pictures import FramePictures, Picture
@@ -42,7 +41,6 @@ __all__ = [
     "WIDTH",
     "WIDTHS",
     "Attachments",
-    "DrawnBody",
     "Film",
     "FlatSkin",
     "Frame",

@@ -9,7 +9,6 @@ if TYPE_CHECKING:
     from hydrostat.teleop.cyber_glove import BAUD, SENSORS, CyberGlove, EmulatedPerson
     from hydrostat.teleop.drive import DriveLoop, drive
     from hydrostat.teleop.hand_map import HandMap
-    from hydrostat.teleop.keys import HELP
     from hydrostat.teleop.lesson_poses import HeldStill, LessonPoses, go_there
     from hydrostat.teleop.mapped_hand import MappedHand, Smoothing
     from hydrostat.teleop.mimicry import Mimicry
@@ -20,7 +19,6 @@ if TYPE_CHECKING:
 __all__ = [
     "BAUD",
     "EMULATED",
-    "HELP",
     "SENSORS",
     "CommandMapper",
     "CyberGlove",

@@ -26,7 +26,7 @@ from hydrostat.design import (
     TreeOptions,
     Zone,
 )
-from hydrostat.fabrication import PatternOptions, write_files
+from hydrostat.fabrication import PatternOptions
 from hydrostat.robot import Marker, PoseTarget, robot_hash, save_robot
 
 Run = Callable[..., tuple[int, str, str]]
@@ -243,7 +243,9 @@ def test_an_earlier_design_is_replaced_and_what_else_lies_there_stays(
     assert run("design", strip, "--out", out)[0] == 0
     sheet = {"assembly_sheet.pdf": b"of the earlier design"}
     told = {"files": {name: {"sha256": sha256(content).hexdigest()} for name, content in sheet.items()}}
-    write_files({**sheet, "manifest.json": json.dumps(told).encode()}, out / "kit")
+    (out / "kit").mkdir()
+    for name, content in {**sheet, "manifest.json": json.dumps(told).encode()}.items():
+        (out / "kit" / name).write_bytes(content)
     for name in ("notes.txt", "alternatives/mine/robot.toml", "robot/photo.png", "kit/notes.txt"):
         (out / name).parent.mkdir(exist_ok=True)
         (out / name).write_text("mine")

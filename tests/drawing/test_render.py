@@ -11,7 +11,6 @@ from hydrostat.drawing.depth import DepthBuffer
 from hydrostat.drawing.palette import Color, sky_shares
 from hydrostat.drawing.render import Render, render
 from hydrostat.geometry import Mesh
-from hydrostat.plot import DrawnBody
 
 SIDES = (0.1, 0.05, 0.03)
 EYES = ([1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [0.5, -0.8, 0.4], [-0.3, 0.2, 0.9], [0.1, 1.0, -0.2])
@@ -132,29 +131,6 @@ def test_a_point_is_covered_as_deep_as_it_lies() -> None:
     image = render(camera.see(1e3 * mesh.nodes), mesh.boundary, pixel=0.25)
     points = np.array([[0.05, 0.01, 0.01], [0.05, 0.06, 0.01], [0.05, -0.01, 0.01], [0.05, 0.01, 0.2], [0.3, 0.01, 0]])
     assert image.covers(camera.see(1e3 * points)) == pytest.approx([10, 60, 0, 0, 0], abs=1e-3)
-
-
-def test_a_run_is_cut_where_it_enters_the_body() -> None:
-    """Oracle: a straight cable from 40 mm before the box to 40 mm inside it is covered beyond the corner x = 0."""
-    mesh, camera = box(), Camera.towards(np.array([0.0, -1.0, 0.0]))
-    image = render(camera.see(1e3 * mesh.nodes), mesh.boundary, pixel=0.25)
-    surface = DrawnBody(image.rings(), (camera, np.array([7.0, 3.0]), image, 100.0))
-    run = surface.cable(np.array([[-0.04, 0.01, 0.015], [0.04, 0.01, 0.015]]))
-    (free, none), (covered, fade) = run.parts
-    assert none == 0
-    assert 0 < fade < 1
-    assert free[0] == pytest.approx([-33, 18])
-    assert free[-1] == pytest.approx([7, 18], abs=2 * image.buffer.pixel)
-    assert covered[-1] == pytest.approx([47, 18])
-    assert run.fades.tolist() == [0.0, fade]
-
-
-def test_deeper_things_fade_more() -> None:
-    mesh, camera = box(), Camera.towards(np.array([0.0, -1.0, 0.0]))
-    image = render(camera.see(1e3 * mesh.nodes), mesh.boundary, pixel=0.25)
-    surface = DrawnBody(image.rings(), (camera, np.zeros(2), image, 100.0))
-    fades = surface.fades(np.array([[0.05, y, 0.015] for y in (-0.01, 0.005, 0.02, 0.045)]))
-    assert (np.diff(fades) > 0).all()
 
 
 def normals_of(mesh: Mesh, sharp: float) -> np.ndarray:
