@@ -13,12 +13,13 @@ if TYPE_CHECKING:
     from hydrostat.robot.gravity import DIRECTIONS, direction_of, gravity_along
     from hydrostat.robot.inflated import describe_cable_side, inflated_robot, sewn_robot, sewn_sides
     from hydrostat.robot.load import Load
-    from hydrostat.robot.marker import Marker, Pin, PoseTarget
+    from hydrostat.robot.marker import Marker, PoseTarget
     from hydrostat.robot.material import FOAM_POISSON_LIMIT, FoamTerm, Material, Relaxation
     from hydrostat.robot.materials import FOAMS, MATERIALS, get_material
     from hydrostat.robot.merge import comments, lost_comments, merged_text
     from hydrostat.robot.obstacle_lines import obstacle_lines, rims
     from hydrostat.robot.part import BodyPart
+    from hydrostat.robot.pin import Pin
     from hydrostat.robot.pin_drive import PinDrive
     from hydrostat.robot.read import FILE, GALLERY, RobotReader, gallery_folder, is_of_gallery, list_gallery, load_robot
     from hydrostat.robot.risks import SEWN_DEPTH, find_risks, limit_travels

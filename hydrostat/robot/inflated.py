@@ -13,7 +13,7 @@ from hydrostat.robot.body_cache import Arrays, keep_body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.cable_side import Face
 from hydrostat.robot.load import Load
-from hydrostat.robot.marker import Pin
+from hydrostat.robot.pin import Pin
 from hydrostat.robot.robot import Robot
 
 

@@ -15,7 +15,8 @@ from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.contact import Contact, Obstacle
 from hydrostat.robot.load import Load
-from hydrostat.robot.marker import Marker, Pin, PoseTarget
+from hydrostat.robot.marker import Marker, PoseTarget
+from hydrostat.robot.pin import Pin
 from hydrostat.robot.pin_drive import PinDrive
 from hydrostat.robot.read import RobotReader, read_material
 from hydrostat.robot.robot import Robot

@@ -12,7 +12,7 @@ from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.given import Point, check_name, check_number, check_point, list_choices
 from hydrostat.robot.cable import Cable
-from hydrostat.robot.marker import Pin
+from hydrostat.robot.pin import Pin
 from hydrostat.robot.winch import Winch
 
 

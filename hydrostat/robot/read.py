@@ -17,10 +17,11 @@ from hydrostat.robot.contact import ClosedMesh, Contact, Obstacle, closed_mesh
 from hydrostat.robot.element_kind import MaterialLaw
 from hydrostat.robot.gravity import gravity_along
 from hydrostat.robot.load import Load
-from hydrostat.robot.marker import Marker, Pin, PoseTarget
+from hydrostat.robot.marker import Marker, PoseTarget
 from hydrostat.robot.material import FoamTerm, Material, Relaxation
 from hydrostat.robot.materials import get_material
 from hydrostat.robot.part import BodyPart, PartShape
+from hydrostat.robot.pin import Pin
 from hydrostat.robot.pin_drive import PinDrive
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.rod import Rod

@@ -19,9 +19,10 @@ from hydrostat.robot.cable_side import Face
 from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape
 from hydrostat.robot.gravity import check_gravity, gravity_along
 from hydrostat.robot.load import Load, check_axes, check_cavity
-from hydrostat.robot.marker import Marker, Pin, PoseTarget
+from hydrostat.robot.marker import Marker, PoseTarget
 from hydrostat.robot.material import Material
 from hydrostat.robot.materials import get_material
+from hydrostat.robot.pin import Pin
 from hydrostat.robot.pin_drive import PinDrive, check_drives
 from hydrostat.robot.rod import Rod, check_rods_inside
 from hydrostat.robot.winch import Mount, Winch

@@ -9,8 +9,9 @@ from hydrostat.errors import InputError
 from hydrostat.given import Point
 from hydrostat.robot.body import Body, Source
 from hydrostat.robot.contact import Contact, Obstacle
-from hydrostat.robot.marker import Pin, PoseTarget
+from hydrostat.robot.marker import PoseTarget
 from hydrostat.robot.part import BodyPart
+from hydrostat.robot.pin import Pin
 from hydrostat.robot.robot import Robot
 
 

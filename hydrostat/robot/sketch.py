@@ -6,8 +6,9 @@ import numpy as np
 
 from hydrostat.geometry import Inner, Outline, read_drawing, size_for, triangulate
 from hydrostat.robot.body import Body
-from hydrostat.robot.marker import Marker, Pin, PoseTarget
+from hydrostat.robot.marker import Marker, PoseTarget
 from hydrostat.robot.materials import get_material
+from hydrostat.robot.pin import Pin
 from hydrostat.robot.risks.body_risks import LEAST_ACROSS
 from hydrostat.robot.robot import Robot
 

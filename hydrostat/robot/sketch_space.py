@@ -12,8 +12,9 @@ from hydrostat.geometry import Healing, Mesh, Outline, Solid, Surface, clearance
 from hydrostat.given import Point
 from hydrostat.robot.body import Body, Source
 from hydrostat.robot.cable import Cable
-from hydrostat.robot.marker import Marker, Pin, PoseTarget
+from hydrostat.robot.marker import Marker, PoseTarget
 from hydrostat.robot.materials import get_material
+from hydrostat.robot.pin import Pin
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.winch import Winch
 

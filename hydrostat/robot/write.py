@@ -19,10 +19,10 @@ from hydrostat.robot.contact import Contact, Obstacle
 from hydrostat.robot.element_kind import ElementKind, MaterialLaw, Plane, Volume
 from hydrostat.robot.gravity import direction_of
 from hydrostat.robot.load import Load
-from hydrostat.robot.marker import DEFAULT_STIFFNESS, Pin
 from hydrostat.robot.material import FoamTerm, Material, Relaxation
 from hydrostat.robot.materials import FOAMS, MATERIALS
 from hydrostat.robot.part import BodyPart
+from hydrostat.robot.pin import DEFAULT_STIFFNESS, Pin
 from hydrostat.robot.pin_drive import PinDrive
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.rod import Rod

@@ -30,7 +30,7 @@ def test_it_is_true_along_the_last_step() -> None:
     places = [np.array(place) for place in ([1.0, 1.0], [0.8, 1.1], [0.7, 0.9], [0.75, 0.85])]
     curvature = Curvature()
     for before, after in pairwise(places):
-        curvature.learn(model(before), model(after))
+        curvature.update(model(before), model(after))
     step = places[-1] - places[-2]
     exact = model(places[-1]).residual[2] * BEND @ step
     assert curvature._matrix @ step == pytest.approx(exact, rel=1e-9)
@@ -39,8 +39,8 @@ def test_it_is_true_along_the_last_step() -> None:
 def test_it_is_forgotten_when_a_cable_becomes_taut() -> None:
     curvature = Curvature()
     first, second = model(np.array([1.0, 1.0])), model(np.array([0.5, 1.2]))
-    curvature.learn(first, second)
+    curvature.update(first, second)
     assert curvature.matrix is not None
     second.alike = lambda other: False
-    curvature.learn(second, first)
+    curvature.update(second, first)
     assert curvature.matrix is None
