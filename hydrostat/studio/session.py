@@ -22,7 +22,7 @@ from hydrostat.studio.editing.editor import Editor
 from hydrostat.studio.exporting.download import Download
 from hydrostat.studio.exporting.exporter import Exporter
 from hydrostat.studio.jobs import Jobs, Slots
-from hydrostat.studio.posing import Poser
+from hydrostat.studio.posing import Photographs, Poser
 from hydrostat.studio.skins import SewnSkin
 from hydrostat.studio.stage import Hit, Stage, StageName
 from hydrostat.studio.starting.starter import Starter
@@ -67,6 +67,7 @@ class Session:
         self.starter = Starter(self.document, self.jobs, state)
         self.editor = Editor(self.document, self.jobs)
         self.poser = Poser(self.document, self.jobs)
+        self.photographs = Photographs(self.document, self.jobs)  # of the built robot
         self.designer = Designer(self.document, self.jobs)
         self.driver = Driver(self.document, self.jobs)
         self.hardware = Hardware(self.document, self.bell, allowed=not guest)  # motors that do what is shown

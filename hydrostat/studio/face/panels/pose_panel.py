@@ -9,6 +9,7 @@ from hydrostat.studio.face.elements import winch_badge
 from hydrostat.studio.face.page import WindowPage, icon_button
 from hydrostat.studio.face.panels.edit_body import contact_switch, touch_label
 from hydrostat.studio.face.panels.motors_card import motors_card
+from hydrostat.studio.face.panels.photographs_card import photographs_card
 from hydrostat.studio.face.panels.proposals_card import proposals_card
 from hydrostat.studio.posing import Mode, same_as
 from hydrostat.studio.stage import told_error
@@ -79,6 +80,7 @@ def pose_panel(page: WindowPage) -> None:
     proposals_card(page)
     poses_card(page)
     reach_card(page)
+    photographs_card(page)
 
 
 NEAR = 5e-4  # a marker so near to its target is there [m]
