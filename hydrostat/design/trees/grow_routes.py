@@ -56,19 +56,24 @@ def _extend(
     """Join the best free fibre to one of the two ends of a route; False if none fits."""
     best: tuple[float, float] | None = None
     found = (0, 0, False)
+    bound = np.cos(np.radians(limits.turn))
     for at_start in (False, True):
         tip, before = (route[0], route[1]) if at_start else (route[-1], route[-2])
         for side in (0, 1):
-            near, far = ends[:, side], ends[:, 1 - side]
+            close = np.flatnonzero(free & _is_close(ends[:, side], tip, limits.distance))
+            if not len(close):
+                continue
+            near, far = ends[close, side], ends[close, 1 - side]
             gaps = np.linalg.norm(near - tip, axis=1)
-            fits = free & (gaps <= limits.distance)
-            fits &= _cosines(tip - before, far - tip) >= np.cos(np.radians(limits.turn))
-            fits &= _cosines(tip - before, far - near) >= np.cos(np.radians(limits.turn))
+            fits = gaps <= limits.distance
+            fits &= _cosines(tip - before, far - tip) >= bound
+            fits &= _cosines(tip - before, far - near) >= bound
             fits &= ~_near_points(far, np.array(route), 0.5 * limits.spacing)
-            for fibre in np.flatnonzero(fits):
-                key = (round(gaps[fibre] / limits.spacing, 1), -tensions[fibre])
+            for index in np.flatnonzero(fits):
+                fibre = int(close[index])
+                key = (round(gaps[index] / limits.spacing, 1), -tensions[fibre])
                 if best is None or key < best:
-                    best, found = key, (int(fibre), side, at_start)
+                    best, found = key, (fibre, side, at_start)
     if best is None:
         return False
     fibre, side, at_start = found
@@ -78,6 +83,11 @@ def _extend(
     route[:] = added[::-1] + route if at_start else route + added
     free[fibre] = False
     return True
+
+
+def _is_close(spots: Float[np.ndarray, "fibres dim"], tip: Vector, reach: float) -> Bool[np.ndarray, " fibres"]:
+    """Return True for points within a distance, or beyond it by rounding alone."""
+    return sum((spots[:, axis] - tip[axis]) ** 2 for axis in range(len(tip))) <= (reach * (1 + 1e-9)) ** 2
 
 
 def _cosines(first: Float[np.ndarray, "*rows dim"], second: Float[np.ndarray, "fibres dim"]) -> Vector:
