@@ -27,7 +27,7 @@ from emio_solid import SolidLegs
 from machine import machine
 from real_robots import MM, opencr, trunk
 
-from hydrostat.identification import FittedModel, IdentificationModel, Measurements, fit_model
+from hydrostat.identification import FittedModel, IdentificationModel, MarkerPredictor, Measurements, fit_model
 
 HEAD = "| {} | mean | median | RMSE | 90 % | rows, parameters, CPU |\n|---|---|---|---|---|---|"
 SKIPPED = 0.5  # head of a block of the trunk that is not scored [s]
@@ -86,6 +86,16 @@ def judged(fitted: FittedModel, asked: Measurements, known: Measurements, marker
     return found / MM, int(missing.sum())
 
 
+def covered(fitted: FittedModel, asked: Measurements) -> float:
+    """Share of the measured coordinates within their 95 % intervals."""
+    found = MarkerPredictor(fitted.model, asked).predict(fitted.numbers, slopes=True)
+    assert found.jacobian is not None
+    variance = np.einsum("rmdi,ij,rmdj->rmd", found.jacobian, fitted.interval_covariance, found.jacobian)
+    away = np.abs(found.places - asked.places)
+    known = np.isfinite(away)
+    return float((away <= 1.96 * np.sqrt(variance + fitted.noise**2))[known].mean())
+
+
 def run_opencr(folder: Path, samples: int, pictures: Path | None) -> None:
     """OpenCR v4: fitted on train.csv, judged on val.csv."""
     facts: dict[str, Any] = json.loads((folder / "robot.json").read_text(encoding="utf-8"))
@@ -109,6 +119,7 @@ def run_opencr(folder: Path, samples: int, pictures: Path | None) -> None:
         tips = numbers(authors)[1][:, -3:]
         print(line("MuJoCo model of the authors", tips, val[:, 10:13], "calibrated on another day"))
     print(line("hydrostat", found, val[:, 10:13], f"{cost}; {missing} not converged"))
+    print(f"  within 95 % intervals: {100 * covered(fitted, asked):.1f} % of coordinates")
     print_parameters(fitted)
     if pictures:
         plot(pictures / "opencr.png", val[:, 10:13], found, ("x", "z"))
@@ -142,6 +153,8 @@ def run_trunk(folder: Path, samples: int, pictures: Path | None) -> None:
         found, missing = judged(fitted, asked[load], mixed, 2)
         places = asked[load].places[:, 2] / MM
         print(line(f"hydrostat, {load} g", found, places, f"{cost}; {missing} not converged"))
+        share = covered(fitted, asked[load].rows(np.arange(0, len(places), 10)))
+        print(f"  within 95 % intervals, every tenth row: {100 * share:.1f} % of coordinates")
         if pictures:
             plot(pictures / f"trunk_{load}.png", places, found, ("x", "z"))
     print_parameters(fitted)

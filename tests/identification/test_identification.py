@@ -1,5 +1,6 @@
 """Parameters from measurements. Oracles: central differences, and robots whose parameters are known."""
 
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 
@@ -8,7 +9,15 @@ import pytest
 from builders import box_mesh, mesh_body, strip_mesh
 
 from hydrostat.errors import InputError
-from hydrostat.identification import Measurements, fit_model, identify, read_measurements
+from hydrostat.identification import (
+    IdentifiedRobot,
+    Measurements,
+    fit_model,
+    identified_tolerances,
+    identify,
+    read_measurements,
+)
+from hydrostat.identification.identified_robot import start_of
 from hydrostat.identification.kinds import KINDS, named_model
 from hydrostat.identification.marker_predictor import MarkerPredictor
 from hydrostat.robot import Cable, Load, Marker, Mount, Pin, Robot, Rod, Winch
@@ -231,3 +240,34 @@ def test_intervals_hold_the_error_of_the_mesh() -> None:
     assert not alone[0] < young < alone[1]
     exact = fit_model(model, replace(asked, places=seen), noise=1e-2, refine=False)
     assert exact.spread == 1.0
+
+
+def test_tolerances_are_the_deviations_of_the_intervals() -> None:
+    """Oracle: a normal prior and information by hand; shifts by finer elements are left out."""
+    robot = strip()
+    model = named_model(robot, ("gain", "young"))
+    count, informed = len(model.parameters), [24.0, 99.0, 3.0]
+    fitted = replace(
+        start_of(model),
+        covariance=np.diag([1 / (1 + each) for each in informed]),
+        spread=4.0,
+        mesh_shift=np.full(count, 2.0),
+    )
+    nothing = np.zeros((0, 2))
+    found = IdentifiedRobot(
+        fitted=fitted,
+        robot=robot,
+        assumed=start_of(named_model(robot, ())),
+        pretension={},
+        before=nothing,
+        after=nothing,
+        held_out=np.zeros(0, dtype=int),
+        held_out_before=nothing,
+        held_out_after=nothing,
+        correction=None,
+    )
+    own = {parameter.name: index for index, parameter in enumerate(model.parameters)}
+    expected = {name: model.parameters[index].spread / np.sqrt(1 + informed[index] / 4) for name, index in own.items()}
+    told = tomllib.loads(identified_tolerances(found).decode())["built"]
+    assert told["spool"] == pytest.approx(max(expected["up.gain"], expected["down.gain"]), rel=5e-3)
+    assert told["young"] == pytest.approx(expected["body.young"], rel=5e-3)
