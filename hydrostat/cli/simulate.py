@@ -53,7 +53,8 @@ def simulate(
     step: Annotated[str, typer.Option("--time-step", metavar="TIME", help="Maximum time step.")] = "5ms",
     ramp: Annotated[str, typer.Option(metavar="TIME", help="Time over which the winches reach their target.")] = "0.5s",
     play: Annotated[
-        Path | None, typer.Option(metavar="FILE.csv", help="Contractions over time: columns time_s, WINCH ... [mm].")
+        Path | None,
+        typer.Option(metavar="FILE.csv", help="Controls over time: columns time_s, WINCH ... [mm], DRIVE_deg."),
     ] = None,
     timeout: Annotated[
         str | None,
@@ -87,8 +88,8 @@ def simulate(
     if forces and (dynamic or timeout is not None):
         raise InputError(f"--pull: not available with {'--dynamic' if dynamic else '--timeout'}. Remove one of them.")
     driven = moves(loaded, move)
-    if driven and (dynamic or forces):
-        raise InputError(f"--move: not available with {'--dynamic' if dynamic else '--pull'}. Remove one of them.")
+    if driven and forces:
+        raise InputError("--move: not available with --pull. Remove one of them.")
     if dynamic and jacobian:
         raise InputError("--jacobian: not available with --dynamic. Remove one of them.")
     if not dynamic and (play is not None or duration is not None):
@@ -100,7 +101,7 @@ def simulate(
         simulation = prepare_physics(loaded)
     if dynamic:
         with print_profile(profile, "simulating"), result_folder(out) as folder:
-            files = _move(simulation, given, folder, duration=duration, step=step, ramp=ramp, play=play)
+            files = _move(simulation, {**given, **driven}, folder, duration=duration, step=step, ramp=ramp, play=play)
         print("Wrote " + ", ".join(str(out / file.relative_to(folder)) for file in files))
         return
     began = time.process_time()
@@ -221,17 +222,20 @@ def _first_pose(simulation: "Simulation", profile: "ContractionProfile") -> "Equ
 def _profile(
     simulation: "Simulation", contractions: Mapping[str, float], ramp: str, play: Path | None
 ) -> "ContractionProfile":
+    from hydrostat.robot import PinDrive
     from hydrostat.simulation import ContractionProfile
     from hydrostat.units import TIME
 
     if play is None:
         return ContractionProfile.ramp(simulation.as_contractions(contractions), positive("--ramp", ramp, TIME))
     if contractions:
-        raise InputError("--play and --contract: mutually exclusive. Give one of them.")
-    profile = ContractionProfile.read(play, simulation.robot)
+        raise InputError("--play: not available with --contract or --move. Remove one of them.")
+    profile, drives = ContractionProfile.read(play, simulation.robot), simulation.robot.drives
     for extreme in (profile.values.max(axis=0), profile.values.min(axis=0)):
-        for winch, most in zip(simulation.robot.winches, extreme, strict=True):
+        for winch, most in zip(simulation.robot.winches, extreme, strict=False):
             check_contraction(simulation.robot, winch.name, float(most), option=f"--play {play}:")
+        for line in PinDrive.check_values(drives, extreme[len(simulation.robot.winches) :]):
+            print(f"warning: --play {play}: {line}")
     return profile
 
 

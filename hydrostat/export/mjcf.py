@@ -144,12 +144,12 @@ class _MjcfModel:
         places = np.where(held[:, None], np.pad(self.mesh.nodes[used], ((0, 0), (0, 3 - self.dim))), 0.0)
         bodies = np.where(held, "world", [f"node_{node}" for node in used])
         thickness, young, poisson = self.robot.body.thickness or 1.0, material.young, material.poisson
-        elasticity = {"damping": _numbers([material.viscosity * 2 * (1 + poisson) / young or DAMPING])}
-        thin = self.dim == 2 and (self.robot.body.plane is Plane.STRESS or poisson < 1 / 3)
-        if thin:
+        damping, shell = material.viscosity * 2 * (1 + poisson) / young or DAMPING, ""
+        is_thin = self.dim == 2 and (self.robot.body.plane is Plane.STRESS or poisson < 1 / 3)
+        if is_thin:
             if self.robot.body.plane is not Plane.STRESS:  # plane strain is plane stress of these numbers
                 young, poisson = young / (1 - poisson**2), poisson / (1 - poisson)
-            elasticity |= {"elastic2d": "stretch", "thickness": _numbers([thickness])}
+            shell = f' elastic2d="stretch" thickness="{thickness:.9g}"'
         elif self.dim == 2:  # slabs that cannot become thicker
             half = np.array([0.0, 0.0, thickness / 2])
             cells, places = _prisms(cells, len(used)), np.concatenate([places - half, places + half])
@@ -159,14 +159,14 @@ class _MjcfModel:
             4,
             close=False,
             name=name,
-            dim="2" if thin else "3",
+            dim="2" if is_thin else "3",
             radius="0.0005",
             rgba="0.85 0.45 0.35 1",
             body=" ".join(bodies),
             vertex=_numbers(places.ravel()),
             element=" ".join(map(str, cells.ravel())),
         )
-        yield _tag("elasticity", 6, young=_numbers([young]), poisson=_numbers([poisson]), **elasticity)
+        yield f'      <elasticity young="{young:.9g}" poisson="{poisson:.9g}" damping="{damping:.9g}"{shell}/>'
         yield _tag("contact", 6, contype="0", conaffinity="0", selfcollide="none")
         yield "    </flex>"
 

@@ -1,5 +1,7 @@
 """`DriveEnergy`: work of drives that move pins from their places at rest."""
 
+from copy import copy
+
 import numpy as np
 
 from hydrostat.arrays import Bool, Int, Nodes, Points, Vector
@@ -66,6 +68,11 @@ class DriveEnergy(Energy):
     def largest_force(self, nodes: Nodes, controls: Vector) -> float:
         pulls = self._stiffness[:, None] * (self._anchors(nodes) - self._places - self._shifts(controls))
         return float(np.abs(pulls).max(initial=0.0)) if controls[self.controls].any() else 0.0
+
+    def with_supports_moved(self, shifts: Points) -> "DriveEnergy":
+        other = copy(self)
+        other._places = self._places + shifts[self._owners]
+        return other
 
     def support_work(self, field: Nodes, controls: Vector) -> Vector:
         """d(dE/dx . field) / dk of each support of the pins, to be added to the `parameter_work` of these."""

@@ -93,6 +93,11 @@ class PinDrive:
         """Value as text: degrees or millimeters."""
         return f"{math.degrees(value):.4g} deg" if self.turns else f"{1e3 * value:.4g} mm"
 
+    @property
+    def column(self) -> tuple[str, float]:
+        """Head of a column of values in tables, and the factor from SI: degrees, or millimeters."""
+        return (f"{self.name}_deg", math.degrees(1.0)) if self.turns else (f"{self.name}_mm", 1e3)
+
     def with_transform(self, move: Callable[[Point], Point], scale: Callable[[float], float]) -> "PinDrive":
         """Return the same drive with its axis moved, or its travel [m] scaled."""
         if self.at is not None:

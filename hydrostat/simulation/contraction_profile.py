@@ -3,7 +3,7 @@
 import csv
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from io import StringIO
 from pathlib import Path
@@ -27,7 +27,7 @@ class ContractionProfile:
 
     Attributes:
         times: times in rising order [s].
-        values: contractions at these times [m], a row for each time, in winch order.
+        values: contractions at these times [m], a row for each time, in winch order, then values of drives [rad or m].
         gentle: interpolate by 3 s^2 - 2 s^3 instead of linearly.
 
     Raises:
@@ -87,9 +87,10 @@ class ContractionProfile:
 
     def text(self, robot: Robot) -> bytes:
         """Write a profile as the bytes of a `ProfileTable`; a gentle one becomes linear."""
-        rows = zip(self.times, 1e3 * self.values + 0.0, strict=True)
+        heads, factors = zip(*_columns(robot).values(), strict=True) if _columns(robot) else ((), ())
+        rows = zip(self.times, np.array(factors) * self.values + 0.0, strict=True)
         return csv_text(
-            [TIME, *(f"{winch.name}{MILLIMETERS}" for winch in robot.winches)],
+            [TIME, *heads],
             ([f"{time:.15g}", *(f"{value:.9g}" for value in row)] for time, row in rows),
         )
 
@@ -109,6 +110,8 @@ def check_profile(profile: object, robot: Robot) -> None:
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ProfileTable:
     """CSV of moves: a column `time_s`, and in millimeters one for each winch that moves, `left_mm` or just `left`.
+
+    Drives that slide have such columns too, drives that turn one in degrees, `base_deg`.
 
     The studio, `hydrostat trajectory`, `hydrostat play` and `hydrostat simulate --play` write and read this table.
 
@@ -141,12 +144,13 @@ class ProfileTable:
             raise InputError(f"{name}: is no text in UTF-8; save it again as CSV in UTF-8") from None
         except csv.Error as error:
             raise InputError(f"{name}: cannot be read as a table ({error})") from None
-        names = [winch.name for winch in robot.winches]
-        head = [_column(cell.strip(), names) for cell in rows[0][1]] if rows else []
+        columns = _columns(robot)
+        names = list(columns)
+        head = [_column(cell.strip(), columns) for cell in rows[0][1]] if rows else []
         if TIME not in head or len(set(head)) != len(head):
             first = ",".join(rows[0][1]) if rows else ""
             other = next((said for mark, said in _MARKS.items() if re.match(mark, first)), "")
-            example = ",".join([TIME, *(f"{winch}{MILLIMETERS}" for winch in names[:2])])
+            example = ",".join([TIME, *(head for head, _ in list(columns.values())[:2])])
             raise InputError(
                 f"{name}, line 1: not a table of moves. Name the columns, each once: {TIME} and winches, as in "
                 f"{example}{other}"
@@ -165,7 +169,7 @@ class ProfileTable:
                     )
                 lines.append(line)
                 times.append(numbers[TIME])
-                values.append([1e-3 * numbers.get(winch, 0.0) for winch in names])
+                values.append([numbers.get(each, 0.0) / factor for each, (_, factor) in columns.items()])
         if not times:
             raise InputError(f"{name}: has no row of numbers below the names of its columns")
         profile = ContractionProfile(times=np.array(times), values=np.array(values).reshape(len(times), len(names)))
@@ -186,10 +190,16 @@ class ProfileTable:
         return f"{self.name}, line {self.lines[row]}"
 
 
-def _column(head: str, winches: Sequence[str]) -> str:
-    """Winch that a column is of, if it is of one; else its head."""
-    bare = head.removesuffix(MILLIMETERS)
-    return bare if head not in winches and bare in winches else head
+def _columns(robot: Robot) -> dict[str, tuple[str, float]]:
+    """Head of the column of each winch and drive, and the factor from SI, by name."""
+    found = {winch.name: (f"{winch.name}{MILLIMETERS}", 1e3) for winch in robot.winches}
+    return found | {drive.name: drive.column for drive in robot.drives}
+
+
+def _column(head: str, columns: Mapping[str, tuple[str, float]]) -> str:
+    """Winch or drive that a column is of, if it is of one; else its head."""
+    named = {full: name for name, (full, _) in columns.items()}
+    return head if head in columns else named.get(head, head)
 
 
 def _numbers(place: str, head: Sequence[str], row: Sequence[str]) -> dict[str, float]:

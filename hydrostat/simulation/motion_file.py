@@ -98,6 +98,7 @@ class MotionTable:
     Attributes:
         times: times [s].
         contractions: contractions of the winches [m].
+        drives: values of the drives [rad or m].
         markers: marker positions [m].
         tensions: cable tensions [N].
         energies: kinetic and potential energy [J].
@@ -109,6 +110,7 @@ class MotionTable:
     markers: Float[np.ndarray, "rows markers dim"]
     tensions: Float[np.ndarray, "rows cables"]
     energies: Float[np.ndarray, "rows 2"]
+    drives: Float[np.ndarray, "rows drives"] = field(default_factory=lambda: np.zeros((0, 0)))
     things: Mapping[str, Float[np.ndarray, "rows dim"]] = field(default_factory=dict)
 
 
@@ -167,17 +169,26 @@ def _row(robot: Robot, motion: Motion) -> tuple:
     markers = np.array(list(motion.markers.values())).reshape(-1, robot.body.mesh.dim)
     frames = carried_frames(robot, None if motion.carried is None else motion.carried[0])
     things = {name: place for name, (place, _) in frames.items()}
-    return motion.time, motion.contractions, markers, motion.tensions, (motion.kinetic, motion.potential), things
+    return (
+        motion.time,
+        motion.contractions,
+        markers,
+        motion.tensions,
+        (motion.kinetic, motion.potential),
+        things,
+        motion.drives,
+    )
 
 
 def _table(robot: Robot, rows: list[tuple]) -> MotionTable:
-    times, contractions, markers, tensions, energies, things = zip(*rows, strict=True)
+    times, contractions, markers, tensions, energies, things, drives = zip(*rows, strict=True)
     return MotionTable(
         times=np.array(times),
         contractions=np.array(contractions).reshape(len(rows), len(robot.winches)),
         markers=np.array(markers),
         tensions=np.array(tensions).reshape(len(rows), len(robot.cables)),
         energies=np.array(energies),
+        drives=np.array(drives).reshape(len(rows), len(robot.drives)),
         things={name: np.array([row[name] for row in things]) for name in things[0]},
     )
 
@@ -201,11 +212,13 @@ def _csv(robot: Robot, table: MotionTable) -> bytes:
     """Times in s, lengths in mm, tensions in N, energies in J."""
     axes = "xyz"[: robot.body.mesh.dim]
     head = ["time_s", *(f"{winch.name}_mm" for winch in robot.winches)]
+    head += [drive.column[0] for drive in robot.drives]
     head += [f"{marker.name}_{axis}_mm" for marker in robot.markers for axis in axes]
     head += [f"cable_{index + 1}_N" for index in range(len(robot.cables))] + ["kinetic_J", "potential_J"]
     head += [f"{name}_{axis}_mm" for name in table.things for axis in axes]
     places = table.markers.reshape(len(table.times), -1)
-    columns = [table.times[:, None], 1e3 * table.contractions, 1e3 * places, table.tensions, table.energies]
+    driven = table.drives * [drive.column[1] for drive in robot.drives]
+    columns = [table.times[:, None], 1e3 * table.contractions, driven, 1e3 * places, table.tensions, table.energies]
     columns += [1e3 * way for way in table.things.values()]
     return csv_text(head, ([f"{value:.9g}" for value in row] for row in np.concatenate(columns, axis=1)))
 

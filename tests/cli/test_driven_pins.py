@@ -53,6 +53,27 @@ def test_a_servo_turns_a_bar(bar: Path, run: Run) -> None:
     assert (bar / "out" / "pose.png").is_file()
 
 
+@pytest.mark.slow
+def test_a_servo_turns_a_bar_in_time(bar: Path, run: Run) -> None:
+    """The last row of motion.csv is the target of the ramp; a table of moves plays the same."""
+    times = ("--dynamic", "--duration", "0.2s", "--time-step", "20ms")
+    code, out, told = run("simulate", bar, "--move", "servo=5deg", "--ramp", "0.2s", *times, "--out", bar / "ramp")
+    assert code == 0, told
+    head, *rows = (bar / "ramp" / "motion.csv").read_text().splitlines()
+    assert head.split(",")[:2] == ["time_s", "servo_deg"]
+    assert float(rows[-1].split(",")[1]) == pytest.approx(5.0)
+    moves = bar / "moves.csv"
+    moves.write_text("time_s,servo_deg\n0,0\n0.2,200\n")
+    code, out, _ = run("simulate", bar, "--play", moves, *times, "--out", bar / "played")
+    assert code == 0
+    assert "drive servo: 200 deg is outside its range (-180 deg to 180 deg)" in out
+    code, _, err = run("simulate", bar, "--play", moves, "--move", "servo=5deg", *times, "--out", bar / "both")
+    assert (code, err) == (
+        2,
+        "hydrostat: error: --play: not available with --contract or --move. Remove one of them.\n",
+    )
+
+
 def test_more_than_a_turn_is_refused_in_degrees(bar: Path, run: Run) -> None:
     code, _, err = run("simulate", str(bar), "--move", "servo=400deg", "--out", str(bar / "out"))
     assert code == 2

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from math import pi
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from hydrostat.control import Calibration
 from hydrostat.errors import InputError
 from hydrostat.ik import find_reach
 from hydrostat.robot import Load, Marker, Material, Pin, PinDrive, Robot
-from hydrostat.simulation import Simulation, find_equilibria
+from hydrostat.simulation import ContractionProfile, Simulation, StepOptions, find_equilibria
 
 LENGTH, WIDTH, HEIGHT, YOUNG = 0.2, 0.01, 0.005, 35e6
 TPU = Material(young=YOUNG, poisson=0.0, density=1220.0)
@@ -104,12 +105,50 @@ def test_derivatives_are_those_of_differences_of_poses() -> None:
     assert found.contractions.shape == (0,)
 
 
+def test_a_stage_moves_a_bar_in_time_as_shifts_of_its_pin_do() -> None:
+    """Oracle: shifts of pins, which dynamics has without drives; loads and other pins stand still."""
+    driven = Simulation(bar(far_clamp("stage"), drives=(SERVO, STAGE)))
+    shifted = Simulation(bar(far_clamp("stage"), drives=(SERVO, STAGE)))
+    one, other = driven.motion_at_rest(), shifted.motion_at_rest()
+    for step in range(1, 6):
+        place = 1e-4 * step**2
+        one = driven.step(one, {"stage": place}, 2e-3)
+        other = shifted.step(other, {}, 2e-3, pin_shifts={1: np.array([0.0, 0.0, -place])})
+    assert np.linalg.norm(one.nodes - one.robot.body.mesh.nodes, axis=1).max() > 2e-3
+    np.testing.assert_allclose(one.nodes, other.nodes, atol=1e-10)
+    np.testing.assert_allclose(one.velocities, other.velocities, atol=1e-7)
+    np.testing.assert_array_equal(one.drives, [0.0, one.drives[1]])
+    assert one.pose.drives[1] == one.drives[1] == pytest.approx(2.5e-3)
+
+
+@pytest.mark.slow
+def test_a_servo_spins_a_bar_with_the_energy_of_a_rigid_one() -> None:
+    """Oracle: I w^2 / 2 about the axis, and the turned bar, for a bar that is stiff against its own inertia."""
+    simulation = Simulation(bar())
+    speed, seconds = 0.5, 1.0
+    profile = ContractionProfile(times=np.array([0.0, 4 * seconds]), values=np.array([[0.0], [4 * speed * seconds]]))
+    motions = list(simulation.play(profile, seconds, 0.02, options=StepOptions(scheme="euler", drag=0.0)))
+    last, offsets = motions[-1], simulation.robot.body.mesh.nodes - SERVO.at
+    inertia = simulation.body.masses @ (offsets[:, 0] ** 2 + offsets[:, 2] ** 2)
+    assert last.drives[0] == pytest.approx(speed * seconds)
+    assert last.kinetic == pytest.approx(0.5 * inertia * speed**2, rel=0.02)
+    angle = speed * seconds
+    turned = np.array([[np.cos(angle), 0, np.sin(angle)], [0, 1, 0], [-np.sin(angle), 0, np.cos(angle)]])
+    np.testing.assert_allclose(last.nodes - SERVO.at, offsets @ turned.T, atol=1e-3 * LENGTH)
+
+
+def test_values_of_drives_are_written_and_read_in_degrees_and_millimeters(tmp_path: Path) -> None:
+    robot = bar(far_clamp("stage"), drives=(SERVO, STAGE))
+    profile = ContractionProfile(times=np.array([0.0, 1.0]), values=np.array([[0.0, 0.0], [pi / 6, 5e-3]]))
+    file = profile.write(tmp_path / "moves.csv", robot)
+    assert file.read_text().splitlines() == ["time_s,servo_deg,stage_mm", "0,0,0", "1,30,5"]
+    np.testing.assert_allclose(ContractionProfile.read(file, robot).values, profile.values, rtol=1e-12)
+
+
 def test_wrong_values_are_told_in_one_line() -> None:
     simulation = Simulation(bar())
     with pytest.raises(InputError, match=r'angle of drive "servo", 30 rad, is more than a turn'):
         simulation.solve({"servo": 30.0})
-    with pytest.raises(InputError, match='drives, such as "servo", move in statics only'):
-        simulation.motion_at_rest()
     with pytest.raises(InputError, match='drives, such as "servo", are not available in a search for several'):
         find_equilibria(simulation, [0.1])
     for refuse, what in (

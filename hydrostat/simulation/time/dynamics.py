@@ -26,6 +26,7 @@ from hydrostat.mechanics import (
 from hydrostat.robot import Robot
 from hydrostat.simulation.body_physics import BodyPhysics
 from hydrostat.simulation.contraction_profile import ContractionProfile
+from hydrostat.simulation.controls import contraction_values, split_controls
 from hydrostat.simulation.statics.history_equilibrium import find_history_equilibrium
 from hydrostat.simulation.time.motion import Motion
 
@@ -88,8 +89,6 @@ class Dynamics:
         options: NewtonOptions,
     ) -> None:
         """Take the robot's physics at rest, functions for tensions and markers, and the Newton options."""
-        if robot.drives:
-            raise InputError(f'drives, such as "{robot.drives[0].name}", move in statics only; remove them for motion')
         material = robot.body.material
         self.robot, self.masses = robot, body.inertias
         self._statics, self._tensions, self._markers, self._options = statics, tensions, markers, options
@@ -99,10 +98,10 @@ class Dynamics:
         viscosities, times = np.array(branches).reshape(-1, 2).T.copy()
         self.memory = MaxwellBranches(body.rest_unknowns, body.elastic, viscosities=viscosities, times=times)
         self._round_off = body.round_off(max((cable.stiffness for cable in robot.cables), default=0.0))
-        rest = self.motion_at_rest(body.rest_unknowns, np.zeros(len(robot.winches)), None, None)
+        rest = self.motion_at_rest(body.rest_unknowns, np.zeros(robot.num_controls), None, None)
         begin = _state(rest)
         moving = self._energies(begin, 1.0, 0.0, list(statics.energies))[len(statics.energies) :]
-        self._assembly = statics.with_added_energies(moving, control_count=len(robot.winches))
+        self._assembly = statics.with_added_energies(moving, control_count=robot.num_controls)
 
     def motion_at_rest(
         self, nodes: Nodes, contractions: Vector, velocities: Nodes | None, history: Vector | None
@@ -140,7 +139,7 @@ class Dynamics:
             at, parts = motion, 2**halvings
             for part in range(1, parts + 1):
                 share = part / parts
-                goal = (1 - share) * motion.contractions + share * contractions
+                goal = (1 - share) * motion.controls + share * contractions
                 places = (1 - share) * motion.pin_shifts + share * shifts
                 at, result = self._advance(at, goal, places, dt / parts, options)
                 iterations += result.iterations
@@ -171,7 +170,7 @@ class Dynamics:
         yield motion
         for step in range(1, steps + 1):
             end = begin + seconds * step / steps
-            motion = self.step(motion, profile.at(end), end - motion.time, options, {})
+            motion = self.step(motion, contraction_values(self.robot, profile.at(end)), end - motion.time, options, {})
             yield motion
 
     def _advance(
@@ -181,7 +180,7 @@ class Dynamics:
         begin = _state(motion)
         end, rates = begin, []
         acceleration = _stack_rows(motion.accelerations, motion, 2)
-        history, at = motion.history, motion.contractions
+        history, at = motion.history, motion.controls
         result, iterations = None, 0
         for *weights, diagonal in SCHEMES[options.scheme].table:
             base, step = begin, diagonal * dt
@@ -189,7 +188,7 @@ class Dynamics:
                 base = base.plus(weight * dt, rate)
             base = replace(base, metrics=self.memory.sound(base.metrics, end.metrics))
             share = sum(weights) + diagonal
-            controls = (1 - share) * motion.contractions + share * goal
+            controls = (1 - share) * motion.controls + share * goal
             places = (1 - share) * motion.pin_shifts + share * shifts
             statics = self._remembering(history, end.nodes, at, places, motion.time + share * dt)
             energies = self._energies(base, step, options.drag, statics)
@@ -283,7 +282,7 @@ class Dynamics:
         accelerations: Nodes,
         result: NewtonResult | None,
     ) -> Motion:
-        """Return the full record of an instant; `held` are contractions, pin shifts and history."""
+        """Return the full record of an instant; `held` are controls, pin shifts and history."""
         (contractions, shifts, history), nodes = held, state.nodes
         places = self._markers.positions(nodes)
         statics = self._remembering(history, nodes, contractions, shifts, time)
@@ -292,7 +291,7 @@ class Dynamics:
         return Motion(
             robot=self.robot,
             time=time,
-            contractions=contractions,
+            **split_controls(self.robot, contractions),
             pin_shifts=shifts,
             nodes=nodes[:count],
             velocities=state.velocities[:count],

@@ -30,6 +30,7 @@ class Motion:
         potential: potential energy of body, cables, pins, weight and branches [J].
         history: history variables of the physics: cable slip at each point with friction so far [m]; empty without
             friction.
+        drives: value of each drive [rad or m].
         carried: unknowns of moving obstacles [m], their velocities [m/s] and accelerations [m/s^2]; None if no obstacle
             moves.
         result: result of the last minimization of the step; its energy is that of the step, its iterations are those of
@@ -51,11 +52,17 @@ class Motion:
     history: Vector = field(default_factory=lambda: np.zeros(0))
     result: NewtonResult | None = None
     carried: tuple[Points, Points, Points] | None = None
+    drives: Vector = field(default_factory=lambda: np.zeros(0))
 
     def __repr__(self) -> str:
         """Return a one-line summary."""
         fastest = 1e3 * float(np.linalg.norm(self.velocities, axis=1).max(initial=0.0))
         return f"<Motion of {self.robot.name!r} at {self.time:.4g} s: no node is faster than {fastest:.2g} mm/s>"
+
+    @property
+    def controls(self) -> Vector:
+        """Contractions [m], then values of the drives [rad or m]."""
+        return np.concatenate([self.contractions, self.drives])
 
     @property
     def energy(self) -> float:
@@ -74,6 +81,7 @@ class Motion:
         return Equilibrium(
             robot=self.robot,
             contractions=self.contractions,
+            drives=self.drives,
             nodes=self.nodes,
             markers=self.markers,
             tensions=self.tensions,
