@@ -71,6 +71,7 @@ NEVER += " hydrostat.learning hydrostat.training hydrostat.studio jaxtyping asyn
             "simulate R --contract left=12mm --out pose",
             "scipy.optimize scipy.spatial scipy.sparse scipy.linalg hydrostat.ik.solve_ik hydrostat.design",
         ),
+        ("simulate H --out pose", "igl scipy.sparse scipy.spatial numpy.f2py scipy.optimize scipy.linalg"),
         ("pose R --pose wave --out pose", "scipy.sparse scipy.linalg urllib.request hydrostat.design"),
         (
             "new other --from gallery:starfish",
@@ -81,8 +82,9 @@ NEVER += " hydrostat.learning hydrostat.training hydrostat.studio jaxtyping asyn
 )
 def test_a_command_loads_what_it_needs(command: str, heavy: str, tmp_path: Path) -> None:
     """Oracle: the modules of a fresh interpreter after the command, whose body is in the cache."""
-    words = command.replace("R", str(gallery_folder("starfish"))).split()
-    load_robot(gallery_folder("starfish"))
+    robots = {"R": gallery_folder("starfish"), "H": gallery_folder("cupping_hand")}
+    words = [str(robots.get(word, word)) for word in command.split()]
+    load_robot(words[1] if words[0] != "new" else robots["R"])
     names = (NEVER + heavy).split()
     code = "import sys; from hydrostat.cli.main import app; app(sys.argv[1:], standalone_mode=False); "
     code += f"print('loaded:', *[name for name in {names} if name in sys.modules])"

@@ -5,6 +5,7 @@ import logging
 import os
 import sys
 from collections.abc import Callable
+from copy import copy
 from functools import wraps
 from typing import Any
 
@@ -139,10 +140,18 @@ def main() -> None:
 def _run() -> None:
     """Run the app; what it printed is out when it ends, so that a full disk or a closed pipe is noticed here."""
     try:
-        app()
+        _only(sys.argv[1:2])()
     except SystemExit:
         sys.stdout.flush()
         raise
+
+
+def _only(words: list[str]) -> typer.Typer:
+    """The app with the named command alone: the options of the others need not be read. All of it for other words."""
+    named = [each for each in app.registered_commands if each.callback and [each.callback.__name__] == words]
+    chosen = copy(app)
+    chosen.registered_commands = named or app.registered_commands
+    return chosen
 
 
 def _close_quietly() -> None:

@@ -7,7 +7,7 @@ from shapely import STRtree, linestrings
 
 from hydrostat.arrays import Bool, Float, Int, Nodes
 from hydrostat.geometry.mesh import Mesh
-from hydrostat.geometry.point_tree import build_point_tree
+from hydrostat.geometry.near_pairs import find_near_pairs
 
 Pairs = Int[np.ndarray, "crossings 2"]
 
@@ -66,13 +66,7 @@ def _solid(mesh: Mesh, nodes: Nodes) -> Crossings:
     edges, firsts = np.unique(every, axis=0, return_index=True)
     owners = firsts % len(facets)
     corners, ends = nodes[facets], nodes[edges]
-    middles = corners.mean(axis=1)
-    radius = float(np.linalg.norm(corners - middles[:, None], axis=2).max())
-    reach = radius + 0.5 * float(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).max())
-    near = build_point_tree(ends.mean(axis=1)).sparse_distance_matrix(
-        build_point_tree(middles), reach, output_type="ndarray"
-    )
-    edge, facet = near["i"], near["j"]
+    edge, facet = find_near_pairs(ends, corners).T
     apart = ~_share(edges[edge], facets[facet])
     edge, facet = edge[apart], facet[apart]
     pierced, places = _intersect_triangles(ends[edge], corners[facet])

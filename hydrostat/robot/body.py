@@ -194,14 +194,17 @@ class Body:
     def distances(self, points: Points) -> Float[np.ndarray, " points"]:
         """Distance of points outside the body [m], 0 inside its drawing, its surface or its mesh."""
         distances = locate(self.mesh, points).distances
+        beyond = distances > 0
+        if not beyond.any():
+            return distances
         if self.solid is not None:
-            return np.where(distances > 0, np.maximum(self.solid.distances(points), 0.0), 0.0)
+            distances[beyond] = np.maximum(self.solid.distances(points[beyond]), 0.0)
+            return distances
         if self.outline is None:
             return distances
         from shapely import distance
         from shapely import points as shapely_points
 
-        beyond = distances > 0
         distances[beyond] = distance(self.outline.polygon, shapely_points(points[beyond]))
         return distances
 

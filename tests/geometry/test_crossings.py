@@ -10,6 +10,7 @@ from shapely import Polygon
 from hydrostat.arrays import Nodes
 from hydrostat.geometry.crossings import find_crossings
 from hydrostat.geometry.mesh import Mesh
+from hydrostat.geometry.near_pairs import find_near_pairs
 
 
 def curled(nodes: Nodes, turn: float) -> Nodes:
@@ -69,6 +70,18 @@ def test_in_space_all_pairs_by_signed_volumes() -> None:
         a, b, c = nodes[mesh.boundary[facet]]
         assert abs(_side(place, a, b, c)) < 1e-15
     assert len(find_crossings(mesh, curled(mesh.nodes, 5.0))) == 0
+
+
+def test_boxes_that_meet() -> None:
+    """One item lies so far away that the cells of the grid become larger. Oracle: all pairs of boxes."""
+    random = np.random.default_rng(1)
+    for away in (0.0, 1e9):
+        one = random.random((80, 1, 3)) + 0.2 * random.random((80, 2, 3))
+        other = random.random((50, 1, 3)) + 0.1 * random.random((50, 3, 3))
+        one[3] += away
+        apart = (one.min(1)[:, None] > other.max(1)[None]) | (other.min(1)[None] > one.max(1)[:, None])
+        assert np.array_equal(find_near_pairs(one, other), np.argwhere(~apart.any(axis=2)))
+    assert find_near_pairs(one[:0], other).shape == (0, 2)
 
 
 def _side(p: np.ndarray, a: np.ndarray, b: np.ndarray, c: np.ndarray) -> float:
