@@ -28,8 +28,13 @@ def save_png(figure: Figure, path: str | Path, *, dpi: float = 200) -> Path:
     """Write a figure on white paper as PNG, whole or not at all; returns its path."""
     buffer = io.BytesIO()
     with drawing(), _text_halo(figure):
-        figure.savefig(buffer, format="png", dpi=dpi, facecolor=Color.PAPER, metadata={"Software": None})
+        look: dict[str, Any] = {"facecolor": Color.PAPER, "metadata": {"Software": None}}
+        figure.savefig(buffer, format="png", dpi=dpi, pil_kwargs={"compress_level": _COMPRESSION}, **look)
     return replace_file(Path(path), buffer.getvalue())
+
+
+_COMPRESSION = 4
+"""Level of PNG files, 0 to 9: a third faster than the usual 6, for files 1 to 4 % larger."""
 
 
 def inline_svg(figure: Figure, *, name: str, label: str) -> str:
