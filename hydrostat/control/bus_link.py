@@ -18,19 +18,19 @@ from hydrostat.robot import Winch
 
 DEADLINE = 0.2
 """Told nothing for so long [s], motors are stopped by the watch on this side; their own watchdogs stop them sooner."""
-LATE = 0.08
+MAX_READING_GAP = 0.08
 """Time between two readings that counts at most while a motor does not follow [s]: beyond, this computer is late."""
 MAX_LEAD_TIME = 0.12
 """A goal is never further ahead of a motor than it turns in this time [s]: a dead host leaves it no further."""
-LOST = 0.2
+MAX_READING_AGE = 0.2
 """A reading so old is a fault [s]."""
 FASTEST = 0.5
 """No limit of speed is greater [m/s]."""
-BEYOND = 5e-4
+RANGE_TOLERANCE = 5e-4
 """Motors may be so far beyond the limits of their winch, by what the motor rounds and the cable gives [m]."""
-HOTTEST = 75.0
+MAX_TEMPERATURE = 75.0
 """Warmest that a motor may be [degree C]."""
-BEHIND, PATIENCE = 1e-3, 0.5
+STALL_DISTANCE, STALL_TIME = 1e-3, 0.5
 """A motor that is further from its goal than this [m] and stands for so long [s] does not follow."""
 
 
@@ -229,21 +229,23 @@ class BusLink(Link):
         reading = self.reading
         assert reading is not None
         ages = now - reading.stamps
-        if (worst := float(ages.max(initial=0.0))) > LOST:
+        if (worst := float(ages.max(initial=0.0))) > MAX_READING_AGE:
             name = self._names[int(ages.argmax())]
             told = f"for {worst:.2f} s" if np.isfinite(worst) else "at all"
             raise HydrostatError(f"the motor of {name} has not answered {told}; look at its power and cable")
         for name, fault in zip(self._names, reading.faults, strict=True):
             if fault:
                 raise HydrostatError(f"the motor of {name} reports: {fault}")
-        if (hot := float(np.nanmax(np.append(reading.temperatures, -np.inf)))) > HOTTEST:
+        if (hot := float(np.nanmax(np.append(reading.temperatures, -np.inf)))) > MAX_TEMPERATURE:
             name = self._names[int(np.nanargmax(reading.temperatures))]
-            raise HydrostatError(f"the motor of {name} is {hot:.0f} degrees warm, {HOTTEST:g} at most; let it cool")
+            raise HydrostatError(
+                f"the motor of {name} is {hot:.0f} degrees warm, {MAX_TEMPERATURE:g} at most; let it cool"
+            )
         if not self._calibration.is_complete:
             return
         self._places = self._calibration.contractions(reading.angles)
         beyond = np.maximum(self._low - self._places, self._places - self._high)
-        if not (beyond <= BEYOND).all():
+        if not (beyond <= RANGE_TOLERANCE).all():
             index = int(np.nan_to_num(beyond, nan=np.inf).argmax())
             raise HydrostatError(
                 f"{self._names[index]} stands at {1e3 * self._places[index]:.1f} mm, beyond its limits of "
@@ -266,12 +268,12 @@ class BusLink(Link):
 
         Time in which this computer was late does not count, as motors then stand at goals close ahead.
         """
-        follows = np.abs(self._goal - self._places) < BEHIND
+        follows = np.abs(self._goal - self._places) < STALL_DISTANCE
         follows |= np.abs(self._places - self._mark) > 1e-4
         self._mark = np.where(follows, self._places, self._mark)
-        self._waits = np.where(follows, 0.0, self._waits + min(now - self._judged, LATE))
+        self._waits = np.where(follows, 0.0, self._waits + min(now - self._judged, MAX_READING_GAP))
         self._judged = now
-        if self._waits.max(initial=0.0) <= PATIENCE:
+        if self._waits.max(initial=0.0) <= STALL_TIME:
             return ""
         index = int(self._waits.argmax())
         return (

@@ -13,7 +13,6 @@ from pathlib import Path
 import pytest
 from own_time import PROGRAM
 
-
 Run = Callable[..., tuple[int, str, str]]
 
 

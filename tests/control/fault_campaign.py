@@ -5,7 +5,7 @@ from collections import Counter
 import numpy as np
 from emulation import CURRENT, NAMES, RADIUS, REACH, Rig, cut, jam
 
-from hydrostat.control.bus_link import BEYOND, LinkState
+from hydrostat.control.bus_link import RANGE_TOLERANCE, LinkState
 from hydrostat.control.emulated_servos import EmulatedChain, InjectedFaults
 from hydrostat.errors import HydrostatError
 
@@ -190,7 +190,7 @@ class Campaign:
     def _watch(self, rig: Rig, chain: EmulatedChain) -> None:
         for servo in chain.servos:
             place, key = RADIUS * (servo.angle - self.zero), id(servo)
-            if not LOW - BEYOND <= place <= HIGH + BEYOND:
+            if not LOW - RANGE_TOLERANCE <= place <= HIGH + RANGE_TOLERANCE:
                 self.wrong["beyond limits"] += 1
             if abs(place - self._places.setdefault(key, place)) > MOVED:
                 self._places[key], self.late = place, max(self.late, chain.now - rig.commanded)
