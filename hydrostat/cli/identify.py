@@ -195,7 +195,7 @@ def _warn(robot: "Robot", table: "Measurements", found: "IdentifiedRobot") -> No
     if error > BAD * size:
         print(
             f"warning: the fit is {100 * error / size:.0f} % of the body off. Check units (mm), the frame's axes, and "
-            "which marker is which."
+            "which marker and winch is which."
         )
     far = np.argwhere(found.after > max(OUTLIER * rms(found.after), 0.01 * size))
     for row, marker in far[:5].tolist():
