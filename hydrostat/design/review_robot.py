@@ -10,7 +10,7 @@ from hydrostat.design.finding import Diagnostic, Severity, places_in
 from hydrostat.design.skin_region import cable_region
 from hydrostat.errors import NO_KIT
 from hydrostat.fabrication import Demand, KitOptions, find_refusals
-from hydrostat.robot import Robot, find_risks
+from hydrostat.robot import Robot, describe_filled_holes, find_risks
 
 
 def review_robot(
@@ -27,6 +27,7 @@ def review_robot(
     - Limits of designs that its network does not keep, where constraints are given; one sentence for each kind, with
       the places of all. Travel, release and numbers of cables are limits of the search alone.
     - Risks (`find_risks`).
+    - Holes of the body that its mesh leaves out.
 
     Raises InputError: an unknown motor, or a demand of another robot.
     """
@@ -38,6 +39,11 @@ def review_robot(
         *(Diagnostic(text=before + text, weight=weight, places=places_in(text, robot)) for text in refused),
         *limits,
         *(Diagnostic(text=text, weight=Severity.MIND, places=places_in(text, robot)) for text in find_risks(robot)),
+        *(
+            Diagnostic(text=text, weight=Severity.LIMIT, places=())
+            for text in [describe_filled_holes(robot.body)]
+            if text
+        ),
     )
 
 

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape, closed_mesh
     from hydrostat.robot.element_kind import ElementKind, Plane, Volume
     from hydrostat.robot.gravity import DIRECTIONS, direction_of, gravity_along
+    from hydrostat.robot.hole_note import describe_filled_holes
     from hydrostat.robot.inflated import describe_cable_side, inflated_robot, sewn_robot, sewn_sides
     from hydrostat.robot.load import Load
     from hydrostat.robot.marker import Marker, PoseTarget
@@ -72,6 +73,7 @@ __all__ = [
     "closed_mesh",
     "comments",
     "describe_cable_side",
+    "describe_filled_holes",
     "direction_of",
     "find_risks",
     "gallery_folder",

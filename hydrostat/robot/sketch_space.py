@@ -12,6 +12,7 @@ from hydrostat.geometry import Healing, Mesh, Outline, Solid, Surface, clearance
 from hydrostat.given import Point
 from hydrostat.robot.body import Body, Source
 from hydrostat.robot.cable import Cable
+from hydrostat.robot.hole_note import describe_filled_holes
 from hydrostat.robot.marker import Marker, PoseTarget
 from hydrostat.robot.materials import get_material
 from hydrostat.robot.pin import Pin
@@ -58,7 +59,7 @@ class SurfaceSketch:
         Raises:
             InputError: the file is no body.
         """
-        from hydrostat.geometry import HOLE_SHARE, fill_small_holes, read_surface, tetrahedralize, write_ply
+        from hydrostat.geometry import read_surface, tetrahedralize, write_ply
 
         known, nodes = get_material(material), NODES if nodes is None else nodes
         before = read_surface(content, name=file, size=size)
@@ -87,7 +88,7 @@ class SurfaceSketch:
             healing=healing,
         )
         told("finding ends, winches and cables")
-        filled = fill_small_holes(closed, HOLE_SHARE * length).describe(length)
+        filled = describe_filled_holes(body)
         return SurfaceSketch(_first_robot(body, name), before, healing, (filled,) if filled else ())
 
 

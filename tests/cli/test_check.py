@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from builders import box_mesh
+from manifold3d import Manifold
 
 from hydrostat.cli.main import main
-from hydrostat.geometry import write_vtu
+from hydrostat.geometry import Surface, write_ply, write_vtu
 from hydrostat.robot import Face, gallery_folder, load_robot, save_robot
 from hydrostat.simulation import is_filled_motion_fast
 
@@ -103,6 +104,23 @@ def test_body_in_space(check: Check, tmp_path: Path) -> None:
         assert lines[2].endswith("smallest angle between faces 45°")
         assert sum(line.startswith("warning: ") for line in lines) == risks
         assert lines[-1] == NO_CABLES.replace("0 warnings", "1 warning" if risks else "0 warnings")
+
+
+def test_holes_that_the_mesh_leaves_out_are_a_note(check: Check, tmp_path: Path) -> None:
+    """Oracle: a hole of 1.5 mm through the middle of a plate 30 x 20 x 8 mm, in elements of 4 mm."""
+    plate = Manifold.cube((30, 20, 8)) - Manifold.cylinder(10, 0.75, 0.75, 24).translate((10, 10, -1))
+    mesh = plate.to_mesh()
+    surface = Surface(1e-3 * np.asarray(mesh.vert_properties)[:, :3], np.asarray(mesh.tri_verts))
+    (tmp_path / "plate.ply").write_bytes(write_ply(surface))
+    text = SOLID.replace('length_unit = "m"\n', "").replace(
+        "[[-0.001, -1, -1], [0.001, 1, 1]]", "[[-1, -1, -1], [1, 99, 99]]"
+    )
+    text = text.replace('mesh = "solid.vtu"', 'surface = "plate.ply"\nelement_size = "4 mm"')
+    (tmp_path / "robot.toml").write_text(text)
+    notes = [
+        line for line in check(tmp_path) if line.startswith("note: 1 hole 1.5 mm wide at (10, 10, 4) mm is filled")
+    ]
+    assert len(notes) == 1
 
 
 @pytest.mark.slow

@@ -7,12 +7,17 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from contextlib import nullcontext
 from pathlib import Path
 
+import numpy as np
 import pytest
 from own_time import PROGRAM, run_in_own_time
 
-from hydrostat.errors import HydrostatError
+from hydrostat.cli.play_camera import require_rest
+from hydrostat.control import Motors, SimulatedLink
+from hydrostat.errors import HydrostatError, InputError
+from hydrostat.robot import Winch
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -128,9 +133,6 @@ def test_a_signal_stops_the_motors(starfish: Path, wave: Path, number: int, code
 def test_an_error_while_playing_stops_the_motors(
     run: Run, starfish: Path, wave: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from hydrostat.control import SimulatedLink
-    from hydrostat.errors import HydrostatError
-
     stops = []
 
     def refuse(*arguments: object, **options: object) -> None:
@@ -213,6 +215,15 @@ def test_signals_are_caught_from_before_motors_are_armed(
     assert (code, "no motors here" in err) == (1, True)
     assert caught != [before]
     assert callable(caught[0])
+
+
+@pytest.mark.parametrize(("place", "is_refused"), [(0.0019, False), (0.0021, True), (-0.0021, True)])
+def test_a_camera_begins_at_rest(place: float, is_refused: bool) -> None:
+    winches = [Winch(name=name, at=(0.0, 0.0), spool_radius=0.006, travel=0.04, release=0.005) for name in ("a", "b")]
+    places = np.array([0.0, place])
+    motors = Motors(winches, SimulatedLink(places), places=places)
+    with pytest.raises(InputError, match=f"b stands at {1e3 * place:.1f} mm") if is_refused else nullcontext():
+        require_rest(motors)
 
 
 @pytest.mark.parametrize(

@@ -177,6 +177,19 @@ def test_a_computer_that_is_late_again_and_again_loses_no_motor(late: float) -> 
         rig.link.send(np.full(3, 0.03), 0.0, speed=0.05)
 
 
+def test_a_late_computer_does_not_count_against_a_held_motor() -> None:
+    """A motor is held for 0.6 s, but for 0.54 s of them this computer is late: the 0.5 s of patience last."""
+    rig = Rig(guarded=False)
+    rig.begin()
+    rig.go(0.01, 0.1)
+    rig.servos[0].ails = InjectedFaults(stuck=True)
+    for _ in range(3):
+        rig.go(0.03, 0.02)
+        rig.chain.wait(0.18)
+    rig.servos[0].ails = InjectedFaults()
+    assert rig.go(0.03, 1.5) == pytest.approx(0.03, abs=3e-5)
+
+
 def test_an_unplugged_line_is_told() -> None:
     rig = Rig()
     rig.begin()

@@ -34,6 +34,10 @@ def holes(diameter: float, count: int = 10) -> Manifold:
     return body
 
 
+def peg(radius: float, length: float) -> Manifold:
+    return Manifold.cylinder(length + 1, radius, radius, 24).translate((30, 15, 3))
+
+
 def test_a_plate_of_holes_becomes_a_box() -> None:
     """Oracle: the box's volume, 60 x 30 x 4 mm, and its Euler characteristic; each hole at its middle."""
     body = of(holes(1.5))
@@ -52,6 +56,10 @@ KEPT = {
     "slot": lambda: plate() - Manifold.cube((30, 1, 6)).translate((15, 15, -1)),
     "gap between fingers": lambda: plate() - Manifold.cube((40, 1.5, 6)).translate((25, 14, -1)),
     "groove": lambda: plate() - Manifold.cube((40, 1, 2)).translate((10, 14, 3)),
+    "ring": lambda: (
+        plate() - (Manifold.cylinder(3, 10, 10, 48) - Manifold.cylinder(3, 9, 9, 48)).translate((30, 15, 2))
+    ),
+    "grooved peg": lambda: plate() + (peg(0.5, 11) + peg(1.05, 1) + peg(1.05, 6).translate((0, 0, 5))),
     "peg": lambda: plate() + Manifold.cylinder(5, 0.8, 0.8, 24).translate((30, 15, 3)),
     "neck": lambda: (
         plate()
@@ -94,9 +102,14 @@ def test_a_channel_that_ends_at_narrow_gaps() -> None:
 def test_sides_of_points_by_the_nearest_triangle() -> None:
     """Oracle: winding numbers; points about edges and corners, and in a part with long thin triangles."""
     body = of(holes(2.5) + Manifold.cylinder(12, 6, 0.2, 7).translate((30, 15, 3)))
-    points = np.random.default_rng(5).uniform(body.box[0] - 2e-3, body.box[1] + 2e-3, (20_000, 3))
-    fast, slow = Solid(body, clean=True).distances(points), Solid(body).distances(points)
-    np.testing.assert_array_equal(fast, slow)
+    points = np.random.default_rng(5).uniform(body.box[0] - 2e-3, body.box[1] + 2e-3, (18_000, 3))
+    spike = Manifold.cylinder(12, 6, 0, 7).rotate((0, 25, 0)).translate((30, 15, 3))
+    leaning = of(plate() + spike)
+    tip = leaning.vertices[np.argmax(leaning.vertices[:, 2])]
+    near = tip + np.random.default_rng(5).normal(0, 3e-3, (2000, 3))
+    for surface, places in ((body, points), (leaning, near)):
+        fast, slow = Solid(surface, clean=True).distances(places), Solid(surface).distances(places)
+        np.testing.assert_array_equal(fast, slow)
 
 
 def test_a_mesh_without_small_holes_takes_few_nodes() -> None:

@@ -9,7 +9,7 @@ from hydrostat.control import Motors, SimulatedLink
 from hydrostat.errors import HydrostatError
 from hydrostat.robot import Winch
 from hydrostat.teleop import CyberGlove, EmulatedPerson, HeldStill, LessonPoses, Mimicry, go_there
-from hydrostat.teleop.source import DriveChannels
+from hydrostat.teleop.source import DriveChannels, HandReading, HandSource
 
 COUNT = 10
 CHANNELS = DriveChannels(
@@ -69,6 +69,23 @@ def test_a_hand_that_moves_is_told_from_one_that_holds_still() -> None:
     held = HeldStill.wait(glove, beat, clock=lambda: float(next(times)))
     assert not held.still
     assert len(beats) == held.readings - 1  # motors are told after each reading
+
+
+def test_one_joint_that_moves_is_enough_to_move() -> None:
+    """Oracle: one of 22 sensors swings by 0.05, four times what a still hand varies; their mean hides it."""
+
+    class Hand(HandSource):
+        times = 0
+
+        def read(self) -> HandReading:
+            self.times += 1
+            return HandReading(np.append(np.zeros(21), 0.05 * (-1) ** self.times), 0.0)
+
+        def close(self) -> None:
+            pass
+
+    told = iter(np.arange(0.0, 1e4, 1 / 90))
+    assert not HeldStill.wait(Hand(), clock=lambda: float(next(told))).still
 
 
 def test_motors_get_there_or_it_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
