@@ -68,6 +68,7 @@ sphinx_gallery_conf = {
     "examples_dirs": [str(ROOT / "examples" / "python")],
     "gallery_dirs": ["examples"],
     "filename_pattern": r"/\d\d_",
+    "within_subsection_order": "FileNameSortKey",
     "image_scrapers": (scrape_figure,),
     "download_all_examples": False,
     "show_signature": False,

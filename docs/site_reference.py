@@ -20,6 +20,9 @@ COPIES = {
 }
 """Pages at the top of the repository, and where the site has them."""
 
+PAGES = COPIES | {ROOT / "README.md": DOCS / "index.md", ROOT / "examples" / "python": DOCS / "examples" / "index.rst"}
+"""Files and folders beside docs/ that the site has as pages."""
+
 GROUPS = {
     "Robot": ("hydrostat.robot", "hydrostat.geometry"),
     "Simulation": ("hydrostat.simulation", "hydrostat.mechanics"),
@@ -101,8 +104,8 @@ def on_site(text: str, home: Path, page: Path) -> str:
         file = (home.parent / target).resolve()
         if target.startswith(("http", "mailto:")) or not file.exists():
             return match[0]
-        file = DOCS / "index.md" if file == ROOT / "README.md" else COPIES.get(file, file)
-        if file.is_relative_to(DOCS) and file.suffix in (".md", ".png", ".jpg"):
+        file = PAGES.get(file, file)
+        if file.is_relative_to(DOCS) and file.suffix in (".md", ".rst", ".png", ".jpg"):
             return f"[{label}]({Path(os.path.relpath(file, page.parent)).as_posix()}{anchor or ''})"
         return f"{label} (`{file.relative_to(ROOT).as_posix()}`)"
 

@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-import strangers
 from builders import gallery_robot
 
+import strangers
 from hydrostat.cli.bounded import run_bounded
 from hydrostat.cli.folders import require_folder, result_folder
 from hydrostat.cli.new import _commented_text
