@@ -4,6 +4,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from hydrostat.errors import InputError
 from hydrostat.units import plural
 
 if TYPE_CHECKING:
@@ -19,6 +20,8 @@ def open_record(out: Path, robot: "Robot", request: "DesignRequest", *, resume: 
 
     if not resume:
         return SearchRecord()
+    if not (out / _FILE).exists():
+        raise InputError(f"--resume: {out} has no {_FILE}, so no search was stopped there. Start without --resume.")
     record = SearchRecord.read(out / _FILE, robot, request)
     print(f"resuming after {plural(len(record.known), 'step')}", file=sys.stderr, flush=True)
     return record

@@ -140,7 +140,8 @@ def print_kit(kit: "Kit", *, printed: Collection[str] = ()) -> None:
     for line in kit.summary:
         print(line)
     held = sum(check.passed for check in kit.checks)
-    print(f"Quality checks: {held} of {len(kit.checks)} passed")
+    missing = "" if kit.robot.winches else ". They cover the body alone: it has no winches and cannot move"
+    print(f"Quality checks: {held} of {len(kit.checks)} passed{missing}")
     for check in kit.checks:
         if not check.passed:
             print(f"  failed: {check.what}: {check.measured} (allowed: {check.allowed})")

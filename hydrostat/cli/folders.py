@@ -14,8 +14,10 @@ from hydrostat.errors import InputError
 
 
 def found_folder(robot: Path) -> Path:
-    """The folder that is meant, also of a robot of the gallery (InputError: it has none of this name)."""
+    """The folder that is meant, also of a robot of the gallery (InputError: no such robot, or a folder of results)."""
     if not str(robot).startswith("gallery:"):
+        if not (robot / "robot.toml").exists() and (robot / "robot" / "robot.toml").is_file():
+            raise InputError(f"{robot}: results of a design. The robot is {robot / 'robot'}")
         return robot
     from hydrostat.robot import GALLERY, gallery_folder
 

@@ -14,7 +14,7 @@ import typer
 from hydrostat.cli.bounded import run_bounded
 from hydrostat.cli.check import FINDINGS, print_sewing
 from hydrostat.cli.options import parse_optional, positive
-from hydrostat.cli.remedies import body_refusals
+from hydrostat.cli.remedies import kit_warnings
 from hydrostat.cli.waiting import patiently
 from hydrostat.errors import InputError, SeveralPartsError
 from hydrostat.units import plural, printable
@@ -69,6 +69,7 @@ def new(
     Example: hydrostat new my_hand --from scan.stl --size "190 mm" --nodes 900
     """
     from hydrostat.ik import NewRobotWish
+    from hydrostat.robot import is_of_gallery
     from hydrostat.units import TIME
 
     if name.exists() and (not name.is_dir() or any(name.iterdir())):
@@ -94,7 +95,7 @@ def new(
             made = _draw(folder)
     lines += _other_count(len(made.body.mesh.nodes), nodes)
     told = [line.replace(str(folder), str(name)) for line in lines]
-    _print_made(made, name, told, chosen=bool(nodes or element_size))
+    _print_made(made, name, told, chosen=bool(nodes or element_size), from_gallery=is_of_gallery(source))
 
 
 def _other_count(count: int, wanted: int | None) -> list[str]:
@@ -282,7 +283,7 @@ def _draw(folder: Path) -> "Robot":
     return made
 
 
-def _print_made(made: "Robot", name: Path, lines: list[str], *, chosen: bool) -> None:
+def _print_made(made: "Robot", name: Path, lines: list[str], *, chosen: bool, from_gallery: bool) -> None:
     """Say what there is now, and what to do next."""
     from hydrostat.errors import NO_KIT, in_words
     from hydrostat.robot import find_risks
@@ -293,11 +294,14 @@ def _print_made(made: "Robot", name: Path, lines: list[str], *, chosen: bool) ->
     for risk in find_risks(made):
         mild = coarse and "elements across" in risk
         lines.append(f"{'note: coarse for speed' if mild else 'warning'}: {in_words(risk)}")
+    large = 0.8  # longer bodies are named, as centimeters may have been meant to be millimeters [m]
+    if mesh.size > large:
+        lines.append(f"note: the body is {mesh.size:.2g} m long. For a smaller one, give --size in mm, e.g. 150mm")
     for line in lines:
         print(line)
-    sewing = print_sewing(made.body)
-    for reason in (*sewing, *(() if made.cables else body_refusals(made))):
-        print(f"{FINDINGS['mind']}: {NO_KIT}{in_words(reason)}")
+    sewing = (NO_KIT + reason for reason in print_sewing(made.body))
+    for reason in (*sewing, *(() if from_gallery else kit_warnings(made))):
+        print(f"{FINDINGS['mind']}: {in_words(reason)}")
     scaled = made.body.size is not None
     origin = (
         "from the center of the drawing" if flat else "in the scaled body" if scaled else "as in the file of the body"
@@ -344,21 +348,21 @@ def _commented_text(robot: "Robot", source: str) -> str:
         if line in notes and line not in told:
             told.add(line)
             if line == "[[marker]]" and "[[winch]]" not in told:
-                lines += _NO_WINCH.splitlines()
+                lines += [*_no_winch(robot), ""]
             lines += notes[line].splitlines()
         lines.append(line)
     return head + "\n".join(lines) + "\n"
 
 
-_NO_WINCH = """\
-# There are no winches yet: `hydrostat design` finds them, and their cables, for the poses below. By hand:
-# [[winch]]
-# name = "left"
-# at = [0, 0]
-# travel = "60 mm"
-#
-# [[cable]]
-# winch = "left"
-# points = [[0, 0], [-20, 5], [-40, 10]]
+def _no_winch(robot: "Robot") -> list[str]:
+    """Comment on the missing winches, with a first one that can be built if there is room for it."""
+    from hydrostat.design import draw_first_cable
+    from hydrostat.robot import robot_text
 
-"""
+    head = "# There are no winches yet: `hydrostat design` finds them, and their cables, for the poses below."
+    first = draw_first_cable(robot)
+    if first is None:
+        return [head]
+    text = robot_text(first)
+    tables = text[text.index("[[winch]]") : text.index("[[marker]]")].strip()
+    return [f"{head} By hand:", *(f"# {line}".rstrip() for line in tables.splitlines())]

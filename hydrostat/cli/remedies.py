@@ -65,3 +65,17 @@ def body_refusals(robot: "Robot") -> tuple[str, ...]:
     from hydrostat.fabrication import find_refusals
 
     return find_refusals(robot.with_network((), ()))
+
+
+def kit_warnings(robot: "Robot") -> tuple[str, ...]:
+    """Reasons why no kit can be made of a new robot: those of its body, or one sentence on the room for a motor."""
+    from hydrostat.errors import NO_KIT
+    from hydrostat.fabrication import find_refusals
+
+    reasons = find_refusals(robot)
+    if reasons and not body_refusals(robot):
+        from hydrostat.design import find_no_room
+
+        if words := find_no_room(robot):
+            return (words,)
+    return tuple(NO_KIT + reason for reason in reasons)

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from hydrostat.design.design_cables import design_cables, find_network
     from hydrostat.design.filled_reach import FilledReach
     from hydrostat.design.finding import Diagnostic, Severity, places_in
+    from hydrostat.design.first_cable import draw_first_cable
     from hydrostat.design.lifts import find_lifts
     from hydrostat.design.muscles.activation import Activation, FibreKind, activate, edge_fibres
     from hydrostat.design.muscles.free_posing import FreePosing
@@ -84,6 +85,7 @@ __all__ = [
     "corrected_error",
     "corrected_errors",
     "design_cables",
+    "draw_first_cable",
     "edge_fibres",
     "expected_error",
     "find_lifts",

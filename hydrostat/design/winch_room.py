@@ -74,6 +74,19 @@ def find_no_room(robot: Robot) -> str | None:
     return None if winch_room(robot, constraints, usual)[1] is not None else _no_room(robot, constraints, usual, 1)
 
 
+def find_winch_places(robot: Robot, constraints: Constraints) -> Points:
+    """Places in a flat body where a winch of one cable can be built in [m]."""
+    zones, motor = winch_room(robot, constraints, 1)
+    if motor is None or robot.body.outline is None:
+        return np.zeros((0, 2))
+    inner = robot.body.outline.polygon.buffer(-constraints.winch_clearance - 1e-5)
+    return _grid(
+        shapely.intersection(
+            shapely.union_all([_shape(zone) for zone in zones]), affinity.scale(inner, 1e3, 1e3, origin=(0.0, 0.0))
+        )
+    )
+
+
 def has_known_room(body: Body) -> bool:
     """True for bodies whose room for motors can be computed: flat ones, and those of foam."""
     return body.thickness is not None or KitOptions().method_for(body) is Method.FOAM

@@ -133,7 +133,7 @@ def _guess(surface: Surface, nodes: int) -> float:
 _STOUT = 0.35
 """An end with such a share of the largest cross section is a good place to hold: a wrist, not the tip of an arm."""
 
-_STATIONS = np.linspace(0.04, 0.9, 12)
+_STATIONS = np.linspace(0.06, 0.9, 12)
 
 _SPOOL, _LEAST_SPOOL = 0.006, 0.002
 
@@ -150,8 +150,10 @@ def _first_robot(body: Body, name: str) -> Robot:
     limb = _limb(mesh, pin.holds(mesh))
     middles = _smooth_line(np.array([limb.middle(mesh, share) for share in _STATIONS]))
     side = _side(mesh, middles[-1] - middles[0])
-    ways = [limb.reach(mesh, share, side) * side for share in _STATIONS]
-    route = _space_points([_cover_offset(mesh, solid, middle, way) for middle, way in zip(middles, ways, strict=True)])
+    leave = np.minimum(np.arange(len(_STATIONS)) / 3, 1.0)  # winch in the middle, where there is most room for it
+    ways = [part * limb.reach(mesh, share, side) * side for part, share in zip(leave, _STATIONS, strict=True)]
+    covered = [_cover_offset(mesh, solid, middle, way) for middle, way in zip(middles, ways, strict=True)]
+    route = _drop_sharp_turns(_space_points(covered))
     tip = _cover_offset(mesh, solid, limb.middle(mesh, 0.97), 0 * side)
     spool = min(_SPOOL, max(_LEAST_SPOOL, -0.9 * float(solid.distances(route[:1])[0])))
     cable = Cable(winch="pull", points=tuple(map(_point, route)))
@@ -290,6 +292,19 @@ def _space_points(points: list[Vector]) -> Points:
         if np.linalg.norm(point - kept[-1]) > 1e-3:
             kept.append(point)
     return np.array(kept)
+
+
+def _drop_sharp_turns(points: Points) -> Points:
+    """Points without those at which the line turns by more than a design allows, the sharpest first."""
+    most = 25.0  # as 30 degrees are allowed
+    while len(points) > 2:
+        ways = np.diff(points, axis=0)
+        ways /= np.linalg.norm(ways, axis=1)[:, None]
+        turns = np.degrees(np.arccos(np.clip(np.einsum("sd,sd->s", ways[:-1], ways[1:]), -1.0, 1.0)))
+        if turns.max() <= most:
+            break
+        points = np.delete(points, 1 + int(np.argmax(turns)), axis=0)
+    return points
 
 
 def _point(place: Float[np.ndarray, " 3"]) -> Point:

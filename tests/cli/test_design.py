@@ -300,6 +300,12 @@ def test_the_best_so_far_where_the_search_is_stopped(
     assert run("design", strip, "--time", "9 s", "--resume", "--out", tmp_path / "out")[0] == 0
     assert len(search.known) == 1
     assert not (tmp_path / "out" / "search.json").exists()
+    assert (
+        "out has no search.json, so no search was stopped there"
+        in run("design", strip, "--resume", "--out", tmp_path / "out")[2]
+    )
+    told = run("check", tmp_path / "out")[2]
+    assert told == f"hydrostat: error: {tmp_path / 'out'}: results of a design. The robot is {tmp_path / 'out'}/robot\n"
 
 
 def test_auto_tells_the_error_against_winches_and_cables(

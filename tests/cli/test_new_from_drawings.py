@@ -34,3 +34,30 @@ def test_size_is_asked_for(run: Run, tmp_path: Path) -> None:
     assert code == 2
     assert errors.count("\n") == 1
     assert "no physical size" in errors
+
+
+SVG = '<svg xmlns="http://www.w3.org/2000/svg" width="200mm" height="60mm" viewBox="0 0 200 60">'
+BAR = f'{SVG}<path d="M5 15H195V45H5Z"/></svg>'
+
+
+@pytest.mark.slow
+def test_the_example_of_a_cable_passes_the_check(run: Run, tmp_path: Path) -> None:
+    """Oracle: `hydrostat check` of the robot file with the comment made to code."""
+    (tmp_path / "bar.svg").write_text(BAR)
+    run("new", tmp_path / "bar", "--from", tmp_path / "bar.svg")
+    file = tmp_path / "bar" / "robot.toml"
+    head, marked, rest = file.read_text().partition(" By hand:\n")
+    example, empty, tail = rest.partition("\n\n")
+    assert marked
+    file.write_text(f"{head}{marked}{example.replace('# ', '').replace('#', '')}{empty}{tail}")
+    code, out, _ = run("check", tmp_path / "bar")
+    assert "1 winch, 1 cable" in out
+    assert (code, out.splitlines()[-1]) == (0, "OK: 0 errors, 0 warnings.")
+
+
+def test_a_size_in_centimeters_is_named(run: Run, tmp_path: Path) -> None:
+    """Oracle: 150 cm are 1.5 m."""
+    (tmp_path / "bar.svg").write_text(BAR)
+    out = run("new", tmp_path / "bar", "--from", tmp_path / "bar.svg", "--size", "150cm")[1]
+    assert "note: the body is 1.5 m long. For a smaller one, give --size in mm" in out
+    assert "m long" not in run("new", tmp_path / "small", "--from", tmp_path / "bar.svg", "--size", "150mm")[1]

@@ -214,16 +214,17 @@ class PanelLabels:
         letters = Lettering(text, _TITLES[-1])
         return self._space.anywhere(letters.width, letters.height) is not None
 
-    def title(self, text: str) -> None:
-        """The name of the panel, as large as there is room for."""
-        for height in _TITLES:
-            lettering = Lettering(text, height)
-            middle = self._space.anywhere(lettering.width, height)
-            if middle is not None:
-                self._write(lettering, middle)
-                return
+    def title(self, text: str, *shorter: str) -> None:
+        """The name of the panel, as large as there is room for; a shorter one where it has no room."""
+        for words in (text, *shorter):
+            for height in _TITLES:
+                lettering = Lettering(words, height)
+                middle = self._space.anywhere(lettering.width, height)
+                if middle is not None:
+                    self._write(lettering, middle)
+                    return
         middle = self._seam.representative_point()
-        self._beside(text, (middle.x, middle.y), gap=0.0)
+        self._beside((text, *shorter)[-1], (middle.x, middle.y), gap=0.0)
 
     def grain(self) -> None:
         """An arrow along the grain of the cloth, parallel to the y axis of the drawing."""

@@ -45,9 +45,14 @@ class Opening:
         return f"zipper {self.zipper} mm{cut}"
 
     @property
+    def is_short(self) -> bool:
+        """True for a slit shorter than any zipper that is sold."""
+        return self.slit.length <= ZIPPERS[0] - 1e-6
+
+    @property
     def warnings(self) -> tuple[str, ...]:
         """Sentence that it is short for a hand, if it is."""
-        if self.slit.length > ZIPPERS[0] - 1e-6:
+        if not self.is_short:
             return ()
         return (
             f"the opening has room for {self.slit.length:.0f} mm only. Cut a zipper of {self.zipper} mm down to that, "
@@ -73,9 +78,15 @@ def find_opening(
     if ways:
         beside = seam.difference(shapely.union_all(ways).buffer(_PLACKET))
         found = opening_at(places, seam, pinholes, options, room=beside)
-        if found is not None and found.slit.length > ZIPPERS[0] - 1e-6:
+        if found is not None and not found.is_short:
             return found
-    return opening_at(places, seam, pinholes, options)
+    found = opening_at(places, seam, pinholes, options)
+    winch = 45.0  # through a slit so long the unit of any winch passes [mm]
+    if found is not None and found.slit.length > winch:
+        return found
+    nearer = opening_at(places, seam, pinholes, options, tight=True)
+    is_longer = nearer is not None and (found is None or nearer.slit.length > found.slit.length)
+    return nearer if is_longer else found
 
 
 def opening_at(
@@ -85,11 +96,15 @@ def opening_at(
     options: PatternOptions,
     *,
     room: BaseGeometry | None = None,
+    tight: bool = False,
 ) -> Opening | None:
-    """The opening over winches at these places on a panel [mm], within `room` if given; None as for `find_opening`."""
+    """The opening over winches at these places on a panel [mm], within `room` if given; None as for `find_opening`.
+
+    `tight` lets it be as near to the seam as its tape can be sewn, and tries more lines between the pinholes.
+    """
     reach = options.opening_reach
     winches = np.array([place for place in places if seam.contains(shapely.Point(place))])
-    inner: BaseGeometry = seam.buffer(-reach / 3)
+    inner: BaseGeometry = seam.buffer(-1.5 * _PLACKET if tight else -reach / 3)
     narrow, room = room is not None or bool(pinholes), inner if room is None else inner.intersection(room)
     if not len(winches) or not reach or room.is_empty:
         return None
@@ -103,6 +118,8 @@ def opening_at(
     turns = (0, 90, 15, -15, 30, -30, 45, -45, 60, -60, 75, -75)
     # Offsets of a slit from the winches that keep it off pinholes [mm], the best first
     shifts = (0, 6, -6, 12, -12, 18, -18)
+    if tight:
+        shifts = tuple(side * 0.5 * step for step in range(60) for side in (1, -1))
     for shift in shifts if narrow else shifts[:1]:
         for angle in turns:
             direction = row @ _turn(np.radians(angle))

@@ -48,10 +48,12 @@ def gusset_panels(
         own = [notch for notch in notches if notch.ring == ring]
         ends = _strip_ends(seam.length, [notch.along for notch in own if notch.name], options.gusset_piece)
         cuts += [(own, start, end, seam.length) for start, end in pairwise(ends)]
-    return tuple(
-        _piece(f"{name} - gusset {number} of {len(cuts)}", number, _StripPiece(*cut), thickness, options)
-        for number, cut in enumerate(cuts, start=1)
-    )
+    pieces = []
+    for number, cut in enumerate(cuts, start=1):
+        short = f"gusset {number} of {len(cuts)}"
+        titles = f"{name} - {short}", short, f"gusset {number}"  # the first that has room is written
+        pieces.append(_piece(titles, number, _StripPiece(*cut), thickness, options))
+    return tuple(pieces)
 
 
 class _StripPiece:
@@ -75,7 +77,9 @@ def _strip_ends(length: float, notches: list[float], longest: float) -> list[flo
     return [*ends, length]
 
 
-def _piece(title: str, number: int, stretch: _StripPiece, thickness: float, options: PatternOptions) -> Panel:
+def _piece(
+    titles: tuple[str, ...], number: int, stretch: _StripPiece, thickness: float, options: PatternOptions
+) -> Panel:
     length, allowance = stretch.length, options.seam_allowance
     seam = shapely.box(0.0, 0.0, length, thickness)
     cut = shapely.box(-allowance, -allowance, length + allowance, thickness + allowance)
@@ -89,7 +93,7 @@ def _piece(title: str, number: int, stretch: _StripPiece, thickness: float, opti
     labels = PanelLabels(seam, tuple(shapes), mirrored=False)
     labels.notch_names(strokes, cut)
     labels.edge_names("to the front", "to the back")
-    labels.title(title)
+    labels.title(*titles)
     labels.grain()
     return Panel(name=f"gusset-{number}", origin=(0.0, 0.0), mirrored=False, shapes=(*shapes, *labels.shapes()))
 

@@ -8,10 +8,12 @@ import numpy as np
 from hydrostat.arrays import Points
 from hydrostat.geometry import (
     CLOSE,
+    HOLE_SHARE,
     BoundaryTree,
     Mesh,
     Solid,
     euler,
+    fill_small_holes,
     find_crossings,
     fit,
 )
@@ -100,10 +102,13 @@ def _slivers(mesh: Mesh) -> Iterator[str]:
 
 
 def _unlike(body: Body) -> Iterator[str]:
-    """Find parts of a surface that its mesh does not follow in spite of finer elements there."""
+    """Find parts of a surface that its mesh does not follow in spite of finer elements there.
+
+    Holes that were filled on purpose do not count.
+    """
     if body.healing is None or body.element_size is None:
         return
-    surface = body.healing.surface
+    surface = fill_small_holes(body.healing.surface, HOLE_SHARE * body.element_size).surface
     found = fit(body.mesh, Solid(surface), body.element_size / 3)
     worst = int(np.argmax(found.distances))
     if found.largest > CLOSE * body.element_size:

@@ -174,3 +174,14 @@ def test_a_piece_too_short_to_sew_is_refused():
     """Oracle: the option's own name."""
     with pytest.raises(InputError, match=r"gusset_piece .* 50 mm"):
         PatternOptions(gusset_piece=10)
+
+
+def test_the_title_of_a_short_piece_stays_on_it():
+    """Oracle: the outline that is cut: a strip of 430 mm leaves 30 mm for its second piece, the name is longer."""
+    robot = plush_robot(drawn_body("M0 0H115V100H0Z"), [(-20, 0), (20, 0)], name="the_long_name_of_a_small_robot")
+    last = plush_pattern(robot, options=GUSSET).gusset[-1]
+    assert last.name == "gusset-2"
+    (edge,) = (shape for shape in last.shapes if shape.part is PatternPart.EDGE)
+    texts = [shape.geometry for shape in last.shapes if shape.part is PatternPart.TEXT]
+    assert texts
+    assert all(shapely.Polygon(edge.points).contains(text) for text in texts)

@@ -68,6 +68,17 @@ def test_the_slit_keeps_off_pinholes_on_the_back():
     assert gap(careful) > 1.49
 
 
+def test_a_short_slit_is_moved_between_the_pinholes_and_nearer_to_the_seam():
+    """Oracle: a bar of 190 x 30 mm with a row of holes at 5 mm from its axis has 150 mm free on the other side."""
+    robot = plush_robot(drawn_body("M0 0H190V30H0Z"), [(-70, 2), *((x, 10) for x in range(-55, 56, 22))], marker=(0, 0))
+    pattern = plush_pattern(robot, options=PatternOptions(back_pinholes=True))
+    (slit,), (box,) = back_parts(pattern, PatternPart.OPENING), back_parts(pattern, PatternPart.ZIPPER)
+    assert slit.geometry.length == pytest.approx(100)
+    seam = shapely.Polygon(back_parts(pattern, PatternPart.SEAM)[0].points)
+    assert seam.contains(shapely.Polygon(box.points))
+    assert not any("opening" in warning for warning in pattern.warnings)
+
+
 def test_a_body_too_small_for_a_zipper_is_warned_of():
     """Oracle: a square of 60 mm has at most 40 mm of slit across and 57 mm along its diagonal."""
     robot = plush_robot(drawn_body("M0 0H60V60H0Z"), [(0, 0), (15, 20)], marker=(0, 0))
