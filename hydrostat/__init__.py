@@ -40,11 +40,11 @@ if TYPE_CHECKING:
         Trajectory,
         TrajectoryOptions,
         load_target_outline,
-        new_robot,
-        solve_ik,
         solve_ik_trajectory,
-        solve_pulls,
     )
+    from hydrostat.ik.new_robot import new_robot
+    from hydrostat.ik.solve_ik import solve_ik
+    from hydrostat.ik.solve_pulls import solve_pulls
     from hydrostat.mechanics import NewtonOptions
     from hydrostat.plot import draw_network, draw_pose, draw_reached, draw_rest
     from hydrostat.robot import (

@@ -28,8 +28,8 @@ print(f"workspace of the left arm: {area:.1f} cm²")
 
 # %%
 # Color shows the contraction of the left winch.
-figure = Figure(figsize=(5, 4), layout="constrained")
+figure = Figure(figsize=(6, 2.6), layout="constrained")
 axes = figure.add_subplot(xlabel="x [mm]", ylabel="y [mm]", aspect="equal", title="Workspace of the left arm")
 left = [winch.name for winch in robot.winches].index("left")
-dots = axes.scatter(*places.T, c=1e3 * contractions[:, left], s=8)
-figure.colorbar(dots, label="contraction of winch left [mm]")
+dots = axes.scatter(places[:, 0], places[:, 1], c=1e3 * contractions[:, left], s=8)
+figure.colorbar(dots, label="contraction of\nwinch left [mm]", shrink=0.8)

@@ -6,26 +6,30 @@ At the end you know whether a starfish can rest in more than one pose at the sam
 """
 
 # %%
-# Bring it there along several loading paths.
+# Follow the branch of equilibria from rest to full travel, past its folds.
 import numpy as np
 from matplotlib.figure import Figure
 
 import hydrostat as hs
 
 simulation = hs.Simulation(hs.load_robot("gallery:starfish"))
-goal = {"left": 0.06, "right": 0.06, "feet": 0.06}
-found = hs.find_equilibria(simulation, goal, count=4)
-print(*found.lines(), sep="\n")
-
-# %%
-# Follow the branch of equilibria past its folds; `share` is the part of the contractions.
-branch = hs.continue_branch(simulation, simulation.rest, found.contractions, around_folds=True)
-shares = np.array([point.share for point in branch.points])
+full = {"left": 0.06, "right": 0.06, "feet": 0.06}
+branch = hs.continue_branch(simulation, simulation.rest, full, around_folds=True)
 folds = len(branch.folds)
 print(*branch.lines(), sep="\n")
 
 # %%
+# Between the folds it can rest in two poses. Loading paths find both.
+found = hs.find_equilibria(simulation, {winch: 0.93 * travel for winch, travel in full.items()}, count=6)
+stable = len(found.poses)
+print(*found.lines(), sep="\n")
+
+# %%
 # Where the curve turns back, the robot snaps.
+shares = np.array([point.share for point in branch.points])
+heights = np.array([1e3 * point.pose.markers["right"][1] for point in branch.points])
+near = shares > 0.88
 figure = Figure(figsize=(5, 4), layout="constrained")
-axes = figure.add_subplot(xlabel="share of the contractions", ylabel="height of the top tip [mm]")
-axes.plot(shares, [1e3 * point.pose.markers["top"][1] for point in branch.points], ".-", markersize=3)
+axes = figure.add_subplot(xlabel="share of full travel", ylabel="height of the right tip [mm]")
+axes.plot(shares[near], heights[near], ".-", markersize=3)
+axes.axvline(0.93, color="gray", linestyle="--")

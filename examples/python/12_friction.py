@@ -2,7 +2,7 @@
 Friction and hysteresis
 =======================
 
-At the end you have a hysteresis loop: with friction in its cables a starfish rests elsewhere on the way back.
+At the end you have a hysteresis loop: with friction a cable pulls harder on the way in than on the way back.
 """
 
 # %%
@@ -16,23 +16,35 @@ import hydrostat as hs
 
 robot = hs.load_robot("gallery:starfish")
 robot = replace(robot, cables=tuple(replace(cable, friction=0.2) for cable in robot.cables))
-simulation = hs.Simulation(robot)
 
 # %%
 # Load and unload in small steps, each from the pose before.
 steps = np.linspace(0.0, 0.03, 16)
-pose, heights = simulation.rest, []
-for contraction in np.concatenate([steps, steps[::-1]]):
-    pose = simulation.solve({"left": float(contraction)}, start=pose)
-    heights.append(1e3 * pose.markers["left"][1])
-up, down = np.array(heights[: len(steps)]), np.array(heights[len(steps) :])[::-1]
-width = float(np.abs(up - down).max())
-print(f"loading and unloading differ by up to {width:.1f} mm")
+there_and_back = np.concatenate([steps, steps[-2::-1]])
+cable = next(i for i, cable in enumerate(robot.cables) if cable.winch == "left")
+
+
+def tension_on_the_way(simulation):
+    """Return the tension at the winch at each step [N]."""
+    pose, tensions = simulation.rest, []
+    for contraction in there_and_back:
+        pose = simulation.solve({"left": float(contraction)}, start=pose)
+        tensions.append(pose.tensions[cable])
+    return np.array(tensions)
+
+
+tensions = tension_on_the_way(hs.Simulation(robot))
+
+# %%
+# The area of the loop is the work that friction takes.
+means = (tensions[1:] + tensions[:-1]) / 2
+work = float(means @ np.diff(there_and_back))
+print(f"friction takes {1e3 * work:.1f} mJ")
 
 # %%
 # The loop.
 figure = Figure(figsize=(5, 4), layout="constrained")
-axes = figure.add_subplot(xlabel="contraction of winch left [mm]", ylabel="height of the left tip [mm]")
-axes.plot(1e3 * steps, up, ".-", label="loading")
-axes.plot(1e3 * steps, down, ".-", label="unloading")
+axes = figure.add_subplot(xlabel="contraction of winch left [mm]", ylabel="tension at the winch [N]")
+axes.plot(1e3 * steps, tensions[:16], ".-", label="loading")
+axes.plot(1e3 * steps[::-1], tensions[15:], ".-", label="unloading")
 axes.legend()

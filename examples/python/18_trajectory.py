@@ -14,8 +14,9 @@ import hydrostat as hs
 
 robot = hs.load_robot("gallery:starfish")
 simulation = hs.Simulation(robot)
-keys = [robot.poses["wave"], simulation.rest]
-found = hs.solve_ik_trajectory(simulation, keys, speed=0.05, acceleration=0.2)
+up = hs.solve_ik(simulation, {"left": (-0.103, 0.052)}).pose
+wide = hs.solve_ik(simulation, {"right": (0.107, 0.05)}).pose
+found = hs.solve_ik_trajectory(simulation, [up, wide, simulation.rest], speed=0.05, acceleration=0.2)
 print(*found.lines(), sep="\n")
 
 # %%
