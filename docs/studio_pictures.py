@@ -124,7 +124,7 @@ def photograph(folder: Path) -> Path:
 def take_photo(browser: Browser) -> None:
     """A photograph, the outline that was read from it, and how it is read."""
     with TemporaryDirectory() as folder, window(browser, None) as page:
-        page.locator("input[type=file]").first.set_input_files(str(photograph(Path(folder))))
+        page.locator("[data-testid=upload] input[type=file]").set_input_files(str(photograph(Path(folder))))
         page.locator(".start-photo svg").wait_for()
         page.wait_for_timeout(1500)
         keep(page, "photo")

@@ -34,7 +34,7 @@ class DriveEnergy(Energy):
         self._places, self._stiffness = pins.targets[terms], pins.stiffness[terms]
         self._first, self._second = directions
         self._turns = turns
-        self._owners = pins.support_of[terms]
+        self._owners = self.supports = pins.support_of[terms]
         size = self.stencils.shape[1] * self._places.shape[1]
         self._blocks = np.zeros((len(terms), size, size))
 

@@ -245,7 +245,7 @@ def test_a_dirty_scan_is_mended_and_becomes_a_robot(studio: Studio, window: Open
     torn.export(file)
     with studio() as address:
         page = window(address)
-        page.locator("input[type=file]").first.set_input_files(str(file))
+        page.locator("[data-testid=upload] input[type=file]").set_input_files(str(file))
         page.get_by_text(re.compile("hole", re.IGNORECASE)).first.wait_for()
         page.get_by_role("button", name=re.compile("make.*robot|begin", re.IGNORECASE)).first.click()
         wait_for_view(page)
@@ -388,7 +388,7 @@ def test_a_class_each_with_a_robot_and_who_watches(studio: Studio, window: Open,
             archive.extractall(tmp_path / "out")
         moved = load_robot(tmp_path / "out" / "starfish").markers[0].at
         go(two, "start")
-        two.locator("input[type=file]").first.set_input_files(str(home))
+        two.locator("[data-testid=upload] input[type=file]").set_input_files(str(home))
         two.wait_for_function("y => __app.things.find(t => t.key === 'marker:top')?.y > y + 10", arg=start[1])
         assert moved[1] < load_robot(gallery_folder("starfish")).markers[0].at[1] - 0.002
         go(one, "edit")
@@ -412,7 +412,7 @@ def test_a_click_chooses_the_part_of_a_drawing(studio: Studio, window: Open, tmp
     )
     with studio() as address:
         page = window(address)
-        page.locator("input[type=file]").first.set_input_files(str(file))
+        page.locator("[data-testid=upload] input[type=file]").set_input_files(str(file))
         page.get_by_test_id("problem").filter(has_text="Click the one that is the body").wait_for()
         page.locator("[data-testid=parts] [data-part='2'] path").click()
         page.get_by_test_id("sketch-words").filter(has_text=re.compile("^60 mm")).wait_for()
