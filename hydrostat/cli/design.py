@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from hydrostat.cli.check import print_sewing
-from hydrostat.cli.design_record import open_record, write_record
+from hydrostat.cli.design_record import open_record, tell_record, write_record
 from hydrostat.cli.design_results import STALE, print_front, print_poses, write_kit, write_results
 from hydrostat.cli.design_wishes import DesignArguments, parse_request
 from hydrostat.cli.fabricate import print_kit
@@ -217,7 +217,7 @@ def design(
     _refuse_body(source, request)
     record = open_record(out, source, request, resume=resume)
     with one_interrupt(STOPPING, interrupt=True) as pass_over:
-        network = _search(source, request, record)
+        network = _search(source, request, record, out)
         pass_over()
         printed = print_poses(network, time.perf_counter() - began)
         print(end="", flush=True)
@@ -250,7 +250,7 @@ def _refuse_body(source: "Robot", request: "DesignRequest") -> None:
         print(f"warning: {reason}", file=sys.stderr, flush=True)
 
 
-def _search(source: "Robot", request: "DesignRequest", record: "SearchRecord") -> "Network":
+def _search(source: "Robot", request: "DesignRequest", record: "SearchRecord", out: Path) -> "Network":
     """Find the network; exit where it is interrupted before the first one."""
     from hydrostat.design import find_network
 
@@ -258,7 +258,7 @@ def _search(source: "Robot", request: "DesignRequest", record: "SearchRecord") -
         try:
             return find_network(source, request, progress=progress, watch=_tell_better(), record=record)
         except KeyboardInterrupt:
-            print("hydrostat: interrupted before the first network; no files written", file=sys.stderr)
+            print(f"hydrostat: interrupted before the first network; {tell_record(out)}", file=sys.stderr)
             raise typer.Exit(130) from None
 
 

@@ -4,11 +4,13 @@ The search is replaced by one that notes what it was asked for. Oracles: records
 errors word by word.
 """
 
+import itertools
 import json
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from plot.designs import plain_network
@@ -268,6 +270,30 @@ def test_nothing_is_written_where_writing_is_stopped(
     before = sorted(tmp_path.rglob("*"))
     assert run("design", strip, "--out", tmp_path / "out")[0] == 130
     assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_a_killed_search_leaves_its_steps(
+    run: Run, strip: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Oracle: steps that a second run is given, after one whose end writes nothing, by a clock of 10 s a look."""
+    clock = itertools.count(step=10.0)
+    monkeypatch.setattr("hydrostat.cli.design_record.time", SimpleNamespace(perf_counter=lambda: next(clock)))
+    steps = [{"step": str(number), "tried": 1, "networks": None} for number in range(3)]
+    known = []
+
+    def die(*_: object, record: SearchRecord, **__: object) -> None:
+        known.append(record.known)
+        for step in steps[len(record.known) :]:
+            record.add(step)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("hydrostat.design.find_network", die)
+    for more in ((), ("--resume",)):
+        code, _, errors = run("design", strip, *more, "--out", tmp_path / "out")
+        assert code == 130
+        assert errors.endswith(f"first network; to continue, add --resume ({tmp_path / 'out' / 'search.json'})\n")
+    first, second = known
+    assert (first, second[0]) == ((), steps[0])
 
 
 def test_a_search_that_is_stopped_before_it_has_found_anything(

@@ -1,7 +1,7 @@
 """`SearchRecord`: steps of a search as plain values, from which a stopped search continues."""
 
 import json
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Self
@@ -30,6 +30,7 @@ class SearchRecord:
         """Begin a record; `known` are the steps of an earlier search."""
         self.known = tuple(known)
         self.steps: list[Step] = []
+        self.on_step: Callable[[], None] | None = None  # called after each step
         self._paused = 0
 
     @property
@@ -59,6 +60,8 @@ class SearchRecord:
     def add(self, step: Step) -> None:
         """Add a step."""
         self.steps.append(step)
+        if self.on_step is not None:
+            self.on_step()
 
     def write(self, file: Path, robot: Robot, request: DesignRequest) -> None:
         """Write it as JSON, with the robot and the request (InputError: it cannot be written)."""
