@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
+from hydrostat.cli.folders import OutFolder, RobotFolder, require_files, require_folder
 from hydrostat.cli.measure import KnownLens, TagHeight, TagSide, draw_photos, photo_options, print_photos
 from hydrostat.cli.options import AddedLoads, Contract, contractions, loads
 from hydrostat.cli.waiting import read_robot
@@ -39,6 +39,7 @@ def compare(
     """
     from hydrostat.camera import Photo, measure_photos
 
+    require_files([photo] if rest is None else [photo, rest])
     require_folder(out)
     loaded = read_robot(robot)
     added = loads(loaded, load).loads[len(loaded.loads) :]

@@ -3,7 +3,7 @@
 import os
 import re
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Annotated
@@ -46,6 +46,13 @@ OutFolder = Annotated[Path, typer.Option("--out", metavar="DIR", help="Output fo
 def folder_of(robot: Path) -> Path:
     """The folder of a robot that is named by it, or by its robot.toml."""
     return robot if robot.is_dir() else robot.parent
+
+
+def require_files(files: Iterable[Path]) -> None:
+    """Check that files exist, before what reads them is loaded (InputError: the first that does not)."""
+    for file in files:
+        if not file.is_file():
+            raise InputError(f"{file}: there is no such file")
 
 
 def require_folder(out: Path, *, shared: bool = False) -> None:

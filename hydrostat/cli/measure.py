@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hydrostat.cli.folders import RobotFolder, require_folder, require_writable
+from hydrostat.cli.folders import RobotFolder, require_files, require_folder, require_writable
 from hydrostat.cli.options import parse_optional
 from hydrostat.cli.waiting import ProgressLines, read_robot
 from hydrostat.errors import InputError
@@ -84,6 +84,7 @@ def measure(
         require_writable(file.parent, str(file))
     if check is not None:
         require_folder(check)
+    require_files(photos or [])
     loaded = read_robot(robot)
     options = photo_options(tag, height, lens)
     if sheet is not None:
