@@ -35,7 +35,7 @@ GROUPS = {
 }
 """Headings of the page of `import hydrostat as hs`, with the rooms whose names stand below them."""
 
-ROOMS = ("learning", "training", "control", "teleop", "camera", "grasp", "testing")
+ROOMS = ("learning", "training", "control", "teleop", "camera", "grasp", "export", "testing")
 """Rooms with a page of their own: their names are not in the top package."""
 
 

@@ -16,7 +16,7 @@ DOCS = ROOT / "docs"
 sys.path.append(str(DOCS))
 
 import run_tutorials  # noqa: E402
-from site_reference import GENERATED, on_site, write_reference  # noqa: E402
+from site_reference import GENERATED, ROOMS, on_site, write_reference  # noqa: E402
 
 
 @pytest.fixture(scope="module")
@@ -37,6 +37,13 @@ def test_every_public_name_has_a_reference(reference: Path) -> None:
     text = (reference / "hydrostat.rst").read_text(encoding="utf-8")
     found = re.findall(r"^\.\. auto\w+:: hydrostat\.(\w+)$", text, re.MULTILINE)
     assert sorted(found) == sorted(set(hs.__all__) - {"__version__"})
+
+
+def test_rooms_of_the_python_guide_have_a_reference(reference: Path) -> None:
+    text = (DOCS / "python.md").read_text(encoding="utf-8")
+    named = set(re.findall(r"hydrostat\.(learning|training|control|teleop|camera|grasp|export|testing)\b", text))
+    assert named <= set(ROOMS)
+    assert {path.stem for path in reference.iterdir()} >= set(ROOMS)
 
 
 def test_reference_pages_are_not_written_again(reference: Path) -> None:

@@ -16,7 +16,7 @@ from hydrostat.errors import InputError
 from hydrostat.files import csv_text
 from hydrostat.given import check_not_negative, check_positive
 from hydrostat.identification import Measurements
-from hydrostat.robot import Robot
+from hydrostat.robot import PinDrive, Robot
 from hydrostat.simulation import ContractionProfile, Simulation
 
 FILMS = (".mp4", ".mov", ".m4v", ".avi", ".mkv", ".webm")
@@ -97,9 +97,11 @@ def measure_film(
         progress: receives a line after each frame.
 
     Raises:
-        InputError: a file that is no film, no board or too few markers in its first frame, or a camera that moved.
+        InputError: a file that is no film, no board or too few markers in its first frame, a camera that moved, or a
+            robot with drives.
         HydrostatError: OpenCV is not installed.
     """
+    PinDrive.require_none(robot.drives, "films that are measured")
     options = options or FilmOptions()
     seconds = float(profile.times[-1] - profile.times[0])
     times, found, blind = list[float](), list[dict[str, Vector]](), 0

@@ -45,7 +45,7 @@ def export(
         texts["robot.usda"] = _usd(loaded)
     with result_folder(out) as folder:
         for name, text in texts.items():
-            (folder / name).write_text(text)
+            (folder / name).write_text(text, encoding="utf-8")
     print("Wrote " + ", ".join(str(out / name) for name in texts))
 
 
@@ -63,7 +63,7 @@ def _mjcf(robot: "Robot", trials: int) -> str:
     elif trials:
         with progress_bar() as progress:
             found = measure_mjcf(robot, trials, progress=progress)
-        share, told = found.share or share, found.describe()
+        share, told = found.range_share, found.describe()
     omitted = find_omissions(robot)
     lines = [told, *([f"left out: {', '.join(omitted)}"] if omitted else [])]
     for line in lines:

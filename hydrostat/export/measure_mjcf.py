@@ -41,10 +41,15 @@ class MjcfError:
     largest: float = 0.0
     travel: float = 0.0
 
+    @property
+    def range_share(self) -> float:
+        """Share of the travel that controls should allow: the smallest that was tried if no pose settled."""
+        return SHARES[-1] if self.share is None else self.share
+
     def describe(self) -> str:
         """Sentence with the figures, or a warning where no pose settled."""
         if self.share is None:
-            return f"warning: did not settle at {SHARES[-1]:.1%} of the travel. Do not use this model"
+            return f"warning: did not settle at {100 * SHARES[-1]:g} % of the travel. Do not use this model"
         return (
             f"markers off by {1e3 * self.error:.2g} mm rms, {1e3 * self.largest:.2g} mm at most, of "
             f"{1e3 * self.travel:.2g} mm rms, in {plural(self.num_poses, 'pose')} of random contractions up to "
@@ -59,10 +64,12 @@ def measure_mjcf(robot: Robot, num_poses: int = 5, *, progress: Progress | None 
     pose does not settle, the next smaller share is measured.
 
     Raises:
-        InputError: MuJoCo is not installed, a robot without markers, or one that `mjcf_text` rejects.
+        InputError: MuJoCo is not installed, no pose, a robot without markers, or one that `mjcf_text` rejects.
     """
     if find_spec("mujoco") is None:
         raise InputError(f"MuJoCo is not installed: {install_command('export')}")
+    if num_poses < 1:
+        raise InputError(f"num_poses must be 1 or more, not {num_poses}")
     if not robot.markers or not robot.winches:
         raise InputError("measuring a model needs a [[marker]] and a [[winch]]. Add them.")
     settled = _SettledModel(robot)

@@ -1,5 +1,6 @@
 """`mjcf_text`: a robot as a MuJoCo model (MJCF)."""
 
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,7 +11,7 @@ import numpy as np
 from hydrostat.arrays import Bool, Int, Points
 from hydrostat.errors import InputError
 from hydrostat.geometry import Anchors
-from hydrostat.robot import Material, Plane, Robot
+from hydrostat.robot import Material, Pin, Plane, Robot
 from hydrostat.simulation import Simulation
 
 TIE_MASS = 0.1  # mass of the body at a via point or marker, as a share of the mean mass of a node
@@ -46,6 +47,7 @@ def find_omissions(robot: Robot) -> tuple[str, ...]:
     found = {
         "contact and obstacles": robot.contact is not None or bool(robot.obstacles),
         "loads": bool(robot.loads),
+        "stiffness of pins (they are rigid)": any(pin.stiffness < Pin.stiffness for pin in robot.pins),
         "cable friction": any(cable.friction for cable in robot.cables),
         "relaxation": any(material.relaxation for material in materials),
         "foam laws (replaced by a linear law)": any(material.foam for material in materials),
@@ -103,7 +105,7 @@ class _MjcfModel:
         gravity = np.zeros(3)
         gravity[: self.dim] = self.robot.gravity or 0.0
         yield f"<mujoco model={quoteattr(self.robot.name)}>"
-        yield from (f"  <!-- {line.replace('--', '- -')} -->" for line in remarks)
+        yield from (f"  <!-- {re.sub('-(?=-)', '- ', line)} -->" for line in remarks)
         yield _tag("compiler", angle="radian", autolimits="true", inertiafromgeom="false")
         yield _tag("option", timestep="0.002", gravity=_numbers(gravity), integrator="discrete", solver="Newton")
         yield _tag("size", memory="256M")

@@ -13,10 +13,15 @@ def find_near_pairs(one: Corners, other: Corners) -> Int[np.ndarray, "pairs 2"]:
     """Pairs of an item of `one` and an item of `other` whose bounding boxes meet, sorted.
 
     Items are edges or triangles in space, by their corners [m]. A cell of the grid is as large as two boxes of the
-    largest size can be apart between their centers, thus only neighboring cells are searched.
+    largest size can be apart between their centers, thus only neighboring cells are searched. Items that are not
+    finite are near none.
     """
     if not len(one) or not len(other):
         return np.empty((0, 2), dtype=np.int64)
+    finite = [np.isfinite(items).all(axis=(1, 2)) for items in (one, other)]
+    if not (finite[0].all() and finite[1].all()):
+        found = find_near_pairs(one[finite[0]], other[finite[1]])
+        return np.column_stack([np.flatnonzero(kept)[found[:, side]] for side, kept in enumerate(finite)])
     lows, highs = (one.min(axis=1), other.min(axis=1)), (one.max(axis=1), other.max(axis=1))
     centers = [0.5 * (low + high) for low, high in zip(lows, highs, strict=True)]
     origin = np.minimum(centers[0].min(axis=0), centers[1].min(axis=0))

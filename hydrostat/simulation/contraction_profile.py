@@ -145,7 +145,7 @@ class ProfileTable:
         except csv.Error as error:
             raise InputError(f"{name}: cannot be read as a table ({error})") from None
         columns = _columns(robot)
-        names = list(columns)
+        names, parts = list(columns), "winch or drive" if robot.drives else "winch"
         head = [_column(cell.strip(), columns) for cell in rows[0][1]] if rows else []
         if TIME not in head or len(set(head)) != len(head):
             first = ",".join(rows[0][1]) if rows else ""
@@ -157,11 +157,11 @@ class ProfileTable:
             )
         for column in head:
             if column not in (TIME, *names):
-                raise InputError(f"{name}, line 1: unknown winch {quote(column)}. Available: {', '.join(names)}.")
+                raise InputError(f"{name}, line 1: unknown {parts} {quote(column)}. Available: {', '.join(names)}.")
         lines, times, values = [], [], []
         for line, row in rows[1:]:
             if any(cell.strip() for cell in row):
-                numbers = _numbers(f"{name}, line {line}", head, row)
+                numbers = _numbers(f"{name}, line {line}", head, row, columns)
                 if times and numbers[TIME] <= times[-1]:
                     raise InputError(
                         f"{name}, line {line}, column {TIME}: the times must rise from row to row; "
@@ -199,10 +199,12 @@ def _columns(robot: Robot) -> dict[str, tuple[str, float]]:
 def _column(head: str, columns: Mapping[str, tuple[str, float]]) -> str:
     """Winch or drive that a column is of, if it is of one; else its head."""
     named = {full: name for name, (full, _) in columns.items()}
-    return head if head in columns else named.get(head, head)
+    return named.get(head, head)
 
 
-def _numbers(place: str, head: Sequence[str], row: Sequence[str]) -> dict[str, float]:
+def _numbers(
+    place: str, head: Sequence[str], row: Sequence[str], columns: Mapping[str, tuple[str, float]]
+) -> dict[str, float]:
     """Numbers of a row by the names of their columns."""
     if len(row) != len(head):
         raise InputError(f"{place}: write a number in each of the {len(head)} columns, not {len(row)} of them")
@@ -213,14 +215,16 @@ def _numbers(place: str, head: Sequence[str], row: Sequence[str]) -> dict[str, f
         except ValueError:
             found[column] = math.nan
         if not math.isfinite(found[column]):
-            unit = "seconds" if column == TIME else "millimeters"
+            degrees = column != TIME and columns[column][0].endswith("_deg")
+            unit = "seconds" if column == TIME else "degrees" if degrees else "millimeters"
             raise InputError(f"{place}, column {column}: write a number of {unit}, not {quote(cell.strip())}")
     return found
 
 
 TIME = "time_s"
-MILLIMETERS = "_mm"  # ends the head of a column of contractions
 """Name of the column of times [s]."""
+
+MILLIMETERS = "_mm"  # ends the head of a column of contractions
 
 
 _MARKS = {

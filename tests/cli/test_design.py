@@ -288,11 +288,12 @@ def test_a_killed_search_leaves_its_steps(
         raise KeyboardInterrupt
 
     monkeypatch.setattr("hydrostat.design.find_network", die)
-    for more in ((), ("--resume",)):
+    for more in ((), ("--resume",), ()):
         code, _, errors = run("design", strip, *more, "--out", tmp_path / "out")
         assert code == 130
         assert errors.endswith(f"first network; to continue, add --resume ({tmp_path / 'out' / 'search.json'})\n")
-    first, second = known
+    first, second, _ = known
+    assert (tmp_path / "out" / "search.old.json").exists()  # a new search does not overwrite it
     assert (first, second[0]) == ((), steps[0])
 
 

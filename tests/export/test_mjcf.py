@@ -35,7 +35,7 @@ def _with_small_strains(robot: Robot) -> Robot:
 
 
 def test_a_model_is_well_formed_and_names_each_part() -> None:
-    tree = ElementTree.fromstring(mjcf_text(strip_robot(), remarks=["a -- b"], range_share=0.5))
+    tree = ElementTree.fromstring(mjcf_text(strip_robot(), remarks=["a --- b----"], range_share=0.5))
     winch = strip_robot().winches[0]
     names = [each.get("name") for each in tree.findall("actuator/general")]
     assert names == [cable.name for cable in strip_robot().cables]
@@ -51,6 +51,8 @@ def test_parts_without_counterpart_are_rejected_or_listed() -> None:
     rubbing = replace(robot, cables=tuple(replace(cable, friction=0.2) for cable in robot.cables))
     assert find_omissions(robot) == ()
     assert find_omissions(rubbing) == ("cable friction",)
+    soft = replace(robot, pins=tuple(replace(pin, stiffness=1.0) for pin in robot.pins))
+    assert find_omissions(soft) == ("stiffness of pins (they are rigid)",)
     assert "did not settle" in MjcfError(share=None, num_poses=3).describe()
 
 

@@ -82,6 +82,10 @@ def test_boxes_that_meet() -> None:
         apart = (one.min(1)[:, None] > other.max(1)[None]) | (other.min(1)[None] > one.max(1)[:, None])
         assert np.array_equal(find_near_pairs(one, other), np.argwhere(~apart.any(axis=2)))
     assert find_near_pairs(one[:0], other).shape == (0, 2)
+    holed = one.copy()
+    holed[3, 0, 1] = np.nan
+    whole = find_near_pairs(one, other)
+    assert np.array_equal(find_near_pairs(holed, other), whole[whole[:, 0] != 3])
 
 
 def _side(p: np.ndarray, a: np.ndarray, b: np.ndarray, c: np.ndarray) -> float:

@@ -143,6 +143,12 @@ def test_values_of_drives_are_written_and_read_in_degrees_and_millimeters(tmp_pa
     file = profile.write(tmp_path / "moves.csv", robot)
     assert file.read_text().splitlines() == ["time_s,servo_deg,stage_mm", "0,0,0", "1,30,5"]
     np.testing.assert_allclose(ContractionProfile.read(file, robot).values, profile.values, rtol=1e-12)
+    file.write_text("time_s,servo_deg\n0,left\n")
+    with pytest.raises(InputError, match="write a number of degrees, not"):
+        ContractionProfile.read(file, robot)
+    file.write_text("time_s,servo_rad\n0,1\n")
+    with pytest.raises(InputError, match='unknown winch or drive "servo_rad"'):
+        ContractionProfile.read(file, robot)
 
 
 def test_wrong_values_are_told_in_one_line() -> None:

@@ -1,6 +1,7 @@
 """`Photographs`: photographs of the built robot on its poses, compared with the simulation and fitted."""
 
 from collections.abc import Mapping
+from pathlib import Path
 
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
@@ -69,6 +70,8 @@ class Photographs:
 
     def add(self, name: str, content: bytes, contractions: Mapping[str, float]) -> None:
         """Take a photograph on a pose (InputError: too many, or too large); one of the same name is replaced."""
+        if Path(name).name != name or name in ("", "..") or "\0" in name or len(name.encode()) > 200:
+            raise InputError(f"{name[:60]!r}: not a file name. Rename the photograph.")
         if len(content) > MOST_BYTES:
             raise InputError(f"{name}: larger than {MOST_BYTES // 1_000_000} MB. Save it smaller.")
         kept = tuple(file for file in self.files if file.name != name)

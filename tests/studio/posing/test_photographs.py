@@ -74,6 +74,9 @@ def test_photographs_are_kept_by_name() -> None:
     assert [file.name for file in kept.files] == ["a.jpg"]
     with pytest.raises(InputError, match=r"c.jpg: larger than 25 MB"):
         kept.add("c.jpg", b"0" * (MOST_BYTES + 1), {})
+    for name in ("..", "", "a/b.jpg", "a" * 300, "a\0.jpg"):
+        with pytest.raises(InputError, match="not a file name"):
+            kept.add(name, b"picture", {})
     with pytest.raises(InputError, match="compare the photographs first"):
         kept.start_fit()
     with pytest.raises(InputError, match="no fit of this robot"):
