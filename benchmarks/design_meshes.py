@@ -10,6 +10,7 @@ whether `hydrostat check` warns of few elements across a limb.
 import argparse
 import json
 from pathlib import Path
+from shutil import copytree
 from tempfile import TemporaryDirectory
 
 from machine import machine
@@ -25,8 +26,7 @@ def meshed_finer(robot: Robot, folder: Path, factor: float) -> Robot:
     assert robot.body.element_size is not None
     text = with_values((folder / "robot.toml").read_text(), element_size=factor * robot.body.element_size)
     with TemporaryDirectory() as copy:
-        for file in folder.iterdir():
-            (Path(copy) / file.name).write_bytes(file.read_bytes())
+        copytree(folder, copy, dirs_exist_ok=True)
         (Path(copy) / "robot.toml").write_text(text)
         return load_robot(copy)
 

@@ -25,6 +25,7 @@ def test_tags_are_printed_with_their_names(run: Run, tmp_path: Path, starfish: P
 
 def test_a_missing_extra_is_named(run: Run, tmp_path: Path, starfish: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "cv2", None)
+    (tmp_path / "rest.jpg").touch()
     for command, *more in (("measure", "--out", tmp_path / "a.csv"), ("compare", "--out", tmp_path / "a")):
         code, _, err = run(command, starfish, tmp_path / "rest.jpg", *more)
         assert code == 1
@@ -40,6 +41,10 @@ def test_measure_says_what_it_needs(run: Run, tmp_path: Path, starfish: Path) ->
     assert (code, "no photographs" in err) == (2, True)
     code, _, err = run("measure", starfish, "--print", tmp_path / "tags.txt")
     assert (code, "tags.txt: must end in .pdf" in err) == (2, True)
+    code, _, err = run("measure", starfish, tmp_path / "b.jpg", "--out", tmp_path / "a.csv")
+    assert (code, err) == (2, f"hydrostat: error: {tmp_path / 'b.jpg'}: there is no such file\n")
+    for name in ("a.MP4", "a.mp4", "b.jpg"):
+        (tmp_path / name).touch()
     code, _, err = run("measure", starfish, tmp_path / "a.MP4", "--out", tmp_path / "a.csv")
     assert (code, "a film needs --table with the moves that were played" in err) == (2, True)
     code, _, err = run("measure", starfish, tmp_path / "a.mp4", tmp_path / "b.jpg", "--out", tmp_path / "a.csv")
