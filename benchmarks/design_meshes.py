@@ -2,9 +2,9 @@
 
     python benchmarks/design_meshes.py DESIGN ... [--finer 0.6]
 
-DESIGN is a folder of `hydrostat design`. Columns: nodes of its mesh and of one whose elements are so many times as
-long, rms difference of the places of all markers over all poses [mm], the same as a share of their moves from rest, and
-whether `hydrostat check` warns of few elements across a limb.
+DESIGN is a folder of `hydrostat design`. Columns: nodes of its mesh and of one with elements of `--finer` times the
+length, rms difference of the places of all markers over all poses [mm], the same as a share of their moves from rest,
+and whether `hydrostat check` warns of few elements across a limb.
 """
 
 import argparse

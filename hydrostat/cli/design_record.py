@@ -24,7 +24,9 @@ def open_record(out: Path, robot: "Robot", request: "DesignRequest", *, resume: 
     from hydrostat.design import SearchRecord
 
     if not resume:
-        return _keep_written(SearchRecord(), out, robot, request, is_new=True)
+        if (out / _FILE).exists():  # a search that was stopped here is not overwritten
+            (out / _FILE).replace(out / _OLD)
+        return _keep_written(SearchRecord(), out, robot, request)
     if not (out / _FILE).exists():
         raise InputError(f"--resume: {out} has no {_FILE}, so no search was stopped there. Start without --resume.")
     record = SearchRecord.read(out / _FILE, robot, request)
@@ -32,23 +34,18 @@ def open_record(out: Path, robot: "Robot", request: "DesignRequest", *, resume: 
     return _keep_written(record, out, robot, request)
 
 
-def _keep_written(
-    record: "SearchRecord", out: Path, robot: "Robot", request: "DesignRequest", *, is_new: bool = False
-) -> "SearchRecord":
-    """Write a record after its steps, in at most a fiftieth of the time of the search; a new one moves an old aside."""
+def _keep_written(record: "SearchRecord", out: Path, robot: "Robot", request: "DesignRequest") -> "SearchRecord":
+    """Write a record after its steps, in at most a fiftieth of the time of the search."""
     wait, share = 1.0, 50  # least time between two files [s]; the same in times that a file took
     due = time.perf_counter() + wait
 
     def write() -> None:
-        nonlocal due, is_new
+        nonlocal due
         began = time.perf_counter()
         if began < due:
             return
         with suppress(InputError, OSError):  # a full disk ends no search
             out.mkdir(parents=True, exist_ok=True)
-            if is_new and (out / _FILE).exists():
-                (out / _FILE).replace(out / _OLD)
-            is_new = False
             record.write(out / _FILE, robot, request)
         due = began + max(wait, share * (time.perf_counter() - began))
 
