@@ -17,10 +17,12 @@ if TYPE_CHECKING:
     from hydrostat.simulation.filled import filled_motion, is_filled_motion_fast
     from hydrostat.simulation.find_contacts import ContactPatch, find_contacts
     from hydrostat.simulation.marker_compliance import marker_compliance
+    from hydrostat.simulation.modes import Modes, find_modes
     from hydrostat.simulation.motion_file import MotionTable, write_motion, write_pose
     from hydrostat.simulation.obstacle_frames import obstacle_forces, obstacles_in_pose, with_obstacles, with_replaced
     from hydrostat.simulation.sensitivities.adjoint import Sensitivity
     from hydrostat.simulation.simulation import Simulation
+    from hydrostat.simulation.state_space import StateSpace, linearize
     from hydrostat.simulation.static_obstacles import require_static_obstacles, rests_at_first, without_contact_friction
     from hydrostat.simulation.statics.batch_result import BatchResult
     from hydrostat.simulation.statics.static_solver import StaticSolver, not_converged
@@ -37,12 +39,14 @@ __all__ = [
     "ContractionProfile",
     "Contractions",
     "Equilibrium",
+    "Modes",
     "Motion",
     "MotionTable",
     "Multistability",
     "ProfileTable",
     "Sensitivity",
     "Simulation",
+    "StateSpace",
     "StaticSolver",
     "StepOptions",
     "cable_sensitivities",
@@ -52,9 +56,11 @@ __all__ = [
     "filled_motion",
     "find_contacts",
     "find_equilibria",
+    "find_modes",
     "friction_hysteresis",
     "is_filled_motion_fast",
     "largest_distance",
+    "linearize",
     "marker_compliance",
     "node_strains",
     "node_stresses",

@@ -1,0 +1,50 @@
+"""`find_modes`: small free vibrations about an equilibrium."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hydrostat.arrays import Float, Vector
+from hydrostat.simulation.equilibrium import Equilibrium
+from hydrostat.simulation.linear_pose import LinearPose
+from hydrostat.simulation.simulation import Simulation
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Modes:
+    """Vibration modes about a pose at fixed controls, by rising frequency.
+
+    Attributes:
+        frequencies: frequency of each mode [Hz], without damping and with relaxed Maxwell branches.
+        damping: damping ratio of each mode, to first order in viscosity and Maxwell branches; 1 is critical.
+        shapes: displacement of the nodes in each mode, (modes, nodes, dim), of unit modal mass [1/kg^0.5].
+    """
+
+    frequencies: Vector
+    damping: Vector
+    shapes: Float[np.ndarray, "modes nodes dim"]
+
+
+def find_modes(simulation: Simulation, pose: Equilibrium | None = None, *, count: int = 6) -> Modes:
+    """Lowest vibration modes about an equilibrium, with taut cables as springs and winches that stand still.
+
+    Args:
+        simulation: physics of the robot.
+        pose: an equilibrium; that without contractions if left out.
+        count: number of modes.
+
+    Raises:
+        InputError: friction, or a count that is not from 1 to the number of unknowns.
+        NotConvergedError: the pose is no stable equilibrium.
+    """
+    pose = simulation.rest if pose is None else pose
+    linear = LinearPose(simulation, pose)
+    basis = linear.find_basis(count)
+    rates = np.sqrt(np.diag(linear.reduce_stiffness(basis)))
+    memory = simulation.dynamics.memory
+    lost = sum(
+        viscosity / (1 + (time * rates) ** 2) for viscosity, time in zip(memory.viscosities, memory.times, strict=True)
+    )
+    damping = lost * np.diag(linear.reduce_viscous(basis)) / (2 * rates)
+    shapes = basis.T.reshape(count, *linear.assembly.shape)[:, : len(pose.nodes)]
+    return Modes(frequencies=rates / (2 * np.pi), damping=damping, shapes=shapes)

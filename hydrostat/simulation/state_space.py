@@ -1,0 +1,117 @@
+"""`linearize`: linear state space of a robot about an equilibrium, for control."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hydrostat.arrays import Float, Nodes, Vector
+from hydrostat.given import check_not_negative
+from hydrostat.simulation.equilibrium import Equilibrium
+from hydrostat.simulation.linear_pose import LinearPose
+from hydrostat.simulation.simulation import Simulation
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class StateSpace:
+    """Linear model dz/dt = A z + B u, y = C z of small motions about a pose.
+
+    z holds modal displacements, modal velocities, then those displacements as each Maxwell branch of the material
+    remembers them. SciPy takes the matrices: `scipy.signal.StateSpace(space.A, space.B, space.C, 0)`.
+
+    Attributes:
+        pose: equilibrium about which the model holds; z = 0, u = 0 and y = 0 there.
+        A: state matrix [1/s].
+        B: input matrix, (states, controls).
+        C: output matrix, (outputs, states).
+        inputs: name of each winch [m of contraction] and drive [rad or m].
+        outputs: name of each output: displacement of each marker along each axis [m], such as "tip_x".
+        basis: displacement of each degree of freedom in each modal displacement [1/kg^0.5], (dofs, modes).
+        masses: mass of each degree of freedom [kg].
+    """
+
+    pose: Equilibrium
+    A: Float[np.ndarray, "states states"]
+    B: Float[np.ndarray, "states controls"]
+    C: Float[np.ndarray, "outputs states"]
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    basis: Float[np.ndarray, "dofs modes"]
+    masses: Vector
+
+    @property
+    def poles(self) -> NDArray[np.complex128]:
+        """Eigenvalues of A [1/s], complex, by falling real part: the slowest first."""
+        poles = np.linalg.eigvals(self.A).astype(np.complex128)
+        return poles[np.lexsort((-poles.imag, -poles.real))]
+
+    @property
+    def gain(self) -> Float[np.ndarray, "outputs controls"]:
+        """Static outputs per unit of each control: the Jacobian of the markers."""
+        return -self.C @ np.linalg.solve(self.A, self.B)
+
+    @property
+    def settling_time(self) -> float:
+        """Time after which the slowest pole has fallen to 2 % [s]; infinite without damping."""
+        slowest = float(self.poles.real.max())
+        return float(np.log(50) / -slowest) if slowest < -1e-9 * float(np.abs(self.A).max()) ** 0.5 else np.inf
+
+    def project(self, nodes: Nodes, velocities: Nodes | None = None) -> Vector:
+        """State z of nodes [m] with velocities [m/s] near the pose, by least kinetic energy; relaxed branches."""
+        count, modes = len(self.pose.nodes) * self.pose.nodes.shape[1], self.basis.shape[1]
+        weighted = (self.basis * self.masses[:, None])[:count].T
+        place = weighted @ (nodes - self.pose.nodes).ravel()
+        speed = np.zeros(modes) if velocities is None else weighted @ velocities.ravel()
+        return np.concatenate([place, speed, np.tile(place, len(self.A) // modes - 2)])
+
+
+def linearize(
+    simulation: Simulation, pose: Equilibrium | None = None, *, modes: int = 10, drag: float = 0.0
+) -> StateSpace:
+    """Linear state space about an equilibrium, from its lowest modes and the static move under each control.
+
+    The static moves make gains exact with few modes. Damping is that of the material and `drag`. Taut cables are
+    springs and slack ones absent, as in the pose.
+
+    Args:
+        simulation: physics of the robot.
+        pose: an equilibrium; that without contractions if left out.
+        modes: number of modes, without the static moves.
+        drag: drag force per mass and velocity [1/s], as in `StepOptions`.
+
+    Raises:
+        InputError: friction, or a number out of its range.
+        NotConvergedError: the pose is no stable equilibrium.
+    """
+    check_not_negative("drag", drag, "1/s")
+    pose = simulation.rest if pose is None else pose
+    linear, robot = LinearPose(simulation, pose), simulation.robot
+    basis = linear.with_static_moves(linear.find_basis(modes))
+    viscous, memory, count = linear.reduce_viscous(basis), simulation.dynamics.memory, basis.shape[1]
+    slow = [(float(eta / tau), float(tau)) for eta, tau in zip(memory.viscosities, memory.times, strict=True) if tau]
+    quick = float(memory.viscosities[memory.times == 0].sum())
+    one = np.eye(count)
+    stiff = linear.reduce_stiffness(basis) + sum(modulus for modulus, _ in slow) * viscous
+    matrix = np.zeros(((2 + len(slow)) * count,) * 2)
+    matrix[:count, count : 2 * count] = one
+    matrix[count : 2 * count, : 2 * count] = np.hstack([-stiff, -quick * viscous - drag * one])
+    for index, (modulus, time) in enumerate(slow, start=2):
+        part = slice(index * count, (index + 1) * count)
+        matrix[count : 2 * count, part] = modulus * viscous
+        matrix[part, :count], matrix[part, part] = one / time, -one / time
+    entry = np.zeros((len(matrix), robot.num_controls))
+    entry[count : 2 * count] = basis.T @ linear.inputs
+    anchors, (_, dim) = simulation.marker_anchors, linear.assembly.shape
+    moves = basis.reshape(-1, dim, count)[anchors.stencils]
+    places = np.einsum("pc,pcdm->pdm", anchors.weights, moves).reshape(-1, count)
+    names = [f"{marker.name}_{axis}" for marker in robot.markers for axis in "xyz"[:dim]]
+    return StateSpace(
+        pose=pose,
+        A=matrix,
+        B=entry,
+        C=np.hstack([places, np.zeros((len(places), len(matrix) - count))]),
+        inputs=tuple(part.name for part in (*robot.winches, *robot.drives)),
+        outputs=tuple(names),
+        basis=basis,
+        masses=linear.masses,
+    )
