@@ -10,17 +10,21 @@ from dataclasses import asdict
 from hashlib import sha256
 from io import BytesIO
 from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
 
 import matplotlib.image
 import numpy as np
 from matplotlib.figure import Figure
-from PIL import Image
+from PIL import Image, ImageDraw, ImageFont, ImageSequence
 
 import hydrostat as hs
-from hydrostat.design import activate, edge_fibres
+from hydrostat.design import activate, assign_cable_sides, edge_fibres
 from hydrostat.fabrication import KitOptions
 from hydrostat.geometry import Surface, contour, heal
 from hydrostat.plot import (
+    Film,
+    Stop,
     draw_activation,
     draw_healing,
     draw_network,
@@ -28,9 +32,10 @@ from hydrostat.plot import (
     draw_pose,
     draw_reached,
     draw_trajectory,
+    save_gif,
     save_png,
 )
-from hydrostat.robot import gallery_folder, list_gallery, robot_hash
+from hydrostat.robot import Mount, gallery_folder, list_gallery, robot_hash
 from hydrostat.studio import page_pictures
 from hydrostat.version import __version__
 
@@ -43,17 +48,27 @@ HERE = Path(__file__).parent / "pictures"
 PORTRAIT = 3.2
 """Width of a portrait [inches]."""
 
+FILM = 480
+"""Width of the film [pixels]."""
+
+CABLES = "2. Cables on two winches replace the muscles"
+"""Caption of the film's second picture."""
 
 DEMO_POSE, DEMO_WINCHES, DEMO_CABLES = "wave", 2, 6
 """The design of `make demo`."""
 
-DEMO_PICTURES = ("activation.png", "network.png", "reached.png", "kit.png")
+DEMO_PICTURES = ("activation.png", "network.png", "reached.png", "kit.png", "demo.gif")
 
 
 def main() -> None:
-    """Draw all of them, or those of the demo, or robots of hinges, bones and disks."""
+    """Draw all of them, or those of the demo, its film alone, or robots of hinges, bones and disks."""
     if sys.argv[1:] == ["tendons"]:
         draw_tendons()
+        return
+    if sys.argv[1:] == ["film"]:
+        record = json.loads((HERE / "demo.json").read_text())
+        draw_film(record, HERE / "demo.gif")
+        write_record(record)
         return
     draw_demo()
     if sys.argv[1:] == ["demo"]:
@@ -92,10 +107,67 @@ def draw_demo() -> None:
         "face": own.face,
         "winches": [asdict(winch) for winch in own.winches],
         "cables": [asdict(cable) for cable in own.cables],
-        "pictures": {name: sha256((HERE / name).read_bytes()).hexdigest() for name in DEMO_PICTURES},
     }
+    draw_film(record, HERE / "demo.gif")
+    write_record(record)
+
+
+def write_record(record: dict[str, Any]) -> None:
+    """Record of the demo with the hashes of its pictures, as demo.json."""
+    record["pictures"] = {name: sha256((HERE / name).read_bytes()).hexdigest() for name in DEMO_PICTURES}
     lines = [f" {json.dumps(name)}: {json.dumps(value)}" for name, value in record.items()]
     (HERE / "demo.json").write_text("{\n" + ",\n".join(lines) + "\n}\n")
+
+
+def demo_robot(record: dict[str, Any]) -> hs.Robot:
+    """Starfish of the gallery with the network of a record of the demo."""
+    starfish = hs.load_robot(gallery_folder("starfish"))
+    winches = [hs.Winch(**_as_tuples(winch) | {"mount": Mount(winch["mount"])}) for winch in record["winches"]]
+    return assign_cable_sides(starfish).with_network(winches, [hs.Cable(**_as_tuples(c)) for c in record["cables"]])
+
+
+def _as_tuples(value: Any) -> Any:
+    """Values of JSON with tuples for lists."""
+    if isinstance(value, dict):
+        return {name: _as_tuples(one) for name, one in value.items()}
+    return tuple(map(_as_tuples, value)) if isinstance(value, list) else value
+
+
+def draw_film(record: dict[str, Any], path: Path) -> None:
+    """The three steps of the demo as a GIF: muscles, cables, and the winches that move the robot into the pose."""
+    starfish, robot = hs.load_robot(gallery_folder("starfish")), demo_robot(record)
+    pose = starfish.poses[DEMO_POSE]
+    muscles = draw_activation(starfish, activate(starfish, pose, edge_fibres(starfish.body.mesh)), title="")
+    stills = [(_pixels(muscles), "1. Virtual muscles make the pose"), (_pixels(draw_network(robot, title="")), CABLES)]
+    stop = Stop(name=DEMO_POSE, contractions=np.array(record["contractions"]), target=pose)
+    film = Film.of_stops(hs.Simulation(robot), [stop], seconds=4.0)
+    frames, times = [], []
+    with TemporaryDirectory() as folder:
+        file = save_gif(robot, film.frames, Path(folder) / "film.gif", step=film.step, width=FILM)
+        with Image.open(file) as moving:
+            for frame in ImageSequence.Iterator(moving):
+                frames.append(_with_caption(frame.convert("RGB"), "3. Two winches move the robot there"))
+                times.append(frame.info["duration"])
+    first = [_with_caption(Image.fromarray(np.uint8(255 * pixels[..., :3])), words) for pixels, words in stills]
+    palette = Image.new("RGB", (FILM, 3 * frames[0].height))
+    for row, frame in enumerate([*first, frames[len(frames) // 2]]):
+        palette.paste(frame, (0, row * frame.height))
+    palette = palette.quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=2)
+    colors = np.array(palette.getpalette()).reshape(-1, 3)
+    colors[colors.min(axis=1) > 247] = 255  # means of near-white pixels
+    palette.putpalette(colors.ravel().tolist())
+    shown = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in [*first, *frames]]
+    shown[0].save(path, save_all=True, append_images=shown[1:], duration=[2000, 2000, *times], loop=0, optimize=True)
+
+
+def _with_caption(picture: Image.Image, words: str) -> Image.Image:
+    """A picture of the film, as wide as it, with words below."""
+    page = Image.new("RGB", (FILM, FILM + 56), "white")
+    picture.thumbnail((FILM, FILM), Image.Resampling.LANCZOS)
+    page.paste(picture, ((FILM - picture.width) // 2, 0))
+    font = ImageFont.truetype(Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf", 18)
+    ImageDraw.Draw(page).text((FILM / 2, FILM + 28), words, fill=(40, 40, 40), font=font, anchor="mm")
+    return page
 
 
 def draw_dance() -> None:
@@ -214,7 +286,7 @@ def _contact_sheet(rows: list[list[Figure]], *, side: float, names: list[list[st
     return sheet
 
 
-def _pixels(figure: Figure) -> object:
+def _pixels(figure: Figure) -> np.ndarray:
     buffer = BytesIO()
     figure.savefig(buffer, format="png", dpi=160)
     buffer.seek(0)
