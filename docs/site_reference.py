@@ -31,7 +31,7 @@ GROUPS = {
     "Cable design": ("hydrostat.design",),
     "Build kit": ("hydrostat.fabrication",),
     "Pictures": ("hydrostat.plot",),
-    "Errors": ("hydrostat.errors",),
+    "Tables and errors": ("hydrostat.result_table", "hydrostat.errors"),
 }
 """Headings of the page of `import hydrostat as hs`, with the rooms whose names stand below them."""
 

@@ -6,7 +6,8 @@
     simulation = hs.Simulation(robot)
     pose = simulation.solve({"left": 0.012})
 
-The public names below load their module when they are first used, so that `import hydrostat` stays light.
+The public names below load their module when they are first used, so that `import hydrostat` stays light. So do the
+rooms `hs.learning`, `hs.control`, `hs.grasp`, `hs.training`, `hs.export`, `hs.plot`, `hs.teleop` and `hs.testing`.
 """
 
 from typing import TYPE_CHECKING
@@ -16,9 +17,19 @@ from hydrostat.painters import register_painters
 from hydrostat.version import __version__
 
 if TYPE_CHECKING:
+    import hydrostat.control
+    import hydrostat.export
+    import hydrostat.grasp
+    import hydrostat.learning
+    import hydrostat.plot
+    import hydrostat.teleop
+    import hydrostat.testing
+    import hydrostat.training  # noqa: F401
     from hydrostat.design import BuildTolerances, Constraints, Network, RouteOptions, TreeOptions, Zone, design_cables
-    from hydrostat.errors import HydrostatError, InputError, NotConvergedError
+    from hydrostat.design import review_robot as check
+    from hydrostat.errors import HydrostatError, HydrostatWarning, InputError, NotConvergedError
     from hydrostat.fabrication import Kit, KitOptions, PatternOptions, UnbuildableError, build_kit, write_kit
+    from hydrostat.geometry import Mesh
     from hydrostat.identification import Measurements, identify, read_measurements
     from hydrostat.ik import (
         CenterOfMassTarget,
@@ -45,9 +56,11 @@ if TYPE_CHECKING:
     from hydrostat.ik.new_robot import new_robot
     from hydrostat.ik.solve_ik import solve_ik
     from hydrostat.ik.solve_pulls import solve_pulls
-    from hydrostat.mechanics import NewtonOptions
+    from hydrostat.mechanics import Energy, NewtonOptions
     from hydrostat.plot import draw_network, draw_pose, draw_reached, draw_rest
+    from hydrostat.result_table import ResultTable
     from hydrostat.robot import (
+        Body,
         BodyPart,
         Cable,
         Contact,
@@ -89,6 +102,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "BatchResult",
+    "Body",
     "BodyPart",
     "Branch",
     "BuildTolerances",
@@ -99,9 +113,11 @@ __all__ = [
     "ContactPatch",
     "ContractionProfile",
     "Effort",
+    "Energy",
     "Equilibrium",
     "EquilibriumState",
     "HydrostatError",
+    "HydrostatWarning",
     "IKOptions",
     "IKResult",
     "IKStatus",
@@ -115,6 +131,7 @@ __all__ = [
     "MarkerTarget",
     "Material",
     "Measurements",
+    "Mesh",
     "Modes",
     "Motion",
     "Multistability",
@@ -130,6 +147,7 @@ __all__ = [
     "PoseRegularizer",
     "PoseTarget",
     "Residual",
+    "ResultTable",
     "Robot",
     "Rod",
     "RouteOptions",
@@ -147,6 +165,7 @@ __all__ = [
     "Zone",
     "__version__",
     "build_kit",
+    "check",
     "continue_branch",
     "design_cables",
     "draw_network",
@@ -173,5 +192,7 @@ __all__ = [
     "write_kit",
 ]
 
+_DRAWN = ("network", "pose", "reached", "rest", "trajectory")
+
 open_package(__name__)
-register_painters({kind: use_later("hydrostat.plot", f"draw_{kind}") for kind in ("pose", "reached", "rest")})
+register_painters({kind: use_later("hydrostat.plot", f"draw_{kind}") for kind in _DRAWN})

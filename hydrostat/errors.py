@@ -44,6 +44,10 @@ class NotConvergedError(HydrostatError):
         self.result = result
 
 
+class HydrostatWarning(UserWarning):
+    """Pose that is computed but that the robot cannot take, such as one beyond the travel of a winch."""
+
+
 NO_KIT = "no kit can be made of this body: "
 """Before a reason that holds whatever the winches and cables of a robot are."""
 

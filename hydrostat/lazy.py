@@ -18,7 +18,10 @@ from typing import Any
 
 
 def open_package(name: str) -> None:
-    """Make the imports of a package that stand under `if TYPE_CHECKING:` lazy; call it last in `__init__.py`."""
+    """Make the imports of a package that stand under `if TYPE_CHECKING:` lazy; call it last in `__init__.py`.
+
+    `import package.room` there lets `package.room` be used without an import.
+    """
     sys.modules[name].__class__ = _LazyPackage
 
 
@@ -74,6 +77,8 @@ class _LazyPackage(ModuleType):
     __all__: list[str]
 
     def __getattr__(self, name: str) -> Any:
+        if name in self._rooms:
+            return import_module(f"{self.__name__}.{name}")
         if name not in self.__all__:
             raise AttributeError(f"module {self.__name__!r} has no attribute {name!r}", name=name, obj=self)
         module, original = self._homes[name]
@@ -87,18 +92,23 @@ class _LazyPackage(ModuleType):
             super().__setattr__(name, value)
 
     def __dir__(self) -> list[str]:
-        return sorted({*self.__dict__, *self.__all__})
+        return sorted({*self.__dict__, *self.__all__, *self._rooms})
 
     @cached_property
     def _homes(self) -> dict[str, tuple[str, str]]:
         """Module of each name, and its name there."""
+        imports = (node for node in self._lazy_imports if isinstance(node, ast.ImportFrom))
+        return {alias.asname or alias.name: (str(node.module), alias.name) for node in imports for alias in node.names}
+
+    @cached_property
+    def _rooms(self) -> set[str]:
+        """Names of the subpackages that load on first access."""
+        imports = (node for node in self._lazy_imports if isinstance(node, ast.Import))
+        return {alias.name.rpartition(".")[2] for node in imports for alias in node.names}
+
+    @cached_property
+    def _lazy_imports(self) -> list[ast.stmt]:
+        """Statements under `if TYPE_CHECKING:`."""
         with open(str(self.__file__), encoding="utf-8") as file:
             tree = ast.parse(file.read())
-        imports = (
-            node
-            for block in tree.body
-            if isinstance(block, ast.If)
-            for node in block.body
-            if isinstance(node, ast.ImportFrom)
-        )
-        return {alias.asname or alias.name: (str(node.module), alias.name) for node in imports for alias in node.names}
+        return [node for block in tree.body if isinstance(block, ast.If) for node in block.body]

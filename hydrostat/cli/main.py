@@ -4,6 +4,7 @@ import gc
 import logging
 import os
 import sys
+import warnings
 from collections.abc import Callable
 from copy import copy
 from functools import wraps
@@ -38,7 +39,7 @@ from hydrostat.cli.studio import studio
 from hydrostat.cli.train import train
 from hydrostat.cli.trajectory import trajectory
 from hydrostat.cli.waiting import heed_interrupts, outlive_readers
-from hydrostat.errors import HydrostatError, InputError
+from hydrostat.errors import HydrostatError, HydrostatWarning, InputError
 
 app = typer.Typer(
     name="hydrostat",
@@ -121,6 +122,7 @@ def main() -> None:
     heed_interrupts()
     gc.set_threshold(50_000, *gc.get_threshold()[1:])  # looking for garbage is a tenth of a short command
     logging.getLogger("matplotlib").setLevel(logging.ERROR)  # such as that a home cannot be written to
+    warnings.simplefilter("ignore", HydrostatWarning)  # commands print the warnings of a pose
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the dense matrices are small: threads only wait
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # it would look for them in all installed packages
     try:

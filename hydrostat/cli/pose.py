@@ -50,7 +50,8 @@ def pose(
 ) -> None:
     """Solve inverse kinematics: find contractions for a pose.
 
-    Writes contractions.json, pose.json, pose.vtu (for ParaView) and pose.png; several poses get one folder each.
+    Writes contractions.json, pose.json, pose.vtu and cables.vtu (for ParaView) and pose.png. Several poses get one
+    folder each.
     A pose sets marker targets; --drawing sets a whole target shape. Give both to combine them. With --model, the
     command prints the error that the model predicts and the simulated error, then starts the search from there.
     A pose counts as reached if each marker is within 0.3 % of the body's size of its target.

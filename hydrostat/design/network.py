@@ -14,6 +14,7 @@ from hydrostat.design.muscles.activation import Activation
 from hydrostat.design.polyline import Route
 from hydrostat.design.request import DesignRequest
 from hydrostat.ik import IKResult
+from hydrostat.painters import draw_record, html_repr
 from hydrostat.robot import Robot
 from hydrostat.units import plural
 
@@ -119,6 +120,10 @@ class Network:
         """Return a description of one line."""
         built = f"{1e3 * self.rms_error:.3g} mm in the model, {1e3 * self.built:.3g} mm expected once built"
         return f"<Network for {plural(len(self.reached), 'pose')}, rms error {built}: {self.robot!r}>"
+
+    def _repr_html_(self) -> str:
+        """Summary and a picture, for a notebook."""
+        return html_repr(repr(self), draw_record("network", self.robot))
 
     @property
     def constraints(self) -> Constraints:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from hydrostat.geometry.files.rings import DRAWN_HINT
     from hydrostat.geometry.files.silhouette import contrast
     from hydrostat.geometry.files.surface_file import STEP_SUFFIXES, SURFACE_SUFFIXES, convert_step, read_surface
-    from hydrostat.geometry.files.vtu_file import write_vtu
+    from hydrostat.geometry.files.vtu_file import write_lines_vtu, write_vtu
     from hydrostat.geometry.healing.faults import crossing_pairs
     from hydrostat.geometry.healing.heal import heal
     from hydrostat.geometry.healing.healing import Healing
@@ -78,6 +78,7 @@ __all__ = [
     "size_for",
     "tetrahedralize",
     "triangulate",
+    "write_lines_vtu",
     "write_ply",
     "write_vtu",
 ]

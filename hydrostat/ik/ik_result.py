@@ -9,6 +9,7 @@ import numpy as np
 
 from hydrostat.errors import InputError
 from hydrostat.painters import draw_record, html_repr
+from hydrostat.result_table import Columns, Tabular
 from hydrostat.robot import PoseTarget
 from hydrostat.simulation import Equilibrium
 
@@ -30,7 +31,7 @@ CLOSE = 3e-3
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class IKResult:
+class IKResult(Tabular):
     """Result of inverse kinematics: the best pose found within the limits.
 
     Attributes:
@@ -56,6 +57,11 @@ class IKResult:
     optimality: float = 0.0
     active_limits: tuple[str, ...] = ()
     friction_hysteresis: Mapping[str, float] = field(default_factory=dict)
+
+    def columns(self) -> Columns:
+        """Return the table of its pose, and the error of each marker."""
+        errors = {f"error_{name}_m": np.array([float(error)]) for name, error in self.errors.items()}
+        return {**self.pose.columns(), **errors}
 
     def without_factors(self) -> "IKResult":
         """Return the same result without the factorized Hessian of its pose, to keep many results in memory."""

@@ -20,6 +20,7 @@ from hydrostat.files import clear_unfinished, read_stranger, temporary_path
 from hydrostat.given import path_of
 from hydrostat.learning.sample_plan import SamplePlan
 from hydrostat.learning.sample_shard import REASONS, sample_type
+from hydrostat.result_table import Columns, Tabular, marker_columns, named_columns, table_html
 
 FORMAT = 1
 """Version of what lies in a folder of samples."""
@@ -160,7 +161,7 @@ def _write_whole(path: Path, content: bytes) -> None:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Samples:
+class Samples(Tabular):
     """Equilibria of a robot at contractions drawn at random; only those that were found.
 
     Attributes:
@@ -192,6 +193,16 @@ class Samples:
 
     def __len__(self) -> int:
         return len(self.contractions)
+
+    def columns(self) -> Columns:
+        """Return contractions, markers and tensions as a table, a row for each sample."""
+        columns = named_columns("contraction", self.facts["winches"], self.contractions, "m")
+        columns |= marker_columns({name: self.markers[:, row] for row, name in enumerate(self.facts["markers"])})
+        return columns | named_columns("tension", self.facts["cables"], self.tensions, "N")
+
+    def _repr_html_(self) -> str:
+        """Summary and the first rows, for a notebook."""
+        return table_html(self)
 
     def __repr__(self) -> str:
         """Return a description of one line."""

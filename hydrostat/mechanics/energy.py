@@ -173,7 +173,7 @@ class Energy(ABC):
         """d2E/dx2 of each term [N/m], (terms, corners x dim, corners x dim), without the part in `coupling`."""
 
     def projected_hessian(self, nodes: Nodes, controls: Vector, share: float) -> HessianBlocks:
-        """Hessian blocks without this share, 0 to 1, of their negative part: projected Newton (E6)."""
+        """Hessian blocks without this share, 0 to 1, of their negative part: projected Newton."""
         blocks = self.hessian(nodes, controls)
         return blocks if self.convex else blocks + share * (nearest_semidefinite(blocks) - blocks)
 

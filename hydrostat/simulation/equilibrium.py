@@ -1,5 +1,6 @@
 """`Equilibrium`: a robot in quasi-static equilibrium under given contractions."""
 
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
@@ -7,10 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.errors import InputError
+from hydrostat.errors import HydrostatWarning, InputError
 from hydrostat.geometry import Mesh, find_crossings
 from hydrostat.mechanics import NewtonResult, pushed_elements
+from hydrostat.named_vector import NamedVector
 from hydrostat.painters import draw_record, html_repr
+from hydrostat.result_table import Columns, Tabular, marker_columns, named_columns
 from hydrostat.robot import PinDrive, Robot
 from hydrostat.simulation.mesh_error import WORTH_A_NOTE, estimate_stiffening
 from hydrostat.simulation.strain import find_overstrain, node_strains, node_stresses
@@ -21,14 +24,14 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Equilibrium:
+class Equilibrium(Tabular):
     """Static equilibrium of a robot at given contractions.
 
     Attributes:
-        contractions: contraction of each winch [m], in winch order.
+        contractions: contraction of each winch [m], in winch order and by name: `pose.contractions["left"]`.
         nodes: positions of the nodes [m].
         markers: position of each marker [m].
-        tensions: tension of each cable [N], in cable order.
+        tensions: tension of each cable [N], in cable order and by name.
         energy: total energy [J].
         result: solver result: stop reason, residual [N], iterations, stability and the factorized Hessian.
         history: history variables of the physics: cable slip at each point with friction so far and the anchors of the
@@ -48,6 +51,17 @@ class Equilibrium:
     carried: Points | None = None
     drives: Vector = field(default_factory=lambda: np.zeros(0))
     robot: Robot
+
+    def __post_init__(self) -> None:
+        """Give contractions, tensions and drives their names."""
+        for field_name, parts in name_values(self.robot).items():
+            values = getattr(self, field_name)
+            if len(values) == len(parts):
+                object.__setattr__(self, field_name, NamedVector(values, parts))
+
+    def columns(self) -> Columns:
+        """Return contractions, drives, markers, tensions and energy as a table of one row."""
+        return {**pose_columns(self), "energy_J": np.array([self.energy])}
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -155,6 +169,26 @@ class Equilibrium:
         return max((abs(float(place[2])) for place in self.markers.values()), default=0.0)
 
 
+def name_values(robot: Robot) -> dict[str, list[str]]:
+    """Names of contractions, tensions and drives of a pose of a robot."""
+    return {
+        "contractions": [winch.name for winch in robot.winches],
+        "tensions": [cable.name for cable in robot.cables],
+        "drives": [drive.name for drive in robot.drives],
+    }
+
+
+def pose_columns(state: Any) -> Columns:
+    """Columns of one pose or instant: contractions, drives, markers, tensions."""
+    robot: Robot = state.robot
+    names = name_values(robot)
+    columns = named_columns("contraction", names["contractions"], np.atleast_2d(state.contractions), "m")
+    for drive, value in zip(robot.drives, state.drives, strict=True):
+        columns[f"drive_{drive.name}_{'rad' if drive.turns else 'm'}"] = np.array([float(value)])
+    columns |= marker_columns({name: np.atleast_2d(place) for name, place in state.markers.items()})
+    return columns | named_columns("tension", names["tensions"], np.atleast_2d(state.tensions), "N")
+
+
 def beyond_travel(robot: Robot, contractions: Vector) -> list[str]:
     """Winches that would take in more than they can, or let out more, in words; empty where none does."""
     hair = 1e-9  # Tolerance for rounding errors of a contraction [m]
@@ -164,6 +198,13 @@ def beyond_travel(robot: Robot, contractions: Vector) -> list[str]:
         for winch, value in zip(robot.winches, contractions, strict=True)
         if not -winch.release - hair <= value <= winch.travel + hair
     ]
+
+
+def warn_beyond_travel(pose: Equilibrium) -> Equilibrium:
+    """Return a pose; warn the caller of its solve of contractions that the winches cannot reach."""
+    if words := "; ".join(beyond_travel(pose.robot, pose.contractions)):
+        warnings.warn(words, HydrostatWarning, stacklevel=3)
+    return pose
 
 
 def largest_distance(one: Nodes, other: Nodes) -> float:

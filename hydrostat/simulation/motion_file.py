@@ -15,7 +15,7 @@ import numpy as np
 from hydrostat.arrays import Float, Vector
 from hydrostat.errors import NotConvergedError
 from hydrostat.files import csv_text, replace_file
-from hydrostat.geometry import write_vtu
+from hydrostat.geometry import write_lines_vtu, write_vtu
 from hydrostat.robot import Robot, robot_hash
 from hydrostat.simulation.equilibrium import Equilibrium
 from hydrostat.simulation.obstacle_frames import carried_frames
@@ -67,7 +67,10 @@ def write_pose(
     extra: Mapping[str, Any] | None = None,
     jacobian: bool = False,
 ) -> list[Path]:
-    """Write pose.json, pose.vtu and, if wanted, jacobian.npz into a folder; returns their paths.
+    """Write pose.json, pose.vtu, cables.vtu and, if wanted, jacobian.npz into a folder; returns their paths.
+
+    pose.vtu has `rest`, `displacement` [m], `strain` and `stress` (von Mises, [Pa]) at each node, cables.vtu the
+    `tension` [N], the `winch` (its number) and the `contraction` [m] of each cable.
 
     Args:
         simulation: the robot's physics.
@@ -79,16 +82,29 @@ def write_pose(
     folder.mkdir(parents=True, exist_ok=True)
     robot = simulation.robot
     facts = {**pose_facts(robot, pose), **(extra or {})}
-    mesh = write_vtu(robot.body.mesh, pose.nodes, {"rest": robot.body.mesh.nodes})
+    rest = robot.body.mesh.nodes
+    fields = {"rest": rest, "displacement": pose.nodes - rest, "strain": pose.strains, "stress": pose.stresses}
     written = [
         replace_file(folder / "pose.json", (json.dumps(facts, indent=2) + "\n").encode()),
-        replace_file(folder / "pose.vtu", mesh),
+        replace_file(folder / "pose.vtu", write_vtu(robot.body.mesh, pose.nodes, fields)),
     ]
+    if robot.cables:
+        written.append(replace_file(folder / "cables.vtu", _cables_vtu(simulation, pose)))
     if jacobian:
         buffer = BytesIO()
         np.savez_compressed(buffer, jacobian=simulation.jacobian(pose))
         written.append(replace_file(folder / "jacobian.npz", buffer.getvalue()))
     return written
+
+
+def _cables_vtu(simulation: Simulation, pose: Equilibrium) -> bytes:
+    """Cables in a pose as lines."""
+    robot, routes = simulation.robot, simulation.route_points
+    places = routes.positions(pose.nodes)
+    names = [winch.name for winch in robot.winches]
+    winches = np.array([names.index(cable.winch) for cable in robot.cables], dtype=np.int64)
+    data = {"tension": np.asarray(pose.tensions), "winch": winches, "contraction": pose.contractions[winches]}
+    return write_lines_vtu(places, routes.counts, data)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -18,7 +18,7 @@ from hydrostat.simulation.cable_energies import cable_energy, friction_energy
 from hydrostat.simulation.contraction_profile import ContractionProfile, check_profile
 from hydrostat.simulation.controls import Contractions, contraction_values, split_controls
 from hydrostat.simulation.drive_energies import drive_energies
-from hydrostat.simulation.equilibrium import Equilibrium, check_apart, check_pose
+from hydrostat.simulation.equilibrium import Equilibrium, check_apart, check_pose, warn_beyond_travel
 from hydrostat.simulation.route_points import RoutePoints, route_points
 from hydrostat.simulation.sensitivities.adjoint import Sensitivity, cotangents, response, sensitivity
 from hydrostat.simulation.sensitivities.friction import FrictionSensitivities, friction_adjoint, friction_sensitivities
@@ -98,7 +98,7 @@ class Simulation:
         Args:
             contractions: cable taken in [m], and value of each drive [rad or m]; those left out are 0.
             start: a pose to begin from; the rest pose if left out.
-            strict: raise when the solver does not converge, rather than return the best pose found.
+            strict: raise if the solver does not converge; warn (`HydrostatWarning`) of contractions beyond travel.
             seconds: after which it stops, with what it has; no limit if left out.
             accuracy: approximate distance of a node from equilibrium [m] for streamed poses, for instance 1e-5; what
                 remains is `pose.result.error`. None: solved to rounding, as always with friction.
@@ -120,7 +120,7 @@ class Simulation:
         pose = self.make_pose(goal, result, history)
         if strict and not result.converged:
             raise not_converged(result, self.diagnose(pose))
-        return pose
+        return warn_beyond_travel(pose) if strict else pose
 
     def solve_batch(
         self,

@@ -80,6 +80,16 @@ def test_simulate_writes_what_the_library_solves(run: Run, tmp_path: Path, starf
     mesh = meshio.read(tmp_path / "pose.vtu")
     assert np.allclose(mesh.points[:, :2], pose.nodes, atol=1e-9)
     assert np.allclose(mesh.point_data["rest"][:, :2], simulation.robot.body.mesh.nodes)
+    assert np.allclose(mesh.point_data["displacement"] + mesh.point_data["rest"], mesh.points, atol=1e-12)
+    assert np.allclose(mesh.point_data["strain"], pose.strains, atol=1e-9)
+    assert np.allclose(mesh.point_data["stress"], pose.stresses, atol=1e-3)
+    lines = meshio.read(tmp_path / "cables.vtu")
+    spans = np.linalg.norm(np.diff(lines.points[lines.cells[0].data], axis=1)[:, 0], axis=1)
+    tension, winch = lines.cell_data["tension"][0], lines.cell_data["winch"][0]
+    assert set(tension) == {float(value) for value in pose.tensions}
+    taut = tension == pose.tensions["left 1"]  # its springs of 4 kN/m are longer by T / k, with a soft start
+    assert spans[taut].sum() == pytest.approx(simulation.robot.cables[1].length - 0.012, abs=1.5e-3)
+    assert (winch[taut] == 1).all()
     jacobian = np.load(tmp_path / "jacobian.npz")["jacobian"]
     assert jacobian == pytest.approx(simulation.jacobian(pose), abs=1e-6)
     assert (tmp_path / "pose.png").read_bytes().startswith(b"\x89PNG")

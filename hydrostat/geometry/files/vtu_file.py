@@ -4,13 +4,13 @@ import base64
 import binascii
 import re
 import zlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
 import numpy as np
 
-from hydrostat.arrays import Nodes
+from hydrostat.arrays import Nodes, Points
 from hydrostat.errors import InputError
 from hydrostat.geometry.files.cursor import Cells, Cursor, make_damage_error, whole_numbers
 from hydrostat.geometry.files.soup import MOST_BYTES
@@ -22,6 +22,7 @@ _KINDS = {
     "UInt64": "u8", "Float32": "f4", "Float64": "f8",
 }  # fmt: skip
 _NAMES = {code: name for name, code in _KINDS.items()}
+_LINE = 3  # VTK's number of a line between two points
 _ESCAPES = str.maketrans(
     {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
 )  # xml.sax.saxutils would load the client of the web
@@ -202,20 +203,34 @@ def write_vtu(mesh: Mesh, nodes: Nodes, point_data: Mapping[str, np.ndarray]) ->
     to the nodes: VTK wants it.
     """
     count, corners = mesh.elements.shape
-    sections: dict[str, Mapping[str, np.ndarray]] = {
-        "PointData": point_data,
-        "Points": {"Points": nodes},
-        "Cells": {
-            "connectivity": mesh.elements.ravel(),
-            "offsets": corners * np.arange(1, count + 1, dtype=np.int64),
-            "types": np.full(count, TRIANGLE if mesh.dim == 2 else TETRAHEDRON, dtype=np.uint8),
-        },
+    cells = {
+        "connectivity": mesh.elements.ravel(),
+        "offsets": corners * np.arange(1, count + 1, dtype=np.int64),
+        "types": np.full(count, TRIANGLE if mesh.dim == 2 else TETRAHEDRON, dtype=np.uint8),
     }
+    return _vtu(nodes, {"PointData": point_data, "Points": {"Points": nodes}, "Cells": cells}, count)
+
+
+def write_lines_vtu(points: Points, counts: Sequence[int], cell_data: Mapping[str, np.ndarray]) -> bytes:
+    """Give lines as a VTU file for ParaView: each goes through so many of the points [m], with data of each line."""
+    lines = np.repeat(np.arange(len(counts)), counts)
+    starts = np.flatnonzero(lines[:-1] == lines[1:])
+    cells = {
+        "connectivity": np.column_stack([starts, starts + 1]).ravel(),
+        "offsets": 2 * np.arange(1, len(starts) + 1, dtype=np.int64),
+        "types": np.full(len(starts), _LINE, dtype=np.uint8),
+    }
+    data = {name: np.asarray(values)[lines[starts]] for name, values in cell_data.items()}
+    return _vtu(points, {"CellData": data, "Points": {"Points": points}, "Cells": cells}, len(starts))
+
+
+def _vtu(points: Points, sections: Mapping[str, Mapping[str, np.ndarray]], count: int) -> bytes:
+    """Grid of one piece with so many cells."""
     lines = [
         '<?xml version="1.0"?>',
         '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt32" '
         'compressor="vtkZLibDataCompressor">',
-        f'<UnstructuredGrid><Piece NumberOfPoints="{len(nodes)}" NumberOfCells="{count}">',
+        f'<UnstructuredGrid><Piece NumberOfPoints="{len(points)}" NumberOfCells="{count}">',
     ]
     for tag, arrays in sections.items():
         lines += [f"<{tag}>", *(_data_array(name, values) for name, values in arrays.items()), f"</{tag}>"]

@@ -11,6 +11,8 @@ from hydrostat.arrays import Float, Vector
 from hydrostat.ik.ik_result import IKResult
 from hydrostat.ik.trajectory.poses import BranchJump
 from hydrostat.ik.trajectory.timed_path import MotionLimits, Samples
+from hydrostat.painters import draw_record, html_repr
+from hydrostat.result_table import Columns, Tabular, marker_columns, named_columns
 from hydrostat.robot import PoseTarget
 from hydrostat.simulation import ContractionProfile, Equilibrium
 from hydrostat.units import plural
@@ -64,7 +66,7 @@ class KeyPose:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Trajectory:
+class Trajectory(Tabular):
     """Contractions over time, and the equilibrium at each sample.
 
     Attributes:
@@ -98,6 +100,16 @@ class Trajectory:
     winches: tuple[str, ...]
     cables: tuple[str, ...] = field(repr=False)
     tension: Vector = field(repr=False)
+
+    def columns(self) -> Columns:
+        """Return time, contractions, markers and tensions as a table, a row for each sample."""
+        columns = {"time_s": self.times, **named_columns("contraction", self.winches, self.contractions, "m")}
+        names = [cable.name for cable in self.poses[0].robot.cables]
+        return columns | marker_columns(self.markers) | named_columns("tension", names, self.tensions, "N")
+
+    def _repr_html_(self) -> str:
+        """Report and a picture, for a notebook."""
+        return html_repr("\n".join(self.lines()), draw_record("trajectory", self.poses[0].robot, self))
 
     def __repr__(self) -> str:
         """Return a one-line summary."""

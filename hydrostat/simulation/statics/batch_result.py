@@ -12,6 +12,7 @@ from hydrostat.arrays import Bool, Float, Nodes, Points, Vector
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.geometry import Anchors
 from hydrostat.mechanics import Reason
+from hydrostat.result_table import Columns, Tabular, marker_columns, named_columns, table_html
 from hydrostat.robot import Robot
 from hydrostat.simulation.equilibrium import Equilibrium
 
@@ -46,7 +47,7 @@ class PoseRow(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class BatchResult:
+class BatchResult(Tabular):
     """Equilibria at many contractions, a row for each; NaN marks a missing value.
 
     Attributes:
@@ -59,6 +60,7 @@ class BatchResult:
         reasons: stop reason of each solve; None after an error.
         stable: True where the equilibrium is an energy minimum, not a saddle, (poses,).
         errors: error text of each solve; empty without an error.
+        robot: robot that was solved.
     """
 
     contractions: Float[np.ndarray, "poses winches"]
@@ -69,6 +71,20 @@ class BatchResult:
     reasons: tuple[Reason | None, ...]
     stable: Bool[np.ndarray, " poses"]
     errors: tuple[str, ...]
+    robot: Robot
+
+    def columns(self) -> Columns:
+        """Return contractions, drives, markers and tensions as a table, a row for each pose."""
+        robot, count = self.robot, len(self.robot.winches)
+        columns = named_columns("contraction", [w.name for w in robot.winches], self.contractions[:, :count], "m")
+        for drive, values in zip(robot.drives, self.contractions[:, count:].T, strict=True):
+            columns[f"drive_{drive.name}_{'rad' if drive.turns else 'm'}"] = values
+        columns |= marker_columns({m.name: self.markers[:, row] for row, m in enumerate(robot.markers)})
+        return columns | named_columns("tension", [cable.name for cable in robot.cables], self.tensions, "N")
+
+    def _repr_html_(self) -> str:
+        """Summary and the first rows, for a notebook."""
+        return table_html(self)
 
     @property
     def converged(self) -> Bool[np.ndarray, " poses"]:
@@ -154,6 +170,7 @@ def solve_rows(
         reasons=tuple(row.reason for row in rows),
         stable=np.array([row.stable for row in rows], dtype=bool),
         errors=tuple(row.trouble for row in rows),
+        robot=robot,
     )
 
 

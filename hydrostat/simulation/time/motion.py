@@ -7,12 +7,15 @@ import numpy as np
 
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.mechanics import Metrics, NewtonResult
+from hydrostat.named_vector import NamedVector
+from hydrostat.painters import html_repr
+from hydrostat.result_table import Columns, Tabular
 from hydrostat.robot import Robot
-from hydrostat.simulation.equilibrium import Equilibrium
+from hydrostat.simulation.equilibrium import Equilibrium, name_values, pose_columns
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Motion:
+class Motion(Tabular):
     """State of a motion at one instant: everything that the next step depends on, and the observable quantities.
 
     Attributes:
@@ -53,6 +56,22 @@ class Motion:
     result: NewtonResult | None = None
     carried: tuple[Points, Points, Points] | None = None
     drives: Vector = field(default_factory=lambda: np.zeros(0))
+
+    def __post_init__(self) -> None:
+        """Give contractions, tensions and drives their names."""
+        for field_name, parts in name_values(self.robot).items():
+            values = getattr(self, field_name)
+            if len(values) == len(parts):
+                object.__setattr__(self, field_name, NamedVector(values, parts))
+
+    def columns(self) -> Columns:
+        """Return time, contractions, drives, markers, tensions and energies as a table of one row."""
+        energies = {"kinetic_J": np.array([self.kinetic]), "potential_J": np.array([self.potential])}
+        return {"time_s": np.array([self.time]), **pose_columns(self), **energies}
+
+    def _repr_html_(self) -> str:
+        """Summary and a picture, for a notebook."""
+        return repr(self) if self.result is None else html_repr(repr(self), self.pose.plot())
 
     def __repr__(self) -> str:
         """Return a one-line summary."""
