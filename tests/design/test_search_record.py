@@ -13,11 +13,9 @@ from hydrostat.errors import InputError
 from hydrostat.robot import PoseTarget, robot_hash
 
 ROBOT = strip_robot(columns=10, rows=3).with_network((), ())
-POSES = tuple(
-    PoseTarget(name=name, targets={"tip": tip}) for name, tip in (("up", (0.18, 0.06)), ("down", (0.185, -0.05)))
-)
+POSES = (PoseTarget(name="up", targets={"tip": (0.18, 0.06)}),)
 QUICK = RouteOptions(starts=1, exchanges=1, refine_steps=2, trials=2, steps=2, max_edges=6)
-REQUEST = DesignRequest(poses=POSES, winches=2, cables=3, options=QUICK)
+REQUEST = DesignRequest(poses=POSES, winches=2, cables=2, options=QUICK)
 
 
 def search(record: SearchRecord, stop: int | None = None) -> Network:

@@ -17,9 +17,7 @@ from hydrostat.design.routes import design_routes as search
 from hydrostat.design.routes.shared_work import can_share, map_in_order
 from hydrostat.robot import PoseTarget
 
-POSES = tuple(
-    PoseTarget(name=name, targets={"tip": tip}) for name, tip in (("up", (0.18, 0.06)), ("down", (0.185, -0.05)))
-)
+POSES = (PoseTarget(name="up", targets={"tip": (0.18, 0.06)}),)
 QUICK = RouteOptions(starts=1, exchanges=1, refine_steps=2, trials=2, steps=2, max_edges=6)
 
 
@@ -88,7 +86,7 @@ def design(cores: int, monkeypatch: pytest.MonkeyPatch) -> Network:
     monkeypatch.setattr(search, "THREADS", cores)
     robot = strip_robot(columns=10, rows=3).with_network((), ())
     robot = replace(robot, body=replace(robot.body, thickness=0.045))  # units fit above each other: nothing is moved
-    return find_network(robot, DesignRequest(poses=POSES, winches=2, cables=3, options=QUICK))
+    return find_network(robot, DesignRequest(poses=POSES, winches=2, cables=2, options=QUICK))
 
 
 def test_two_cores_find_the_network_of_one(monkeypatch: pytest.MonkeyPatch, unchecked: None) -> None:
