@@ -11,7 +11,7 @@ import pytest
 from drawings import dxf
 from ezdxf.document import Drawing as Document
 from ezdxf.layouts import Modelspace
-from shapely import Polygon
+from shapely import Point, Polygon
 
 from hydrostat.errors import OutlineError, SeveralPartsError
 from hydrostat.geometry.files.outline_file import read_drawing
@@ -28,6 +28,7 @@ NOSE = '<path d="m40 40 h9 l-4 6z" fill="gray"/>'
 CORNERS = [(12, 45), (30, 30), (60, 28), (78, 45), (60, 62), (30, 60)]
 AREA = Polygon(CORNERS).area
 LEFT = Polygon([(12, 45), (30, 30), (45, 29), (45, 61), (30, 60)]).area
+EYED = Polygon(CORNERS).union(Point(78, 45).buffer(8)).area
 SIDES = Polygon([(10, 15), (75, 15), (80, 60), (20, 70)]).area
 
 
@@ -56,6 +57,7 @@ STROKE = 'fill="none" stroke="black"'
         f'<rect {FULL} style="display:none"/>',
         f"<rect {FULL} {STROKE}/>",
         f'<rect id="background" {FULL} fill="#888"/>',
+        f'<g style="clip-path:url(#p)"><rect {FULL} fill="snow"/></g><clipPath id="p"><rect {FULL}/></clipPath>',
         f'<rect width="89" height="89" x=".5" y=".5" {STROKE}/><rect x="3" y="3" width="84" height="84" {STROKE}/>'
         f'<rect x="50" y="72" width="37" height="15" {STROKE}/>',
     ],
@@ -86,6 +88,16 @@ def test_a_ground_is_no_body(ground: str) -> None:
         (f'<symbol id="s"><path d="{FISH}"/></symbol>{TEAL}', AREA, 0),
         (f'<clipPath id="c"><rect width="45" height="90"/></clipPath><g clip-path="url(#c)">{TEAL}</g>', LEFT, 0),
         (f'<clipPath id="c"><rect {FULL}/></clipPath><g clip-path="url(#c)">{TEAL}</g>', AREA, 0),
+        (
+            f'<style>.k, .l {{clip-path: url(#c)}}</style><clipPath id="c"><rect {WINDOW}/></clipPath>'
+            f'<rect class="k" {FULL}/>',
+            1600,
+            0,
+        ),
+        (f'<mask id="c"><rect {WINDOW} fill="#D9D9D9"/></mask><rect mask="url(#c)" {FULL}/>', 1600, 0),
+        (f'<mask id="c"><rect {WINDOW} fill="black"/></mask><rect mask="url(#c)" {FULL}/>', 8100, 0),
+        (f'<rect {FULL} fill="#fff"/><path d="{FISH}" fill="white" stroke="black"/>', AREA, 0),
+        (f'{TEAL}<circle cx="78" cy="45" r="8" fill="white" stroke="black"/>', EYED, 0),
     ],
 )
 def test_what_is_painted_is_the_body(body: str, area: float, holes: int) -> None:
@@ -99,6 +111,53 @@ def test_entities_that_are_words_are_read() -> None:
     head = '<!DOCTYPE svg [<!ENTITY ns "http://www.w3.org/2000/svg"><!ENTITY red "fill:red">]>'
     body = f'<svg xmlns="&ns;" {SHEET}><path style="&red;" d="{FISH}"/></svg>'
     assert read_drawing((head + body).encode(), name="a.svg").outline.size == pytest.approx(0.066)
+    nested = f'<!DOCTYPE svg [<!ENTITY fish "{FISH}"><!ENTITY again "&fish;">]>'
+    assert read_drawing(svg('<path d="&again;"/>', nested), name="a.svg").outline.size == pytest.approx(0.066)
+
+
+EYE = '<circle cx="66" cy="42" r="4" fill="white"/>'
+
+
+@pytest.mark.parametrize("pupil", [67, 68, 69.5], ids=["within", "touching", "across"])
+def test_an_eye_with_a_pupil_is_drawn_on_the_body(pupil: float) -> None:
+    """What lies in or across another cannot be a hole; what is painted beside it is drawn as well."""
+    mouth = '<path d="m40 50h9v2h-9z" fill="navy"/>'
+    found = read_drawing(svg(f'{TEAL}{EYE}<circle cx="{pupil}" cy="42" r="2"/>{mouth}'), name="a.svg")
+    assert 1e6 * found.outline.area == pytest.approx(AREA)
+    assert (len(found.outline.holes), len(found.marks)) == (0, 3)
+    assert "lies in or across another, as in an eye" in found.notes[0]
+
+
+def test_a_ring_in_a_plate_is_drawn_and_other_holes_stay() -> None:
+    """A drawing without paint: only what cannot be a hole is drawn."""
+
+    def draw(space: Modelspace, _: Document) -> None:
+        box(0, 0, 100, 60)(space)
+        for radius in (6, 10):
+            space.add_circle((30, 30), radius)
+        space.add_circle((70, 30), 8)
+
+    found = read_drawing(dxf(draw), name="a.dxf")
+    assert [1e3 * np.ptp(hole[:, 0]) for hole in found.outline.holes] == pytest.approx([16], rel=1e-3)
+    assert len(found.marks) == 2
+
+
+@pytest.mark.parametrize("kind", ["hatch", "solid", "face"])
+def test_filled_areas_are_read_where_there_are_no_lines(kind: str) -> None:
+    def draw(space: Modelspace, _: Document) -> None:
+        space.add_text("a part")
+        if kind == "hatch":
+            hatch = space.add_hatch()
+            for points in (PART, [(20, 20), (40, 20), (40, 40), (20, 40)]):
+                hatch.paths.add_polyline_path(points, is_closed=True)
+        elif kind == "solid":
+            space.add_solid([(0, 0), (130, 0), (0, 50), (130, 50)])
+        else:
+            space.add_3dface([(0, 0), (130, 0), (130, 50), (0, 50)])
+
+    outline = read_drawing(dxf(draw), name="a.dxf").outline
+    assert outline.size == pytest.approx(0.13)
+    assert len(outline.holes) == (kind == "hatch")
 
 
 PART = [(0, 0), (130, 0), (130, 50), (70, 75), (0, 50)]
@@ -134,6 +193,8 @@ def title(space: Modelspace) -> None:
         drawn(box(-40, -40, 277, 190)),
         drawn(box(-50, -50, 1188, 840)),
         drawn(box(-40, -40, 300, 200, layer="BORDER")),
+        drawn(box(-40, -40, 300, 200, layer="Zeichnungs-Rahmen")),
+        drawn(box(-40, -40, 300, 200, layer="Defpoints")),
         drawn(box(-40, -40, 300, 200), title),
         drawn(box(-50, -50, 420, 297), box(-40, -40, 400, 277), box(250, -40, 110, 30)),
         drawn(lambda space: space.add_line((-15, 25), (145, 25)), lambda space: space.add_line((65, -20), (65, 95))),
@@ -256,8 +317,16 @@ def test_bombs_are_refused() -> None:
     clip = f'<clipPath id="c"><path d="{window}"/></clipPath><g clip-path="url(#c)">{TEAL}</g>'
     with pytest.raises(OutlineError, match="a clip path has 4000 lines"):
         read_drawing(svg(clip), name="a.svg")
+    laughs = "".join(f'<!ENTITY e{n + 1} "{f"&e{n};" * 40}">' for n in range(4))
+    with pytest.raises(OutlineError, match="entities that are not plain words"):
+        read_drawing(svg('<path d="&e4;"/>', f'<!DOCTYPE svg [<!ENTITY e0 "M0 0h9">{laughs}]>'), name="a.svg")
     with pytest.raises(OutlineError, match="declares XML attributes"):
         read_drawing(svg(TEAL, '<!DOCTYPE svg [<!ATTLIST path d CDATA "M0 0">]>'), name="a.svg")
+
+
+def test_a_white_body_on_a_dark_page_is_asked_about() -> None:
+    with pytest.raises(SeveralPartsError, match=r"1: 90 x 90 at \(0, 0\); 2: 66 x 34"):
+        read_drawing(svg(f'<rect {FULL}/><path d="{FISH}" fill="white"/>'), name="a.svg")
 
 
 def test_a_frame_can_be_the_body() -> None:

@@ -155,6 +155,10 @@ def test_strips_remarks_and_supports() -> None:
         assert surface.volume == pytest.approx(90 * 75 * 60 / 6 * 1e-9)
     ball = b"# made by hand\n\n# OFF\n" + off(_BALL)
     _same(read_surface(ball, name="a.off"), _BALL)
+    _same(read_surface(b"\xef\xbb\xbf" + ball, name="a.off"), _BALL)
+    more = read_surface(stl(_BALL) + b"a slicer's words" * 5, name="a.stl")
+    _same(more, _BALL)
+    assert "found: 80 bytes after the last triangle, left out" in heal(more, resolution=1e-3).lines()
     box, pillar = (mesh_xml(cuboid((0, 0, 0), (0.01, 0.01, height))) for height in (0.01, 0.05))
     for kind in ("support", "solidsupport"):
         objects = f'<object id="1" type="model">{box}</object><object id="2" type="{kind}">{pillar}</object>'
@@ -165,6 +169,11 @@ def test_strips_remarks_and_supports() -> None:
         healed = heal(surface, resolution=1e-3)
         assert healed.clean
         assert "found: 1 object of type support, left out" in healed.lines()
+    objects = objects.replace(' type="solidsupport"', "")
+    items = '<item objectid="1"/><item objectid="2" printable="0"/>'
+    surface = read_surface(archive({"3D/3dmodel.model": model_xml(objects, items)}), name="a.3mf")
+    assert surface.volume == pytest.approx(1e-6)
+    assert "found: 1 object not to be printed, left out" in heal(surface, resolution=1e-3).lines()
 
 
 def test_numbers_in_stl_that_are_the_same_place_are_one_vertex() -> None:
@@ -198,7 +207,7 @@ _BAD = {
     "stl as 3mf": ("a.3mf", _STL, "no 3MF"),
     "off as ply": ("a.ply", off(_BALL), "rename it"),
     "stl cut": ("a.stl", _STL[:-30], "cut short"),
-    "stl too long": ("a.stl", _STL + b"\0" * 50, "bytes for"),
+    "stl of no triangles": ("a.stl", _STL[:80] + b"\0" * 4 + _STL[84:], "bytes for"),
     "stl head only": ("a.stl", b"\0" * 50, "too few"),
     "stl none": ("a.stl", b"\0" * 84, "cut short|no triangles"),
     "stl huge": ("a.stl", b"\0" * 80 + b"\xff" * 4 + b"\0" * 50, "declares 4294967295"),

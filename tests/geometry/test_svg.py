@@ -100,7 +100,7 @@ USES = "".join(f'<g id="u{n}"><use href="#u{n + 1}"/><use href="#u{n + 1}"/></g>
         (b"\x89PNG\r\n\x1a\n\x00", "a.svg: not an SVG drawing"),
         (b"<svg", "a.svg: not an SVG drawing"),
         (b"<html/>", "a.svg: not an SVG drawing, its first element is <html>"),
-        (b'<!DOCTYPE svg [<!ENTITY a "b"><!ENTITY c "&a;&a;">]><svg>&c;</svg>', "a.svg: declares XML entities"),
+        (b'<!DOCTYPE svg [<!ENTITY c "&a;&a;"><!ENTITY a "b">]><svg>&c;</svg>', "a.svg: declares XML entities"),
         ('<!DOCTYPE svg [<!ENTITY a SYSTEM "b">]><svg>&a;</svg>'.encode("utf-16"), "a.svg: declares XML entities"),
         (f'<!DOCTYPE svg [<!ENTITY a "{"b" * 4000}">]><svg>{"&a;" * 600}</svg>'.encode(), "a.svg: declares XML"),
         (b" " * 20_000_001 + b"<svg/>", "a.svg: the file has 20 MB, at most 20 MB are read"),
@@ -123,10 +123,6 @@ USES = "".join(f'<g id="u{n}"><use href="#u{n + 1}"/><use href="#u{n + 1}"/></g>
         (svg(SQUARE + '<circle cx="50" cy="50" r="5"/>'), r"2 parts \(1: 20 x 20 at \(10, 10\); 2: 10 x 10 .*--part N"),
         (svg(SQUARE + f'<circle cx="30" cy="20" r="5" {LINE}/>'), r"a.svg: two closed shapes cross at \(30, "),
         (svg(SQUARE + f'<circle cx="25" cy="20" r="5" {LINE}/>'), r"a.svg: two closed shapes cross at \(30, 20\)"),
-        (
-            svg(SQUARE + '<circle cx="20" cy="20" r="6"/><circle cx="20" cy="20" r="3"/>'),
-            r"a.svg: a closed shape at \(23, 20\) lies inside a hole",
-        ),
         (svg('<path d="M0,0 h1e400 v5 z"/>'), "a.svg: "),
     ],
 )

@@ -5,10 +5,10 @@ from dataclasses import replace
 from enum import StrEnum
 
 import numpy as np
-from shapely import LineString, MultiLineString, disjoint, get_parts, line_merge
+from shapely import LineString, MultiLineString, STRtree, disjoint, get_parts, line_merge
 
 from hydrostat.errors import OutlineError, SeveralPartsError
-from hydrostat.geometry.files.drawn_line import DrawnLine
+from hydrostat.geometry.files.drawn_line import PAINTED, DrawnLine
 from hydrostat.geometry.files.drawn_shapes import Shapes
 from hydrostat.geometry.files.rings import (
     DRAWN_HINT,
@@ -18,7 +18,6 @@ from hydrostat.geometry.files.rings import (
     body_and_holes,
     outline_on_page,
     point_text,
-    shapes_of,
 )
 from hydrostat.geometry.outline import Outline, Ring
 from hydrostat.units import plural
@@ -60,24 +59,41 @@ def drawing_of(
         places = {number: on.places(shapes.closed[number - 1].points) for number in error.parts}
         raise SeveralPartsError(str(error), places) from None
     notes = (*notes, *shapes.notes, *chosen)
-    rings, open_lines = [line.points for line in (body_line, *inside_lines)], list(shapes.open)
-    if inner is Inner.HOLES:
-        body, holes = body_and_holes(rings, name)
-        on = page(body)
-        outline = outline_on_page(body, holes, on, name)
-        left = []
-        if open_lines:
-            where = point_text(max(open_lines, key=_extent)[0])
-            left = [f"left out {plural(len(open_lines), 'open line')}, the largest at {where}"]
-        told = (*notes, *left, *holes_told(outline), *_frame_told(shapes, body_line, inside_lines))
-        return Drawing(outline, on, told, part=shapes.closed.index(body_line) + 1)
-    body = np.array(shapes_of(rings[:1], name)[0].exterior.coords)
+    details = _details(body_line, inside_lines) if inner is Inner.HOLES else inside_lines
+    if any(line.fill in PAINTED for line in details):
+        details = inside_lines  # what is painted beside an eye is drawn as well
+    holes = [line for line in inside_lines if line not in details]
+    body, cut = body_and_holes([body_line.points, *(line.points for line in holes)], name)
     on = page(body)
-    outline = outline_on_page(body, [], on, name)
-    drawn = [*(np.concatenate([ring, ring[:1]]) for ring in rings[1:]), *open_lines]
+    outline = outline_on_page(body, cut, on, name)
+    number = shapes.closed.index(body_line) + 1
+    open_lines = list(shapes.open)
+    told: list[str] = []
+    drawn = [np.concatenate([line.points, line.points[:1]]) for line in details]
+    if inner is Inner.DRAWN or details:
+        drawn, open_lines = [*drawn, *open_lines], []
     marks = marks_on(outline, [on.places(line) for line in drawn])
-    told = (f"{plural(len(marks), 'line')} drawn on the body, not cut",) if marks else ()
-    return Drawing(outline, on, (*notes, *told), marks, shapes.closed.index(body_line) + 1)
+    if inner is Inner.HOLES and details:
+        where = point_text(details[0].points[0])
+        told.append(f"a shape at {where} lies in or across another, as in an eye: both are drawn, not cut")
+    if marks:
+        told.append(f"{plural(len(marks), 'line')} drawn on the body, not cut")
+    if open_lines:
+        where = point_text(max(open_lines, key=_extent)[0])
+        told.append(f"left out {plural(len(open_lines), 'open line')}, the largest at {where}")
+    told += [*holes_told(outline), *_frame_told(shapes, body_line, holes)]
+    return Drawing(outline, on, (*notes, *told), marks, number)
+
+
+def _details(body: DrawnLine, inside: list[DrawnLine]) -> list[DrawnLine]:
+    """Shapes within a body that cannot be holes, as one lies in another or crosses it: an eye and its pupil."""
+    within = [line for line in inside if body.polygon.covers(line.polygon)]
+    if len(within) < 2:
+        return []
+    areas = [line.polygon for line in within]
+    pairs = STRtree(areas).query(areas, predicate="intersects").T.tolist()
+    met = {one for one, two in pairs if one != two and not areas[one].equals(areas[two])}
+    return [line for number, line in enumerate(within) if number in met]
 
 
 _PART = 0.1  # a second shape beside the largest is a part of its own where it has this share of the area

@@ -142,7 +142,7 @@ def _refuse_open(rings: list[DrawnLine], loose: list[DrawnLine], branch: Outline
 
 
 def unite_fills(rings: list[DrawnLine]) -> tuple[list[DrawnLine], int]:
-    """Unite painted elements whose edges meet, as paint does; white ones with white ones only, as they may cover.
+    """Unite painted elements whose edges meet, as paint does; white ones without a line among themselves only.
 
     Args:
         rings: closed lines.
@@ -157,7 +157,7 @@ def unite_fills(rings: list[DrawnLine]) -> tuple[list[DrawnLine], int]:
     members = list(elements.values())
     areas = [painted_area(each) for each in members]
     reach = _ROUNDING * max((ring.extent for ring in rings), default=0.0)
-    groups = _meeting(areas, [each[0].fill is Fill.PALE for each in members], reach)
+    groups = _meeting(areas, [each[0].fill is Fill.PALE and each[0].width == 0.0 for each in members], reach)
     made, parts, gone = [], 0, set()
     for group in np.flatnonzero(np.bincount(groups) > 1).tolist():
         chosen = np.flatnonzero(groups == group).tolist()

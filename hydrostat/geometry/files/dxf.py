@@ -41,6 +41,9 @@ _METERS = {
     13: 1e-6, 14: 0.1,
 }  # fmt: skip
 _LINES = {"LWPOLYLINE", "POLYLINE", "CIRCLE", "ELLIPSE", "SPLINE", "LINE", "ARC"}
+_AREAS = {"HATCH", "SOLID", "TRACE", "3DFACE"}
+"""Kinds of entities that are read where there are no lines."""
+
 _BROKEN = (ValueError, TypeError, AttributeError, LookupError, ArithmeticError, RecursionError, AssertionError)
 
 
@@ -162,6 +165,7 @@ class _Space:
     ignored: Counter[str] = field(default_factory=Counter)
     texts: list[tuple[float, float]] = field(default_factory=list)  # places of texts
     layout: str = ""  # name of the layout that was read in place of the model space
+    areas: bool = False  # filled areas are read instead of lines
 
     def lines(self) -> list[DrawnLine]:
         """Every visible line, in the drawing's units."""
@@ -173,6 +177,9 @@ class _Space:
                 if layout != "Model" and (found := list(self._lines_of(self.document.layout(layout), 0, ""))):
                     self.layout = layout
                     break
+            if not found and any(self.ignored[kind] for kind in _AREAS):
+                self.areas, self.ignored, self.texts = True, Counter(), []
+                found = list(self._lines_of(self.document.modelspace(), 0, ""))
         except (DXFError, *_BROKEN) as error:
             raise OutlineError(f"{self.name}: cannot be read as DXF ({one_line(error)}): export it again") from error
         return found
@@ -198,18 +205,24 @@ class _Space:
                 for insert in entity.multi_insert() if entity.mcount > 1 else (entity,):
                     yield from self._lines_of(insert.virtual_entities(), depth + 1, named)
             elif kind in _LINES and not (kind == "POLYLINE" and (entity.is_poly_face_mesh or entity.is_polygon_mesh)):
-                points = _flatten(entity)
-                self.points += len(points)
-                if self.points > MOST_POINTS:
-                    raise OutlineError(f"{self.name}: more than {MOST_POINTS} points: simplify the drawing")
-                if len(points) > 1:
-                    label = f"{entity.dxf.get('layer', '0')} {block_name}".strip()
-                    yield DrawnLine(points=points, closed=_is_closed(entity, points), label=label)
+                yield from self._drawn(entity, [_flatten(entity)], block_name)
+            elif self.areas and kind in _AREAS:
+                yield from self._drawn(entity, _edges(entity), block_name)
             else:
                 self.ignored[kind] += 1
                 place = entity.dxf.get("insert") if kind in ("TEXT", "MTEXT", "ATTRIB", "ATTDEF") else None
                 if place is not None:
                     self.texts.append((float(place.x), float(place.y)))
+
+    def _drawn(self, entity: Any, found: list[Ring], block_name: str) -> Iterator[DrawnLine]:
+        """Lines of an entity along some points."""
+        self.points += sum(map(len, found))
+        if self.points > MOST_POINTS:
+            raise OutlineError(f"{self.name}: more than {MOST_POINTS} points: simplify the drawing")
+        label = f"{entity.dxf.get('layer', '0')} {block_name}".strip()
+        for points in found:
+            if len(points) > 1:
+                yield DrawnLine(points=points, closed=self.areas or _is_closed(entity, points), label=label)
 
     def _spend(self, count: int, depth: int) -> None:
         """Refuse drawings that repeat their blocks without end."""
@@ -237,7 +250,18 @@ def _flatten(entity: Any) -> Ring:
     if entity.dxftype() == "POLYLINE" and any(vertex.dxf.flags & _FRAME_VERTEX for vertex in entity.vertices):
         places = [vertex.dxf.location for vertex in entity.vertices if not vertex.dxf.flags & _FRAME_VERTEX]
         return without_repeats(np.array([(place.x, place.y) for place in places]).reshape(-1, 2))
-    path = make_path(entity, segments=16)
+    return _along(make_path(entity, segments=16))
+
+
+def _edges(entity: Any) -> list[Ring]:
+    """Points around a filled area, and around the gaps in it."""
+    from ezdxf.path import from_hatch, make_path
+
+    return [_along(path) for path in (from_hatch(entity) if entity.dxftype() == "HATCH" else [make_path(entity)])]
+
+
+def _along(path: Any) -> Ring:
+    """Points along a path of ezdxf."""
     control = np.array([(point.x, point.y) for point in path.control_vertices()]).reshape(-1, 2)
     if not len(control):
         return control

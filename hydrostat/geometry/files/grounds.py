@@ -8,8 +8,14 @@ import numpy as np
 
 from hydrostat.geometry.files.drawn_line import PAINTED, DrawnLine, Fill, PageFacts
 
-_SURE = re.compile(r"(?<![a-z])(back ?ground|backdrop|canvas|artboard|title ?block)(?![a-z])", re.IGNORECASE)
-_LIKELY = re.compile(r"(?<![a-z])(page|sheet|paper|frame|border)(?![a-z])", re.IGNORECASE)
+_SURE = re.compile(
+    r"(?<![a-z])(back ?ground|backdrop|canvas|artboard|title ?block|defpoints|hintergrund|schriftfeld|fondo?)(?![a-z])",
+    re.IGNORECASE,
+)
+_LIKELY = re.compile(
+    r"(?<![a-z])(page|sheet|paper|frame|border|rahmen|blatt|cadre|marco|hoja|cornice)(?![a-z])",
+    re.IGNORECASE,
+)
 _PAPERS = (
     (1189, 841), (841, 594), (594, 420), (420, 297), (297, 210), (210, 148), (148, 105),  # ISO 216, A0 to A6
     (279.4, 215.9), (431.8, 279.4), (558.8, 431.8), (863.6, 558.8), (1117.6, 863.6), (355.6, 215.9),  # ANSI, legal
@@ -84,13 +90,15 @@ def _doubt(first: DrawnLine, inside: list[DrawnLine], page: PageFacts) -> Doubt:
         return Doubt.GROUND
     sharp = first.polygon.area > 0.999 * float(np.prod(np.ptp(first.points, axis=0)))
     bare = sharp and first.width == 0.0 and _fills_page(first, page)  # a page that is painted, without an edge
-    if first.fill is Fill.PALE and bare and any(ring.fill is not Fill.PALE for ring in inside):
+    if first.fill is Fill.PALE and bare and any(ring.fill is not Fill.PALE or ring.width > 0.0 for ring in inside):
         return Doubt.GROUND
     if _is_hole(largest, first) or not sharp:
         return Doubt.BODY
     if first.fill is Fill.PALE:
         likely = any(ring.fill is not Fill.PALE for ring in inside)
     elif first.fill is Fill.FULL:
+        if largest.fill is Fill.PALE and bare:
+            return Doubt.ASK  # a white body on a dark page, or a window in a dark plate
         likely = largest.fill is Fill.FULL and largest.color != first.color and _fills_page(first, page)
     else:
         titles = sum(

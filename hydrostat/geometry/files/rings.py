@@ -91,19 +91,13 @@ def body_and_holes(rings: list[Ring], name: str) -> tuple[Ring, list[Ring]]:
     """Largest ring, and the others, which lie inside it.
 
     Raises:
-        OutlineError: a ring crosses itself or another, lies inside a hole, or there are too many.
+        OutlineError: a ring crosses itself or another.
     """
     shapes = shapes_of(rings, name)
     body, holes = shapes[0], []
     for shape in shapes[1:]:
         if any(shape.equals(other) for other in (body, *holes)):
             continue
-        inside = next((hole for hole in holes if hole.contains(shape)), None)
-        if inside is not None:
-            raise OutlineError(
-                f"{name}: a closed shape at {point_text(shape.exterior.coords[0])} lies inside a hole and so hangs on "
-                f"nothing: delete it, or the hole; or if they are drawn on the body, such as an eye, say {DRAWN_HINT}"
-            )
         crossing = next((other for other in (body, *holes) if other.exterior.intersects(shape.exterior)), None)
         if crossing is not None:
             point = crossing.exterior.intersection(shape.exterior).representative_point()

@@ -3,11 +3,13 @@
 import re
 from array import array
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from hydrostat.errors import SurfaceError
 from hydrostat.geometry.files.soup import MOST_TRIANGLES, Soup, check_count, fans, text_lines
+from hydrostat.units import plural
 
 _HEADER = 84
 _RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -19,8 +21,11 @@ _WORD = re.compile(rb"^[ \t]*vertex\b", re.MULTILINE | re.IGNORECASE)
 
 def read_stl(content: bytes, name: str) -> Soup:
     """Read an STL file, each place as one vertex, no normals (SurfaceError: cut short, a wrong count, no number)."""
-    corners = _text(content, name) if is_stl_text(content) else _binary(content, name)
-    return _weld_corners(corners)
+    if is_stl_text(content):
+        return _weld_corners(_text(content, name))
+    corners, more = _binary(content, name)
+    notes = (f"{plural(more, 'byte')} after the last triangle, left out",) if more else ()
+    return replace(_weld_corners(corners), notes=notes)
 
 
 def is_stl_text(content: bytes) -> bool:
@@ -35,8 +40,8 @@ def fits_binary_stl(content: bytes) -> bool:
     return len(content) > _HEADER and len(content) == _HEADER + _RECORD.itemsize * count
 
 
-def _binary(content: bytes, name: str) -> np.ndarray:
-    """Corners of the triangles of a binary file, (triangles, 3, 3)."""
+def _binary(content: bytes, name: str) -> tuple[np.ndarray, int]:
+    """Corners of the triangles of a binary file, (triangles, 3, 3), and the number of bytes after them."""
     if len(content) < _HEADER:
         raise SurfaceError(f"{name}: {len(content)} bytes are too few for an STL file: export the surface again")
     if content[:400].isascii() and content[:400].decode("ascii").replace("\n", " ").isprintable():
@@ -44,11 +49,12 @@ def _binary(content: bytes, name: str) -> np.ndarray:
     count = int.from_bytes(content[_HEADER - 4 : _HEADER], "little")
     room = (len(content) - _HEADER) / _RECORD.itemsize
     check_count(name, "triangles", count, room=room)
-    if count != room:
+    if count == 0 < room:
         raise SurfaceError(
-            f"{name}: declares {count} triangles, but has bytes for {room:g}: the file is damaged, export it again"
+            f"{name}: declares 0 triangles, but has bytes for {room:g}: the file is damaged, export it again"
         )
-    return np.frombuffer(content, _RECORD, count, _HEADER)["corners"]
+    more = len(content) - _HEADER - count * _RECORD.itemsize
+    return np.frombuffer(content, _RECORD, count, _HEADER)["corners"], more
 
 
 def _text(content: bytes, name: str) -> np.ndarray:
@@ -135,7 +141,7 @@ def _index(word: bytes, vertices: int) -> int:
     return number - 1 if number > 0 else vertices + number
 
 
-OFF_HEAD = re.compile(rb"(?:\s|#[^\r\n]{0,1000}[\r\n]){0,1000}(?:ST)?C?N?OFF\b")
+OFF_HEAD = re.compile(rb"(?:\xef\xbb\xbf)?(?:\s|#[^\r\n]{0,1000}[\r\n]){0,1000}(?:ST)?C?N?OFF\b")
 """Header of OFF files, after remarks: with or without texture, colors and normals, none of which is used."""
 
 

@@ -37,6 +37,7 @@ from hydrostat.units import printable
 if TYPE_CHECKING:
     from svgelements import Path
 
+_REFERENCE = re.compile(r"&([^;&#\s]+);")
 _COMMAND = re.compile(r"[A-DF-Za-df-z]")  # of a path; an e is part of a number
 _NUMBER = re.compile(r"\d+\.?\d*|\.\d+")
 _METERS = {"mm": 1e-3, "cm": 1e-2, "in": 0.0254, "pt": 0.0254 / 72, "pc": 0.0254 / 6, "q": 0.25e-3}
@@ -100,9 +101,14 @@ def _guard(content: bytes, name: str) -> None:
         nonlocal depth
         depth -= 1
 
-    def entity(_name: str, parameter: bool, value: str | None, *_others: object) -> None:
-        if parameter or value is None or "&" in value or len(value) * content.count(b"&") > most_expanded:
+    lengths: dict[str, int] = {}  # letters that each entity becomes
+
+    def entity(called: str, parameter: bool, value: str | None, *_others: object) -> None:
+        used = _REFERENCE.findall(value or "")
+        length = len(value or "") + sum(lengths.get(each, most_expanded) for each in used)
+        if parameter or value is None or length * content.count(b"&") > most_expanded:
             raise OutlineError(f"{name}: declares XML entities that are not plain words: save it as plain SVG")
+        lengths.setdefault(called, length)
 
     def refuse_attributes(*_arguments: object) -> None:
         raise OutlineError(f"{name}: declares XML attributes, which are not read: save it as plain SVG")

@@ -17,7 +17,10 @@ LABEL = "data-label"
 
 _CLIP, _CLIPPED = "data-clip-", "data-clipped-"
 _URL = re.compile(r"url\(\s*['\"]?#([^'\")]+)['\"]?\s*\)")
-_STYLE = re.compile(r"(?:^|;)\s*clip-path\s*:\s*([^;]+)")
+_STYLE = re.compile(r"(?:^|;)\s*(clip-path|mask)\s*:\s*([^;]+)")
+_WINDOWS = ("clipPath", "mask")
+_BLACK = re.compile(r"(?:^|[;:\s])(black|#000|#000000)\s*(?:;|$)", re.IGNORECASE)
+_MOST_STYLE = 100_000  # letters of a style sheet that are searched for clip paths
 
 
 def _tag(element: ElementTree.Element) -> str:
@@ -92,20 +95,24 @@ def mark_labels(root: ElementTree.Element, layers: str = "") -> None:
 def mark_clips(root: ElementTree.Element) -> None:
     """Put the shapes of a clip path beside each element that it clips; both are marked by a number.
 
-    Only clip paths in the units of the drawing are known; others clip nothing here. Raises ValueError: they would be
-    repeated too often.
+    A mask clips as well, unless it has black in it. Only clip paths in the units of the drawing are known; others clip
+    nothing here. Raises ValueError: they would be repeated too often.
     """
     most = 20_000  # elements that clip paths are repeated as
-    clips = {each.get("id", ""): each for each in root.iter() if _tag(each) == "clipPath"}
+    clips = {each.get("id", ""): each for each in root.iter() if _is_window(each)}
+    sheet = _clips_of_names(root)
     number = 0
     for parent in list(root.iter()):
-        if _tag(parent) == "clipPath":
+        if _tag(parent) in _WINDOWS:
             continue
         for place, element in enumerate(list(parent)):
-            said = element.get("clip-path") or next(iter(_STYLE.findall(element.get("style", ""))), "")
+            names = [f"#{element.get('id', '')}", *(f".{each}" for each in element.get("class", "").split())]
+            style = next((words[1] for words in _STYLE.findall(element.get("style", ""))), "")
+            said = element.get("clip-path") or style or element.get("mask")
+            said = said or next((sheet[each] for each in names if each in sheet), "")
             found = _URL.search(said)
             clip = clips.get(found[1]) if found else None
-            if clip is None or clip.get("clipPathUnits", "userSpaceOnUse") != "userSpaceOnUse" or not len(clip):
+            if clip is None:
                 continue
             number += 1
             most -= sum(1 for _ in clip.iter())
@@ -117,6 +124,26 @@ def mark_clips(root: ElementTree.Element) -> None:
             window.extend(deepcopy(list(clip)))
             group.append(element)
             parent[place] = group
+
+
+def _is_window(element: ElementTree.Element) -> bool:
+    """True for a clip path with shapes in the units of the drawing, and for such a mask without black."""
+    if _tag(element) not in _WINDOWS or not len(element):
+        return False
+    units = element.get("clipPathUnits") or element.get("maskContentUnits") or "userSpaceOnUse"
+    black = any(_BLACK.search(f"{each.get('fill', '')};{each.get('style', '')}") for each in element.iter())
+    return units == "userSpaceOnUse" and not (_tag(element) == "mask" and black)
+
+
+def _clips_of_names(root: ElementTree.Element) -> dict[str, str]:
+    """Clip paths that style sheets give, by class (.name) and id (#name)."""
+    found: dict[str, str] = {}
+    for sheet in (each.text or "" for each in root.iter() if _tag(each) == "style"):
+        for rule in sheet[:_MOST_STYLE].split("}"):
+            chosen, _, body = rule.partition("{")
+            for _, said in _STYLE.findall(body):
+                found |= {name.strip(): said for name in chosen.split(",")}
+    return found
 
 
 def is_clip(values: Mapping[str, str]) -> bool:

@@ -40,6 +40,7 @@ class _Model:
     unit: str = "millimeter"
     objects: dict[_Key, _Object] = field(default_factory=dict)
     items: list[tuple[_Key, np.ndarray]] = field(default_factory=list)
+    unprinted: int = 0  # items that the slicer was told not to print
     others: set[str] = field(default_factory=set)
 
 
@@ -159,6 +160,8 @@ def _read_xml(text: bytes, part: str, model: _Model, *, root: bool, name: str) -
                     now = model.objects[part, attributes["id"]] = _Object(support=support)
                 case "component":
                     now.parts.append(_read_item(attributes, part, model))
+                case "item" if root and attributes.get("printable", "1") in ("0", "false"):
+                    model.unprinted += 1
                 case "item" if root:
                     model.items.append(_read_item(attributes, part, model))
                 case "model" if root:
@@ -206,7 +209,8 @@ def _read_objects(model: _Model, name: str) -> Soup:
             places.append(points @ transform[:3, :3] + transform[3, :3])
         triangles.append(vertex_count + (corners[:, ::-1] if turn else corners))
         vertex_count += len(points)
-    notes = (f"{plural(supports, 'object')} of type support, left out",) if supports else ()
+    left = {"of type support": supports, "not to be printed": model.unprinted}
+    notes = tuple(f"{plural(count, 'object')} {kind}, left out" for kind, count in left.items() if count)
     return Soup(np.concatenate(places), np.concatenate(triangles), _METERS[model.unit], notes)
 
 
