@@ -34,6 +34,7 @@ from hydrostat.cli.pose import pose
 from hydrostat.cli.reproduce import PASS_ON, reproduce
 from hydrostat.cli.sample import sample
 from hydrostat.cli.scale import scale
+from hydrostat.cli.share import share
 from hydrostat.cli.simulate import simulate
 from hydrostat.cli.studio import studio
 from hydrostat.cli.train import train
@@ -90,6 +91,7 @@ for command in (
     drive,
     mimic,
     animate,
+    share,
     export,
     design,
     fabricate,

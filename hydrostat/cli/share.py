@@ -1,0 +1,123 @@
+"""`hydrostat share`."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from hydrostat.cli.folders import RobotFolder, folder_of, require_writable
+from hydrostat.cli.options import parse_optional
+from hydrostat.cli.waiting import prepare_physics, progress_bar, read_robot
+from hydrostat.errors import InputError
+
+if TYPE_CHECKING:
+    from hydrostat.arrays import Vector
+    from hydrostat.progress import Progress
+    from hydrostat.robot import Robot
+    from hydrostat.simulation import Simulation
+    from hydrostat.toy import LearnedShape, ToyPose
+
+
+def share(
+    robot: RobotFolder,
+    out: Annotated[Path, typer.Option("--out", metavar="FILE", help="HTML file to write, e.g. toy.html.")],
+    samples: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N", min=20, max=100_000, help="Number of poses to simulate.", show_default="400 flat, 2000 in 3D"
+        ),
+    ] = None,
+    time: Annotated[
+        str | None, typer.Option("--time", metavar="TIME", help="Maximum time, e.g. 120s.", show_default="none")
+    ] = None,
+    seed: Annotated[int, typer.Option(help="Random seed.")] = 0,
+) -> None:
+    """Write a robot as one HTML page to play with: no server, no installation.
+
+    Samples the robot, trains a network of the whole body, and checks it in other poses. In the page you drag the body,
+    turn the winches and play the poses of robot.toml and the keyframes of the studio. The page states its error.
+
+    Example: hydrostat share gallery:starfish --out starfish.html
+    """
+    from hydrostat.files import replace_file
+    from hydrostat.toy import learn_shape, sample_shapes, toy_page
+    from hydrostat.units import TIME
+
+    if out.suffix.lower() not in (".html", ".htm"):
+        raise InputError(f"--out {out}: not an HTML file. Name a file such as toy.html.")
+    if out.is_dir() or not out.absolute().parent.is_dir():
+        raise InputError(
+            f"--out {out}: {'is a folder' if out.is_dir() else 'folder not found'}. Name a file in an existing folder."
+        )
+    require_writable(out.absolute().parent, f"--out {out}")
+    seconds = parse_optional("--time", time, TIME)
+    if seconds is not None and not seconds > 0:
+        raise InputError(f"--time {time}: must be above 0")
+    loaded = read_robot(robot)
+    if not loaded.cables:
+        raise InputError(f"{robot}: no cables. Add winches and cables, or run `hydrostat design`.")
+    flat = loaded.body.mesh.dim == 2
+    count = samples or (400 if flat else 2000)
+    shares = (0.6, 0.35)  # of the time, for samples and for training
+    with progress_bar() as progress:
+        simulation = prepare_physics(loaded)
+        poses = _poses(simulation, progress)
+        taken = sample_shapes(loaded, count, seed=seed, seconds=seconds and shares[0] * seconds, progress=progress)
+        shape = learn_shape(
+            taken,
+            simulation.rest.nodes,
+            steps=6000 if flat else 12_000,
+            seconds=seconds and shares[1] * seconds,
+            seed=seed,
+            progress=progress,
+        )
+    page = toy_page(loaded, shape, poses=poses, moves=_moves(folder_of(robot), loaded))
+    replace_file(out, page.encode())
+    _tell(shape, taken.lost, float(taken.crosses.mean()), count)
+    print(f"Wrote {out} ({len(page) / 1e6:.2f} MB). Open it in any browser, or send it")
+
+
+def _poses(simulation: "Simulation", progress: "Progress") -> "list[ToyPose]":
+    """Contractions for each pose of the robot."""
+    from hydrostat.ik import solve_ik
+    from hydrostat.toy import ToyPose
+
+    robot, found = simulation.robot, []
+    for number, name in enumerate(robot.poses, 1):
+        taken = solve_ik(simulation, robot.pose(name)).pose.contractions
+        found.append(ToyPose(name=name, contractions=tuple(taken.tolist())))
+        progress("poses", number, len(robot.poses))
+    return found
+
+
+def _moves(folder: Path, robot: "Robot") -> "list[tuple[float, Vector]]":
+    """Keyframes that the studio saved with the robot; none without a readable studio.json."""
+    import numpy as np
+
+    from hydrostat.project import read_project_file
+
+    try:
+        timeline, _ = read_project_file(folder, [cable.name for cable in robot.cables])
+    except InputError:
+        return []
+    return [
+        (key.time, np.array([key.contractions.get(winch.name, 0.0) for winch in robot.winches]))
+        for key in timeline.keys
+    ]
+
+
+def _tell(shape: "LearnedShape", lost: int, crossing: float, count: int) -> None:
+    """Print the error of a shape, and what limits it."""
+    print(
+        f"mean error {1e3 * shape.error:.2f} mm in {shape.held_out} held-out poses (mean motion "
+        f"{1e3 * shape.moved:.1f} mm), below {1e3 * shape.worst:.2f} mm at all nodes in 95 % of them"
+    )
+    found = shape.samples + shape.held_out + lost
+    if found < count or shape.stopped:
+        print(f"note: time limit reached after {found} of {count} samples. A higher --time lowers the error")
+    if lost:
+        print(f"note: {lost} samples without a stable equilibrium")
+    if crossing > 0.01:
+        print(
+            f"note: the body self-intersects in {100 * crossing:.0f} % of the poses. Contact: [contact] in robot.toml"
+        )

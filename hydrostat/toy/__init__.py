@@ -1,0 +1,15 @@
+"""A robot in one page: a learned shape of the whole body, and an HTML file that needs neither server nor simulator."""
+
+from typing import TYPE_CHECKING
+
+from hydrostat.lazy import open_package
+
+if TYPE_CHECKING:
+    from hydrostat.toy.learn_shape import learn_shape
+    from hydrostat.toy.learned_shape import LearnedShape
+    from hydrostat.toy.toy_page import ToyPose, toy_page
+    from hydrostat.toy.toy_samples import sample_shapes
+
+__all__ = ["LearnedShape", "ToyPose", "learn_shape", "sample_shapes", "toy_page"]
+
+open_package(__name__)

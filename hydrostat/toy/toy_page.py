@@ -1,0 +1,148 @@
+"""`toy_page`: one HTML file in which a robot is dragged, without server, simulator or installation."""
+
+import base64
+import hashlib
+import html
+import json
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib import resources
+from typing import Any
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.drawing import Camera, Color
+from hydrostat.errors import InputError
+from hydrostat.fabrication import winch_marks_of
+from hydrostat.robot import Robot, robot_hash
+from hydrostat.toy.learned_shape import LearnedShape
+from hydrostat.toy.toy_picture import ToyPicture
+from hydrostat.version import __version__
+
+_MODULES = ("model", "sight", "drawing", "surface", "player", "page")
+"""JavaScript of the page, each before those that import it."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ToyPose:
+    """A pose that the page can play.
+
+    Attributes:
+        name: name on its button.
+        contractions: cable taken in by each winch [m].
+    """
+
+    name: str
+    contractions: tuple[float, ...]
+
+
+def toy_page(
+    robot: Robot,
+    shape: LearnedShape,
+    *,
+    poses: Sequence[ToyPose] = (),
+    moves: Sequence[tuple[float, Vector]] = (),
+) -> str:
+    """Return the page as text. Same robot, shape and poses, same bytes.
+
+    Names are data: they stand in JSON whose "<" is escaped, and the page's policy runs no script but its own.
+
+    Args:
+        robot: robot to show.
+        shape: learned shape of its body.
+        poses: poses to play.
+        moves: keyframes to play: times [s] and contractions of all winches [m].
+
+    Raises:
+        InputError: a body with more points on its surface than a browser without extensions draws.
+    """
+    picture = ToyPicture.of(robot, shape)
+    most = 65_536  # points of a surface by 16 bit numbers of WebGL 1
+    if len(picture.faces) and int(picture.faces.max()) >= most:
+        raise InputError(f"the surface has {int(picture.faces.max()) + 1} nodes. Use a mesh with at most {most}.")
+    places = {winch.name: place for place, winch in enumerate(robot.winches)}
+    colors, marks = Color.of_winches(robot.winches), winch_marks_of(robot)
+    up, eye = _view(robot)
+    facts: dict[str, Any] = {
+        "name": robot.name,
+        "version": __version__,
+        "robot": robot_hash(robot),
+        "dim": robot.body.mesh.dim,
+        "size": robot.body.mesh.size,
+        "up": up.tolist(),
+        "eye": eye.tolist(),
+        "winches": [
+            {"name": winch.name, "mark": marks[winch.name], "color": colors[winch.name], "low": low, "high": high}
+            for winch, low, high in zip(robot.winches, shape.low.tolist(), shape.high.tolist(), strict=True)
+        ],
+        "cables": [places[cable.winch] for cable in robot.cables],
+        "markers": [marker.name for marker in robot.markers],
+        "poses": [{"name": pose.name, "contractions": list(pose.contractions)} for pose in poses],
+        "moves": [[float(time), np.asarray(taken).tolist()] for time, taken in moves],
+        "groups": picture.facts(),
+        "sizes": shape.network.sizes.tolist(),
+        "numbers": _coded(shape.network.numbers[0], "<f4"),
+        "mean": _coded(picture.mean, "<f4"),
+        "basis": _coded(picture.basis, "<f4"),
+        "faces": _coded(picture.faces, "<u4"),
+    }
+    text = json.dumps(facts, separators=(",", ":"), ensure_ascii=True).replace("<", "\\u003c")
+    script = _script()
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    filled = {
+        "TITLE": html.escape(robot.name),
+        "STYLE": _static("toy.css"),
+        "SCRIPT_HASH": f"sha256-{digest}",
+        "HINT": "Drag the body" if robot.body.mesh.dim == 2 else "Drag the body. Drag beside it to turn the view",
+        "MADE": _made_text(shape),
+        "DATA": text,
+        "SCRIPT": script,
+    }
+    return re.sub(r"@([A-Z_]+)@", lambda found: filled[found[1]], _static("toy.html"))
+
+
+def _view(robot: Robot) -> tuple[Vector, Vector]:
+    """Upward direction of a robot, and the direction in which the eye is at first; of no use where it is flat."""
+    up = np.array([0.0, 0.0, 1.0])
+    nodes = robot.body.mesh.nodes
+    if nodes.shape[1] == 2:
+        return up, up
+    if robot.gravity is not None and any(robot.gravity):
+        up = -np.array(robot.gravity) / np.linalg.norm(robot.gravity)
+    shown = np.array([part.at for part in (*robot.winches, *robot.markers)], dtype=float)
+    return up, Camera.three_quarter(nodes, shown, up).axes[2]
+
+
+def _made_text(shape: LearnedShape) -> str:
+    """How the page was made and how far it is off, as HTML."""
+    lines = [
+        f"Learned from {shape.samples} simulated poses by a network of {shape.network.numbers.size} numbers.",
+        f"Checked in {shape.held_out} other poses: mean error {_millimeters(shape.error)} "
+        f"of {_millimeters(shape.moved)} mean motion. "
+        f"In 95 % of them no point is more than {_millimeters(shape.worst)} off.",
+        f"Made by hydrostat {__version__}.",
+    ]
+    if shape.stopped:
+        lines.insert(1, "Training ended early for lack of time.")
+    return "".join(f"<p>{html.escape(line)}</p>" for line in lines)
+
+
+def _millimeters(length: float) -> str:
+    return f"{1e3 * length:.2g} mm" if length < 0.1 else f"{1e3 * length:.0f} mm"
+
+
+def _script() -> str:
+    """All modules as one, without the lines that import and export."""
+    parts = [_static(f"{name}.js") for name in _MODULES]
+    bare = [re.sub(r"^import .*;\n", "", part, flags=re.MULTILINE) for part in parts]
+    return "\n" + "\n".join(re.sub(r"^export ", "", part, flags=re.MULTILINE) for part in bare)
+
+
+def _static(name: str) -> str:
+    return (resources.files("hydrostat.toy") / "static" / name).read_text(encoding="utf-8")
+
+
+def _coded(numbers: np.ndarray, kind: str) -> str:
+    return base64.b64encode(np.ascontiguousarray(numbers, dtype=kind).tobytes()).decode()

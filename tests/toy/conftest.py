@@ -1,0 +1,86 @@
+"""A small toy, and a browser to open it in; without Chromium the tests that need one are skipped."""
+
+import shutil
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from hydrostat.arrays import Nodes
+from hydrostat.learning import Samples
+from hydrostat.robot import Robot, gallery_folder, load_robot
+from hydrostat.simulation import Simulation
+from hydrostat.toy import LearnedShape, ToyPose, learn_shape, sample_shapes, toy_page
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+HOSTILE = '</script><script>window.hacked=1</script><img src=x onerror="window.hacked=1">@DATA@'
+"""A name that would run if it were ever taken as markup."""
+
+Open = Callable[[str], "Page"]
+
+
+@pytest.fixture(scope="session")
+def starfish() -> Robot:
+    """The starfish of the gallery under a hostile name."""
+    robot = load_robot(gallery_folder("starfish"))
+    return replace(robot, name=HOSTILE)
+
+
+@pytest.fixture(scope="session")
+def samples(starfish: Robot) -> Samples:
+    return sample_shapes(starfish, 64, jobs=1)
+
+
+@pytest.fixture(scope="session")
+def rest(starfish: Robot) -> Nodes:
+    return Simulation(starfish).rest.nodes
+
+
+@pytest.fixture(scope="session")
+def shape(samples: Samples, rest: Nodes) -> LearnedShape:
+    return learn_shape(samples, rest, steps=400)
+
+
+@pytest.fixture(scope="session")
+def page_text(starfish: Robot, shape: LearnedShape) -> str:
+    pose = ToyPose(name="</script><b>wave", contractions=(0.02, 0.0, 0.01))
+    moves = [(0.0, np.zeros(3)), (1.0, np.array([0.01, 0.02, 0.0]))]
+    return toy_page(starfish, shape, poses=[pose], moves=moves)
+
+
+@pytest.fixture(scope="session")
+def browser() -> "Iterator[Browser]":
+    chromium = next((found for name in ("chromium", "google-chrome") if (found := shutil.which(name))), "")
+    if not chromium:
+        pytest.skip("there is no Chromium; install Debian's package chromium")
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        opened = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
+        yield opened
+        opened.close()
+
+
+@pytest.fixture
+def open_page(browser: "Browser", tmp_path_factory: pytest.TempPathFactory) -> Iterator[Open]:
+    """Open a text as a page of a phone; what it complains about fails the test."""
+    contexts, complaints = [], []
+
+    def open_text(text: str) -> "Page":
+        file = tmp_path_factory.mktemp("toy") / "toy.html"
+        file.write_text(text, encoding="utf-8")
+        context = browser.new_context(viewport={"width": 390, "height": 844})
+        contexts.append(context)
+        page = context.new_page()
+        page.on("pageerror", lambda error: complaints.append(str(error)))
+        page.goto(file.as_uri())
+        return page
+
+    yield open_text
+    for context in contexts:
+        context.close()
+    assert complaints == []
