@@ -38,12 +38,12 @@ class LearnedShape:
     moved: float
     stopped: bool
 
-    def scaled(self, contractions: Vector) -> Vector:
+    def scale_inputs(self, contractions: Vector) -> Vector:
         """Contractions [m] scaled to -1 to 1; 0 for a winch without range."""
         span = self.high - self.low
         return np.where(span > 0, 2.0 * (contractions - self.low) / np.where(span > 0, span, 1.0) - 1.0, 0.0)
 
     def nodes(self, contractions: Vector) -> Nodes:
         """Positions of the nodes at contractions [m]."""
-        coordinates = self.network.values(self.scaled(np.asarray(contractions, dtype=float)))[0]
+        coordinates = self.network.values(self.scale_inputs(np.asarray(contractions, dtype=float)))[0]
         return self.mean + np.tensordot(coordinates, self.basis, axes=1)

@@ -83,10 +83,10 @@ def toy_page(
         "moves": [[float(time), np.asarray(taken).tolist()] for time, taken in moves],
         "groups": picture.facts(),
         "sizes": shape.network.sizes.tolist(),
-        "numbers": _coded(shape.network.numbers[0], "<f4"),
-        "mean": _coded(picture.mean, "<f4"),
-        "basis": _coded(picture.basis, "<f4"),
-        "faces": _coded(picture.faces, "<u4"),
+        "numbers": _encode(shape.network.numbers[0], "<f4"),
+        "mean": _encode(picture.mean, "<f4"),
+        "basis": _encode(picture.basis, "<f4"),
+        "faces": _encode(picture.faces, "<u4"),
     }
     text = json.dumps(facts, separators=(",", ":"), ensure_ascii=True).replace("<", "\\u003c")
     script = _script()
@@ -116,7 +116,7 @@ def _view(robot: Robot) -> tuple[Vector, Vector]:
 
 
 def _made_text(shape: LearnedShape) -> str:
-    """How the page was made and how far it is off, as HTML."""
+    """Return how the page was made and its error, as HTML."""
     lines = [
         f"Learned from {shape.samples} simulated poses by a network of {shape.network.numbers.size} numbers.",
         f"Checked in {shape.held_out} other poses: mean error {_millimeters(shape.error)} "
@@ -144,5 +144,5 @@ def _static(name: str) -> str:
     return (resources.files("hydrostat.toy") / "static" / name).read_text(encoding="utf-8")
 
 
-def _coded(numbers: np.ndarray, kind: str) -> str:
+def _encode(numbers: np.ndarray, kind: str) -> str:
     return base64.b64encode(np.ascontiguousarray(numbers, dtype=kind).tobytes()).decode()

@@ -80,7 +80,7 @@ def test_a_dragged_marker_goes_where_another_search_brings_it(
     marker = _first(data, "marker") + 1
     attached = Attachments(starfish)
     goal = attached.markers(shape.nodes(np.array([0.02, 0.01, 0.03])))[1]
-    start = shape.scaled(np.array([0.005, 0.005, 0.005]))
+    start = shape.scale_inputs(np.array([0.005, 0.005, 0.005]))
     ask = "([start, point, goal, size]) => toy.reach(toy.model, start, point, goal, {size, rounds: 60, still: 1e-6})"
     found = page.evaluate(ask, [start.tolist(), marker, goal.tolist(), size])
     place = page.evaluate(

@@ -9,8 +9,8 @@ export class Sight {
     this.level = [unit(cross(up, side))];
     this.level.push(cross(up, this.level[0]));
     const right = cross(up, eye);
-    this.yaw = Math.atan2(dot(right, this.level[1]), dot(right, this.level[0]));
-    this.pitch = Math.asin(Math.max(-1, Math.min(1, dot(eye, up))));
+    this.yaw = Math.atan2(product(right, this.level[1]), product(right, this.level[0]));
+    this.pitch = Math.asin(Math.max(-1, Math.min(1, product(eye, up))));
     this.zoom = 1;
     this.width = this.height = this.scale = 1;
     this.middle = [0, 1, 2].slice(0, dim).map((axis) => {
@@ -63,7 +63,7 @@ function cross(a, b) {
   return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 }
 
-function dot(a, b) {
+function product(a, b) {
   return a.reduce((sum, value, i) => sum + value * b[i], 0);
 }
 
