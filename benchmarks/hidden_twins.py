@@ -4,8 +4,11 @@
     python benchmarks/hidden_twins.py --twins 100 --rows twins.csv   # restartable: rows that are in the file are kept
 
 A twin has another discretization than the fitted robot (half the element size), another modulus (25 %) and Poisson's
-ratio (0.15 to 0.42 for 0.3), routes 1 mm off, spools 4 % off, and noise of 0.3 mm. 16 poses are fitted (young, gain,
-frame), four of them with a hung mass; 8 others are predicted. Seeds are the numbers of the twins.
+ratio (0.15 to 0.42 for 0.3), routes 1 mm off, spools 4 % off, and noise of 0.3 mm. 20 poses are fitted (young, gain,
+frame), five of them with a hung mass; 8 others are predicted. Seeds are the numbers of the twins.
+
+With --forces, cables rub (friction 0 to 0.1, none in the fit), one pose alone has a hung mass, and ten poses have
+motor currents: forces read to 3 %, of torque constants 10 % off.
 """
 
 import argparse
@@ -30,9 +33,12 @@ NOISE, ROUTES, SPOOLS, YOUNG = 3e-4, 1e-3, 0.04, 0.25
 """Standard deviations: a measured coordinate and a hole [m], logarithms of a spool and of Young's modulus."""
 
 POISSON = (0.15, 0.42)
-FITTED, HELD_OUT = 16, 8
+FITTED, HELD_OUT = 20, 8
 HEAVY = 4e-3
 """Hung mass [kg]."""
+
+FRICTION, CURRENTS, READ, TORQUE = (0.0, 0.1), 10, 0.03, 0.1
+"""With forces: friction, poses with currents, deviations of the logarithms of a force and of the torque constant."""
 
 SIZES = {"long": ((0.2, 0.05), (8, 2)), "short": ((0.15, 0.06), (7, 3))}
 """Length and height [m] of each robot, and its cells; a twin has twice as many along each side."""
@@ -65,7 +71,7 @@ def make_robot(name: str, times: int = 1) -> Robot:
     )
 
 
-def make_twin(name: str, seed: int) -> tuple[Robot, dict[str, float], Measurements]:
+def make_twin(name: str, seed: int, *, forces: bool = False) -> tuple[Robot, dict[str, float], Measurements]:
     """Hidden robot, its true values, and what is measured of it."""
     rng, robot = np.random.default_rng(seed), make_robot(name, 2)
     young = robot.body.material.young * float(np.exp(YOUNG * rng.standard_normal()))
@@ -74,31 +80,43 @@ def make_twin(name: str, seed: int) -> tuple[Robot, dict[str, float], Measuremen
     for cable, winch in zip(robot.cables, robot.winches, strict=True):
         moved = np.array(cable.points) + ROUTES * rng.standard_normal((len(cable.points), 2))
         cables.append(replace(cable, points=(winch.at, *(tuple(map(float, point)) for point in moved[1:]))))
+    if forces:
+        friction = float(rng.uniform(*FRICTION))
+        cables = [replace(cable, friction=friction) for cable in cables]
     robot = replace(robot, body=replace(robot.body, material=material), cables=tuple(cables))
     gains, count = np.exp(SPOOLS * rng.standard_normal(2)), FITTED + HELD_OUT
     commands = rng.uniform(0.001, 0.012, (count, 2)) * (rng.random((count, 2)) < 0.6)
     masses = np.zeros((count, len(robot.markers)))
-    masses[np.arange(3, count, 4), rng.integers(len(robot.markers), size=len(range(3, count, 4)))] = HEAVY
+    heavy = np.arange(3, count, 4)[: 1 if forces else count]
+    masses[heavy, rng.integers(len(robot.markers), size=len(heavy))] = HEAVY
     names = tuple(marker.name for marker in robot.markers)
     asked = Measurements(
         commands=gains * commands, markers=names, places=np.zeros((count, len(names), 2)), masses=masses
     )
-    places = MarkerPredictor(named_model(robot, ()), asked).predict(np.zeros(0), slopes=False).places
-    places = places + NOISE * rng.standard_normal(places.shape)
+    found = MarkerPredictor(named_model(robot, ()), asked).predict(np.zeros(0), slopes=False)
+    places = found.places + NOISE * rng.standard_normal(found.places.shape)
     truth = {"body.young": young, "up.gain": float(gains[0]), "down.gain": float(gains[1])}
+    if forces:
+        truth["force.scale"] = float(np.exp(TORQUE * rng.standard_normal()))
+        pulls = truth["force.scale"] * found.forces * np.exp(READ * rng.standard_normal(found.forces.shape))
+        pulls[CURRENTS:] = np.nan
+        asked = replace(asked, forces=pulls)
     return robot, truth, replace(asked, commands=commands, places=places)
 
 
-def try_twin(name: str, seed: int) -> list[str]:
+def try_twin(name: str, seed: int, *, forces: bool) -> list[str]:
     """Row of one twin."""
-    _, truth, measured = make_twin(name, seed)
+    _, truth, measured = make_twin(name, seed, forces=forces)
     began = time.process_time()
     held = measured.rows(np.arange(FITTED, FITTED + HELD_OUT))
-    fitted = fit_model(named_model(make_robot(name), FIT), measured.rows(np.arange(FITTED)))
+    kinds = (*FIT, "force") if forces else FIT
+    fitted = fit_model(named_model(make_robot(name), kinds), measured.rows(np.arange(FITTED)))
     seconds = time.process_time() - began
     errors, share = predict_held_out(fitted, held)
     inside = dict.fromkeys(FIT, 0), dict.fromkeys(FIT, 0)
     for parameter, (low, high) in fitted.intervals.items():
+        if parameter == "force.scale":
+            continue
         kind = "frame" if parameter.startswith("frame") else parameter.rpartition(".")[2]
         inside[0][kind] += low <= truth.get(parameter, 0.0) <= high
         inside[1][kind] += 1
@@ -121,13 +139,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--twins", type=int, default=20, help="twins of each robot; 0 prints the rows that are there")
     parser.add_argument("--rows", type=Path, help="file to keep rows in")
+    parser.add_argument("--forces", action="store_true", help="rubbing cables, currents and one hung mass")
     given = parser.parse_args()
     rows = list(csv.reader(given.rows.open(encoding="utf-8")))[1:] if given.rows and given.rows.exists() else []
     done = {(row[0], int(row[1])) for row in rows}
     for seed in range(given.twins):
         for name in SIZES:
             if (name, seed) not in done:
-                rows.append(try_twin(name, seed))
+                rows.append(try_twin(name, seed, forces=given.forces))
                 if given.rows:
                     with given.rows.open("w", newline="", encoding="utf-8") as file:
                         csv.writer(file).writerows([HEAD, *rows])

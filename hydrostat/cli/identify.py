@@ -24,7 +24,7 @@ def identify(
         Path | None,
         typer.Argument(
             metavar="TABLE.csv",
-            help="Columns left_mm per winch, tip_x_mm ... per marker, tip_load_g.",
+            help="Columns left_mm per winch, tip_x_mm ... per marker, tip_load_g, tip_to_root_mm, left_force_n.",
             show_default=False,
         ),
     ] = None,
@@ -48,11 +48,11 @@ def identify(
 ) -> None:
     """Fit a robot's parameters to measured marker positions.
 
-    Parameters: young, poisson, density, stiffness (of cables), zero and gain (of winches), friction, pins, gravity,
-    rods, frame (of the measurement). Writes the fitted robot, parameters.csv with 95 % intervals and identified.png.
-    Every fifth of ten or more rows is also predicted by a fit that did not see it. A correction of the contractions is
-    written if it predicts such rows better: correction.json. With --suggest, the command prints file names of
-    photographs to take, the most informative first.
+    Parameters: young, poisson, density, stiffness (of cables), zero and gain (of winches), routes (points of cables),
+    friction, pins, gravity, rods, frame (of the measurement), force (scale of measured forces). Writes the fitted
+    robot, parameters.csv with 95 % intervals and identified.png. Every fifth of ten or more rows is also predicted by a
+    fit that did not see it. A correction of the contractions is written if it predicts such rows better:
+    correction.json. With --suggest, the command prints file names of photographs to take, the most informative first.
 
     Example: hydrostat identify my_starfish measured.csv --out build/fitted
     """
@@ -179,8 +179,21 @@ def _warn(robot: "Robot", table: "Measurements", found: "IdentifiedRobot") -> No
     """Print what in the table is likely to be wrong."""
     import numpy as np
 
-    from hydrostat.identification import rms
+    from hydrostat.identification import find_slip, find_swaps, rms
 
+    swaps = find_swaps(found.fitted, found.assumed, table)
+    for swap in swaps:
+        rows = ", ".join(str(row + 1) for row in swap.rows[:8]) + (", ..." if len(swap.rows) > 8 else "")
+        print(
+            f"warning: {' and '.join(swap.markers)} seem to be swapped in {plural(len(swap.rows), 'row')} ({rows}). "
+            "Exchange their cells."
+        )
+    slip = None if swaps else find_slip(found.fitted, table)
+    if slip is not None:
+        print(
+            f"warning: from row {slip.row + 1} on, {slip.winch} acts as if {1e3 * abs(slip.length):.1f} mm of cable "
+            f"were {'lost' if slip.length > 0 else 'taken up'}: it slipped. Fit the rows before and after alone."
+        )
     for column, winch in enumerate(robot.winches):
         pulls = table.commands[:, column]
         if not pulls.any():

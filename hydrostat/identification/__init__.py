@@ -6,6 +6,7 @@ from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
     from hydrostat.identification.contraction_map import ContractionMap
+    from hydrostat.identification.find_faults import find_slip, find_swaps
     from hydrostat.identification.fit import FittedModel, fit_model
     from hydrostat.identification.identified_robot import IdentifiedRobot, identify
     from hydrostat.identification.identified_tolerances import identified_tolerances
@@ -24,6 +25,8 @@ __all__ = [
     "MarkerPredictor",
     "Measurements",
     "Parameter",
+    "find_slip",
+    "find_swaps",
     "fit_model",
     "identified_tolerances",
     "identify",

@@ -1,7 +1,7 @@
 """`fit_model`: parameters of a robot from measured places of its markers, by Gauss-Newton steps with exact slopes."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, cast
 
 import numpy as np
@@ -9,10 +9,12 @@ from scipy.optimize import least_squares
 
 from hydrostat.arrays import Float, Vector
 from hydrostat.errors import InputError
-from hydrostat.identification.marker_predictor import MarkerPrediction, MarkerPredictor
+from hydrostat.identification.build_variance import estimate_build_variance
+from hydrostat.identification.marker_predictor import MarkerPredictor
 from hydrostat.identification.measurements import Measurements, rms
 from hydrostat.identification.mesh_shift import estimate_mesh_shift
 from hydrostat.identification.model import IdentificationModel
+from hydrostat.identification.residuals import Residuals
 from hydrostat.robot import Robot
 
 MISSING = 5.0
@@ -23,6 +25,12 @@ ROUNDS = 6
 
 SETTLED = 0.1
 """Relative change of the noise below which it is not estimated again."""
+
+LEAST_FREE = 0.1
+"""Least share of the measured coordinates that is left to show the noise."""
+
+LEAST_FORCE_NOISE = 0.02
+"""Least noise of a force over the largest that was measured; the fit begins with five times that."""
 
 INSEPARABLE = 0.9
 """Correlation of two parameters above which their values are hardly told apart."""
@@ -43,7 +51,10 @@ class FittedModel:
             nothing.
         spread: factor of the errors' variance by `spread_error`, as those of a model are alike in all rows.
         mesh_shift: change of `numbers` that finer elements would make; 0 if it was not estimated.
-        noise: standard deviation of a measured coordinate about the model [m], from the residuals.
+        build_variance: variance of `numbers` if points of cables and Poisson's ratio are unknown as well; 0 if it was
+            not estimated.
+        noise: standard deviation of a measured coordinate or length about the model [m], from the residuals.
+        force_noise: the same of a measured force [N]; NaN without forces.
         error: root mean square distance between predicted and measured markers of the fitted rows [m].
         failed: fitted rows without an equilibrium.
         iterations: evaluations of the model.
@@ -56,11 +67,13 @@ class FittedModel:
     covariance: Float[np.ndarray, "parameters parameters"]
     spread: float
     mesh_shift: Vector
+    build_variance: Vector
     noise: float
     error: float
     failed: int
     iterations: int
     message: str
+    force_noise: float = np.nan
 
     @property
     def interval_covariance(self) -> Float[np.ndarray, "parameters parameters"]:
@@ -73,9 +86,10 @@ class FittedModel:
     def intervals(self) -> dict[str, tuple[float, float]]:
         """Intervals that hold each value with a probability of about 95 %.
 
-        They follow from `interval_covariance`, and reach to the value that finer elements would give.
+        They follow from `interval_covariance` or `build_variance`, whichever is wider, and reach to the value that
+        finer elements would give.
         """
-        half = 1.96 * np.sqrt(np.diag(self.interval_covariance))
+        half = 1.96 * np.sqrt(np.maximum(np.diag(self.interval_covariance), self.build_variance))
         low = self.numbers + np.minimum(self.mesh_shift, 0.0) - half
         high = self.numbers + np.maximum(self.mesh_shift, 0.0) + half
         return {
@@ -114,7 +128,7 @@ def fit_model(
     refine: bool = True,
     progress: Callable[[str], None] | None = None,
 ) -> FittedModel:
-    """Most probable values of the parameters: least squares over measured places and guesses.
+    """Most probable values of the parameters: least squares over measured places, lengths, forces and guesses.
 
     Bounded Gauss-Newton steps in a trust region (SciPy, `trf`) with a loss that grows linearly beyond three standard
     deviations, so that swapped or misread markers count little. The noise is that of the residuals,
@@ -125,7 +139,7 @@ def fit_model(
         measurements: rows of commands and places.
         noise: standard deviation of a measured coordinate about the model [m]; estimated if left out.
         evaluations: most evaluations of the model.
-        refine: estimate the shift by finer elements.
+        refine: estimate the shift by finer elements, and the uncertainty by what is not fitted.
         progress: receives a line after each evaluation.
 
     Raises:
@@ -153,19 +167,22 @@ def fit_model(
         fit.residuals(numbers)
         if noise is not None or fit.count >= evaluations or not fit.estimate_noise(1e-6 * robot.body.mesh.size):
             break
-    jacobian = fit.slopes(numbers)
+    jacobian, nothing = fit.slopes(numbers), np.zeros(len(numbers))
+    known = model, measurements, numbers, (fit.noise, fit.force_noise)
     return FittedModel(
         model=model,
         values=model.values(numbers),
         numbers=numbers,
         covariance=np.linalg.inv(jacobian.T @ jacobian),
         spread=spread_error(fit.errors, fit.noise, len(measurements.commands), is_known=noise is not None),
-        mesh_shift=estimate_mesh_shift(model, measurements, numbers, fit.noise) if refine else np.zeros(len(numbers)),
+        mesh_shift=estimate_mesh_shift(*known) if refine else nothing,
+        build_variance=estimate_build_variance(*known) if refine else nothing,
         noise=fit.noise,
         error=rms(fit.distances),
         failed=fit.failed,
         iterations=fit.count,
         message=message,
+        force_noise=fit.force_noise,
     )
 
 
@@ -197,66 +214,90 @@ class _Fit:
         noise: float,
         progress: Callable[[str], None] | None,
     ) -> None:
-        self.noise, self.measurements, self._progress = noise, measurements, progress
+        self._measurements, self._progress = measurements, progress
         self._predictor = MarkerPredictor(model, measurements)
-        self._measured = np.isfinite(measurements.places)
+        self._residuals: Residuals
         self._asked: np.ndarray | None = None
-        self._last = np.zeros(int(self._measured.sum()))  # last known residual of each coordinate [m]
-        self.count = self.failed = 0
+        self._last: Vector  # last known residual of each quantity
+        largest = float(
+            np.max(np.abs(measurements.known_forces), initial=0.0, where=~np.isnan(measurements.known_forces))
+        )
+        self._least_force = LEAST_FORCE_NOISE * largest
+        self.noise, self.force_noise, self.count = noise, 5 * self._least_force or np.nan, 0
 
     def residuals(self, numbers: Vector) -> Vector:
-        """Residuals of all measured coordinates, then of the guesses."""
+        """Residuals of all that was measured, then of the guesses."""
         self._ask(numbers)
-        return np.concatenate([self._errors / self.noise, numbers])
+        return np.concatenate([self._errors / self._scales, numbers])
 
     def slopes(self, numbers: Vector) -> np.ndarray:
         """Their Jacobian."""
         self._ask(numbers)
-        return np.concatenate([self._jacobian / self.noise, np.eye(len(numbers))])
+        return np.concatenate([self._residuals.jacobian / self._scales[:, None], np.eye(len(numbers))])
 
     @property
     def errors(self) -> Vector:
-        """Predicted less measured coordinates of rows with an equilibrium [m]."""
-        return self._errors[self._solved]
+        """Predicted less measured coordinates and lengths of rows with an equilibrium [m]."""
+        return self._residuals.errors[self._solved & ~self._residuals.is_force]
 
     @property
     def distances(self) -> Vector:
-        """Distances of predicted from measured markers [m]; NaN for those that are not known."""
-        return self._distances
+        """Distances of predicted from measured markers, and of lengths [m]."""
+        return self._residuals.distances
+
+    @property
+    def failed(self) -> int:
+        """Rows without an equilibrium."""
+        return len(np.unique(self._residuals.rows[~self._solved]))
+
+    @property
+    def _scales(self) -> Vector:
+        """Standard deviation of each residual."""
+        return np.where(self._residuals.is_force, self.force_noise, self.noise)
 
     def estimate_noise(self, least: float) -> bool:
-        """Take the noise from the median residual, at least `least` [m]; False if it was about that already."""
-        noise = max(1.4826 * float(np.median(np.abs(self.errors))), least) if len(self.errors) else self.noise
-        if abs(noise / self.noise - 1) < SETTLED:
-            return False
-        self.noise, self._asked = noise, None
-        return True
+        """Take noises from median residuals, at least `least` [m]; False if they were about that already."""
+        before, is_force = (self.noise, self.force_noise), self._residuals.is_force
+        self.noise, self.force_noise = (
+            self._noise_of(self._solved & ~is_force, least, before[0]),
+            self._noise_of(self._solved & is_force, self._least_force, before[1]),
+        )
+        return not np.allclose([self.noise, self.force_noise], before, rtol=SETTLED, atol=0.0, equal_nan=True)
+
+    def _noise_of(self, chosen: np.ndarray, least: float, before: float) -> float:
+        """Noise of some residuals, of which the parameters take up a share (MacKay 1992)."""
+        if not chosen.any():
+            return before
+        scaled = self._residuals.jacobian / self._scales[:, None]
+        information = scaled[self._solved].T @ scaled[self._solved] + np.eye(scaled.shape[1])
+        taken = float(np.sum(scaled[chosen] * np.linalg.solve(information, scaled[chosen].T).T))
+        free = max(1.0 - taken / int(chosen.sum()), LEAST_FREE)
+        return max(1.4826 * float(np.median(np.abs(self._residuals.errors[chosen]))) / free**0.5, least)
 
     def _ask(self, numbers: Vector) -> None:
         if self._asked is not None and (self._asked == numbers).all():
             return
-        found, missing = self._predict(numbers)
-        assert found.jacobian is not None
-        offsets = found.places - self.measurements.places
-        self._solved = np.isfinite(offsets)[self._measured]
-        self._errors = np.where(self._solved, offsets[self._measured], np.maximum(missing * self.noise, self._last))
-        self._last = np.where(self._solved, np.abs(self._errors), self._last)
-        self._jacobian = found.jacobian[self._measured]
-        self._distances = np.linalg.norm(offsets, axis=2).ravel()
-        self.failed, self.count = int((~found.has_equilibrium).sum()), self.count + 1
-        self._asked = numbers.copy()
+        self._residuals, missing = self._predict(numbers)
+        errors = self._residuals.errors
+        if not self.count:
+            self._last = np.zeros(len(errors))
+        self._solved = np.isfinite(errors)
+        self._errors = np.where(self._solved, errors, np.maximum(missing * self._scales, self._last))
+        self._last = np.where(self._solved, np.abs(errors), self._last)
+        self.count, self._asked = self.count + 1, numbers.copy()
         if self._progress:
             self._progress(f"evaluation {self.count}: {1e3 * rms(self.distances):.2f} mm off (RMS)")
 
-    def _predict(self, numbers: Vector) -> tuple[MarkerPrediction, float]:
-        """Prediction, and the residual of what it lacks; values that no robot can have are far off after the first."""
+    def _predict(self, numbers: Vector) -> tuple[Residuals, float]:
+        """Residuals, and what each lacks; values that no robot can have are far off after the first."""
         try:
-            return self._predictor.predict(numbers, slopes=True), MISSING
+            found = self._predictor.predict(numbers, slopes=True)
+            return Residuals.of(found, self._measurements), MISSING
         except InputError:
             if not self.count:
                 raise
-        shape = self.measurements.places.shape
-        return MarkerPrediction(np.full(shape, np.nan), np.zeros((*shape, len(numbers)))), IMPOSSIBLE
+        nothing = np.full(len(self._last), np.nan)
+        return replace(self._residuals, errors=nothing, jacobian=np.zeros_like(self._residuals.jacobian)), IMPOSSIBLE
 
 
 def _check(robot: Robot, measurements: Measurements) -> None:
@@ -269,5 +310,5 @@ def _check(robot: Robot, measurements: Measurements) -> None:
     for name in measurements.markers:
         if name not in known:
             raise InputError(f'no marker "{name}"; the robot has {", ".join(known) or "none"}')
-    if not np.isfinite(measurements.places).any():
-        raise InputError("no place of a marker was measured")
+    if not (np.isfinite(measurements.places).any() or np.isfinite(measurements.known_lengths).any()):
+        raise InputError("no place of a marker and no distance of two markers was measured")

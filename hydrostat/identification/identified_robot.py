@@ -9,7 +9,7 @@ from hydrostat.errors import InputError
 from hydrostat.identification.contraction_map import ContractionMap
 from hydrostat.identification.fit import FittedModel, fit_model
 from hydrostat.identification.fit_contraction_map import fit_contraction_map
-from hydrostat.identification.kinds import named_model
+from hydrostat.identification.kinds import KINDS, named_model
 from hydrostat.identification.measurements import Measurements
 from hydrostat.identification.model import IdentificationModel
 from hydrostat.robot import PinDrive, Robot
@@ -65,13 +65,16 @@ def identify(
     Args:
         robot: robot as it is assumed to be built.
         measurements: rows of contractions and places of markers.
-        fit: kinds of parameters, see `KINDS`; those that are fitted by default if left out.
+        fit: kinds of parameters, see `KINDS`; those that are fitted by default if left out, with `force` where
+            forces were measured.
         progress: receives a line after each evaluation.
 
     Raises:
         InputError: a robot with drives, an unknown kind, or measurements that do not fit the robot.
     """
     PinDrive.require_none(robot.drives, "identification")
+    if fit is None and measurements.forces is not None:
+        fit = (*(name for name, kind in KINDS.items() if kind.default and kind.parameters(robot)), "force")
     model, assumed = named_model(robot, fit), start_of(named_model(robot, ()))
     count = len(measurements.commands)
     held_out = np.arange(2, count, 5) if count >= 10 else np.zeros(0, dtype=int)
@@ -113,6 +116,7 @@ def start_of(model: IdentificationModel) -> FittedModel:
         covariance=np.eye(count),
         spread=1.0,
         mesh_shift=np.zeros(count),
+        build_variance=np.zeros(count),
         noise=np.nan,
         error=np.nan,
         failed=0,

@@ -24,6 +24,7 @@ class ParameterKind:
         robot: robot with some values in place of its own; None for parameters of the measurement alone.
         contractions: contractions [m] with some values, as in `IdentificationModel`.
         places: places [m] in the frame of the measurement, as in `IdentificationModel`.
+        force_scale: measured over simulated forces with some values, as in `IdentificationModel`.
         default: fitted without being named.
     """
 
@@ -31,6 +32,7 @@ class ParameterKind:
     robot: Callable[[Robot, Values], Robot] | None = None
     contractions: Callable[[Robot, Values, np.ndarray], np.ndarray] | None = None
     places: Callable[[Robot, Values, np.ndarray], np.ndarray] | None = None
+    force_scale: Callable[[Values], float] | None = None
     default: bool = False
 
 
@@ -56,11 +58,13 @@ def named_model(robot: Robot, kinds: tuple[str, ...] | None = None) -> Identific
     used = [KINDS[name] for name in names if found[name]]
     pulls = [kind.contractions for kind in used if kind.contractions is not None]
     moves = [kind.places for kind in used if kind.places is not None]
+    scales = [kind.force_scale for kind in used if kind.force_scale is not None]
     return IdentificationModel(
         parameters=tuple(parameter for name in names for parameter in found[name]),
         robot=lambda values: reduce(lambda one, kind: kind.robot(one, values) if kind.robot else one, used, robot),
         contractions=lambda values, commands: reduce(lambda one, pull: pull(robot, values, one), pulls, commands),
         places=lambda values, at: reduce(lambda one, move: move(robot, values, one), moves, at),
+        force_scale=scales[0] if scales else lambda _: 1.0,
     )
 
 
@@ -106,6 +110,29 @@ def _each_cable(robot: Robot, key: str) -> list[Parameter]:
 
 def _with_stiffness(robot: Robot, values: Values) -> Robot:
     cables = [replace(cable, stiffness=values[f"{cable.name}.stiffness"]) for cable in robot.cables]
+    return robot.with_network(robot.winches, cables)
+
+
+def _routes(robot: Robot) -> list[Parameter]:
+    """Offset of each point of each cable but the one at its winch."""
+    axes = "xyz"[: robot.body.mesh.dim]
+    return [
+        Parameter(name=f"{cable.name}.{number}.{axis}", start=0.0, spread=1.0, unit="mm")
+        for cable in robot.cables
+        for number in range(2, len(cable.points) + 1)
+        for axis in axes
+    ]
+
+
+def _with_routes(robot: Robot, values: Values) -> Robot:
+    axes = "xyz"[: robot.body.mesh.dim]
+    cables = []
+    for cable in robot.cables:
+        moved = [
+            tuple(at + MM * values[f"{cable.name}.{number}.{axis}"] for at, axis in zip(point, axes, strict=True))
+            for number, point in enumerate(cable.points[1:], start=2)
+        ]
+        cables.append(replace(cable, points=(cable.points[0], *moved)))
     return robot.with_network(robot.winches, cables)
 
 
@@ -239,6 +266,7 @@ KINDS: dict[str, ParameterKind] = {
         contractions=_apply_gains,
         default=True,
     ),
+    "routes": ParameterKind(parameters=_routes, robot=_with_routes),
     "friction": ParameterKind(parameters=_friction, robot=_with_friction),
     "pins": ParameterKind(parameters=_pins, robot=_with_pins),
     "gravity": ParameterKind(parameters=_gravity, robot=_with_gravity),
@@ -247,6 +275,10 @@ KINDS: dict[str, ParameterKind] = {
         parameters=_frame,
         places=_move_to_frame,
         default=True,
+    ),
+    "force": ParameterKind(
+        parameters=lambda robot: [Parameter(name="force.scale", start=1.0, spread=0.2, log=True)] * bool(robot.winches),
+        force_scale=lambda values: values["force.scale"],
     ),
 }
 """Kinds of parameters by name, in the order in which they change a robot."""

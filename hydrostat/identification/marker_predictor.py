@@ -1,5 +1,6 @@
-"""`MarkerPredictor`: places of markers for values of the parameters, with exact slopes."""
+"""`MarkerPredictor`: places of markers and forces of winches for values of the parameters, with exact slopes."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,10 +24,14 @@ class MarkerPrediction:
     Attributes:
         places: in the frame of the measurement [m], (rows, markers, dim); NaN where no equilibrium was found.
         jacobian: slopes by the coordinates of the fit, (rows, markers, dim, parameters); None if not requested.
+        forces: measured forces of the winches [N], (rows, winches); NaN where no equilibrium was found.
+        force_jacobian: their slopes, (rows, winches, parameters), 0 where no force was measured.
     """
 
     places: Float[np.ndarray, "rows markers dim"]
     jacobian: Float[np.ndarray, "rows markers dim parameters"] | None
+    forces: Float[np.ndarray, "rows winches"]
+    force_jacobian: Float[np.ndarray, "rows winches parameters"] | None
 
     @property
     def has_equilibrium(self) -> Bool[np.ndarray, " rows"]:
@@ -37,9 +42,18 @@ class MarkerPrediction:
 class MarkerPredictor:
     """Predicts markers for values of the parameters; begins each row at its last equilibrium."""
 
-    def __init__(self, model: IdentificationModel, measurements: Measurements) -> None:
-        """Predictor of the rows of some measurements, which need not have measured places."""
-        self.model, self.measurements = model, measurements
+    def __init__(
+        self, model: IdentificationModel, measurements: Measurements, *, deviations: Mapping[str, float] | None = None
+    ) -> None:
+        """Predictor of the rows of some measurements, which need not have measured places.
+
+        Args:
+            model: robot and measurement.
+            measurements: rows to predict.
+            deviations: standard deviations of each of some `robot_numbers` that are not fitted; slopes by them, in
+                these units, follow those by the parameters, unless a parameter changes them.
+        """
+        self.model, self.measurements, self._deviations = model, measurements, deviations or {}
         self._poses: list[Equilibrium | None] = [None] * len(measurements.commands)
 
     @property
@@ -59,8 +73,11 @@ class MarkerPredictor:
         rows, markers = len(contractions), self.measurements.markers
         anchors = _anchors(robot, markers)
         places = np.full((rows, len(markers), robot.body.mesh.dim), np.nan)
-        jacobian = np.zeros((*places.shape, len(numbers))) if slopes else None
-        changes = [_Change.of(self, numbers, index, robot) for index in range(len(numbers) if slopes else 0)]
+        changes = self._changes(numbers, values, robot) if slopes else []
+        jacobian = np.zeros((*places.shape, len(changes))) if slopes else None
+        forces, scale = np.full(contractions.shape, np.nan), self.model.force_scale(values)
+        force_jacobian = np.zeros((*forces.shape, len(changes))) if slopes else None
+        network = winch_ratios(robot)
         loaded, loads = np.unique(self.measurements.hung_masses, axis=0, return_inverse=True)
         simulations = [Simulation(_with_masses(robot, markers, masses)) for masses in loaded]
         for row, (contraction, load) in enumerate(zip(contractions, loads.ravel(), strict=True)):
@@ -69,13 +86,33 @@ class MarkerPredictor:
             if pose is None:
                 continue
             at = anchors.positions(pose.nodes)
-            places[row] = self.model.places(values, at)
-            if jacobian is not None:
+            places[row], forces[row] = self.model.places(values, at), scale * network @ pose.tensions
+            if jacobian is not None and force_jacobian is not None:
                 try:
                     jacobian[row] = self._slopes(simulation, pose, (values, at, anchors), changes, row)
+                    force_jacobian[row] = self._force_slopes(simulation, pose, (network, scale), changes, row)
                 except NotConvergedError:
-                    places[row], self._poses[row] = np.nan, None
-        return MarkerPrediction(places, jacobian)
+                    places[row], forces[row], self._poses[row] = np.nan, np.nan, None
+        return MarkerPrediction(places, jacobian, forces, force_jacobian)
+
+    def _changes(self, numbers: Vector, values: Values, robot: Robot) -> list["_Change"]:
+        """Small changes of each parameter, then of each number that is not fitted."""
+        changes = [_Change.of(self, numbers, index, robot) for index in range(len(numbers))]
+        sizes, anchors = robot_numbers(robot, robot.gravity), _anchors(robot, self.measurements.markers)
+        rest = _Change(
+            model=self.model,
+            values=(values, values),
+            anchors=(anchors, anchors),
+            numbers={},
+            contractions=np.zeros_like(self.measurements.commands),
+            force_scale=0.0,
+        )
+        return changes + [
+            replace(rest, numbers={name: deviation * row})
+            for name, deviation in self._deviations.items()
+            if not any(name in change.numbers for change in changes)
+            for row in np.eye(len(sizes[name]))
+        ]
 
     def _solve(self, simulation: Simulation, contractions: Vector, last: Equilibrium | None) -> Equilibrium | None:
         if last is not None and not simulation.assembly.has_history:
@@ -122,6 +159,26 @@ class MarkerPredictor:
             found[:, :, index] += change.direct(pose)
         return found
 
+    def _force_slopes(
+        self,
+        simulation: Simulation,
+        pose: Equilibrium,
+        here: tuple[np.ndarray, float],
+        changes: list["_Change"],
+        row: int,
+    ) -> np.ndarray:
+        """Slopes of the forces of one row, (winches, parameters)."""
+        network, scale = here
+        found = np.zeros((len(network), len(changes)))
+        for winch in np.flatnonzero(np.isfinite(self.measurements.known_forces[row])):
+            slopes = simulation.adjoint(pose, np.zeros_like(pose.nodes), tensions=network[winch])
+            flat, force = flat_slopes(slopes), float(network[winch] @ pose.tensions)
+            found[winch] = [
+                scale * change.through(flat, slopes.contractions, row) + change.force_scale * force
+                for change in changes
+            ]
+        return found
+
 
 @dataclass(frozen=True, eq=False)
 class _Change:
@@ -132,6 +189,7 @@ class _Change:
     anchors: tuple[Anchors, Anchors]
     numbers: dict[str, Vector]
     contractions: Float[np.ndarray, "rows winches"]
+    force_scale: float
 
     @classmethod
     def of(cls, predictor: MarkerPredictor, numbers: Vector, index: int, robot: Robot) -> "_Change":
@@ -153,6 +211,7 @@ class _Change:
                 if not np.array_equal(after[name], before[name])
             },
             contractions=(pulls[1] - pulls[0]) / (2 * STEP),
+            force_scale=(model.force_scale(values[1]) - model.force_scale(values[0])) / (2 * STEP),
         )
 
     def through(self, slopes: dict[str, Vector], contractions: Vector, row: int) -> float:
@@ -163,6 +222,8 @@ class _Change:
 
     def direct(self, pose: Equilibrium) -> np.ndarray:
         """Slopes of the places with the nodes held."""
+        if self.values[0] is self.values[1]:
+            return np.zeros(())
         less, more = (
             self.model.places(values, anchors.positions(pose.nodes))
             for values, anchors in zip(self.values, self.anchors, strict=True)
@@ -178,6 +239,15 @@ def _with_masses(robot: Robot, markers: tuple[str, ...], masses: Vector) -> Robo
         if mass > 0
     ]
     return replace(robot, loads=(*robot.loads, *hung)) if hung else robot
+
+
+def winch_ratios(robot: Robot) -> Float[np.ndarray, "winches cables"]:
+    """Share of each cable's tension in the pull of its winch: its spool over that of the winch, 0 for others."""
+    names = [winch.name for winch in robot.winches]
+    ratios = np.zeros((len(names), len(robot.cables)))
+    owners = [names.index(cable.winch) for cable in robot.cables]
+    ratios[owners, np.arange(len(owners))] = robot.spool_ratios
+    return ratios
 
 
 def _anchors(robot: Robot, names: tuple[str, ...]) -> Anchors:

@@ -1,4 +1,4 @@
-"""`Measurements`: commands of the winches and the places of markers that were measured."""
+"""`Measurements`: commands of the winches, and the places, lengths and forces that were measured."""
 
 from dataclasses import dataclass, replace
 
@@ -17,6 +17,10 @@ class Measurements:
         markers: names of the measured markers.
         places: measured places [m], (rows, markers, dim), in any fixed frame; NaN where a marker was not seen.
         masses: mass hung at each marker [kg], (rows, markers); none if left out.
+        pairs: pairs of markers, by their numbers in `markers`, whose distances were measured.
+        lengths: these distances [m], (rows, pairs); NaN where they were not measured, none if left out.
+        forces: force with which each winch pulls [N], (rows, winches): torque over the radius of its spool; NaN where
+            it was not measured, none if left out.
 
     Raises:
         InputError: arrays that do not fit one another, or numbers that are not finite.
@@ -26,6 +30,9 @@ class Measurements:
     markers: tuple[str, ...]
     places: Float[np.ndarray, "rows markers dim"]
     masses: Float[np.ndarray, "rows markers"] | None = None
+    pairs: tuple[tuple[int, int], ...] = ()
+    lengths: Float[np.ndarray, "rows pairs"] | None = None
+    forces: Float[np.ndarray, "rows winches"] | None = None
 
     def __post_init__(self) -> None:
         if self.commands.ndim != 2 or not np.isfinite(self.commands).all():
@@ -35,7 +42,12 @@ class Measurements:
                 f"places must have the shape (rows, markers, axes), here ({len(self.commands)}, {len(self.markers)}, "
                 f"...), not {self.places.shape}"
             )
-
+        for name, value, columns in (
+            ("lengths", self.lengths, len(self.pairs)),
+            ("forces", self.forces, self.commands.shape[1]),
+        ):
+            if value is not None and value.shape != (len(self.commands), columns):
+                raise InputError(f"{name} must have the shape ({len(self.commands)}, {columns}), not {value.shape}")
         masses = self.masses
         if masses is not None and not (masses.shape == self.places.shape[:2] and (masses >= 0).all()):
             raise InputError("masses must be 0 or more [kg], a row for each pose, a column for each marker")
@@ -45,14 +57,31 @@ class Measurements:
         """Mass hung at each marker [kg]."""
         return np.zeros(self.places.shape[:2]) if self.masses is None else self.masses
 
+    @property
+    def known_lengths(self) -> Float[np.ndarray, "rows pairs"]:
+        """Measured distances of the pairs [m]."""
+        return np.full((len(self.commands), len(self.pairs)), np.nan) if self.lengths is None else self.lengths
+
+    @property
+    def known_forces(self) -> Float[np.ndarray, "rows winches"]:
+        """Measured forces of the winches [N]."""
+        return np.full(self.commands.shape, np.nan) if self.forces is None else self.forces
+
     def is_measured(self, row: int) -> Bool[np.ndarray, " markers"]:
-        """Markers of which a coordinate is known in a row."""
-        return np.isfinite(self.places[row]).any(axis=1)
+        """Markers of which a coordinate or a distance is known in a row."""
+        known = np.isfinite(self.places[row]).any(axis=1)
+        for pair, length in zip(self.pairs, self.known_lengths[row], strict=True):
+            known[list(pair)] |= bool(np.isfinite(length))
+        return known
 
     def rows(self, chosen: np.ndarray) -> "Measurements":
         """Some of the rows, by index or mask."""
-        masses = None if self.masses is None else self.masses[chosen]
-        return replace(self, commands=self.commands[chosen], places=self.places[chosen], masses=masses)
+        kept = {
+            name: value[chosen]
+            for name in ("commands", "places", "masses", "lengths", "forces")
+            if (value := getattr(self, name)) is not None
+        }
+        return replace(self, **kept)
 
 
 def rms(distances: np.ndarray) -> float:

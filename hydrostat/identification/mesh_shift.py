@@ -9,6 +9,7 @@ from hydrostat.errors import InputError
 from hydrostat.identification.marker_predictor import MarkerPredictor
 from hydrostat.identification.measurements import Measurements
 from hydrostat.identification.model import IdentificationModel, Values
+from hydrostat.identification.residuals import Residuals
 from hydrostat.robot import ElementKind, Robot
 
 ROWS = 8
@@ -16,7 +17,7 @@ ROWS = 8
 
 
 def estimate_mesh_shift(
-    model: IdentificationModel, measurements: Measurements, numbers: Vector, noise: float
+    model: IdentificationModel, measurements: Measurements, numbers: Vector, noises: tuple[float, float]
 ) -> Vector:
     """Change of the coordinates of a fit if quadratic elements replace linear ones, to first order.
 
@@ -27,15 +28,14 @@ def estimate_mesh_shift(
         model: robot and measurement.
         measurements: rows of the fit.
         numbers: coordinates of the fit.
-        noise: standard deviation of a measured coordinate [m].
+        noises: standard deviation of a measured coordinate or length [m], and of a force [N].
     """
-    chosen = np.unique(np.linspace(0, len(measurements.commands) - 1, ROWS).astype(int))
-    rows = measurements.rows(chosen)
+    rows = measurements.rows(choose_rows(measurements))
     try:
-        finer = _refine(model.robot(model.values(numbers)))
+        refined = _refine(model.robot(model.values(numbers)))
     except InputError:
-        finer = None
-    if finer is None or not len(numbers):
+        refined = None
+    if refined is None or not len(numbers):
         return np.zeros(len(numbers))
 
     def make_finer(values: Values) -> Robot:
@@ -43,13 +43,19 @@ def estimate_mesh_shift(
         assert robot is not None
         return robot
 
-    coarse = MarkerPredictor(model, rows).predict(numbers, slopes=True)
-    fine = MarkerPredictor(replace(model, robot=make_finer), rows).predict(numbers, slopes=False)
-    assert coarse.jacobian is not None
-    moved = fine.places - coarse.places
-    known = np.isfinite(moved) & np.isfinite(rows.places)
-    slopes = coarse.jacobian[known] / noise
-    return -np.linalg.solve(slopes.T @ slopes + np.eye(len(numbers)), slopes.T @ (moved[known] / noise))
+    found = MarkerPredictor(model, rows).predict(numbers, slopes=True)
+    finer = MarkerPredictor(replace(model, robot=make_finer), rows).predict(numbers, slopes=False)
+    finer = replace(finer, jacobian=found.jacobian, force_jacobian=found.force_jacobian)
+    coarse, fine = Residuals.of(found, rows), Residuals.of(finer, rows)
+    moved = fine.errors - coarse.errors
+    known, scales = np.isfinite(moved), np.where(coarse.is_force, noises[1], noises[0])
+    slopes = (coarse.jacobian / scales[:, None])[known]
+    return -np.linalg.solve(slopes.T @ slopes + np.eye(len(numbers)), slopes.T @ (moved / scales)[known])
+
+
+def choose_rows(measurements: Measurements) -> np.ndarray:
+    """Indices of up to eight rows, evenly spread."""
+    return np.unique(np.linspace(0, len(measurements.commands) - 1, ROWS).astype(int))
 
 
 def _refine(robot: Robot) -> Robot | None:

@@ -74,6 +74,7 @@ class IdentificationModel:
         contractions: contractions [m] of all rows, (rows, winches), from the commands with these values: gains and
             zeros of winches, backlash.
         places: places in the frame of the measurement [m], (..., dim), of places in the frame of the robot.
+        force_scale: measured over simulated forces of the winches, such as that of a torque constant.
     """
 
     parameters: tuple[Parameter, ...]
@@ -82,6 +83,7 @@ class IdentificationModel:
         lambda _, commands: commands
     )
     places: Callable[[Values, Points], Points] = lambda _, places: places
+    force_scale: Callable[[Values], float] = lambda _: 1.0
 
     @property
     def start(self) -> dict[str, float]:

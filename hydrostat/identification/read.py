@@ -4,6 +4,7 @@ import csv
 import math
 from collections.abc import Sequence
 from io import StringIO
+from itertools import permutations
 from pathlib import Path
 
 import numpy as np
@@ -22,8 +23,9 @@ def read_measurements(file: str | Path, robot: Robot) -> Measurements:
     """Measurements from a CSV file.
 
     Columns: `left_mm`, the contraction of winch `left`; `tip_x_mm`, `tip_y_mm` (and `tip_z_mm`), the place of marker
-    `tip`; `tip_load_g`, a mass that hung there. A winch without a column does not contract. An empty cell of a marker
-    says that it was not seen. Columns `time_s`, `pose` and `row` are skipped.
+    `tip`; `tip_load_g`, a mass that hung there; `tip_to_root_mm`, the distance of two markers by ruler; `left_force_n`,
+    the pull of winch `left`. A winch without a column does not contract. An empty cell of a measured quantity says that
+    it is unknown. Columns `time_s`, `pose` and `row` are skipped.
 
     Raises:
         InputError: a file that cannot be read, or a column or number that does not fit; the text names file and line.
@@ -36,20 +38,19 @@ def read_measurements(file: str | Path, robot: Robot) -> Measurements:
     if len(rows) < 2:
         raise InputError(f"{path}: has no row of numbers below the names of its columns")
     columns = _Columns([cell.strip() for cell in rows[0]], robot, f"{path}, line 1")
-    commands, places, masses = [], [], []
-    for line, row in enumerate(rows[1:], start=2):
-        if any(cell.strip() for cell in row):
-            command, place, mass = columns.read(row, f"{path}, line {line}")
-            masses.append(mass)
-            commands.append(command)
-            places.append(place)
-    if not commands:
+    lines = [(number, row) for number, row in enumerate(rows[1:], start=2) if any(cell.strip() for cell in row)]
+    if not lines:
         raise InputError(f"{path}: has no row of numbers below the names of its columns")
+    found = [columns.read(row, f"{path}, line {line}") for line, row in lines]
+    commands, places, masses, lengths, forces = (np.array(each) for each in zip(*found, strict=True))
     return Measurements(
-        commands=np.array(commands),
+        commands=commands,
         markers=columns.markers,
-        places=np.array(places),
-        masses=np.array(masses) if np.any(masses) else None,
+        places=places,
+        masses=masses if masses.any() else None,
+        pairs=columns.pairs,
+        lengths=lengths if columns.pairs else None,
+        forces=forces if np.isfinite(forces).any() else None,
     )
 
 
@@ -57,69 +58,78 @@ class _Columns:
     """Meaning of the columns of a table."""
 
     def __init__(self, head: Sequence[str], robot: Robot, where: str) -> None:
-        winches = [winch.name for winch in robot.winches]
-        self._axes = "xyz"[: robot.body.mesh.dim]
-        places = {f"{marker.name}_{axis}_mm": (marker.name, axis) for marker in robot.markers for axis in self._axes}
-        self._head = head
-        self._winches: dict[int, int] = {}
-        self._places: dict[int, tuple[str, str]] = {}
-        self._loads: dict[int, str] = {}
-        loads = {f"{marker.name}_load_g": marker.name for marker in robot.markers}
-        for column, name in enumerate(head):
-            bare = name.removesuffix("_mm")
-            if name in places:
-                self._places[column] = places[name]
-            elif name in loads:
-                self._loads[column] = loads[name]
-            elif bare in winches:
-                self._winches[column] = winches.index(bare)
-            elif name not in _SKIPPED:
-                known = [f"{winch}_mm" for winch in winches] + list(places) + list(loads)
-                allowed = ", ".join(known[:8]) + (f" and {len(known) - 8} more" if len(known) > 8 else "")
+        self._axes, self._head = "xyz"[: robot.body.mesh.dim], head
+        winches, markers = [winch.name for winch in robot.winches], [marker.name for marker in robot.markers]
+        known = {f"{name}_mm": ("winch", name) for name in winches}
+        known |= {f"{name}_{axis}_mm": ("place", name, axis) for name in markers for axis in self._axes}
+        known |= {f"{name}_load_g": ("load", name) for name in markers}
+        known |= {f"{name}_force_n": ("force", name) for name in winches}
+        allowed = ", ".join(list(known)[:8]) + (f" and {len(known) - 8} more" if len(known) > 8 else "")
+        known |= {f"{one}_to_{other}_mm": ("length", one, other) for one, other in permutations(markers, 2)}
+        known |= {name: ("winch", name) for name in winches if name not in known}
+        for name in head:
+            if name not in known and name not in _SKIPPED:
                 mark = " Separate columns by commas." if ";" in name or "\t" in name else ""
                 raise InputError(f'{where}: unknown column "{name[:60]}". Available: {allowed}.{mark}')
+        self._meanings = {column: known[name] for column, name in enumerate(head) if name in known}
         self._check_once(where)
-        self.markers = tuple(dict.fromkeys(marker for marker, _ in self._places.values()))
-        self._count = len(winches)
-        for marker in self.markers:
+        self._winches = winches
+        self.markers = tuple(dict.fromkeys(name for kind in ("place", "length") for name in self._names_of(kind)))
+        self.pairs = tuple(
+            (self.markers.index(one), self.markers.index(other)) for _, one, other in self._of("length").values()
+        )
+        for marker in dict.fromkeys(self._names_of("place")):
             for axis in self._axes:
-                if (marker, axis) not in self._places.values():
+                if ("place", marker, axis) not in self._meanings.values():
                     raise InputError(f'{where}: add a column "{marker}_{axis}_mm"; each marker needs all its axes')
-        if unmeasured := [marker for marker in self._loads.values() if marker not in self.markers]:
+        if unmeasured := [marker for marker in self._names_of("load") if marker not in self.markers]:
             raise InputError(f"{where}: {unmeasured[0]}_load_g needs the columns {unmeasured[0]}_x_mm ... as well")
         if not self.markers:
-            raise InputError(f"{where}: no column of a marker, such as {', '.join(list(places)[:4])}.")
+            places = [name for name, meaning in known.items() if meaning[0] == "place"]
+            raise InputError(f"{where}: no column of a marker, such as {', '.join(places[:4])}.")
+
+    def _of(self, kind: str) -> dict[int, tuple[str, ...]]:
+        """Columns of a kind."""
+        return {column: meaning for column, meaning in self._meanings.items() if meaning[0] == kind}
+
+    def _names_of(self, kind: str) -> list[str]:
+        """Names in the columns of a kind, in their order."""
+        return [name for _, *names in self._of(kind).values() for name in (names[:1] if kind != "length" else names)]
 
     def _check_once(self, where: str) -> None:
-        seen: set[object] = set()
-        for meaning in (self._winches, self._places, self._loads):
-            for column, one in meaning.items():
-                key = (id(meaning), one)
-                if key in seen:
-                    raise InputError(f'{where}: "{self._head[column]}" has two columns')
-                seen.add(key)
+        seen = set[tuple[str, ...]]()
+        for column, meaning in self._meanings.items():
+            key = (meaning[0], *sorted(meaning[1:])) if meaning[0] == "length" else meaning
+            if key in seen:
+                raise InputError(f'{where}: "{self._head[column]}" has two columns')
+            seen.add(key)
 
-    def read(self, row: Sequence[str], where: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Commands [m], places [m] and hung masses [kg] of one row."""
+    def read(self, row: Sequence[str], where: str) -> tuple[np.ndarray, ...]:
+        """Commands [m], places [m], hung masses [kg], lengths [m] and forces [N] of one row."""
         if len(row) != len(self._head):
             raise InputError(f"{where}: {len(row)} cells, but there are {len(self._head)} columns")
-        command = np.zeros(self._count)
-        for column, winch in self._winches.items():
-            command[winch] = MM * self._number(row, column, where)
-        places = np.full((len(self.markers), len(self._axes)), np.nan)
-        for column, (marker, axis) in self._places.items():
-            if row[column].strip():
-                place = self.markers.index(marker), self._axes.index(axis)
-                places[place] = MM * self._number(row, column, where)
-        masses = np.zeros(len(self.markers))
-        for column, marker in self._loads.items():
-            mass = self._number(row, column, where)
-            if mass < 0:
-                raise InputError(f"{where}, column {self._head[column]}: a mass is 0 g or more, not {mass:g}")
-            masses[self.markers.index(marker)] = 1e-3 * mass
-        return command, places, masses
+        command, forces = np.zeros(len(self._winches)), np.full(len(self._winches), np.nan)
+        places, masses = np.full((len(self.markers), len(self._axes)), np.nan), np.zeros(len(self.markers))
+        lengths = []
+        for column, (kind, name, *more) in self._meanings.items():
+            value = self._number(row, column, where, may_lack=kind in MEASURED)
+            if kind in POSITIVE and value < 0:
+                raise InputError(f"{where}, column {self._head[column]}: must be 0 or more, not {value:g}")
+            if kind == "winch":
+                command[self._winches.index(name)] = MM * value
+            elif kind == "force":
+                forces[self._winches.index(name)] = value
+            elif kind == "load":
+                masses[self.markers.index(name)] = 1e-3 * value
+            elif kind == "length":
+                lengths.append(MM * value)
+            else:
+                places[self.markers.index(name), self._axes.index(more[0])] = MM * value
+        return command, places, masses, np.array(lengths), forces
 
-    def _number(self, row: Sequence[str], column: int, where: str) -> float:
+    def _number(self, row: Sequence[str], column: int, where: str, *, may_lack: bool) -> float:
+        if may_lack and not row[column].strip():
+            return math.nan
         try:
             number = float(row[column])
         except ValueError:
@@ -127,9 +137,13 @@ class _Columns:
         if not math.isfinite(number):
             raise InputError(
                 f'{where}, column {self._head[column]}: "{row[column].strip()[:30]}" is no number. '
-                f"Write a number{' or nothing, if the marker was not seen' if column in self._places else ''}."
+                f"Write a number{' or nothing, if it was not measured' if may_lack else ''}."
             )
         return number
 
 
+MEASURED, POSITIVE = ("place", "length", "force"), ("load", "length")
+"""Kinds of columns whose cells may be empty, and whose numbers are not below 0."""
+
 _SKIPPED = ("time_s", "pose", "row")
+"""Columns that are not read."""

@@ -17,6 +17,7 @@ from hydrostat.identification import (
     identify,
     read_measurements,
 )
+from hydrostat.identification.find_faults import Swap, find_slip, find_swaps
 from hydrostat.identification.identified_robot import start_of
 from hydrostat.identification.kinds import KINDS, named_model
 from hydrostat.identification.marker_predictor import MarkerPredictor
@@ -35,7 +36,10 @@ def strip() -> Robot:
         pins=(Pin(box=((-0.001, -1.0), (0.001, 1.0)), stiffness=3e3),),
         gravity=(0.0, -9.81),
         winches=(Winch(name="up", at=UPPER[0]), Winch(name="down", at=LOWER[0])),
-        cables=(Cable(winch="up", points=UPPER, slack=0.001), Cable(winch="down", points=LOWER, slack=0.001)),
+        cables=(
+            Cable(winch="up", points=UPPER, slack=0.001),
+            Cable(winch="down", points=LOWER, slack=0.001, spool_radius=0.011),
+        ),
         markers=(Marker(name="tip", at=(0.2, 0.0)), Marker(name="middle", at=(0.1, 0.0))),
         loads=(Load(name="nut", marker="tip", mass=0.005),),
         poses={},
@@ -74,24 +78,25 @@ def measured(robot: Robot, commands: np.ndarray) -> Measurements:
 @pytest.mark.parametrize(
     ("robot", "kinds"),
     [
-        (strip(), ("young", "poisson", "density", "stiffness", "zero", "gain", "pins", "gravity", "frame")),
-        (box(), ("young", "stiffness", "zero", "gain", "rods", "frame")),
+        (strip(), ("young", "poisson", "density", "stiffness", "zero", "gain", "pins", "gravity", "frame", "force")),
+        (box(), ("young", "stiffness", "zero", "gain", "rods", "frame", "force", "routes")),
     ],
     ids=["flat", "space"],
 )
 def test_slopes_are_those_of_central_differences(robot: Robot, kinds: tuple[str, ...], unchecked: None) -> None:
     model = named_model(robot, kinds)
     rows = np.full((1, len(robot.winches)), 0.009) * np.linspace(1.0, 0.3, len(robot.winches))
-    predictor = MarkerPredictor(model, measured(robot, rows))
+    predictor = MarkerPredictor(model, replace(measured(robot, rows), forces=np.zeros_like(rows)))
     numbers = 0.3 * np.random.default_rng(1).standard_normal(len(model.parameters))
-    slopes = predictor.predict(numbers, slopes=True).jacobian
-    assert slopes is not None
+    exact = predictor.predict(numbers, slopes=True)
     for index, parameter in enumerate(model.parameters):
         step = 1e-3 * np.eye(len(numbers))[index]
-        less, more = (predictor.predict(numbers + sign * step, slopes=False).places for sign in (-1, 1))
-        found = (more - less) / 2e-3
-        scale = max(np.abs(found).max(), 1e-6)
-        assert np.abs(slopes[..., index] - found).max() < 2e-4 * scale, parameter.name
+        less, more = (predictor.predict(numbers + sign * step, slopes=False) for sign in (-1, 1))
+        for name, slopes in (("places", exact.jacobian), ("forces", exact.force_jacobian)):
+            assert slopes is not None
+            found = (getattr(more, name) - getattr(less, name)) / 2e-3
+            scale = max(np.abs(found).max(), 1e-6)
+            assert np.abs(slopes[..., index] - found).max() < 2e-4 * scale, (parameter.name, name)
 
 
 def test_hidden_parameters_of_a_heavy_strip_are_found() -> None:
@@ -144,6 +149,72 @@ def test_a_hung_mass_tells_modulus_and_density_apart() -> None:
     assert found.values["body.young"] == pytest.approx(model.values(np.array([0.3, -0.2]))["body.young"], rel=0.01)
 
 
+def test_forces_show_the_modulus_of_a_body_without_weight() -> None:
+    """Oracle: hidden values. Contractions alone give every modulus the same shape."""
+    stiff = tuple(replace(cable, stiffness=1e7) for cable in strip().cables)
+    pins = (replace(strip().pins[0], stiffness=3e5),)
+    robot = replace(strip(), gravity=None, loads=(), pins=pins, cables=stiff)
+    model, hidden = named_model(robot, ("young", "force")), np.array([0.5, 0.0])
+    asked = measured(robot, np.random.default_rng(5).uniform(0.004, 0.012, (6, 2)))
+    seen = MarkerPredictor(model, asked).predict(hidden, slopes=False)
+    blind = fit_model(model, replace(asked, places=seen.places), noise=3e-4, refine=False)
+    assert blind.information_gains["body.young"] < 0.3
+    noisy = seen.forces * (1 + 0.02 * np.random.default_rng(6).standard_normal(seen.forces.shape))
+    table = replace(asked, places=seen.places, forces=noisy)
+    alone = fit_model(named_model(robot, ("young",)), table, noise=3e-4, refine=False)
+    assert alone.numbers[0] == pytest.approx(0.5, abs=0.03)
+    scaled = fit_model(model, table, noise=3e-4, refine=False)
+    low, high = scaled.intervals["body.young"]
+    assert low < model.values(hidden)["body.young"] < high
+    assert np.log(high / low) / (2 * 1.96) == pytest.approx(0.2, rel=0.15)  # the torque constant is known to 20 %
+
+
+def test_lengths_by_ruler_need_no_places(tmp_path: Path) -> None:
+    """Oracle: hidden spools, from three distances of two markers each in eight poses."""
+    robot, file = strip(), tmp_path / "ruler.csv"
+    robot = replace(robot, markers=(*robot.markers, Marker(name="root", at=(0.01, 0.01))))
+    asked = measured(robot, np.random.default_rng(7).uniform(0.002, 0.014, (8, 2)))
+    model, hidden = named_model(robot, ("gain",)), np.array([0.6, -0.4])
+    places = MarkerPredictor(model, asked).predict(hidden, slopes=False).places
+    pairs = ((0, 1), (1, 2), (2, 0))
+    lengths = 1e3 * np.stack([np.linalg.norm(places[:, one] - places[:, two], axis=1) for one, two in pairs], axis=1)
+    names = [f"{asked.markers[one]}_to_{asked.markers[two]}_mm" for one, two in pairs]
+    cells = np.concatenate([1e3 * asked.commands, lengths], axis=1)
+    rows = [",".join(f"{cell:.4f}" for cell in row) for row in cells]
+    file.write_text("\n".join([",".join(["up_mm", "down_mm", *names]), *rows]) + "\n")
+    found = identify(robot, read_measurements(file, robot), fit=("gain",))
+    assert found.fitted.numbers == pytest.approx(hidden, abs=0.02)
+    assert found.fitted.error < 1e-5
+
+
+def test_swapped_markers_and_a_slip_are_found() -> None:
+    """Oracle: the faults that were made; none are found in noisy measurements without."""
+    robot, rng = strip(), np.random.default_rng(8)
+    asked = measured(robot, rng.uniform(0.002, 0.014, (10, 2)))
+    model, assumed = named_model(robot, ("gain", "zero")), start_of(named_model(robot, ()))
+    slipped = asked.commands.copy()
+    slipped[6:, 1] -= 0.004
+    for commands, length in ((asked.commands, None), (slipped, 0.004)):
+        seen = MarkerPredictor(model, replace(asked, commands=commands)).predict(np.full(4, 0.2), slopes=False).places
+        table = replace(asked, places=seen + 2e-4 * rng.standard_normal(seen.shape))
+        fitted = fit_model(model, table, refine=False)
+        assert find_swaps(fitted, assumed, table) == []
+        slip = find_slip(fitted, table)
+        if length is not None:
+            assert slip is not None
+            assert (slip.winch, slip.row) == ("down", 6)
+            assert slip.length == pytest.approx(length, rel=0.1)
+            continue
+        assert slip is None
+        for rows in ([3], list(range(10))):
+            swapped = table.places.copy()
+            swapped[rows] = swapped[rows, ::-1]
+            wrong = replace(table, places=swapped)
+            assert find_swaps(fit_model(model, wrong, refine=False), assumed, wrong) == [
+                Swap(markers=("tip", "middle"), rows=tuple(rows))
+            ]
+
+
 def test_a_table_is_read_and_refused_by_line(tmp_path: Path) -> None:
     robot = strip()
     file = tmp_path / "seen.csv"
@@ -160,6 +231,9 @@ def test_a_table_is_read_and_refused_by_line(tmp_path: Path) -> None:
         ("up_mm,tip_x_mm,tip_y_mm\nfar,2,3\n", 'line 2, column up_mm: "far" is no number'),
         ("up_mm,tip_x_mm,tip_y_mm\n1,2\n", "line 2: 2 cells"),
         ("up_mm,tip_x_mm,tip_y_mm\n", "no row of numbers"),
+        ("up_mm,tip_to_middle_mm,middle_to_tip_mm\n1,2,2\n", "two columns"),
+        ("up_mm,tip_to_tip_mm\n1,2\n", 'unknown column "tip_to_tip_mm"'),
+        ("up_mm,tip_to_middle_mm\n1,-2\n", "must be 0 or more, not -2"),
     ):
         file.write_text(text)
         with pytest.raises(InputError) as caught:

@@ -1,0 +1,108 @@
+"""`find_swaps` and `find_slip`: markers that were swapped, and a winch that slipped, in fitted measurements."""
+
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from hydrostat.arrays import Float
+from hydrostat.identification.fit import FittedModel
+from hydrostat.identification.marker_predictor import MarkerPredictor, winch_ratios
+from hydrostat.identification.measurements import Measurements
+from hydrostat.identification.residuals import Residuals
+from hydrostat.units import MM
+
+CLEARER = 0.25
+"""Share of the distance of two markers that must remain at most if their places are exchanged."""
+
+EXPLAINED = 0.6
+"""Share of the squared residuals that one slip must explain."""
+
+LEAST = 0.01
+"""Least distance of swapped markers, and least slip, over the size of the body."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Swap:
+    """Two markers whose places were exchanged.
+
+    Attributes:
+        markers: their names.
+        rows: rows in which they were, from 0.
+    """
+
+    markers: tuple[str, str]
+    rows: tuple[int, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Slip:
+    """A winch that lost or took up cable between two rows.
+
+    Attributes:
+        winch: its name.
+        row: first row after it, from 0.
+        length: cable that it lost [m]; below 0 if it took up more than it was asked for.
+    """
+
+    winch: str
+    row: int
+    length: float
+
+
+def find_swaps(fitted: FittedModel, assumed: FittedModel, measurements: Measurements) -> list[Swap]:
+    """Pairs of markers that stand much nearer to each other's prediction than to their own.
+
+    A pair that is swapped in all rows leads the fit astray, so that predictions of the assumed robot count as well.
+    """
+    size = fitted.model.robot(fitted.values).body.mesh.size
+    found = []
+    predicted = [each.predict(measurements) for each in (fitted, assumed)]
+    for one, other in combinations(range(len(measurements.markers)), 2):
+        seen = measurements.places[:, [one, other]]
+        swapped = np.zeros(len(seen), dtype=bool)
+        for places in predicted:
+            straight = np.linalg.norm(places[:, [one, other]] - seen, axis=2).max(axis=1)
+            crossed = np.linalg.norm(places[:, [other, one]] - seen, axis=2).max(axis=1)
+            swapped |= (crossed < CLEARER * straight) & (straight > LEAST * size)
+        if swapped.any():
+            names = measurements.markers[one], measurements.markers[other]
+            found.append(Swap(markers=names, rows=tuple(np.flatnonzero(swapped).tolist())))
+    return found
+
+
+def find_slip(fitted: FittedModel, measurements: Measurements) -> Slip | None:
+    """Slip of one winch before one row that explains most of the residuals; None if none does.
+
+    All values are fitted again with it, to first order. At least two rows are on each side.
+    """
+    robot, count = fitted.model.robot(fitted.values), len(measurements.commands)
+    ratios = winch_ratios(robot)
+    predictor = MarkerPredictor(fitted.model, measurements, deviations={"slack": MM})
+    residuals = Residuals.of(predictor.predict(fitted.numbers, slopes=True), measurements)
+    known = np.isfinite(residuals.errors)
+    scales = np.where(residuals.is_force, fitted.force_noise, fitted.noise)[known]
+    slopes = residuals.jacobian[known] / scales[:, None]
+    own = len(fitted.numbers)
+    if slopes.shape[1] != own + len(robot.cables):  # slack is fitted
+        return None
+    prior = np.zeros((own, len(ratios)))
+    base = np.linalg.qr(np.concatenate([slopes[:, :own], np.eye(own)]))[0]
+    errors = _without(base, np.concatenate([residuals.errors[known] / scales, fitted.numbers]))
+    best, found = EXPLAINED * float(errors @ errors), None
+    for row in range(2, count - 1):
+        after = slopes[:, own:] @ ratios.T * (residuals.rows[known] >= row)[:, None]
+        changed = _without(base, np.concatenate([after, prior]))
+        squares = np.maximum((changed**2).sum(axis=0), np.finfo(float).tiny)
+        along = errors @ changed
+        winch = int(np.argmax(along**2 / squares)) if len(ratios) else 0
+        length = -MM * float(along[winch] / squares[winch]) if len(ratios) else 0.0
+        if len(ratios) and along[winch] ** 2 / squares[winch] > best and abs(length) > LEAST * robot.body.mesh.size:
+            best = float(along[winch] ** 2 / squares[winch])
+            found = Slip(winch=robot.winches[winch].name, row=row, length=length)
+    return found
+
+
+def _without(base: Float[np.ndarray, "rows basis"], columns: np.ndarray) -> np.ndarray:
+    """Columns less their parts in an orthonormal basis."""
+    return columns - base @ (base.T @ columns)
