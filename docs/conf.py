@@ -4,6 +4,7 @@ Pages of commands and of the Python API are written from the code before each bu
 """
 
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -67,7 +68,7 @@ def scrape_figure(_block: Any, variables: dict[str, Any], settings: dict[str, An
 sphinx_gallery_conf = {
     "examples_dirs": [str(ROOT / "examples" / "python")],
     "gallery_dirs": ["examples"],
-    "filename_pattern": r"/\d\d_",
+    "filename_pattern": r"/\d\d_" if find_spec("torch") else r"/\d\d_(?!learn|torch)",  # those are shown, not run
     "within_subsection_order": "FileNameSortKey",
     "image_scrapers": (scrape_figure,),
     "download_all_examples": False,

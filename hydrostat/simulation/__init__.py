@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from hydrostat.simulation.strain import node_strains, node_stresses
     from hydrostat.simulation.time.dynamics import StepOptions
     from hydrostat.simulation.time.motion import Motion
+    from hydrostat.simulation.torch_bridge import solve_torch
 
 __all__ = [
     "BatchResult",
@@ -69,6 +70,7 @@ __all__ = [
     "obstacles_in_pose",
     "require_static_obstacles",
     "rests_at_first",
+    "solve_torch",
     "with_obstacles",
     "with_replaced",
     "without_contact_friction",
