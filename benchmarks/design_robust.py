@@ -8,7 +8,7 @@ A network is found for each body by each method, and its commands by inverse kin
 robots are drawn (`hydrostat.design.BuildTolerances`: holes, friction, stiffness, knots, spools), with draws that no
 design saw, and solved from rest along the straight loading path with the friction of each. `exact` are routes for a
 robot that is built just as its model: cables may cross, lie side by side and turn by 75 degrees.
-Further methods, not among those that are usually printed: `reach` are routes with `RouteOptions.reach` of 1, `family`
+Further methods, printed on request: `reach` are routes with `RouteOptions.workspace_weight` of 1, `family`
 routes that are designed for the half-way poses too, `two_way` routes whose winches may pull both ways.
 
 Columns, errors in mm rms over markers and poses: `model`, as designed; `built`, median and 90 % of the draws;
@@ -86,7 +86,7 @@ def network(method: str, robot: Robot, body: Body, poses: Sequence[PoseTarget]) 
     request = DesignRequest(
         poses=tuple(poses), winches=body.winches, cables=body.cables, constraints=constraints, uncertainty=uncertainty,
         method=DesignMethod.TREES if method == "trees" else DesignMethod.ROUTES,
-        options=RouteOptions(reach=1.0) if method == "reach" else None,
+        options=RouteOptions(workspace_weight=1.0) if method == "reach" else None,
     )  # fmt: skip
     try:
         return find_network(robot, request).robot

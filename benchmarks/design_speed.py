@@ -76,12 +76,12 @@ def row(name: str, copies: int) -> tuple[str, Course]:
     if network is None:
         return f"| {name} | none found |", course
     others = [designed(name, moved(robot, seed))[0] for seed in range(copies)]
-    errors = [1e3 * one.built for one in (network, *others) if one is not None]
+    errors = [1e3 * one.expected_error for one in (network, *others) if one is not None]
     luck = f"{np.median(errors):.2f} | {max(errors):.2f}" if copies else " | "
     on_the_way = " | ".join(f"{1e3 * course.at(when):.2f}" for when in (course.seconds[0], 2.0, 5.0))
     counts = f"{len(network.robot.winches)}/{len(network.robot.cables)}"
     ends = f"{course.seconds[0]:.1f} | {network.seconds:.1f}"
-    return f"| {name} | {ends} | {on_the_way} | {1e3 * network.built:.2f} | {counts} | {luck} |", course
+    return f"| {name} | {ends} | {on_the_way} | {1e3 * network.expected_error:.2f} | {counts} | {luck} |", course
 
 
 def draw(courses: dict[str, Course], file: Path) -> None:

@@ -167,7 +167,9 @@ def search_times(robot: Robot, wishes: Wishes) -> list[list[tuple[float, float]]
         pulls = settled_pulls(robot, name)
         moment = ProposalInput(held=held_of(robot, name), wishes=wishes, markers=robot.markers, muscles=pulls)
         began = time.process_time()
-        times.append([(time.process_time() - began, found.built or float("nan")) for found in proposer.propose(moment)])
+        times.append(
+            [(time.process_time() - began, found.expected_error or float("nan")) for found in proposer.propose(moment)]
+        )
     return times
 
 

@@ -89,7 +89,7 @@ def draw_demo() -> None:
     save_png(draw_activation(robot, activation, title=""), HERE / "activation.png", dpi=110)
     network = hs.design_cables(robot, [pose], winches=DEMO_WINCHES, cables=DEMO_CABLES)
     save_png(draw_network(network.robot, title=""), HERE / "network.png", dpi=110)
-    save_png(draw_reached(network.robot, network.reached[0], title=""), HERE / "reached.png", dpi=110)
+    save_png(draw_reached(network.robot, network.ik_results[0], title=""), HERE / "reached.png", dpi=110)
     limits = network.constraints
     kit = hs.build_kit(network.robot, options=KitOptions(tension=limits.tension_limit, torque=limits.torque))
     draw_kits(kit)
@@ -101,9 +101,9 @@ def draw_demo() -> None:
         "source_robot": robot_hash(robot),
         "robot": robot_hash(own),
         "rms_error": network.rms_error,
-        "rms_error_as_built": network.built,
+        "rms_error_as_built": network.expected_error,
         "tension_limit": limits.tension_limit,
-        "contractions": network.reached[0].pose.contractions.tolist(),
+        "contractions": network.ik_results[0].pose.contractions.tolist(),
         "face": own.face,
         "winches": [asdict(winch) for winch in own.winches],
         "cables": [asdict(cable) for cable in own.cables],

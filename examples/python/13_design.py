@@ -12,7 +12,7 @@ import hydrostat as hs
 
 robot = hs.load_robot("gallery:starfish")
 network = hs.design_cables(robot, [robot.poses["wave"]], winches=2, cables=3, seconds=5)
-built = network.built
+built = network.expected_error
 print(f"{1e3 * network.rms_error:.1f} mm in the model, {1e3 * built:.1f} mm expected as built")
 
 # %%

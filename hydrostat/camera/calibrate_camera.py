@@ -243,20 +243,20 @@ class _Problem:
         return np.concatenate([away, numbers[:LENS] / self._spreads])
 
     def jacobian(self, numbers: np.ndarray) -> np.ndarray:
-        """Slopes by central differences; numbers of all views are changed together, as they share no corner."""
+        """Derivatives by central differences; numbers of all views are changed together, as they share no corner."""
         count = len(self._pixels)
         shared = len(numbers) - 6 * self._views
-        slopes = np.zeros((2 * count + LENS, len(numbers)))
+        derivatives = np.zeros((2 * count + LENS, len(numbers)))
         for column in range(shared + 6):
             step = np.zeros(len(numbers))
             size = 1e-2 if column in {1, 2} else 1e-6
             step[column if column < shared else slice(column, None, 6)] = size
-            slope = (self._project_corners(numbers + step) - self._project_corners(numbers - step)) / (2 * size)
+            derivative = (self._project_corners(numbers + step) - self._project_corners(numbers - step)) / (2 * size)
             if column < shared:
-                slopes[: 2 * count, column] = slope.ravel()
+                derivatives[: 2 * count, column] = derivative.ravel()
             else:
                 rows = 2 * np.arange(count)
                 for axis in (0, 1):
-                    slopes[rows + axis, column + 6 * self.photo] = slope[:, axis]
-        slopes[2 * count + np.arange(LENS), np.arange(LENS)] = 1 / self._spreads
-        return slopes
+                    derivatives[rows + axis, column + 6 * self.photo] = derivative[:, axis]
+        derivatives[2 * count + np.arange(LENS), np.arange(LENS)] = 1 / self._spreads
+        return derivatives

@@ -11,7 +11,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, NoReturn, TypeVar
 
-from hydrostat.cli.waiting import PATIENCE
+from hydrostat.cli.waiting import NOTICE_DELAY
 from hydrostat.errors import InputError
 
 MEMORY = 1_800_000_000
@@ -101,9 +101,9 @@ def _read_child(child: int, reader: int, file: str, words: str, seconds: float, 
             )
         if taken > memory:
             raise InputError(f"{file}: memory limit reached ({1e-9 * memory:.2g} GB). Simplify the file.")
-        if now - told > (PATIENCE if told == began else again):
+        if now - told > (NOTICE_DELAY if told == began else again):
             told = now
-            print(words if now - began < 2 * PATIENCE else f"{words} {now - began:.0f} s", flush=True)
+            print(words if now - began < 2 * NOTICE_DELAY else f"{words} {now - began:.0f} s", flush=True)
 
 
 def _usage_of(usage: Path, waited: float) -> tuple[float, int]:

@@ -195,7 +195,7 @@ def _tell(
     notes = []
     soft, hard = 0.5, 2.0  # cables that feel so much softer or stiffer than the model are told
     for taken, pull, constant in zip(found, model, constants.tolist(), strict=True):
-        wanted = pull.stiffness(taken.reach)
+        wanted = pull.stiffness(taken.reeled_length)
         felt = wanted * taken.gain * constant / taken.motor.radius
         if felt < soft * wanted or felt > hard * wanted:
             notes.append(

@@ -54,12 +54,12 @@ def check(
 
         print(f"build: {BuildCost.of_robot(found, ())}; more if poses need stronger motors")
     if stuffed:
-        _print_filled(found)
+        _print_stuffed(found)
     elif words and thorough:
         _print_out_of_plane(found)
     reaches = bool(found.markers and found.cables)
     if reaches and thorough:
-        _print_reach(found)
+        _print_workspaces(found)
     left_out = ["marker workspaces"] * reaches + ["out-of-plane motion"] * (bool(words) and not stuffed)
     if left_out and not thorough:
         print(f"not computed: {' and '.join(left_out)}. Add --thorough. Loads of poses: hydrostat fabricate.")
@@ -104,11 +104,11 @@ FINDINGS = {"refused": "error", "limit": "note", "mind": "warning"}
 """Beginning of the line of a finding, by its weight."""
 
 
-def _print_reach(robot: "Robot") -> None:
+def _print_workspaces(robot: "Robot") -> None:
     """Print the workspace of each marker: from few poses for large bodies, not at all for the largest; quick."""
     from hydrostat.design import Constraints
     from hydrostat.errors import NotConvergedError
-    from hydrostat.ik import find_reach
+    from hydrostat.ik import find_workspaces
     from hydrostat.simulation import Simulation
 
     nodes = len(robot.body.mesh.nodes)
@@ -119,7 +119,7 @@ def _print_reach(robot: "Robot") -> None:
     solved, least, most = 30_000, 9, 64
     tension, count = Constraints().tension_limit, int(min(max(solved / nodes, least), most))
     try:
-        reaches = find_reach(Simulation(robot), tension=tension, count=count)
+        reaches = find_workspaces(Simulation(robot), tension=tension, count=count)
     except (InputError, NotConvergedError) as error:
         print(f"workspace: not computed ({error})")
         return
@@ -134,22 +134,22 @@ _LARGE = 5000  # nodes of a body from which on even the fewest poses take long
 def _print_out_of_plane(robot: "Robot") -> None:
     """Print the out-of-plane displacement of a stuffed flat robot with its cables as routed, if quickly computed."""
     from hydrostat.errors import NotConvergedError
-    from hydrostat.simulation import filled_motion, is_filled_motion_fast
+    from hydrostat.simulation import is_stuffed_motion_fast, solve_stuffed_motion
 
-    if not is_filled_motion_fast(robot, len(robot.poses)):
+    if not is_stuffed_motion_fast(robot, len(robot.poses)):
         if robot.body.outline is not None and robot.poses:
             print("3D effect when stuffed: not computed (slow). Run hydrostat check --stuffed")
         return
     try:
-        print(f"3D effect when stuffed: {filled_motion(robot, _full_contractions(robot))}")
+        print(f"3D effect when stuffed: {solve_stuffed_motion(robot, _full_contractions(robot))}")
     except (InputError, NotConvergedError) as error:
         print(f"3D effect when stuffed: not computed ({error})")
 
 
-def _print_filled(robot: "Robot") -> None:
+def _print_stuffed(robot: "Robot") -> None:
     """Print the out-of-plane displacement of a flat robot once it is stuffed, by cable face."""
     from hydrostat.robot import Face
-    from hydrostat.simulation import filled_motion
+    from hydrostat.simulation import solve_stuffed_motion
 
     if robot.body.outline is None:
         raise InputError("--stuffed: needs a flat robot with a drawing. Remove it.")
@@ -158,7 +158,7 @@ def _print_filled(robot: "Robot") -> None:
     pulled = _full_contractions(robot)
     print("Stuffed 3D body, contractions of the flat model (maximum over markers and poses):")
     for face in Face:
-        print(f"  cables {face.words}: {filled_motion(robot, pulled, face)}")
+        print(f"  cables {face.words}: {solve_stuffed_motion(robot, pulled, face)}")
 
 
 def _full_contractions(robot: "Robot") -> list[Any]:

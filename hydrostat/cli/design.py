@@ -94,7 +94,7 @@ WorkspaceWeight = Annotated[
     _option(
         None,
         "Weight of workspace size in the score. 0 = ignore; 1 = twice the workspace may cost twice the error.",
-        "RouteOptions.reach",
+        "RouteOptions.workspace_weight",
     ),
 ]
 Ideal = Annotated[
@@ -185,12 +185,12 @@ def design(
         winches=winches,
         cables=cables,
         method=method,
-        improve=warm_start,
+        warm_start=warm_start,
         tolerance=tolerance,
         simplicity=simplicity,
-        reach=workspace_weight,
+        workspace_weight=workspace_weight,
         ideal=ideal,
-        filled=stuffed,
+        stuffed=stuffed,
         time=time_limit,
         fibres=fibres,
         tree_options=tree_option or [],
@@ -304,7 +304,9 @@ def _tell_count(network: "Network", request: "DesignRequest") -> None:
         print(f"note: {words} were allowed. The search found no smaller error with more that can be built")
     if network.complete and not request.method.grows_trees:
         for lift in find_lifts(network):
-            print(f"note: {lift.words} would leave {1e3 * lift.built:.2g} mm as built, or less (by a quick search)")
+            print(
+                f"note: {lift.words} would leave at most {1e3 * lift.expected_error:.2g} mm as built, by a quick search"
+            )
     if request.is_open:
         print_front(network)
 

@@ -104,25 +104,29 @@ def print_poses(network: "Network", seconds: float) -> tuple[str, ...]:
     table = Table(title=f"{robot.name}: {size}", title_justify="left")
     for name, justify in (("pose", "left"), ("rms error", "right"), ("worst marker", "left"), ("contractions", "left")):
         table.add_column(name, justify=justify)  # type: ignore[arg-type]
-    for reached in network.reached:
+    for reached in network.ik_results:
         table.add_row(*_pose_row(robot, reached))
     Console(markup=False).print(table)
-    for reached in network.reached:
+    for reached in network.ik_results:
         if words := str(find_crossings(robot.body.mesh, reached.pose.nodes)):
             print(f"{reached.pose_target.name}: {words}")
         if words := unconstrained_motion(reached):
             print(f"{reached.pose_target.name}: {words}")
     corrected = corrected_error(network)
-    after = f", {1e3 * corrected:.2f} mm after one correction by measured markers" if corrected < network.built else ""
+    after = (
+        f", {1e3 * corrected:.2f} mm after one correction by measured markers"
+        if corrected < network.expected_error
+        else ""
+    )
     print(
         f"model error {1e3 * network.rms_error:.2f} mm rms (at rest {1e3 * network.rest_error:.2f} mm), "
-        f"expected as-built error {1e3 * network.built:.2f} mm{after} "
-        f"({plural(network.tried, 'candidate')}, {seconds:.1f} s)"
+        f"expected as-built error {1e3 * network.expected_error:.2f} mm{after} "
+        f"({plural(network.num_evaluated, 'candidate')}, {seconds:.1f} s)"
     )
-    print(f"build: {BuildCost.of_robot(robot, network.reached)}")
+    print(f"build: {BuildCost.of_robot(robot, network.ik_results)}")
     if words := describe_cable_side(robot):
         print(f"cables: {words}")
-    _print_filled(network)
+    _print_stuffed(network)
     return _print_findings(network)
 
 
@@ -133,19 +137,19 @@ def _print_findings(network: "Network") -> tuple[str, ...]:
     from hydrostat.errors import in_words
     from hydrostat.fabrication import Demand
 
-    found = review_robot(network.robot, demand=Demand.of_results(network.robot, network.reached))
+    found = review_robot(network.robot, demand=Demand.of_results(network.robot, network.ik_results))
     for finding in found:
         print(f"{FINDINGS[finding.weight]}: {in_words(finding.text)}")
     return tuple(finding.text for finding in found)
 
 
-def _print_filled(network: "Network") -> None:
+def _print_stuffed(network: "Network") -> None:
     """Print the errors on the stuffed 3D body, if these were requested."""
     from hydrostat.units import plural
 
-    filled = network.filled
+    filled = network.stuffed
     if filled is None:
-        if network.request.filled:
+        if network.request.stuffed:
             print("stuffed 3D body: no equilibrium found for a pose")
         return
     print(
@@ -173,9 +177,9 @@ def print_front(network: "Network") -> None:
         for name in ("winches", "cables", "as-built error", "motors", work, "price"):
             motors.add_column(name, justify="right")
         for winches, one in best.items():
-            effort = BuildCost.of_robot(one.robot, one.reached)
+            effort = BuildCost.of_robot(one.robot, one.ik_results)
             values = (f"{effort.motors} × {effort.motor}", f"{effort.minutes:.0f} min", f"{effort.price:.0f} USD")
-            motors.add_row(str(winches), str(len(one.robot.cables)), f"{1e3 * one.built:.2f} mm", *values)
+            motors.add_row(str(winches), str(len(one.robot.cables)), f"{1e3 * one.expected_error:.2f} mm", *values)
         console.print(motors)
     errors = network.best_errors(network.alternatives)
     table = Table(title="expected as-built error by number of winches and cables", title_justify="left")

@@ -22,12 +22,12 @@ class DesignArguments:
     winches: str | None = None
     cables: int | None = None
     method: str | None = None
-    improve: bool = False
+    warm_start: bool = False
     tolerance: str | None = None
     simplicity: float | None = None
-    reach: float | None = None
+    workspace_weight: float | None = None
     ideal: bool = False
-    filled: bool = False
+    stuffed: bool = False
     time: str | None = None
     fibres: str | None = None
     tree_options: Sequence[str] = ()
@@ -55,8 +55,8 @@ def parse_request(robot: "Robot", typed: DesignArguments) -> "DesignRequest":
         poses=tuple(poses),
         constraints=_constraints(robot, typed),
         options=_options(typed, method=method or DesignMethod.ROUTES, open_winches=isinstance(winches, str)),
-        improve=typed.improve,
-        filled=typed.filled,
+        warm_start=typed.warm_start,
+        stuffed=typed.stuffed,
         seconds=None if typed.time is None else positive("--time", typed.time, TIME),
         uncertainty=_uncertainty(robot, typed),
         **given,
@@ -129,7 +129,7 @@ def _options(
     for name, given in (("fibres", typed.fibres), ("tree-option", typed.tree_options)):
         if given and not trees:
             raise InputError(f"--{name}: needs --method trees or chang2018. Add it.")
-    for name, given in (("simplicity", typed.simplicity), ("workspace-weight", typed.reach)):
+    for name, given in (("simplicity", typed.simplicity), ("workspace-weight", typed.workspace_weight)):
         if given is not None and trees:
             raise InputError(f"--{name}: not available with --method {method}. Use --method routes.")
     if trees:
@@ -138,8 +138,8 @@ def _options(
         return replace(options, fibres=fibres or options.fibres)
     tolerance = None if typed.tolerance is None else positive("--tolerance", typed.tolerance, LENGTH)
     simplicity = RouteOptions.simplicity if typed.simplicity is None else typed.simplicity
-    reach = RouteOptions.reach if typed.reach is None else typed.reach
-    return RouteOptions(tolerance=tolerance, simplicity=simplicity, reach=reach)
+    reach = RouteOptions.workspace_weight if typed.workspace_weight is None else typed.workspace_weight
+    return RouteOptions(tolerance=tolerance, simplicity=simplicity, workspace_weight=reach)
 
 
 def _tree_option(text: str) -> tuple[str, Any]:

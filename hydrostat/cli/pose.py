@@ -12,7 +12,7 @@ from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result
 from hydrostat.cli.learned import learned_start, read_model
 from hydrostat.cli.limits import print_exceeded
 from hydrostat.cli.options import EqualWinches, MostTension, MostTorque, parse_optional, pose_limits
-from hydrostat.cli.waiting import read_robot, search_told
+from hydrostat.cli.waiting import read_robot, show_search
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
@@ -63,14 +63,14 @@ def pose(
     from hydrostat.units import TIME
 
     require_folder(out)
-    limits, patience = pose_limits(tension, torque, equal), parse_optional("--timeout", timeout, TIME)
+    limits, seconds = pose_limits(tension, torque, equal), parse_optional("--timeout", timeout, TIME)
     if restarts is not None and restarts < 0:
         raise InputError(f"--restarts {restarts}: must be 0 or more")
     options = IKOptions() if restarts is None else IKOptions(restarts=restarts)
     loaded = read_robot(robot)
     outline = None if drawing is None else load_target_outline(loaded, drawing)
     wishes = [] if outline is None else [ShapeTarget(outline=outline)]
-    asked_for: dict[str, Any] = {"limits": limits, "objectives": wishes, "options": options, "seconds": patience}
+    asked_for: dict[str, Any] = {"limits": limits, "objectives": wishes, "options": options, "seconds": seconds}
     targets = _targets(loaded, robot, name, drawing)
     learned, loaded = (None, loaded) if model is None else read_model(model, loaded)
     simulation = Simulation(loaded)
@@ -78,7 +78,7 @@ def pose(
     for title, target in targets:
         began = time.process_time()
         start = None if learned is None or target is None else learned_start(simulation, learned, target)
-        with search_told(title) as tell:
+        with show_search(title) as tell:
             reached = solve_ik(simulation, target, start=start, progress=tell, **asked_for)
         seconds = time.process_time() - began
         folder: Path = out / title if len(targets) > 1 else out

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from hydrostat.robot import Robot
     from hydrostat.simulation import Simulation
 
-PATIENCE = 3.0  # seconds after which a person is told what takes so long
+NOTICE_DELAY = 3.0  # seconds after which a person is told what takes so long
 STOP_SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 """Signals that end work and keep what it has: Ctrl-C, a polite kill, a terminal that closes."""
 
@@ -25,7 +25,7 @@ STOP_SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SI
 @contextmanager
 def patiently(words: str) -> Iterator[None]:
     """Say what is done if it takes long."""
-    word = Timer(PATIENCE, lambda: print(words, flush=True))
+    word = Timer(NOTICE_DELAY, lambda: print(words, flush=True))
     word.daemon = True
     word.start()
     try:
@@ -110,13 +110,13 @@ def _span(seconds: float) -> str:
 
 
 @contextmanager
-def search_told(title: str) -> Iterator[Callable[[int, float], None]]:
+def show_search(title: str) -> Iterator[Callable[[int, float], None]]:
     """A function to call with the steps of a search and its error [m]: after a while it says how the search goes."""
     last, shown = time.monotonic(), False
 
     def tell(steps: int, error: float) -> None:
         nonlocal last, shown
-        if time.monotonic() - last < PATIENCE:
+        if time.monotonic() - last < NOTICE_DELAY:
             return
         last = time.monotonic()
         words = f"{title}: step {steps}, rms error {1e3 * error:.2f} mm ..."

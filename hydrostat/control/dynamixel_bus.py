@@ -140,7 +140,7 @@ class DynamixelBus(ServoBus):
                 last["volts"][index], last["temperatures"][index] = 0.1 * _to_signed(told[18:20]), told[20]
                 stamps[index] = self._clock()
                 faults[index] = self._fault(packet)
-            return self._heard(Reading(**last, stamps=stamps, faults=tuple(faults)))
+            return self._keep_reading(Reading(**last, stamps=stamps, faults=tuple(faults)))
 
     def write(self, angles: Vector, speeds: Vector) -> None:
         """Send goals and speeds to all at once; none answers."""
@@ -190,7 +190,7 @@ class DynamixelBus(ServoBus):
         The goal is never further ahead than they turn in `SOON`; a spool of 8 mm takes in 0.7 mm of cable. Who is not
         heard, or does not go on (held by its cable, say), has proved nothing.
         """
-        begin = self._heard_anew()
+        begin = self._read_again()
         if (lost := np.flatnonzero(np.isnan(begin)).tolist()) != []:
             raise self._silent(self._numbers[lost[0]])
         for number in self._numbers:
@@ -202,14 +202,14 @@ class DynamixelBus(ServoBus):
         self._tell_all(WATCHDOG, dict.fromkeys(self._numbers, bytes([TRIED])))  # all at once, as they wait so short
         self.write(begin + PROOF, speeds)
         self._wait(0.15)
-        first = self._heard_anew()
+        first = self._read_again()
         self._wait(0.03)
-        second = self._heard_anew()
+        second = self._read_again()
         for number in self._numbers:
             self._set(number, WATCHDOG, 0, 1)
         self.write(begin + PROOF, speeds)
         self._wait(0.2)
-        on = self._heard_anew()
+        on = self._read_again()
         still = (np.abs(second - first) <= 1.5 * TICK) & (first - begin > 1.5 * TICK) & (first - begin < 0.7 * PROOF)
         self.write(begin, speeds)
         self._wait(0.2)
@@ -218,7 +218,7 @@ class DynamixelBus(ServoBus):
         proved = still & (on - second > 0.2 * PROOF)  # NaN, not heard: not proved
         return {number for number, each in zip(self._numbers, proved.tolist(), strict=True) if each}
 
-    def _heard_anew(self) -> Vector:
+    def _read_again(self) -> Vector:
         """Positions by answers to a fresh query [rad]; NaN where five queries brought none."""
         asked, reading = self._clock(), self.read()
         for _ in range(4):
@@ -264,7 +264,7 @@ class DynamixelBus(ServoBus):
     def _ask_all(self, place: int, size: int) -> list[Packet]:
         """Answers of all that answer to one question for a register."""
         self._send(ALL, SYNC_READ, place.to_bytes(2, "little") + size.to_bytes(2, "little") + bytes(self._numbers))
-        return self._hear(
+        return self._receive(
             len(self._numbers),
             lambda packet: (
                 packet.instruction == STATUS and packet.number in self._numbers and len(packet.content) == 1 + size
@@ -282,7 +282,7 @@ class DynamixelBus(ServoBus):
         self._send_packet(pack(number, instruction, content))
 
     def _answers(self, count: int) -> list[Packet]:
-        return self._hear(count, lambda packet: packet.instruction == STATUS)
+        return self._receive(count, lambda packet: packet.instruction == STATUS)
 
 
 _UNKNOWN = DynamixelModel("", True, 1.0, 1.0)

@@ -135,7 +135,7 @@ class FeetechBus(ServoBus):
                 last["volts"][index], last["temperatures"][index] = 0.1 * told[6], told[7]
                 stamps[index] = self._clock()
                 faults[index] = ", ".join(word for bit, word in FAULTS.items() if packet.instruction & bit)
-            return self._heard(Reading(**last, stamps=stamps, faults=tuple(faults)))
+            return self._keep_reading(Reading(**last, stamps=stamps, faults=tuple(faults)))
 
     def write(self, angles: Vector, speeds: Vector) -> None:
         """Send goals and speeds to all at once; none answers."""
@@ -202,7 +202,7 @@ class FeetechBus(ServoBus):
 
     def _answers(self, count: int, size: int) -> list[Packet]:
         """Answers of such a size from servos that are ours."""
-        return self._hear(count, lambda packet: packet.number in self._numbers and len(packet.content) == size)
+        return self._receive(count, lambda packet: packet.number in self._numbers and len(packet.content) == size)
 
 
 def _to_signed(data: bytes, bit: int) -> int:

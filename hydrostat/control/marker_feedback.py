@@ -78,7 +78,7 @@ class _Past:
 class MarkerFeedback:
     """Correct contractions so that markers follow the simulated ones (integral control with a known lag).
 
-    Each frame shows an error at the time when it was taken. A damped least-squares step by the exact slopes of the
+    Each frame shows an error at the time when it was taken. A damped least-squares step by the exact derivatives of the
     model states the correction that would have removed it; the present correction approaches that one. Lag does not
     add up, as the correction of that time is remembered. Corrections stay within 20 % of the travel of each winch, and
     commands within its limits.
@@ -173,14 +173,14 @@ class MarkerFeedback:
         before = next((past for past in reversed(self._past) if past.now <= sight.time - self._lag), None)
         if before is None:
             return
-        places, slopes = self._path.at(before.time)
+        places, derivatives = self._path.at(before.time)
         errors, rows = [], []
         for index, name in enumerate(self._names):
             if name in sight.places:
                 error = np.asarray(sight.places[name]) - places[index]
                 if np.isfinite(error).all() and np.linalg.norm(error) < self._misread:
                     errors.append(error)
-                    rows.append(slopes[index])
+                    rows.append(derivatives[index])
         if not errors:
             return
         self._began = sight.time if self._began is None else self._began

@@ -1,4 +1,4 @@
-"""`MarkerPath`: simulated markers along a profile of contractions, with their slopes."""
+"""`MarkerPath`: simulated markers along a profile of contractions, with their derivatives."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -19,12 +19,12 @@ POSES = 4000
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MarkerPath:
-    """Simulated markers along a profile, with their exact slopes by the contractions.
+    """Simulated markers along a profile, with their exact derivatives by the contractions.
 
     Attributes:
         times: times of the profile [s].
         places: places of all markers [m].
-        jacobians: slopes dx/da of these places.
+        jacobians: derivatives dx/da of these places.
     """
 
     times: Vector
@@ -55,13 +55,15 @@ class MarkerPath:
         return cls(times=times, places=np.array(places), jacobians=np.array(jacobians))
 
     def at(self, time: float) -> tuple[np.ndarray, np.ndarray]:
-        """Places and slopes at a time [s], linear between poses."""
+        """Places and derivatives at a time [s], linear between poses."""
         place = int(np.clip(np.searchsorted(self.times, time) - 1, 0, max(len(self.times) - 2, 0)))
         after = min(place + 1, len(self.times) - 1)
         length = self.times[after] - self.times[place]
         share = float(np.clip((time - self.times[place]) / length, 0.0, 1.0)) if length > 0 else 0.0
-        places, slopes = ((1 - share) * each[place] + share * each[after] for each in (self.places, self.jacobians))
-        return places, slopes
+        places, derivatives = (
+            (1 - share) * each[place] + share * each[after] for each in (self.places, self.jacobians)
+        )
+        return places, derivatives
 
 
 def _path_times(robot: Robot, profile: ContractionProfile) -> Vector:

@@ -31,7 +31,7 @@ class Motors:
         places: contractions at the last reading [m].
         fastest: largest speed of their cables [m/s].
         link: link to the motors.
-        patience: from one `drive` to the next, before they hold for want of commands [s].
+        command_timeout: from one `drive` to the next, before they hold for want of commands [s].
     """
 
     def __init__(
@@ -41,18 +41,18 @@ class Motors:
         *,
         places: Vector | None = None,
         fastest: float = FASTEST,
-        patience: float = SILENCE,
+        command_timeout: float = SILENCE,
     ) -> None:
         """Motors that stand still where they are [m], at 0 if that is left out.
 
-        Their patience is infinite where gaps are usual, and the watch of the link itself is enough [s].
+        The timeout is infinite where gaps are usual, and the watch of the link itself is enough [s].
         """
         self.names = tuple(winch.name for winch in winches)
         self.low = np.array([-winch.release for winch in winches], dtype=float)
         self.high = np.array([winch.travel for winch in winches], dtype=float)
         self.places = np.zeros(len(winches)) if places is None else places.copy()
         self.command = self._within(self.places)
-        self.link, self.fastest, self.patience = link, fastest, patience
+        self.link, self.fastest, self.command_timeout = link, fastest, command_timeout
         self._driven: float | None = None
 
     @property
@@ -116,8 +116,8 @@ class Motors:
         before = self.places
         try:
             gap = 0.0 if self._driven is None else now - self._driven
-            if gap > self.patience:
-                silence = f"told nothing for {gap:.1f} s, longer than {self.patience:g} s"
+            if gap > self.command_timeout:
+                silence = f"told nothing for {gap:.1f} s, longer than {self.command_timeout:g} s"
                 raise HydrostatError(f"the motors were {silence}, and hold; begin again")
             self.link.send(self.command, now, speed=self.fastest)
             if look:

@@ -101,7 +101,7 @@ class ServoBus(Bus):
     def _has_torque(self, number: int) -> bool | None:
         """Return the state of a servo's torque switch; None where it does not answer."""
 
-    def _heard(self, reading: Reading) -> Reading:
+    def _keep_reading(self, reading: Reading) -> Reading:
         """Keep a reading as the last; a motor that holds and has jumped by a turn or so is at fault from then on.
 
         A servo that is switched on counts from within one turn, whatever it had counted before.
@@ -148,7 +148,7 @@ class ServoBus(Bus):
         except (OSError, ValueError, TypeError) as error:
             raise HydrostatError(f"the line to the motors is gone ({error}); plug it in and begin again") from None
 
-    def _hear(self, count: int, wanted: Callable[[Packet], bool]) -> list[Packet]:
+    def _receive(self, count: int, wanted: Callable[[Packet], bool]) -> list[Packet]:
         """So many answers that are wanted, or fewer after the time, by the clock that only runs forward."""
         until, found = self._clock() + self._answer, list[Packet]()
         while len(found) < count and (left := until - self._clock()) > 0:

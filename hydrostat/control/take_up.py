@@ -82,7 +82,7 @@ class SlackCalibration:
     seconds: float
 
     @property
-    def reach(self) -> float:
+    def reeled_length(self) -> float:
         """Cable length that a winch reeled in beyond the edge, where its cable goes taut [m]."""
         return max(float(self.places.max()), 1e-3)
 
@@ -162,7 +162,7 @@ class _Taker:
     def begin(self) -> None:
         """Note where they stand, and arm them."""
         self._arm()
-        angles = self._heard().angles
+        angles = self._read_fresh().angles
         self._from = tuple(
             replace(motor, zero=float(angle)) for motor, angle in zip(self._motors, angles.tolist(), strict=True)
         )
@@ -280,7 +280,7 @@ class _Taker:
             self._goals = np.array(
                 [
                     motor.contraction(angle)
-                    for motor, angle in zip(self._from, self._heard().angles.tolist(), strict=True)
+                    for motor, angle in zip(self._from, self._read_fresh().angles.tolist(), strict=True)
                 ]
             )
             goal = float(self._goals[index])
@@ -290,7 +290,7 @@ class _Taker:
         self._bus.write(angles, 2 * RULES.search_speed / radii)
         self._told = self._clock()
         self._wait(RULES.interval)
-        reading = self._heard()
+        reading = self._read_fresh()
         self._last = float(reading.angles[index])
         current = float(reading.currents[index]) * self._motors[index].turns
         if not np.isfinite(current):
@@ -303,7 +303,7 @@ class _Taker:
     def _place(self, index: int) -> float:
         return self._from[index].contraction(self._last)
 
-    def _heard(self) -> Reading:
+    def _read_fresh(self) -> Reading:
         """A reading that is fresh and without fault (HydrostatError: whose is not)."""
         reading, now = self._bus.read(), self._clock()
         for index, (stamp, fault) in enumerate(zip(reading.stamps.tolist(), reading.faults, strict=True)):

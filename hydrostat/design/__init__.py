@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from hydrostat.design.constraints_file import cable_name, read_constraints, read_uncertainty
     from hydrostat.design.corrected_error import corrected_errors
     from hydrostat.design.design_cables import design_cables, find_network
-    from hydrostat.design.filled_reach import FilledReach
     from hydrostat.design.finding import Diagnostic, Severity, places_in
     from hydrostat.design.first_cable import draw_first_cable
     from hydrostat.design.lifts import find_lifts
@@ -42,6 +41,7 @@ if TYPE_CHECKING:
     from hydrostat.design.routes.route_graph import RouteGraph
     from hydrostat.design.routes.search_record import SearchRecord
     from hydrostat.design.score_card import corrected_error, score_card
+    from hydrostat.design.stuffed_results import StuffedResults
     from hydrostat.design.trees.design_trees import propose_trees
     from hydrostat.design.uncertainty import BuildTolerances
     from hydrostat.design.winch_room import find_no_room
@@ -60,7 +60,6 @@ __all__ = [
     "DesignStage",
     "Diagnostic",
     "FibreKind",
-    "FilledReach",
     "FreePosing",
     "Layout",
     "Network",
@@ -73,6 +72,7 @@ __all__ = [
     "RouteTrace",
     "SearchRecord",
     "Severity",
+    "StuffedResults",
     "TreeOptions",
     "TreeSettings",
     "TreeTrace",

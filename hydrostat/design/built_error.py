@@ -99,10 +99,10 @@ def expected_error(simulation: Simulation, reached: Sequence[IKResult], uncertai
         targets = one.pose_target.targets
         markers = [names.index(name) for name in targets]
         try:
-            slopes = cable_sensitivities(simulation, one.pose, markers)
+            sensitivities = cable_sensitivities(simulation, one.pose, markers)
         except NotConvergedError:
             return float("inf")
         rows = len(markers) * simulation.robot.body.mesh.dim
-        columns = spread_columns(simulation, one.pose, slopes, uncertainty, rows)
+        columns = spread_columns(simulation, one.pose, sensitivities, uncertainty, rows)
         squares.append(one.rms_error**2 + float((columns**2).sum()) / len(markers))
     return float(np.sqrt(np.mean(squares)))

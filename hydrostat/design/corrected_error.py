@@ -97,13 +97,13 @@ def expected_corrected_error(
         targets = list(one.pose_target.targets)
         chosen = spread_markers({name: rest[name] for name in targets}, measured)
         try:
-            slopes = cable_sensitivities(simulation, one.pose, [names.index(name) for name in targets])
+            sensitivities = cable_sensitivities(simulation, one.pose, [names.index(name) for name in targets])
         except NotConvergedError:
             return float("inf")
         dim = simulation.robot.body.mesh.dim
         rows = dim * len(targets)
-        columns = spread_columns(simulation, one.pose, slopes, uncertainty, rows)
-        jacobian, seen = slopes.contractions[:rows], np.repeat([name in chosen for name in targets], dim)
+        columns = spread_columns(simulation, one.pose, sensitivities, uncertainty, rows)
+        jacobian, seen = sensitivities.contractions[:rows], np.repeat([name in chosen for name in targets], dim)
         normal = jacobian.T @ jacobian + CORRECTION_DAMPING**2 * np.eye(jacobian.shape[1])
         back = jacobian @ np.linalg.solve(normal, jacobian.T) * seen
         left = float(((columns - back @ columns) ** 2).sum()) + noise**2 * float((back**2).sum())

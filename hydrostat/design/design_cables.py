@@ -9,15 +9,15 @@ from typing import TypedDict, Unpack
 from hydrostat.closed_set import parse_choice
 from hydrostat.design.cable_sides import assign_cable_sides
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.filled_reach import FilledReach, check_filled, filled_reach
 from hydrostat.design.network import Alternative, Network, RouteTrace, size_of
 from hydrostat.design.request import DesignMethod, DesignRequest, RouteOptions, TreeOptions
 from hydrostat.design.routes.design_fewest import design_fewest
 from hydrostat.design.routes.design_routes import design_routes
 from hydrostat.design.routes.finalists import kit_fits
 from hydrostat.design.routes.search_record import SearchRecord
+from hydrostat.design.stage_callback import Better, StageCallback, ignore_stage
+from hydrostat.design.stuffed_results import StuffedResults, check_stuffed, solve_stuffed
 from hydrostat.design.trees.design_trees import design_trees
-from hydrostat.design.watch import Better, Watch, unseen
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.fabrication import Demand, find_refusals
 from hydrostat.given import check_type
@@ -34,8 +34,8 @@ class DesignKeywords(TypedDict, total=False):
     method: str
     constraints: Constraints | None
     options: RouteOptions | TreeOptions | None
-    improve: bool
-    filled: bool
+    warm_start: bool
+    stuffed: bool
     seconds: float | None
 
 
@@ -44,7 +44,7 @@ def design_cables(
     poses: Iterable[PoseTarget],
     *,
     progress: Progress | None = None,
-    watch: Watch | None = None,
+    watch: StageCallback | None = None,
     **asked: Unpack[DesignKeywords],
 ) -> Network:
     """Find a network of winches and cables that brings a robot into some poses.
@@ -54,7 +54,7 @@ def design_cables(
         poses: poses that the network should reach, all with the same cables.
         progress: called as the work goes on.
         watch: called with each better network that is found on the way, not yet judged as those are that are returned.
-        asked: `winches`, `cables`, `method`, `constraints`, `options`, `improve`, `filled` and `seconds` of a
+        asked: `winches`, `cables`, `method`, `constraints`, `options`, `warm_start`, `stuffed` and `seconds` of a
             `DesignRequest`. With `winches="auto"` the alternatives of the network hold the best that was found of every
             size tried.
 
@@ -81,7 +81,7 @@ def find_network(
     request: DesignRequest,
     *,
     progress: Progress | None = None,
-    watch: Watch | None = None,
+    watch: StageCallback | None = None,
     record: SearchRecord | None = None,
 ) -> Network:
     """Find the network that a request asks for; `design_cables` for one that is made already.
@@ -99,13 +99,15 @@ def find_network(
     PinDrive.require_none(robot.drives, "cable design")
     stated, told = assign_cable_sides(robot), progress or no_progress
     fitted = request.fit_robot(stated)
-    if fitted.filled:
-        check_filled(stated)  # told before the search
-    found = _search(stated, fitted, told, Better(watch or unseen), record)
-    return replace(evaluate_stuffed(found, progress=told) if fitted.filled else found, source=robot)
+    if fitted.stuffed:
+        check_stuffed(stated)  # told before the search
+    found = _search(stated, fitted, told, Better(watch or ignore_stage), record)
+    return replace(evaluate_stuffed(found, progress=told) if fitted.stuffed else found, source=robot)
 
 
-def _search(robot: Robot, request: DesignRequest, told: Progress, seen: Watch, record: SearchRecord | None) -> Network:
+def _search(
+    robot: Robot, request: DesignRequest, told: Progress, seen: StageCallback, record: SearchRecord | None
+) -> Network:
     """The network of the method that is asked for."""
     if request.method.grows_trees:
         return design_trees(robot, request, progress=told, watch=seen)
@@ -126,7 +128,7 @@ def _search(robot: Robot, request: DesignRequest, told: Progress, seen: Watch, r
 def _may_gain_by_fewer(request: DesignRequest, found: Network) -> bool:
     """True if each winch got one cable where more were allowed: units for more cables may have had too little room."""
     fewest = len(found.robot.cables) == len(found.robot.winches) < request.cables
-    return found.complete and fewest and request.seconds is None and not request.improve
+    return found.complete and fewest and request.seconds is None and not request.warm_start
 
 
 def _search_with_fewer(request: DesignRequest, found: Network, design: Callable[[DesignRequest], Network]) -> Network:
@@ -138,15 +140,18 @@ def _search_with_fewer(request: DesignRequest, found: Network, design: Callable[
         return found
     except KeyboardInterrupt:
         return replace(found, complete=False)
-    better = other.built < found.built and (kit_fits(other) or not kit_fits(found))
+    better = other.expected_error < found.expected_error and (kit_fits(other) or not kit_fits(found))
     return replace(
-        other if better else found, request=found.request, tried=found.tried + other.tried, complete=other.complete
+        other if better else found,
+        request=found.request,
+        num_evaluated=found.num_evaluated + other.num_evaluated,
+        complete=other.complete,
     )
 
 
 def _trees(robot: Robot, request: DesignRequest, body: BodyPhysics) -> list[Robot]:
     """Return the network of the thesis's method for a flat body: another start for routes, in a second or two."""
-    if robot.body.mesh.dim != 2 or request.improve:
+    if robot.body.mesh.dim != 2 or request.warm_start:
         return []
     usual = Constraints(clearance=request.constraints.clearance, tension=request.constraints.tension)
     asked = replace(request, method=DesignMethod.TREES, constraints=usual, options=TreeOptions(trials=_TREES))
@@ -169,12 +174,12 @@ def evaluate_stuffed(found: Network, *, progress: Progress) -> Network:
     Compared are alternatives with no more winches and no more cables, of which a kit can be made. Stopped
     (KeyboardInterrupt), the best of those that were looked at is returned.
     """
-    first = Alternative(robot=found.robot, reached=found.reached, built=found.built)
+    first = Alternative(robot=found.robot, ik_results=found.ik_results, expected_error=found.expected_error)
     winches, cables = size_of(found)
     small = [one for one in found.alternatives if size_of(one)[0] <= winches and size_of(one)[1] <= cables]
-    fitting = [one for one in small if not find_refusals(one.robot, Demand.of_results(one.robot, one.reached))]
+    fitting = [one for one in small if not find_refusals(one.robot, Demand.of_results(one.robot, one.ik_results))]
     finalists = [first, *fitting[: FINALISTS - 1]]
-    judged: list[tuple[Alternative, FilledReach]] = []
+    judged: list[tuple[Alternative, StuffedResults]] = []
     complete = found.complete
     try:
         for number, one in enumerate(finalists):
@@ -192,24 +197,24 @@ def evaluate_stuffed(found: Network, *, progress: Progress) -> Network:
             best, reach = one, other
     reach = replace(reach, finalists=len(judged))
     if best is first:
-        return replace(found, filled=reach, complete=complete)
+        return replace(found, stuffed=reach, complete=complete)
     others = (first, *(one for one in found.alternatives if one is not best))
     trace = replace(found.trace, certificate=None) if isinstance(found.trace, RouteTrace) else found.trace
     return replace(
         found,
         robot=best.robot,
-        reached=best.reached,
-        built=best.built,
+        ik_results=best.ik_results,
+        expected_error=best.expected_error,
         alternatives=others,
         trace=trace,
-        filled=reach,
+        stuffed=reach,
         complete=complete,
     )
 
 
-def _reach(found: Network, one: Alternative) -> FilledReach | None:
+def _reach(found: Network, one: Alternative) -> StuffedResults | None:
     """Return the results of a network on the filled body; None where a pose has no equilibrium there."""
     try:
-        return filled_reach(one.robot, one.reached, limits=found.constraints.limits)
+        return solve_stuffed(one.robot, one.ik_results, limits=found.constraints.limits)
     except HydrostatError:
         return None

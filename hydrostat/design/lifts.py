@@ -14,7 +14,7 @@ class Lift:
     """A change of a request."""
 
     words: str  # as options of `hydrostat design`
-    built: float  # expected as-built error of a network that a quick search finds with it [m]
+    expected_error: float  # expected as-built error of a network that a quick search finds with it [m]
 
 
 def find_lifts(network: Network) -> tuple[Lift, ...]:
@@ -24,7 +24,7 @@ def find_lifts(network: Network) -> tuple[Lift, ...]:
     half of the whole one; that may find better. Only networks count whose kit would be made.
     """
     request = network.request
-    if not isinstance(request.winches, int) or request.winches >= len(request.poses) or request.improve:
+    if not isinstance(request.winches, int) or request.winches >= len(request.poses) or request.warm_start:
         return ()
     lifts = []
     for words, changed in _changes(request, request.winches):
@@ -32,8 +32,8 @@ def find_lifts(network: Network) -> tuple[Lift, ...]:
             found = [one for one in propose_routes(network.source, changed) if one.is_refined and one.is_buildable]
         except HydrostatError:  # such as no room for one more motor
             continue
-        if found and found[-1].built < _CLEARLY * network.built:
-            lifts.append(Lift(words=words, built=found[-1].built))
+        if found and found[-1].expected_error < _CLEARLY * network.expected_error:
+            lifts.append(Lift(words=words, expected_error=found[-1].expected_error))
     return tuple(lifts)
 
 

@@ -9,10 +9,10 @@ import numpy as np
 
 from hydrostat.arrays import Int
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.filled_reach import FilledReach
 from hydrostat.design.muscles.activation import Activation
 from hydrostat.design.polyline import Route
 from hydrostat.design.request import DesignRequest
+from hydrostat.design.stuffed_results import StuffedResults
 from hydrostat.ik import IKResult
 from hydrostat.painters import draw_record, html_repr
 from hydrostat.robot import Robot
@@ -46,7 +46,7 @@ class DesignStage:
     words: str  # what was done, such as "a cable added to winch_1"
     robot: Robot  # with the network as it was then
     error: float  # rms marker error over all poses: for routes that expected once built, for trees in the model [m]
-    tried: int = 0  # number of networks with solved poses until then
+    num_evaluated: int = 0  # number of networks with solved poses until then
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,13 +74,13 @@ class Alternative:
     """Another network that was found, with other routes or other counts."""
 
     robot: Robot  # with that network
-    reached: tuple[IKResult, ...]  # what it reaches of each pose
-    built: float  # rms error expected of a robot as it is built, its commands played open loop [m]
+    ik_results: tuple[IKResult, ...]  # what it reaches of each pose
+    expected_error: float  # rms error expected of a robot as it is built, its commands played open loop [m]
 
     @property
     def rms_error(self) -> float:
         """Root of the mean squared marker error over all poses [m]."""
-        return rms_error(self.reached)
+        return rms_error(self.ik_results)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -91,35 +91,35 @@ class Network:
         robot: the robot with the new network.
         source: the robot that it was designed for.
         request: request, with the constraints that the network keeps.
-        reached: inverse-kinematics result of the new network for each pose, by its own winches; the true score.
+        ik_results: inverse-kinematics result of the new network for each pose, by its own winches; the true score.
         built: rms error over markers and poses expected of a robot as it is built, its commands played open loop [m]:
             `hydrostat.design.expected_error` with the uncertainty of the request.
         alternatives: other networks, best first; by counts where the number of winches was found.
         trace: trace of the search.
-        tried: number of networks with solved poses.
+        num_evaluated: number of networks with solved poses.
         seconds: CPU time of the design [s].
         complete: True if the search came to its end; False if it was interrupted or its time was up.
         timed_out: True if its time was up.
-        filled: results on the filled body; None if not requested.
+        stuffed: results on the stuffed body; None if not requested.
     """
 
     robot: Robot
     source: Robot
     request: DesignRequest
-    reached: tuple[IKResult, ...]
-    built: float
+    ik_results: tuple[IKResult, ...]
+    expected_error: float
     alternatives: tuple[Alternative, ...] = ()
     trace: TreeTrace | RouteTrace
-    tried: int
+    num_evaluated: int
     seconds: float
     complete: bool = True
     timed_out: bool = False
-    filled: FilledReach | None = None
+    stuffed: StuffedResults | None = None
 
     def __repr__(self) -> str:
         """Return a description of one line."""
-        built = f"{1e3 * self.rms_error:.3g} mm in the model, {1e3 * self.built:.3g} mm expected once built"
-        return f"<Network for {plural(len(self.reached), 'pose')}, rms error {built}: {self.robot!r}>"
+        built = f"{1e3 * self.rms_error:.3g} mm in the model, {1e3 * self.expected_error:.3g} mm expected once built"
+        return f"<Network for {plural(len(self.ik_results), 'pose')}, rms error {built}: {self.robot!r}>"
 
     def _repr_html_(self) -> str:
         """Summary and a picture, for a notebook."""
@@ -133,14 +133,14 @@ class Network:
     @property
     def rms_error(self) -> float:
         """Root of the mean squared marker error over all poses [m]."""
-        return rms_error(self.reached)
+        return rms_error(self.ik_results)
 
     def best_errors(self, alternatives: Iterable[Alternative]) -> "dict[Size, float]":
         """The least error as built of each size [m], in order of the sizes; where the chosen network is, its own."""
         found: dict[Size, float] = {}
         for network in alternatives:
-            found[size_of(network)] = min(network.built, found.get(size_of(network), float("inf")))
-        found[size_of(self)] = self.built
+            found[size_of(network)] = min(network.expected_error, found.get(size_of(network), float("inf")))
+        found[size_of(self)] = self.expected_error
         return dict(sorted(found.items()))
 
     def best_by_winches(self) -> "dict[int, Alternative | Network]":
@@ -148,7 +148,7 @@ class Network:
         found: dict[int, Alternative | Network] = {}
         for other in self.alternatives:
             count = len(other.robot.winches)
-            if count not in found or other.built < found[count].built:
+            if count not in found or other.expected_error < found[count].expected_error:
                 found[count] = other
         found[len(self.robot.winches)] = self
         return dict(sorted(found.items()))
@@ -159,7 +159,7 @@ class Network:
         places = {marker.name: np.array(marker.at) for marker in self.robot.markers}
         squares = [
             np.mean([np.sum((places[name] - goal) ** 2) for name, goal in pose.pose_target.targets.items()])
-            for pose in self.reached
+            for pose in self.ik_results
         ]
         return float(np.sqrt(np.mean(squares)))
 

@@ -54,13 +54,13 @@ class RouteOptions:
         max_edges: maximum number of edges of a path that is priced.
         lead_penalty: share of the promised gain that a lead as long as the body costs.
         trials: number of paths with solved networks before one is added.
-        starts: patience of the growth: more sketches are refined, and more cables may fail in a row before it ends.
+        starts: effort of the growth: more sketches are refined, and more cables may fail in a row before it ends.
         exchanges: most cables that are taken out, one at a time, for the best to be put in their place.
         steps: steps of refinement after each cable.
         refine_steps: steps of refinement of a whole network.
         simplicity: weight of a simple network: at 1 a cable must lower the error as built by 2 %, a winch by
             4 %, a hole by 0.3 %; 0 keeps all that help at all.
-        reach: weight of the workspace: displacements of the markers in every direction within
+        workspace_weight: weight of the workspace: displacements of the markers in every direction within
             travel and tension: a network that reaches twice as far may miss the poses by 2^reach times as much.
     """
 
@@ -75,7 +75,7 @@ class RouteOptions:
     steps: int = 5
     refine_steps: int = 60
     simplicity: float = 1.0
-    reach: float = 0.0
+    workspace_weight: float = 0.0
 
     def __post_init__(self) -> None:
         for name, allowed in ROUTE_RANGES.items():
@@ -103,7 +103,7 @@ ROUTE_RANGES = {
     "steps": Range(whole=True),
     "refine_steps": Range(whole=True),
     "simplicity": Range(most=20.0),
-    "reach": Range(most=5.0),
+    "workspace_weight": Range(most=5.0),
 }
 """Allowed range of each number of `RouteOptions`."""
 
@@ -229,11 +229,11 @@ class DesignRequest:
     uncertainty: BuildTolerances | None = None
     # begin with the robot's own winches and cables, and move and exchange those that are not locked; what travel,
     # release, slack and spools these have is allowed
-    improve: bool = False
+    warm_start: bool = False
     # wall time [s] after which the search ends with the best network so far, once there is one; None: it ends by itself
     seconds: float | None = None
     # finalists of a flat robot are compared on the filled body, their cables on its skin, by commands found there
-    filled: bool = False
+    stuffed: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "poses", tuple(self.poses))
@@ -254,7 +254,7 @@ class DesignRequest:
             raise InputError(f'options of method "{self.method}" must be {kind.__name__}, not {told}')
         if self.method.grows_trees:
             self._check_trees()
-        if self.improve and self.winches == AUTO:
+        if self.warm_start and self.winches == AUTO:
             raise InputError('winches: cannot improve a network ("auto"). Give a number of winches.')
 
     @property
@@ -284,10 +284,10 @@ class DesignRequest:
                     known = f"Available: {', '.join(markers)}." if markers else "The robot has no markers."
                     raise InputError(f'pose "{pose.name}": unknown marker "{name}". {known}')
         self.constraints.check(robot)
-        if self.filled and robot.body.outline is None:
+        if self.stuffed and robot.body.outline is None:
             raise InputError("filled: only for flat robots with a drawing. Remove it.")
         fitted = replace(self, uncertainty=self.uncertainty or BuildTolerances.of(robot.body))
-        return replace(fitted, constraints=_with_own(self.constraints, robot)) if self.improve else fitted
+        return replace(fitted, constraints=_with_own(self.constraints, robot)) if self.warm_start else fitted
 
     def as_values(self) -> dict[str, Any]:
         """Counts, constraints and options as plain values, poses by their names."""
@@ -318,7 +318,7 @@ class DesignRequest:
         """Refuse what the thesis's way does not know."""
         if self.seconds is not None:
             raise InputError(f'method "{self.method}" has no time limit. Use method "routes".')
-        if self.improve or self.winches == AUTO:
+        if self.warm_start or self.winches == AUTO:
             raise InputError(
                 f'method "{self.method}" needs a number of winches and cannot improve a network. Use method "routes".'
             )

@@ -20,20 +20,20 @@ def score_card(network: Network, *, version: str) -> dict[str, Any]:
     request = network.request.as_values()
     return {
         "rms_error": network.rms_error,
-        "rms_error_as_built": network.built,
+        "rms_error_as_built": network.expected_error,
         "rms_error_corrected": corrected_error(network),
         "rms_error_at_rest": network.rest_error,
-        "craft": BuildCost.of_robot(robot, network.reached).as_values,
+        "craft": BuildCost.of_robot(robot, network.ik_results).as_values,
         "tension_limit": network.constraints.tension_limit,
         "torque_limit": network.constraints.torque,
-        "poses": {pose.pose_target.name: _pose_results(robot, pose) for pose in network.reached},
+        "poses": {pose.pose_target.name: _pose_results(robot, pose) for pose in network.ik_results},
         "winches": _winches(robot),
         "cables": _cables(robot),
         **_trace(network.trace),
-        **_filled_results(network),
+        **_stuffed_results(network),
         "by_winches": [_by_winches(one) for one in network.best_by_winches().values()],
         "alternatives": [_alternative(other) for other in network.alternatives],
-        "networks_tried": network.tried,
+        "networks_tried": network.num_evaluated,
         "cpu_seconds": network.seconds,
         "complete": network.complete,
         "request": request,
@@ -46,7 +46,7 @@ def score_card(network: Network, *, version: str) -> dict[str, Any]:
 def corrected_error(network: Network) -> float:
     """Return the rms error expected of a built robot after one correction by measured markers [m]."""
     uncertainty = network.request.uncertainty or BuildTolerances.of(network.robot.body)
-    return expected_corrected_error(Simulation(network.robot), network.reached, uncertainty)
+    return expected_corrected_error(Simulation(network.robot), network.ik_results, uncertainty)
 
 
 def _winches(robot: Robot) -> list[dict[str, Any]]:
@@ -97,9 +97,9 @@ def _trace(trace: TreeTrace | RouteTrace) -> dict[str, Any]:
     }
 
 
-def _filled_results(network: Network) -> dict[str, Any]:
+def _stuffed_results(network: Network) -> dict[str, Any]:
     """Return the results on the filled body; empty if not requested."""
-    filled = network.filled
+    filled = network.stuffed
     if filled is None:
         return {}
     poses = {
@@ -121,8 +121,8 @@ def _by_winches(one: Alternative | Network) -> dict[str, Any]:
     return {
         "winches": len(one.robot.winches),
         "cables": len(one.robot.cables),
-        "rms_error_as_built": one.built,
-        "craft": BuildCost.of_robot(one.robot, one.reached).as_values,
+        "rms_error_as_built": one.expected_error,
+        "craft": BuildCost.of_robot(one.robot, one.ik_results).as_values,
     }
 
 
@@ -131,9 +131,9 @@ def _alternative(other: Alternative) -> dict[str, Any]:
         "winches": len(other.robot.winches),
         "cables": len(other.robot.cables),
         "rms_error": other.rms_error,
-        "rms_error_as_built": other.built,
-        "craft": BuildCost.of_robot(other.robot, other.reached).as_values,
-        "poses": {pose.pose_target.name: pose.rms_error for pose in other.reached},
+        "rms_error_as_built": other.expected_error,
+        "craft": BuildCost.of_robot(other.robot, other.ik_results).as_values,
+        "poses": {pose.pose_target.name: pose.rms_error for pose in other.ik_results},
         "robot": robot_hash(other.robot),
     }
 

@@ -10,31 +10,37 @@ Columns = Float[np.ndarray, "rows tolerances"]
 
 
 def spread_columns(
-    simulation: Simulation, pose: Equilibrium, slopes: CableSensitivities, uncertainty: BuildTolerances, markers: int
+    simulation: Simulation,
+    pose: Equilibrium,
+    sensitivities: CableSensitivities,
+    uncertainty: BuildTolerances,
+    markers: int,
 ) -> Columns:
-    """Moves of the first `markers` rows of `slopes` by one standard deviation of each independent tolerance [m].
+    """Moves of the first `markers` rows of `sensitivities` by one standard deviation of each independent tolerance [m].
 
     The sum of their squares is the variance of the rows, to first order. Tolerances are those of `BuildTolerances`:
     coordinates of holes, winch after winch and cable after cable; then knots, spools, stiffnesses of cables and of
     body; friction is last. Pins are left out: they are stiff compared with the body.
     """
     robot = simulation.robot
-    sewing = uncertainty.sewing * _holes(simulation, slopes.points[:markers])
+    sewing = uncertainty.sewing * _holes(simulation, sensitivities.points[:markers])
     several = np.bincount(simulation.cables.winches, minlength=len(robot.winches))[simulation.cables.winches] > 1
-    knots = uncertainty.slack * slopes.slack[:markers] * several
-    spools = uncertainty.spool * slopes.contractions[:markers] * pose.contractions
-    stiff = -(slopes.fields[:markers].reshape(markers, -1) @ simulation.cables.columns(pose.nodes)) * pose.tensions
+    knots = uncertainty.slack * sensitivities.slack[:markers] * several
+    spools = uncertainty.spool * sensitivities.contractions[:markers] * pose.contractions
+    stiff = (
+        -(sensitivities.fields[:markers].reshape(markers, -1) @ simulation.cables.columns(pose.nodes)) * pose.tensions
+    )
     body = float(np.hypot(uncertainty.young, uncertainty.thickness)) * stiff.sum(axis=1)
     low, high = uncertainty.friction
     mean_square = (low**2 + low * high + high**2) / 3
-    rubs = np.sqrt(mean_square) * friction_column(simulation, pose, slopes.fields[:markers])
+    rubs = np.sqrt(mean_square) * friction_column(simulation, pose, sensitivities.fields[:markers])
     return np.column_stack([sewing, knots, spools, uncertainty.stiffness * stiff, body, rubs])
 
 
 def friction_column(
     simulation: Simulation, pose: Equilibrium, fields: Float[np.ndarray, "rows nodes dim"]
 ) -> Float[np.ndarray, " rows"]:
-    """Slope of some rows by the coefficient of friction of all cables, at 0 and while all slip towards their winch [m].
+    """Sensitivity of rows to the friction coefficient of all cables, at 0 and while all slip towards their winch [m].
 
     Behind turns of Theta in all a segment is pulled with T (1 - mu Theta). The cable's own law keeps the mean along its
     length, so the tensions differ from T by -mu T (Theta - its mean); the body gives way to these.
@@ -62,7 +68,7 @@ def _since_winch(turns: Vector, cables: np.ndarray) -> Vector:
 
 
 def _holes(simulation: Simulation, points: Float[np.ndarray, "rows points dim"]) -> Columns:
-    """Slopes by places of holes: of winches, which take the beginnings of their cables along, then of via points."""
+    """Sensitivities to places of holes: winches, which move the beginnings of their cables too, then via points."""
     robot, counts = simulation.robot, simulation.route_points.counts
     firsts = np.cumsum([0, *counts])[:-1]
     moving = ~simulation.route_points.world[firsts]

@@ -105,14 +105,14 @@ def _march(
     """Length [m] of each ray in the body, from a start in its element to where no element follows."""
     beyond = _neighbors(mesh)
     spans = np.swapaxes(mesh.nodes[mesh.elements[:, 1:]] - mesh.nodes[mesh.elements[:, :1]], 1, 2)
-    slopes = np.linalg.inv(spans)
+    derivatives = np.linalg.inv(spans)
     run, here, rays = np.zeros(len(starts)), elements.copy(), np.arange(len(starts))
     came = np.full(len(starts), -2)
     most_steps = 10_000
     for _ in range(most_steps):
         if not len(rays):
             break
-        inverse = slopes[here[rays]]
+        inverse = derivatives[here[rays]]
         local = np.einsum("rij,rj->ri", inverse, starts[rays] - mesh.nodes[mesh.elements[here[rays], 0]])
         change = np.einsum("rij,rj->ri", inverse, directions[rays])
         weight = np.column_stack([1 - local.sum(axis=1), local])

@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from hydrostat.ik.objectives.objective import EquilibriumState, Objective, Residual, StateJacobian, place
     from hydrostat.ik.objectives.pose_regularizer import PoseRegularizer
     from hydrostat.ik.objectives.shape_target import ShapeTarget, load_target_outline
-    from hydrostat.ik.reach import FoundReach, find_reach, reach_extent, usable_spans
     from hydrostat.ik.search.linear_model import least_squares
     from hydrostat.ik.search.problem import IKOptions
     from hydrostat.ik.solve_ik import Targets, solve_ik
@@ -25,6 +24,7 @@ if TYPE_CHECKING:
     from hydrostat.ik.trajectory.keys import Keyframe
     from hydrostat.ik.trajectory.solve_ik_trajectory import TrajectoryOptions, solve_ik_trajectory
     from hydrostat.ik.trajectory.trajectory import KeyPose, PathKind, Trajectory
+    from hydrostat.ik.workspace import MarkerWorkspace, find_workspaces, usable_spans, workspace_extent
 
 __all__ = [
     "CORRECTION_DAMPING",
@@ -32,7 +32,6 @@ __all__ = [
     "CenterOfMassTarget",
     "Effort",
     "EquilibriumState",
-    "FoundReach",
     "IKOptions",
     "IKResult",
     "IKStatus",
@@ -41,6 +40,7 @@ __all__ = [
     "Limits",
     "LinearizedPose",
     "MarkerTarget",
+    "MarkerWorkspace",
     "NewRobotWish",
     "Objective",
     "PathKind",
@@ -54,19 +54,19 @@ __all__ = [
     "Trajectory",
     "TrajectoryOptions",
     "correct_contractions",
-    "find_reach",
+    "find_workspaces",
     "least_squares",
     "load_target_outline",
     "named_targets",
     "new_robot",
     "place",
-    "reach_extent",
     "solve_ik",
     "solve_ik_trajectory",
     "solve_pulls",
     "spool_arms",
     "unconstrained_motion",
     "usable_spans",
+    "workspace_extent",
 ]
 
 open_package(__name__)

@@ -48,13 +48,13 @@ def anchor_untargeted_markers(
         return search, found
     rounds = 3
     for _ in range(rounds):
-        if search.patience.over:
+        if search.budget.over:
             break
         missed = float(np.linalg.norm(found.state.residual[:rows]))
         calm = PoseRegularizer(
             pose=simulation.rest, of=ClosenessKind.MARKERS, markers=names, weight=float(np.sqrt(0.5 * missed / size))
         )
-        wary = InverseSearch(problem.with_term(calm.bind(simulation)), origin=start, patience=search.patience)
+        wary = InverseSearch(problem.with_term(calm.bind(simulation)), origin=start, budget=search.budget)
         wary.steps = search.steps
         history = found.state.history if simulation.assembly.has_history else None
         begun = wary.problem.state(found.state.values, found.state.result, history)
@@ -111,7 +111,7 @@ def solve_ik(
     """
     check_type(simulation, Simulation, "simulation must be a Simulation(robot)")
     check_type(options, (IKOptions, type(None)), "options must be IKOptions(...)")
-    target, patience = as_pose(targets), SearchBudget.of(seconds, progress)
+    target, budget = as_pose(targets), SearchBudget.of(seconds, progress)
     require_static_obstacles(simulation.robot, "inverse kinematics")
     if (robot := without_contact_friction(simulation.robot)) is not simulation.robot:
         begin = None if start is None else replace(start, history=np.zeros(0))
@@ -125,8 +125,8 @@ def solve_ik(
             seconds=seconds,
             progress=progress,
         )
-        return _follow_friction(simulation.with_deadline(patience.deadline), found, start)
-    simulation = simulation.with_deadline(patience.deadline)
+        return _follow_friction(simulation.with_deadline(budget.deadline), found, start)
+    simulation = simulation.with_deadline(budget.deadline)
     given = limits or Limits()
     allowed = bounds(simulation, given)
     if given.rate is not None:
@@ -134,7 +134,7 @@ def solve_ik(
     terms = [wish.bind(simulation) for wish in wishes(target, objectives)]
     ready = given.rate is not None or any(keeps_taut(wish) for wish in objectives)
     problem = InverseProblem(simulation, terms, allowed, options or IKOptions(), ready=ready)
-    search = InverseSearch(problem, origin=start, patience=patience)
+    search = InverseSearch(problem, origin=start, budget=budget)
     begun = search.begin(start)
     seek, aside = descend, None
     if problem.options.min_tension and problem.redundant(begun):
@@ -205,7 +205,7 @@ def _best(search: InverseSearch, found: Descent, seek: Callable[[InverseSearch, 
             best.append(other.state)
         if found.reason is IKStatus.REACHED:
             break
-        if search.patience.over:
+        if search.budget.over:
             return replace(found, reason=IKStatus.TIME_LIMIT).after(spent)
     return found.after(spent)
 
@@ -268,9 +268,9 @@ def _contractions(search: InverseSearch, state: InverseState, number: int, draw:
 
 def _channels_of_misses(search: InverseSearch, state: InverseState) -> np.ndarray:
     """Return the mask of the channels that act mostly on the missed targets."""
-    slopes = search.problem.jacobian(state) ** 2
+    derivatives = search.problem.jacobian(state) ** 2
     missed = state.residual**2 / max(float(np.max(state.residual**2, initial=0.0)), np.finfo(float).tiny)
-    share = (missed @ slopes) / np.maximum(slopes.sum(axis=0), np.finfo(float).tiny)
+    share = (missed @ derivatives) / np.maximum(derivatives.sum(axis=0), np.finfo(float).tiny)
     concerned = 0.3  # channels that act on what is missed at least this well, beside the one that does so best
     return share >= concerned * share.max(initial=0.0)
 

@@ -65,9 +65,9 @@ def solve_pulls(
 
 
 def _newton_step(simulation: Simulation, pose: Equilibrium, ratios: np.ndarray, own: Vector, missing: Vector) -> Vector:
-    """Change of the contractions that would give the pulls, were the slopes constant; no longer than `LONGEST`."""
+    """Change of the contractions that would give the pulls, were the derivatives constant; no longer than `LONGEST`."""
     cables = simulation.cables
-    slopes = ratios.T @ StateJacobian.at(simulation, pose).tensions[:, own]
+    derivatives = ratios.T @ StateJacobian.at(simulation, pose).tensions[:, own]
     slack = cables.elongations(pose.nodes, pose.contractions) <= 0
     # A winch whose cables are slack goes on until the first is taut.
     gaps = np.where(slack, -cables.elongations(pose.nodes, pose.contractions), 0.0) + 0.5 * cables.law.smoothing
@@ -78,7 +78,7 @@ def _newton_step(simulation: Simulation, pose: Equilibrium, ratios: np.ndarray, 
         step[index] = float((gaps[mine] / ratios[mine, index]).min(initial=longest))
     live = ~idle
     if live.any():
-        step[live] = np.linalg.lstsq(slopes[np.ix_(live, live)], missing[live], rcond=1e-10)[0]
+        step[live] = np.linalg.lstsq(derivatives[np.ix_(live, live)], missing[live], rcond=1e-10)[0]
     return step * min(1.0, longest / max(float(np.abs(step).max()), 1e-300))
 
 

@@ -21,7 +21,7 @@ from hydrostat.progress import Progress, no_progress
 def learn_model(
     samples: Samples, *, options: LearnOptions | None = None, progress: Progress | None = None
 ) -> LearnedModel:
-    """Train forward networks on values and slopes of samples, then an inverse network through them. Needs PyTorch.
+    """Train forward networks on values and derivatives of samples, then an inverse network through them. Needs PyTorch.
 
     Ctrl-C ends it early: the model is then the best so far, without an inverse network if that was not begun, and says
     so in `card.stopped`.

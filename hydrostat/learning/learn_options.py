@@ -18,10 +18,10 @@ class LearnOptions:
         inverse_steps: steps of training the inverse network.
         batch: samples in a step.
         rate: largest learning rate; it rises, then falls as a cosine.
-        slopes: weight of errors of slopes beside those of values; 0 learns from values alone.
-        directions: along which slopes are compared, drawn again in each step.
+        jacobians: weight of errors of Jacobians beside those of values; 0 learns from values alone.
+        directions: along which derivatives are compared, drawn again in each step.
         tensions: weight of errors of tensions beside those of markers.
-        tension_slopes: weight of errors of their slopes, where samples hold them.
+        tension_jacobians: weight of errors of their derivatives, where samples hold them.
         effort: weight of tension and contraction in the inverse network, so that its answer is unique.
         held_out: share of the samples that a network does not learn from, but is chosen by.
         seed: random seed.
@@ -35,10 +35,10 @@ class LearnOptions:
     inverse_steps: int = 4000
     batch: int = 128
     rate: float = 1e-2
-    slopes: float = 0.1
+    jacobians: float = 0.1
     directions: int = 3
     tensions: float = 0.1
-    tension_slopes: float = 0.1
+    tension_jacobians: float = 0.1
     effort: float = 1e-5
     held_out: float = 0.1
     seed: int = 0
@@ -48,7 +48,7 @@ class LearnOptions:
         for name in ("members", "width", "depth", "steps", "inverse_steps", "batch", "directions", "threads"):
             if getattr(self, name) is not None and getattr(self, name) < 1:
                 raise InputError(f"{name} must be 1 or more, not {getattr(self, name)}")
-        for name in ("rate", "slopes", "tensions", "tension_slopes", "effort"):
+        for name in ("rate", "jacobians", "tensions", "tension_jacobians", "effort"):
             value = getattr(self, name)
             if not (isfinite(value) and value >= 0) or (name == "rate" and value == 0):
                 raise InputError(f"{name} must be {'above 0' if name == 'rate' else '0 or more'}, not {value:g}")

@@ -133,10 +133,10 @@ class LearnedModel:
         """Predict coordinates of the markers [m], then tensions [N], at contractions [m]; and their spread."""
         return self._predict_pose(self._winches(contractions))
 
-    def slopes(self, contractions: Vector) -> Float[np.ndarray, "coordinates winches"]:
+    def jacobian(self, contractions: Vector) -> Float[np.ndarray, "coordinates winches"]:
         """Predict the displacements of the markers for contractions of the winches."""
-        _, slopes = self.forward.slopes(self._scale_inputs(self._winches(contractions)))
-        return (self.unit[:, None] * slopes / self._half)[: self.card.coordinates]
+        _, derivatives = self.forward.evaluate(self._scale_inputs(self._winches(contractions)))
+        return (self.unit[:, None] * derivatives / self._half)[: self.card.coordinates]
 
     def predict_inverse(self, markers: Vector) -> Vector:
         """Contractions [m] by the inverse network alone, for coordinates of all markers [m] in their order.

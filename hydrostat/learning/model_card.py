@@ -30,7 +30,7 @@ class ModelCard:
         contact_friction: Coulomb coefficient of the contact; None without contact.
         version: version of hydrostat that trained the model.
         samples: number of samples.
-        lost: number of samples without a stable equilibrium or its slopes.
+        lost: number of samples without a stable equilibrium or its derivatives.
         error: mean marker error of the forward networks on held-out samples [m].
         inverse_error: mean marker error of the inverse network on held-out samples [m]; None without one.
         displacement: mean distance of the markers from their mean position in the samples [m].

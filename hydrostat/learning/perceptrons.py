@@ -1,4 +1,4 @@
-"""`Perceptrons`: small networks of one shape, their slopes, and a search on them; no torch is needed to run them."""
+"""`Perceptrons`: small networks of one shape, their derivatives, and a search on them. Runs without torch."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -70,11 +70,11 @@ class Perceptrons:
     def _single(self) -> np.ndarray:
         return np.ascontiguousarray(self.numbers, dtype=np.float32)
 
-    def slopes(self, point: Vector) -> tuple[Vector, Float[np.ndarray, "outputs inputs"]]:
-        """The mean answer at a point, and its slopes."""
-        value, slopes = np.empty(self.sizes[-1]), np.empty((self.sizes[0], self.sizes[-1]))
-        native.network_mean(self.sizes, self.numbers, np.ascontiguousarray(point, dtype=float), value, slopes)
-        return value, slopes.T
+    def evaluate(self, point: Vector) -> tuple[Vector, Float[np.ndarray, "outputs inputs"]]:
+        """The mean answer at a point, and its derivatives."""
+        value, derivatives = np.empty(self.sizes[-1]), np.empty((self.sizes[0], self.sizes[-1]))
+        native.network_mean(self.sizes, self.numbers, np.ascontiguousarray(point, dtype=float), value, derivatives)
+        return value, derivatives.T
 
     def descend(
         self, start: Vector, goal: Vector, weights: Vector, box: tuple[Vector, Vector] | None = None

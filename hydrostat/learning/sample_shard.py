@@ -80,11 +80,11 @@ def _fill(row: np.void, simulation: Simulation, contractions: Vector, tension: f
     if pose.result.stable:
         moves = simulation.jacobian(pose)
         row["jacobian"] = np.einsum("pc,pcdw->pdw", anchors.weights, moves[anchors.stencils])
-        row["tension_slopes"] = _tension_slopes(simulation, pose, moves)
+        row["tension_slopes"] = _tension_jacobian(simulation, pose, moves)
 
 
-def _tension_slopes(simulation: Simulation, pose: Equilibrium, moves: np.ndarray) -> np.ndarray:
-    """Compute slopes of tensions with contractions [N/m], (cables, winches): T' (dl/dx dx/da + ratio); 0 if slack."""
+def _tension_jacobian(simulation: Simulation, pose: Equilibrium, moves: np.ndarray) -> np.ndarray:
+    """Compute dT/da, tensions by contractions [N/m], (cables, winches): T' (dl/dx dx/da + ratio); 0 if slack."""
     cables, count = simulation.cables, len(simulation.robot.cables)
     if simulation.friction is not None:
         return simulation.friction_sensitivities(pose, (np.zeros((count, pose.nodes.size)), np.eye(count))).contractions

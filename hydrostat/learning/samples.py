@@ -169,14 +169,14 @@ class Samples(Tabular):
         numbers: numbers of the samples.
         contractions: [m], (samples, winches).
         markers: positions [m], (samples, markers, dim).
-        jacobians: slopes of the markers with the contractions, (samples, markers, dim, winches).
+        jacobians: derivatives of the markers with the contractions, (samples, markers, dim, winches).
         tensions: tension of each cable [N], (samples, cables).
-        tension_slopes: slopes of tensions with contractions [N/m], (samples, cables, winches); None in folders of an
+        tension_jacobians: dT/da [N/m], (samples, cables, winches); None in folders of an
             earlier version, which did not sample them.
         touches: True if parts of the body push one another off.
         crosses: True if the body passes through itself, as it may without contact.
         nodes: positions of all nodes [m], float32; None if they were not kept.
-        lost: number of samples without a stable equilibrium, or without slopes.
+        lost: number of samples without a stable equilibrium, or without derivatives.
     """
 
     facts: Mapping[str, Any]
@@ -185,7 +185,7 @@ class Samples(Tabular):
     markers: Float[np.ndarray, "samples markers dim"]
     jacobians: Float[np.ndarray, "samples markers dim winches"]
     tensions: Float[np.ndarray, "samples cables"]
-    tension_slopes: Float[np.ndarray, "samples cables winches"] | None
+    tension_jacobians: Float[np.ndarray, "samples cables winches"] | None
     touches: Bool[np.ndarray, " samples"]
     crosses: Bool[np.ndarray, " samples"]
     nodes: np.ndarray | None
@@ -228,7 +228,7 @@ class Samples(Tabular):
             markers=self.markers[which],
             jacobians=self.jacobians[which],
             tensions=self.tensions[which],
-            tension_slopes=None if self.tension_slopes is None else self.tension_slopes[which],
+            tension_jacobians=None if self.tension_jacobians is None else self.tension_jacobians[which],
             touches=self.touches[which],
             crosses=self.crosses[which],
             nodes=None if self.nodes is None else self.nodes[which],
@@ -237,7 +237,7 @@ class Samples(Tabular):
 
     @staticmethod
     def read(folder: str | Path) -> "Samples":
-        """Samples of a folder that `sample_robot` has written; stable equilibria with slopes alone.
+        """Samples of a folder that `sample_robot` has written; stable equilibria with derivatives alone.
 
         Raises:
             InputError: as for `read_rows`.
@@ -253,7 +253,7 @@ class Samples(Tabular):
             markers=rows["markers"],
             jacobians=rows["jacobian"],
             tensions=rows["tensions"],
-            tension_slopes=rows["tension_slopes"] if "tension_slopes" in (rows.dtype.names or ()) else None,
+            tension_jacobians=rows["tension_slopes"] if "tension_slopes" in (rows.dtype.names or ()) else None,
             touches=rows["touches"] > 0,
             crosses=rows["crosses"] > 0,
             nodes=rows["nodes"] if "nodes" in (rows.dtype.names or ()) else None,

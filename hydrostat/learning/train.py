@@ -49,8 +49,8 @@ def train_forward(
     """
     torch.set_num_threads(options.threads)
     draw = torch.Generator().manual_seed(options.seed)
-    inputs, outputs, slopes = (
-        _tensor(part) for part in (training_set.inputs, training_set.outputs, training_set.slopes)
+    inputs, outputs, derivatives = (
+        _tensor(part) for part in (training_set.inputs, training_set.outputs, training_set.jacobians)
     )
     if start is None:
         sizes = [inputs.shape[1], *[options.width] * options.depth, outputs.shape[1]]
@@ -64,8 +64,8 @@ def train_forward(
 
     def loss() -> Tensor:
         rows = next(batches)
-        ways = torch.randn(*rows.shape, options.directions, sizes[0], generator=draw) if options.slopes else None
-        return sobolev_loss(numbers, inputs[rows], ways, outputs[rows], slopes[rows], weights)
+        ways = torch.randn(*rows.shape, options.directions, sizes[0], generator=draw) if options.jacobians else None
+        return sobolev_loss(numbers, inputs[rows], ways, outputs[rows], derivatives[rows], weights)
 
     def error() -> Tensor:
         value, _ = answer(numbers, inputs[held], None)
@@ -151,10 +151,12 @@ def _holding(training_set: TrainingSet, pairs: tuple[np.ndarray, np.ndarray]) ->
 
 
 def loss_weights(coordinates: int, outputs: int, options: LearnOptions) -> tuple[Tensor, Tensor]:
-    """Weights of the value of each output, and of its slope: markers first, then tensions."""
+    """Weights of the value of each output, and of its derivative: markers first, then tensions."""
     tensions = outputs - coordinates
-    values, slopes = (1.0, options.tensions), (options.slopes, options.tension_slopes)
-    return tuple(torch.tensor([marker] * coordinates + [tension] * tensions) for marker, tension in (values, slopes))  # type: ignore
+    values, derivatives = (1.0, options.tensions), (options.jacobians, options.tension_jacobians)
+    return tuple(
+        torch.tensor([marker] * coordinates + [tension] * tensions) for marker, tension in (values, derivatives)
+    )  # type: ignore
 
 
 def sobolev_loss(
@@ -162,18 +164,18 @@ def sobolev_loss(
     points: Tensor,
     ways: "Tensor | None",
     outputs: Tensor,
-    slopes: Tensor,
+    derivatives: Tensor,
     weights: tuple[Tensor, Tensor],
 ) -> Tensor:
-    """Mean squares of what values and slopes along some ways miss, summed over the networks (members, batch, ...).
+    """Mean squares of what values and derivatives along some ways miss, summed over the networks (members, batch, ...).
 
-    Slopes of the first outputs, of as many as are given.
+    Derivatives of the first outputs, of as many as are given.
     """
     value, moved = answer(numbers, points, ways)
     loss = ((value - outputs).square() * weights[0]).sum(-1)
     if moved is not None and ways is not None:
-        sloped = slopes.shape[-2]
-        true = torch.einsum("mbkw,mbcw->mbkc", ways, slopes)
+        sloped = derivatives.shape[-2]
+        true = torch.einsum("mbkw,mbcw->mbkc", ways, derivatives)
         loss = loss + ((moved[..., :sloped] - true).square() * weights[1][:sloped]).sum(-1).mean(-1)
     return loss.mean(1).sum()
 
@@ -181,7 +183,7 @@ def sobolev_loss(
 def answer(numbers: Numbers, points: Tensor, ways: "Tensor | None") -> "tuple[Tensor, Tensor | None]":
     """Compute outputs at points (members, batch, inputs) and their changes along ways (members, batch, ways, ...).
 
-    Slopes go forward with the values, as by `torch.func.jvp`, along several ways at once.
+    Derivatives go forward with the values, as by `torch.func.jvp`, along several ways at once.
     """
     layers = (len(numbers) - 1) // 2
     value, moved = points, ways

@@ -21,7 +21,7 @@ class TrainingSet:
         unit: unit of each of it: one length for all coordinates of markers, one force for all tensions.
         inputs: inputs of the networks.
         outputs: markers, then tensions.
-        slopes: slopes of the markers; then of the tensions, if they were sampled.
+        derivatives: derivatives of the markers; then of the tensions, if they were sampled.
         coordinates: number of outputs that are coordinates of markers.
         linear: the best linear map from inputs to outputs, with its constant as the last row.
     """
@@ -32,7 +32,7 @@ class TrainingSet:
     unit: Vector
     inputs: Float[np.ndarray, "samples winches"]
     outputs: Float[np.ndarray, "samples outputs"]
-    slopes: Float[np.ndarray, "samples sloped winches"]
+    jacobians: Float[np.ndarray, "samples sloped winches"]
     coordinates: int
     linear: Float[np.ndarray, "rows outputs"]
 
@@ -57,9 +57,9 @@ class TrainingSet:
         if like is not None:
             middle, unit = like.middle, like.unit
         found_slopes = samples.jacobians.reshape(count, coordinates, -1)
-        if samples.tension_slopes is not None:
-            found_slopes = np.hstack([found_slopes, samples.tension_slopes])
-        slopes = found_slopes * (0.5 * span) / unit[: found_slopes.shape[1], None]
+        if samples.tension_jacobians is not None:
+            found_slopes = np.hstack([found_slopes, samples.tension_jacobians])
+        derivatives = found_slopes * (0.5 * span) / unit[: found_slopes.shape[1], None]
         outputs = (found - middle) / unit
         return TrainingSet(
             low=low,
@@ -68,7 +68,7 @@ class TrainingSet:
             unit=unit,
             inputs=inputs,
             outputs=outputs,
-            slopes=slopes,
+            jacobians=derivatives,
             coordinates=coordinates,
             linear=linear_map(inputs, outputs),
         )

@@ -111,9 +111,9 @@ class Assembly:
         return any(energy.has_history for energy in self.energies)
 
     @property
-    def patience(self) -> int:
-        """Largest `patience` of the energies with a history; 0 without one."""
-        return max((energy.patience for energy in self.energies if energy.has_history), default=0)
+    def max_stalled_corrections(self) -> int:
+        """Largest `max_stalled_corrections` of the energies with a history; 0 without one."""
+        return max((energy.max_stalled_corrections for energy in self.energies if energy.has_history), default=0)
 
     def largest_force(self, nodes: Nodes, controls: Vector) -> float:
         """Largest force that is applied to the body [N]."""

@@ -96,7 +96,7 @@ class CableEnergy(Energy):
 
     def add_gradient(self, nodes: Nodes, controls: Vector, total: Nodes) -> None:
         forces = self.tensions(nodes, controls)[self.cables]
-        self._add_slopes(nodes, np.zeros_like(self.cables), forces, total[:, :, None])
+        self._add_gradients(nodes, np.zeros_like(self.cables), forces, total[:, :, None])
 
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
         return self.bends(nodes, self.tensions(nodes, controls))
@@ -118,13 +118,13 @@ class CableEnergy(Energy):
         return float(self.tensions(nodes, controls).max(initial=0.0))
 
     def columns(self, nodes: Nodes) -> Float[np.ndarray, "dofs cables"]:
-        """Slopes dl/dx of the length of each cable."""
+        """Derivatives dl/dx of the length of each cable."""
         return self.spring_columns(nodes, np.arange(len(self.winches)), len(self.winches))
 
     def spring_columns(
         self, nodes: Nodes, springs: Int[np.ndarray, " cables"], count: int
     ) -> Float[np.ndarray, "dofs springs"]:
-        """Slopes dl/dx of the lengths of springs, each of them of some cables.
+        """Derivatives dl/dx of the lengths of springs, each of them of some cables.
 
         Args:
             nodes: positions [m].
@@ -133,11 +133,11 @@ class CableEnergy(Energy):
         """
         columns, owners = np.zeros((*nodes.shape, count)), springs[self.cables]
         if count:
-            self._add_slopes(nodes, np.maximum(owners, 0), (owners >= 0).astype(float), columns)
+            self._add_gradients(nodes, np.maximum(owners, 0), (owners >= 0).astype(float), columns)
         return columns.reshape(nodes.size, count)
 
     def length_gradients(self, nodes: Nodes) -> Blocks:
-        """Slopes dl/dx of each segment at its stencil's nodes."""
+        """Derivatives dl/dx of each segment at its stencil's nodes."""
         return self._pull(nodes, np.ones(len(self.winches)))
 
     def bends(self, nodes: Nodes, tensions: Vector) -> HessianBlocks:
@@ -153,8 +153,8 @@ class CableEnergy(Energy):
         directions = spans * (forces[self.cables] / lengths)[:, None]
         return self.weights[:, :, None] * directions[:, None, :]
 
-    def _add_slopes(self, nodes: Nodes, columns: np.ndarray, factors: Vector, total: np.ndarray) -> None:
-        """Add the slopes of the length of each segment, times a factor, to its column of (nodes, dim, columns)."""
+    def _add_gradients(self, nodes: Nodes, columns: np.ndarray, factors: Vector, total: np.ndarray) -> None:
+        """Add the derivatives of the length of each segment, times a factor, to its column of (nodes, dim, columns)."""
         segments = self.stencils, self.weights, self.offsets, self.roundings
         native.add_slopes(nodes, *segments, columns, factors, total)
 

@@ -64,7 +64,7 @@ class FrictionCableEnergy(Energy):
     """
 
     has_history = True
-    patience: ClassVar[int] = 8
+    max_stalled_corrections: ClassVar[int] = 8
 
     def __init__(
         self,
@@ -279,9 +279,9 @@ class FrictionCableEnergy(Energy):
             controls: contractions [m].
             compliance: compliance of the body at the pose.
         """
-        return -compliance.moves @ self.tension_slopes(nodes, controls, compliance)
+        return -compliance.moves @ self.tension_derivatives(nodes, controls, compliance)
 
-    def tension_slopes(
+    def tension_derivatives(
         self, nodes: Nodes, controls: Vector, compliance: Compliance, taut: Int[np.ndarray, " some"] | None = None
     ) -> Float[np.ndarray, "spans controls"]:
         """Derivative of each span's tension by the controls [N/m], as in `moves`.
@@ -303,13 +303,12 @@ class FrictionCableEnergy(Energy):
         pulled = np.zeros((len(tensions), len(controls)))
         pulled[np.arange(len(tensions)), self._spans.winches] = self._by_control(by_elongation)
         unit = np.eye(len(tensions))
-        slopes = (
-            unit + by_elongation @ compliance.compliance - by_limit @ self._limit_slopes(nodes, tensions, compliance)
-        )
-        return np.linalg.solve(slopes, pulled)
+        limits = self._limit_derivatives(nodes, tensions, compliance)
+        derivatives = unit + by_elongation @ compliance.compliance - by_limit @ limits
+        return np.linalg.solve(derivatives, pulled)
 
     def linearize_tensions(self, nodes: Nodes, controls: Vector) -> LockedTensions:
-        """Tensions at an equilibrium with the slopes that they and the capstan's limits have there."""
+        """Tensions at an equilibrium with the derivatives that they and the capstan's limits have there."""
         tensions = self.span_tensions(nodes, controls)
         by_elongation, by_limit = self._slip_compliance(nodes, controls, tensions, np.zeros(len(tensions), dtype=bool))
         angles = self.angles(nodes)
@@ -355,16 +354,16 @@ class FrictionCableEnergy(Energy):
     def _by_tension(self, nodes: Nodes, tensions: Vector) -> RankMatrix:
         """D capstan limits / d tensions at fixed angles."""
         before = np.append(0.0, tensions[:-1])
-        slopes = np.zeros((len(tensions), len(tensions)))
+        derivatives = np.zeros((len(tensions), len(tensions)))
         span = np.arange(len(tensions))
-        slopes[span, span - (before > tensions)] = -np.expm1(-self.friction * self.angles(nodes))
-        return slopes
+        derivatives[span, span - (before > tensions)] = -np.expm1(-self.friction * self.angles(nodes))
+        return derivatives
 
     def _by_angle(self, nodes: Nodes, tensions: Vector) -> Vector:
         """D capstan limits / d angles at fixed tensions [N/rad]."""
         return self.friction * np.exp(-self.friction * self.angles(nodes)) * _larger(tensions)
 
-    def _limit_slopes(self, nodes: Nodes, tensions: Vector, compliance: Compliance) -> RankMatrix:
+    def _limit_derivatives(self, nodes: Nodes, tensions: Vector, compliance: Compliance) -> RankMatrix:
         """D capstan limits / d tensions, including the compliance of the body."""
         turned = self.turn_gradients(nodes).T @ compliance.moves
         return self._by_tension(nodes, tensions) - self._by_angle(nodes, tensions)[:, None] * turned
@@ -373,7 +372,7 @@ class FrictionCableEnergy(Energy):
         return self._spans.length_gradients(nodes) * forces[self._spans.cables][:, None, None]
 
     def _by_control(self, tangents: RankMatrix) -> Vector:
-        """Slope of the tension of each span along the contraction of its winch [N/m]."""
+        """Derivative of the tension of each span along the contraction of its winch [N/m]."""
         return self._spans.ratios * tangents[np.arange(len(tangents)), self.law.starts[self._owners]]
 
     def _with(self, limits: Vector, slips: Vector) -> "FrictionCableEnergy":

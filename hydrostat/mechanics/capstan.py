@@ -44,9 +44,9 @@ class ViaPointTurns:
 
     def blocks(self, nodes: Nodes) -> Float[np.ndarray, "2 turns corners dim"]:
         """Derivative of each angle by the nodes of its stencils [rad/m]."""
-        return self.weights[..., None] * self.slopes(nodes)[:, :, None, :]
+        return self.weights[..., None] * self.derivatives(nodes)[:, :, None, :]
 
-    def slopes(self, nodes: Nodes) -> Float[np.ndarray, "2 turns dim"]:
+    def derivatives(self, nodes: Nodes) -> Float[np.ndarray, "2 turns dim"]:
         """Derivative of each angle by the vectors along the segments before and after it [rad/m]; as above."""
         (before, after), lengths = self._directions(nodes)
         cosine = np.einsum("td,td->t", before, after)[:, None]
@@ -130,8 +130,8 @@ class CapstanChains:
     ) -> tuple[Float[np.ndarray, "rows rows"], Vector, float]:
         """Matrix and right-hand side, in units of T [N] and `scale` [m]; unknowns are T, slips forth, slips back."""
         law, count, many = self.law, len(tensions), len(points)
-        slopes = np.maximum(TensionLaw.tangent(law, own), 1e-9 * law.stiffness)
-        soft = np.where(tensions > 0, 1.0 / slopes, 1.0 / law.stiffness)
+        derivatives = np.maximum(TensionLaw.tangent(law, own), 1e-9 * law.stiffness)
+        soft = np.where(tensions > 0, 1.0 / derivatives, 1.0 / law.stiffness)
         unit = scale / float(np.median(soft + self.compliance.diagonal()))
         rows = np.arange(many)
         forth, back = slice(count, count + many), slice(count + many, None)

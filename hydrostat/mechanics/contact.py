@@ -194,11 +194,11 @@ class ContactEnergy(Energy):
         stencils, edges, soft, begins, weights = self._law
         squared = np.maximum(self.skin.compute_squared_distances(nodes, self.pairs), np.finfo(float).tiny)
         widths, normals = np.sqrt(squared), np.empty((*stencils.shape, nodes.shape[1]))
-        slope = -1.5 * log(4.0) - 2.25  # phi'(1/4)
+        derivative = -1.5 * log(4.0) - 2.25  # phi'(1/4)
         resting = 0.85  # Parts pressed on one another come to rest at about this share of the distance
         curvature = 10.0  # Stiffness of a barrier there, by its factor
         native.barrier_forces(nodes, stencils, edges, soft, 4.0 * squared, np.ones(len(squared)), normals)
-        normals /= 2.0 * slope * widths[:, None, None]
+        normals /= 2.0 * derivative * widths[:, None, None]
         return Gaps(stencils, widths - resting * np.sqrt(begins), normals, curvature * weights)
 
     @property

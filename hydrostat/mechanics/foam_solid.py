@@ -35,7 +35,7 @@ class FoamLaw(NamedTuple):
             total += 2 * share / alpha**2 * own
         return total
 
-    def slopes(self, logs: Principal) -> Principal:
+    def stresses(self, logs: Principal) -> Principal:
         """dPsi/de over mu: Kirchhoff's principal stresses."""
         volume = logs.sum(axis=1, keepdims=True)
         terms = zip(self.shares, self.exponents, strict=True)
@@ -47,7 +47,7 @@ class FoamLaw(NamedTuple):
             np.zeros_like(logs),
         )
 
-    def coupling_slopes(self, logs: Principal) -> Vector:
+    def coupling_derivatives(self, logs: Principal) -> Vector:
         """Derivative by b of dPsi/de over mu, which is equal along all axes."""
         volume = logs.sum(axis=1)
         terms = zip(self.shares, self.exponents, strict=True)
@@ -122,16 +122,16 @@ class FoamSolid(Energy):
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
         """Computed from the displacement gradient, so that little is lost to rounding near rest."""
-        slopes = self._slopes(nodes)
-        if not (np.linalg.det(np.eye(self._dim) + slopes) > 0.0).all():
+        derivatives = self._gradients(nodes)
+        if not (np.linalg.det(np.eye(self._dim) + derivatives) > 0.0).all():
             return np.inf
         with np.errstate(over="ignore", invalid="ignore"):
-            stored = self.mu * float(self._volumes @ self.law.density(self._frame(nodes, slopes).logs))
+            stored = self.mu * float(self._volumes @ self.law.density(self._frame(nodes, derivatives).logs))
         return stored if np.isfinite(stored) else np.inf
 
     def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
         frame = self._frame(nodes)
-        return self._forces(frame, self.mu * self.law.slopes(frame.logs))
+        return self._forces(frame, self.mu * self.law.stresses(frame.logs))
 
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
         return self.projected_hessian(nodes, controls, 0.0)
@@ -165,13 +165,13 @@ class FoamSolid(Energy):
         return np.swapaxes(modes.reshape(shape), 1, 2) @ (weights * stiff).reshape(shape)
 
     def least_volume(self, nodes: Nodes) -> float:
-        return min(1.0, float(np.linalg.det(np.eye(self._dim) + self._slopes(nodes)).min(initial=1.0)))
+        return min(1.0, float(np.linalg.det(np.eye(self._dim) + self._gradients(nodes)).min(initial=1.0)))
 
     def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
         """By mu and lame of the material, and by the thickness."""
         frame, moved = self._frame(nodes), field[self.stencils]
-        own = float((self._forces(frame, self.law.slopes(frame.logs)) * moved).sum())
-        equal = np.repeat(self.law.coupling_slopes(frame.logs)[:, None], self._dim, axis=1)
+        own = float((self._forces(frame, self.law.stresses(frame.logs)) * moved).sum())
+        equal = np.repeat(self.law.coupling_derivatives(frame.logs)[:, None], self._dim, axis=1)
         by_coupling = float((self._forces(frame, equal) * moved).sum())
         strained = self.lame / (2 * self.mu)
         if self.is_free_across:
@@ -183,20 +183,20 @@ class FoamSolid(Energy):
             "thickness": np.array([self.mu * own]),
         }
 
-    def _slopes(self, nodes: Nodes) -> Square:
+    def _gradients(self, nodes: Nodes) -> Square:
         """F - I at each point."""
         moved = (nodes - self._rest)[self.stencils]
         moved = np.repeat(moved - moved[:, :1], self._points, axis=0)
         return np.swapaxes(moved, 1, 2) @ self._gradients
 
-    def _frame(self, nodes: Nodes, slopes: Square | None = None) -> "_Frame":
+    def _frame(self, nodes: Nodes, derivatives: Square | None = None) -> "_Frame":
         """Principal axes at `nodes`; the last ones are kept, as value, forces and Hessian follow one another."""
         last, kept = self._last
         if kept is not None and np.array_equal(last, nodes):
             return kept
-        slopes = self._slopes(nodes) if slopes is None else slopes
-        logs, right = _logs(slopes)
-        left = (right + slopes @ right) * np.exp(-logs)[:, None, :]
+        derivatives = self._gradients(nodes) if derivatives is None else derivatives
+        logs, right = _logs(derivatives)
+        left = (right + derivatives @ right) * np.exp(-logs)[:, None, :]
         frame = _Frame(logs, left, right)
         self._last = nodes.copy(), frame  # in one assignment, so that threads may share the energy
         return frame
@@ -212,7 +212,7 @@ class FoamSolid(Energy):
         logs, (one, two) = frame.logs, self._pairs
         stretch, volume = np.exp(logs), logs.sum(axis=1)
         own, shared = self.law.curvatures(logs)
-        kirchhoff = self.law.slopes(logs)
+        kirchhoff = self.law.stresses(logs)
         scaling = shared[:, None, None] / (stretch[:, :, None] * stretch[:, None, :])
         axes = np.arange(self._dim)
         scaling[:, axes, axes] += (own - kirchhoff) / stretch**2
@@ -231,10 +231,10 @@ class _Frame(NamedTuple):
     right: Square
 
 
-def _logs(slopes: Square) -> tuple[Principal, Square]:
+def _logs(derivatives: Square) -> tuple[Principal, Square]:
     """Logarithms of the principal stretches and their axes at rest, from F - I."""
-    turned = np.swapaxes(slopes, 1, 2)
-    values, axes = np.linalg.eigh(slopes + turned + turned @ slopes)
+    turned = np.swapaxes(derivatives, 1, 2)
+    values, axes = np.linalg.eigh(derivatives + turned + turned @ derivatives)
     return 0.5 * np.log1p(np.maximum(values, -1.0 + 1e-15)), axes
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from hydrostat.arrays import Float, Int, Nodes, Vector
 from hydrostat.kernel import native
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, ScatterMap, nearest_semidefinite
-from hydrostat.mechanics.quadratic_solid import QuadraticElements, shape_slopes
+from hydrostat.mechanics.quadratic_solid import QuadraticElements, shape_gradients
 
 FREE = 0.3
 """Ratio of volumes from which on the barrier is 0."""
@@ -99,7 +99,7 @@ class InversionBarrier(Energy):
         """By mu of each material, and by the thickness."""
         low = self._low(nodes)
         along = (self._gradients(nodes, low) * field[self.stencils[low.elements]]).sum(axis=(1, 2))
-        works = self._volumes[low.elements] * low.slopes * along
+        works = self._volumes[low.elements] * low.derivatives * along
         count = int(self.materials.max(initial=-1)) + 1
         return {
             "mu": np.bincount(self.materials[low.elements], works, count).astype(float),  # of none: integers
@@ -127,7 +127,7 @@ class InversionBarrier(Energy):
 
     def _forces(self, nodes: Nodes, low: "_Low") -> Blocks:
         """Derivative of the energy of each low coefficient by the nodes of its element [N]."""
-        return (self._stiffness(low) * low.slopes)[:, None, None] * self._gradients(nodes, low)
+        return (self._stiffness(low) * low.derivatives)[:, None, None] * self._gradients(nodes, low)
 
     def _gradients(self, nodes: Nodes, low: "_Low") -> Blocks:
         """Derivative of each low coefficient by the nodes of its element [1/m]: c is homogeneous in these."""
@@ -154,9 +154,9 @@ class InversionBarrier(Energy):
         blocks = np.zeros((len(chosen), size, size))
         if chosen.size:
             corners = nodes[self.stencils[low.elements]]
-            slopes = self._gradients(nodes, low).reshape(len(low.elements), size)
-            each = low.curvatures[:, None, None] * slopes[:, :, None] * slopes[:, None, :]
-            each += low.slopes[:, None, None] * self._bends(corners - corners[:, :1], low)
+            derivatives = self._gradients(nodes, low).reshape(len(low.elements), size)
+            each = low.curvatures[:, None, None] * derivatives[:, :, None] * derivatives[:, None, :]
+            each += low.derivatives[:, None, None] * self._bends(corners - corners[:, :1], low)
             np.add.at(blocks, owners, self._stiffness(low)[:, None, None] * each)
             if share:
                 blocks += share * (nearest_semidefinite(blocks) - blocks)
@@ -177,7 +177,7 @@ class _Low(NamedTuple):
     logs: Vector
 
     @property
-    def slopes(self) -> Vector:
+    def derivatives(self) -> Vector:
         """First derivative of phi."""
         return -3 * self.logs**2 / self.values
 
@@ -190,8 +190,8 @@ class _Low(NamedTuple):
 def _coefficients(corners: Float[np.ndarray, "elements corners dim"]) -> Coefficients:
     """Bernstein coefficients of det(dx / d xi), xi in the unit simplex, and d! times the volume of each part."""
     count, _, dim = corners.shape
-    slopes, mixes = _spans(dim)
-    columns = np.matmul(slopes, corners).reshape(count, dim + 1, dim, dim)  # by corner, then axis
+    derivatives, mixes = _spans(dim)
+    columns = np.matmul(derivatives, corners).reshape(count, dim + 1, dim, dim)  # by corner, then axis
     pointed = corners[:, PARTS[dim]]
     edges = pointed[:, :, 1:] - pointed[:, :, :1]
     if dim == 2:
@@ -214,20 +214,20 @@ def _spans(dim: int) -> tuple[Float[np.ndarray, "columns corners"], Float[np.nda
 
     A determinant takes its first column from one corner, its second from another, and so on.
     """
-    slopes = shape_slopes(np.eye(dim + 1)).swapaxes(1, 2).reshape(dim * (dim + 1), -1)
+    derivatives = shape_gradients(np.eye(dim + 1)).swapaxes(1, 2).reshape(dim * (dim + 1), -1)
     mixed = [tuple(sorted(chosen)) for chosen in product(range(dim + 1), repeat=dim)]
     found = sorted(set(mixed))
     mixes = np.array([[float(one == other) for other in found] for one in mixed])
-    return slopes, mixes / mixes.sum(axis=0)
+    return derivatives, mixes / mixes.sum(axis=0)
 
 
 @cache
 def _forms(dim: int) -> np.ndarray:
     """Each coefficient and part as an alternating form of the nodes, (coefficients, corners, ..., corners)."""
-    slopes, mixes = _spans(dim)
-    axes = slopes.reshape(dim + 1, dim, -1).swapaxes(0, 1)
+    derivatives, mixes = _spans(dim)
+    axes = derivatives.reshape(dim + 1, dim, -1).swapaxes(0, 1)
     mixes = mixes.reshape(*[dim + 1] * dim, -1)
-    one = np.eye(slopes.shape[1])[PARTS[dim]]
+    one = np.eye(derivatives.shape[1])[PARTS[dim]]
     edges = (one[:, 1:] - one[:, :1]).swapaxes(0, 1)
     if dim == 2:
         form, parts = np.einsum("ijm,ic,jd->mcd", mixes, *axes), np.einsum("mc,md->mcd", *edges)

@@ -45,10 +45,10 @@ class MomentEnergy(Energy):
         stretch, spin = _planes(np.asarray(moment, dtype=float) / self.size, rest.shape[1])
         spans = np.swapaxes(rest[elements[:, 1:]] - rest[elements[:, :1]], 1, 2)
         inverse = np.linalg.inv(spans)
-        slopes = np.concatenate([-inverse.sum(axis=1, keepdims=True), inverse], axis=1)
+        derivatives = np.concatenate([-inverse.sum(axis=1, keepdims=True), inverse], axis=1)
         volumes = np.linalg.det(spans)
         mean = np.zeros((len(used), rest.shape[1]))
-        np.add.at(mean, corners.reshape(elements.shape), slopes * (volumes / volumes.sum())[:, None, None])
+        np.add.at(mean, corners.reshape(elements.shape), derivatives * (volumes / volumes.sum())[:, None, None])
         self._straight, self._turned = mean @ stretch.T, mean @ spin.T
         self._rest = rest[used]
 

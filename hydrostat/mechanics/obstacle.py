@@ -146,7 +146,7 @@ class ObstacleEnergy(Energy):
         return some, forces if self.carriage is None else forces @ self.carriage.axes(nodes)
 
     def _forces(self, nodes: Nodes) -> tuple[np.ndarray, Points]:
-        """Samples on which forces act, and the slope of the energy by the place of each in the frame [N]."""
+        """Samples on which forces act, and the derivative of the energy by the place of each in the frame [N]."""
         some = self._active_samples(nodes)
         places = self._locate_samples(nodes)[0][some]
         found = self.field(places)
@@ -154,10 +154,10 @@ class ObstacleEnergy(Energy):
         return some, forces if self.grip is None else forces + self.grip.only(some).forces(places)
 
     def _by_unknowns(self, nodes: Nodes, some: np.ndarray, forces: Points) -> Blocks:
-        """Slopes by the unknowns of the stencils of some samples, of slopes by their places."""
+        """Derivatives by the unknowns of the stencils of some samples, of derivatives by their places."""
         if self.carriage is None:
             return self.shares[some, :, None] * forces[:, None, :]
-        return np.einsum("tk,tkri->tri", forces, self._slopes(nodes, some))
+        return np.einsum("tk,tkri->tri", forces, self._gap_jacobians(nodes, some))
 
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
         return self.projected_hessian(nodes, controls, 0.0)
@@ -237,13 +237,13 @@ class ObstacleEnergy(Energy):
         fresh = there.limits == 0
         there = replace(there, share=grip.share, normals=np.where(fresh[:, None], found.normals, there.normals))
         curves = self._derivatives(found, self.weights[some])[1]
-        slopes = self._still_slopes(some) if self.carriage is None else self._slopes(nodes, some)
+        derivatives = self._fixed_jacobians(some) if self.carriage is None else self._gap_jacobians(nodes, some)
         answer, stencils = response, self.stencils[some]
 
         def respond(limits: Vector, turns: Points) -> tuple[Vector, Points]:
             pulls, forces = there.force_changes(places[some], limits, turns), np.zeros_like(nodes)
-            native.add_vectors(stencils, np.einsum("tk,tkri->tri", pulls, slopes), forces)
-            moves = np.einsum("tkri,tri->tk", slopes, -answer(forces.ravel()).reshape(nodes.shape)[stencils])
+            native.add_vectors(stencils, np.einsum("tk,tkri->tri", pulls, derivatives), forces)
+            moves = np.einsum("tkri,tri->tk", derivatives, -answer(forces.ravel()).reshape(nodes.shape)[stencils])
             return -curves * (found.normals * moves).sum(axis=1), np.einsum("tkl,tl->tk", found.curvatures, moves)
 
         solved = there.with_joint_step(pushes[some], normals[some], respond)
@@ -251,7 +251,7 @@ class ObstacleEnergy(Energy):
         limits[some], after[some] = solved.limits, solved.normals
         return self._gripping(replace(grip, limits=limits, normals=after, trail=()))
 
-    def _still_slopes(self, some: np.ndarray) -> Float[np.ndarray, "some dim rows dim"]:
+    def _fixed_jacobians(self, some: np.ndarray) -> Float[np.ndarray, "some dim rows dim"]:
         return np.einsum("tc,ki->tkci", self.shares[some], np.eye(self.shares.shape[1]))
 
     def with_advanced_history(self, nodes: Nodes, controls: Vector) -> "ObstacleEnergy":
@@ -274,8 +274,8 @@ class ObstacleEnergy(Energy):
         pushes[some], normals[some] = -self._derivatives(found, self.weights[some])[0], found.normals
         return pushes, normals
 
-    def _slopes(self, nodes: Nodes, some: np.ndarray) -> Float[np.ndarray, "some dim rows dim"]:
-        """Slopes of the place in the frame by the unknowns of the stencil; only of an obstacle that moves."""
+    def _gap_jacobians(self, nodes: Nodes, some: np.ndarray) -> Float[np.ndarray, "some dim rows dim"]:
+        """Derivatives of the place in the frame by the unknowns of the stencil; only of an obstacle that moves."""
         assert self.carriage is not None
         axes, dim = self.carriage.axes(nodes), self.carriage.dim
         spans = self._points(nodes)[some] - self.carriage.place(nodes)
@@ -313,22 +313,22 @@ class ObstacleEnergy(Energy):
         r = (d / self.distance) ** 2
         with np.errstate(divide="ignore", invalid="ignore"):
             log, below = -np.log(r), r - 1.0
-            slope = 2.0 * below * log - below**2 / r
+            derivative = 2.0 * below * log - below**2 / r
             curve = 2.0 * log - 4.0 * below / r + (below / r) ** 2
         scale = weights * (r < 1.0)
-        one = np.where(r < 1.0, 2.0 * scale * slope * d, 0.0)
-        two = np.where(r < 1.0, scale * (2.0 * slope + 4.0 * r * curve), 0.0)
+        one = np.where(r < 1.0, 2.0 * scale * derivative * d, 0.0)
+        two = np.where(r < 1.0, scale * (2.0 * derivative + 4.0 * r * curve), 0.0)
         return one, two
 
     def _blocks(self, nodes: Nodes, some: np.ndarray, share: float) -> HessianBlocks:
         """Hessian of some terms without a share of its negative part."""
         places = self._locate_samples(nodes)[0][some]
         found = self.field(places)
-        slope, curve = self._derivatives(found, self.weights[some])
+        derivative, curve = self._derivatives(found, self.weights[some])
         inner = curve[:, None, None] * (found.normals[:, :, None] * found.normals[:, None, :])
         kept = 1.0 - share if self.carriage is None else 1.0
-        inner = inner + (kept * slope)[:, None, None] * found.curvatures
-        forces = slope[:, None] * found.normals
+        inner = inner + (kept * derivative)[:, None, None] * found.curvatures
+        forces = derivative[:, None] * found.normals
         if self.grip is not None:
             grip = self.grip.only(some)
             inner = inner + grip.stiffness(places)
@@ -337,8 +337,8 @@ class ObstacleEnergy(Energy):
         if self.carriage is None:
             blocks = np.einsum("ta,tb,tij->taibj", self.shares[some], self.shares[some], inner)
             return blocks.reshape(len(some), corners * dim, corners * dim)
-        slopes = self._slopes(nodes, some).reshape(len(some), dim, dim * (corners + 1 + dim))
-        blocks = np.einsum("tkr,tkl,tls->trs", slopes, inner, slopes)
+        derivatives = self._gap_jacobians(nodes, some).reshape(len(some), dim, dim * (corners + 1 + dim))
+        blocks = np.einsum("tkr,tkl,tls->trs", derivatives, inner, derivatives)
         bends = blocks.reshape(len(some), corners + 1 + dim, dim, corners + 1 + dim, dim)
         by_point = np.concatenate([self.shares[some], -np.ones((len(some), 1))], axis=1)
         mixed = 1.0 / self.carriage.length * by_point[:, :, None] * forces[:, None, :]
@@ -369,7 +369,7 @@ def _samples(mesh: Mesh) -> tuple[Stencils, Float[np.ndarray, "terms corners"], 
 
 
 _HALF_WAY = 4.329
-"""Force of the barrier at half its distance, where its factor and distance are 1: 2 phi'(1/4) x 1/2, phi' its slope."""
+"""Force of the barrier phi at half its distance, where its factor and distance are 1: 2 phi'(1/4) x 1/2."""
 
 
 def _lengths(vectors: Points) -> Vector:

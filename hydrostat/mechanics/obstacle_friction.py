@@ -58,7 +58,7 @@ class ObstacleFriction:
             friction=self.friction, springs=springs, anchors=anchors, normals=normals, limits=limits
         )
 
-    def ways(self, places: Points) -> tuple[Points, Vector]:
+    def slips(self, places: Points) -> tuple[Points, Vector]:
         """Tangential displacement of each sample from its anchor [m], and its length [m]."""
         spans = places - self.anchors
         spans = spans - (spans * self.normals).sum(axis=1)[:, None] * self.normals
@@ -66,19 +66,19 @@ class ObstacleFriction:
 
     def energy(self, places: Points) -> float:
         """Energy of all springs [J]."""
-        lengths, limits = self.ways(places)[1], self.limits
+        lengths, limits = self.slips(places)[1], self.limits
         sticks = self.springs * lengths <= limits
         slipping = limits * lengths - 0.5 * limits**2 / self.springs
         return float(np.where(sticks, 0.5 * self.springs * lengths**2, slipping).sum())
 
     def forces(self, places: Points) -> Points:
         """Slope of the energy by the place of each sample [N]."""
-        spans, lengths = self.ways(places)
+        spans, lengths = self.slips(places)
         return self._secants(lengths)[:, None] * spans
 
     def stiffness(self, places: Points) -> Squares:
         """Second derivative of the energy [N/m], never negative; samples at their limit go on slipping."""
-        spans, lengths = self.ways(places)
+        spans, lengths = self.slips(places)
         secants = self._secants(lengths)
         across = np.eye(places.shape[1]) - self.normals[:, :, None] * self.normals[:, None, :]
         slips = self._at_limit(lengths)
@@ -99,11 +99,11 @@ class ObstacleFriction:
 
     def slipping(self, places: Points) -> Bool[np.ndarray, " samples"]:
         """Mask of the samples that are at their friction limit."""
-        return (self.limits > 0) & self._at_limit(self.ways(places)[1])
+        return (self.limits > 0) & self._at_limit(self.slips(places)[1])
 
     def directions(self, places: Points) -> Points:
         """Unit vectors from the anchors to the samples, along the surface."""
-        spans, lengths = self.ways(places)
+        spans, lengths = self.slips(places)
         return spans / np.where(lengths > 0, lengths, 1.0)[:, None]
 
     def with_newton_step(
@@ -130,7 +130,7 @@ class ObstacleFriction:
 
     def force_changes(self, places: Points, limits: Vector, normals: Points) -> Points:
         """Change of `forces` under small changes of the limits [N] and of the normals, to first order [N]."""
-        spans, (ways, lengths) = places - self.anchors, self.ways(places)
+        spans, (ways, lengths) = places - self.anchors, self.slips(places)
         along, beside = (spans * self.normals).sum(axis=1), (spans * normals).sum(axis=1)
         turned = -beside[:, None] * self.normals - along[:, None] * normals
         units = ways / np.where(lengths > 0, lengths, 1.0)[:, None]
@@ -183,7 +183,7 @@ class ObstacleFriction:
 
     def drag_anchors(self, places: Points) -> "ObstacleFriction":
         """Return this state with anchors dragged to where the springs pull no harder than the limits."""
-        spans, lengths = self.ways(places)
+        spans, lengths = self.slips(places)
         held = np.where(self.limits > 0, self._secants(lengths) / self.springs, 0.0)
         return replace(self, anchors=places - held[:, None] * spans, trail=())
 

@@ -62,13 +62,13 @@ class PlaneStress(Energy):
     def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
         state = self._state(nodes)
         factor = self.volumes * state.pressure / (1.0 + state.change)
-        return factor[:, None, None] * state.slopes
+        return factor[:, None, None] * state.derivatives
 
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
         state = self._state(nodes)
         area, s = 1.0 + state.change, 1.0 + state.widened
         tangent = 2 * s * self.mu * self.lame / (2 * s * self.mu + self.lame)
-        flat = state.slopes.reshape(len(self.stencils), -1)
+        flat = state.derivatives.reshape(len(self.stencils), -1)
         steep = self.volumes * (tangent - state.pressure) / area**2
         bend = self.volumes * state.pressure / area
         return steep[:, None, None] * flat[:, :, None] * flat[:, None, :] + bend[:, None, None] * self._curvatures
@@ -77,7 +77,7 @@ class PlaneStress(Energy):
         """By mu and lame of each material, and by the thickness."""
         state = self._state(nodes)
         s, log = 1.0 + state.widened, np.log1p(state.change) + 0.5 * np.log1p(state.widened)
-        along = self.volumes / (1.0 + state.change) * (state.slopes * field[self.stencils]).sum(axis=(1, 2))
+        along = self.volumes / (1.0 + state.change) * (state.derivatives * field[self.stencils]).sum(axis=(1, 2))
         share = along / (2 * s * self.mu + self.lame)
         return {
             "mu": np.bincount(self.materials, -state.widened * self.lame * share),
@@ -87,11 +87,11 @@ class PlaneStress(Energy):
 
     def _state(self, nodes: Nodes) -> "_State":
         moved = (nodes - self._rest)[self.stencils]
-        slopes = np.einsum("tci,tcj->tij", moved - moved[:, :1], self.gradients)
-        change = slopes[:, 0, 0] + slopes[:, 1, 1] + np.linalg.det(slopes)
-        turned = np.empty_like(slopes)  # cofactors of F
-        turned[:, 0, 0], turned[:, 0, 1] = 1.0 + slopes[:, 1, 1], -slopes[:, 1, 0]
-        turned[:, 1, 0], turned[:, 1, 1] = -slopes[:, 0, 1], 1.0 + slopes[:, 0, 0]
+        derivatives = np.einsum("tci,tcj->tij", moved - moved[:, :1], self.gradients)
+        change = derivatives[:, 0, 0] + derivatives[:, 1, 1] + np.linalg.det(derivatives)
+        turned = np.empty_like(derivatives)  # cofactors of F
+        turned[:, 0, 0], turned[:, 0, 1] = 1.0 + derivatives[:, 1, 1], -derivatives[:, 1, 0]
+        turned[:, 1, 0], turned[:, 1, 1] = -derivatives[:, 0, 1], 1.0 + derivatives[:, 0, 0]
         widened = solve_thickening(change, self.mu, self.lame)
         return _State(change, widened, -self.mu * widened, np.einsum("tij,tcj->tci", turned, self.gradients))
 
@@ -103,13 +103,13 @@ class _State(NamedTuple):
         change: J - 1.
         widened: s^2 - 1.
         pressure: derivative of the energy by ln J [Pa].
-        slopes: dJ/dx [1/m].
+        derivatives: dJ/dx [1/m].
     """
 
     change: Vector
     widened: Vector
     pressure: Vector
-    slopes: Blocks
+    derivatives: Blocks
 
 
 def solve_thickening(change: Vector, mu: Vector, lame: Vector) -> Vector:

@@ -59,9 +59,9 @@ class QuadraticSolid(Energy):
         self.mu, self.lame = np.broadcast_to(mu, count), np.broadcast_to(0.0 if lame is None else lame, count)
         self.volumetric = lame is not None
         self.materials = np.zeros(count, dtype=np.int64) if materials is None else materials
-        slopes, weights = _quadrature(dim)
-        spans = np.einsum("ecd,qcr->eqdr", nodes[elements], slopes)
-        self._gradients = np.einsum("qcr,eqrd->eqcd", slopes, np.linalg.inv(spans))
+        derivatives, weights = _quadrature(dim)
+        spans = np.einsum("ecd,qcr->eqdr", nodes[elements], derivatives)
+        self._gradients = np.einsum("qcr,eqrd->eqcd", derivatives, np.linalg.inv(spans))
         self._weights = np.linalg.det(spans) * weights * thickness
         self._offsets = np.zeros((0, dim + 1, dim, dim))
         if metrics is not None:
@@ -175,17 +175,17 @@ class QuadraticSolid(Energy):
 
 
 def _quadrature(dim: int) -> tuple[Float[np.ndarray, "points corners dim"], float]:
-    """Slopes of the shape functions at points that integrate quadratics exactly, and the weight of each point."""
+    """Derivatives of the shape functions at points that integrate quadratics exactly, and the weight of each point."""
     outer = 2 / 3 if dim == 2 else (5 + 3 * 5**0.5) / 20
     points = np.full((dim + 1, dim + 1), (1 - outer) / dim)
     np.fill_diagonal(points, outer)
-    return shape_slopes(points), 1 / 6 if dim == 2 else 1 / 24
+    return shape_gradients(points), 1 / 6 if dim == 2 else 1 / 24
 
 
-def shape_slopes(points: Float[np.ndarray, "points barycentric"]) -> Float[np.ndarray, "points corners dim"]:
-    """Slopes of the quadratic shape functions in the unit simplex, at points of barycentric coordinates."""
+def shape_gradients(points: Float[np.ndarray, "points barycentric"]) -> Float[np.ndarray, "points corners dim"]:
+    """Derivatives of the quadratic shape functions in the unit simplex, at points of barycentric coordinates."""
     dim = points.shape[1] - 1
-    own = np.concatenate([-np.ones((1, dim)), np.eye(dim)])  # slopes of the barycentric coordinates
+    own = np.concatenate([-np.ones((1, dim)), np.eye(dim)])  # derivatives of the barycentric coordinates
     corners = (4 * points - 1)[:, :, None] * own
     pairs = [(points[:, [one]], own[two], points[:, [two]], own[one]) for one, two in combinations(range(dim + 1), 2)]
     middles = np.stack([4 * (a * b + c * d) for a, b, c, d in pairs], axis=1)

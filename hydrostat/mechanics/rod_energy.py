@@ -60,8 +60,8 @@ class RodEnergy(Energy):
         return stretch + float(self._bend(cosine)[0].sum())
 
     def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
-        slopes, _ = self._derivatives(nodes, second=False)
-        return np.einsum("jsc,jsd->jcd", self._weights, slopes)
+        derivatives, _ = self._derivatives(nodes, second=False)
+        return np.einsum("jsc,jsd->jcd", self._weights, derivatives)
 
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
         blocks = self._derivatives(nodes, second=True)[1]
@@ -107,9 +107,9 @@ class RodEnergy(Energy):
         across = units[:, ::-1] - cosine[:, None, None] * units  # of each segment: what is left of the other one
         by_cosine = across / lengths[:, :, None]
         tension = self._axial * (lengths / self._lengths - 1.0)
-        slopes = tension[:, :, None] * units + bend[:, None, None] * by_cosine
+        derivatives = tension[:, :, None] * units + bend[:, None, None] * by_cosine
         if not second:
-            return slopes, None
+            return derivatives, None
         eye = np.eye(dim)
         blocks = bends[:, None, None, None, None] * by_cosine[:, :, :, None, None] * by_cosine[:, None, None]
         for side in (0, 1):
@@ -122,7 +122,7 @@ class RodEnergy(Energy):
             blocks[:, side, :, side] += stiff + bend[:, None, None] * curved
             turned = np.einsum("jab,jbc->jac", eye - along, eye - other[:, :, None] * other[:, None])
             blocks[:, side, :, 1 - side] += bend[:, None, None] * turned / np.prod(lengths, axis=1)[:, None, None]
-        return slopes, blocks
+        return derivatives, blocks
 
 
 def _cosine(spans: Float[np.ndarray, "joints 2 dim"]) -> Vector:

@@ -185,7 +185,7 @@ class SelfContactFriction:
         places = np.where(held[:, None], nodes[self.skin.own] - points, 0.0)
         left = places - grip.drag_anchors(places).anchors
         rounding = 1e-9  # A spring that loses less than this share of its length does not slip
-        drags = held & (np.linalg.norm(left, axis=1) < (1.0 - rounding) * grip.ways(places)[1])
+        drags = held & (np.linalg.norm(left, axis=1) < (1.0 - rounding) * grip.slips(places)[1])
         dragged = self._nearest(nodes, pairs, drags, left, normals)
         beside = anchors.with_points_replaced(drags & (dragged.facets >= 0), dragged).with_points_replaced(
             ~held, self._none

@@ -154,12 +154,12 @@ class ChainLaw(TensionLaw):
     def springs(self, elongation: Vector) -> SpanSprings:
         """Springs of the spans while cable goes on slipping where it does, slack neighbors as one.
 
-        Near this state a spring has the tension and slope of its spans; far from it, those of one taut spring.
+        Near this state a spring has the tension and derivative of its spans; far from it, those of one taut spring.
         """
         slips = self.slips(elongation)
         own = self._own(elongation, slips)
-        _, tensions, slopes = self._evaluate(own)
-        group, series = self._series(slopes, slips != 0)
+        _, tensions, derivatives = self._evaluate(own)
+        group, series = self._series(derivatives, slips != 0)
         slack = series[group] <= 0
         heads = slips == 0
         heads[1:] &= ~(slack[1:] & slack[:-1])
@@ -167,12 +167,12 @@ class ChainLaw(TensionLaw):
         springs, firsts = np.cumsum(heads) - 1, np.flatnonzero(heads)
         stiffness = 1.0 / np.bincount(springs, 1.0 / self.stiffness)
         smoothing, whole = np.bincount(springs, self.smoothing), np.bincount(springs, own)
-        tension, slope = np.minimum.reduceat(tensions, firsts), series[group[firsts]]
+        tension, derivative = np.minimum.reduceat(tensions, firsts), series[group[firsts]]
         straight = 1.0 - 1e-9  # A spring of this share of its stiffness is beyond its smoothing
-        curved = (slope > 0) & (slope < straight * stiffness)
-        safe = np.where(curved, slope, stiffness)
+        curved = (derivative > 0) & (derivative < straight * stiffness)
+        safe = np.where(curved, derivative, stiffness)
         known = np.where(curved, 2.0 * tension / safe, tension / stiffness + smoothing)
-        offsets = whole - np.where(slope > 0, known, np.bincount(springs, np.minimum(own, 0.0)))
+        offsets = whole - np.where(derivative > 0, known, np.bincount(springs, np.minimum(own, 0.0)))
         law = TensionLaw(stiffness=stiffness, smoothing=np.where(curved, stiffness * tension / safe**2, smoothing))
         return SpanSprings(springs, whole, SeriesLaw(law=law, offsets=offsets))
 

@@ -41,7 +41,7 @@ def write_calibration_page(
     """
     rows, pictures = [], []
     for index, (each, wanted, constant) in enumerate(zip(found, model, constants.tolist(), strict=True)):
-        stiff = wanted.stiffness(each.reach)
+        stiff = wanted.stiffness(each.reeled_length)
         felt = stiff * each.gain * constant / each.motor.radius
         rows.append(
             (
@@ -106,6 +106,6 @@ def _draw(found: SlackCalibration, model: WinchPull, constant: float) -> Figure:
         MILLIMETERS * found.places, scale * (found.currents - found.floor), ".", color=Color.WINCHES[0], markersize=4
     )
     if known:
-        way = np.linspace(min(0.0, float(found.places.min())), found.reach, 40)
+        way = np.linspace(min(0.0, float(found.places.min())), found.reeled_length, 40)
         axes.plot(MILLIMETERS * way, model.at(model.taut + way), color=Color.MUTED, linewidth=1.2)
     return figure

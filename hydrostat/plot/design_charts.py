@@ -98,7 +98,7 @@ def draw_front(
     networks = [chosen, *(other for other in alternatives if other.robot != chosen.robot)]
     below = f"minutes of {BuildCost.cable_work(chosen.robot)}"
     figure, axes = new_chart(below, "error once built [mm rms]", width=width, height=0.5 * width)
-    points = [(BuildCost.cable_minutes(one.robot), MILLIMETERS * one.built) for one in networks]
+    points = [(BuildCost.cable_minutes(one.robot), MILLIMETERS * one.expected_error) for one in networks]
     best = front(points)
     axes.plot(*np.transpose([points[index] for index in best]), color=Color.GHOST, linewidth=1.2, zorder=2)
     _draw_dots(axes, networks, points, set(best))

@@ -72,9 +72,9 @@ class LivePage:
 
     def newer(self, number: int) -> tuple[int, bytes] | None:
         """A picture newer than that of a number, as PNG, with its own number; None if none comes for a while."""
-        patience = 20.0  # Seconds that a request waits for news
+        timeout = 20.0  # Seconds that a request waits for news
         with self._news:
-            self._news.wait_for(lambda: self._number > number or self._ended, patience)
+            self._news.wait_for(lambda: self._number > number or self._ended, timeout)
             if self._number <= number:
                 return None
             if self._file[0] != self._number:

@@ -35,7 +35,7 @@ def write_report(
 
 def report_text(network: Network, *, title: str | None = None, facts: Mapping[str, object] | None = None) -> str:
     """The report as text; see `write_report`."""
-    if not network.reached:
+    if not network.ik_results:
         raise InputError("a report needs at least one pose that the network was tried on; this one has none")
     name = title or network.robot.name
     return page(name, _hero(network, name), *chapters(network), footer(network, facts or {}))
@@ -49,7 +49,7 @@ def _hero(network: Network, title: str) -> Html:
     robot = network.robot
     winches = plural(len(robot.winches), "winch")
     cables = plural(len(robot.cables), "cable")
-    poses = plural(len(network.reached), "pose")
+    poses = plural(len(network.ik_results), "pose")
     return tag(
         "div",
         tag("p", "hydrostat \N{MIDDLE DOT} design report", class_="eyebrow"),
@@ -72,7 +72,9 @@ def _path(network: Network, words: str) -> Html:
         steps.append(_error_fact(bound, f"if each of {fibres} muscle fibres could pull by itself"))
     share = 100 * network.rms_error / network.robot.body.mesh.size
     steps.append(_error_fact(network.rms_error, f"{words}, in the model: {share:.1f} % of the body's size"))
-    steps.append(_error_fact(network.built, "to be expected once it is built: sewing, friction, stiffness", best=True))
+    steps.append(
+        _error_fact(network.expected_error, "to be expected once it is built: sewing, friction, stiffness", best=True)
+    )
     return tag("ol", *steps, class_="path")
 
 
@@ -85,14 +87,14 @@ def _error_fact(error: float, words: str, *, best: bool = False) -> Html:
 def _portraits(network: Network) -> Html:
     robot = network.robot
     rest = robot.body.mesh.nodes
-    poses = [reached.pose.nodes for reached in network.reached]
+    poses = [reached.pose.nodes for reached in network.ik_results]
     outer = outer_points(robot.body, [*poses, rest])
     carried = Attachments(robot)
     beside = [part for nodes in (*poses, rest) for part in (*carried.cables(nodes), carried.winches(nodes))]
     frame = np.concatenate(outer if rest.shape[1] == 2 else [*outer, *beside])
     still = _portrait(robot, rest, frame, "hero-rest", "At rest")
     most_poses = 5  # so many poses of a body in space have a portrait
-    shown = network.reached[:1] if rest.shape[1] == 2 else network.reached[:most_poses]
+    shown = network.ik_results[:1] if rest.shape[1] == 2 else network.ik_results[:most_poses]
     posed = [
         _portrait(robot, reached.pose.nodes, frame, f"hero-pose-{index}", "In a pose")
         for index, reached in enumerate(shown)
@@ -102,13 +104,13 @@ def _portraits(network: Network) -> Html:
         pictures = [add_caption(picture, name, HOW) for picture, name in zip(posed, names, strict=True)]
         kind = "grid" if len(pictures) == 1 else "grid small"
         return tag("div", add_caption(still, "At rest", ", as it is made"), *pictures, class_=kind)
-    frames = motion_frames(robot, [reached.pose.contractions for reached in network.reached])
+    frames = motion_frames(robot, [reached.pose.contractions for reached in network.ik_results])
     moving = motion_svg(robot, frames, label="The robot moves from rest into each of its poses and back")
     return tag(
         "div",
         add_caption(still, "At rest", ", as it is sewn"),
         add_caption(posed[0], names[0], HOW, kind="still"),
-        add_caption(moving, ", ".join(reached.pose_target.name for reached in network.reached), HOW, kind="moving"),
+        add_caption(moving, ", ".join(reached.pose_target.name for reached in network.ik_results), HOW, kind="moving"),
         class_="grid",
     )
 

@@ -8,17 +8,16 @@ from hydrostat.design import (
     Alternative,
     BuildCost,
     Certificate,
-    FilledReach,
     Network,
     RouteTrace,
+    StuffedResults,
     TreeTrace,
 )
 from hydrostat.drawing import Html, tag
 from hydrostat.errors import HydrostatError
-from hydrostat.ik import IKResult, find_reach, unconstrained_motion
+from hydrostat.ik import IKResult, find_workspaces, unconstrained_motion
 from hydrostat.plot.activation_figures import draw_activation, draw_candidates, draw_trees
 from hydrostat.plot.design_charts import draw_front, draw_growth, stage_runs
-from hydrostat.plot.reach_figure import draw_reach
 from hydrostat.plot.report_sensitivities import sensitivity_table
 from hydrostat.plot.report_tables import (
     NARROW,
@@ -37,14 +36,15 @@ from hydrostat.plot.report_tables import (
     winch_table,
 )
 from hydrostat.plot.robot_figures import draw_network, draw_reached, draw_rest, draw_stage, draw_target, stage_frame
+from hydrostat.plot.workspace_figure import draw_workspace
 from hydrostat.robot import PoseTarget, Robot, Source, describe_cable_side
-from hydrostat.simulation import Simulation, filled_motion, is_filled_motion_fast
+from hydrostat.simulation import Simulation, is_stuffed_motion_fast, solve_stuffed_motion
 from hydrostat.units import MILLIMETERS, plural
 
 HEAD = "Once it is filled"
 
 
-def filled_chapters(network: Network) -> list[Chapter]:
+def stuffed_chapters(network: Network) -> list[Chapter]:
     """A chapter on the filled body of a flat robot; nothing for one in space."""
     where = describe_cable_side(network.robot)
     if not where:
@@ -53,26 +53,26 @@ def filled_chapters(network: Network) -> list[Chapter]:
         "The model is a slab that stays in its plane. Stuffed, the body is round, and cables pull on its skin. They "
         f"run: {where}."
     )
-    if network.filled is not None:
-        return [Chapter(HEAD, words, [_error_table(network, network.filled)])]
+    if network.stuffed is not None:
+        return [Chapter(HEAD, words, [_error_table(network, network.stuffed)])]
     return [Chapter(HEAD, words, [tag("p", _flat_commands_text(network), class_="note")])]
 
 
 def _flat_commands_text(network: Network) -> str:
     """Return the out-of-plane displacement with the commands of the flat model, in words, if quickly computed."""
-    pulled = [reached.pose.contractions for reached in network.reached]
+    pulled = [reached.pose.contractions for reached in network.ik_results]
     if network.robot.body.outline is None:
         return "How far it leaves the plane is told of drawings only, and this body is a mesh."
-    if not is_filled_motion_fast(network.robot, len(pulled)):
+    if not is_stuffed_motion_fast(network.robot, len(pulled)):
         return "How far it leaves the plane takes long to find here: hydrostat check ROBOT --stuffed tells it."
     try:
-        found = filled_motion(network.robot, pulled)
+        found = solve_stuffed_motion(network.robot, pulled)
     except HydrostatError as error:
         return f"How far it leaves the plane was not found: {error}."
     return f"With the commands above, {found}."
 
 
-def _error_table(network: Network, filled: FilledReach) -> Html:
+def _error_table(network: Network, filled: StuffedResults) -> Html:
     """Return a table of the pose errors on the stuffed 3D body, by commands that were found there [mm]."""
     rows = [
         (
@@ -85,7 +85,7 @@ def _error_table(network: Network, filled: FilledReach) -> Html:
                 for winch, value in zip(network.robot.winches, map(float, pose.pose.contractions), strict=True)
             ),
         )
-        for flat, pose in zip(network.reached, filled.reached, strict=True)
+        for flat, pose in zip(network.ik_results, filled.reached, strict=True)
     ]
     heads = ("pose", "error in the model [mm]", "error filled [mm]", "out of the plane [mm]", "contractions there [mm]")
     told = (
@@ -107,11 +107,11 @@ def chapters(network: Network) -> list[Html]:
     """All chapters, numbered in their order: what was asked, how the network came about, what it reaches."""
     trace = network.trace
     way = muscle_chapters(network, trace) if isinstance(trace, TreeTrace) else growth_chapters(network, trace)
-    targets = target_chapter(network.robot, [reached.pose_target for reached in network.reached])
-    poses = [reached_part(network.robot, reached, index) for index, reached in enumerate(network.reached)]
+    targets = target_chapter(network.robot, [reached.pose_target for reached in network.ik_results])
+    poses = [reached_part(network.robot, reached, index) for index, reached in enumerate(network.ik_results)]
     told = [_body(network.robot), targets, *way, _network(network), Chapter(*REACHED, poses)]
-    told += filled_chapters(network)
-    told += [*reach_chapters(network), *alternative_chapters(network)]
+    told += stuffed_chapters(network)
+    told += [*workspace_chapters(network), *alternative_chapters(network)]
     return [section(number, chapter) for number, chapter in enumerate(told, start=1)]
 
 
@@ -150,7 +150,7 @@ def _network(network: Network) -> Chapter:
     robot = network.robot
     words = (
         f"{plural(len(robot.winches), 'winch')} and {plural(len(robot.cables), 'cable')}, "
-        f"chosen from {plural(network.tried, 'network')} whose poses were solved. All cables of one winch "
+        f"chosen from {plural(network.num_evaluated, 'network')} whose poses were solved. All cables of one winch "
         "share its contraction, each by the radius of its spool. A bar marks the stopper at the end of a "
         "cable, a pale pipe a sheath."
     )
@@ -189,12 +189,12 @@ def reached_part(robot: Robot, reached: IKResult, index: int, *notes: Html) -> H
     return tag("div", shown, tag("div", *numbers, *told, *notes), class_="pose")
 
 
-def reach_chapters(network: Network) -> list[Chapter]:
+def workspace_chapters(network: Network) -> list[Chapter]:
     """Return the chapters on the workspace of each marker beyond the requested poses; none where no pose is found."""
     robot = network.robot
     limit = network.constraints.tension_limit
     most_tried = 36  # poses that are tried for the reach of markers
-    reaches = find_reach(Simulation(robot), tension=limit, count=most_tried)
+    reaches = find_workspaces(Simulation(robot), tension=limit, count=most_tried)
     if not any(len(reach.places) for reach in reaches):
         return []
     words = (
@@ -202,7 +202,7 @@ def reach_chapters(network: Network) -> list[Chapter]:
         f"their travel and {limit:g} N in a cable: poses solved at contractions all over their range, and what exact "
         "slopes tell about their surroundings."
     )
-    shown = picture(draw_reach(robot, reaches, title="", width=NARROW), "reach", "Reach", " of each marker")
+    shown = picture(draw_workspace(robot, reaches, title="", width=NARROW), "reach", "Reach", " of each marker")
     told = tag("ul", *(tag("li", tag("b", reach.marker), f": {reach}") for reach in reaches))
     return [Chapter("What else it reaches", words, [tag("div", shown, tag("div", told), class_="pose")])]
 
@@ -264,7 +264,7 @@ def growth_chapters(network: Network, trace: RouteTrace) -> list[Chapter]:
         figure = draw_stage(stage.robot, like=network.robot, frame=frame)
         head = f"{index + 1}. {stage.words[:1].upper()}{stage.words[1:]}"
         pictures.append(picture(figure, f"stage-{index}", head, f": {_rms_text(stage.error)}"))
-    curve = draw_growth(trace.stages, rest=network.rest_error, final=network.built, marked=shown, width=CHART)
+    curve = draw_growth(trace.stages, rest=network.rest_error, final=network.expected_error, marked=shown, width=CHART)
     note = f" over {plural(len(trace.stages), 'stage')}; those with a picture above are filled dots"
     parts = [grid(*pictures, kind="tiny"), grid(picture(curve, "growth", "The error", note))]
     return [Chapter("How it grew", words, [*parts, _certificate(network, trace.certificate)])]
@@ -302,9 +302,9 @@ def _winch_table(best: Mapping[int, Alternative | Network]) -> Html:
     """Table of as-built error and effort by the number of winches."""
     rows = []
     for winches, one in best.items():
-        effort = BuildCost.of_robot(one.robot, one.reached)
+        effort = BuildCost.of_robot(one.robot, one.ik_results)
         made = (effort.motors, f"{effort.minutes:.0f}", f"{effort.price:.0f}")
-        rows.append((winches, len(one.robot.cables), millimeters(one.built), *made))
+        rows.append((winches, len(one.robot.cables), millimeters(one.expected_error), *made))
     work = BuildCost.cable_work(next(iter(best.values())).robot)
     heads = ("winches", "cables", "error once built [mm]", "motors", f"{work} [min]", "price [USD]")
     return table(heads, rows, numbers=range(len(heads)))
@@ -333,7 +333,7 @@ def certificate_words(error: float, certificate: Certificate | None) -> str:
 
 def _certificate(network: Network, certificate: Certificate | None) -> Html:
     words = certificate_words(network.rms_error, certificate)
-    if certificate is None and network.filled is not None and network.complete:
+    if certificate is None and network.stuffed is not None and network.complete:
         words = (
             "That was found for the network that the flat model holds best; on the filled body this one does better."
         )
@@ -347,7 +347,7 @@ def _pictures(network: Network, others: Sequence[Alternative]) -> Html:
         robot = other.robot
         head = f"{plural(len(robot.winches), 'winch')}, {plural(len(robot.cables), 'cable')}"
         figure = draw_stage(robot, like=network.robot, frame=frame)
-        told = f": {_rms_text(other.built)} once built; {BuildCost.of_robot(robot, other.reached)}"
+        told = f": {_rms_text(other.expected_error)} once built; {BuildCost.of_robot(robot, other.ik_results)}"
         pictures.append(picture(figure, f"alternative-{index}", head, told))
     return grid(*pictures, kind="tiny")
 

@@ -20,11 +20,11 @@ CHANGE, POISSON_CHANGE = 0.1, 0.05
 def sensitivity_table(reached: IKResult) -> Html:
     """Root mean square of the way of the targeted markers for a change of each number, to first order."""
     robot, names = reached.pose.robot, list(reached.pose_target.targets)
-    slopes = _marker_slopes(robot, reached, names)
+    sensitivities = _marker_sensitivities(robot, reached, names)
     ways = [reached.pose.markers[name] - np.array(robot.marker(name).at) for name in names]
     travel = _rms(np.concatenate(ways), names)
     rows = []
-    for label, change, moves in _changes(robot, slopes):
+    for label, change, moves in _changes(robot, sensitivities):
         moved = _rms(moves, names)
         share = f"{100 * moved / travel:.1f} %" if travel > 0 else ""
         rows.append((label, change, number(MILLIMETERS * moved, 2), share))
@@ -35,7 +35,7 @@ def _rms(moves: Vector, names: list[str]) -> float:
     return float(np.sqrt((moves**2).sum() / max(len(names), 1)))
 
 
-def _marker_slopes(robot: Robot, reached: IKResult, names: list[str]) -> list[Sensitivity]:
+def _marker_sensitivities(robot: Robot, reached: IKResult, names: list[str]) -> list[Sensitivity]:
     """Sensitivities of each coordinate of the markers."""
     simulation, mesh = Simulation(robot), robot.body.mesh
     anchors = locate(mesh, np.array([robot.marker(name).at for name in names]))
@@ -48,12 +48,12 @@ def _marker_slopes(robot: Robot, reached: IKResult, names: list[str]) -> list[Se
     return found
 
 
-def _changes(robot: Robot, slopes: list[Sensitivity]) -> Iterator[tuple[str, str, Vector]]:
+def _changes(robot: Robot, sensitivities: list[Sensitivity]) -> Iterator[tuple[str, str, Vector]]:
     """Each number that is changed, by how much, and how far that moves each coordinate [m]."""
     body, share, poisson = robot.body, f"+{100 * CHANGE:.0f} %", f"+{POISSON_CHANGE:g}"
 
     def of(name: str) -> Float[np.ndarray, "coordinates numbers"]:
-        return np.array([np.atleast_1d(getattr(each, name)) for each in slopes], dtype=float)
+        return np.array([np.atleast_1d(getattr(each, name)) for each in sensitivities], dtype=float)
 
     yield "Young's modulus", share, CHANGE * body.material.young * of("young")[:, 0]
     yield "Poisson's ratio", poisson, POISSON_CHANGE * of("poisson")[:, 0]

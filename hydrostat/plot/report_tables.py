@@ -133,7 +133,7 @@ def footer(network: Network, facts: Mapping[str, object]) -> Html:
         "hydrostat version": __version__,
         "robot hash (SHA-256)": robot_hash(network.robot),
         "method": network.request.method,
-        "networks tried": network.tried,
+        "networks tried": network.num_evaluated,
         **_score(network),
         "CPU time of the design": f"{network.seconds:.1f} s" + ("" if network.complete else ", stopped early"),
         "body": _body(network.robot),

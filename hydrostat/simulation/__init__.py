@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from hydrostat.simulation.contraction_profile import ContractionProfile, ProfileTable
     from hydrostat.simulation.controls import Contractions, contraction_values
     from hydrostat.simulation.equilibrium import Equilibrium, check_pose, largest_distance
-    from hydrostat.simulation.filled import filled_motion, is_filled_motion_fast
     from hydrostat.simulation.find_contacts import ContactPatch, find_contacts
     from hydrostat.simulation.marker_compliance import marker_compliance
     from hydrostat.simulation.modes import Modes, find_modes
@@ -27,6 +26,7 @@ if TYPE_CHECKING:
     from hydrostat.simulation.statics.batch_result import BatchResult
     from hydrostat.simulation.statics.static_solver import StaticSolver, not_converged
     from hydrostat.simulation.strain import node_strains, node_stresses
+    from hydrostat.simulation.stuffed_motion import is_stuffed_motion_fast, solve_stuffed_motion
     from hydrostat.simulation.time.dynamics import StepOptions
     from hydrostat.simulation.time.motion import Motion
     from hydrostat.simulation.torch_bridge import solve_torch
@@ -54,12 +54,11 @@ __all__ = [
     "check_pose",
     "continue_branch",
     "contraction_values",
-    "filled_motion",
     "find_contacts",
     "find_equilibria",
     "find_modes",
     "friction_hysteresis",
-    "is_filled_motion_fast",
+    "is_stuffed_motion_fast",
     "largest_distance",
     "linearize",
     "marker_compliance",
@@ -70,6 +69,7 @@ __all__ = [
     "obstacles_in_pose",
     "require_static_obstacles",
     "rests_at_first",
+    "solve_stuffed_motion",
     "solve_torch",
     "with_obstacles",
     "with_replaced",

@@ -244,8 +244,8 @@ def _spring_rates(body: Body, chosen: np.ndarray) -> Vector:
     mesh, (mu, lame) = body.mesh, body.lame()
     corners = mesh.nodes[mesh.elements[chosen]]
     inverse = np.linalg.inv(corners[:, 1:] - corners[:, :1])
-    slopes = np.concatenate([inverse, -inverse.sum(axis=2, keepdims=True)], axis=2)  # of the shape functions
-    steepest = (slopes**2).sum(axis=1).max(axis=1, initial=0.0)
+    derivatives = np.concatenate([inverse, -inverse.sum(axis=2, keepdims=True)], axis=2)  # of the shape functions
+    steepest = (derivatives**2).sum(axis=1).max(axis=1, initial=0.0)
     return 5 * (2 * mu + lame)[chosen] * mesh.volumes[chosen] * (body.thickness or 1.0) * steepest
 
 

@@ -34,8 +34,8 @@ def estimate_stiffening(body: Body, nodes: Nodes) -> float:
     if mesh.quadratic is not None or not len(mesh.elements):
         return 0.0
     spans, now = (np.swapaxes(x[mesh.elements[:, 1:]] - x[mesh.elements[:, :1]], 1, 2) for x in (mesh.nodes, nodes))
-    slopes = now @ np.linalg.inv(spans)
-    strains = 0.5 * (np.swapaxes(slopes, 1, 2) @ slopes - np.eye(mesh.dim))
+    derivatives = now @ np.linalg.inv(spans)
+    strains = 0.5 * (np.swapaxes(derivatives, 1, 2) @ derivatives - np.eye(mesh.dim))
     if np.abs(strains).max() < UNSTRAINED:
         return 0.0
     squeezes = np.trace(strains, axis1=1, axis2=2)
@@ -57,7 +57,7 @@ class _LinearFields:
     Attributes:
         row: element of each pair whose field it is; in order.
         column: element of each pair whose value it takes.
-        weights: weight in the value in the middle of the element, then in the slope along each axis [1/m].
+        weights: weight in the value in the middle of the element, then in the derivative along each axis [1/m].
         moments: integral of the products of two coordinates from the middle [m^2 x volume].
     """
 

@@ -87,34 +87,34 @@ class RoutePoints:
         return np.where(self.world[:, None], 0.0, there)
 
     def pulled_back(
-        self, nodes: Nodes, slopes: Float[np.ndarray, "*rows points dim"]
+        self, nodes: Nodes, sensitivities: Float[np.ndarray, "*rows points dim"]
     ) -> Float[np.ndarray, "*rows points dim"]:
-        """Slopes by the positions in the pose, as slopes by the places in the rest shape: F^T times them."""
-        back = self._through(nodes, slopes)
-        return np.where(self.world[:, None], slopes, back)
+        """Sensitivities to positions in the pose, turned into those to places in the rest shape: F^T times them."""
+        back = self._through(nodes, sensitivities)
+        return np.where(self.world[:, None], sensitivities, back)
 
     def values_pulled_back(
-        self, field: Float[np.ndarray, "*rows nodes dim"], slopes: Points
+        self, field: Float[np.ndarray, "*rows nodes dim"], sensitivities: Points
     ) -> Float[np.ndarray, "*rows points dim"]:
-        """Slopes by `values` of fields, as slopes by the places in the rest shape."""
-        return np.where(self.world[:, None], 0.0, self._through(field, slopes))
+        """Sensitivities by `values` of fields, as sensitivities by the places in the rest shape."""
+        return np.where(self.world[:, None], 0.0, self._through(field, sensitivities))
 
-    def held_back(self, slopes: Float[np.ndarray, "*rows points dim"]) -> Float[np.ndarray, "*rows points dim"]:
+    def held_back(self, sensitivities: Float[np.ndarray, "*rows points dim"]) -> Float[np.ndarray, "*rows points dim"]:
         """Convert derivatives by the held rest positions to derivatives by the requested positions."""
-        held = np.einsum("pij,...pi->...pj", self.projections, slopes)
-        return np.where(self.world[:, None], slopes, held)
+        held = np.einsum("pij,...pi->...pj", self.projections, sensitivities)
+        return np.where(self.world[:, None], sensitivities, held)
 
     def spans(self, positions: Float[np.ndarray, "*rows points dim"]) -> Float[np.ndarray, "*rows segments dim"]:
         """From end to end of each bare segment."""
         return positions[..., self.starts + 1, :] - positions[..., self.starts, :]
 
     def gather_gradients(
-        self, slopes: Float[np.ndarray, "*rows segments dim"]
+        self, sensitivities: Float[np.ndarray, "*rows segments dim"]
     ) -> Float[np.ndarray, "*rows points dim"]:
-        """Slopes by the spans, as slopes by the points; a point ends one segment at most, and begins one."""
-        total = np.zeros((*slopes.shape[:-2], len(self.places), slopes.shape[-1]))
-        total[..., self.starts + 1, :] += slopes
-        total[..., self.starts, :] -= slopes
+        """Sensitivities to spans, turned into those to points; a point ends one segment at most, and begins one."""
+        total = np.zeros((*sensitivities.shape[:-2], len(self.places), sensitivities.shape[-1]))
+        total[..., self.starts + 1, :] += sensitivities
+        total[..., self.starts, :] -= sensitivities
         return total
 
     def by_cable(self, rows: Points) -> tuple[RouteSlopes, ...]:
@@ -122,10 +122,10 @@ class RoutePoints:
         return tuple(np.split(rows, np.cumsum(self.counts)[:-1])) if self.counts else ()
 
     def _through(
-        self, field: Float[np.ndarray, "*some nodes dim"], slopes: Float[np.ndarray, "*others points dim"]
+        self, field: Float[np.ndarray, "*some nodes dim"], sensitivities: Float[np.ndarray, "*others points dim"]
     ) -> Float[np.ndarray, "*rows points dim"]:
         gradients = np.einsum("...pci,pcj->...pij", field[..., self.anchors.stencils, :], self.shape_gradients)
-        back = np.einsum("...pij,...pi->...pj", gradients, slopes)
+        back = np.einsum("...pij,...pi->...pj", gradients, sensitivities)
         return np.einsum("...pj,pjk->...pk", back, self.projections)
 
 

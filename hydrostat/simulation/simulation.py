@@ -153,11 +153,11 @@ class Simulation:
         self.body.check_held(None if start is None else start.unknowns, guided=bool(self._more))
         goals = np.array(given).reshape(len(given), self.robot.num_controls)
         _ = self.solver.with_timeout(seconds), self.rest_stiffness  # checked and made before threads ask for them
-        slopes = self.marker_jacobian if jacobians else None
+        sensitivities = self.marker_jacobian if jacobians else None
 
         def row(number: int) -> PoseRow:
             pose = self.solve(goals[number], start=start, strict=False, seconds=seconds)
-            return pose_row(pose, self.marker_anchors, keep=nodes, slopes=slopes, diagnose=self.diagnose)
+            return pose_row(pose, self.marker_anchors, keep=nodes, jacobian_of=sensitivities, diagnose=self.diagnose)
 
         cost = self.assembly.pattern.analysis.tree.seconds
         return solve_rows(self.robot, goals, row, jacobians=jacobians, nodes=nodes, threads=threads, cost=cost)
@@ -214,8 +214,8 @@ class Simulation:
         require_static_obstacles(self.robot, "the adjoint")
         if self.assembly.has_history:
             right, pulls = cotangents(pose, self.assembly.shape, len(self.robot.cables), nodes, tensions)
-            slopes = self.friction_sensitivities(pose, (right.reshape(1, -1), pulls[None]))
-            return friction_adjoint(self.body, self.route_points, pose, slopes)
+            sensitivities = self.friction_sensitivities(pose, (right.reshape(1, -1), pulls[None]))
+            return friction_adjoint(self.body, self.route_points, pose, sensitivities)
         given = {"nodes": nodes, "tensions": tensions, "points": self.route_points}
         return sensitivity(self.body, self.assembly, self.cables, pose, **given, response=partial(self.response, pose))
 

@@ -26,7 +26,7 @@ def node_stresses(robot: Robot, nodes: Nodes) -> Vector:
     """Von Mises stress of the body [Pa], of the elements around each node by their volumes.
 
     Cauchy's stress of a Neo-Hookean material is mu/J (B - I) + lambda/J ln J I (Bonet 1998 and `NeoHookean`), so only
-    B's deviator counts: it is mu/J sqrt(3/2) |dev B|. That of foam is the slope of `FoamLaw` over J.
+    B's deviator counts: it is mu/J sqrt(3/2) |dev B|. That of foam is the derivative of `FoamLaw` over J.
     """
     grid = _operators(robot.body.mesh)
     shape = _Stretch(grid, nodes, robot.body)
@@ -44,7 +44,7 @@ def _foam_stresses(material: Material, squares: Float[np.ndarray, "elements 3 3"
     logs = 0.5 * np.log(np.maximum(np.linalg.eigvalsh(squares), 1e-300))
     mu, lame = material.lame
     shares, exponents = np.array([(term.share, term.exponent) for term in material.foam]).T
-    stress = mu * FoamLaw(shares, exponents, lame / (2 * mu)).slopes(logs) * np.exp(-logs.sum(axis=1, keepdims=True))
+    stress = mu * FoamLaw(shares, exponents, lame / (2 * mu)).stresses(logs) * np.exp(-logs.sum(axis=1, keepdims=True))
     return np.sqrt(1.5 * ((stress - stress.mean(axis=1, keepdims=True)) ** 2).sum(axis=1))
 
 
@@ -80,11 +80,13 @@ class _NodeOperators:
     """Operators of a mesh that do not depend on the pose; plain sums, as scipy.sparse takes 65 ms to load."""
 
     elements: Int[np.ndarray, "elements corners"]
-    gradients: Float[np.ndarray, "elements dim corners"]  # slope along each axis at rest by the value at each corner
+    gradients: Float[
+        np.ndarray, "elements dim corners"
+    ]  # derivative along each axis at rest by the value at each corner
     weights: Float[np.ndarray, " corners"]  # share of each element in the value of each of its corners, in one row
 
-    def slopes(self, nodes: Nodes) -> Float[np.ndarray, "elements dim dim"]:
-        """Slopes of places, a row for each coordinate at rest."""
+    def deformation_gradients(self, nodes: Nodes) -> Float[np.ndarray, "elements dim dim"]:
+        """Derivatives of places, a row for each coordinate at rest."""
         return self.gradients @ nodes[self.elements]
 
     def average(self, values: Float[np.ndarray, " elements"]) -> Vector:
@@ -114,12 +116,12 @@ class _Stretch:
     """
 
     def __init__(self, grid: _NodeOperators, nodes: Nodes, body: Body) -> None:
-        slopes, dim = grid.slopes(nodes), nodes.shape[1]
-        rows = [slopes[:, axis] for axis in range(dim)]
-        stretch = np.zeros((3, 3, len(slopes)))
+        derivatives, dim = grid.deformation_gradients(nodes), nodes.shape[1]
+        rows = [derivatives[:, axis] for axis in range(dim)]
+        stretch = np.zeros((3, 3, len(derivatives)))
         stretch[2, 2] = 1.0
         if body.plane is Plane.STRESS:
-            stretch[2, 2] += _thickening(body, np.linalg.det(slopes) - 1.0)
+            stretch[2, 2] += _thickening(body, np.linalg.det(derivatives) - 1.0)
         for i in range(dim):
             for j in range(i, dim):
                 stretch[i, j] = stretch[j, i] = np.einsum("ek,ek->e", rows[i], rows[j])

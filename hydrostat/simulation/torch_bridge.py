@@ -108,8 +108,8 @@ class _Equilibrium(torch.autograd.Function):
 
     @staticmethod
     @once_differentiable
-    def backward(ctx: Any, *slopes: Any) -> tuple[Tensor | None, ...]:  # pyright: ignore[reportIncompatibleMethodOverride]
-        nodes, tensions, _ = slopes
+    def backward(ctx: Any, *derivatives: Any) -> tuple[Tensor | None, ...]:  # pyright: ignore[reportIncompatibleMethodOverride]
+        nodes, tensions, _ = derivatives
         found = ctx.simulation.adjoint(ctx.pose, nodes.numpy(), tensions=tensions.numpy())
         routes = np.concatenate([np.zeros((0, nodes.shape[1])), *found.routes])
         values = found.contractions, found.slack, routes, found.young, found.poisson

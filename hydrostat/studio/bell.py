@@ -10,7 +10,7 @@ class Topic(StrEnum):
     ROBOT = "robot"
     STAGE = "stage"
     SHAPE = "shape"
-    THINGS = "things"
+    SCENE = "things"
     JOB = "job"
     DRIVE = "drive"
     NOTE = "note"

@@ -121,7 +121,7 @@ class Document:
             self.folder, self._saved, self.text = folder, work if saved else None, text
             self.stamp = "" if folder is None else folder_stamp(folder) if stamp is None else stamp
             self.serial += 1
-        self.bell.ring(Topic.ROBOT, Topic.STAGE, Topic.SHAPE, Topic.THINGS)
+        self.bell.ring(Topic.ROBOT, Topic.STAGE, Topic.SHAPE, Topic.SCENE)
 
     def change(
         self,
@@ -150,7 +150,7 @@ class Document:
             self._future = []
             self._forget_physics()
             self.serial += 1
-        self.bell.ring(Topic.ROBOT, Topic.THINGS)
+        self.bell.ring(Topic.ROBOT, Topic.SCENE)
 
     def seal(self) -> None:
         """End a drag: the next change is one of its own."""
@@ -183,7 +183,7 @@ class Document:
             goal.append(source.pop())
             self._forget_physics()
             self.serial += 1
-        self.bell.ring(Topic.ROBOT, Topic.SHAPE, Topic.THINGS)
+        self.bell.ring(Topic.ROBOT, Topic.SHAPE, Topic.SCENE)
         return True
 
     def _forget_physics(self) -> None:

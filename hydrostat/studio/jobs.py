@@ -15,7 +15,7 @@ from hydrostat.studio.work_process import Report, run_work
 
 __all__ = ["JobState", "Jobs", "Report", "Slots"]
 
-PATIENCE = 5.0  # a process that has told what came of its work is given so long to end [s]
+END_TIMEOUT = 5.0  # a process that has told what came of its work is given so long to end [s]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -218,12 +218,12 @@ class Jobs:
         on_done: Callable[[Any], None],
     ) -> str:
         """Hand the work over and hear what the process says until it ends; why it failed, or ""."""
-        patience = 0.0
+        timeout = 0.0
         try:
             worker.pipe.send(("work", *work))
             self._on_begin(worker)
-            error = self._hear(worker.pipe, on_part, on_done)
-            patience = PATIENCE
+            error = self._receive(worker.pipe, on_part, on_done)
+            timeout = END_TIMEOUT
         except (EOFError, OSError):
             error = _why(worker.process)
         except HydrostatError as refused:
@@ -231,7 +231,7 @@ class Jobs:
         except Exception as failed:
             logging.getLogger("hydrostat").exception("work in another process failed")
             error = f"{type(failed).__name__}: {failed}"
-        worker.end(patience)
+        worker.end(timeout)
         return "stopped" if error and self._given_up() else error
 
     def _on_begin(self, worker: "_Worker") -> None:
@@ -241,7 +241,7 @@ class Jobs:
             if self.state is not None and self.state.stopping:
                 worker.say_stop()
 
-    def _hear(self, pipe: Connection, on_part: Callable[[Any], None], on_done: Callable[[Any], None]) -> str:
+    def _receive(self, pipe: Connection, on_part: Callable[[Any], None], on_done: Callable[[Any], None]) -> str:
         """Hear the process until it says what came of its work; why it failed, or ""."""
         while True:
             kind, *rest = pipe.recv()
@@ -287,17 +287,17 @@ class _Worker:
         except OSError:
             return  # it has just ended
 
-    def end(self, patience: float) -> None:
+    def end(self, timeout: float) -> None:
         """End it, after some time to end by itself [s]."""
-        self.process.join(timeout=patience)
+        self.process.join(timeout=timeout)
         if self.process.is_alive():
             self.process.kill()
-            self.process.join(timeout=PATIENCE)
+            self.process.join(timeout=END_TIMEOUT)
 
 
 def _why(process: BaseProcess) -> str:
     """Why a process has said nothing more."""
-    process.join(timeout=PATIENCE)
+    process.join(timeout=END_TIMEOUT)
     return f"worker crashed (exit code {process.exitcode}), probably out of memory. Try a coarser mesh"
 
 

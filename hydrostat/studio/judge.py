@@ -92,7 +92,7 @@ class Judge:
             review = _Review(robot, wishes, options, known, _all_findings(robot, wishes, options, known))
             self._reviews = (review, *self._reviews)[:KEPT]
             self.skins.look(robot.body, options)
-            self._bell.ring(Topic.JOB, Topic.THINGS)
+            self._bell.ring(Topic.JOB, Topic.SCENE)
 
     def is_refused(self, robot: Robot) -> bool | None:
         """True if a kit of a network that `review_kits` has reviewed would be refused; None: not known."""
@@ -128,12 +128,12 @@ class Judge:
         known = replace(before, robot=robot, refused=refused or before.refused)
         self._known = (known, *(other for other in self._known if not _alike(other.robot, robot)))[:KEPT]
         self._seen = None
-        self._bell.ring(Topic.JOB, Topic.THINGS)
+        self._bell.ring(Topic.JOB, Topic.SCENE)
 
     def choose(self, finding: Diagnostic | None) -> None:
         """Show a finding with its words; chosen again or None: none."""
         self.chosen = None if finding == self.chosen else finding
-        self._bell.ring(Topic.JOB, Topic.THINGS)
+        self._bell.ring(Topic.JOB, Topic.SCENE)
 
     def _review_of(self, robot: Robot, wishes: Wishes) -> _Review | None:
         known = self._of(robot)

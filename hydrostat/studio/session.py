@@ -28,7 +28,7 @@ from hydrostat.studio.stage import Hit, Stage, StageName
 from hydrostat.studio.starting.starter import Starter
 from hydrostat.studio.view.coloring import Coloring, Scale, node_values, scale
 from hydrostat.studio.view.picture import Show, Shown
-from hydrostat.studio.view.things import rest_shape
+from hydrostat.studio.view.scene_items import rest_shape
 
 
 class Tone(StrEnum):
@@ -113,7 +113,7 @@ class Session:
             self.hardware.hold("stage changed: motors holding. Re-arm to continue")
             self.stage = name
             self.current.enter()
-        self.bell.ring(Topic.STAGE, Topic.SHAPE, Topic.THINGS)
+        self.bell.ring(Topic.STAGE, Topic.SHAPE, Topic.SCENE)
 
     def open_folder(self, folder: Path | str, model: Path | None = None) -> None:
         """Open the robot in a folder and show it; networks of the model answer drags first, as those beside it do.
@@ -177,14 +177,14 @@ class Session:
             if self._holder != screen:
                 return
             self._let_go()
-        self.bell.ring(Topic.SHAPE, Topic.THINGS)
+        self.bell.ring(Topic.SHAPE, Topic.SCENE)
 
     def click(self, screen: str, hit: Hit) -> None:
         """Take a click of a screen's pointer."""
         with self._lock:
             if self._holder in (None, screen) and self.document.is_open:
                 self._try(lambda: self.current.click(hit))
-        self.bell.ring(Topic.SHAPE, Topic.THINGS)
+        self.bell.ring(Topic.SHAPE, Topic.SCENE)
 
     def key(self, name: str) -> bool:
         """Heed a key of the current stage; whether it meant something."""
@@ -192,7 +192,7 @@ class Session:
             self.hardware.hold()  # without waiting for whoever works with the session just now
         with self._lock:
             meant = self.document.is_open and bool(self._try(lambda: self.current.key(name)))
-        self.bell.ring(Topic.SHAPE, Topic.THINGS)
+        self.bell.ring(Topic.SHAPE, Topic.SCENE)
         return meant
 
     @property
@@ -259,7 +259,7 @@ class Session:
     def color_by(self, coloring: Coloring | str) -> None:
         """Choose what the colors of the body mean (InputError: there is no coloring of this name)."""
         self.coloring = parse_choice(Coloring, coloring, what="coloring")
-        self.bell.ring(Topic.SHAPE, Topic.THINGS)
+        self.bell.ring(Topic.SHAPE, Topic.SCENE)
 
     def tell(self, text: str, tone: Tone = Tone.PLAIN) -> None:
         """Leave a note for the person."""
@@ -293,7 +293,7 @@ class Session:
         if not self.document.is_open:
             return None
         with self._lock:
-            robot, shape, things = self.document.robot, self.current.shape(), self.current.things()
+            robot, shape, things = self.document.robot, self.current.shape(), self.current.scene_items()
         if len(shape.nodes) != len(robot.body.mesh.nodes):
             shape = rest_shape(robot)  # the body was changed at this very moment; the next one is right
         head = {"stage": str(self.stage), "stamp": self.answered, "errors": shape.errors, "notes": list(shape.notes)}

@@ -96,7 +96,7 @@ class Skins:
             self._note(replace(self._working, error=error))
         with self._lock:
             self._working = None
-        self._bell.ring(Topic.JOB, Topic.THINGS)
+        self._bell.ring(Topic.JOB, Topic.SCENE)
         self._begin()
 
     def _note(self, skin: SewnSkin) -> None:

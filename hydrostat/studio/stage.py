@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from hydrostat.given import Point
-from hydrostat.studio.view.things import RobotShape, Thing
+from hydrostat.studio.view.scene_items import RobotShape, SceneItem
 
 
 class StageName(StrEnum):
@@ -41,7 +41,7 @@ class Stage(ABC):
         """Shape that the body has now."""
 
     @abstractmethod
-    def things(self) -> Sequence[Thing]:
+    def scene_items(self) -> Sequence[SceneItem]:
         """Objects shown with the body, in an order that does not change during a drag."""
 
     def enter(self) -> None:
@@ -88,7 +88,7 @@ class Stage(ABC):
         return False
 
 
-def told_error(error: float) -> str:
+def format_error(error: float) -> str:
     """Text of an error [m]; nobody builds a robot that is better than a tenth of a millimeter."""
     if error < 1e-4:
         return "below 0.1 mm"

@@ -71,7 +71,7 @@ SILENCE = 0.25
 """A hand that is not heard for so long is not there [s]."""
 USUAL_SMOOTHING = Smoothing()
 """Smoothing of hand readings: each is one byte, and trembles."""
-PATIENCE = 5.0
+STARTUP_TIMEOUT = 5.0
 """Errors of the source in a row end the drive after so long [s]."""
 
 
@@ -102,7 +102,7 @@ class MappedHand(DriveSource):
     def read(self) -> DriveWish:
         """Return the command of the newest reading."""
         reading, error = self._reading, self._error
-        if error and self._clock() - self._well > PATIENCE:
+        if error and self._clock() - self._well > STARTUP_TIMEOUT:
             raise HydrostatError(error)
         if reading is None:
             return DriveWish(stamp=-inf, words=error or "the hand was not heard yet")

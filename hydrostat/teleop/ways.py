@@ -67,7 +67,7 @@ class WinchMapper(CommandMapper):
         self.known = TensionLookup(robot, near=NEAR)
         self.known.add(simulation.solve(contractions, strict=False))
         self._seen = contractions.copy()
-        self._poses = PoseProcess(WinchPoses, (robot,), self._hear) if solves else None
+        self._poses = PoseProcess(WinchPoses, (robot,), self._accept_pose) if solves else None
 
     def ask(self, values: Vector) -> None:
         """Turn them."""
@@ -92,7 +92,7 @@ class WinchMapper(CommandMapper):
         if self._poses is not None:
             self._poses.close()
 
-    def _hear(self, found: PoseOnWay) -> None:
+    def _accept_pose(self, found: PoseOnWay) -> None:
         self.known.store(found.contractions, found.pulls)
 
     @staticmethod
@@ -143,7 +143,9 @@ class MarkerMapper(CommandMapper):
         self._lock = threading.Lock()
         if model is not None:
             model.solve({name: tuple(start.markers[name]) for name in self._names}, search=False)  # compiles it
-        self._poses = PoseProcess(FingertipPoses, (robot, contractions, rate if model is None else None), self._hear)
+        self._poses = PoseProcess(
+            FingertipPoses, (robot, contractions, rate if model is None else None), self._accept_pose
+        )
 
     def ask(self, values: Vector) -> None:
         """Move them."""
@@ -188,7 +190,7 @@ class MarkerMapper(CommandMapper):
             there = found.done and found.job == self._jobs
             self.contractions = found.contractions if there else found.outlook.towards(self._targets)
 
-    def _hear(self, found: PoseOnWay) -> None:
+    def _accept_pose(self, found: PoseOnWay) -> None:
         self.known.store(found.contractions, found.pulls)
         self._markers = found.markers
         with self._lock:

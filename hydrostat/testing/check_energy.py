@@ -214,7 +214,7 @@ class _EnergyCheck:
         self._judge("control gradient", "[term, corner, axis, control] is not the derivative", worst, index)
 
     def coupling(self) -> None:
-        """G and D are finite, D is symmetric and positive semidefinite; G and D are slopes of elongations and law."""
+        """G and D are finite, D is symmetric and positive semidefinite; they derive from elongations and law."""
         for nodes in self.states():
             if not np.isfinite(self.energy.value(nodes, self.controls)):
                 continue

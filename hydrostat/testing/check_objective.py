@@ -24,17 +24,17 @@ def check_objective(
     """Check all that an objective promises on one robot, at one pose; run it at several, strongly bent ones too.
 
     The oracle is central differences of equilibria solved as sharply as rounding allows, at contractions a little to
-    either side. They are tried at several steps and judged by the best, for wrong slopes agree at none.
+    either side. They are tried at several steps and judged by the best, for wrong derivatives agree at none.
     Further: shapes, as many rows in every posture, finite numbers, the same answer to the same question, errors that
     are not negative, and none of them above 0 where the residual is zero. An objective is not asked about at a kink,
     such as a cable that just becomes taut: choose another pose there. Where cables rub, every equilibrium is come to
-    straight from rest, so that the slopes are those of going on.
+    straight from rest, so that the derivatives are those of going on.
 
     Args:
         objective: objective to check.
         simulation: simulation of a robot; its cables may have friction.
         contractions: the pose [m].
-        tolerance: largest relative error of the slopes.
+        tolerance: largest relative error of the derivatives.
         solver: residual of the sharp solves, as a fraction of the largest applied force.
         postures: number of other equilibria, for contractions drawn at random between 0 and twice those given.
         seed: random seed.
@@ -51,7 +51,7 @@ def check_objective(
     for _ in range(postures):
         check.posture(random.uniform(0.0, 2.0, len(check.pose.contractions)) * check.pose.contractions)
     check.repeats()
-    check.slopes()
+    check.check_jacobian()
 
 
 class _ObjectiveCheck:
@@ -65,15 +65,15 @@ class _ObjectiveCheck:
         self.size = simulation.robot.body.mesh.size
 
     def shapes(self) -> None:
-        """The residual is a row of numbers, the slopes have a column for each winch."""
+        """The residual is a row of numbers, the derivatives have a column for each winch."""
         if len(self.rows) != 1:
             raise ConformanceError("residual", f"it has the shape {self.rows}, the contract names (rows,)")
-        slopes = self._slopes(self.term)
+        derivatives = self._difference_jacobian(self.term)
         shape = (*self.rows, len(self.pose.contractions))
-        if slopes.shape != shape:
-            raise ConformanceError("slopes", f"they have the shape {slopes.shape}, the contract names {shape}")
-        if not np.isfinite(slopes).all():
-            raise ConformanceError("slopes", "they are not finite", index=_place(~np.isfinite(slopes)))
+        if derivatives.shape != shape:
+            raise ConformanceError("jacobian", f"they have the shape {derivatives.shape}, the contract names {shape}")
+        if not np.isfinite(derivatives).all():
+            raise ConformanceError("jacobian", "they are not finite", index=_place(~np.isfinite(derivatives)))
         self._values(self.at)
 
     def posture(self, contractions: Vector) -> None:
@@ -84,19 +84,23 @@ class _ObjectiveCheck:
         """An answer is the same when asked again, of this term or a new one, whatever was asked in between."""
         rest = EquilibriumState.at(self.simulation, self.simulation.solve({}))
         again = self.objective.bind(self.simulation)
-        first, slopes, errors = self.term.residual(self.at), self._slopes(self.term), dict(self.term.errors(self.at))
+        first, derivatives, errors = (
+            self.term.residual(self.at),
+            self._difference_jacobian(self.term),
+            dict(self.term.errors(self.at)),
+        )
         for term in (self.term, again):
             term.residual(rest)
             if not np.array_equal(term.residual(self.at), first):
                 raise ConformanceError("residual", "it is another when asked again at the same posture")
-            if not np.array_equal(self._slopes(term), slopes):
-                raise ConformanceError("slopes", "they are others when asked again at the same posture")
+            if not np.array_equal(self._difference_jacobian(term), derivatives):
+                raise ConformanceError("jacobian", "they are others when asked again at the same posture")
             if dict(term.errors(self.at)) != errors:
                 raise ConformanceError("errors", "they are others when asked again at the same posture")
 
-    def slopes(self) -> None:
-        """The slopes are the derivative of the residual along equilibria."""
-        exact = self._slopes(self.term)
+    def check_jacobian(self) -> None:
+        """The derivatives are the derivative of the residual along equilibria."""
+        exact = self._difference_jacobian(self.term)
         best: tuple[float, tuple[int, ...]] = (np.inf, ())
         reach = 0.1  # steps of contractions begin with a thousandth of this fraction of the body's size
         for step in steps(reach * self.size):
@@ -110,7 +114,7 @@ class _ObjectiveCheck:
             if worst <= self.tolerance:
                 return
         raise ConformanceError(
-            "slopes", "[row, winch] is not the derivative of the residual", index=best[1], relative_error=best[0]
+            "jacobian", "[row, winch] is not the derivative of the residual", index=best[1], relative_error=best[0]
         )
 
     def _values(self, posture: EquilibriumState) -> None:
@@ -137,7 +141,7 @@ class _ObjectiveCheck:
         start = None if self.simulation.assembly.has_history else self.pose
         return self.simulation.solve(contractions, start=start)
 
-    def _slopes(self, term: Residual) -> np.ndarray:
+    def _difference_jacobian(self, term: Residual) -> np.ndarray:
         return np.asarray(term.jacobian(self.at, StateJacobian.at(self.simulation, self.pose)))
 
 

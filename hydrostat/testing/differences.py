@@ -42,13 +42,15 @@ def steps(scale: float) -> Iterator[float]:
 def _richardson(
     function: Callable[[np.ndarray], np.ndarray], point: np.ndarray, variable: int, step: float
 ) -> np.ndarray:
-    coarse, fine = (_slope(function, point, variable, length) for length in (step, 0.5 * step))
+    coarse, fine = (_derivative(function, point, variable, length) for length in (step, 0.5 * step))
     return (4 * fine - coarse) / 3
 
 
-def _slope(function: Callable[[np.ndarray], np.ndarray], point: np.ndarray, variable: int, step: float) -> np.ndarray:
+def _derivative(
+    function: Callable[[np.ndarray], np.ndarray], point: np.ndarray, variable: int, step: float
+) -> np.ndarray:
     ahead, behind = point.copy(), point.copy()
     ahead[variable] += step
     behind[variable] -= step
-    slope = (function(ahead) - function(behind)) / (ahead[variable] - behind[variable])
-    return np.where(np.isfinite(slope), slope, np.nan)
+    derivative = (function(ahead) - function(behind)) / (ahead[variable] - behind[variable])
+    return np.where(np.isfinite(derivative), derivative, np.nan)

@@ -87,8 +87,8 @@ class RemoteEnvCopies:
     def close(self) -> None:
         """End the process."""
         self._pipe.close()
-        patience = 5.0  # Seconds that a process has to end by itself
-        self._process.join(patience)
+        timeout = 5.0  # Seconds that a process has to end by itself
+        self._process.join(timeout)
         if self._process.is_alive():
             self._process.kill()
             self._process.join()

@@ -28,7 +28,7 @@ import numpy as np  # isort: skip
 from hydrostat.ik import Limits, solve_ik
 from hydrostat.mechanics import Energy
 from hydrostat.robot import Face, PoseTarget, gravity_along, inflated_robot
-from hydrostat.simulation import Equilibrium, Simulation, filled_motion
+from hydrostat.simulation import Equilibrium, Simulation, solve_stuffed_motion
 
 EVERY = ("starfish", "robot", "pig", "letter_e", "letter_s", "puppy", "squid")
 
@@ -41,7 +41,7 @@ def rows(name: str, element_size: float | None) -> Iterator[str]:
     pull = max(float(pose.tensions.max(initial=0.0)) for pose in poses)
     for face in (face for face in Face if face is not Face.BACK):
         began = time.process_time()
-        found = filled_motion(robot, [pose.contractions for pose in poses], face, element_size=element_size)
+        found = solve_stuffed_motion(robot, [pose.contractions for pose in poses], face, element_size=element_size)
         seconds = time.process_time() - began
         solid = Simulation(inflated_robot(robot, face, element_size=element_size))
         targets = list(solid.robot.poses.values())

@@ -107,7 +107,7 @@ def _fit_models(train: Samples, test: Samples, asked: set[str], options: LearnOp
         network = train_thesis_network(train, seed=options.seed)
         yield told("thesis", network.answers(goals), time.process_time() - began, curve=network.curve)
     if "values" in asked:
-        model = learn_model(train, options=replace(options, slopes=0.0))
+        model = learn_model(train, options=replace(options, jacobians=0.0))
         yield told("values", _search_answers(model, test)[0], model.card.seconds)
     if asked & set(OURS):
         model = learn_model(train, options=options)

@@ -33,7 +33,7 @@ class Judged:
 def finger_pairs(model: LearnedModel) -> Groups:
     """Winches that work against one another, by the slopes that a model expects at rest; the others alone."""
     rest = np.clip(np.zeros(len(model.low)), model.low, model.high)
-    return antagonists(model.slopes(rest).T)
+    return antagonists(model.jacobian(rest).T)
 
 
 def run_experiment(

@@ -27,17 +27,17 @@ def errors(known: Samples, new: Samples, options: LearnOptions) -> tuple[float, 
     training_set = TrainingSet.of_samples(known)
     networks = train_forward(training_set, known.facts["dim"], options, no_progress).networks
     low, high = known.limits
-    answers = [networks.slopes(row) for row in 2 * (new.contractions - low) / (high - low) - 1]
+    answers = [networks.evaluate(row) for row in 2 * (new.contractions - low) / (high - low) - 1]
     values = np.array([value for value, _ in answers]) * training_set.unit + training_set.middle
     slopes = np.array([slope for _, slope in answers]) * training_set.unit[:, None] / (0.5 * (high - low))
     markers, tensions = np.split(values, [training_set.coordinates], axis=1)
     missed = 1e3 * np.linalg.norm(markers.reshape(new.markers.shape) - new.markers, axis=-1)
-    assert new.tension_slopes is not None
+    assert new.tension_jacobians is not None
     return (
         float(missed.mean()),
         float(np.quantile(missed, 0.99)),
         float(np.sqrt(np.square(tensions - new.tensions).mean())),
-        float(np.sqrt(np.square(slopes[:, training_set.coordinates :] - new.tension_slopes).mean())),
+        float(np.sqrt(np.square(slopes[:, training_set.coordinates :] - new.tension_jacobians).mean())),
     )
 
 
@@ -50,7 +50,7 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=2)
     given = parser.parse_args()
     samples = Samples.read(given.samples)
-    if samples.tension_slopes is None:
+    if samples.tension_jacobians is None:
         parser.error(f"{given.samples}: an earlier version sampled no slopes of tensions; sample again")
     new = samples.only(np.arange(len(samples) - HELD_OUT, len(samples)))
     options = LearnOptions(members=1, steps=given.steps)
@@ -60,7 +60,7 @@ def main() -> None:
     for count in map(int, given.counts.split(",")):
         for weight in map(float, given.weights.split(",")):
             rows = [
-                errors(samples.first(count), new, replace(options, tension_slopes=weight, seed=seed))
+                errors(samples.first(count), new, replace(options, tension_jacobians=weight, seed=seed))
                 for seed in range(given.seeds)
             ]
             print(f"{count:7}{weight:8g}" + "".join(f"{value:9.3f}" for value in np.mean(rows, axis=0)), flush=True)

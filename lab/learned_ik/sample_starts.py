@@ -53,7 +53,7 @@ def learned(samples: Samples, nodes: np.ndarray, slopes: np.ndarray, steps: int)
         unit=np.ones(COMPONENTS),
         inputs=inputs,
         outputs=outputs,
-        slopes=np.einsum("sxw,xc->scw", slopes, axes) / unit,
+        jacobians=np.einsum("sxw,xc->scw", slopes, axes) / unit,
         coordinates=COMPONENTS,
         linear=linear_map(inputs, outputs),
     )

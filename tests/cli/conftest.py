@@ -15,7 +15,7 @@ Run = Callable[..., tuple[int, str, str]]
 @pytest.fixture(autouse=True)
 def _quiet_while_waiting(monkeypatch: pytest.MonkeyPatch) -> None:
     """No word of what takes long, which a busy machine would put among what is asked for; test_waiting.py has it."""
-    monkeypatch.setattr("hydrostat.cli.waiting.PATIENCE", 1e6)
+    monkeypatch.setattr("hydrostat.cli.waiting.NOTICE_DELAY", 1e6)
 
 
 @pytest.fixture

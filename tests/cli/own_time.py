@@ -6,7 +6,7 @@ Emulated motors live by the clock. A busy machine that tells them nothing for lo
 import subprocess
 import sys
 
-PROGRAM = "import hydrostat.cli.waiting as w; w.PATIENCE = 1e6; from hydrostat.cli.main import main; main()"
+PROGRAM = "import hydrostat.cli.waiting as w; w.NOTICE_DELAY = 1e6; from hydrostat.cli.main import main; main()"
 """The command line, which never says that it is still at work."""
 
 _OWN_TIME = """

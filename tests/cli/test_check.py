@@ -14,7 +14,7 @@ from manifold3d import Manifold
 from hydrostat.cli.main import main
 from hydrostat.geometry import Surface, write_ply, write_vtu
 from hydrostat.robot import Face, gallery_folder, load_robot, save_robot
-from hydrostat.simulation import is_filled_motion_fast
+from hydrostat.simulation import is_stuffed_motion_fast
 
 Check = Callable[[Path], list[str]]
 
@@ -145,14 +145,14 @@ def test_a_flat_robot_says_where_its_cables_run_and_what_that_does(
     assert 10 < found["on the front"] < 30
     assert found["on both faces, in pairs"] < 1
     fine = replace(robot, face=Face.PAIRS, body=replace(robot.body, element_size=1e-4))
-    assert not is_filled_motion_fast(fine, len(fine.poses))
+    assert not is_stuffed_motion_fast(fine, len(fine.poses))
 
 
 def test_reach_is_left_out_of_large_bodies(check: Check, monkeypatch: pytest.MonkeyPatch) -> None:
     """Nine poses of 22,000 nodes take minutes; a limit below the starfish's nodes makes it such a body."""
     nodes = len(load_robot(gallery_folder("starfish")).body.mesh.nodes)
     monkeypatch.setattr("hydrostat.cli.check._LARGE", nodes - 1)
-    monkeypatch.setattr("hydrostat.simulation.is_filled_motion_fast", lambda *_: False)
+    monkeypatch.setattr("hydrostat.simulation.is_stuffed_motion_fast", lambda *_: False)
     lines = [line for line in check(gallery_folder("starfish")) if line.startswith("workspace")]
     assert lines == [f"workspace: skipped ({nodes} nodes, maximum {nodes - 1}). Use larger elements"]
 

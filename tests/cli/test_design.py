@@ -232,8 +232,8 @@ def test_everything_is_written_and_can_be_read(run: Run, strip: Path, search: Se
         assert other["robot"] == robot_hash(hs.load_robot(folder))
     assert f"model error {1e3 * network.rms_error:.2f} mm rms (at rest 31.62 mm), expected as-built error " in told
     corrected = f"{1e3 * card['rms_error_corrected']:.2f} mm after one correction by measured markers"
-    assert f"error {1e3 * network.built:.2f} mm, {corrected} (4 candidates, " in told
-    assert card["rms_error_corrected"] < network.built
+    assert f"error {1e3 * network.expected_error:.2f} mm, {corrected} (4 candidates, " in told
+    assert card["rms_error_corrected"] < network.expected_error
     assert f"Open {out / 'report.html'}" in told
     assert "How it grew" in (out / "report.html").read_text()
 
@@ -339,12 +339,14 @@ def test_auto_tells_the_error_against_winches_and_cables(
     run: Run, strip: Path, search: Search, no_report: None, tmp_path: Path
 ) -> None:
     network = plain_network()
-    worse = Alternative(robot=network.robot, reached=(replace(network.reached[0], errors={"tip": 0.05}),), built=0.05)
+    worse = Alternative(
+        robot=network.robot, ik_results=(replace(network.ik_results[0], errors={"tip": 0.05}),), expected_error=0.05
+    )
     search.answer = replace(network, alternatives=(*network.alternatives, worse))
     _, told, _ = run("design", strip, "--winches", "auto", "--out", tmp_path / "out")
     rows = [[cell.strip() for cell in line.split("│")[1:-1]] for line in told.splitlines() if line.startswith("│")]
     assert ["1", "1", "45.60 mm", ""] in rows
-    assert ["2", "2", f"{1e3 * network.built:.2f} mm", "chosen"] in rows
+    assert ["2", "2", f"{1e3 * network.expected_error:.2f} mm", "chosen"] in rows
     assert "by number of winches" not in run("design", strip, "--out", tmp_path / "out")[1]
 
 

@@ -13,7 +13,7 @@ def test_what_takes_long_is_told_and_what_is_quick_is_not(
 ) -> None:
     with patiently("quick ..."):
         pass
-    monkeypatch.setattr("hydrostat.cli.waiting.PATIENCE", 0.01)
+    monkeypatch.setattr("hydrostat.cli.waiting.NOTICE_DELAY", 0.01)
     told, end = "", time.monotonic() + 60.0
     with patiently("long ..."):
         while not told and time.monotonic() < end:

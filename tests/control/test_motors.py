@@ -100,7 +100,7 @@ def test_just_before_the_silence_they_go_on() -> None:
 
 
 def test_with_patience_gaps_are_no_silence() -> None:
-    motors = Motors(WINCHES, Noted(), patience=inf)
+    motors = Motors(WINCHES, Noted(), command_timeout=inf)
     motors.drive(0.0)
     motors.drive(99.0)
 

@@ -54,10 +54,10 @@ def test_a_design_has_what_was_asked_for(case: str, unchecked: None) -> None:
     assert len(robot.winches) == winches
     assert winches <= len(robot.cables) <= cables
     assert {cable.winch for cable in robot.cables} == {winch.name for winch in robot.winches}
-    assert [reached.target for reached in network.reached] == list(poses)
+    assert [reached.target for reached in network.ik_results] == list(poses)
     assert isinstance(network.trace, TreeTrace)
     assert len(network.trace.activations) == len(network.trace.candidates) == len(poses)
-    assert 1 <= network.tried <= 12
+    assert 1 <= network.num_evaluated <= 12
     assert network.seconds > 0
 
 
@@ -67,7 +67,7 @@ def test_the_errors_told_are_those_of_the_robot(case: str, unchecked: None) -> N
     poses = CASES[case][0]
     network = designed(case)
     simulation = Simulation(network.robot)
-    for reached in network.reached:
+    for reached in network.ik_results:
         fresh = solve_ik(simulation, reached.target)
         assert reached.rms_error == pytest.approx(fresh.rms_error, rel=1e-3)
         again = simulation.solve(reached.pose.contractions, start=reached.pose)

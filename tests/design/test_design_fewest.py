@@ -36,7 +36,7 @@ def out_of_reach() -> tuple[Network, list[DesignStage]]:
 def test_every_pose_is_within_the_tolerance(unchecked: None) -> None:
     network = fewest()
     assert network.complete
-    assert max(reached.rms_error for reached in network.reached) <= TOLERANCE
+    assert max(reached.rms_error for reached in network.ik_results) <= TOLERANCE
     assert broken(network) == []
     assert network.request.options == options()
 
@@ -46,7 +46,7 @@ def test_fewer_winches_miss_it(unchecked: None) -> None:
     count = len(fewest().robot.winches)
     assert count == 2
     one = design_cables(bare(), [UP, DOWN], winches=1, cables=3, options=options())
-    assert max(reached.rms_error for reached in one.reached) > TOLERANCE
+    assert max(reached.rms_error for reached in one.ik_results) > TOLERANCE
 
 
 @pytest.mark.slow
@@ -64,9 +64,11 @@ def test_a_tolerance_out_of_reach_gives_the_best(unchecked: None) -> None:
     network, _ = out_of_reach()
     assert network.complete
     fitting = [
-        one for one in network.alternatives if not find_refusals(one.robot, Demand.of_results(one.robot, one.reached))
+        one
+        for one in network.alternatives
+        if not find_refusals(one.robot, Demand.of_results(one.robot, one.ik_results))
     ]
-    assert network.built == pytest.approx(min(one.built for one in fitting))
+    assert network.expected_error == pytest.approx(min(one.expected_error for one in fitting))
 
 
 @pytest.mark.slow

@@ -67,7 +67,7 @@ class Case:
     cables: int = 4
     poses: tuple[PoseTarget, ...] = (UP, DOWN)
     robot: Robot = field(default_factory=bare)
-    improve: bool = False
+    warm_start: bool = False
 
 
 def near_the_edge() -> Robot:
@@ -116,8 +116,8 @@ LIMITS: dict[str, tuple[Case, dict[str, Any]]] = {
     "locked cable": (Case(2, 3, robot=deep()), {"locked_cables": ("down 1",)}),
     "locked cable alone": (Case(1, 1, robot=strip()), {"locked_cables": ("down 1",)}),
     "world": (Case(1, 2, (UP,), strip_robot(columns=10, rows=3, mount=Mount.WORLD)), {"mount": Mount.WORLD}),
-    "improved": (Case(2, 2, robot=deep(), improve=True), {}),
-    "improved beside a locked cable": (Case(2, 2, robot=deep(), improve=True), {"locked_cables": ("down 1",)}),
+    "improved": (Case(2, 2, robot=deep(), warm_start=True), {}),
+    "improved beside a locked cable": (Case(2, 2, robot=deep(), warm_start=True), {"locked_cables": ("down 1",)}),
 }
 
 
@@ -126,7 +126,7 @@ def designed(name: str) -> Network:
     case, limits = LIMITS[name]
     return design_cables(
         case.robot, case.poses, winches=case.winches, cables=case.cables, constraints=Constraints(**limits),
-        options=SMALL, improve=case.improve,
+        options=SMALL, warm_start=case.warm_start,
     )  # fmt: skip
 
 
@@ -135,7 +135,7 @@ def broken(network: Network) -> list[str]:
     region = Region.of_body(network.robot.body, limits.clearance)
     return [
         *violations(network.robot, limits, region),
-        *pulls(network.robot, network.reached, limits),
+        *pulls(network.robot, network.ik_results, limits),
     ]
 
 
@@ -155,13 +155,13 @@ def test_every_constraint_is_kept(name: str, unchecked: None) -> None:
     asked = [one for one in network.alternatives if len(one.robot.winches) == case.winches]
     if len(robot.winches) < case.winches:  # then no kit could be made of those with as many as were asked for
         assert asked
-        assert all(find_refusals(one.robot, Demand.of_results(one.robot, one.reached)) for one in asked)
+        assert all(find_refusals(one.robot, Demand.of_results(one.robot, one.ik_results)) for one in asked)
     assert len(robot.winches) <= case.winches
     assert len(robot.winches) <= len(robot.cables) <= case.cables
     assert max(counts.values()) <= network.constraints.cables_per_winch
     assert network.rms_error < at_rest(case.robot, case.poses)
     assert network.complete
-    assert [reached.target for reached in network.reached] == list(case.poses)
+    assert [reached.target for reached in network.ik_results] == list(case.poses)
 
 
 def test_every_constraint_has_a_case() -> None:
@@ -176,7 +176,7 @@ def test_the_error_told_is_what_its_user_finds(name: str, unchecked: None) -> No
     """Oracle: inverse kinematics of a fresh simulation."""
     network = designed(name)
     limits = network.constraints.limits
-    for reached in network.reached:
+    for reached in network.ik_results:
         fresh = solve_ik(Simulation(network.robot), reached.target, limits=limits)
         assert reached.rms_error == pytest.approx(fresh.rms_error, rel=1e-9)
 
@@ -220,14 +220,14 @@ def test_search_and_judgement_end_with_their_time(
     deadline.clock = lambda: float(search.evaluator.solves)
     network = search.run()
     assert (network.timed_out, network.complete) == (True, False)
-    assert network.tried == allowed + 1
+    assert network.num_evaluated == allowed + 1
 
 
 def test_winches_move_apart_where_their_units_meet(unchecked: None) -> None:
     """Oracle: the kit, which refuses units of 25 x 25 x 40 mm as near as the constraints alone would let them be."""
     network = design_cables(bare(), [UP, DOWN], winches=2, cables=2)
     assert len(network.robot.winches) == 2
-    assert find_refusals(network.robot, Demand.of_results(network.robot, network.reached)) == ()
+    assert find_refusals(network.robot, Demand.of_results(network.robot, network.ik_results)) == ()
     one, other = (np.array(winch.at) for winch in network.robot.winches)
     assert np.linalg.norm(one - other) > Constraints().winch_gap
 
@@ -246,7 +246,7 @@ def test_winches_move_apart_for_motors_that_hold_for_long(monkeypatch: pytest.Mo
     )
     held = designed.__wrapped__("usual")
     assert far(held.robot) >= enough
-    assert held.built < 1.15 * usual.built
+    assert held.expected_error < 1.15 * usual.expected_error
     assert broken(held) == []
 
 
@@ -256,7 +256,7 @@ def test_the_same_twice(unchecked: None) -> None:
     first = designed("usual")
     assert robot_hash(again.robot) == robot_hash(first.robot)
     assert again.rms_error == first.rms_error
-    assert again.tried == first.tried
+    assert again.num_evaluated == first.num_evaluated
     assert again.trace.certificate == first.trace.certificate  # type: ignore[union-attr]
 
 
@@ -298,7 +298,7 @@ def test_improving_a_symmetric_network_keeps_it_symmetric(unchecked: None) -> No
     targets = {"tip": (0.08, 0.05), "low": (0.08, -0.05)}
     network = design_cables(
         start.robot, [PoseTarget(name="other", targets=targets)], winches=2, cables=len(start.robot.cables),
-        constraints=limits, options=SMALL, improve=True,
+        constraints=limits, options=SMALL, warm_start=True,
     )  # fmt: skip
     assert broken(network) == []
 
@@ -308,7 +308,7 @@ def test_improving_never_does_worse(poses: tuple[PoseTarget, ...], unchecked: No
     """Oracle: the first stage, the robot's own network moved into the constraints, solved afresh."""
     limits = Constraints()
     network = design_cables(
-        strip(), poses, winches=2, cables=2, constraints=limits, options=replace(SMALL, refine_steps=3), improve=True
+        strip(), poses, winches=2, cables=2, constraints=limits, options=replace(SMALL, refine_steps=3), warm_start=True
     )
     stage = network.trace.stages[0]  # type: ignore[union-attr]
     assert stage.words == "as it was"
@@ -319,7 +319,9 @@ def test_improving_never_does_worse(poses: tuple[PoseTarget, ...], unchecked: No
 
 def test_improving_keeps_what_cables_are_made_of(unchecked: None) -> None:
     own = deep(strip_robot(columns=10, rows=3, stiffness=2e3))
-    network = design_cables(own, [UP, DOWN], winches=2, cables=2, options=replace(SMALL, refine_steps=1), improve=True)
+    network = design_cables(
+        own, [UP, DOWN], winches=2, cables=2, options=replace(SMALL, refine_steps=1), warm_start=True
+    )
     assert [cable.stiffness for cable in network.robot.cables] == [2e3, 4e3]
 
 
@@ -349,7 +351,7 @@ def test_ctrl_c_returns_the_best_so_far(at: int, unchecked: None) -> None:
     assert isinstance(network.trace, RouteTrace)
     assert network.trace.certificate is None
     assert broken(network) == []
-    assert network.built <= 1.01 * min(stage.error for stage in network.trace.stages)
+    assert network.expected_error <= 1.01 * min(stage.error for stage in network.trace.stages)
 
 
 def test_progress_comes_to_its_end(unchecked: None) -> None:
@@ -381,7 +383,7 @@ def test_what_is_asked_for_wrongly() -> None:
     error_of('options of method "trees" must be TreeOptions, not RouteOptions', options=SMALL, method="trees")
     error_of(
         'method "trees" needs a number of winches and cannot improve a network. Use method "routes".',
-        method="trees", improve=True,
+        method="trees", warm_start=True,
     )  # fmt: skip
     error_of("winches must be a whole number from 1 to 20 or \"auto\", not 'two'", winches="two")
     error_of("cables must be a whole number from 1 to 60, not True", cables=True)
@@ -396,7 +398,7 @@ def test_what_is_asked_for_wrongly() -> None:
     )  # fmt: skip
     error_of(
         "2 winches of the robot are to be improved, more than the 1 asked for; ask for at least 2",
-        winches=1, improve=True,
+        winches=1, warm_start=True,
     )  # fmt: skip
     error_of(
         "1 cable: a mirrored network has its cables in pairs; ask for at least 2 cables",
@@ -409,7 +411,7 @@ def test_a_network_that_cannot_be_improved_says_why() -> None:
     error_of(
         "the robot's own network cannot be moved into what the constraints allow (winch[0] up: low clearance (10 mm "
         "inside the edge). Minimum winch_clearance: 12 mm. Move it inward); relax them, or design without improving it",
-        robot=strip_robot(columns=10, rows=3, sheathed=((2, 4),)), improve=True,
+        robot=strip_robot(columns=10, rows=3, sheathed=((2, 4),)), warm_start=True,
     )  # fmt: skip
 
 
@@ -448,7 +450,7 @@ def test_a_design_builds_its_body_once(asked: dict[str, Any], unchecked: None, b
     given: dict[str, Any] = {"winches": 1, "cables": 2, "options": SMALL} | asked
     network = design_cables(bare(), [UP], **given)
     assert len(bodies) == 1
-    assert network.tried > 1
+    assert network.num_evaluated > 1
 
 
 def test_a_design_of_the_starfish_builds_its_body_once(unchecked: None, bodies: list[Robot]) -> None:
@@ -456,4 +458,4 @@ def test_a_design_of_the_starfish_builds_its_body_once(unchecked: None, bodies: 
     robot = gallery_robot("starfish")
     network = design_cables(robot, [robot.poses["wave"]], winches=1, cables=1, options=SMALL)
     assert len(bodies) == 1
-    assert network.tried > 1
+    assert network.num_evaluated > 1

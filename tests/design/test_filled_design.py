@@ -16,8 +16,8 @@ from hydrostat.design import (
     score_card,
 )
 from hydrostat.design.design_cables import evaluate_stuffed
-from hydrostat.design.filled_reach import filled_reach
 from hydrostat.design.network import Alternative
+from hydrostat.design.stuffed_results import solve_stuffed
 from hydrostat.errors import InputError
 from hydrostat.ik import IKResult, Limits, solve_ik
 from hydrostat.progress import no_progress
@@ -40,12 +40,12 @@ def network(robot: Robot, reached: tuple[IKResult, ...], *others: Alternative) -
     return Network(
         robot=robot,
         source=robot,
-        request=DesignRequest(poses=tuple(robot.poses.values()), winches=3, cables=5, filled=True),
-        reached=reached,
-        built=0.01,
+        request=DesignRequest(poses=tuple(robot.poses.values()), winches=3, cables=5, stuffed=True),
+        ik_results=reached,
+        expected_error=0.01,
         alternatives=others,
         trace=RouteTrace(stages=(), certificate=None),
-        tried=1,
+        num_evaluated=1,
         seconds=0.0,
     )
 
@@ -73,7 +73,7 @@ def test_craft_of_pairs_is_sewn_twice_by_the_same_motors() -> None:
 @pytest.mark.slow
 def test_commands_are_found_on_the_filled_body(robot: Robot, reached: tuple[IKResult, ...]) -> None:
     """Oracle: statics of the inflated robot at both commands; its own are no worse than those of the flat model."""
-    filled = filled_reach(robot, reached, limits=Limits(tension=20.0))
+    filled = solve_stuffed(robot, reached, limits=Limits(tension=20.0))
     solid = Simulation(inflated_robot(robot, "pairs"))
     assert filled.face is Face.PAIRS
     squares = {"flat": [], "own": []}
@@ -85,7 +85,7 @@ def test_commands_are_found_on_the_filled_body(robot: Robot, reached: tuple[IKRe
     assert filled.rms_error == pytest.approx(np.sqrt(np.mean(squares["own"])), rel=1e-4)
     assert filled.rms_error <= 1.01 * filled.played
     assert filled.out < 1e-3
-    card = score_card(replace(network(robot, reached), filled=filled), version="x")["filled"]
+    card = score_card(replace(network(robot, reached), stuffed=filled), version="x")["filled"]
     assert card["face"] == "pairs"
     assert card["poses"]["wave"]["rms_error"] == filled.reached[0].rms_error
     assert set(card["poses"]["wave"]["contractions"]) == {winch.name for winch in robot.winches}
@@ -97,20 +97,22 @@ def test_the_finalist_that_is_best_when_filled_is_chosen(robot: Robot, reached: 
     short = tuple(replace(cable, points=cable.points[: len(cable.points) // 2 + 1]) for cable in robot.cables)
     stunted = robot.with_network(robot.winches, short)
     solved = tuple(solve_ik(Simulation(stunted), pose) for pose in robot.poses.values())
-    whole, poor = (Alternative(robot=r, reached=p, built=0.01) for r, p in ((robot, reached), (stunted, solved)))
+    whole, poor = (
+        Alternative(robot=r, ik_results=p, expected_error=0.01) for r, p in ((robot, reached), (stunted, solved))
+    )
     found = evaluate_stuffed(network(stunted, solved, whole), progress=no_progress)
     assert found.robot is robot
-    assert found.filled is not None
-    assert found.filled.finalists == 2
+    assert found.stuffed is not None
+    assert found.stuffed.finalists == 2
     assert [one.robot for one in found.alternatives] == [stunted]
     kept = evaluate_stuffed(network(robot, reached, poor), progress=no_progress)
     assert kept.robot is robot
-    assert kept.filled is not None
-    assert kept.filled.rms_error == pytest.approx(found.filled.rms_error)
+    assert kept.stuffed is not None
+    assert kept.stuffed.rms_error == pytest.approx(found.stuffed.rms_error)
     assert [one.robot for one in kept.alternatives] == [stunted]
 
 
 def test_what_cannot_be_filled_is_told_before_the_search() -> None:
     trunk = gallery_robot("trunk")
     with pytest.raises(InputError, match="filled: only for flat robots with a drawing"):
-        design_cables(trunk, trunk.poses.values(), filled=True)
+        design_cables(trunk, trunk.poses.values(), stuffed=True)

@@ -21,15 +21,17 @@ def test_clear_gains_that_can_be_built_are_told(monkeypatch: pytest.MonkeyPatch)
     def answer(more: float, both: float, *, fits: bool = True) -> None:
         def propose(robot: Robot, request: DesignRequest) -> Iterator[RouteProposal]:
             asked.append((request.winches, request.cables, request.constraints.two_way))
-            built = network.built * (both if request.constraints.two_way else more)
-            yield RouteProposal(robot=robot, error=0.0, built=0.1 * built, is_refined=False, is_buildable=False)
-            yield RouteProposal(robot=robot, error=0.0, built=built, is_refined=True, is_buildable=fits)
+            built = network.expected_error * (both if request.constraints.two_way else more)
+            yield RouteProposal(
+                robot=robot, error=0.0, expected_error=0.1 * built, is_refined=False, is_buildable=False
+            )
+            yield RouteProposal(robot=robot, error=0.0, expected_error=built, is_refined=True, is_buildable=fits)
 
         monkeypatch.setattr("hydrostat.design.lifts.propose_routes", propose)
 
     answer(0.5, 0.9)
     (lift,) = find_lifts(network)
-    assert (lift.words, lift.built) == ("--winches 2 --cables 4", 0.5 * network.built)
+    assert (lift.words, lift.expected_error) == ("--winches 2 --cables 4", 0.5 * network.expected_error)
     assert asked == [(2, 4, False), (1, 3, True)]
     answer(0.9, 0.5)
     assert [lift.words for lift in find_lifts(network)] == ["--two-way"]

@@ -39,10 +39,12 @@ def test_networks_keep_all_limits_and_have_the_error_that_is_told() -> None:
     searched = QuickSearch(robot, request).constraints  # with the torque of the motors that fit
     reached = solve_ik(simulation, pose, limits=searched.limits)
     assert last.error == pytest.approx(reached.rms_error, rel=0.02)
-    assert last.built == pytest.approx(expected_error(simulation, [reached], BuildTolerances.of(robot.body)), rel=0.02)
+    assert last.expected_error == pytest.approx(
+        expected_error(simulation, [reached], BuildTolerances.of(robot.body)), rel=0.02
+    )
     places = {marker.name: marker.at for marker in robot.markers}
     at_rest = [np.sum(np.subtract(places[name], goal) ** 2) for name, goal in pose.targets.items()]
-    assert last.built < first.built < 0.5 * np.sqrt(np.mean(at_rest))
+    assert last.expected_error < first.expected_error < 0.5 * np.sqrt(np.mean(at_rest))
 
 
 def test_what_is_kept_between_poses_changes_no_result() -> None:
@@ -54,7 +56,7 @@ def test_what_is_kept_between_poses_changes_no_result() -> None:
     next(used.with_markers((*robot.markers, Marker(name="more", at=robot.winches[0].at))).propose(nod.poses))
     for one, other in zip(used.propose(hello.poses), propose_routes(robot, hello), strict=True):
         assert one.robot.cables == other.robot.cables
-        assert (one.built, one.error) == (other.built, other.error)
+        assert (one.expected_error, one.error) == (other.expected_error, other.error)
 
 
 def test_parts_that_stay_and_mirrors_are_left_to_the_whole_search() -> None:

@@ -1,4 +1,4 @@
-"""Reach as an objective of design. Oracle: `find_reach` of the networks that are found, and the wish left out."""
+"""Reach as an objective of design. Oracle: `find_workspaces` of the networks that are found, and the wish left out."""
 
 from dataclasses import replace
 
@@ -9,7 +9,7 @@ from builders import strip_robot
 import hydrostat as hs
 from hydrostat.design import Constraints, DesignRequest, Network, RouteOptions, find_network
 from hydrostat.errors import InputError
-from hydrostat.ik import find_reach
+from hydrostat.ik import find_workspaces
 from hydrostat.simulation import Simulation
 
 
@@ -21,7 +21,7 @@ def designed(reach: float) -> Network:
         poses=(hs.PoseTarget(name="up", targets={"tip": (0.19, 0.03)}),),
         winches=2,
         cables=2,
-        options=RouteOptions(reach=reach, starts=1, exchanges=2, refine_steps=15),
+        options=RouteOptions(workspace_weight=reach, starts=1, exchanges=2, refine_steps=15),
         constraints=Constraints(built_in=False),
     )
     return find_network(robot, request)
@@ -29,7 +29,7 @@ def designed(reach: float) -> Network:
 
 def area(network: Network) -> float:
     """What the markers reach, in mean [m^2]."""
-    return float(np.mean([one.size for one in find_reach(Simulation(network.robot), tension=20.0, count=49)]))
+    return float(np.mean([one.size for one in find_workspaces(Simulation(network.robot), tension=20.0, count=49)]))
 
 
 @pytest.mark.slow
@@ -39,10 +39,10 @@ def test_a_wish_for_reach_raises_it_and_the_poses_are_still_reached() -> None:
     assert area(plain) < 1e-6
     assert area(wide) > 1e-3
     assert wide.rms_error < 1e-3
-    assert wide.built < 1.5 * plain.built
+    assert wide.expected_error < 1.5 * plain.expected_error
 
 
 @pytest.mark.parametrize("reach", [-0.1, 5.1, float("nan")])
 def test_a_wish_out_of_range_is_refused(reach: float) -> None:
-    with pytest.raises(InputError, match=r"RouteOptions\.reach must be"):
-        RouteOptions(reach=reach)
+    with pytest.raises(InputError, match=r"RouteOptions\.workspace_weight must be"):
+        RouteOptions(workspace_weight=reach)

@@ -75,7 +75,7 @@ def test_the_request_as_values(unchecked: None) -> None:
 
 def test_improving_allows_what_the_robot_has(unchecked: None) -> None:
     own = strip_robot()
-    request = DesignRequest(poses=(UP,), improve=True, constraints=Constraints(travel=0.001)).fit_robot(own)
+    request = DesignRequest(poses=(UP,), warm_start=True, constraints=Constraints(travel=0.001)).fit_robot(own)
     assert request.constraints.travel == max(winch.travel for winch in own.winches)
     usual = BuildTolerances.of(own.body)
     assert DesignRequest(poses=(UP,)).fit_robot(own) == DesignRequest(poses=(UP,), uncertainty=usual)

@@ -100,7 +100,7 @@ def test_a_kit_never_refuses_what_a_design_returned(name: str, winches: int, cab
     pose = next(iter(robot.poses.values()))
     network = designed(name, winches, cables)
     made = replace(network.robot, poses={pose.name: pose})
-    assert refused(made, demand=Demand.of_results(made, network.reached)) == []
+    assert refused(made, demand=Demand.of_results(made, network.ik_results)) == []
     kit = build_kit(
         made, options=KitOptions(tension=network.constraints.tension_limit, torque=network.constraints.torque)
     )
@@ -121,5 +121,5 @@ def test_a_network_that_can_be_built_comes_before_a_better_one_that_cannot(
         lambda made, demand: ("no room",) if robot_hash(made) == best else (),
     )
     bound = designed.__wrapped__("letter_s", 1, 2)
-    assert robot_hash(bound.robot) == robot_hash(min(free.alternatives, key=lambda other: other.built).robot)
+    assert robot_hash(bound.robot) == robot_hash(min(free.alternatives, key=lambda other: other.expected_error).robot)
     assert best in {robot_hash(other.robot) for other in bound.alternatives}

@@ -24,8 +24,8 @@ def test_a_grown_network_as_json() -> None:
     card = score_card(network, version="1.2.3")
     read = json.loads(json.dumps(card, allow_nan=False))
     assert read["rms_error"] == network.rms_error
-    assert read["poses"]["up"]["errors"] == dict(network.reached[0].errors)
-    assert read["poses"]["up"]["tensions"] == network.reached[0].pose.tensions.tolist()
+    assert read["poses"]["up"]["errors"] == dict(network.ik_results[0].errors)
+    assert read["poses"]["up"]["tensions"] == network.ik_results[0].pose.tensions.tolist()
     assert read["poses"]["up"]["contractions"] == {"up": 0.01, "down": 0.0}
     constraints = read["request"]["constraints"]
     assert constraints["keep_out"] == [{"at": [0.0, 0.0], "radius": 0.01, "box": None, "outline": []}]

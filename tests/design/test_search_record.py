@@ -48,10 +48,14 @@ def test_a_resumed_search_finds_the_same_network(
     network = search(resumed)
     assert network.complete
     assert robot_hash(network.robot) == robot_hash(unbroken.robot)
-    assert (network.built, network.rms_error, network.tried) == (unbroken.built, unbroken.rms_error, unbroken.tried)
+    assert (network.expected_error, network.rms_error, network.num_evaluated) == (
+        unbroken.expected_error,
+        unbroken.rms_error,
+        unbroken.num_evaluated,
+    )
     assert [step["step"] for step in resumed.steps] == [step["step"] for step in whole.steps]
     known = sum(step["tried"] for step in stopped.steps)
-    assert len(solved) < network.tried - 0.5 * known  # what is known is not computed again
+    assert len(solved) < network.num_evaluated - 0.5 * known  # what is known is not computed again
 
 
 def test_the_record_of_another_search_is_refused(tmp_path: Path) -> None:

@@ -79,7 +79,7 @@ def test_an_iterator_that_is_closed_leaves_no_process() -> None:
 
 def stages(network: Network) -> list[tuple[str, float, int]]:
     assert isinstance(network.trace, RouteTrace)
-    return [(stage.words, stage.error, stage.tried) for stage in network.trace.stages]
+    return [(stage.words, stage.error, stage.num_evaluated) for stage in network.trace.stages]
 
 
 def design(cores: int, monkeypatch: pytest.MonkeyPatch) -> Network:
@@ -92,11 +92,11 @@ def design(cores: int, monkeypatch: pytest.MonkeyPatch) -> Network:
 def test_two_cores_find_the_network_of_one(monkeypatch: pytest.MonkeyPatch, unchecked: None) -> None:
     """To the last bit, with the same networks on the way after as many trials."""
     one, two = (design(cores, monkeypatch) for cores in (1, 2))
-    assert (two.robot.winches, two.robot.cables, two.built, two.tried) == (
-        one.robot.winches, one.robot.cables, one.built, one.tried,
+    assert (two.robot.winches, two.robot.cables, two.expected_error, two.num_evaluated) == (
+        one.robot.winches, one.robot.cables, one.expected_error, one.num_evaluated,
     )  # fmt: skip
     assert stages(two) == stages(one)
-    assert [pose.errors for pose in two.reached] == [pose.errors for pose in one.reached]
+    assert [pose.errors for pose in two.ik_results] == [pose.errors for pose in one.ik_results]
 
 
 @pytest.mark.slow

@@ -10,7 +10,7 @@ from builders import box_robot, gallery_robot
 from hydrostat.design import Constraints, FibreKind, Network, TreeOptions, TreeTrace, design_cables
 from hydrostat.design.buildable import violations
 from hydrostat.design.region import Region
-from hydrostat.design.trees.lead_ways import LeadWays, lead_ways
+from hydrostat.design.trees.lead_paths import LeadPaths, find_lead_paths
 from hydrostat.design.trees.winch_trees import WinchTrees, tree_score
 from hydrostat.ik import solve_ik
 from hydrostat.robot import Mount, PoseTarget, Robot
@@ -29,9 +29,9 @@ def designed(name: str, pose: str, phi: float = 0.5, kind: FibreKind = FibreKind
 
 
 @cache
-def ways(name: str) -> LeadWays:
+def ways(name: str) -> LeadPaths:
     robot = gallery_robot(name)
-    return lead_ways(robot, Region.of_body(robot.body, LIMITS.clearance), LIMITS)
+    return find_lead_paths(robot, Region.of_body(robot.body, LIMITS.clearance), LIMITS)
 
 
 def test_ways_run_inside_and_end_at_winches_in_the_world(unchecked: None) -> None:
@@ -55,7 +55,7 @@ def test_ways_run_inside_and_end_at_winches_in_the_world(unchecked: None) -> Non
 def test_winches_stand_in_a_body_where_the_robots_own_do() -> None:
     """A box 40 mm thick: 12 mm deep."""
     robot = box_robot()
-    found = lead_ways(robot, Region.of_body(robot.body, 0.005), LIMITS)
+    found = find_lead_paths(robot, Region.of_body(robot.body, 0.005), LIMITS)
     places = found.points[found.places]
     assert len(places)
     assert not any(map(found.outside, found.places.tolist()))
@@ -72,7 +72,7 @@ def test_a_network_in_space_can_be_built(name: str, pose: str, unchecked: None) 
     own = {winch.at for winch in robot.winches}
     world = robot.winches[0].mount is Mount.WORLD
     assert all((winch.at in own and winch.mount is Mount.WORLD) == world for winch in network.robot.winches)
-    again = solve_ik(Simulation(network.robot), robot.pose(pose), start=network.reached[0].pose)
+    again = solve_ik(Simulation(network.robot), robot.pose(pose), start=network.ik_results[0].pose)
     assert again.rms_error <= network.rms_error + 1e-6
     places = {marker.name: np.array(marker.at) for marker in robot.markers}
     rest = [np.sum((places[marker] - goal) ** 2) for marker, goal in robot.pose(pose).targets.items()]
@@ -87,7 +87,7 @@ def test_the_first_winch_scores_best_of_all_places_and_routes(phi: float, unchec
     trace = network.trace
     assert isinstance(trace, TreeTrace)
     tensions, kept = trace.activations[0].tensions, trace.candidates[0]
-    assert network.tried == 1
+    assert network.num_evaluated == 1
     assert len(kept) == KNOBS["threshold"]
     assert tensions[kept].min() >= np.delete(tensions, kept).max()
     routes, posed = list(trace.trees), [trace.activations[0].nodes]

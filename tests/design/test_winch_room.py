@@ -118,13 +118,13 @@ def test_torque_to_hold_is_asked_for_where_a_motor_holds_for_seconds_only() -> N
 
     def asked(torque: float) -> float | None:
         tensions = np.array([torque / arm, 0.0])
-        reached = [replace(one, pose=replace(one.pose, tensions=tensions)) for one in network.reached]
+        reached = [replace(one, pose=replace(one.pose, tensions=tensions)) for one in network.ik_results]
         return find_holding_torque(network.robot, reached)
 
     assert asked(0.0244) is None
     assert asked(0.04) == pytest.approx(0.0245, rel=3e-3)
     outside = [replace(winch, mount=Mount.WORLD) for winch in network.robot.winches]
-    assert find_holding_torque(network.robot.with_network(outside, network.robot.cables), network.reached) is None
+    assert find_holding_torque(network.robot.with_network(outside, network.robot.cables), network.ik_results) is None
 
 
 @pytest.mark.slow

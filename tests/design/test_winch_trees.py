@@ -9,7 +9,7 @@ from builders import mesh_body, strip_mesh
 from hydrostat.design import Constraints, TreeOptions
 from hydrostat.design.region import Region
 from hydrostat.design.trees.design_trees import _apart, _shares
-from hydrostat.design.trees.lead_ways import LeadWays, lead_ways
+from hydrostat.design.trees.lead_paths import LeadPaths, find_lead_paths
 from hydrostat.design.trees.winch_trees import WinchTrees, tree_score
 from hydrostat.geometry import Mesh
 from hydrostat.robot import Body, Pin, Robot
@@ -40,10 +40,10 @@ def strip_trees(seed: int, *, poses: int = 1, **options: float) -> WinchTrees:
     return WinchTrees(mesh, routes, posed, ways_of(mesh_body(mesh)), LIMITS, TreeOptions(**options))
 
 
-def ways_of(body: Body) -> LeadWays:
+def ways_of(body: Body) -> LeadPaths:
     """Of a body without a network."""
     robot = Robot(name="bare", body=body, pins=(Pin(box=((-1.0, -1.0), (1.0, 1.0))),), poses={})
-    return lead_ways(robot, Region.of_body(body, LIMITS.clearance), LIMITS)
+    return find_lead_paths(robot, Region.of_body(body, LIMITS.clearance), LIMITS)
 
 
 def test_the_score_by_hand() -> None:

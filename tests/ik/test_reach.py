@@ -7,8 +7,8 @@ import pytest
 from builders import box_robot, strip_robot
 
 import hydrostat as hs
-from hydrostat.ik import find_reach
-from hydrostat.ik.reach import _covered_volume, reach_extent, usable_spans
+from hydrostat.ik import find_workspaces
+from hydrostat.ik.workspace import _covered_volume, usable_spans, workspace_extent
 
 TRAVEL = 0.02  # of the strip's winches [m]
 
@@ -32,7 +32,7 @@ def boundary(simulation: hs.Simulation, count: int = 40) -> np.ndarray:
 def test_the_area_is_that_within_the_border_of_all_contractions() -> None:
     """Oracle: the shoelace formula over solved places of the border, which two winches map one to one."""
     simulation = strip()
-    (tip,) = find_reach(simulation, count=100)
+    (tip,) = find_workspaces(simulation, count=100)
     x, y = (border := boundary(simulation)).T
     area = 0.5 * abs(float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))))
     assert tip.size == pytest.approx(area, rel=0.05)
@@ -46,7 +46,7 @@ def test_one_winch_reaches_a_line() -> None:
     simulation = strip()
     robot = simulation.robot.with_network(simulation.robot.winches[:1], simulation.robot.cables[:1])
     simulation = hs.Simulation(robot)
-    (tip,) = find_reach(simulation, count=16)
+    (tip,) = find_workspaces(simulation, count=16)
     way = np.array([simulation.solve(np.array([pull])).markers["tip"] for pull in np.linspace(0, TRAVEL, 21)])
     assert tip.size == pytest.approx(0.0, abs=1e-12)
     assert tip.extents[0] == pytest.approx(np.linalg.norm(way[-1] - way[0]), rel=0.05)
@@ -55,9 +55,9 @@ def test_one_winch_reaches_a_line() -> None:
 def test_what_pulls_too_hard_is_left_out() -> None:
     """Oracle: each place is that of a pose which keeps the limit, solved by itself."""
     simulation = strip()
-    (free,) = find_reach(simulation, count=25)
+    (free,) = find_workspaces(simulation, count=25)
     limit = 0.5 * simulation.solve(np.array([TRAVEL, 0.0])).tensions.max()
-    (held,) = find_reach(simulation, count=25, tension=limit)
+    (held,) = find_workspaces(simulation, count=25, tension=limit)
     middles = TRAVEL * (np.arange(5) + 0.5) / 5
     poses = [simulation.solve(np.array([one, other])) for one in middles for other in middles]
     kept = np.array([pose.markers["tip"] for pose in poses if pose.tensions.max() <= limit])
@@ -69,13 +69,13 @@ def test_what_pulls_too_hard_is_left_out() -> None:
 @pytest.mark.slow
 def test_cables_that_rub_reach_as_if_smooth_where_friction_is_next_to_none() -> None:
     """Oracle: the cables without friction."""
-    (smooth,), (next_to_smooth,) = (find_reach(strip(friction), count=9) for friction in (0.0, 1e-12))
+    (smooth,), (next_to_smooth,) = (find_workspaces(strip(friction), count=9) for friction in (0.0, 1e-12))
     assert next_to_smooth.size == pytest.approx(smooth.size, rel=1e-3)
     assert next_to_smooth.places == pytest.approx(smooth.places, abs=1e-6)
 
 
 def test_two_winches_fill_no_volume() -> None:
-    reaches = find_reach(hs.Simulation(box_robot()), count=9, tension=20.0)
+    reaches = find_workspaces(hs.Simulation(box_robot()), count=9, tension=20.0)
     assert {reach.size for reach in reaches} <= {0.0} or max(reach.size for reach in reaches) < 1e-9
     assert all((reach.extents[:-1] >= reach.extents[1:]).all() for reach in reaches)
 
@@ -91,20 +91,20 @@ def test_a_volume_counts_what_overlaps_once() -> None:
 def test_nothing_to_bring_is_told() -> None:
     robot = strip().robot
     with pytest.raises(hs.InputError, match="at least one of each"):
-        find_reach(hs.Simulation(replace(robot, markers=())))
+        find_workspaces(hs.Simulation(replace(robot, markers=())))
     with pytest.raises(hs.InputError, match="count must be at least 1"):
-        find_reach(strip(), count=0)
+        find_workspaces(strip(), count=0)
 
 
 def test_the_length_of_an_image() -> None:
     """Oracle: an ellipse of known half-axes; a line counts as the floor across; nothing counts as the floor."""
     moves = np.array([[3.0, 0.0], [0.0, 0.5]])
-    assert reach_extent(moves, np.array([0.1, 0.2]), dim=2, floor=1e-9) == pytest.approx(np.sqrt(0.3 * 0.1))
-    assert reach_extent(moves[:, :1], np.array([0.1]), dim=2, floor=1e-3) == pytest.approx(
+    assert workspace_extent(moves, np.array([0.1, 0.2]), dim=2, floor=1e-9) == pytest.approx(np.sqrt(0.3 * 0.1))
+    assert workspace_extent(moves[:, :1], np.array([0.1]), dim=2, floor=1e-3) == pytest.approx(
         np.sqrt(0.3 * 1e-3), rel=1e-4
     )
-    assert reach_extent(np.zeros((2, 0)), np.zeros(0), dim=2, floor=1e-3) == 1e-3
-    twice = reach_extent(np.vstack([moves, 4 * moves]), np.array([0.1, 0.2]), dim=2, floor=1e-9)
+    assert workspace_extent(np.zeros((2, 0)), np.zeros(0), dim=2, floor=1e-3) == 1e-3
+    twice = workspace_extent(np.vstack([moves, 4 * moves]), np.array([0.1, 0.2]), dim=2, floor=1e-9)
     assert twice == pytest.approx(2 * np.sqrt(0.3 * 0.1)), "the geometric mean of two markers"
 
 

@@ -78,7 +78,7 @@ def test_networks_expect_what_the_simulator_finds(model: LearnedModel, samples: 
     ridge = np.hstack([new.contractions, np.ones((20, 1))]) @ linear
     assert missed < 0.2 * np.linalg.norm(ridge - new.markers[:, 0], axis=1).mean()
     assert missed < 3 * model.card.error
-    slopes = np.array([model.slopes(row) for row in new.contractions])
+    slopes = np.array([model.jacobian(row) for row in new.contractions])
     assert np.linalg.norm(slopes - new.jacobians[:, 0]) < 0.3 * np.linalg.norm(new.jacobians)  # cables go slack
 
 
@@ -225,7 +225,7 @@ def test_few_samples_are_refused(samples: Samples) -> None:
         learn_model(samples.first(10))
 
 
-@pytest.mark.parametrize(("name", "value"), [("steps", 0), ("rate", 0.0), ("slopes", np.nan), ("held_out", 0.7)])
+@pytest.mark.parametrize(("name", "value"), [("steps", 0), ("rate", 0.0), ("jacobians", np.nan), ("held_out", 0.7)])
 def test_options_are_checked(name: str, value: float) -> None:
     with pytest.raises(InputError, match=name):
         LearnOptions(**{name: value})

@@ -20,7 +20,7 @@ def test_slopes_are_those_of_the_values(sizes: tuple[int, ...]) -> None:
     """Oracle: central differences."""
     some, step = networks(sizes, 3), 1e-6
     point = np.random.default_rng(1).uniform(-1, 1, sizes[0])
-    value, slopes = some.slopes(point)
+    value, slopes = some.evaluate(point)
     assert value == pytest.approx(some.values(point).mean(axis=0), abs=1e-14)
     ways = step * np.eye(sizes[0])
     differences = [(some.values(point + way) - some.values(point - way)).mean(axis=0) / (2 * step) for way in ways]
@@ -49,7 +49,7 @@ def test_the_kernel_is_what_was_trained() -> None:
             return answer(parts, one.expand(2, 1, 4), None)[0].mean((0, 1))
 
         slopes = torch.func.jacfwd(mean)(torch.tensor(point)).numpy()
-        assert some.slopes(point)[1] == pytest.approx(slopes, abs=1e-12)
+        assert some.evaluate(point)[1] == pytest.approx(slopes, abs=1e-12)
         assert moved[:, place].mean(0).T.numpy() == pytest.approx(slopes, abs=1e-12)
 
 
@@ -68,7 +68,7 @@ def test_gradients_of_the_loss(sloped: int) -> None:
         parts = tensors_of(Perceptrons(sizes=some.sizes, numbers=numbers), torch.float64)
         for part in parts:
             part.requires_grad_(graph)
-        weights = loss_weights(4, 6, LearnOptions(slopes=0.7, tensions=0.3, tension_slopes=0.2))
+        weights = loss_weights(4, 6, LearnOptions(jacobians=0.7, tensions=0.3, tension_jacobians=0.2))
         return sobolev_loss(parts, points, ways, outputs, slopes, weights), parts
 
     value, parts = loss(some.numbers, graph=True)

@@ -64,9 +64,9 @@ def test_slopes_of_tensions(friction: float, tmp_path: Path) -> None:
     robot = strip_robot(columns=8, rows=2)
     robot = replace(robot, cables=tuple(replace(cable, friction=friction) for cable in robot.cables))
     samples, simulation = Samples.read(sample_robot(SamplePlan.of_robot(robot, 3), tmp_path).path), hs.Simulation(robot)
-    assert samples.tension_slopes is not None
+    assert samples.tension_jacobians is not None
     size = 1e-6 if friction else 1e-7  # of the difference [m]
-    for contractions, slopes in zip(samples.contractions, samples.tension_slopes, strict=True):
+    for contractions, slopes in zip(samples.contractions, samples.tension_jacobians, strict=True):
         start = simulation.solve(contractions)
         for way in [contractions] if friction else np.eye(2):
             step = size * way / np.linalg.norm(way)
@@ -87,7 +87,7 @@ def test_samples_of_an_earlier_version_are_read_but_not_gone_on_with(plan: Sampl
     np.save(old / "samples-000000.npy", without)
     (old / "samples.json").write_text(json.dumps({k: v for k, v in manifest.items() if k != "tension_slopes"}))
     samples = Samples.read(old)
-    assert samples.tension_slopes is None
+    assert samples.tension_jacobians is None
     assert len(samples.first(3)) == 3
     with pytest.raises(InputError, match="another plan: tension_slopes is None, asked for True"):
         sample_robot(replace(plan, count=5), old)
@@ -360,8 +360,8 @@ def test_exports_hold_the_same_numbers(plan: SamplePlan, once: Path, tmp_path: P
     assert np.array_equal(table[f"contractions.{winch}"].to_numpy(), samples.contractions[:, 1])
     assert np.array_equal(table[f"jacobian.{marker}.y.{winch}"].to_numpy(), samples.jacobians[:, 0, 1, 1])
     cable = plan.robot.cables[0].name
-    assert samples.tension_slopes is not None
-    assert np.array_equal(table[f"tension_slopes.{cable}.{winch}"].to_numpy(), samples.tension_slopes[:, 0, 1])
+    assert samples.tension_jacobians is not None
+    assert np.array_equal(table[f"tension_slopes.{cable}.{winch}"].to_numpy(), samples.tension_jacobians[:, 0, 1])
     assert json.loads(table.schema.metadata[b"hydrostat"])["count"] == 22
     zarr = pytest.importorskip("zarr")
     group = zarr.open_group(export_samples(once, tmp_path / "all.zarr"), mode="r")

@@ -9,7 +9,7 @@ from states import CONTROLS, rough_mesh
 
 from hydrostat.mechanics import InversionBarrier
 from hydrostat.mechanics.inversion_barrier import FREE
-from hydrostat.mechanics.quadratic_solid import shape_slopes
+from hydrostat.mechanics.quadratic_solid import shape_gradients
 from hydrostat.simulation import Simulation
 from hydrostat.testing import check_energy
 
@@ -45,7 +45,7 @@ def test_no_point_has_less_volume_than_the_least_coefficient(dim: int) -> None:
     for seed in range(5):
         energy, nodes = barrier(dim, seed)
         points = np.concatenate([np.eye(dim + 1), random.dirichlet(np.full(dim + 1, 0.5), 200)])
-        slopes = shape_slopes(points)
+        slopes = shape_gradients(points)
         spans = [np.einsum("ecd,qcr->eqdr", each[energy.stencils], slopes) for each in (nodes, energy.rest)]
         ratios = np.linalg.det(spans[0]) / np.linalg.det(spans[1])
         least = energy.least_volume(nodes)

@@ -14,7 +14,7 @@ def springs(dim: int, random: np.random.Generator) -> tuple[ObstacleFriction, np
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     grip = replace(ObstacleFriction.at_rest(0.5, np.full(6, 1e3), anchors), normals=normals)
     places = anchors + 1e-3 * random.normal(size=(6, dim))
-    lengths = grip.ways(places)[1]
+    lengths = grip.slips(places)[1]
     return replace(grip, limits=1e3 * lengths * np.where(np.arange(6) % 2, 0.5, 2.0)), places
 
 

@@ -90,17 +90,17 @@ def _network(robot: Robot, target: PoseTarget, tree: np.ndarray) -> Network:
         robot=robot,
         source=robot,
         request=DesignRequest(poses=(target,), method=DesignMethod.TREES),
-        reached=(reached,),
-        built=0.006,
+        ik_results=(reached,),
+        expected_error=0.006,
         trace=TreeTrace(activations=(activation,), candidates=(np.argsort(-tensions)[:12],), trees=(tree,), score=0.5),
-        tried=4,
+        num_evaluated=4,
         seconds=1.5,
     )
 
 
 def grown(network: Network, stages: int = 11) -> Network:
     """The same network as if priced routes had led to it: stages, a certificate, alternatives of other sizes."""
-    robot, (reached, *_) = network.robot, network.reached
+    robot, (reached, *_) = network.robot, network.ik_results
     first, *_ = robot.cables
     begun = robot.with_network([winch for winch in robot.winches if winch.name == first.winch], [first])
     words = [SCRIPT, *(f"via points of {index} cables moved" for index in range(1, stages))]
@@ -116,8 +116,8 @@ def grown(network: Network, stages: int = 11) -> Network:
             certificate=Certificate(further=0.0021, paths=12345, slope=0.0123),
         ),
         alternatives=(
-            Alternative(robot=robot, reached=(replace(reached, errors={"tip": 0.0345}),), built=0.0345),
-            Alternative(robot=begun, reached=(replace(less, errors={"tip": 0.0456}),), built=0.0456),
+            Alternative(robot=robot, ik_results=(replace(reached, errors={"tip": 0.0345}),), expected_error=0.0345),
+            Alternative(robot=begun, ik_results=(replace(less, errors={"tip": 0.0456}),), expected_error=0.0456),
         ),
     )
 

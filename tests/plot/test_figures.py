@@ -44,7 +44,7 @@ def figure(kind: str) -> Figure:
     """A new picture of each kind, of the robot with hostile names."""
     network = hostile_network()
     trace = hostile_trace()
-    robot, activation, reached = network.robot, trace.activations[0], network.reached[0]
+    robot, activation, reached = network.robot, trace.activations[0], network.ik_results[0]
     arguments = {
         "draw_rest": (),
         "draw_target": (reached.target,),
@@ -202,6 +202,6 @@ def test_what_is_drawn_on_a_body_moves_with_it() -> None:
     ],
 )
 def test_a_title_says_reached_where_the_target_is(status: IKStatus, name: str | None, title: str) -> None:
-    found = hostile_network().reached[0]
+    found = hostile_network().ik_results[0]
     wave = PoseTarget(name="wave", targets={"tip": (0.1, 0.0)})
     assert reached_title(replace(found, status=status, target=wave), name) == title

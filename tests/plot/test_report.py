@@ -83,11 +83,11 @@ def test_same_bytes_again(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_numbers_of_the_report() -> None:
     network, text = hostile_network(), hostile_report()
-    for error in network.reached[0].errors.values():
+    for error in network.ik_results[0].errors.values():
         assert f">{1e3 * error:.2f}</span>" in text
     assert f"{1e3 * network.rms_error:.1f}<small>mm rms</small>" in text
     assert ">10.00</td>" in text  # contraction of the first winch [mm]
-    assert f">{network.reached[0].pose.tensions[0]:.2f}</td>" in text
+    assert f">{network.ik_results[0].pose.tensions[0]:.2f}</td>" in text
 
 
 @pytest.mark.slow
@@ -100,7 +100,7 @@ def test_no_muscles_no_chapters_on_muscles() -> None:
 
 def test_a_design_without_poses_is_refused() -> None:
     with pytest.raises(InputError, match="at least one pose"):
-        report_text(replace(hostile_network(), reached=()))
+        report_text(replace(hostile_network(), ik_results=()))
 
 
 @pytest.mark.slow

@@ -20,14 +20,14 @@ from hydrostat.robot import Robot
 def sized(winches: int, cables: int, error: float) -> Alternative:
     """An alternative of some size and error [m]; its winches pull the same two cables over and over."""
     network = plain_network()
-    robot, (reached, *_) = network.robot, network.reached
+    robot, (reached, *_) = network.robot, network.ik_results
     parts = [replace(robot.winches[0], name=f"w{index}") for index in range(winches)]
     lines = [replace(robot.cables[0], name="", winch=parts[index % winches].name) for index in range(cables)]
     pose = replace(reached.pose, tensions=np.ones(cables), contractions=np.zeros(winches))
     return Alternative(
         robot=robot.with_network(parts, lines),
-        reached=(replace(reached, pose=pose, errors={"tip": error}),),
-        built=error,
+        ik_results=(replace(reached, pose=pose, errors={"tip": error}),),
+        expected_error=error,
     )
 
 
@@ -137,7 +137,7 @@ OTHERS = [(1, 1, 0.009), (1, 2, 0.008), (1, 3, 0.0085), (2, 3, 0.004), (2, 4, 0.
 
 def chosen(error: float = 0.006) -> Network:
     network = plain_network()
-    return replace(network, reached=(replace(network.reached[0], errors={"tip": error}),), built=error)
+    return replace(network, ik_results=(replace(network.ik_results[0], errors={"tip": error}),), expected_error=error)
 
 
 def test_the_best_of_each_size_counts_and_the_chosen_one_always() -> None:

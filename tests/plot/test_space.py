@@ -34,7 +34,7 @@ TWICE = ("draw_pose", "draw_activation", "draw_portrait")
 @cache
 def figure(kind: str) -> Figure:
     network, trace = space_network(), space_trace()
-    activation, reached = trace.activations[0], network.reached[0]
+    activation, reached = trace.activations[0], network.ik_results[0]
     arguments = {
         "draw_target": (reached.target,),
         "draw_pose": (reached.pose,),
@@ -73,7 +73,7 @@ def test_png_and_svg_twice_the_same_with_all_words_inside(kind: str, tmp_path: P
 def test_all_words_lie_within_a_narrow_picture() -> None:
     """Oracle: matplotlib's own measure of every text."""
     network = space_network()
-    check_words(plot.draw_reached(network.robot, network.reached[0], width=4.9))
+    check_words(plot.draw_reached(network.robot, network.ik_results[0], width=4.9))
 
 
 def check_words(drawn: Figure) -> None:
@@ -93,7 +93,7 @@ def check_words(drawn: Figure) -> None:
 def test_cables_wear_the_colors_of_their_tension() -> None:
     """Oracle: the tension scale; where the body covers a cable, the same color mixed with felt."""
     network = space_network()
-    pose = network.reached[0].pose
+    pose = network.ik_results[0].pose
     scale = TensionScale.of(pose.tensions)
     lines = figure("draw_pose").axes[0].lines
     colors = {to_hex(line.get_color()) for line in lines}  # pyright: ignore[reportArgumentType]
@@ -106,7 +106,7 @@ def test_cables_wear_the_colors_of_their_tension() -> None:
 @pytest.mark.slow
 def test_a_wire_in_front_is_drawn_over_one_behind() -> None:
     network = space_network()
-    pose = network.reached[0].pose
+    pose = network.ik_results[0].pose
     full = TensionScale.of(pose.tensions).color(float(pose.tensions[0]))
     lines = figure("draw_pose").axes[0].lines
     solid = [line.get_zorder() for line in lines if to_hex(line.get_color()) == full and len(line.get_xdata()) > 2]  # pyright: ignore
@@ -158,7 +158,7 @@ def test_the_ghost_is_there_only_where_the_body_moved() -> None:
     from hydrostat.drawing import Color
 
     network = space_network()
-    robot, pose = network.robot, network.reached[0].pose
+    robot, pose = network.robot, network.ik_results[0].pose
     fill = tuple(int(Color.GHOST_FILL[start : start + 2], 16) for start in (1, 3, 5))
     counts = []
     for shown in (pose, replace(pose, nodes=robot.body.mesh.nodes)):

@@ -10,7 +10,7 @@ from builders import box_mesh, mesh_body, strip_mesh
 
 from hydrostat.control import Calibration
 from hydrostat.errors import InputError
-from hydrostat.ik import find_reach
+from hydrostat.ik import find_workspaces
 from hydrostat.robot import Load, Marker, Material, Pin, PinDrive, Robot
 from hydrostat.simulation import ContractionProfile, Simulation, StepOptions, find_equilibria
 
@@ -158,7 +158,7 @@ def test_wrong_values_are_told_in_one_line() -> None:
     with pytest.raises(InputError, match='drives, such as "servo", are not available in a search for several'):
         find_equilibria(simulation, [0.1])
     for refuse, what in (
-        (find_reach, "workspaces"),
+        (find_workspaces, "workspaces"),
         (lambda one: Calibration.usual(one.robot).check(one.robot), "motors"),
     ):
         with pytest.raises(InputError, match=f'drives, such as "servo", are not available in {what}'):

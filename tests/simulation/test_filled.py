@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hydrostat.robot import Face, gallery_folder, inflated_robot, load_robot
-from hydrostat.simulation import Simulation, filled_motion
+from hydrostat.simulation import Simulation, solve_stuffed_motion
 
 ROBOT = load_robot(gallery_folder("starfish"))
 PULLED = np.array([0.0, 0.02, 0.01])
@@ -12,13 +12,13 @@ PULLED = np.array([0.0, 0.02, 0.01])
 
 @pytest.mark.parametrize("face", ["pairs", "middle"])
 def test_cables_on_both_faces_or_between_them_keep_a_body_flat(face: str, unchecked: None) -> None:
-    found = filled_motion(ROBOT, [PULLED], face)
+    found = solve_stuffed_motion(ROBOT, [PULLED], face)
     assert 0.0 <= found.out <= 1e-3
     assert found.face is Face(face)
 
 
 def test_one_face_curls_it_and_the_most_of_all_poses_is_told(unchecked: None) -> None:
-    found = filled_motion(ROBOT, [0.5 * PULLED, PULLED], "front")
+    found = solve_stuffed_motion(ROBOT, [0.5 * PULLED, PULLED], "front")
     assert 1e-2 <= found.out <= 0.1
     assert found.face is Face.FRONT
     flat, solid = Simulation(ROBOT).solve(PULLED), Simulation(inflated_robot(ROBOT, "front")).solve(PULLED)

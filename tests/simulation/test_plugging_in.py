@@ -130,7 +130,7 @@ def test_an_energy_says_how_patient_its_corrections_are(patience: int, fits: boo
     tie = toys()["tie"]
     assert isinstance(tie, YieldingTie)
     slow = SluggishTie(NODES, TIP, stiffness=tie.stiffness, limit=tie.limit)
-    slow.patience = patience  # type: ignore[misc]
+    slow.max_stalled_corrections = patience  # type: ignore[misc]
     goal = np.array([0.03, 0.0])
     prompt = Simulation(ROBOT, energies=[tie]).solve(goal)
     found = Simulation(ROBOT, energies=[slow]).solve(goal, strict=False)
@@ -141,8 +141,8 @@ def test_an_energy_says_how_patient_its_corrections_are(patience: int, fits: boo
 
 def test_contact_friction_is_more_patient_than_cables() -> None:
     """Oracle: decision 0031, where eight corrections are too few for a grasp."""
-    assert FrictionCableEnergy.patience == 8
-    assert min(ObstacleEnergy.patience, SelfFrictionEnergy.patience) == 40
+    assert FrictionCableEnergy.max_stalled_corrections == 8
+    assert min(ObstacleEnergy.max_stalled_corrections, SelfFrictionEnergy.max_stalled_corrections) == 40
 
 
 def test_the_adjoint_counts_the_controls_of_all_energies() -> None:

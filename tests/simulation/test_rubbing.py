@@ -135,7 +135,7 @@ def test_derivatives_and_balance_of_forces(dim: int) -> None:
     nodes = blocks.nodes + 2e-5 * np.random.default_rng(1).normal(size=blocks.nodes.shape)
     energy = blocks.rubbing.with_active_terms(nodes)
     grip = energy.clasp.grip
-    lengths = grip.ways(energy.clasp.places(nodes))[1]
+    lengths = grip.slips(energy.clasp.places(nodes))[1]
     limits = grip.springs * lengths * np.where(np.arange(len(lengths)) % 2, 2.0, 0.5)
     energy = SelfFrictionEnergy(energy.contact, energy.clasp.with_grip(replace(grip, limits=limits)))
     check_energy(energy, nodes, IDLE)

@@ -19,7 +19,7 @@ from hydrostat.errors import InputError
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.jobs import Jobs, JobState, Slots
 
-PATIENCE = 60.0
+TIMEOUT = 60.0
 
 
 class Heard:
@@ -46,7 +46,7 @@ class Heard:
         self.parted.set()
 
     def end(self) -> JobState:
-        assert self.ended.wait(PATIENCE)
+        assert self.ended.wait(TIMEOUT)
         state = self.jobs.state
         assert state is not None
         assert not state.running
@@ -135,7 +135,7 @@ def test_the_end_is_told_of_its_own_work_though_other_work_has_begun(jobs: Jobs)
 
     first.begin(works.refuse)
     jobs._bell.listen(hear)
-    assert first.ended.wait(PATIENCE)
+    assert first.ended.wait(TIMEOUT)
     second.end()
     assert first.errors == ["2 winches and 1 cable: ask for more"]
     assert second.errors == [""]
@@ -155,7 +155,7 @@ def test_what_goes_wrong_on_this_side_ends_the_work(heard: Heard) -> None:
         raise InputError("not this one")
 
     heard.jobs.start("Waiting", works.wait, on_part=refuse, on_end=lambda error: ended.set())
-    assert ended.wait(PATIENCE)
+    assert ended.wait(TIMEOUT)
     assert heard.jobs.state is not None
     assert heard.jobs.state.error == "not this one"
     assert not lives(pids[0])
@@ -171,7 +171,7 @@ def test_one_at_a_time(heard: Heard) -> None:
 
 def test_stopped_work_returns_what_it_has(heard: Heard) -> None:
     heard.begin(works.wait)
-    assert heard.parted.wait(PATIENCE)
+    assert heard.parted.wait(TIMEOUT)
     heard.jobs.stop()
     state = heard.end()
     assert state.stopping
@@ -188,7 +188,7 @@ def test_stopped_before_its_process_is_born(heard: Heard) -> None:
 
 def test_a_stop_cuts_no_message_in_two(heard: Heard) -> None:
     heard.begin(works.chatter)
-    assert heard.parted.wait(PATIENCE)
+    assert heard.parted.wait(TIMEOUT)
     heard.jobs.stop()
     assert heard.end().error == ""
     assert heard.results == [pytest.approx(len(heard.parts), abs=1)]
@@ -197,7 +197,7 @@ def test_a_stop_cuts_no_message_in_two(heard: Heard) -> None:
 
 def test_a_stop_when_all_is_done_loses_nothing(heard: Heard) -> None:
     heard.begin(works.finishing, 2000)
-    assert heard.parted.wait(PATIENCE)
+    assert heard.parted.wait(TIMEOUT)
     heard.jobs.stop()
     heard.end()
     assert heard.results == ["whole"]
@@ -205,7 +205,7 @@ def test_a_stop_when_all_is_done_loses_nothing(heard: Heard) -> None:
 
 def test_stopped_twice_is_ended_at_once(heard: Heard) -> None:
     heard.begin(works.stubborn)
-    assert heard.parted.wait(PATIENCE)
+    assert heard.parted.wait(TIMEOUT)
     heard.jobs.stop()
     assert heard.jobs.is_running
     heard.jobs.stop()
@@ -215,7 +215,7 @@ def test_stopped_twice_is_ended_at_once(heard: Heard) -> None:
 
 def test_a_killed_process_is_told_of(heard: Heard) -> None:
     heard.begin(works.wait)
-    assert heard.parted.wait(PATIENCE)
+    assert heard.parted.wait(TIMEOUT)
     os.kill(heard.parts[0], signal.SIGKILL)
     assert "exit code -9" in heard.end().error
 
@@ -225,7 +225,7 @@ def test_closing_ends_all(heard: Heard) -> None:
     heard.jobs.warm()
     heard.begin(works.wait)
     heard.jobs.warm()
-    assert heard.parted.wait(PATIENCE)
+    assert heard.parted.wait(TIMEOUT)
     heard.jobs.close()
     assert heard.end().error == "stopped"
     assert not lives(heard.parts[0])
@@ -253,16 +253,16 @@ def test_no_process_outlives_its_studio() -> None:
         "import job_works\nif __name__ == '__main__': job_works.orphan(Told())"
     )
     here = str(Path(__file__).parent)
-    told = subprocess.run([sys.executable, "-c", code, here], capture_output=True, text=True, timeout=PATIENCE)
+    told = subprocess.run([sys.executable, "-c", code, here], capture_output=True, text=True, timeout=TIMEOUT)
     pid = int(told.stdout)
     with suppress(ProcessLookupError):  # it may be gone already
-        ended = select.select([os.pidfd_open(pid)], [], [], PATIENCE)[0]
+        ended = select.select([os.pidfd_open(pid)], [], [], TIMEOUT)[0]
         assert ended
 
 
 def test_ctrl_c_in_the_terminal_leaves_work_to_the_studio(heard: Heard) -> None:
     heard.begin(works.wait)
-    assert heard.parted.wait(PATIENCE)
+    assert heard.parted.wait(TIMEOUT)
     os.kill(heard.parts[0], signal.SIGINT)
     assert lives(heard.parts[0])
     heard.jobs.stop()

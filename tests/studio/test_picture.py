@@ -11,8 +11,8 @@ from hydrostat.fabrication import winch_marks_of
 from hydrostat.geometry import locate
 from hydrostat.robot import Robot
 from hydrostat.studio.view.picture import Picture, packet, parse_message
-from hydrostat.studio.view.robot_things import DETAIL, robot_things, target_things, winch_bars
-from hydrostat.studio.view.things import Area, Cloud, Dot, Ghost, Look, Stroke, rest_shape
+from hydrostat.studio.view.robot_items import DETAIL, robot_items, target_items, winch_bars
+from hydrostat.studio.view.scene_items import Area, Cloud, Dot, Ghost, Look, Stroke, rest_shape
 
 pytestmark = pytest.mark.filterwarnings("error")
 
@@ -35,7 +35,7 @@ def test_a_packet_opens_to_what_was_put_in() -> None:
 
 
 def test_the_scene_has_the_surface_of_the_body(robot: Robot) -> None:
-    head, arrays = parse_message(Picture(robot, robot_things(robot), 7).scene())
+    head, arrays = parse_message(Picture(robot, robot_items(robot), 7).scene())
     mesh = robot.body.mesh
     assert (head["serial"], head["dim"], head["name"]) == (7, mesh.dim, robot.name)
     faces = mesh.elements if mesh.dim == 2 else mesh.boundary
@@ -48,7 +48,7 @@ def test_the_scene_has_the_surface_of_the_body(robot: Robot) -> None:
 
 def test_a_frame_moves_what_is_stuck_to_the_body(robot: Robot) -> None:
     mesh = robot.body.mesh
-    things = robot_things(robot, vias=True)
+    things = robot_items(robot, vias=True)
     picture = Picture(robot, things, 1)
     moved = mesh.nodes * 1.1 + 0.01
     _, arrays = parse_message(picture.frame(moved, things, {}))
@@ -66,13 +66,13 @@ def test_places_in_the_world_and_loads_need_no_new_scene(robot: Robot) -> None:
 
     def things(target: tuple[float, ...], tension: float) -> list:
         tensions = np.full(len(robot.cables), tension)
-        return [*robot_things(robot, tensions=tensions), *target_things({name: target}, {name: at})]
+        return [*robot_items(robot, tensions=tensions), *target_items({name: target}, {name: at})]
 
     picture = Picture(robot, things(at, 0.0), 1)
     assert picture.fits(robot, things(away, 5.0))
     _, arrays = parse_message(picture.frame(robot.body.mesh.nodes, things(away, 5.0), {}))
     assert np.allclose(arrays["points"][-1, : len(away)], away, atol=1e-6)
-    assert not picture.fits(robot, robot_things(robot))
+    assert not picture.fits(robot, robot_items(robot))
     assert not picture.fits(robot, things(at, 0.0)[1:])
 
 
@@ -125,7 +125,7 @@ def test_winches_have_the_marks_of_the_kit() -> None:
     """The sheet's own marks in the view and in the bars of Pose (finding 34); a color each, up to sixteen."""
     robot = gallery_robot("starfish")
     marks = winch_marks_of(robot)
-    dots = [thing for thing in robot_things(robot) if isinstance(thing, Dot) and thing.key.startswith("winch:")]
+    dots = [thing for thing in robot_items(robot) if isinstance(thing, Dot) and thing.key.startswith("winch:")]
     assert {dot.label: dot.short for dot in dots} == marks
     assert {bar.winch: bar.mark for bar in winch_bars(robot, rest_shape(robot), 20.0)} == marks
     many = [replace(robot.winches[0], name=f"winch_{number}") for number in range(16)]
@@ -137,7 +137,7 @@ def test_eyes_are_shown_and_go_along_with_the_body() -> None:
     robot = gallery_robot("starfish")
     eye = 0.01 * np.stack([np.cos(np.linspace(0, 6, 5000)), np.sin(np.linspace(0, 6, 5000))], axis=1)
     robot = replace(robot, body=replace(robot.body, marks=(eye,)))
-    things = robot_things(robot)
+    things = robot_items(robot)
     picture = Picture(robot, things, 1)
     head, _ = parse_message(picture.scene())
     (drawn,) = [thing for thing in head["things"] if thing.get("stroke") == Stroke.DRAWN]

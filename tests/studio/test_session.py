@@ -15,7 +15,7 @@ from hydrostat.studio.session import Session, Tone
 from hydrostat.studio.stage import Hit, Stage, StageName
 from hydrostat.studio.view.coloring import Coloring
 from hydrostat.studio.view.picture import parse_message
-from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
+from hydrostat.studio.view.scene_items import RobotShape, SceneItem, rest_shape
 
 
 class Diary(Stage):
@@ -27,7 +27,7 @@ class Diary(Stage):
     def shape(self) -> RobotShape:
         return rest_shape(self.session.document.robot)
 
-    def things(self) -> Sequence[Thing]:
+    def scene_items(self) -> Sequence[SceneItem]:
         return []
 
     def enter(self) -> None:

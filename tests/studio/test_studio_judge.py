@@ -14,8 +14,8 @@ from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.judge import QUIET, Judge
 from hydrostat.studio.session import Session
 from hydrostat.studio.stage import StageName
-from hydrostat.studio.view.robot_things import BRIEF, TONES, finding_things
-from hydrostat.studio.view.things import Dot, Look
+from hydrostat.studio.view.robot_items import BRIEF, TONES, diagnostic_items
+from hydrostat.studio.view.scene_items import Dot, Look
 
 WISHES = Wishes()
 
@@ -49,7 +49,7 @@ def test_what_is_said_is_the_one_judgement_once_a_robot_rests(squid: Robot) -> N
     assert judge.of(squid, WISHES) is None
     assert heard == []
     assert judged(judge, squid) == review_robot(squid, constraints=WISHES.to_constraints(squid))
-    assert set(heard) == {Topic.JOB, Topic.THINGS}
+    assert set(heard) == {Topic.JOB, Topic.SCENE}
 
 
 def test_other_wishes_and_other_kits_are_judged_anew(squid: Robot) -> None:
@@ -111,7 +111,7 @@ def test_a_finding_is_chosen_and_let_go(squid: Robot) -> None:
     judge = Judge(Bell())
     first = judged(judge, squid)[0]
     judge.choose(first)
-    chosen = [dot for dot in finding_things(squid, judged(judge, squid), judge.chosen) if dot.chosen]  # type: ignore[union-attr]
+    chosen = [dot for dot in diagnostic_items(squid, judged(judge, squid), judge.chosen) if dot.chosen]  # type: ignore[union-attr]
     assert {dot.at for dot in chosen} == {place.at for place in first.places}  # type: ignore[union-attr]
     judge.choose(first)
     assert judge.chosen is None
@@ -119,12 +119,12 @@ def test_a_finding_is_chosen_and_let_go(squid: Robot) -> None:
 
 def test_a_ring_at_every_place_with_few_words(squid: Robot) -> None:
     said = review_robot(squid, constraints=WISHES.to_constraints(squid))
-    dots = finding_things(squid, said)
+    dots = diagnostic_items(squid, said)
     expected = {(place.at, TONES[one.weight], place.part) for one in said for place in one.places}
     assert flags(dots) == expected
     assert all(0 < len(dot.label) <= BRIEF + 2 and dot.key == "" for dot in dots)  # type: ignore[union-attr]
     outside = squid.with_network([replace(squid.winches[0], mount=Mount.WORLD), *squid.winches[1:]], squid.cables)
-    loose = {dot.about for dot in finding_things(outside, said) if not dot.stuck}  # type: ignore[union-attr]
+    loose = {dot.about for dot in diagnostic_items(outside, said) if not dot.stuck}  # type: ignore[union-attr]
     assert loose <= {f"winch:{squid.winches[0].name}"}
 
 
@@ -136,7 +136,7 @@ def test_edit_design_and_export_mark_the_same(squid: Robot) -> None:
         stage = session.stages[name]
         stage.step(0.0)
         stage.step(2 * QUIET)
-        seen[name] = flags(stage.things())
+        seen[name] = flags(stage.scene_items())
     said = session.document.judge.of(squid, session.document.work.wishes)
     assert said
     expected = {(place.at, TONES[one.weight], place.part) for one in said for place in one.places}

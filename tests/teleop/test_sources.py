@@ -251,7 +251,7 @@ def test_a_hand_that_falls_silent_and_comes_back(monkeypatch: pytest.MonkeyPatch
     assert "does not answer" in wish.words
     emulated.spoil = lambda answer: answer
     assert until(source.read, lambda wish: time.monotonic() - wish.stamp < source.silence).places
-    monkeypatch.setattr("hydrostat.teleop.mapped_hand.PATIENCE", 0.1)
+    monkeypatch.setattr("hydrostat.teleop.mapped_hand.STARTUP_TIMEOUT", 0.1)
     emulated.spoil = lambda answer: b""
     with pytest.raises(HydrostatError, match="does not answer with 22 sensors"):
         until(source.read, lambda wish: False)

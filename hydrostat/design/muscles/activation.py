@@ -59,13 +59,13 @@ def element_fibres(mesh: Mesh, directions: Float[np.ndarray, "elements dim"]) ->
     corners = mesh.nodes[mesh.elements]
     inverse = np.linalg.inv(np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2))
     local = np.einsum("eij,ej->ei", inverse, directions)
-    slopes = np.column_stack([-local.sum(axis=1), local])
+    sensitivities = np.column_stack([-local.sum(axis=1), local])
     center = 1.0 / (mesh.dim + 1)
     with np.errstate(divide="ignore"):
-        reach = center / np.abs(slopes)
-    forward = np.where(slopes < 0, reach, np.inf).min(axis=1)
-    backward = np.where(slopes > 0, reach, np.inf).min(axis=1)
-    return Fibres(mesh.elements, center - backward[:, None] * slopes, center + forward[:, None] * slopes)
+        reach = center / np.abs(sensitivities)
+    forward = np.where(sensitivities < 0, reach, np.inf).min(axis=1)
+    backward = np.where(sensitivities > 0, reach, np.inf).min(axis=1)
+    return Fibres(mesh.elements, center - backward[:, None] * sensitivities, center + forward[:, None] * sensitivities)
 
 
 def wanted_directions(
@@ -82,8 +82,8 @@ def wanted_directions(
     places = {marker.name: marker.at for marker in robot.markers}
     anchors = locate(mesh, np.array([places[name] for name in pose.targets]))
     miss = anchors.positions(mesh.nodes) - np.array(list(pose.targets.values()), dtype=float)
-    slope = anchors.matrix(len(mesh.nodes)).T @ miss
-    field = body.rest_factors.solve(-slope.ravel()).reshape(mesh.nodes.shape)
+    sensitivity = anchors.matrix(len(mesh.nodes)).T @ miss
+    field = body.rest_factors.solve(-sensitivity.ravel()).reshape(mesh.nodes.shape)
     corners = mesh.nodes[mesh.elements]
     inverse = np.linalg.inv(corners[:, 1:] - corners[:, :1])
     moved = field[mesh.elements]
@@ -178,7 +178,7 @@ class _Activation:
 
     def _jacobian(self, nodes: Nodes, tensions: Vector) -> Float[np.ndarray, "rows fibres"]:
         """D markers / d tensions by the adjoint: one solve for each marker coordinate, none for each fibre."""
-        rows = place_slopes(self.anchors, nodes)
+        rows = anchor_jacobian(self.anchors, nodes)
         adjoint = self.assembly.stiffness(nodes, tensions).solve(rows)
         return -(self.assembly.control_derivative(nodes, tensions).T @ adjoint).T
 
@@ -209,8 +209,8 @@ class _Activation:
         return float(0.5 * (miss**2).sum() + 0.5 * rho * tensions @ tensions)
 
 
-def place_slopes(held: Anchors, nodes: Nodes) -> Float[np.ndarray, "dofs rows"]:
-    """Slopes of the places of held points by the nodes, a column for each of their coordinates."""
+def anchor_jacobian(held: Anchors, nodes: Nodes) -> Float[np.ndarray, "dofs rows"]:
+    """Sensitivities of the places of held points by the nodes, a column for each of their coordinates."""
     points, dim = len(held.stencils), nodes.shape[1]
     rows = np.zeros((nodes.size, points * dim))
     for point in range(points):
@@ -238,12 +238,14 @@ def least_effort(
         asked = jacobian.T @ y
         pull = np.clip(asked, 0.0, full)
         active = jacobian[:, (asked > 0) & (asked < full)]
-        slope = wanted - y - jacobian @ pull / rho
-        if np.abs(slope).max(initial=0.0) <= 1e-12 * np.abs(wanted).max(initial=0.0):
+        sensitivity = wanted - y - jacobian @ pull / rho
+        if np.abs(sensitivity).max(initial=0.0) <= 1e-12 * np.abs(wanted).max(initial=0.0):
             break
-        step = np.linalg.solve(np.eye(len(y)) + active @ active.T / rho, slope)
+        step = np.linalg.solve(np.eye(len(y)) + active @ active.T / rho, sensitivity)
         length = 1.0
-        while (trial := _dual(jacobian, wanted, rho, full, y + length * step)) < value + 1e-4 * length * slope @ step:
+        while (
+            trial := _dual(jacobian, wanted, rho, full, y + length * step)
+        ) < value + 1e-4 * length * sensitivity @ step:
             length *= 0.5
             if length < 1e-8:
                 return pull / rho

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.sparse import csc_array
 
 from hydrostat.arrays import Float, Nodes, Points, Vector
-from hydrostat.design.muscles.activation import Fibres, edge_fibres, least_effort, place_slopes
+from hydrostat.design.muscles.activation import Fibres, anchor_jacobian, edge_fibres, least_effort
 from hydrostat.geometry import Anchors
 from hydrostat.mechanics import NewtonOptions, NewtonResult, minimize
 from hydrostat.robot import Robot
@@ -129,7 +129,7 @@ class FreePosing:
         Effort weighs more for a goal out of reach, so that the strongest fibre pulls as hard as it can and the others
         by their leverage; were all of them at their bounds, the body would be crushed.
         """
-        rows = np.hstack([aim.weight * place_slopes(aim.points, self.nodes) for aim in aims])
+        rows = np.hstack([aim.weight * anchor_jacobian(aim.points, self.nodes) for aim in aims])
         adjoint = self._stiffness.solve(rows)
         jacobian = -(self._pulls(self.nodes, self.tensions).T @ adjoint).T
         gradient = self._assembly.gradient(self.nodes, self.tensions)

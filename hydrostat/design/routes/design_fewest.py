@@ -6,11 +6,11 @@ from dataclasses import replace
 from hydrostat.design.network import Alternative, Network, Size, size_of
 from hydrostat.design.request import COUNTS, DesignRequest
 from hydrostat.design.routes.deadline import Deadline
-from hydrostat.design.routes.design_routes import Hints, RouteSearch
+from hydrostat.design.routes.design_routes import FirstRobots, RouteSearch
 from hydrostat.design.routes.finalists import kit_fits
 from hydrostat.design.routes.search_record import SearchRecord
 from hydrostat.design.routes.search_rules import RULES
-from hydrostat.design.watch import Better, Watch, unseen
+from hydrostat.design.stage_callback import Better, StageCallback, ignore_stage
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.progress import Progress
 from hydrostat.robot import Robot
@@ -22,8 +22,8 @@ def design_fewest(
     request: DesignRequest,
     *,
     progress: Progress,
-    watch: Watch = unseen,
-    hints: Hints = lambda _: (),
+    watch: StageCallback = ignore_stage,
+    hints: FirstRobots = lambda _: (),
     record: SearchRecord | None = None,
 ) -> Network:
     """One winch, then two, and so on, until every pose is reached within the tolerance, or there are no more cables.
@@ -62,16 +62,16 @@ def design_fewest(
         sizes = search.sizes if found[-1].complete else {}
         judged = (search.finalists.judge(trial.layout) for trial in sizes.values())
         _keep_best(front, [*(network for network in judged if network is not None), *_all(found[-1])])
-        if not found[-1].complete or all(reached.rms_error <= tolerance for reached in found[-1].reached):
+        if not found[-1].complete or all(reached.rms_error <= tolerance for reached in found[-1].ik_results):
             break
     best = found[-1]
-    if any(reached.rms_error > tolerance for reached in best.reached):
+    if any(reached.rms_error > tolerance for reached in best.ik_results):
         best = min(found, key=_worth)
     return replace(
         best,
         alternatives=tuple(front[counts] for counts in sorted(front)),
         request=replace(request, constraints=best.request.constraints),
-        tried=sum(network.tried for network in found),
+        num_evaluated=sum(network.num_evaluated for network in found),
         seconds=sum(network.seconds for network in found),
         complete=not interrupted and all(network.complete for network in found),
         timed_out=found[-1].timed_out,
@@ -101,8 +101,10 @@ def _keep_best(front: dict[Size, Alternative], networks: Iterable[Alternative]) 
 
 def _worth(network: Alternative | Network) -> tuple[bool, float]:
     """By which the best is the least: those whose kit would be refused come last, then the error once built."""
-    return not kit_fits(network), network.built
+    return not kit_fits(network), network.expected_error
 
 
 def _all(network: Network) -> tuple[Alternative, ...]:
-    return Alternative(robot=network.robot, reached=network.reached, built=network.built), *network.alternatives
+    return Alternative(
+        robot=network.robot, ik_results=network.ik_results, expected_error=network.expected_error
+    ), *network.alternatives

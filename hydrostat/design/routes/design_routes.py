@@ -29,8 +29,8 @@ from hydrostat.design.routes.search_rules import RULES
 from hydrostat.design.routes.sketch import sketches
 from hydrostat.design.routes.thin import remove_via_points
 from hydrostat.design.skin_region import cable_region
+from hydrostat.design.stage_callback import StageCallback, ignore_stage
 from hydrostat.design.uncertainty import BuildTolerances
-from hydrostat.design.watch import Watch, unseen
 from hydrostat.design.winch_room import built_in
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.kernel import THREADS
@@ -38,7 +38,7 @@ from hydrostat.progress import Progress
 from hydrostat.robot import Robot
 from hydrostat.simulation import BodyPhysics, Simulation
 
-Hints = Callable[[BodyPhysics], Iterable[Robot]]
+FirstRobots = Callable[[BodyPhysics], Iterable[Robot]]
 """Finds networks to begin with, when it is their turn, by the physics of the body."""
 
 
@@ -47,8 +47,8 @@ def design_routes(
     request: DesignRequest,
     *,
     progress: Progress,
-    watch: Watch = unseen,
-    hints: Hints = lambda _: (),
+    watch: StageCallback = ignore_stage,
+    hints: FirstRobots = lambda _: (),
     body: BodyPhysics | None = None,
     record: SearchRecord | None = None,
 ) -> Network:
@@ -87,8 +87,8 @@ class RouteSearch:
         request: DesignRequest,
         body: BodyPhysics,
         progress: Progress,
-        watch: Watch = unseen,
-        hints: Hints = lambda _: (),
+        watch: StageCallback = ignore_stage,
+        hints: FirstRobots = lambda _: (),
         deadline: Deadline | None = None,
         record: SearchRecord | None = None,
     ) -> None:
@@ -97,7 +97,7 @@ class RouteSearch:
         self.hints, self.physics = hints, body
         self.winches, self.cables = int(request.winches), request.cables
         self.constraints, self.options = request.constraints, request.route_options
-        if self.constraints.built_in and not request.improve and not self.constraints.stand_outside(robot):
+        if self.constraints.built_in and not request.warm_start and not self.constraints.stand_outside(robot):
             self.constraints = built_in(robot, self.constraints, winches=self.winches, cables=self.cables)
         self.evaluator = Evaluator(
             robot,
@@ -105,7 +105,7 @@ class RouteSearch:
             self.constraints,
             request.uncertainty or BuildTolerances.none(),
             body,
-            self.options.reach,
+            self.options.workspace_weight,
         )
         self.evaluator.look, self.evaluator.time_left = self._look, self._time_left
         if robot.contact is None and not robot.obstacles:  # parts that touch are remembered, and not sent
@@ -148,11 +148,11 @@ class RouteSearch:
             robot=network.robot,
             source=self.robot,
             request=replace(self.request, constraints=self._fitting_constraints),
-            reached=network.reached,
-            built=network.built,
+            ik_results=network.ik_results,
+            expected_error=network.expected_error,
             alternatives=tuple(alternatives),
             trace=RouteTrace(stages=tuple(self.stages), certificate=certificate),
-            tried=self.evaluator.solves,
+            num_evaluated=self.evaluator.solves,
             seconds=_measure_cpu_time() - began,
             complete=complete,
             timed_out=timed_out,
@@ -255,7 +255,7 @@ class RouteSearch:
         trials = []
         for hint in (
             self.hints(self.physics)
-            if not self.request.improve and not any(self.constraints.staying(self.robot))
+            if not self.request.warm_start and not any(self.constraints.staying(self.robot))
             else ()
         ):
             pushed = pushed_back(layout_of(hint, self.constraints), self.region, 0.03 * self.robot.body.mesh.size)
@@ -294,9 +294,9 @@ class RouteSearch:
     def _beginning(self) -> Layout:
         """Return the layout at the start of the search: empty, the locked parts, or the whole network."""
         whole = layout_of(self.robot, self.constraints)
-        if self.request.improve and not whole.routes:
+        if self.request.warm_start and not whole.routes:
             raise InputError("the robot has no cables to improve; design without improving it")
-        if self.request.improve:
+        if self.request.warm_start:
             self._check_counts("to be improved", len(whole.sites), len(whole.routes))
             pushed = pushed_back(whole, self.region, 0.03 * self.robot.body.mesh.size)
             told = None if pushed is None else violations(pushed.robot(digits=DIGITS), self.constraints, self.region)
@@ -333,7 +333,10 @@ class RouteSearch:
         if size not in self.sizes or trial.cost < self.sizes[size].cost:
             self.sizes[size] = trial
         stage = DesignStage(
-            words=words, robot=trial.layout.robot(digits=DIGITS), error=trial.built_error, tried=self.evaluator.solves
+            words=words,
+            robot=trial.layout.robot(digits=DIGITS),
+            error=trial.built_error,
+            num_evaluated=self.evaluator.solves,
         )
         self.stages.append(stage)
         self.passed.append((trial.cost, trial.layout))
@@ -349,7 +352,7 @@ class RouteSearch:
 
     def _certificate(self, network: Alternative) -> Certificate | None:
         layout = layout_of(network.robot, self.constraints)
-        poses = [reached.pose for reached in network.reached]
+        poses = [reached.pose for reached in network.ik_results]
         return certify(
             self.proposals, self.evaluator.trial(layout, Simulation(network.robot, body=self.evaluator.body), poses)
         )

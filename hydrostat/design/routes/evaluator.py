@@ -19,7 +19,7 @@ from hydrostat.design.routes.shared_work import map_in_order
 from hydrostat.design.spread import Columns, spread_columns
 from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.errors import InputError, NotConvergedError
-from hydrostat.ik import IKOptions, reach_extent, solve_ik, spool_arms, usable_spans
+from hydrostat.ik import IKOptions, solve_ik, spool_arms, usable_spans, workspace_extent
 from hydrostat.robot import PoseTarget, Robot
 from hydrostat.simulation import BodyPhysics, CableSensitivities, Equilibrium, Simulation, cable_sensitivities
 
@@ -35,7 +35,7 @@ class Trial:
     layout: Layout  # winches and cables
     simulation: Simulation  # of the robot with them
     poses: tuple[Equilibrium, ...]  # at equilibrium, one for each target
-    slopes: tuple[CableSensitivities, ...]  # of the markers of each pose and of all tensions there
+    sensitivities: tuple[CableSensitivities, ...]  # of the markers of each pose and of all tensions there
     columns: tuple[Columns, ...]  # what each tolerance does to the markers of each pose: see `spread_columns` [m]
     error: float  # root of the mean squared marker error over all poses [m]
     spread: float  # root of the mean variance of the markers as built, over all poses [m]
@@ -324,7 +324,7 @@ class Evaluator:
     def solve_variation(
         self, layout: Layout, near: Equilibrium, contractions: Vector, index: int
     ) -> tuple[Simulation, Nodes, CableSensitivities] | None:
-        """Solve a layout built otherwise, near a pose: nodes [m] and slopes of markers; None without equilibrium."""
+        """Solve another layout near a pose: nodes [m] and sensitivities of markers; None without equilibrium."""
         self.look()
         try:
             simulation = Simulation(layout.robot(limited=True), body=self.body)
@@ -332,8 +332,8 @@ class Evaluator:
             if not (result.converged and result.stable):
                 return None
             pose = simulation.make_pose(contractions, result)
-            slopes = cable_sensitivities(simulation, pose, self.markers[index], tensions=False)
-            return simulation, pose.nodes, slopes
+            sensitivities = cable_sensitivities(simulation, pose, self.markers[index], tensions=False)
+            return simulation, pose.nodes, sensitivities
         except (InputError, NotConvergedError):  # a hole outside the body, or about to snap
             return None
 
@@ -359,18 +359,18 @@ class Evaluator:
     def trial(self, layout: Layout, simulation: Simulation, poses: Sequence[Equilibrium]) -> Trial:
         """The trial of poses that were solved."""
         pull = max(self.pull(simulation.robot, pose.tensions) for pose in poses)
-        slopes = tuple(
+        sensitivities = tuple(
             cable_sensitivities(simulation, pose, markers) for pose, markers in zip(poses, self.markers, strict=True)
         )
         columns = tuple(
-            spread_columns(simulation, pose, slope, self.uncertainty, len(markers) * layout.dim)
-            for pose, slope, markers in zip(poses, slopes, self.markers, strict=True)
+            spread_columns(simulation, pose, sensitivity, self.uncertainty, len(markers) * layout.dim)
+            for pose, sensitivity, markers in zip(poses, sensitivities, self.markers, strict=True)
         )
         variances = [((w[:, None] * one) ** 2).sum() for w, one in zip(self.weights, columns, strict=True)]
         spread = np.sqrt(sum(variances, 0.0))
         error = self._error(simulation, poses)
-        near = self.nearness(simulation.robot, slopes)
-        return Trial(layout, simulation, tuple(poses), slopes, columns, error, float(spread), pull, near=near)
+        near = self.nearness(simulation.robot, sensitivities)
+        return Trial(layout, simulation, tuple(poses), sensitivities, columns, error, float(spread), pull, near=near)
 
     def pull(self, robot: Robot, tensions: Vector) -> float:
         """The largest tension or torque, as a share of its limit."""
@@ -379,17 +379,17 @@ class Evaluator:
             return share
         return max(share, float(np.abs(spool_arms(robot) @ tensions).max(initial=0.0)) / self.constraints.torque)
 
-    def nearness(self, robot: Robot, slopes: Sequence[CableSensitivities]) -> float:
+    def nearness(self, robot: Robot, sensitivities: Sequence[CableSensitivities]) -> float:
         """Factor of the cost of a network by its reach at some poses: (size / reach)^weight, at least 1."""
         if not self.reach:
             return 1.0
         mesh, limit = robot.body.mesh, self.constraints.tension_limit
         ranges = np.array([winch.travel + winch.release for winch in robot.winches])
         lengths = []
-        for one in slopes:
+        for one in sensitivities:
             moves, pulls = np.split(one.contractions, [len(one.contractions) - len(robot.cables)])
             spans = usable_spans(pulls, ranges, limit)
-            lengths.append(reach_extent(moves, spans, dim=mesh.dim, floor=RULES.min_reach * mesh.size))
+            lengths.append(workspace_extent(moves, spans, dim=mesh.dim, floor=RULES.min_reach * mesh.size))
         return max(mesh.size / float(np.exp(np.mean(np.log(lengths)))), 1.0) ** self.reach
 
     def _error(self, simulation: Simulation, poses: Sequence[Equilibrium]) -> float:

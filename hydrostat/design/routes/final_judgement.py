@@ -36,7 +36,7 @@ class FinalJudgement:
         try:
             self._judge_found()
         except (KeyboardInterrupt, TimeUpError):
-            self.networks.sort(key=lambda network: (not kit_fits(network), network.built))
+            self.networks.sort(key=lambda network: (not kit_fits(network), network.expected_error))
             raise
 
     def _judge_found(self) -> None:
@@ -71,14 +71,14 @@ class FinalJudgement:
 
         Winches stand farther apart, so that stronger motors fit, or poses ask for less torque.
         """
-        torque = find_holding_torque(network.robot, network.reached)
+        torque = find_holding_torque(network.robot, network.ik_results)
         if torque is None:
             return None
         return self._hold_apart(network) or self._hold_weaker(network, torque)
 
     def _hold_apart(self, network: Alternative) -> Alternative | None:
         """The network with its winches as far apart as motors need that hold the poses for long; None if none is."""
-        allowed = (1 + RULES.holding_cost) * network.built
+        allowed = (1 + RULES.holding_cost) * network.expected_error
         layout = replace(layout_of(network.robot, self.finalists.constraints), source=self.finalists.robot)
         before = self.growth.evaluator.reach_poses(layout, None)
         if before is None:
@@ -90,9 +90,9 @@ class FinalJudgement:
             refined = self.growth.refine(moved, wanted=allowed)
             hopeful = refined.cost < RULES.unjudged_cost * allowed
             held = self.finalists.judge(refined.layout) if hopeful else None
-            if held is None or held.built > allowed:
+            if held is None or held.expected_error > allowed:
                 continue
-            if kit_fits(held) and find_holding_torque(held.robot, held.reached) is None:
+            if kit_fits(held) and find_holding_torque(held.robot, held.ik_results) is None:
                 return held
         return None
 
@@ -104,14 +104,14 @@ class FinalJudgement:
             layout = layout_of(network.robot, evaluator.constraints)
             trial = evaluator.reach_poses(layout, None)
             finalists = replace(self.finalists, constraints=evaluator.constraints)
-            allowed = (1 + RULES.holding_cost) * network.built
+            allowed = (1 + RULES.holding_cost) * network.expected_error
             refined = None if trial is None else self.growth.refine(trial, wanted=allowed)
             hopeful = refined is not None and refined.cost < RULES.unjudged_cost * allowed
             held = finalists.judge(refined.layout) if refined is not None and hopeful else None
         except BaseException:
             evaluator.constraints = usual
             raise
-        if held is not None and kit_fits(held) and held.built < allowed:
+        if held is not None and kit_fits(held) and held.expected_error < allowed:
             self.finalists = finalists
             return held
         evaluator.constraints = usual

@@ -60,7 +60,7 @@ class Finalists:
         if pulls(robot, reached, self.constraints):
             return None
         built = expected_error(simulation, reached, self.evaluator.uncertainty)
-        return Alternative(robot=robot, reached=tuple(reached), built=built)
+        return Alternative(robot=robot, ik_results=tuple(reached), expected_error=built)
 
     def safe_robot(self, layout: Layout) -> Robot:
         """The robot of a layout, coordinates rounded, new winches with travels that are safe."""
@@ -70,13 +70,13 @@ class Finalists:
     def cost(self, network: Alternative) -> float:
         """The error as built, more where little else is in reach [m]."""
         if not self.evaluator.reach:
-            return network.built
+            return network.expected_error
         simulation = Simulation(network.robot, body=self.evaluator.body)
-        slopes = [
+        sensitivities = [
             cable_sensitivities(simulation, one.pose, own)
-            for one, own in zip(network.reached, self.evaluator.markers, strict=True)
+            for one, own in zip(network.ik_results, self.evaluator.markers, strict=True)
         ]
-        return network.built * self.evaluator.nearness(network.robot, slopes)
+        return network.expected_error * self.evaluator.nearness(network.robot, sensitivities)
 
     def _number_winches(self, layout: Layout) -> Layout:
         """Number new winches in their order; those of the robot keep their names."""
@@ -136,7 +136,7 @@ class Finalists:
 def kit_fits(network: Alternative | Network) -> bool:
     """True if the kit of a network would not be refused; each network is examined once."""
     if network not in _EXAMINED:
-        _EXAMINED[network] = not find_refusals(network.robot, Demand.of_results(network.robot, network.reached))
+        _EXAMINED[network] = not find_refusals(network.robot, Demand.of_results(network.robot, network.ik_results))
     return _EXAMINED[network]
 
 

@@ -49,13 +49,13 @@ class Growth:
     def grow_networks(self, begun: Sequence[Trial], *, winches: int, cables: int) -> list[Trial]:
         """Add cables one by one, each time to the network whose prices promise the least cost (best-first search).
 
-        Networks are refined without the slopes of the build tolerances on the way, the best few with them at the end.
+        Networks are refined without sensitivities of build tolerances on the way, the best few with them at the end.
         It ends when enough is reached, when no price promises to help, or after some cables in a row that do not.
         """
         grown = [trial for trial in begun if trial.layout.routes]
         waiting = self._price_each(begun, winches, cables)
-        idle, patience = 0, RULES.growth_patience * self.proposals.options.starts
-        while waiting and idle < patience:
+        idle, most_idle = 0, RULES.max_stalled_cables * self.proposals.options.starts
+        while waiting and idle < most_idle:
             least = self._least(grown, winches)
             if least <= self.enough_error:
                 break

@@ -37,17 +37,19 @@ class LineChoice:
         """Find what each line does: `bare` is the trial of a layout without winches and cables."""
         self.proposals, self.lines, self.winches, self.cables = proposals, lines, winches, cables
         evaluator, simulation = proposals.evaluator, bare.simulation
-        slopes = csc_array(hstack([csc_array(self._pull(line)[:, None]) for line in lines]))
+        sensitivities = csc_array(hstack([csc_array(self._pull(line)[:, None]) for line in lines]))
         self.gives = np.eye(len(lines)) / Cable.stiffness  # contraction of each line by the tension of each [m/N]
         for first in range(0, len(lines), RULES.lines_at_once):
             some = slice(first, first + RULES.lines_at_once)
-            self.gives[:, some] += slopes.T @ simulation.response(bare.poses[0], slopes[:, some].toarray())
+            self.gives[:, some] += sensitivities.T @ simulation.response(
+                bare.poses[0], sensitivities[:, some].toarray()
+            )
         missed = [evaluator.residual(simulation, index, pose.nodes) for index, pose in enumerate(bare.poses)]
         self.moves: list[np.ndarray] = []  # of the markers by the tension of each line, of each pose [m/N]
         for index in range(len(missed)):
             rows = len(evaluator.markers[index]) * bare.layout.dim
-            fields = bare.slopes[index].fields[:rows].reshape(rows, -1)
-            self.moves.append(-evaluator.weights[index][:, None] * (slopes.T @ fields.T).T)
+            fields = bare.sensitivities[index].fields[:rows].reshape(rows, -1)
+            self.moves.append(-evaluator.weights[index][:, None] * (sensitivities.T @ fields.T).T)
         self._grams = np.array([move.T @ move for move in self.moves])
         self._aims = np.array([move.T @ miss for move, miss in zip(self.moves, missed, strict=True)])
         self._squares = np.array([float(miss @ miss) for miss in missed])
@@ -74,17 +76,17 @@ class LineChoice:
         return other
 
     def _pull(self, line: Line) -> Vector:
-        """Slope of its length by the nodes."""
+        """Sensitivity of its length by the nodes."""
         mesh = self.proposals.evaluator.source.body.mesh
         world = bool(self.proposals.graph.world[line.place])
         spans = np.diff(line.points, axis=0)
         units = spans / np.linalg.norm(spans, axis=1)[:, None]
         ways = np.vstack([np.zeros(mesh.dim), units]) - np.vstack([units, np.zeros(mesh.dim)])
         anchors = locate(mesh, line.points[int(world) :])
-        slope = np.zeros(mesh.nodes.shape)
+        sensitivity = np.zeros(mesh.nodes.shape)
         for corner, weights in zip(anchors.stencils.T, anchors.weights.T, strict=True):
-            np.add.at(slope, corner, weights[:, None] * ways[int(world) :])
-        return slope.ravel()
+            np.add.at(sensitivity, corner, weights[:, None] * ways[int(world) :])
+        return sensitivity.ravel()
 
     def cost(self, chosen: Sequence[int]) -> float:
         """Error of a set of lines, with its effort [m]; lines that would have to push are left slack."""

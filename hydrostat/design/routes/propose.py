@@ -70,12 +70,12 @@ class Proposals:
         evaluator, graph = self.evaluator, self._free_of(trial.layout) if free is None else free
         moves, residuals, owners, ridges = [], [], [], []
         for index, pose in enumerate(trial.poses):
-            slopes = trial.slopes[index]
+            sensitivities = trial.sensitivities[index]
             rows = len(evaluator.markers[index]) * trial.layout.dim
-            fields = np.moveaxis(slopes.fields[:rows], 0, 2)
+            fields = np.moveaxis(sensitivities.fields[:rows], 0, 2)
             own = evaluator.weights[index] * graph.edge_moves(pose.nodes, fields)
             residual = evaluator.residual(trial.simulation, index, pose.nodes)
-            known = _span(evaluator.weights[index][:, None] * slopes.contractions[:rows])
+            known = _span(evaluator.weights[index][:, None] * sensitivities.contractions[:rows])
             moves.append(own - (own @ known) @ known.T)
             residuals.append(residual - known @ (known.T @ residual))
             owners.append(np.full(rows, index))

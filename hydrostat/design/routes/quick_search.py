@@ -33,7 +33,7 @@ class RouteProposal:
 
     robot: Robot  # with the network
     error: float  # rms marker error over all poses in the model [m]
-    built: float  # rms error expected of a robot as it is built [m]
+    expected_error: float  # rms error expected of a robot as it is built [m]
     is_refined: bool  # False for a first sketch, True for the last proposal of a search
     is_buildable: bool  # True if a kit would be made of it; not checked for a first sketch
 
@@ -141,7 +141,7 @@ class QuickSearch:
         if beyond or violations(robot, self.constraints, self.region):
             return None
         return RouteProposal(
-            robot=robot, error=trial.error, built=trial.built_error, is_refined=False, is_buildable=False
+            robot=robot, error=trial.error, expected_error=trial.built_error, is_refined=False, is_buildable=False
         )
 
     def _judge_best(self, growth: Growth, finalists: Finalists, trials: Sequence[Trial]) -> RouteProposal | None:
@@ -154,8 +154,8 @@ class QuickSearch:
             fits = kit_fits(network)
             if best is None or fits:
                 best = RouteProposal(
-                    robot=network.robot, error=network.rms_error, built=network.built, is_refined=True,
-                    is_buildable=fits,
+                    robot=network.robot, error=network.rms_error, expected_error=network.expected_error,
+                    is_refined=True, is_buildable=fits,
                 )  # fmt: skip
             if fits:
                 break

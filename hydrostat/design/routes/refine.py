@@ -25,7 +25,9 @@ class RefineOptions:
     straightness: float = 0.1
     progress: float = 3e-3  # it ends after steps that lower the cost by less than this share
     stop_error: float = 0.0  # error [m] at which it ends
-    directions: int = 2  # singular vectors of the tolerances that are followed; 0: the spread is left out of slopes
+    directions: int = (
+        2  # singular vectors of the tolerances that are followed; 0: the spread is left out of sensitivities
+    )
 
 
 def refine(evaluator: Evaluator, region: Region, trial: Trial, options: RefineOptions) -> Trial:
@@ -181,11 +183,11 @@ def linear_model(
     count = free + winches * len(trial.poses)
     matrix, right, rows, lefts = [], [], [], []
     for index, pose in enumerate(trial.poses):
-        slopes = trial.slopes[index]
-        own = np.zeros((len(slopes.contractions), count))
-        own[:, :free] = _by_numbers(layout, slopes) @ layout.ties
+        sensitivities = trial.sensitivities[index]
+        own = np.zeros((len(sensitivities.contractions), count))
+        own[:, :free] = _by_numbers(layout, sensitivities) @ layout.ties
         begin = free + winches * index
-        own[:, begin : begin + winches] = slopes.contractions
+        own[:, begin : begin + winches] = sensitivities.contractions
         markers = len(own) - len(layout.routes)
         matrix += [-evaluator.weights[index][:, None] * own[:markers], effort * own[markers:]]
         right += [evaluator.residual(trial.simulation, index, pose.nodes), effort * pose.tensions]
@@ -207,12 +209,12 @@ def linear_model(
                 row[0, begin + winch] = sign
                 rows.append(row)
                 lefts.append(np.array([left]))
-    bends, slopes = turns(layout), turn_slopes(layout)
+    bends, sensitivities = turns(layout), turn_derivatives(layout)
     # What friction adds to the variance falls with the turns, as if in proportion: so many times do they weigh more.
     rubbed = sum(float(((w * one[:, -1]) ** 2).sum()) for w, one in zip(evaluator.weights, trial.columns, strict=True))
     bend = float(np.hypot(bend, np.sqrt(rubbed) / max(float(np.linalg.norm(bends)), 1e-9)))
     straight = np.zeros((len(bends), count))
-    straight[:, :free] = bend * slopes @ layout.ties
+    straight[:, :free] = bend * sensitivities @ layout.ties
     matrix.append(straight)
     right.append(bend * bends)
     geometry = margins(layout, region, reach=reach)
@@ -231,7 +233,7 @@ def _solve_variations(
 ) -> Iterator[tuple[Vector, np.ndarray]]:
     """Yield marker moves of a pose as built otherwise, and their Jacobians by contractions, then layout numbers.
 
-    The variance is the sum of squares of the singular values of the tolerances' columns. Its slope is exact where each
+    The variance is the sum of squares of the singular values of the tolerances' columns. Its gradient is exact if each
     right singular vector is held: then it is that of the move from here to a robot built with these tolerances. Only
     the strongest few are looked at, and of the tolerances only those of holes and spools.
     """
@@ -250,16 +252,15 @@ def _solve_variations(
         found = evaluator.solve_variation(layout.at(numbers), pose, scale * pose.contractions, index)
         if found is None:
             continue
-        simulation, nodes, slopes = found
+        simulation, nodes, sensitivities = found
         here = evaluator.residual(trial.simulation, index, pose.nodes)
         moved = here - evaluator.residual(simulation, index, nodes)
         markers = len(moved)
+        before = trial.sensitivities[index]
         own, other = (
-            np.hstack([by[:markers], _by_numbers(layout, slope)[:markers]])
-            for by, slope in (
-                (trial.slopes[index].contractions, trial.slopes[index]), (slopes.contractions * scale, slopes),
-            )
-        )  # fmt: skip
+            np.hstack([by[:markers], _by_numbers(layout, numbers)[:markers]])
+            for by, numbers in ((before.contractions, before), (sensitivities.contractions * scale, sensitivities))
+        )
         yield moved, weight[:, None] * (other - own)
 
 
@@ -272,8 +273,8 @@ def turns(layout: Layout) -> Vector:
     return np.concatenate([np.zeros(0), *parts])
 
 
-def turn_slopes(layout: Layout) -> np.ndarray:
-    """Slopes of `turns` by the numbers of the layout, (turns, numbers), the mean lengths left as they are."""
+def turn_derivatives(layout: Layout) -> np.ndarray:
+    """Sensitivities of `turns` by the numbers of the layout, (turns, numbers), the mean lengths left as they are."""
     rows = [np.zeros((0, layout.size))]
     for index, mean in _bending(layout):
         inner = np.arange(len(layout.routes[index].points) - 2)[:, None]
@@ -325,20 +326,20 @@ def pushed_back(layout: Layout, region: Region, reach: float) -> Layout | None:
 
 def moves_of(trial: Trial, pose: int) -> tuple[np.ndarray, np.ndarray]:
     """Jacobians of the marker coordinates of a pose: by the numbers of the layout, and by the contractions."""
-    slopes = trial.slopes[pose]
-    markers = len(slopes.contractions) - len(trial.layout.routes)
-    return _by_numbers(trial.layout, slopes)[:markers], slopes.contractions[:markers]
+    sensitivities = trial.sensitivities[pose]
+    markers = len(sensitivities.contractions) - len(trial.layout.routes)
+    return _by_numbers(trial.layout, sensitivities)[:markers], sensitivities.contractions[:markers]
 
 
-def _by_numbers(layout: Layout, slopes) -> np.ndarray:
-    """Slopes by the numbers of a layout, (rows, numbers)."""
-    full = np.zeros((len(slopes.contractions), layout.size))
+def _by_numbers(layout: Layout, sensitivities) -> np.ndarray:
+    """Sensitivities by the numbers of a layout, (rows, numbers)."""
+    full = np.zeros((len(sensitivities.contractions), layout.size))
     begin = 0
     for index, route in enumerate(layout.routes):
         for point in range(len(route.points)):
-            full[:, layout.place_of(index, point)] += slopes.points[:, begin + point]
+            full[:, layout.place_of(index, point)] += sensitivities.points[:, begin + point]
         begin += len(route.points)
     slacks, ratios = layout.starts[-2:]
-    full[:, slacks:ratios] = slopes.slack
-    full[:, ratios:] = slopes.ratios
+    full[:, slacks:ratios] = sensitivities.slack
+    full[:, ratios:] = sensitivities.ratios
     return full

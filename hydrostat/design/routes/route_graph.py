@@ -85,7 +85,7 @@ class RouteGraph:
 
         The ends of the edge are pulled together, so it is (field at the first - field at the second) . direction, and a
         cable moves the rows by the sum over its edges. Still edges move nothing; a point in the world neither moves nor
-        has a field. Fields are H^-1 of each row's slope by the nodes, H being the full Hessian there [m/N].
+        has a field. Fields are H^-1 of each row's sensitivity by the nodes, H being the full Hessian there [m/N].
         """
         held = len(self.anchors.stencils)
         places, priced = self.points.copy(), np.zeros((len(self.points), *fields.shape[1:]))

@@ -32,7 +32,7 @@ def screen_sketches(
             found(trial)
             idle = 0 if trial.cost < (1 - RULES.screen_gain) * least else idle + 1
             least = min(least, trial.cost)
-            if idle >= RULES.screen_patience:
+            if idle >= RULES.max_stalled_sketches:
                 break
     kept = unlike(rough, count)
     better = growth.refine_each(kept[: RULES.screen_kept], directions=0, steps=RULES.screen_more_steps)

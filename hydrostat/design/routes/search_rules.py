@@ -49,14 +49,14 @@ class SearchRules:
     screen_steps: int = 3  # steps of refinement of each sketch
     screen_more_steps: int = 2  # more steps of the best sketches
     screen_kept: int = 4  # sketches that get more steps
-    screen_patience: int = 6  # sketches in a row that are no better end the screening
+    max_stalled_sketches: int = 6  # sketches in a row that are no better end the screening
     screen_gain: float = 0.02  # a sketch that lowers the cost by less than this share is no better
 
     # Growth and refinement in rounds
     alike: float = 1e-3  # costs and spreads that differ by less than this share of the cost are of the same network
     growth_far: float = 1.15  # networks so much worse than the best are not refined with the build tolerances
     spare_paths: int = 4  # paths that are priced for each network that is solved: some cannot be built
-    growth_patience: int = 3  # cables in a row without gain after which the growth ends
+    max_stalled_cables: int = 3  # cables in a row without gain after which the growth ends
     growth_steps: int = 2  # steps of refinement of each cable that is tried
     growth_more_steps: int = 3  # more steps of the best of them
     growth_gain: float = 0.02  # a cable that lowers the cost by less than this share does not help
@@ -95,7 +95,7 @@ class SearchRules:
     point_step: float = 0.03  # a large step of a via point, as a share of the body's size
     contraction_step: float = 0.2  # a large step of a contraction, as a share of the travel
     felt_limits: float = 0.3  # share of a large step within which limits are felt when a layout is pushed back
-    first_damping: float = 0.1  # where the damping begins, as a share of the largest slope
+    first_damping: float = 0.1  # where the damping begins, as a share of the largest sensitivity
     min_damping: float = 1e-4  # smallest damping
     max_damping: float = 1e3  # largest damping
     good_step: float = 0.6  # share of what a step promised above which the damping falls

@@ -25,12 +25,12 @@ from hydrostat.design.network import Network, TreeTrace
 from hydrostat.design.polyline import Route, length, sharpest_turn
 from hydrostat.design.region import Region
 from hydrostat.design.request import DesignRequest
+from hydrostat.design.stage_callback import StageCallback, ignore_stage
 from hydrostat.design.trees.grow_routes import GrowthLimits, grow_routes, keep_apart, lay_route, strongest
 from hydrostat.design.trees.judge_robots import judge, prune
-from hydrostat.design.trees.lead_ways import lead_ways
+from hydrostat.design.trees.lead_paths import find_lead_paths
 from hydrostat.design.trees.winch_trees import WinchTree, WinchTrees
 from hydrostat.design.uncertainty import BuildTolerances
-from hydrostat.design.watch import Watch, unseen
 from hydrostat.errors import HydrostatError
 from hydrostat.progress import Progress, no_progress
 from hydrostat.robot import Cable, Mount, PoseTarget, Robot, Winch
@@ -39,7 +39,12 @@ from hydrostat.units import plural
 
 
 def design_trees(
-    robot: Robot, request: DesignRequest, *, progress: Progress, watch: Watch = unseen, body: BodyPhysics | None = None
+    robot: Robot,
+    request: DesignRequest,
+    *,
+    progress: Progress,
+    watch: StageCallback = ignore_stage,
+    body: BodyPhysics | None = None,
 ) -> Network:
     """Winch trees: the network of the thesis's method that reaches the poses best.
 
@@ -64,7 +69,7 @@ def propose_trees(
     No pose is solved, so it takes a fraction of a second; what the network reaches is for others to find out. `body` is
     the physics of the body, if it is made already. Raises as `design_trees` does.
     """
-    design = _TreeDesign(robot, request, no_progress, unseen, body or BodyPhysics(robot))
+    design = _TreeDesign(robot, request, no_progress, ignore_stage, body or BodyPhysics(robot))
     found = design.propose(tuple(activations))
     if found is None:
         raise HydrostatError(design.refusal)
@@ -96,7 +101,7 @@ class _TreeDesign:
     """One run."""
 
     def __init__(
-        self, robot: Robot, request: DesignRequest, progress: Progress, watch: Watch, body: BodyPhysics
+        self, robot: Robot, request: DesignRequest, progress: Progress, watch: StageCallback, body: BodyPhysics
     ) -> None:
         self.robot, self.request, self.progress, self.watch = robot, request, progress, watch
         self.options = request.tree_options
@@ -105,7 +110,7 @@ class _TreeDesign:
         self.winches, self.cables = int(request.winches), request.cables
         self.body, self.mesh = body, robot.body.mesh
         self.region = Region.of_body(robot.body, self.constraints.clearance)
-        self.ways = lead_ways(robot, self.region, self.constraints)
+        self.ways = find_lead_paths(robot, self.region, self.constraints)
         self.spacing = float(self.mesh.edge_lengths.mean())
         self.rejected: Counter[str] = Counter()  # routes and networks that cannot be built, by the limit in the way
 
@@ -136,12 +141,12 @@ class _TreeDesign:
             robot=designed,
             source=self.robot,
             request=self.request,
-            reached=reached,
-            built=expected_error(Simulation(designed, body=self.body), reached, self._uncertainty),
+            ik_results=reached,
+            expected_error=expected_error(Simulation(designed, body=self.body), reached, self._uncertainty),
             trace=TreeTrace(
                 activations=activations, candidates=plan.candidates, trees=tuple(plan.trees.routes), score=plan.score
             ),
-            tried=len(built),
+            num_evaluated=len(built),
             seconds=time.process_time() - began,
         )
 

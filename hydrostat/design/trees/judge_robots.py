@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from hydrostat.design.network import DesignStage, rms_error
-from hydrostat.design.watch import Better, Watch, unseen
+from hydrostat.design.stage_callback import Better, StageCallback, ignore_stage
 from hydrostat.ik import IKOptions, IKResult, solve_ik
 from hydrostat.progress import Progress
 from hydrostat.robot import PoseTarget, Robot
@@ -22,7 +22,7 @@ def judge(
     *,
     tension: float,
     progress: Progress,
-    watch: Watch = unseen,
+    watch: StageCallback = ignore_stage,
     body: BodyPhysics | None = None,
 ) -> tuple[int, tuple[IKResult, ...]]:
     """The index of the robot of least cost, and what it reaches of each pose.

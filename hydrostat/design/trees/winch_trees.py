@@ -9,7 +9,7 @@ from hydrostat.arrays import Bool, Float, Int, Nodes
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.polyline import Route, length
 from hydrostat.design.request import TreeOptions
-from hydrostat.design.trees.lead_ways import LeadWays
+from hydrostat.design.trees.lead_paths import LeadPaths
 from hydrostat.geometry import Mesh, locate
 
 
@@ -17,7 +17,7 @@ from hydrostat.geometry import Mesh, locate
 class WinchTree:
     """One winch and the routes it pulls."""
 
-    place: int  # point of the `LeadWays` at which the winch stands
+    place: int  # point of the `LeadPaths` at which the winch stands
     routes: tuple[int, ...]  # indices of its routes
     score: float  # phi mean - (1 - phi) std, less the penalty for leads
 
@@ -30,7 +30,7 @@ class WinchTrees:
         mesh: Mesh,
         routes: list[Route],
         posed: list[Nodes],
-        ways: LeadWays,
+        ways: LeadPaths,
         constraints: Constraints,
         options: TreeOptions,
     ) -> None:

@@ -59,11 +59,11 @@ class PatchEnergy:
         self._shares = self._lengths / self._lengths.sum()
 
     def __call__(self, numbers: Float[np.ndarray, " numbers"]) -> tuple[float, Float[np.ndarray, " numbers"]]:
-        """The sum of both at the places of all vertices, and its slope by each of these numbers."""
+        """The sum of both at the places of all vertices, and its derivative by each of these numbers."""
         flat = numbers.reshape(-1, 2)
-        bent, slope = self._cloth(flat)
+        bent, derivative = self._cloth(flat)
         off, pull = self._rim(flat)
-        return bent + off, (slope + pull).ravel()
+        return bent + off, (derivative + pull).ravel()
 
     def _cloth(self, flat: Float[np.ndarray, "vertices 2"]) -> tuple[float, Float[np.ndarray, "vertices 2"]]:
         """Number by number of the matrices: twice as fast as with arrays of small matrices."""

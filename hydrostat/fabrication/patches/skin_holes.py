@@ -166,7 +166,7 @@ def hole_problems(holes: tuple[SkinHole, ...], options: PatternOptions) -> tuple
     )
 
 
-def way_problems(robot: Robot, patches: tuple[Patch, ...], holes: tuple[SkinHole, ...]) -> tuple[str, ...]:
+def find_surface_runs(robot: Robot, patches: tuple[Patch, ...], holes: tuple[SkinHole, ...]) -> tuple[str, ...]:
     """Return a line for each cable that would run outside where it was simulated deep in the body."""
     nearest, problems = NearestOnSkin(patches).nearest, {}
     for one, other in pairwise([hole for hole in holes if hole.passes]):

@@ -23,9 +23,9 @@ from hydrostat.fabrication.patches.skin_holes import (
     NearestOnSkin,
     SkinHole,
     find_holes,
+    find_surface_runs,
     hole_problems,
     hole_warnings,
-    way_problems,
 )
 from hydrostat.fabrication.patches.skin_mesh import SkinMesh, skin_mesh
 from hydrostat.fabrication.patterns.labels import PanelLabels
@@ -192,7 +192,7 @@ def space_pattern(robot: Robot, options: PatternOptions) -> SpacePattern:
     problems = (
         *patch_problems(names, patches, skins, seams),
         *hole_problems(holes, options),
-        *way_problems(robot, patches, holes),
+        *find_surface_runs(robot, patches, holes),
     )
     if problems and not options.force:
         first, *others = problems

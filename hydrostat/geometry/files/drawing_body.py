@@ -81,7 +81,7 @@ def drawing_of(
     if open_lines:
         where = point_text(max(open_lines, key=_extent)[0])
         told.append(f"left out {plural(len(open_lines), 'open line')}, the largest at {where}")
-    told += [*holes_told(outline), *_frame_told(shapes, body_line, holes)]
+    told += [*describe_holes(outline), *_describe_frame(shapes, body_line, holes)]
     return Drawing(outline, on, (*notes, *told), marks, number)
 
 
@@ -170,7 +170,7 @@ def _several(parts: list[DrawnLine], closed: Sequence[DrawnLine], name: str) -> 
     return SeveralPartsError(told, {closed.index(line) + 1: None for line in parts})
 
 
-def _frame_told(shapes: Shapes, body: DrawnLine, inside: list[DrawnLine]) -> tuple[str, ...]:
+def _describe_frame(shapes: Shapes, body: DrawnLine, inside: list[DrawnLine]) -> tuple[str, ...]:
     """Note on a large hole that may be the body, and what is around it a frame."""
     if not inside or inside[0].polygon.area < _FRAME * body.polygon.area or len(inside) > 1:
         return ()
@@ -186,7 +186,7 @@ def drawn_picture(drawing: Drawing) -> Drawing:
     return replace(drawing, outline=whole, marks=marks_on(whole, rings))
 
 
-def holes_told(outline: Outline) -> tuple[str, ...]:
+def describe_holes(outline: Outline) -> tuple[str, ...]:
     """Note on the holes of a body: where drawings have an eye, they would go through it."""
     holes = outline.rings[1:]
     if not holes:

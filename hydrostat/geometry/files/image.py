@@ -55,7 +55,7 @@ def read_image(
     page = page or page_about(found.body, kind, (1.0, -1.0), size)
     outline, scale = outline_on_page(found.body, list(found.holes), page, name), page.scale[0]
     coarse = (f"read at one pixel in {step * step}: the outline is known to {1e3 * scale:.2g} mm",) if step > 1 else ()
-    shade = (_shade_told(shadow, page),) if shadow else ()
+    shade = (_describe_shade(shadow, page),) if shadow else ()
     drawing = Drawing(outline, page, (*notes, *shade, *_notes(found, page), *coarse))
     return drawn_picture(drawing) if inner is Inner.DRAWN else drawing
 
@@ -132,7 +132,7 @@ def _find_body(
     return silhouette(seen.field, level, seen.faint, name), shaded_part(seen, level), note
 
 
-def _shade_told(found: ShadedPart, page: Page) -> str:
+def _describe_shade(found: ShadedPart, page: Page) -> str:
     """Note on the part of the body that may be its shadow."""
     x, y = found.place[0] - page.origin[0], page.origin[1] - found.place[1]
     scale = 1e3 * page.scale[0]

@@ -74,9 +74,11 @@ def _energy(points: Points, triangles: Elements, power: float) -> tuple[float, P
     turned = np.stack([-opposite[..., 1], opposite[..., 0]], axis=-1)
     centered = 6.0 * (corners - corners.mean(axis=1, keepdims=True))
     weight = (power * ratio ** (power - 1.0))[:, None, None]
-    slope = weight * (centered / (_EQUILATERAL * doubled)[:, None, None] - (ratio / doubled)[:, None, None] * turned)
+    derivative = weight * (
+        centered / (_EQUILATERAL * doubled)[:, None, None] - (ratio / doubled)[:, None, None] * turned
+    )
     for corner in range(3):
-        np.add.at(gradient, triangles[:, corner], slope[:, corner])
+        np.add.at(gradient, triangles[:, corner], derivative[:, corner])
     return float((ratio**power).sum()), gradient
 
 

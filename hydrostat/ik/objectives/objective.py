@@ -158,7 +158,7 @@ def rubbing_moves(
     nodes, contractions = posture.nodes, posture.contractions
     cables = friction.with_history(posture.history[: len(friction.history)], nodes, contractions)
     compliance = stiffness.compliance_to(cables.span_columns(nodes))
-    tensions = cables.tension_slopes(nodes, contractions, compliance, taut)
+    tensions = cables.tension_derivatives(nodes, contractions, compliance, taut)
     moves = -compliance.moves @ tensions
     return StateJacobian(
         nodes=moves.reshape(*nodes.shape, -1),

@@ -115,7 +115,7 @@ class _TrustRegionDescent:
         rough = 1e-2
         smallest_radius = 1e-7  # steps of less than this fraction of the range are not worth a solve
         for iteration in range(options.iterations):
-            if self.search.patience.over:
+            if self.search.budget.over:
                 return self._end(IKStatus.TIME_LIMIT, iteration)
             self.search.report_progress(self.state)
             if not self.fixed:

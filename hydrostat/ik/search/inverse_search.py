@@ -59,19 +59,19 @@ class InverseSearch:
         *,
         accuracy: float | None = None,
         origin: Equilibrium | None = None,
-        patience: SearchBudget | None = None,
+        budget: SearchBudget | None = None,
     ) -> None:
         self.problem, self.solves, self._origin = problem, 0, origin
-        self.patience, self.steps = patience or SearchBudget(), 0
+        self.budget, self.steps = budget or SearchBudget(), 0
         self.solver = problem.simulation.solver.with_accuracy(accuracy)
         self._remembers, self._turns = problem.simulation.assembly.has_history, False
 
     def report_progress(self, state: InverseState) -> None:
         """Report the progress of the search to its listener: one more step, and the errors of a state."""
         self.steps += 1
-        if self.patience.tell is not None:
+        if self.budget.tell is not None:
             errors = list(state.errors.values())
-            self.patience.tell(self.steps, float(np.sqrt(np.mean(np.square(errors)))) if errors else 0.0)
+            self.budget.tell(self.steps, float(np.sqrt(np.mean(np.square(errors)))) if errors else 0.0)
 
     def begin(self, start: Equilibrium | None) -> InverseState:
         """State of a pose, or of rest, within the limits (NotConvergedError: there is no equilibrium)."""

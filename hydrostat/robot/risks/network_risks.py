@@ -10,17 +10,17 @@ from hydrostat.arrays import Float, Points
 from hydrostat.geometry import clearance, locate
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable
-from hydrostat.robot.risks.words import Risk, known_up_to, mm, place, told_together
+from hydrostat.robot.risks.words import Risk, known_up_to, merge_risks, mm, place
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.winch import Mount
 
 
 def winch_risks(robot: Robot) -> Iterator[str]:
     """Winches that pull nothing or too far, collide, or stick out."""
-    yield from told_together(_idle(robot))
-    yield from told_together(_too_far(robot))
-    yield from told_together(_collisions(robot))
-    yield from told_together(_sticking_out(robot))
+    yield from merge_risks(_idle(robot))
+    yield from merge_risks(_too_far(robot))
+    yield from merge_risks(_collisions(robot))
+    yield from merge_risks(_sticking_out(robot))
 
 
 def cover(body: Body, points: Points) -> Float[np.ndarray, " points"]:
@@ -103,10 +103,10 @@ _MOST_STEPS = 400  # places on one segment
 def cable_risks(robot: Robot) -> Iterator[str]:
     """Cables that leave the body, tear out of it, or would squeeze it too far."""
     leaving = list(_leaving(robot))
-    yield from told_together(leaving)
+    yield from merge_risks(leaving)
     gone = {risk.part for risk in leaving}
-    yield from told_together(risk for risk in _near_the_surface(robot) if risk.part not in gone)
-    yield from told_together(_squeezing(robot))
+    yield from merge_risks(risk for risk in _near_the_surface(robot) if risk.part not in gone)
+    yield from merge_risks(_squeezing(robot))
 
 
 def _points_in_body(robot: Robot, cable: Cable) -> Points:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from hydrostat.geometry import clearance
-from hydrostat.robot.risks.words import Risk, mm, place, told_together
+from hydrostat.robot.risks.words import Risk, merge_risks, mm, place
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.rod import sample_rod
 
@@ -22,9 +22,9 @@ MOST_CHANGED = 0.2
 def part_risks(robot: Robot) -> Iterator[str]:
     """Rigid parts that reach out of the body, parts that the mesh changes, and rods that stick out."""
     found = list(_judge_parts(robot))
-    yield from told_together(risk for is_outside, risk in found if is_outside)
-    yield from told_together(risk for is_outside, risk in found if not is_outside)
-    yield from told_together(_thick_rods(robot))
+    yield from merge_risks(risk for is_outside, risk in found if is_outside)
+    yield from merge_risks(risk for is_outside, risk in found if not is_outside)
+    yield from merge_risks(_thick_rods(robot))
 
 
 def _judge_parts(robot: Robot) -> Iterator[tuple[bool, Risk]]:

@@ -6,7 +6,7 @@ import numpy as np
 
 from hydrostat.arrays import Float, Points
 from hydrostat.geometry import Mesh, locate
-from hydrostat.robot.risks.words import Risk, known_up_to, mm, told_together
+from hydrostat.robot.risks.words import Risk, known_up_to, merge_risks, mm
 from hydrostat.robot.robot import Robot
 from hydrostat.units import plural
 
@@ -25,7 +25,7 @@ def pin_risks(robot: Robot) -> Iterator[str]:
             grip = f"holds only {plural(count, 'node')}" if count else "reaches no node and holds a single point"
             text = f"{grip}, about which the body can turn and tear; a radius of {mm(reach)} would grip it"
             found.append(Risk(f"pin[{index}]", -count, text))
-    yield from told_together(found)
+    yield from merge_risks(found)
 
 
 def marker_risks(robot: Robot) -> Iterator[str]:
@@ -37,14 +37,14 @@ def marker_risks(robot: Robot) -> Iterator[str]:
     anchors = locate(mesh, places)
     held = np.any([np.zeros(len(mesh.nodes), bool), *(pin.holds(mesh) for pin in robot.pins)], axis=0)
     stuck = (held[anchors.stencils] | (anchors.weights < 1e-6)).all(axis=1) & ~held.all()
-    yield from told_together(
+    yield from merge_risks(
         Risk(f"marker[{index}] {robot.markers[index].name}", 0.0, "held by a pin, cannot move")
         for index in np.flatnonzero(stuck)
     )
     usual = float(np.median(mesh.spacings))
     gaps = np.linalg.norm(mesh.nodes[None] - places[:, None], axis=2).min(axis=1)
     far = 1.5  # a marker is far from any node at this many times the usual length of an element
-    yield from told_together(
+    yield from merge_risks(
         Risk(
             f"marker[{index}] {robot.markers[index].name}",
             float(gaps[index]),
@@ -58,9 +58,9 @@ def marker_risks(robot: Robot) -> Iterator[str]:
 def pose_risks(robot: Robot) -> Iterator[str]:
     """Targets that are too far, or so far from a pin that the material would have to stretch too much."""
     far = list(_far(robot))
-    yield from told_together(far)
+    yield from merge_risks(far)
     told = {risk.part for risk in far}
-    yield from told_together(risk for risk in _stretching(robot) if risk.part not in told)
+    yield from merge_risks(risk for risk in _stretching(robot) if risk.part not in told)
 
 
 def _far(robot: Robot) -> Iterator[Risk]:

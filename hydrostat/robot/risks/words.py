@@ -18,7 +18,7 @@ class Risk:
     text: str  # description of the risk
 
 
-def told_together(found: Iterable[Risk]) -> Iterator[str]:
+def merge_risks(found: Iterable[Risk]) -> Iterator[str]:
     """One line for all parts with the same risk, in the words of the worst; none if there is none."""
     found = list(found)
     if not found:

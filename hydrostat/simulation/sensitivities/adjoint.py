@@ -108,10 +108,10 @@ def sensitivity(
     points: RoutePoints,
     response: Response,
 ) -> Sensitivity:
-    """Slopes of L by the adjoint: H u = dL/dx, then dL/dtheta = -u . d2E/dx dtheta, for all theta with one solve.
+    """Sensitivities of L by the adjoint: H u = dL/dx, then dL/dtheta = -u . d2E/dx dtheta, one solve for all theta.
 
     A tension is T(s) with s = l(x) - l(X) + ratio a - slack: what is given by tensions adds dL/dT T' dl/dx to dL/dx,
-    and dL/dT dT/dtheta to the slopes.
+    and dL/dT dT/dtheta to the sensitivities.
 
     Args:
         body: body of the robot in the pose.
@@ -183,9 +183,11 @@ def by_body(body: BodyPhysics, pose: Equilibrium, field: Nodes) -> dict[str, Any
         works["support_stiffness"] = works["support_stiffness"] + moved.support_work(field, pose.controls)
     materials = pose.robot.body.materials
     shear, squeeze = (_add(np.zeros(len(materials)), works.get(name, np.zeros(0))) for name in ("mu", "lame"))
-    slopes = np.array([_lame_slopes(material) for material in materials])  # (materials, young and poisson, mu and lame)
-    young, poisson = -(slopes[:, :, 0] * shear[:, None] + slopes[:, :, 1] * squeeze[:, None]).T
-    density = _density_slopes(pose.robot, field)
+    sensitivities = np.array(
+        [_lame_derivatives(material) for material in materials]
+    )  # (materials, young and poisson, mu and lame)
+    young, poisson = -(sensitivities[:, :, 0] * shear[:, None] + sensitivities[:, :, 1] * squeeze[:, None]).T
+    density = _density_gradient(pose.robot, field)
     rigid = np.array([False, *(part.is_rigid for part in pose.robot.body.parts)])
     stiffness = np.array([material.young for material in materials]) / body.material.young  # what rigid parts keep
     rods = np.array([rod.stiffness_work(pose.nodes, field) for rod in body.rods]).reshape(-1, 2)
@@ -197,7 +199,7 @@ def by_body(body: BodyPhysics, pose: Equilibrium, field: Nodes) -> dict[str, Any
         "part_poisson": np.where(rigid, 0.0, poisson)[1:],
         "part_density": density[1:],
         "thickness": None if body.thickness is None else -float(works["thickness"][0]) / body.thickness,
-        "loads": _load_slopes(pose, field),
+        "loads": _load_gradients(pose, field),
         "moments": -_add(np.zeros(len(pose.robot.loads)), works.get("moment", np.zeros(0))),
         "pin_stiffness": -works["support_stiffness"],
         "gravity": body.heavy_masses @ field,
@@ -223,7 +225,7 @@ def _add(one: Vector, other: Vector) -> Vector:
     return total
 
 
-def _density_slopes(robot: Robot, field: Nodes) -> Vector:
+def _density_gradient(robot: Robot, field: Nodes) -> Vector:
     """Work of gravity along a field, by the density of each material [m^3/kg per unit of the field]."""
     body, count = robot.body, len(robot.body.materials)
     if robot.gravity is None:
@@ -232,8 +234,8 @@ def _density_slopes(robot: Robot, field: Nodes) -> Vector:
     return np.bincount(body.element_materials, (body.thickness or 1.0) * body.mesh.volumes * along, count)
 
 
-def _lame_slopes(material: Material) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Slopes of mu and lambda by Young's modulus, and by Poisson's ratio [Pa]."""
+def _lame_derivatives(material: Material) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Sensitivities of mu and lambda by Young's modulus, and by Poisson's ratio [Pa]."""
     young, poisson = material.young, material.poisson
     mu, lame = material.lame
     product = (1 + poisson) * (1 - 2 * poisson)
@@ -249,11 +251,11 @@ def by_routes(
     pulls: Vector,
     by_rest_length: Float[np.ndarray, "rows cables"] | None = None,
 ) -> Float[np.ndarray, "rows points dim"]:
-    """Slopes of some numbers by the rest position of every point of every cable.
+    """Sensitivities of some numbers by the rest position of every point of every cable.
 
     A segment with span d, at rest D, has the length l = sqrt(d^2 + r^2), at rest L, with r in proportion to |D|: all
     of these move, and so does the part of the field along it, q = e . d / l with e the difference of the field between
-    its ends. The slope is that of by_elongation (l - L) - T q; by_rest_length stands at L if it is given.
+    its ends. The sensitivity is that of by_elongation (l - L) - T q; by_rest_length stands at L if it is given.
     """
     spans = points.spans(points.positions(nodes))
     rests = points.spans(points.rests)
@@ -275,8 +277,8 @@ def by_routes(
     )
 
 
-def _load_slopes(pose: Equilibrium, field: Nodes) -> Points:
+def _load_gradients(pose: Equilibrium, field: Nodes) -> Points:
     """Derivatives by the forces of loads; a pressure or moment is no force at a point, so its row is 0."""
-    slopes = locate(pose.robot.body.mesh, pose.robot.load_points()).positions(field[: len(pose.nodes)])
-    slopes[[load.force is None and load.mass is None for load in pose.robot.loads]] = 0.0
-    return slopes
+    sensitivities = locate(pose.robot.body.mesh, pose.robot.load_points()).positions(field[: len(pose.nodes)])
+    sensitivities[[load.force is None and load.mass is None for load in pose.robot.loads]] = 0.0
+    return sensitivities

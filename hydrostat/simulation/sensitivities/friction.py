@@ -45,7 +45,7 @@ def friction_sensitivities(
     pose: Equilibrium,
     rows: tuple[Float[np.ndarray, "rows dofs"], Float[np.ndarray, "rows cables"]],
 ) -> FrictionSensitivities:
-    """Slopes of numbers L while points at the capstan's limit slip on and the others stick, by one adjoint for all.
+    """Sensitivities of numbers L while points at the capstan's limit slip on and the others stick, by one adjoint.
 
     Tensions T of the spans are unknowns beside the nodes: K dx + G dT = -dr and dT = B de + S df, with the elongations
     e, the limits f(T, angles(x), mu), and B and S as in `ChainLaw.compute_slip_jacobians`. docs/theory/derivatives.md.
@@ -97,16 +97,16 @@ def friction_sensitivities(
 
 
 def friction_adjoint(
-    body: BodyPhysics, points: RoutePoints, pose: Equilibrium, slopes: FrictionSensitivities
+    body: BodyPhysics, points: RoutePoints, pose: Equilibrium, sensitivities: FrictionSensitivities
 ) -> Sensitivity:
     """Return the sensitivities of one scalar with cable friction, including those to body parameters."""
     return Sensitivity(
-        contractions=slopes.contractions[0],
-        slack=slopes.slack[0],
-        routes=points.by_cable(slopes.points[0]),
-        cable_stiffness=slopes.stiffness[0],
-        friction=slopes.friction[0],
-        **by_body(body, pose, slopes.fields[0]),
+        contractions=sensitivities.contractions[0],
+        slack=sensitivities.slack[0],
+        routes=points.by_cable(sensitivities.points[0]),
+        cable_stiffness=sensitivities.stiffness[0],
+        friction=sensitivities.friction[0],
+        **by_body(body, pose, sensitivities.fields[0]),
     )
 
 
@@ -117,13 +117,13 @@ def _by_turns(
     pose: Equilibrium,
     by_angle: Float[np.ndarray, "rows spans"],
 ) -> Float[np.ndarray, "rows points dim"]:
-    """Slopes by the points through the angles by which cables turn."""
+    """Sensitivities by the points through the angles by which cables turn."""
     starts, _ = turn_starts(robot)
-    slopes = cables.turns.slopes(pose.nodes)
+    sensitivities = cables.turns.derivatives(pose.nodes)
     total = np.zeros((len(points.places), len(by_angle), points.places.shape[1]))
     lever = by_angle[:, cables.turns.points]
-    for side, slope in zip(starts, slopes, strict=True):
-        moved = lever.T[:, :, None] * slope[:, None]
+    for side, sensitivity in zip(starts, sensitivities, strict=True):
+        moved = lever.T[:, :, None] * sensitivity[:, None]
         np.add.at(total, side + 1, moved)
         np.subtract.at(total, side, moved)
     return points.pulled_back(pose.nodes, np.swapaxes(total, 0, 1))

@@ -16,7 +16,7 @@ from hydrostat.result_table import Columns, Tabular, marker_columns, named_colum
 from hydrostat.robot import Robot
 from hydrostat.simulation.equilibrium import Equilibrium
 
-Slopes = Float[np.ndarray, "markers dim winches"]
+Derivatives = Float[np.ndarray, "markers dim winches"]
 """Jacobian of the marker positions by the contractions."""
 
 
@@ -39,7 +39,7 @@ class PoseRow(NamedTuple):
 
     markers: Points | None = None
     tensions: Vector | None = None
-    jacobian: Slopes | None = None
+    jacobian: Derivatives | None = None
     nodes: Nodes | None = None
     stable: bool = False
     reason: Reason | None = None
@@ -104,7 +104,7 @@ def pose_row(
     anchors: Anchors,
     *,
     keep: bool,
-    slopes: Callable[[Equilibrium], np.ndarray] | None,
+    jacobian_of: Callable[[Equilibrium], np.ndarray] | None,
     diagnose: Callable[[Equilibrium], Sequence[str]],
 ) -> PoseRow:
     """Return the row of a pose.
@@ -113,15 +113,15 @@ def pose_row(
         pose: result of the solver.
         anchors: nodes and weights that hold the markers.
         keep: True to keep the nodes.
-        slopes: Jacobian of the markers by the contractions; None if not requested.
+        jacobian_of: returns the Jacobian of the markers by the contractions; None if not requested.
         diagnose: tells why there is no equilibrium.
     """
     reason, trouble, jacobian = pose.result.reason, "", None
     if not pose.result.converged:
         return PoseRow(reason=reason, trouble="; ".join([reason, *diagnose(pose)]))
-    if slopes is not None:
+    if jacobian_of is not None:
         try:
-            jacobian = slopes(pose)
+            jacobian = jacobian_of(pose)
         except HydrostatError as error:
             trouble = str(error)
     return PoseRow(

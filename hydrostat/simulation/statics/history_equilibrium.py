@@ -57,8 +57,8 @@ def find_history_equilibrium(
         loose = loose if loose > least_loose and missed > allowed else 0.0
         if missed < falls * least:
             least, last = missed, corrections
-        hopeless = missed > far * largest and iterations > most * assembly.patience
-        if hopeless or corrections == min(_CORRECTIONS, last + assembly.patience):
+        hopeless = missed > far * largest and iterations > most * assembly.max_stalled_corrections
+        if hopeless or corrections == min(_CORRECTIONS, last + assembly.max_stalled_corrections):
             result = replace(result, reason=Reason.NO_BALANCE)
             break
         if left > slow and stiffness is not None:  # factors of a place nearby no longer serve

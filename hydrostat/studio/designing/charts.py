@@ -85,7 +85,7 @@ def front_chart(candidates: Sequence[Candidate], trail: Sequence[ProgressPoint],
     The line goes through what is better than all that are sewn as fast: what more sewing gains. The candidate of the
     chosen number has a ring.
     """
-    errors = [(one.craft.minutes, 1e3 * one.built) for one in candidates]
+    errors = [(one.craft.minutes, 1e3 * one.expected_error) for one in candidates]
     way = [(mark.minutes, 1e3 * mark.error) for mark in trail]
     chart = Chart(
         width=FRONT_WIDTH,

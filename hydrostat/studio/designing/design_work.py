@@ -44,7 +44,7 @@ class Solution:
     cables: tuple[Cable, ...]  # of the network
     reaches: tuple[PoseResult, ...]  # what it reaches of each pose
     error: float  # root of the mean squared marker error over all poses [m]
-    built: float  # the same, expected of a robot as it is built [m]
+    expected_error: float  # the same, expected of a robot as it is built [m]
     craft: BuildCost  # what it takes to sew and to motorise it
     demand: Demand  # what its poses ask of motors and cables
     torque: float | None = None  # torque limit of the design, which its kit keeps to [N m]; None: none
@@ -59,7 +59,7 @@ class Candidate:
     robot: Robot  # that one with the network
     reaches: tuple[PoseResult, ...]  # what it reaches of each pose
     error: float  # root of the mean squared marker error over all poses [m]
-    built: float  # the same, expected of a robot as it is built [m]
+    expected_error: float  # the same, expected of a robot as it is built [m]
     craft: BuildCost  # what it takes to sew and to motorise it
     demand: Demand  # what its poses ask of motors and cables
     complete: bool  # whether the search came to its end
@@ -93,7 +93,7 @@ def make_candidate(solution: Solution, source: Robot, *, number: int, complete: 
         robot=assign_cable_sides(source).with_network(solution.winches, solution.cables),
         reaches=solution.reaches,
         error=solution.error,
-        built=solution.built,
+        expected_error=solution.expected_error,
         craft=solution.craft,
         demand=solution.demand,
         complete=complete,
@@ -111,11 +111,11 @@ def solution(found: Network | Alternative, torque: float | None) -> Solution:
     return Solution(
         winches=found.robot.winches,
         cables=found.robot.cables,
-        reaches=tuple(map(_reach, found.reached)),
-        error=rms_error(found.reached),
-        built=found.built,
-        craft=BuildCost.of_robot(found.robot, found.reached),
-        demand=Demand.of_results(found.robot, found.reached),
+        reaches=tuple(map(_reach, found.ik_results)),
+        error=rms_error(found.ik_results),
+        expected_error=found.expected_error,
+        craft=BuildCost.of_robot(found.robot, found.ik_results),
+        demand=Demand.of_results(found.robot, found.ik_results),
         torque=torque,
     )
 
@@ -142,7 +142,7 @@ class BestSoFar:
     cables: tuple[Cable, ...]  # of it
     error: float  # rms marker error over all poses: for routes that expected once built, for trees in the model [m]
     words: str  # what was done last, such as "a cable exchanged"
-    tried: int  # number of networks with solved poses until then
+    num_evaluated: int  # number of networks with solved poses until then
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -150,7 +150,7 @@ class DesignsFound:
     """Results of a search."""
 
     solutions: tuple[Solution, ...]  # the network that it returns, then its alternatives, each once
-    tried: int  # networks whose poses were solved
+    num_evaluated: int  # networks whose poses were solved
     complete: bool  # whether it came to its end
 
 
@@ -159,20 +159,26 @@ def design_work(report: Report, robot: Robot, request: DesignRequest) -> Designs
 
     def watch(stage: DesignStage) -> None:
         found, error = stage.robot, stage.error
-        best = BestSoFar(winches=found.winches, cables=found.cables, error=error, words=stage.words, tried=stage.tried)
+        best = BestSoFar(
+            winches=found.winches,
+            cables=found.cables,
+            error=error,
+            words=stage.words,
+            num_evaluated=stage.num_evaluated,
+        )
         report.part(best)
 
     network = find_network(robot, request, progress=report.progress, watch=watch)
     report.finish()
     solutions = _each_once([network, *network.alternatives], network.constraints.torque)
-    return DesignsFound(solutions=solutions, tried=network.tried, complete=network.complete)
+    return DesignsFound(solutions=solutions, num_evaluated=network.num_evaluated, complete=network.complete)
 
 
 def _each_once(networks: Iterable[Network | Alternative], torque: float | None) -> tuple[Solution, ...]:
     """Networks, but those that are no simpler than a better one before: in winches, cables and holes."""
     kept: list[Network | Alternative] = []
     for found in networks:
-        better = (other for other in kept if other.built <= found.built)
+        better = (other for other in kept if other.expected_error <= found.expected_error)
         if not any(all(np.less_equal(_parts(other), _parts(found))) for other in better):
             kept.append(found)
     return tuple(solution(found, torque) for found in kept)

@@ -35,9 +35,9 @@ from hydrostat.studio.designing.run import (
 from hydrostat.studio.designing.sketch import BodySketch, Ease
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.stage import Hit, Stage, told_error
-from hydrostat.studio.view.robot_things import finding_things, robot_things, target_things
-from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
+from hydrostat.studio.stage import Hit, Stage, format_error
+from hydrostat.studio.view.robot_items import diagnostic_items, robot_items, target_items
+from hydrostat.studio.view.scene_items import RobotShape, SceneItem, rest_shape
 from hydrostat.units import plural
 
 TITLE = "Designing cables"
@@ -72,7 +72,7 @@ class Designer(Stage):
         self._ease: Ease | None = None
         self._sketch: BodySketch | None = None
         self._kept = b""
-        document.bell.listen(self._hear)
+        document.bell.listen(self._on_topic)
 
     @property
     def seconds(self) -> float:
@@ -131,19 +131,19 @@ class Designer(Stage):
     def take(self, paint: Paint | None) -> None:
         """Take a paint in hand, or put it away; the body is shown at rest to be painted on."""
         self.painter.take(paint)
-        self._document.bell.ring(Topic.THINGS, Topic.SHAPE)
+        self._document.bell.ring(Topic.SCENE, Topic.SHAPE)
 
     def choose_zone(self, index: int) -> None:
         """Select a zone; the body is shown at rest."""
         self.painter.take(None)
         self.painter.chosen, self.pose = index, None
-        self._document.bell.ring(Topic.JOB, Topic.THINGS, Topic.SHAPE)
+        self._document.bell.ring(Topic.JOB, Topic.SCENE, Topic.SHAPE)
 
     def show(self, number: int | None, pose: str | None = None) -> None:
         """Show a candidate, in a pose or at rest; None: the robot as it is."""
         self.painter.take(None)
         self.chosen, self.pose = number, pose
-        self._document.bell.ring(Topic.JOB, Topic.THINGS, Topic.SHAPE)
+        self._document.bell.ring(Topic.JOB, Topic.SCENE, Topic.SHAPE)
 
     def design(self, *, is_live: bool = False) -> None:
         """Begin a design in a process of its own (InputError: no pose, wishes that do not fit, or other work).
@@ -232,19 +232,19 @@ class Designer(Stage):
         errors = {} if reach is None else reach.errors
         return RobotShape(nodes=ease.nodes, tensions=ease.tensions, contractions=pulled, errors=errors)
 
-    def things(self) -> Sequence[Thing]:
+    def scene_items(self) -> Sequence[SceneItem]:
         """The network that is shown, targets, zones."""
         shown, ease, reach = self.shown_robot, self._ease, self._reach()
         fits = ease is not None and len(ease.tensions) == len(shown.cables)
-        things = robot_things(
+        things = robot_items(
             shown, tensions=ease.tensions if ease and fits else None, scale=self.wishes.constraints.tension
         )
         there = reach is not None and ease is not None and not ease.moving
         for targets, color in self._targets():
-            things += target_things(targets, reach.places if reach is not None and there else {}, color=color)
+            things += target_items(targets, reach.places if reach is not None and there else {}, color=color)
         judge = self._document.judge
-        flags = finding_things(shown, judge.of(shown, self.wishes) or (), judge.chosen)
-        return [*things, *flags, *self.painter.things()]
+        flags = diagnostic_items(shown, judge.of(shown, self.wishes) or (), judge.chosen)
+        return [*things, *flags, *self.painter.scene_items()]
 
     def step(self, now: float) -> bool:
         """The body glides to the shape that is to be shown; what rests is judged, then one card after another."""
@@ -300,7 +300,7 @@ class Designer(Stage):
         """Leave the networks of this body with the document, which keeps them for a crash."""
         self._kept = self._document.designs = cards_content(self.candidates)
 
-    def _hear(self, topic: Topic) -> None:
+    def _on_topic(self, topic: Topic) -> None:
         """Take over networks that a studio had found which crashed."""
         content = self._document.designs
         if topic is not Topic.ROBOT or content is self._kept or not content:
@@ -342,7 +342,7 @@ class Designer(Stage):
         if run is None:
             return
         self.run = run.with_better(glimpse)
-        self._document.bell.ring(Topic.JOB, Topic.THINGS, Topic.SHAPE)
+        self._document.bell.ring(Topic.JOB, Topic.SCENE, Topic.SHAPE)
 
     def _on_found(self, found: DesignsFound) -> None:
         """The design has ended; called in a thread of the jobs."""
@@ -359,8 +359,8 @@ class Designer(Stage):
         seconds = time.monotonic() - run.began
         early = "" if found.complete else "stopped early, best so far: "
         self.outcome = (
-            f"{early}{network_words(best.robot)}, expected as-built error {told_error(best.built)} "
-            f"({plural(found.tried, 'candidate')}, {seconds:.0f} s)"
+            f"{early}{network_words(best.robot)}, expected as-built error {format_error(best.expected_error)} "
+            f"({plural(found.num_evaluated, 'candidate')}, {seconds:.0f} s)"
         )
         self.chosen, self.pose = best.number, best.reaches[0].pose.name
         if self._is_taken and self.candidate is not None:
@@ -390,4 +390,4 @@ class Designer(Stage):
             return
         self.running = False
         self._jobs.warm(MODULE)
-        self._document.bell.ring(Topic.JOB, Topic.THINGS, Topic.SHAPE)
+        self._document.bell.ring(Topic.JOB, Topic.SCENE, Topic.SHAPE)

@@ -10,7 +10,7 @@ from hydrostat.given import Point
 from hydrostat.project import Paint
 from hydrostat.studio.document import Document
 from hydrostat.studio.stage import Hit
-from hydrostat.studio.view.things import Area, Dot, Look, Strand, Stroke, Thing
+from hydrostat.studio.view.scene_items import Area, Dot, Look, SceneItem, Strand, Stroke
 
 COLORS = {Paint.KEEP_OUT: "#c8243f", Paint.WINCH_ZONES: "#00795f", Paint.STILL: "#5a3da6"}  # of each paint
 LABELS = {Paint.KEEP_OUT: "no cable", Paint.WINCH_ZONES: "winches", Paint.STILL: "still"}  # written in a zone
@@ -170,9 +170,9 @@ class Painter:
         self.chosen = None
         self._document.change("delete zone", wishes=replace(wishes, zones=zones))
 
-    def things(self) -> list[Thing]:
+    def scene_items(self) -> list[SceneItem]:
         """Zones, with handles on the chosen one, and what is being drawn."""
-        things: list[Thing] = []
+        things: list[SceneItem] = []
         zones = self.zones
         for index, (paint, zone) in enumerate(zones):
             things.append(_area(index, paint, zone, chosen=index == self.chosen))
@@ -269,7 +269,7 @@ def _area(index: int, paint: Paint, zone: Zone, *, chosen: bool) -> Area:
     return Area(key=key, color=color, outline=outline, label=label, chosen=chosen)
 
 
-def _handles(index: int, paint: Paint, zone: Zone) -> list[Thing]:
+def _handles(index: int, paint: Paint, zone: Zone) -> list[SceneItem]:
     """Resize handles of the chosen zone, fixed in the world, as the body is at rest during painting."""
     if zone.at is not None:
         places = {f"zone-rim:{index}": rim_handle(zone)}

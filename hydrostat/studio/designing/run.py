@@ -24,7 +24,7 @@ def wished_request(robot: Robot, wishes: Wishes, options: RouteOptions | None = 
         constraints=wishes.to_constraints(robot),
         method=DesignMethod.CHANG2018 if wishes.method.grows_trees else wishes.method,
         options=wishes.tree_options if wishes.method.grows_trees else options or wishes.options,
-        improve=wishes.improve,
+        warm_start=wishes.improve,
     )
     request.fit_robot(robot)  # raises InputError for what does not fit
     return request
@@ -40,7 +40,7 @@ class ProgressPoint:
     cables: int  # how many it has
     minutes: float  # of cutting and stitching it [min]
     words: str = ""  # what was done to get it, such as "a cable exchanged"
-    tried: int = 0  # number of networks tried until then
+    num_evaluated: int = 0  # number of networks tried until then
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -65,7 +65,7 @@ class DesignRun:
             cables=len(found.cables),
             minutes=BuildCost.cable_minutes(best),
             words=found.words,
-            tried=found.tried,
+            num_evaluated=found.num_evaluated,
         )
         return replace(self, best=best, trail=(*self.trail, mark))
 
@@ -106,7 +106,7 @@ def time_left(seconds: float, share: float | None) -> str:
 def starting_robot(robot: Robot, request: DesignRequest) -> Robot:
     """Return the robot with the network that a search starts from: its own if improved, else the kept parts of it."""
     limits = request.constraints
-    if request.improve:
+    if request.warm_start:
         return robot
     return robot.with_network(*limits.staying(robot))
 

@@ -15,10 +15,10 @@ from hydrostat.studio.driving.film import Recorder
 from hydrostat.studio.driving.keyframes import Keyframes
 from hydrostat.studio.driving.machine import Machine
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.stage import Hit, Stage, told_error
-from hydrostat.studio.view.robot_things import robot_things
-from hydrostat.studio.view.things import RobotShape, Thing
-from hydrostat.studio.view.touching import touch_things
+from hydrostat.studio.stage import Hit, Stage, format_error
+from hydrostat.studio.view.contact_items import contact_items
+from hydrostat.studio.view.robot_items import robot_items
+from hydrostat.studio.view.scene_items import RobotShape, SceneItem
 
 
 class Driver(Stage):
@@ -37,13 +37,13 @@ class Driver(Stage):
         """The body as the motors pull it."""
         return self._machine.shape()
 
-    def things(self) -> Sequence[Thing]:
+    def scene_items(self) -> Sequence[SceneItem]:
         """All parts of the robot, the winch that is pulled marked."""
         chosen = () if self._pull is None else (f"winch:{self._pull[0]}",)
         robot, shape = self._document.robot, self.shape()
         options = {"scale": self.strongest, "carried": shape.carried}
-        things = robot_things(robot, tensions=shape.tensions, chosen=chosen, **options)
-        return things + touch_things(shape, robot.body.mesh.size)
+        things = robot_items(robot, tensions=shape.tensions, chosen=chosen, **options)
+        return things + contact_items(shape, robot.body.mesh.size)
 
     @property
     def motors(self) -> Motors:
@@ -91,7 +91,7 @@ class Driver(Stage):
             self._machine.halt()
             self.motors.turn(name, contraction)
             self.keyframes.adjust(self.commands())
-            self._machine.mind_keys()
+            self._machine.update_keys()
         self._tell()
 
     def let_go(self) -> None:
@@ -204,7 +204,7 @@ class Driver(Stage):
                 raise InputError("this robot has no winches. Press Design to find some")
             self._machine.halt()
             self.keyframes.add_key(self.player.time, commands)
-            self._machine.mind_keys()
+            self._machine.update_keys()
         self._tell()
 
     def key_from_pose(self, name: str) -> str:
@@ -224,7 +224,7 @@ class Driver(Stage):
             self._machine.halt()
             self.motors.ask(found.pose.contractions)
             self.add_key()
-        return f"{name}: marker error {told_error(found.rms_error)} rms"
+        return f"{name}: marker error {format_error(found.rms_error)} rms"
 
     def move_key(self, index: int, time: float) -> None:
         """Drag a key to a time [s]; ends with `drop_key` (InputError: there is no such key)."""
@@ -248,7 +248,7 @@ class Driver(Stage):
         """Remove the selected key (InputError: none is selected)."""
         with self._lock:
             self.keyframes.delete()
-            self._machine.mind_keys()
+            self._machine.update_keys()
         self._tell()
 
     def table(self) -> bytes:

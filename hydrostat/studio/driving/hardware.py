@@ -24,7 +24,7 @@ from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.document import Document
-from hydrostat.studio.view.things import RobotShape
+from hydrostat.studio.view.scene_items import RobotShape
 
 SILENT = 1.5
 """Motors hold when no page has given a sign of life for so long [s]: it was closed, hidden, or its line is gone."""

@@ -17,8 +17,8 @@ from hydrostat.robot import Mount, Robot
 from hydrostat.simulation import Equilibrium, Simulation
 from hydrostat.studio.document import Document
 from hydrostat.studio.driving.keyframes import Keyframes
-from hydrostat.studio.view.things import RobotShape, rest_shape
-from hydrostat.studio.view.touching import with_touches
+from hydrostat.studio.view.contact_items import with_touches
+from hydrostat.studio.view.scene_items import RobotShape, rest_shape
 
 
 def kit_speed(robot: Robot, tension: float) -> tuple[float, str]:
@@ -77,7 +77,7 @@ class Machine:
 
     def __init__(self, document: Document, keyframes: Keyframes, connect: Callable[[Vector], Link]) -> None:
         self._connect = connect
-        self.player, self.motors = Player(), Motors((), connect(np.zeros(0)), patience=inf)
+        self.player, self.motors = Player(), Motors((), connect(np.zeros(0)), command_timeout=inf)
         self.notice = ""  # why it does not do what was asked; "" if it does
         self.kit = ""  # name of the kit's motor, whose speed the motors have at first
         self.lock = RLock()  # for what must not change meanwhile; never held for long
@@ -121,12 +121,12 @@ class Machine:
 
     def seek(self, time: float) -> None:
         """Put the playhead to a time [s] of the timeline; where there are keys, the motors go along."""
-        self.mind_keys()
+        self.update_keys()
         self.player.time = min(max(time, 0.0), self._keyframes.timeline.seconds)
         if self._keyframes.timeline.keys:
             self._ask(self.player.time)
 
-    def mind_keys(self) -> None:
+    def update_keys(self) -> None:
         """The motors know the keys as they are now."""
         self._timeline = self._keyframes.timeline
 
@@ -189,7 +189,7 @@ class Machine:
         fastest, self.kit = kit_speed(robot, self.strongest)
         if names == list(before.names):
             fastest = before.fastest
-        motors = Motors(robot.winches, link, places=places, fastest=fastest, patience=inf)
+        motors = Motors(robot.winches, link, places=places, fastest=fastest, command_timeout=inf)
         motors.ask(carry_over(before.command))
         return motors
 

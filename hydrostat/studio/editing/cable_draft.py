@@ -11,7 +11,7 @@ from hydrostat.given import Point
 from hydrostat.robot import Robot
 from hydrostat.studio.editing.part import Mirror
 from hydrostat.studio.editing.place import add_cable, add_winch
-from hydrostat.studio.view.things import Dot, Look, Strand, Stroke, Thing
+from hydrostat.studio.view.scene_items import Dot, Look, SceneItem, Strand, Stroke
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,9 +62,9 @@ def end_cable(robot: Robot, draft: CableDraft, mirror: Mirror | None = None) -> 
     return add_cable(laid, twin.removeprefix("winch:"), tuple(mirror.point(point) for point in draft.points[1:]))
 
 
-def overlay(robot: Robot, draft: CableDraft | None, mirror: Mirror | None) -> list[Thing]:
+def overlay(robot: Robot, draft: CableDraft | None, mirror: Mirror | None) -> list[SceneItem]:
     """Return the mirror axis and the cable draft, to be shown with the parts of the robot."""
-    things: list[Thing] = []
+    things: list[SceneItem] = []
     if mirror is not None and robot.body.mesh.dim == 2:
         things.append(_axis(robot, mirror))
     if draft is not None:
@@ -85,12 +85,12 @@ def _axis(robot: Robot, mirror: Mirror) -> Strand:
     return Strand(points=points, stroke=Stroke.PATH, color=Color.MUTED, loose=-1)
 
 
-def _draft(robot: Robot, draft: CableDraft) -> list[Thing]:
+def _draft(robot: Robot, draft: CableDraft) -> list[SceneItem]:
     color: str = Color.WINCHES[len(robot.winches) % len(Color.WINCHES)]
     if draft.winch is not None:
         color = Color.of_winches(robot.winches).get(draft.winch, Color.INK)
     start, *rest = draft.points
-    things: list[Thing] = []
+    things: list[SceneItem] = []
     if rest:
         things.append(Strand(points=draft.points, stroke=Stroke.CABLE, color=color, loose=-1))
     if draft.winch is None:

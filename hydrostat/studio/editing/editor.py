@@ -21,8 +21,8 @@ from hydrostat.studio.editing.place import add_marker, add_pin, add_winch, move,
 from hydrostat.studio.editing.tools import ARROWS, KEYS, NUDGE, PUSH, Findings, Ruler, Tool, look_over
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.stage import Hit, Stage
-from hydrostat.studio.view.robot_things import finding_things, robot_things
-from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
+from hydrostat.studio.view.robot_items import diagnostic_items, robot_items
+from hydrostat.studio.view.scene_items import RobotShape, SceneItem, rest_shape
 from hydrostat.units import plural
 
 
@@ -69,14 +69,14 @@ class Editor(Stage):
         shape = rest_shape(self._document.robot)
         return replace(shape, notes=(self._refused,)) if self._refused else shape
 
-    def things(self) -> Sequence[Thing]:
+    def scene_items(self) -> Sequence[SceneItem]:
         """All parts of the robot, the cable that is being laid, and the plane of the mirror."""
         robot = self._document.robot
         chosen = {key for own in self.selection for key in self._both(robot, own)}
         judge = self._document.judge
-        flags = finding_things(robot, judge.of(robot, self._document.work.wishes) or (), judge.chosen)
-        ruler = [] if self.ruler is None else self.ruler.things()
-        parts = robot_things(robot, vias=True, chosen=chosen)
+        flags = diagnostic_items(robot, judge.of(robot, self._document.work.wishes) or (), judge.chosen)
+        ruler = [] if self.ruler is None else self.ruler.scene_items()
+        parts = robot_items(robot, vias=True, chosen=chosen)
         return [*parts, *flags, *overlay(robot, self.draft, self.mirror), *ruler]
 
     def leave(self) -> None:
@@ -389,4 +389,4 @@ class Editor(Stage):
         self._document.change(label, robot=robot, timeline=timeline, wishes=wishes)
 
     def _ring(self) -> None:
-        self._document.bell.ring(Topic.THINGS)
+        self._document.bell.ring(Topic.SCENE)

@@ -8,7 +8,7 @@ import numpy as np
 from hydrostat.drawing import Color
 from hydrostat.given import Point
 from hydrostat.robot import Robot
-from hydrostat.studio.view.things import Dot, Look, Strand, Stroke, Thing
+from hydrostat.studio.view.scene_items import Dot, Look, SceneItem, Strand, Stroke
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,10 +55,10 @@ class Ruler:
         parts = ", ".join(f"{axis} {way:.1f}" for axis, way in zip("xyz", ways, strict=False))
         return f"{np.linalg.norm(ways):.1f} mm ({parts})"
 
-    def things(self) -> list[Thing]:
+    def scene_items(self) -> list[SceneItem]:
         """The line, and its ends."""
         label = self.words.partition(" (")[0]
-        dots: list[Thing] = [
+        dots: list[SceneItem] = [
             Dot(
                 at=point,
                 look=Look.VIA,

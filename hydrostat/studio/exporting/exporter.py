@@ -18,8 +18,8 @@ from hydrostat.studio.exporting.kit_work import KitMade, make_kit
 from hydrostat.studio.exporting.report_work import make_pictures, make_report
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.stage import Stage
-from hydrostat.studio.view.robot_things import finding_things, robot_things
-from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
+from hydrostat.studio.view.robot_items import diagnostic_items, robot_items
+from hydrostat.studio.view.scene_items import RobotShape, SceneItem, rest_shape
 
 _ONCE = IKOptions(restarts=0)  # a pose is shown as soon as it is found
 
@@ -82,7 +82,7 @@ class Exporter(Stage):
         """Have the next kit made so."""
         if options != self.options:
             self.options = self._document.judge.options = options
-            self._document.bell.ring(Topic.JOB, Topic.THINGS)
+            self._document.bell.ring(Topic.JOB, Topic.SCENE)
 
     def lay_cables(self, face: Face) -> None:
         """Have the cables of a flat robot run there, one step to undo (InputError: a robot in space)."""
@@ -93,7 +93,7 @@ class Exporter(Stage):
     def show(self, pose: str) -> None:
         """Show a pose as the winches reach it, by its name; "": the robot at rest."""
         self.pose = pose
-        self._document.bell.ring(Topic.SHAPE, Topic.THINGS)
+        self._document.bell.ring(Topic.SHAPE, Topic.SCENE)
 
     def make_kit(self, *, force: bool = False) -> None:
         """Make the kit as a job; if forced, even where it cannot be built well (InputError: no cables, or busy)."""
@@ -151,13 +151,13 @@ class Exporter(Stage):
             )
         return rest_shape(self._document.robot)
 
-    def things(self) -> Sequence[Thing]:
+    def scene_items(self) -> Sequence[SceneItem]:
         """All parts of the robot."""
         tensions = self.shape().tensions
         most = float(tensions.max(initial=0.0))
         robot, judge = self._document.robot, self._document.judge
-        flags = finding_things(robot, judge.of(robot, self._document.work.wishes) or (), judge.chosen)
-        return [*robot_things(robot, tensions=tensions, scale=most or 1.0), *flags]
+        flags = diagnostic_items(robot, judge.of(robot, self._document.work.wishes) or (), judge.chosen)
+        return [*robot_items(robot, tensions=tensions, scale=most or 1.0), *flags]
 
     def step(self, now: float) -> bool:
         """Solve the pose that is shown, if it is not yet; judge the robot once it has rested."""
@@ -172,7 +172,7 @@ class Exporter(Stage):
         except HydrostatError:
             self.pose = ""
             raise
-        self._document.bell.ring(Topic.SHAPE, Topic.THINGS)
+        self._document.bell.ring(Topic.SHAPE, Topic.SCENE)
         return False
 
     def _is_wanted(self, posed: "_Made") -> bool:

@@ -13,13 +13,13 @@ from hydrostat.studio.view.picture import Shown
 SHORTEST = 1 / 60
 """One step is taken in this time [s], and one more for each drag that waits for its answer."""
 
-PATIENCE = 0.25
+POLL_INTERVAL = 0.25
 """The session is looked at at least so often [s]."""
 
 LONG = 0.1
 """A step that takes longer [s] does not keep the screens waiting: what changes meanwhile is shown beside it."""
 
-SEEN = (Topic.SHAPE, Topic.THINGS, Topic.ROBOT, Topic.STAGE)
+SEEN = (Topic.SHAPE, Topic.SCENE, Topic.ROBOT, Topic.STAGE)
 """Topics that change the picture."""
 
 
@@ -37,7 +37,7 @@ class Pulse:
         self._stale = True
         self._stepping: float | None = None  # since when
         self._showing, self._end = Lock(), Event()
-        self._leave = session.bell.listen(self._hear)
+        self._leave = session.bell.listen(self._on_topic)
         self._threads = [
             Thread(target=target, name=name, daemon=True)
             for target, name in ((self._run, "studio"), (self._stand_in, "studio, while a step takes long"))
@@ -63,7 +63,7 @@ class Pulse:
         self._stale = True
         self._wake.set()
 
-    def _hear(self, topic: Topic) -> None:
+    def _on_topic(self, topic: Topic) -> None:
         if topic in SEEN:
             self._stale = True
         self._wake.set()
@@ -79,7 +79,7 @@ class Pulse:
                 self._run_guarded(self._hand_over)
             self._pause(begun + SHORTEST)
             if not more and not self._stale:
-                self._wake.wait(PATIENCE)
+                self._wake.wait(POLL_INTERVAL)
 
     def _stand_in(self) -> None:
         """Show what has changed while one step takes long."""
@@ -113,5 +113,5 @@ class Pulse:
             words = f"internal error: {type(error).__name__}: {error}"
             if not self._session.notes or self._session.notes[-1].text != words:
                 self._session.tell(words, Tone.BAD)
-            time.sleep(PATIENCE)
+            time.sleep(POLL_INTERVAL)
             return False

@@ -129,13 +129,13 @@ class _Screen:
         """Send pictures until the connection ends."""
         # So many pictures may be on their way to a screen: one that is painted, and one that comes next
         most_flying = 2
-        patience = 2.0  # A screen that has not painted for so long [s] is sent the next picture all the same
+        timeout = 2.0  # A screen that has not painted for so long [s] is sent the next picture all the same
         while True:
             await self.fresh.wait()
             while self._flying >= most_flying:
                 self._room.clear()
                 try:
-                    await asyncio.wait_for(self._room.wait(), patience)
+                    await asyncio.wait_for(self._room.wait(), timeout)
                 except TimeoutError:
                     self._flying = 0
             self.fresh.clear()

@@ -62,7 +62,7 @@ def _legend(page: WindowPage) -> None:
             for label, text in ((title, scale.title), (low, scale.low), (high, scale.high)):
                 label.set_text(text)
 
-    page.on(Topic.THINGS, show, lasting=True)
+    page.on(Topic.SCENE, show, lasting=True)
 
 
 def _space_menu(page: WindowPage) -> None:
@@ -83,7 +83,7 @@ def _color_menu(page: WindowPage) -> None:
     with ui.menu(), ui.column().classes("q-pa-md gap-2"):
         choice = ui.radio(COLORINGS, value=session.coloring)
         choice.on_value_change(lambda event: page.act(session.color_by, event.value))
-    page.on(Topic.THINGS, lambda: choice.set_value(session.coloring), lasting=True)
+    page.on(Topic.SCENE, lambda: choice.set_value(session.coloring), lasting=True)
 
 
 def _toggle_mesh(page: WindowPage, button: ui.button) -> None:

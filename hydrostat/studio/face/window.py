@@ -108,7 +108,7 @@ def build_window(session: Session, stream: str = "/stream", links: Links | None 
             page.viewport.set_brush(wanted)
 
     page.on(Topic.STAGE, show_stage, lasting=True)
-    page.on(Topic.THINGS, follow_brush, lasting=True)
+    page.on(Topic.SCENE, follow_brush, lasting=True)
     dark.on_value_change(lambda: page.viewport.set_dark(bool(dark.value)))
     ui.keyboard(on_key=lambda event: _key(page, event, ask_save, ask_help), repeating=False)
     ui.timer(HEARTBEAT, page.beat)
@@ -165,7 +165,7 @@ def _header(page: WindowPage, dark: ui.dark_mode, ask_save: SaveDialog, ask_help
 
     page.on(Topic.STAGE, show_stage, lasting=True)
     page.on(Topic.ROBOT, show_robot, lasting=True)
-    page.on((Topic.ROBOT, Topic.STAGE, Topic.THINGS), show_undo, lasting=True)
+    page.on((Topic.ROBOT, Topic.STAGE, Topic.SCENE), show_undo, lasting=True)
 
 
 def _saving_menu(page: WindowPage, ask_save: SaveDialog) -> None:

@@ -64,12 +64,12 @@ class CableProposals:
             self._news.notify_all()
         if on:
             Thread(target=self._follow, args=(self._run,), name="proposals", daemon=True).start()
-        self._document.bell.ring(Topic.THINGS)
+        self._document.bell.ring(Topic.SCENE)
 
     def include_poses(self, on: bool) -> None:
         """Let networks reach the stored poses that Design is to reach, too, or the held one alone."""
         self.with_poses = on
-        self._document.bell.ring(Topic.THINGS)
+        self._document.bell.ring(Topic.SCENE)
 
     def follow(self, robot: Robot, targets: PoseTargets, muscles: MuscleMover | None, *, is_settled: bool) -> None:
         """Want a network for the pose that is held now; where nothing is held, the process prepares for the body."""
@@ -139,7 +139,7 @@ class CableProposals:
         if robot is None:
             raise InputError("no network proposed yet. Drag the body until one appears")
         self._document.change("keep proposed cables", robot=robot, wishes=work.after_design(robot))
-        self._document.bell.ring(Topic.THINGS)
+        self._document.bell.ring(Topic.SCENE)
         counts = f"{plural(len(robot.winches), 'winch')} and {plural(len(robot.cables), 'cable')}"
         return f"kept {counts}. Undo takes them back"
 
@@ -150,7 +150,7 @@ class CableProposals:
                 return
             self._newest = self._asked = self._found = None
             self.searching = False
-        self._document.bell.ring(Topic.THINGS)
+        self._document.bell.ring(Topic.SCENE)
 
     def close(self) -> None:
         """End the process; there will be no more."""
@@ -170,7 +170,7 @@ class CableProposals:
                     known = question.robot
                     here.send(known)
                 here.send(question.moment)
-                self._hear(run, here, question.robot)
+                self._receive(run, here, question.robot)
         except (EOFError, OSError):
             self._take(run, self._document.robot, Proposal(words=LOST))
         finally:
@@ -178,7 +178,7 @@ class CableProposals:
             process.kill()
             process.join()
 
-    def _hear(self, run: int, pipe: Connection, robot: Robot) -> None:
+    def _receive(self, run: int, pipe: Connection, robot: Robot) -> None:
         """Take what is found until the answer is complete; where something else is asked, it ends early."""
         tick, is_called_off = 0.02, False  # seconds between two looks at what is asked
         while self._run == run:
@@ -193,7 +193,7 @@ class CableProposals:
         with self._news:
             if self._run == run:
                 self.searching = self.searching and self._newest is not None
-        self._document.bell.ring(Topic.THINGS)
+        self._document.bell.ring(Topic.SCENE)
 
     def _next(self, run: int) -> _Question | None:
         """Wait for the next question; None: it is over."""
@@ -210,7 +210,7 @@ class CableProposals:
             if self._run == run and (is_wanted or found.words == LOST):
                 self._found = (robot, found)
                 self.searching = self.searching and found.words != LOST
-        self._document.bell.ring(Topic.THINGS, Topic.SHAPE)
+        self._document.bell.ring(Topic.SCENE, Topic.SHAPE)
 
 
 def _same_body(one: Robot, other: Robot) -> bool:

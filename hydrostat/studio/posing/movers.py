@@ -18,8 +18,8 @@ from hydrostat.robot import Marker, Robot
 from hydrostat.simulation import Equilibrium, Simulation, friction_hysteresis
 from hydrostat.studio.document import Document
 from hydrostat.studio.posing.pose_state import Anchored, HeldPoint, Mode
-from hydrostat.studio.view.things import Prediction, RobotShape
-from hydrostat.studio.view.touching import with_touches
+from hydrostat.studio.view.contact_items import with_touches
+from hydrostat.studio.view.scene_items import Prediction, RobotShape
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -123,4 +123,4 @@ class Photographs:
         self._ring()
 
     def _ring(self) -> None:
-        self._document.bell.ring(Topic.JOB, Topic.THINGS)
+        self._document.bell.ring(Topic.JOB, Topic.SCENE)

@@ -15,7 +15,7 @@ from hydrostat.project import Wishes, Work, fresh_name
 from hydrostat.robot import Marker, PoseTarget, Robot
 from hydrostat.studio.document import Document
 from hydrostat.studio.stage import Hit
-from hydrostat.studio.view.things import Ghost, RobotShape
+from hydrostat.studio.view.scene_items import Ghost, RobotShape
 
 
 class Mode(StrEnum):

@@ -35,17 +35,17 @@ from hydrostat.studio.posing.pose_state import (
 )
 from hydrostat.studio.posing.reach import MarkerReach
 from hydrostat.studio.stage import Hit, Stage
-from hydrostat.studio.view.robot_things import (
+from hydrostat.studio.view.contact_items import contact_items
+from hydrostat.studio.view.robot_items import (
     MARKER,
     Bar,
-    prediction_things,
-    proposed_things,
-    robot_things,
-    target_things,
+    prediction_items,
+    proposal_items,
+    robot_items,
+    target_items,
     winch_bars,
 )
-from hydrostat.studio.view.things import Dot, Ghost, Look, RobotShape, Thing, rest_shape
-from hydrostat.studio.view.touching import touch_things
+from hydrostat.studio.view.scene_items import Dot, Ghost, Look, RobotShape, SceneItem, rest_shape
 
 READY = "preparing the physics…"  # said while the physics of a robot is made
 
@@ -79,7 +79,7 @@ class Poser(Stage):
         self._trail = Trail(document)
         self._dragged = False
         self._armed = self._chosen = ""
-        document.bell.listen(self._heard)
+        document.bell.listen(self._on_topic)
 
     @property
     def mode(self) -> Mode:
@@ -105,13 +105,13 @@ class Poser(Stage):
         """The body as it follows; at rest until the first step."""
         return self._fit().shape
 
-    def things(self) -> Sequence[Thing]:
+    def scene_items(self) -> Sequence[SceneItem]:
         """Ghosts, the robot, points that are held, and rings where they should be."""
         now = self._fit()
         robot, targets, shape = now.robot, now.targets, now.shape
         limit = self._document.work.wishes.constraints.tension
         keys = {f"marker:{self._chosen}", f"point:{self._chosen}"} if self._chosen else set()
-        found: list[Thing] = [Ghost(name="rest", nodes=robot.body.mesh.nodes, color=Color.GHOST)]
+        found: list[SceneItem] = [Ghost(name="rest", nodes=robot.body.mesh.nodes, color=Color.GHOST)]
         if now.ghost is not None:
             found.append(now.ghost)
         cloud = self.reach.cloud(robot)
@@ -119,12 +119,12 @@ class Poser(Stage):
             found.append(cloud)
         proposed = None if self.proposals.is_kept(robot) else self.proposals.network(robot)
         if proposed is not None and targets.mode is Mode.MUSCLES:  # own cables pull nothing: show the proposed alone
-            found += robot_things(robot.with_network([], []), chosen=keys)
+            found += robot_items(robot.with_network([], []), chosen=keys)
         else:
             options = {"scale": limit, "carried": shape.carried}
-            found += robot_things(robot, tensions=shape.tensions, chosen=keys, **options)
+            found += robot_items(robot, tensions=shape.tensions, chosen=keys, **options)
         if proposed is not None:
-            found += proposed_things(proposed, robot.winches if targets.mode is Mode.CABLES else ())
+            found += proposal_items(proposed, robot.winches if targets.mode is Mode.CABLES else ())
         markers = {marker.name for marker in robot.markers}
         found += [
             Dot(key=f"point:{name}", at=point.at, look=Look.HANDLE, color=MARKER, chosen=f"point:{name}" in keys)
@@ -132,9 +132,9 @@ class Poser(Stage):
             if name not in markers
         ]
         places = now.anchored.places(targets.held, shape.nodes)
-        found += prediction_things(shape)
-        found += touch_things(shape, robot.body.mesh.size)
-        return found + target_things(
+        found += prediction_items(shape)
+        found += contact_items(shape, robot.body.mesh.size)
+        return found + target_items(
             {name: point.target for name, point in targets.held.items()},
             dict(zip(targets.held, (tuple(place.tolist()) for place in places), strict=True)),
             chosen=f"target:{self._chosen}",
@@ -200,7 +200,7 @@ class Poser(Stage):
     def choose(self, name: str) -> None:
         """Select a held point or marker."""
         self._chosen = self._fit().find_name(name)
-        self._document.bell.ring(Topic.THINGS)
+        self._document.bell.ring(Topic.SCENE)
 
     def set_mode(self, mode: Mode | str) -> None:
         """Let muscles or cables move the body; what is held stays held (InputError: no such mode, or no cables)."""
@@ -343,7 +343,7 @@ class Poser(Stage):
         self._document.bell.ring(Topic.SHAPE)
 
     def _ring(self) -> None:
-        self._document.bell.ring(Topic.SHAPE, Topic.THINGS)
+        self._document.bell.ring(Topic.SHAPE, Topic.SCENE)
 
     def _fit(self) -> PoseState:
         """Return the state of posing for the robot as it is now, rebuilt if the robot has changed."""
@@ -366,7 +366,7 @@ class Poser(Stage):
             self._now = now
             return now
 
-    def _heard(self, topic: Topic) -> None:
+    def _on_topic(self, topic: Topic) -> None:
         """Follow each change of markers, also while another stage is shown."""
         now = self._now
         if topic is Topic.ROBOT and now is not None and same_body(now.robot, self._document.robot):

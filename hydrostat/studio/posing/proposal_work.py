@@ -60,7 +60,7 @@ class Proposal:
 
     winches: tuple[Winch, ...] = ()  # of the network
     cables: tuple[Cable, ...] = ()  # of the network
-    built: float | None = None  # rms error of all poses expected once built [m]; None: not known
+    expected_error: float | None = None  # rms error of all poses expected once built [m]; None: not known
     method: DesignMethod = DesignMethod.ROUTES  # search that found it
     poses: int = 1  # number of poses that it was found for
     is_last: bool = True  # False where a better one follows
@@ -108,7 +108,7 @@ class Proposer:
             yield Proposal(
                 winches=found.robot.winches,
                 cables=found.robot.cables,
-                built=found.built,
+                expected_error=found.expected_error,
                 poses=len(request.poses),
                 is_last=found.is_refined,
                 is_buildable=found.is_buildable or not found.is_refined,
@@ -155,7 +155,7 @@ class Proposer:
         return Proposal(
             winches=found.winches,
             cables=found.cables,
-            built=expected_error(simulation, [reached], BuildTolerances.of(found.body)),
+            expected_error=expected_error(simulation, [reached], BuildTolerances.of(found.body)),
             method=DesignMethod.TREES,
             words=words,
         )

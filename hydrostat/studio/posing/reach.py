@@ -15,7 +15,7 @@ from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs, Report
 from hydrostat.studio.posing.movers import same_physics
 from hydrostat.studio.posing.pose_state import Mode
-from hydrostat.studio.view.things import Cloud
+from hydrostat.studio.view.scene_items import Cloud
 
 COUNT = 400  # so many poses are tried
 
@@ -89,7 +89,7 @@ class MarkerReach:
     def __init__(self, document: Document, jobs: Jobs) -> None:
         self._document, self._jobs = document, jobs
         self._search: _ReachSearch | None = None
-        document.bell.listen(self._heard)
+        document.bell.listen(self._on_topic)
 
     @property
     def marker(self) -> str:
@@ -136,7 +136,7 @@ class MarkerReach:
         except InputError:
             self._search = before
             raise
-        self._document.bell.ring(Topic.THINGS)
+        self._document.bell.ring(Topic.SCENE)
 
     def stop(self) -> None:
         """End with what has been found."""
@@ -147,9 +147,9 @@ class MarkerReach:
         """Show no cloud."""
         self.stop()
         self._search = None
-        self._document.bell.ring(Topic.THINGS)
+        self._document.bell.ring(Topic.SCENE)
 
-    def _heard(self, topic: Topic) -> None:
+    def _on_topic(self, topic: Topic) -> None:
         search = self._search
         if topic is not Topic.ROBOT or search is None or not self._document.is_open:
             return
@@ -161,11 +161,11 @@ class MarkerReach:
         known = points if search.cloud is None else np.concatenate([search.cloud.points, points])
         search.cloud = Cloud(name="reach", points=known, color=COLOR)
         if search is self._search:
-            self._document.bell.ring(Topic.THINGS)
+            self._document.bell.ring(Topic.SCENE)
 
     def _end(self, search: _ReachSearch) -> None:
         search.running = False
-        self._document.bell.ring(Topic.THINGS)
+        self._document.bell.ring(Topic.SCENE)
 
 
 def _place(robot: Robot, marker: str) -> Point | None:

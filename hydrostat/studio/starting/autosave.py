@@ -1,6 +1,6 @@
 """`Autosave`: keeps work that is not saved, so that a crash loses little of it.
 
-Lost is what was done in the last `PATIENCE`; of changes without a pause, what was done in the last `LONGEST`; and in
+Lost is what was done in the last `QUIET_TIME`; of changes without a pause, what was done in the last `LONGEST`; and in
 both cases what was done while a copy is written.
 """
 
@@ -56,7 +56,7 @@ def is_held(folder: Path) -> bool:
     return False
 
 
-PATIENCE = 2.0  # work is kept when nothing has changed for so long [s]
+QUIET_TIME = 2.0  # work is kept when nothing has changed for so long [s]
 LONGEST = 5.0  # and so often while changes go on [s]
 AGAIN = 10.0  # what could not be written is tried again after so long [s]
 
@@ -110,7 +110,7 @@ class Autosave:
         if self.problem and now - self._asked < AGAIN:
             return
         nothing = state[1] and not state[2]
-        if nothing or self.problem or now - self._changed >= PATIENCE or now - self._asked >= LONGEST:
+        if nothing or self.problem or now - self._changed >= QUIET_TIME or now - self._asked >= LONGEST:
             self._asked = now
             self._writer = Thread(target=self._keep, name="autosave", daemon=True)
             self._writer.start()

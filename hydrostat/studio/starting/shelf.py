@@ -83,7 +83,7 @@ def robots_in(folder: Path) -> list[Card]:
     return [card_of(path) for path in found[:MOST_SHOWN]]
 
 
-def told_apart(cards: list[Card]) -> list[Card]:
+def distinguish_cards(cards: list[Card]) -> list[Card]:
     """Each folder once, the first place counts; those of one name are told with the folder they are in."""
     once: dict[Path, Card] = {}
     for card in cards:

@@ -24,10 +24,10 @@ from hydrostat.studio.starting.autosave import Autosave
 from hydrostat.studio.starting.draft import BodyDraft, new_draft
 from hydrostat.studio.starting.loops import fit_loops
 from hydrostat.studio.starting.outlining import Outlining
-from hydrostat.studio.starting.shelf import Card, Recent, card_of, robots_in, told_apart
+from hydrostat.studio.starting.shelf import Card, Recent, card_of, distinguish_cards, robots_in
 from hydrostat.studio.starting.sketch import PartChoice, Sketch, make_sketch
-from hydrostat.studio.view.robot_things import robot_things
-from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
+from hydrostat.studio.view.robot_items import robot_items
+from hydrostat.studio.view.scene_items import RobotShape, SceneItem, rest_shape
 from hydrostat.units import printable, quote
 
 _BROKEN = (BadZipFile, EOFError, NotImplementedError, RuntimeError, OSError, zlib.error, LZMAError)
@@ -141,15 +141,15 @@ class Starter(Stage):
         self._working: BodyDraft | None = None
         self._halted = self._eager = False
         self._lock = RLock()
-        document.bell.listen(self._hear)
+        document.bell.listen(self._on_topic)
 
     def shape(self) -> RobotShape:
         """The rest shape."""
         return rest_shape(self._document.robot)
 
-    def things(self) -> Sequence[Thing]:
+    def scene_items(self) -> Sequence[SceneItem]:
         """All parts of the robot."""
-        return robot_things(self._document.robot)
+        return robot_items(self._document.robot)
 
     def open_gallery(self, folder: Path) -> None:
         """Open a copy of a gallery robot, which Save asks a folder for."""
@@ -177,7 +177,7 @@ class Starter(Stage):
 
     def recent(self) -> list[Card]:
         """Robots that were open lately, then those of the working folder; each once, those of one name told apart."""
-        return told_apart([*map(card_of, self._recent.folders()), *robots_in(Path.cwd())])
+        return distinguish_cards([*map(card_of, self._recent.folders()), *robots_in(Path.cwd())])
 
     @property
     def is_meshing(self) -> bool:
@@ -357,7 +357,7 @@ class Starter(Stage):
         if self.sketch is not None and self.is_current:
             self._document.judge.skins.look(self.sketch.robot.body, self._document.judge.options)
 
-    def _hear(self, topic: Topic) -> None:
+    def _on_topic(self, topic: Topic) -> None:
         """Remember the folder of the robot."""
         folder = self._document.folder
         if topic is Topic.ROBOT and folder is not None and folder != self._known:

@@ -8,7 +8,7 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.robot import Robot
 from hydrostat.simulation import node_strains, node_stresses
-from hydrostat.studio.view.things import RobotShape
+from hydrostat.studio.view.scene_items import RobotShape
 
 
 class Coloring(StrEnum):

@@ -12,7 +12,7 @@ import numpy as np
 from hydrostat.arrays import Float, Nodes, Points, Vector
 from hydrostat.geometry import Anchors, locate
 from hydrostat.robot import Robot
-from hydrostat.studio.view.things import Area, Cloud, Dot, Ghost, RobotShape, Strand, Thing
+from hydrostat.studio.view.scene_items import Area, Cloud, Dot, Ghost, RobotShape, SceneItem, Strand
 
 KINDS = {"f": "<f4", "i": "<u4", "u": "<u4"}
 
@@ -65,7 +65,7 @@ class Picture:
     `nodes` of the surface, `points` of all things, `loads` of the lines, `values` of the nodes (0 to 1) if colored.
     """
 
-    def __init__(self, robot: Robot, things: Sequence[Thing], serial: int) -> None:
+    def __init__(self, robot: Robot, things: Sequence[SceneItem], serial: int) -> None:
         """The picture of a robot's body with things beside it; the serial names the scene."""
         self.robot, self.serial = robot, serial
         self.signature = _signature(robot, things)
@@ -73,7 +73,7 @@ class Picture:
         self._stuck_flags, self._rest = _stuck_flags(things, robot.body.mesh.dim)
         self._things = tuple(things)
 
-    def fits(self, robot: Robot, things: Sequence[Thing]) -> bool:
+    def fits(self, robot: Robot, things: Sequence[SceneItem]) -> bool:
         """Tell whether these need no new scene: only places in the world and loads may differ."""
         return robot.body.mesh is self.robot.body.mesh and _signature(robot, things) == self.signature
 
@@ -101,7 +101,7 @@ class Picture:
         return packet(head, arrays)
 
     def frame(
-        self, nodes: Nodes, things: Sequence[Thing], head: dict[str, Any], *, values: Vector | None = None
+        self, nodes: Nodes, things: Sequence[SceneItem], head: dict[str, Any], *, values: Vector | None = None
     ) -> bytes:
         """All that changes: nodes [m] and their colors from 0 to 1, if any, places and loads of things, words."""
         points = np.concatenate([_points(thing) for thing in things] or [np.zeros((0, nodes.shape[1]))])
@@ -136,7 +136,7 @@ def _in_space(points: Points) -> Table:
     return table
 
 
-def _points(thing: Thing) -> Points:
+def _points(thing: SceneItem) -> Points:
     """The points of a thing that are sent with every frame."""
     if isinstance(thing, Dot):
         return np.array([thing.at], dtype=float)
@@ -147,7 +147,7 @@ def _points(thing: Thing) -> Points:
     return np.zeros((0, (thing.nodes if isinstance(thing, Ghost) else thing.points).shape[1]))
 
 
-def _stuck_flags(things: Sequence[Thing], dim: int) -> tuple[np.ndarray, Points]:
+def _stuck_flags(things: Sequence[SceneItem], dim: int) -> tuple[np.ndarray, Points]:
     """Return flags of the points that are stuck to the body, and all points as given [m]."""
     flags, places = [np.zeros(0, dtype=bool)], [np.zeros((0, dim))]
     for thing in things:
@@ -162,7 +162,7 @@ def _stuck_flags(things: Sequence[Thing], dim: int) -> tuple[np.ndarray, Points]
     return np.concatenate(flags), np.concatenate(places)
 
 
-def _styles(things: Sequence[Thing]) -> list[dict[str, Any]]:
+def _styles(things: Sequence[SceneItem]) -> list[dict[str, Any]]:
     """Return the style of each object, and the range of its points."""
     styles, first = [], 0
     for thing in things:
@@ -173,7 +173,7 @@ def _styles(things: Sequence[Thing]) -> list[dict[str, Any]]:
     return styles
 
 
-def _style(thing: Thing) -> dict[str, Any]:
+def _style(thing: SceneItem) -> dict[str, Any]:
     if isinstance(thing, Dot):
         return {
             "key": thing.key, "look": str(thing.look), "color": thing.color, "label": thing.label,
@@ -193,7 +193,7 @@ def _style(thing: Thing) -> dict[str, Any]:
     return {"name": thing.name, "color": thing.color}
 
 
-def _signature(robot: Robot, things: Sequence[Thing]) -> tuple[Any, ...]:
+def _signature(robot: Robot, things: Sequence[SceneItem]) -> tuple[Any, ...]:
     """Return the content of a scene as a tuple: equal tuples mean an equal scene."""
     marks: list[Any] = [robot.name]
     for thing in things:
@@ -230,7 +230,7 @@ class Show:
         self,
         robot: Robot,
         shape: RobotShape,
-        things: Sequence[Thing],
+        things: Sequence[SceneItem],
         head: dict[str, Any],
         values: Vector | None = None,
     ) -> Shown:

@@ -107,7 +107,7 @@ def candidate(number: int, robot: Robot, *, minutes: float, built: float) -> Can
         robot=robot,
         reaches=(),
         error=0.0,
-        built=1e-3 * built,
+        expected_error=1e-3 * built,
         craft=craft,
         demand=Demand.of_results(robot, []),
         complete=True,

@@ -24,9 +24,9 @@ from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.session import Session
 from hydrostat.studio.stage import StageName
-from hydrostat.studio.view.things import Dot, Look, Strand
+from hydrostat.studio.view.scene_items import Dot, Look, Strand
 
-PATIENCE = 100.0
+TIMEOUT = 100.0
 FAST = RouteOptions(starts=1, exchanges=0, refine_steps=2, trials=1, steps=1, max_edges=6)
 LONG = RouteOptions(stop_error=0.0, exchanges=1000)
 
@@ -49,7 +49,7 @@ class Studio:
 
     def until(self, condition) -> None:
         with self.rung:
-            assert self.rung.wait_for(condition, PATIENCE)
+            assert self.rung.wait_for(condition, TIMEOUT)
 
     def settle(self) -> None:
         """Let the body come to where it glides."""
@@ -90,10 +90,10 @@ def test_what_is_found_is_what_design_cables_returns(done: Studio, strip: Robot,
     assert best.complete
     assert (best.robot.winches, best.robot.cables) == (expected.robot.winches, expected.robot.cables)
     assert best.error == pytest.approx(expected.rms_error, rel=1e-6)
-    assert best.built == pytest.approx(expected.built, rel=1e-6)
+    assert best.expected_error == pytest.approx(expected.expected_error, rel=1e-6)
     # Of the alternatives those are shown that are simpler than all that are better.
     shown: list[tuple[int, int, int]] = []
-    for network in (expected, *sorted(expected.alternatives, key=lambda other: other.built)):
+    for network in (expected, *sorted(expected.alternatives, key=lambda other: other.expected_error)):
         robot = network.robot
         parts = len(robot.winches), len(robot.cables), sum(len(cable.points) for cable in robot.cables)
         if not any(all(one <= other for one, other in zip(better, parts, strict=True)) for better in shown):
@@ -101,7 +101,7 @@ def test_what_is_found_is_what_design_cables_returns(done: Studio, strip: Robot,
     assert len(done.designer.candidates) == len(shown) < 1 + len(expected.alternatives)
     assert best.counts == "1 winch, 1 cable"
     assert best.length == sum(cable.length for cable in expected.robot.cables)
-    assert best.tension == pytest.approx(expected.reached[0].pose.tensions.max(), rel=1e-6)
+    assert best.tension == pytest.approx(expected.ik_results[0].pose.tensions.max(), rel=1e-6)
     assert "1 winch, 1 cable" in done.designer.outcome
     assert done.session.document.robot is strip
 
@@ -124,9 +124,9 @@ def test_a_candidate_is_shown_in_its_pose_and_at_rest(done: Studio) -> None:
     np.testing.assert_allclose(designer.shape().nodes, solved.nodes, atol=1e-5)
     np.testing.assert_allclose(designer.shape().tensions, solved.tensions, atol=1e-2)
     assert designer.shape().errors == best.reaches[0].errors
-    targets = [thing for thing in designer.things() if isinstance(thing, Dot) and thing.look is Look.TARGET]
+    targets = [thing for thing in designer.scene_items() if isinstance(thing, Dot) and thing.look is Look.TARGET]
     assert [dot.at for dot in targets] == list(best.robot.pose("up").targets.values())
-    cables = [thing for thing in designer.things() if isinstance(thing, Strand) and thing.key.startswith("cable")]
+    cables = [thing for thing in designer.scene_items() if isinstance(thing, Strand) and thing.key.startswith("cable")]
     assert [line.points for line in cables] == [cable.points for cable in best.robot.cables]
     designer.show(best.number)
     done.settle()
@@ -174,13 +174,15 @@ def test_stopped_it_returns_the_best_so_far(fresh: Studio, strip: Robot) -> None
     designer.design()
     with pytest.raises(InputError, match="Designing cables is still running"):
         designer.design()
-    assert [thing for thing in designer.things() if isinstance(thing, Strand) and thing.key.startswith("cable")] == []
+    assert [
+        thing for thing in designer.scene_items() if isinstance(thing, Strand) and thing.key.startswith("cable")
+    ] == []
     fresh.until(lambda: designer.run is not None and len(designer.run.trail) > 0)
     assert designer.running
     fresh.settle()
     run = designer.run
     assert run is not None
-    cables = [thing for thing in designer.things() if isinstance(thing, Strand) and thing.key.startswith("cable")]
+    cables = [thing for thing in designer.scene_items() if isinstance(thing, Strand) and thing.key.startswith("cable")]
     assert len(cables) > 0
     assert len(run.best.cables) == run.trail[-1].cables
     fresh.session.go(StageName.POSE)
@@ -282,7 +284,7 @@ def test_targets_of_several_poses_are_told_apart(fresh: Studio) -> None:
     """Oracle: where the poses want their marker; one pose alone has no color."""
 
     def rings() -> dict[tuple[float, ...], str]:
-        things = fresh.designer.things()
+        things = fresh.designer.scene_items()
         return {thing.at: thing.color for thing in things if isinstance(thing, Dot) and thing.look is Look.TARGET}
 
     assert rings() == {(0.18, 0.06): Color.INK}
@@ -301,7 +303,7 @@ def test_the_best_so_far_can_be_taken_at_any_moment(fresh: Studio, strip: Robot)
     assert designer.run is not None
     best = designer.run.trail[-1]
     assert best.words
-    assert best.tried > 0
+    assert best.num_evaluated > 0
     designer.take_best()
     fresh.until(lambda: not designer.running)
     taken = designer.candidates[0]

@@ -28,10 +28,12 @@ def found_by(session: Session, robot: Robot) -> None:
     once = IKOptions(restarts=0)
     pose = next(iter(robot.poses.values()))
     made = [
-        Alternative(robot=one, reached=(solve_ik(Simulation(one), pose, options=once),), built=0.004)
+        Alternative(robot=one, ik_results=(solve_ik(Simulation(one), pose, options=once),), expected_error=0.004)
         for one in (robot, few)
     ]
-    designer._on_found(DesignsFound(solutions=tuple(solution(one, 0.09) for one in made), tried=2, complete=True))
+    designer._on_found(
+        DesignsFound(solutions=tuple(solution(one, 0.09) for one in made), num_evaluated=2, complete=True)
+    )
 
 
 @pytest.fixture
@@ -64,7 +66,12 @@ def test_cards_come_back_with_their_poses_and_loads(crashed: Session, tmp_path: 
             old.robot.cables,
             old.robot.face,
         )
-        assert (new.error, new.built, new.craft, new.complete) == (old.error, old.built, old.craft, old.complete)
+        assert (new.error, new.expected_error, new.craft, new.complete) == (
+            old.error,
+            old.expected_error,
+            old.craft,
+            old.complete,
+        )
         assert new.reaches[0].pose == old.reaches[0].pose
         assert (new.reaches[0].errors, new.reaches[0].places) == (old.reaches[0].errors, old.reaches[0].places)
         np.testing.assert_array_equal(new.reaches[0].nodes, old.reaches[0].nodes)

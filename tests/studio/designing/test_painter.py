@@ -14,7 +14,7 @@ from hydrostat.studio.designing.painter import LEAST, Painter, lasso
 from hydrostat.studio.document import Document
 from hydrostat.studio.stage import Hit
 from hydrostat.studio.view.picture import Picture
-from hydrostat.studio.view.things import Area, Dot, Look, Strand
+from hydrostat.studio.view.scene_items import Area, Dot, Look, Strand
 
 
 @pytest.fixture
@@ -64,7 +64,7 @@ def test_the_disc_is_seen_while_it_is_drawn(painter: Painter, document: Document
     painter.take(Paint.STILL)
     painter.grab(on_body(0.0, 0.0))
     painter.drag(on_body(0.03, 0.0))
-    assert [(area.at, area.radius) for area in painter.things() if isinstance(area, Area)] == [((0.0, 0.0), 0.03)]
+    assert [(area.at, area.radius) for area in painter.scene_items() if isinstance(area, Area)] == [((0.0, 0.0), 0.03)]
     assert painted(document) == ()
 
 
@@ -100,7 +100,7 @@ def test_a_line_round_nothing_is_refused(painter: Painter, document: Document) -
     with pytest.raises(InputError, match="encloses no area"):
         stroke(painter, on_body(0.0, 0.0, shift=True), on_body(0.02, 0.0))
     assert painted(document) == ()
-    assert not [thing for thing in painter.things() if isinstance(thing, Strand)]
+    assert not [thing for thing in painter.scene_items() if isinstance(thing, Strand)]
 
 
 def test_clicks_set_corners_and_the_first_one_closes(painter: Painter, document: Document) -> None:
@@ -108,7 +108,7 @@ def test_clicks_set_corners_and_the_first_one_closes(painter: Painter, document:
     corners = ((0.0, 0.0), (0.04, 0.0), (0.02, 0.03))
     for corner in corners:
         painter.click(on_body(*corner))
-    assert len([dot for dot in painter.things() if isinstance(dot, Dot) and dot.look is Look.HANDLE]) == 3
+    assert len([dot for dot in painter.scene_items() if isinstance(dot, Dot) and dot.look is Look.HANDLE]) == 3
     painter.click(on_body(0.001, 0.001))
     assert painted(document) == ((Paint.WINCH_ZONES, Zone(outline=corners)),)
 
@@ -160,7 +160,7 @@ def test_a_press_without_a_move_changes_nothing(painter: Painter, with_zones: Do
 
 def test_handles_resize_and_reshape(painter: Painter, with_zones: Document) -> None:
     painter.chosen = 0
-    assert [dot.key for dot in painter.things() if isinstance(dot, Dot)] == ["zone-rim:0"]
+    assert [dot.key for dot in painter.scene_items() if isinstance(dot, Dot)] == ["zone-rim:0"]
     stroke(painter, on_body(0.02, 0.0, key="zone-rim:0"), on_body(0.0, 0.05))
     assert painted(with_zones)[0][1] == Zone(at=(0.0, 0.0), radius=0.05)
     painter.chosen = 1
@@ -198,7 +198,7 @@ def test_a_zone_that_is_undone_while_it_is_carried_is_let_go(painter: Painter, w
     painter.drag(on_body(0.02, 0.0))
     with_zones.undo()
     painter.drag(on_body(0.03, 0.0))
-    assert painter.things() is not None
+    assert painter.scene_items() is not None
     painter.release()
     assert painted(with_zones) == ()
 
@@ -220,5 +220,5 @@ def test_in_space_zones_are_balls() -> None:
 
 def test_what_is_painted_can_be_drawn(painter: Painter, with_zones: Document) -> None:
     painter.chosen = 1
-    picture = Picture(with_zones.robot, painter.things(), 1)
+    picture = Picture(with_zones.robot, painter.scene_items(), 1)
     assert picture.scene()

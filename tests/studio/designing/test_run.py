@@ -66,7 +66,7 @@ def test_poses_by_name_all_if_none_is_left(starfish: Robot) -> None:
 
 def test_as_few_winches_as_will_do(starfish: Robot) -> None:
     asked = wished_request(starfish, Wishes.of(winches=0, cables=4, tolerance=0.003, simplicity=4.0))
-    assert (asked.winches, asked.cables, asked.improve) == ("auto", 4, False)
+    assert (asked.winches, asked.cables, asked.warm_start) == ("auto", 4, False)
     assert asked.options == RouteOptions(tolerance=0.003, simplicity=4.0)
     assert wished_request(starfish, Wishes(winches=3)).winches == 3
     with pytest.raises(InputError, match=r"cannot improve a network \(.auto.\). Give a number of winches"):

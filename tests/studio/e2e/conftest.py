@@ -22,7 +22,7 @@ FLAGS = ["--no-sandbox", "--enable-unsafe-swiftshader"]
 
 RUN = "from hydrostat.cli.main import main; main()"
 
-PATIENCE = 300_000
+TIMEOUT = 300_000
 """The most that a test waits for one thing [ms]: the machine may be busy, and compile."""
 
 Open = Callable[..., "Page"]
@@ -79,7 +79,7 @@ def window(browser: "Browser") -> Iterator[Open]:
         if not tour:
             context.add_init_script("localStorage.setItem('hydrostat-tour', '1')")
         page = context.new_page()
-        page.set_default_timeout(PATIENCE)
+        page.set_default_timeout(TIMEOUT)
         page.goto(address)
         return page
 

@@ -12,8 +12,8 @@ from hydrostat.studio.face.pulse import SHORTEST, Pulse
 from hydrostat.studio.session import Session
 from hydrostat.studio.stage import Hit, Stage, StageName
 from hydrostat.studio.view.picture import Shown
-from hydrostat.studio.view.robot_things import robot_things
-from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
+from hydrostat.studio.view.robot_items import robot_items
+from hydrostat.studio.view.scene_items import RobotShape, SceneItem, rest_shape
 
 
 class Busy(Stage):
@@ -26,8 +26,8 @@ class Busy(Stage):
     def shape(self) -> RobotShape:
         return rest_shape(self.session.document.robot)
 
-    def things(self) -> list[Thing]:
-        return robot_things(self.session.document.robot)
+    def scene_items(self) -> list[SceneItem]:
+        return robot_items(self.session.document.robot)
 
     def grab(self, hit: Hit) -> bool:
         return True

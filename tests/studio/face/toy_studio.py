@@ -9,8 +9,8 @@ from hydrostat.studio.face.rooms import Rooms
 from hydrostat.studio.face.serve import serve
 from hydrostat.studio.session import Session
 from hydrostat.studio.stage import Hit, Stage, StageName
-from hydrostat.studio.view.robot_things import robot_things
-from hydrostat.studio.view.things import RobotShape, Thing, rest_shape
+from hydrostat.studio.view.robot_items import robot_items
+from hydrostat.studio.view.scene_items import RobotShape, SceneItem, rest_shape
 
 
 class Toy(Stage):
@@ -23,8 +23,8 @@ class Toy(Stage):
         shape = rest_shape(self.session.document.robot)
         return replace(shape, nodes=shape.nodes + self.place)
 
-    def things(self) -> Sequence[Thing]:
-        return robot_things(self.session.document.robot)
+    def scene_items(self) -> Sequence[SceneItem]:
+        return robot_items(self.session.document.robot)
 
     def grab(self, hit: Hit) -> bool:
         if hit.key == "stumble":

@@ -41,9 +41,9 @@ from hydrostat.studio.posing.proposal_work import (
     request_routes,
     request_trees,
 )
-from hydrostat.studio.view.things import Dot, Look
+from hydrostat.studio.view.scene_items import Dot, Look
 
-PATIENCE = 120.0  # the process has to start [s]
+TIMEOUT = 120.0  # the process has to start [s]
 
 
 @pytest.fixture
@@ -74,7 +74,7 @@ def by_routes(robot: Robot, wishes: Wishes, name: str = "wave") -> ProposalInput
 def until(ready: Callable[[], object], poser: Poser | None = None) -> None:
     began = time.monotonic()
     while not ready():
-        assert time.monotonic() - began < PATIENCE, "it never came"
+        assert time.monotonic() - began < TIMEOUT, "it never came"
         if poser is not None:
             poser.step(time.monotonic())
         time.sleep(0.01)
@@ -101,8 +101,10 @@ def test_routes_of_a_moment_keep_all_limits_and_have_the_error_that_is_told(star
     simulation = Simulation(robot)
     limits = QuickSearch(named, request).constraints.limits  # with the torque of the motors that fit
     reached = solve_ik(simulation, robot.pose(POSE), limits=limits)
-    assert proposals[-1].built == pytest.approx(expected_error(simulation, [reached], request.uncertainty), rel=0.02)
-    assert proposals[-1].built < error_at_rest(named, (named.pose(POSE),))
+    assert proposals[-1].expected_error == pytest.approx(
+        expected_error(simulation, [reached], request.uncertainty), rel=0.02
+    )
+    assert proposals[-1].expected_error < error_at_rest(named, (named.pose(POSE),))
 
 
 @pytest.mark.slow
@@ -146,7 +148,9 @@ def test_winch_trees_are_proposed_where_no_route_is_sketched(starfish: Robot, un
     named = with_pose(robot, POSE, held)
     simulation = Simulation(named)
     reached = solve_ik(simulation, named.pose(POSE), options=OPTIONS)
-    assert found.built == pytest.approx(expected_error(simulation, [reached], BuildTolerances.of(robot.body)), rel=1e-6)
+    assert found.expected_error == pytest.approx(
+        expected_error(simulation, [reached], BuildTolerances.of(robot.body)), rel=1e-6
+    )
     nothing = propose_network(starfish, by_routes(starfish, Wishes.of(mirror="x")))
     assert nothing.cables == ()
     assert "no cables found" in nothing.words
@@ -176,7 +180,7 @@ def test_cables_are_proposed_while_muscles_follow_and_can_be_kept(
     until(lambda: poser.proposals.network(document.robot), poser)
     found = poser.proposals.network(document.robot)
     assert found is not None
-    winches = [thing for thing in poser.things() if isinstance(thing, Dot) and thing.look is Look.WINCH]
+    winches = [thing for thing in poser.scene_items() if isinstance(thing, Dot) and thing.look is Look.WINCH]
     assert {thing.at for thing in winches if thing.faint} == {winch.at for winch in found.winches}
     assert all(thing.faint for thing in winches)
     until(lambda: not poser.proposals.searching, poser)
@@ -185,7 +189,7 @@ def test_cables_are_proposed_while_muscles_follow_and_can_be_kept(
     assert "2 winches" in poser.proposals.keep()
     assert document.robot.cables == found.cables
     assert poser.proposals.is_kept(document.robot)
-    assert not any(thing.faint for thing in poser.things() if isinstance(thing, Dot))
+    assert not any(thing.faint for thing in poser.scene_items() if isinstance(thing, Dot))
     assert document.undo()
     assert document.robot.cables == starfish.cables
     poser.rest()

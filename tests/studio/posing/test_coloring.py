@@ -11,7 +11,7 @@ from hydrostat.simulation import BodyPhysics
 from hydrostat.studio.posing.movers import MuscleMover
 from hydrostat.studio.posing.pose_state import HeldPoint
 from hydrostat.studio.view.coloring import Coloring, node_strains, node_stresses, node_values, scale
-from hydrostat.studio.view.things import rest_shape
+from hydrostat.studio.view.scene_items import rest_shape
 
 ROBOTS = {2: strip_robot(columns=6, rows=2), 3: box_robot()}
 

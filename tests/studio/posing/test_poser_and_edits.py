@@ -16,7 +16,7 @@ from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.posing.pose_state import HeldPoint, Mode, with_pose
 from hydrostat.studio.posing.poser import Poser
 from hydrostat.studio.stage import Hit
-from hydrostat.studio.view.things import Dot
+from hydrostat.studio.view.scene_items import Dot
 
 
 @pytest.fixture
@@ -185,7 +185,7 @@ def test_what_is_shown_is_of_one_robot(starfish: Robot, document: Document, monk
 
     monkeypatch.setattr(module, "Anchored", Watching)
     document.open(Work(robot=tail), folder=None)
-    things = poser.things()
+    things = poser.scene_items()
     assert seen == [(len(starfish.body.mesh.nodes), set(starfish.poses["wave"].targets))]
     assert {thing.key for thing in things if isinstance(thing, Dot)} >= {f"marker:{own.name}" for own in tail.markers}
     assert not poser.held_points

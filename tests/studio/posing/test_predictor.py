@@ -20,7 +20,7 @@ from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.posing.poser import Poser
 from hydrostat.studio.session import Session, Tone
 from hydrostat.studio.stage import Hit
-from hydrostat.studio.view.robot_things import prediction_things
+from hydrostat.studio.view.robot_items import prediction_items
 
 pytestmark = pytest.mark.usefixtures("unchecked")
 
@@ -76,7 +76,7 @@ def test_networks_answer_first_and_the_exact_pose_follows(poser: Poser, starfish
     assert not first.prediction.exact
     assert first.prediction.error == first.prediction.uncertainty == 1e-3
     assert not first.contractions.any()  # what is shown of winches, and sent to motors, is of a pose
-    dots = {dot.at for dot in prediction_things(first)}
+    dots = {dot.at for dot in prediction_items(first)}
     assert dots == {tuple(model.markers[marker.name].tolist()) for marker in starfish.markers}
     assert prediction_words(first).startswith("Dots by surrogate model: predicted error 1.0 mm ± 1.0 mm.")
     poser.step(0.1)
@@ -89,7 +89,7 @@ def test_networks_answer_first_and_the_exact_pose_follows(poser: Poser, starfish
     last = poser.shape()
     assert last.prediction is not None
     assert last.prediction.exact
-    assert prediction_things(last) == []
+    assert prediction_items(last) == []
     assert prediction_words(last).startswith("Exact: ")
     again = Simulation(starfish).solve(last.contractions)
     assert np.abs(again.nodes - last.nodes).max() < 1e-4 * starfish.body.mesh.size

@@ -13,7 +13,7 @@ from hydrostat.project import Work
 from hydrostat.robot import Marker, gallery_folder, load_robot
 from hydrostat.studio.bell import Bell
 from hydrostat.studio.document import Document
-from hydrostat.studio.starting.autosave import AGAIN, LONGEST, PATIENCE, Autosave
+from hydrostat.studio.starting.autosave import AGAIN, LONGEST, QUIET_TIME, Autosave
 
 CRASHES = """
 import sys
@@ -97,9 +97,9 @@ def test_work_is_kept_when_changes_pause(tmp_path: Path, work: Work) -> None:
     assert list(tmp_path.glob("*/*/meta.json")) == [], "what is saved needs no keeping"
     changed(document, "first")
     settle(autosave, 100.0)
-    settle(autosave, 100.0 + 0.9 * PATIENCE)
+    settle(autosave, 100.0 + 0.9 * QUIET_TIME)
     assert list(tmp_path.glob("*/*/meta.json")) == []
-    settle(autosave, 100.1 + PATIENCE)
+    settle(autosave, 100.1 + QUIET_TIME)
     assert len(list(tmp_path.glob("*/*/meta.json"))) == 1
     for second in range(int(LONGEST) + 2):
         changed(document, f"change {second}")
@@ -162,13 +162,13 @@ def test_why_nothing_is_kept_is_told_and_tried_again(tmp_path: Path, work: Work)
     document, autosave = opened(state)
     document.open(work, saved=False)
     settle(autosave, 0.0)
-    settle(autosave, PATIENCE)
+    settle(autosave, QUIET_TIME)
     assert autosave.problem
     assert "\n" not in autosave.problem
     state.unlink()
-    settle(autosave, PATIENCE + 0.9 * AGAIN)
+    settle(autosave, QUIET_TIME + 0.9 * AGAIN)
     assert autosave.problem
-    settle(autosave, PATIENCE + AGAIN)
+    settle(autosave, QUIET_TIME + AGAIN)
     assert autosave.problem == ""
     assert len(list(state.glob("*/*/meta.json"))) == 1
     autosave.close()

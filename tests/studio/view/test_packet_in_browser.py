@@ -8,7 +8,7 @@ from builders import gallery_robot
 from view_modules import needs_node, run
 
 from hydrostat.studio.view.picture import Picture, packet, parse_message
-from hydrostat.studio.view.robot_things import robot_things
+from hydrostat.studio.view.robot_items import robot_items
 
 SCRIPT = """
 import { readFileSync } from "node:fs";
@@ -50,6 +50,6 @@ def test_words_of_any_length_and_tables_of_any_size(tmp_path: Path, word: str) -
 @needs_node
 def test_frame_of_a_robot(tmp_path: Path) -> None:
     robot = gallery_robot("fish_tail")
-    things = robot_things(robot)
+    things = robot_items(robot)
     picture = Picture(robot, things, 3)
     check(tmp_path, picture.frame(robot.body.mesh.nodes, things, {"stamp": 12.5}))

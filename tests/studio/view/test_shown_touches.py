@@ -11,9 +11,9 @@ from hydrostat.robot import Obstacle
 from hydrostat.simulation import Simulation, find_contacts
 from hydrostat.studio.posing.movers import same_physics
 from hydrostat.studio.posing.pose_state import Mode
-from hydrostat.studio.view.robot_things import robot_things
-from hydrostat.studio.view.things import Cloud, Dot, Look, RobotShape, Strand
-from hydrostat.studio.view.touching import OFF, touch_things, with_touches
+from hydrostat.studio.view.contact_items import OFF, contact_items, with_touches
+from hydrostat.studio.view.robot_items import robot_items
+from hydrostat.studio.view.scene_items import Cloud, Dot, Look, RobotShape, Strand
 
 CLOSED = {"up": 0.02, "down": 0.016}
 
@@ -32,7 +32,7 @@ def test_where_it_touches(dim: int) -> None:
     shape = shown(dim, contact=True)
     assert shape.crossing is None
     assert shape.notes == ("before",)
-    things = touch_things(shape, 0.12)
+    things = contact_items(shape, 0.12)
     dots = [thing for thing in things if isinstance(thing, Dot)]
     assert dots
     assert all(dot.look is Look.TOUCH and not dot.stuck for dot in dots)
@@ -48,7 +48,7 @@ def test_where_contact_is_off(dim: int) -> None:
     shape = shown(dim, contact=False)
     assert shape.touches == ()
     assert shape.notes[-1] == "contact off: the body intersects itself"
-    (ring,) = touch_things(shape, 0.12)
+    (ring,) = contact_items(shape, 0.12)
     assert isinstance(ring, Dot)
     assert (ring.look, ring.label, ring.at) == (Look.FLAG, OFF, shape.crossing)
     assert (shown(dim, contact=False, settled=False).crossing is None) == (dim == 3)
@@ -67,7 +67,7 @@ def test_what_moves_is_drawn_where_the_pose_has_it() -> None:
     robot = replace(fork_robot(2), obstacles=(ball,))
     middles = []
     for carried in (None, np.array([[0.13, 0.25], [1.0, 0.0], [0.0, 1.0]])):
-        (rim,) = [one for one in robot_things(robot, carried=carried) if isinstance(one, Strand) and not one.key][:1]
+        (rim,) = [one for one in robot_items(robot, carried=carried) if isinstance(one, Strand) and not one.key][:1]
         middles.append(np.mean(rim.points[:-1], axis=0))
     np.testing.assert_allclose(middles, [(0.1, 0.2), (0.13, 0.25)], atol=1e-9)
     simulation = Simulation(fork_robot(2))
@@ -80,7 +80,7 @@ def test_what_moves_is_drawn_where_the_pose_has_it() -> None:
 def test_what_pins_hold_is_dotted_on_the_skin_in_space() -> None:
     """Oracle: the pin's own rule for nodes; a flat disc has its ring instead."""
     hand = gallery_robot("cupping_hand")
-    (cloud,) = [thing for thing in robot_things(hand) if isinstance(thing, Cloud)]
+    (cloud,) = [thing for thing in robot_items(hand) if isinstance(thing, Cloud)]
     nodes = hand.body.mesh.nodes
     held = np.any([pin.holds(hand.body.mesh) for pin in hand.pins], axis=0)
     assert held.any()
@@ -89,6 +89,6 @@ def test_what_pins_hold_is_dotted_on_the_skin_in_space() -> None:
     low, high = nodes[held].min(axis=0), nodes[held].max(axis=0)
     assert (cloud.points >= low - 1e-6).all()
     assert (cloud.points <= high + 1e-6).all()
-    again = next(thing for thing in robot_things(hand) if isinstance(thing, Cloud))
+    again = next(thing for thing in robot_items(hand) if isinstance(thing, Cloud))
     assert again.points is cloud.points, "the same points are no new scene"
-    assert not [thing for thing in robot_things(gallery_robot("starfish")) if isinstance(thing, Cloud)]
+    assert not [thing for thing in robot_items(gallery_robot("starfish")) if isinstance(thing, Cloud)]

@@ -47,8 +47,8 @@ def design_paint(page: WindowPage) -> None:
             size = f", {2e3 * zone.radius:.0f} mm" if zone.radius is not None else ""
             _zone(page, index, paint, size, chosen=index == designer.painter.chosen)
 
-    page.on(Topic.THINGS, show)
-    page.on_new(Topic.THINGS, lambda: (tuple(designer.wishes.zones), designer.painter.chosen), zones, build)
+    page.on(Topic.SCENE, show)
+    page.on_new(Topic.SCENE, lambda: (tuple(designer.wishes.zones), designer.painter.chosen), zones, build)
 
 
 def _take(page: WindowPage, paint: Paint) -> None:

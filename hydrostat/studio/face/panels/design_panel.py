@@ -14,7 +14,7 @@ from hydrostat.studio.face.page import WindowPage, pressable
 from hydrostat.studio.face.panels.design_limits import design_limits, design_paint
 from hydrostat.studio.face.panels.design_method import design_method
 from hydrostat.studio.face.panels.finding_list import finding_list
-from hydrostat.studio.stage import StageName, told_error
+from hydrostat.studio.stage import StageName, format_error
 from hydrostat.units import plural
 
 
@@ -188,7 +188,7 @@ def _progress(page: WindowPage) -> None:
         if not designer.running or run is None or state is None:
             return
         best = run.trail[-1] if run.trail else None
-        error.set_text("Searching" if best is None else f"{told_error(best.error)} as built")
+        error.set_text("Searching" if best is None else f"{format_error(best.error)} as built")
         count.set_text(_so_far(best.winches, best.cables) if best else f"{1e3 * run.rest:.3g} mm error at rest")
         chart.set_content(growth_chart(run, designer.seconds))
         share = share_done(run.request, state.stage, state.done, state.total)
@@ -212,7 +212,7 @@ def _stage(stage: str, best: ProgressPoint | None) -> str:
     """Status of the search, and the source of its best network."""
     if best is None or not best.words:
         return stage
-    tried = f" after {plural(best.tried, 'network')}" if best.tried else ""
+    tried = f" after {plural(best.num_evaluated, 'network')}" if best.num_evaluated else ""
     return f"{stage}. Last gain{tried}: {best.words}"
 
 
@@ -264,7 +264,7 @@ def _head(page: WindowPage, own: tuple[int, ...]) -> None:
             with ui.element("div").classes("row flex-1").style("gap: 6px; min-width: 0"):
                 _pose_chip(page, chosen, None, "rest")
                 for reach in chosen.reaches:
-                    _pose_chip(page, chosen, reach.pose.name, f"{reach.pose.name}, {told_error(reach.error)}")
+                    _pose_chip(page, chosen, reach.pose.name, f"{reach.pose.name}, {format_error(reach.error)}")
         clear = ui.button("Clear", on_click=page.doing(designer.clear)).props("flat no-caps dense")
         clear.props('data-testid="design-clear"').tooltip("Clear results")
         accept = ui.button("Accept", icon="check", on_click=page.doing(designer.accept)).props("unelevated no-caps")
@@ -308,14 +308,16 @@ def _words(one: Candidate, own: tuple[int, ...], *, refused: bool) -> str:
     if one.number in own or not one.complete:
         lines.append("in the robot" if one.number in own else "stopped early")
     mark = '<i class="design-bad">cannot be built</i>' if refused else ""
-    return f"<b>{told_error(one.built)} as built</b>{mark}" + "".join(f"<span>{line}</span>" for line in lines)
+    return f"<b>{format_error(one.expected_error)} as built</b>{mark}" + "".join(
+        f"<span>{line}</span>" for line in lines
+    )
 
 
 def _more(one: Candidate) -> str:
     """Details of a candidate for the tooltip of its card."""
     craft = one.craft
     return (
-        f"Model error {told_error(one.error)}; {plural(craft.holes, 'hole')}, "
+        f"Model error {format_error(one.error)}; {plural(craft.holes, 'hole')}, "
         f"{1e3 * one.length:.0f} mm of cable, maximum tension {one.tension:.1f} N. "
         "The price covers motors, power and cables. The kit's list adds cloth, screws and full packs"
     )

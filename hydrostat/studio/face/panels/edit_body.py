@@ -13,7 +13,7 @@ from hydrostat.studio.face.page import WindowPage
 from hydrostat.studio.face.panels.edit_part import EditNumber
 from hydrostat.studio.face.panels.finding_list import finding_list
 from hydrostat.studio.stage import StageName
-from hydrostat.studio.view.things import RobotShape
+from hydrostat.studio.view.scene_items import RobotShape
 from hydrostat.units import plural
 
 

@@ -70,7 +70,7 @@ def _tools(page: WindowPage) -> None:
         laying.set_visibility(editor.draft is not None)
         done.set_enabled(editor.draft is not None and len(editor.draft.points) > 1)
 
-    page.on(Topic.THINGS, show)
+    page.on(Topic.SCENE, show)
 
 
 def _mirror(page: WindowPage) -> None:
@@ -91,7 +91,7 @@ def _mirror(page: WindowPage) -> None:
         for axis, button in chips.items():
             light(button, axis == now)
 
-    page.on(Topic.THINGS, show)
+    page.on(Topic.SCENE, show)
     if len(axes) == 3:
         _depth(page)
 
@@ -140,7 +140,7 @@ def _choice(
         for value, button in chips.items():
             light(button, value == chosen())
 
-    page.on(Topic.THINGS, show)
+    page.on(Topic.SCENE, show)
 
 
 def _depth(page: WindowPage) -> None:
@@ -187,8 +187,8 @@ def parts_list(page: WindowPage) -> None:
                       "background: transparent")  # fmt: skip
             row.props(f'aria-selected="{str(key in chosen).lower()}"')
 
-    page.on_new(Topic.THINGS, entries, box, build)
-    page.on(Topic.THINGS, show)
+    page.on_new(Topic.SCENE, entries, box, build)
+    page.on(Topic.SCENE, show)
 
 
 def _part_row(page: WindowPage, robot: Robot, key: str, words: str, number: str) -> ui.element:

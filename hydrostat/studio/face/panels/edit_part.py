@@ -102,7 +102,7 @@ def part_card(page: WindowPage) -> None:
         for refresh in shows:
             refresh(robot, part)
 
-    page.on(Topic.THINGS, show)
+    page.on(Topic.SCENE, show)
 
 
 def _many(page: WindowPage, words: str) -> None:

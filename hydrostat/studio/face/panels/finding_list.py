@@ -10,7 +10,7 @@ from hydrostat.robot import Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import WindowPage, pressable
 from hydrostat.studio.skins import SewnSkin
-from hydrostat.studio.view.robot_things import TONES
+from hydrostat.studio.view.robot_items import TONES
 
 GOOD = "#00795f"
 ICONS = {Severity.REFUSED: "block", Severity.LIMIT: "straighten", Severity.MIND: "error_outline"}
@@ -55,7 +55,7 @@ def finding_list(page: WindowPage, shown: Callable[[], Robot | None]) -> None:
                 _line(page, finding, chosen=finding == judge.chosen)
 
     page.on_new(
-        (Topic.JOB, Topic.ROBOT, Topic.THINGS), lambda: (find_diagnostics(), find_skin(), judge.chosen), room, build
+        (Topic.JOB, Topic.ROBOT, Topic.SCENE), lambda: (find_diagnostics(), find_skin(), judge.chosen), room, build
     )
 
 

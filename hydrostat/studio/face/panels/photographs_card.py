@@ -9,7 +9,7 @@ from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import WindowPage, icon_button
 from hydrostat.studio.posing import MOST_BYTES, Mode, PhotographFit
 from hydrostat.studio.session import Tone
-from hydrostat.studio.stage import told_error
+from hydrostat.studio.stage import format_error
 from hydrostat.units import plural
 
 HINT = (
@@ -67,7 +67,7 @@ def photographs_card(page: WindowPage) -> None:
         error.set_text(photographs.error)
         error.set_visibility(bool(photographs.error))
 
-    topics = (Topic.THINGS, Topic.JOB, Topic.ROBOT)
+    topics = (Topic.SCENE, Topic.JOB, Topic.ROBOT)
     page.on_new(topics, lambda: (photographs.files, photographs.comparison), rows, lambda: _draw_rows(page))
     page.on_new(topics, lambda: photographs.fit, values, lambda: _draw_values(photographs.fit))
     page.on(topics, show)
@@ -85,7 +85,7 @@ def _draw_rows(page: WindowPage) -> None:
             name.on_click(partial(_show_overlay, page, file.name)).mark(f"pose-photograph-{file.name}")
             if found is not None and found.errors:
                 most, error = max(found.errors.items(), key=lambda pair: pair[1])
-                figure = ui.label(told_error(error)).classes("studio-figure").style("white-space: nowrap")
+                figure = ui.label(format_error(error)).classes("studio-figure").style("white-space: nowrap")
                 figure.tooltip(f"Farthest from its simulated place: {most}")
             icon_button("close", f"Remove {file.name}", page.doing(photographs.remove, file.name))
     comparison = photographs.comparison
@@ -107,7 +107,7 @@ def _show_overlay(page: WindowPage, name: str) -> None:
         ui.image(f"data:image/png;base64,{picture}").style("width: min(86vw, 1000px)").props(
             f'alt="{plural(len(found.errors), "marker")} measured and simulated"'
         )
-        words = ", ".join(f"{marker} {told_error(error)}" for marker, error in found.errors.items())
+        words = ", ".join(f"{marker} {format_error(error)}" for marker, error in found.errors.items())
         ui.label(words or "The simulated robot reaches no equilibrium here.").classes("studio-figure")
     dialog.on("hide", dialog.delete)
 
@@ -116,7 +116,7 @@ def _draw_values(fit: PhotographFit | None) -> None:
     """The fitted values with their intervals, and those that the photographs do not show."""
     if fit is None:
         return
-    ui.label(f"RMS error {told_error(fit.before)} before, {told_error(fit.after)} fitted").classes("studio-figure")
+    ui.label(f"RMS error {format_error(fit.before)} before, {format_error(fit.after)} fitted").classes("studio-figure")
     for one in fit.values:
         if one.is_shown:
             times, unit = _unit(one.unit, one.value)

@@ -12,10 +12,10 @@ from hydrostat.studio.face.panels.motors_card import motors_card
 from hydrostat.studio.face.panels.photographs_card import photographs_card
 from hydrostat.studio.face.panels.proposals_card import proposals_card
 from hydrostat.studio.posing import Mode, same_as
-from hydrostat.studio.stage import told_error
+from hydrostat.studio.stage import format_error
 from hydrostat.studio.view.coloring import Coloring
-from hydrostat.studio.view.robot_things import Bar
-from hydrostat.studio.view.things import RobotShape
+from hydrostat.studio.view.robot_items import Bar
+from hydrostat.studio.view.scene_items import RobotShape
 from hydrostat.units import plural
 
 
@@ -35,7 +35,7 @@ def muscles_card(page: WindowPage) -> None:
         colors.set_value(session.coloring is Coloring.MUSCLES)
 
     colors.on_value_change(lambda event: color(bool(event.value)))
-    page.on((Topic.THINGS, Topic.ROBOT), show)
+    page.on((Topic.SCENE, Topic.ROBOT), show)
 
 
 MODES = {Mode.CABLES: "Cables", Mode.MUSCLES: "Muscles"}
@@ -70,7 +70,7 @@ def pose_panel(page: WindowPage) -> None:
         hint.set_text("Click the target position." if poser.is_armed else HINTS[poser.mode])
 
     choice.on_value_change(choose)
-    page.on(Topic.THINGS, show)
+    page.on(Topic.SCENE, show)
     held_card(page)
     bars_card(page)
     contact_switch(page, "pose-contact")
@@ -106,7 +106,7 @@ def held_card(page: WindowPage) -> None:
         shape = poser.shape()
         for name, label in figures.items():
             error = shape.errors.get(name)
-            words = "" if error is None else told_error(error)
+            words = "" if error is None else format_error(error)
             if label.text != words:
                 label.set_text(words)
                 near = error is not None and error < NEAR
@@ -117,8 +117,8 @@ def held_card(page: WindowPage) -> None:
         notes.set_text(words)
         notes.set_visibility(bool(words))
 
-    page.on_new((Topic.THINGS, Topic.SHAPE), lambda: (tuple(poser.held_points), poser.chosen_name), rows, build)
-    page.on((Topic.THINGS, Topic.SHAPE), show)
+    page.on_new((Topic.SCENE, Topic.SHAPE), lambda: (tuple(poser.held_points), poser.chosen_name), rows, build)
+    page.on((Topic.SCENE, Topic.SHAPE), show)
 
 
 def prediction_words(shape: RobotShape) -> str:
@@ -126,8 +126,8 @@ def prediction_words(shape: RobotShape) -> str:
     told = shape.prediction
     if told is None:
         return ""
-    known = f"predicted error {told_error(told.error)} ± {told_error(told.uncertainty)}"
-    left = told_error(sum(shape.errors.values()) / max(len(shape.errors), 1))
+    known = f"predicted error {format_error(told.error)} ± {format_error(told.uncertainty)}"
+    left = format_error(sum(shape.errors.values()) / max(len(shape.errors), 1))
     if told.exact:
         return f"Exact: mean error {left}. Surrogate model: {known}."
     return f"Dots by surrogate model: {known}. Exact solve in progress: mean error {left}."
@@ -177,7 +177,7 @@ def bars_card(page: WindowPage) -> None:
             limit.set_text(f"limit {found[0].limit:g} N")
 
     page.on_new(Topic.ROBOT, lambda: document.robot.winches, box, build)
-    page.on((Topic.ROBOT, Topic.THINGS, Topic.SHAPE), show)
+    page.on((Topic.ROBOT, Topic.SCENE, Topic.SHAPE), show)
 
 
 class _BarRow:
@@ -255,7 +255,7 @@ def poses_card(page: WindowPage) -> None:
     button.on_click(store)
     name.on("keydown.enter", store)
     page.on_new(Topic.ROBOT, lambda: tuple(document.robot.poses), rows, draw)
-    page.on(Topic.THINGS, ready)
+    page.on(Topic.SCENE, ready)
     page.on(Topic.SHAPE, ready)
 
 
@@ -323,4 +323,4 @@ def reach_card(page: WindowPage) -> None:
         words.set_text(f"{reach.marker}: {plural(reach.count, 'pose')}" + (" so far" if reach.running else ""))
 
     page.on(Topic.ROBOT, draw)
-    page.on((Topic.THINGS, Topic.JOB), show)
+    page.on((Topic.SCENE, Topic.JOB), show)

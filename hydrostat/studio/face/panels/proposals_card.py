@@ -6,7 +6,7 @@ from hydrostat.design import DesignMethod
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import WindowPage
 from hydrostat.studio.posing import Proposal
-from hydrostat.studio.stage import told_error
+from hydrostat.studio.stage import format_error
 from hydrostat.units import plural
 
 
@@ -57,11 +57,11 @@ def proposals_card(page: WindowPage) -> None:
     on.on_value_change(lambda event: switch(bool(event.value)))
     poses.on_value_change(lambda event: proposals.include_poses(bool(event.value)))
     keep.on_click(take)
-    page.on((Topic.THINGS, Topic.ROBOT), show)
+    page.on((Topic.SCENE, Topic.ROBOT), show)
 
 
 def _error(found: Proposal) -> str:
-    return "Error not known" if found.built is None else f"{told_error(found.built)} as-built error"
+    return "Error not known" if found.expected_error is None else f"{format_error(found.expected_error)} as-built error"
 
 
 def _words(found: Proposal | None, *, is_asked: bool) -> str:

@@ -31,7 +31,7 @@ def test_muscles_are_shown_and_cables_proposed(starfish: Robot, monkeypatch: pyt
         assert not is_shown(desk.one("pose-keep"))
         robot = desk.robot
         cables = tuple(cable for cable in robot.cables if cable.winch == robot.winches[0].name)
-        found = Proposal(winches=robot.winches[:1], cables=cables, built=0.0123)
+        found = Proposal(winches=robot.winches[:1], cables=cables, expected_error=0.0123)
         poser.show_pose("wave")
         poser.step(0.0)  # says that physics are made
         poser.step(0.0)

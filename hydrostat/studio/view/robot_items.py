@@ -1,4 +1,4 @@
-"""`robot_things`, `winch_bars`: pins, winches, cables and markers of a robot as dots and lines, its winches as bars."""
+"""`robot_items`, `winch_bars`: pins, winches, cables and markers of a robot as dots and lines, its winches as bars."""
 
 import math
 from collections.abc import Collection, Iterable, Mapping
@@ -17,7 +17,7 @@ from hydrostat.geometry import Mesh
 from hydrostat.given import Point
 from hydrostat.robot import Cable, Mount, Pin, Robot, Winch, obstacle_lines
 from hydrostat.simulation import obstacles_in_pose
-from hydrostat.studio.view.things import Cloud, Dot, Look, RobotShape, Strand, Stroke, Thing
+from hydrostat.studio.view.scene_items import Cloud, Dot, Look, RobotShape, SceneItem, Strand, Stroke
 
 
 def pinned_points(robot: Robot) -> Points:
@@ -45,7 +45,7 @@ PREDICTED = "#d9730d"
 DETAIL = 1500  # so many points of what is drawn on a body are sent with each frame at most, or near that
 
 
-def robot_things(
+def robot_items(
     robot: Robot,
     *,
     tensions: Vector | None = None,
@@ -53,7 +53,7 @@ def robot_things(
     carried: Points | None = None,
     chosen: Collection[str] = (),
     vias: bool = False,
-) -> list[Thing]:
+) -> list[SceneItem]:
     """Return a robot's obstacles, drawn lines, pins, cables, winches and markers, in this order; `chosen` are selected.
 
     Keys are "pin:0", "cable:0", "via:0:2" (cable and point), "winch:left" and "marker:tip". Tensions of the cables [N]
@@ -61,11 +61,11 @@ def robot_things(
     a cable is a dot that can be taken hold of; else only its stopper is shown.
     """
     colors, marks = Color.of_winches(robot.winches), winch_marks_of(robot)
-    things: list[Thing] = [
+    things: list[SceneItem] = [
         Strand(points=tuple(map(tuple, line.tolist())), stroke=Stroke.RIM, color=Color.MUTED, loose=-1)
         for line in obstacle_lines(obstacles_in_pose(robot, carried))
     ]
-    things += [*_part_things(robot), *_drawing_things(robot)]
+    things += [*_part_items(robot), *_drawing_items(robot)]
     held = pinned_points(robot)
     if len(held):
         things.append(Cloud(name="pins", points=held, color=PIN))
@@ -88,13 +88,13 @@ def robot_things(
     return things
 
 
-def proposed_things(robot: Robot, own: Collection[Winch] = ()) -> list[Thing]:
+def proposal_items(robot: Robot, own: Collection[Winch] = ()) -> list[SceneItem]:
     """Cables and winches of a network that is proposed, faintly; none can be picked.
 
     Winches that stand on own ones, which are drawn already, are left out.
     """
     colors, marks = Color.of_winches(robot.winches), winch_marks_of(robot)
-    things: list[Thing] = []
+    things: list[SceneItem] = []
     for index, cable in enumerate(robot.cables):
         things += _cable(robot, index, cable, colors[cable.winch], 0.0, ())
     for index, cable in enumerate(robot.cables):
@@ -124,7 +124,7 @@ def _winch(winch: Winch, color: str, mark: str, *, chosen: bool) -> Dot:
     )
 
 
-def _part_things(robot: Robot) -> list[Thing]:
+def _part_items(robot: Robot) -> list[SceneItem]:
     """Borders of the parts of a flat body."""
     nodes = robot.body.mesh.nodes
     return [
@@ -134,7 +134,7 @@ def _part_things(robot: Robot) -> list[Thing]:
     ]
 
 
-def _drawing_things(robot: Robot) -> list[Thing]:
+def _drawing_items(robot: Robot) -> list[SceneItem]:
     """Eyes, a mouth: lines that are drawn on the body, with fewer points where they have very many."""
     marks = robot.body.marks
     step = max(1, sum(map(len, marks)) // DETAIL)
@@ -148,11 +148,11 @@ def _drawing_things(robot: Robot) -> list[Thing]:
     ]
 
 
-def target_things(
+def target_items(
     targets: Mapping[str, Point], places: Mapping[str, Point], *, chosen: str = "", color: str = Color.INK
-) -> list[Thing]:
+) -> list[SceneItem]:
     """Rings where markers should go [m], keys "target:tip", the chosen one selected, with lines from where they are."""
-    things: list[Thing] = []
+    things: list[SceneItem] = []
     for name, target in targets.items():
         key = f"target:{name}"
         if name in places:
@@ -161,7 +161,7 @@ def target_things(
     return things
 
 
-def prediction_things(shape: RobotShape) -> list[Thing]:
+def prediction_items(shape: RobotShape) -> list[SceneItem]:
     """Dots where networks expect markers while the body is on its way there."""
     prediction = shape.prediction
     if prediction is None or prediction.exact:
@@ -172,10 +172,10 @@ def prediction_things(shape: RobotShape) -> list[Thing]:
     ]
 
 
-def _cable(robot: Robot, index: int, cable: Cable, color: str, load: float, chosen: Collection[str]) -> list[Thing]:
+def _cable(robot: Robot, index: int, cable: Cable, color: str, load: float, chosen: Collection[str]) -> list[SceneItem]:
     """The run of a cable, its sheaths over it."""
     key, loose = f"cable:{index}", int(robot.winch(cable.winch).mount is Mount.WORLD)
-    things: list[Thing] = [
+    things: list[SceneItem] = [
         Strand(key=key, points=cable.points, stroke=Stroke.CABLE, color=color, loose=loose, load=load,
              chosen=key in chosen)
     ]  # fmt: skip
@@ -185,7 +185,7 @@ def _cable(robot: Robot, index: int, cable: Cable, color: str, load: float, chos
     return things
 
 
-def _vias(index: int, cable: Cable, color: str, chosen: Collection[str], *, every: bool) -> list[Thing]:
+def _vias(index: int, cable: Cable, color: str, chosen: Collection[str], *, every: bool) -> list[SceneItem]:
     """The points of a cable after its winch; the last is its stopper."""
     last = len(cable.points) - 1
     places = range(1, last + 1) if every else [last]
@@ -241,10 +241,10 @@ TONES = {Severity.REFUSED: "#c8243f", Severity.LIMIT: "#6d6875", Severity.MIND: 
 BRIEF = 64  # letters that are written beside a ring
 
 
-def finding_things(robot: Robot, said: Iterable[Diagnostic], chosen: Diagnostic | None = None) -> list[Thing]:
+def diagnostic_items(robot: Robot, said: Iterable[Diagnostic], chosen: Diagnostic | None = None) -> list[SceneItem]:
     """A ring at each place of each finding; its words are seen where it is chosen, or its part under the pointer."""
     loose = {f"winch:{winch.name}" for winch in robot.winches if winch.mount is Mount.WORLD}
-    things: list[Thing] = []
+    things: list[SceneItem] = []
     most = 24  # rings of one finding: more say no more
     for finding in said:
         words = in_words(finding.text)

@@ -1,4 +1,4 @@
-"""`draw_reach`: all that each marker of a robot can be brought to, over the rest shape."""
+"""`draw_workspace`: all that each marker of a robot can be brought to, over the rest shape."""
 
 from collections.abc import Sequence
 
@@ -7,7 +7,7 @@ import shapely
 from matplotlib.figure import Figure
 
 from hydrostat.drawing import Color
-from hydrostat.ik import FoundReach
+from hydrostat.ik import MarkerWorkspace
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.sheet import WIDTH, PictureSheet, Places
@@ -15,8 +15,8 @@ from hydrostat.plot.targets import draw_markers, rest_markers
 from hydrostat.robot import Robot
 
 
-def draw_reach(
-    robot: Robot, reaches: Sequence[FoundReach], *, title: str | None = None, width: float = WIDTH
+def draw_workspace(
+    robot: Robot, reaches: Sequence[MarkerWorkspace], *, title: str | None = None, width: float = WIDTH
 ) -> Figure:
     """The rest shape with what each marker reaches in a color of its own: a field where it is flat, else places.
 

@@ -1,4 +1,4 @@
-"""`FilledReach`: what a network of a flat robot reaches on the filled body, by commands that are found there."""
+"""`StuffedResults`: what a network of a flat robot reaches on the filled body, by commands that are found there."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -11,7 +11,7 @@ from hydrostat.simulation import Simulation
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class FilledReach:
+class StuffedResults:
     """A network on the body in space that a flat one becomes once it is filled, cables on its skin."""
 
     face: Face  # where the cables run
@@ -30,7 +30,7 @@ class FilledReach:
         return max(pose.pose.out_of_plane for pose in self.reached)
 
 
-def filled_reach(robot: Robot, reached: Sequence[IKResult], *, limits: Limits, finalists: int = 1) -> FilledReach:
+def solve_stuffed(robot: Robot, reached: Sequence[IKResult], *, limits: Limits, finalists: int = 1) -> StuffedResults:
     """Find the commands of poses on the filled body, from those of the flat model on.
 
     Args:
@@ -53,7 +53,7 @@ def filled_reach(robot: Robot, reached: Sequence[IKResult], *, limits: Limits, f
         found.append(solve_ik(simulation, pose, limits=limits, options=once).without_factors())
     played = float(np.sqrt(np.mean(squares)))
     face = robot.face or Face.FRONT
-    return FilledReach(face=face, reached=tuple(found), played=played, finalists=finalists)
+    return StuffedResults(face=face, reached=tuple(found), played=played, finalists=finalists)
 
 
 def lift_target(pose: PoseTarget) -> PoseTarget:
@@ -61,6 +61,6 @@ def lift_target(pose: PoseTarget) -> PoseTarget:
     return replace(pose, targets={name: (*place, 0.0) for name, place in pose.targets.items()})
 
 
-def check_filled(robot: Robot) -> None:
+def check_stuffed(robot: Robot) -> None:
     """Refuse a robot that cannot be filled (InputError: in space, without a drawing, or too thick for its outline)."""
     inflated_robot(robot.with_network((), ()))

@@ -1,4 +1,4 @@
-"""`filled_motion`: motion of a flat robot once it is stuffed and its cables are sewn on one side."""
+"""`solve_stuffed_motion`: motion of a flat robot once it is stuffed and its cables are sewn on one side."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from hydrostat.simulation.simulation import Simulation
 
 
 @dataclass(frozen=True, kw_only=True)
-class FilledMotion:
+class StuffedMotion:
     """Marker distances between a stuffed robot and its flat model, each the largest over all poses [m]."""
 
     face: Face  # side on which its cables run
@@ -30,8 +30,8 @@ class FilledMotion:
         return f"{out} mm out of plane, {aside} mm in-plane deviation (flat model moves {moved} mm)"
 
 
-def is_filled_motion_fast(robot: Robot, poses: int) -> bool:
-    """Return True if `filled_motion` of this number of poses takes only seconds: a flat drawn body, not too fine."""
+def is_stuffed_motion_fast(robot: Robot, poses: int) -> bool:
+    """Return True if `solve_stuffed_motion` of so many poses takes seconds: a flat drawn body, not too fine."""
     body = robot.body
     if body.outline is None or body.thickness is None or not robot.cables or not poses:
         return False
@@ -41,9 +41,9 @@ def is_filled_motion_fast(robot: Robot, poses: int) -> bool:
     return poses * deep * across * len(body.mesh.nodes) <= quick
 
 
-def filled_motion(
+def solve_stuffed_motion(
     robot: Robot, contractions: Sequence[Vector], face: Face | str | None = None, *, element_size: float | None = None
-) -> FilledMotion:
+) -> StuffedMotion:
     """Play contractions on a flat robot and on the body in space that it becomes (`inflated_robot`), and compare.
 
     Args:
@@ -68,4 +68,4 @@ def filled_motion(
             out = max(out, abs(float(found[2])))
             aside = max(aside, float(np.linalg.norm(found[:2] - drawn)))
     nodes = len(solid.robot.body.mesh.nodes)
-    return FilledMotion(face=face, moved=moved, out=out, aside=aside, tension=tension, nodes=nodes)
+    return StuffedMotion(face=face, moved=moved, out=out, aside=aside, tension=tension, nodes=nodes)

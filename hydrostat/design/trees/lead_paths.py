@@ -1,4 +1,4 @@
-"""`LeadWays`: where winches of trees may stand, and the ways from there to where routes begin (R14, R41)."""
+"""`LeadPaths`: where winches of trees may stand, and the ways from there to where routes begin (R14, R41)."""
 
 from dataclasses import dataclass
 
@@ -15,7 +15,7 @@ from hydrostat.robot import Mount, Robot
 
 
 @dataclass(frozen=True, eq=False)
-class LeadWays:
+class LeadPaths:
     """Points inside a body joined by straight runs that keep clear of its edge; then winches fixed in the world.
 
     A run to a winch in the world goes that way only, so that no lead passes through one.
@@ -65,7 +65,7 @@ class LeadWays:
 _NEAREST = 12  # so many points are looked at for one in sight
 
 
-def lead_ways(robot: Robot, region: Region, constraints: Constraints) -> LeadWays:
+def find_lead_paths(robot: Robot, region: Region, constraints: Constraints) -> LeadPaths:
     """The ways of a body: mesh nodes and the mesh edges that keep clear; in space, nodes are moved inside first.
 
     Few nodes of a body in space lie off its surface. Where all winches of the robot are fixed in the world, winches
@@ -90,7 +90,7 @@ def lead_ways(robot: Robot, region: Region, constraints: Constraints) -> LeadWay
             )
     lengths = np.linalg.norm(points[pairs[:, 1]] - points[pairs[:, 0]], axis=1)
     runs = csr_array((lengths, (pairs[:, 0], pairs[:, 1])), shape=(len(points),) * 2)
-    return LeadWays(points, len(mesh.nodes), places, runs, region)
+    return LeadPaths(points, len(mesh.nodes), places, runs, region)
 
 
 def _entries(

@@ -1,4 +1,4 @@
-"""`find_reach`: all that each marker of a robot can be brought to by its winches, as a figure and as a cloud."""
+"""`find_workspaces`: all that each marker of a robot can be brought to by its winches, as a figure and as a cloud."""
 
 from dataclasses import dataclass
 from itertools import product
@@ -13,7 +13,7 @@ from hydrostat.simulation import Simulation, without_contact_friction
 from hydrostat.sobol import draw_sobol
 
 
-def reach_extent(moves: Float[np.ndarray, "rows winches"], spans: Vector, *, dim: int, floor: float) -> float:
+def workspace_extent(moves: Float[np.ndarray, "rows winches"], spans: Vector, *, dim: int, floor: float) -> float:
     """Geometric mean over markers of the mean half-axis of the ellipsoid that a box of contractions brings each to [m].
 
     For each marker it is the 2 dim-th root of det(J S^2 J^T + floor^2 I), that is, up to a factor, the dim-th root of
@@ -21,7 +21,7 @@ def reach_extent(moves: Float[np.ndarray, "rows winches"], spans: Vector, *, dim
     counts as `floor`.
 
     Args:
-        moves: slopes of the coordinates of the markers by the contractions, marker after marker.
+        moves: derivatives of the coordinates of the markers by the contractions, marker after marker.
         spans: admissible contraction change of each winch to either side [m].
         dim: coordinates of a marker.
         floor: extent that counts as no reach at all [m], above 0.
@@ -39,7 +39,7 @@ def usable_spans(
     """Share of each winch's range that its hardest cable lets it go, to first order [m].
 
     Args:
-        pulls: slopes of the tensions by the contractions [N/m].
+        pulls: derivatives of the tensions by the contractions [N/m].
         ranges: travel and release of each winch [m].
         tension: maximum cable tension [N].
     """
@@ -48,7 +48,7 @@ def usable_spans(
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class FoundReach:
+class MarkerWorkspace:
     """Workspace of one marker.
 
     Attributes:
@@ -83,16 +83,16 @@ def _direction_text(way: Vector) -> str:
     return f"along ({', '.join(f'{part:+.2f}' for part in way)})"
 
 
-def find_reach(
+def find_workspaces(
     simulation: Simulation, *, tension: float | None = None, count: int = 64, threads: int = 2
-) -> tuple[FoundReach, ...]:
+) -> tuple[MarkerWorkspace, ...]:
     """Compute the workspace of each marker within travel and release of the winches.
 
     Poses are solved at contractions spread evenly over what all winches can do, each from rest, so straight along the
-    loading path where cables rub. Each stands for a share of the contractions; exact slopes tell, to first order, what
+    loading path where cables rub. Each stands for a share of the contractions; the Jacobian gives, to first order, what
     part that is of the places that a marker reaches, and the union of these parts is measured. With more than three
     winches the shares do not cover all contractions, and what is told is rather too little. Poses that are not stable
-    or ask a cable for more than it may bear are left out. So is friction of contact, which has no slopes.
+    or ask a cable for more than it may bear are left out. So is friction of contact, which has no derivatives.
 
     Args:
         simulation: the robot's physics.
@@ -115,15 +115,15 @@ def find_reach(
     low, high = _limits(robot)
     shares, half = _tiles(len(low), count)
     found = simulation.solve_batch(low + shares * (high - low), threads=threads)
-    slopes = np.zeros((0, 0, 0, 0)) if found.jacobians is None else found.jacobians
-    held = found.converged & found.stable & np.isfinite(slopes).all(axis=(1, 2, 3))
+    derivatives = np.zeros((0, 0, 0, 0)) if found.jacobians is None else found.jacobians
+    held = found.converged & found.stable & np.isfinite(derivatives).all(axis=(1, 2, 3))
     if tension is not None:
         held[held] &= found.tensions[held].max(axis=1, initial=0.0) <= tension
-    taken, slopes = found.contractions[held], slopes[held]
+    taken, derivatives = found.contractions[held], derivatives[held]
     below = np.maximum(taken - half * (high - low), low) - taken
     above = np.minimum(taken + half * (high - low), high) - taken
     return tuple(
-        _reach(marker.name, found.markers[held, own], slopes[:, own], below, above)
+        _marker_workspace(marker.name, found.markers[held, own], derivatives[:, own], below, above)
         for own, marker in enumerate(robot.markers)
     )
 
@@ -145,32 +145,32 @@ def _tiles(winches: int, count: int) -> tuple[Float[np.ndarray, "poses winches"]
     return np.array(list(product(middles, repeat=winches))), 0.5 / steps
 
 
-def _reach(
+def _marker_workspace(
     name: str,
     places: Points,
-    slopes: Float[np.ndarray, "poses dim winches"],
+    derivatives: Float[np.ndarray, "poses dim winches"],
     below: Float[np.ndarray, "poses winches"],
     above: Float[np.ndarray, "poses winches"],
-) -> FoundReach:
+) -> MarkerWorkspace:
     dim = places.shape[1]
-    by = np.einsum("kd,pdw->pkw", _ways(dim), slopes)
+    by = np.einsum("kd,pdw->pkw", _directions(dim), derivatives)
     changes = np.where(by > 0, above[:, None], below[:, None])  # what brings it farthest in each direction
-    cells = places[:, None] + np.einsum("pdw,pkw->pkd", slopes, changes)
+    cells = places[:, None] + np.einsum("pdw,pkw->pkd", derivatives, changes)
     corners = cells.reshape(-1, dim)
     if not len(corners):
-        return FoundReach(
+        return MarkerWorkspace(
             marker=name, places=places, cells=cells, directions=np.eye(dim), extents=np.zeros(dim), size=0.0
         )
     _, _, directions = np.linalg.svd(corners - corners.mean(axis=0), full_matrices=False)
     extents = np.ptp(corners @ directions.T, axis=0)
     order = np.argsort(-extents)
     size = _covered_area(cells) if dim == 2 else _covered_volume(cells)
-    return FoundReach(
+    return MarkerWorkspace(
         marker=name, places=places, cells=cells, directions=directions[order], extents=extents[order], size=size
     )
 
 
-def _ways(dim: int) -> Float[np.ndarray, "ways dim"]:
+def _directions(dim: int) -> Float[np.ndarray, "ways dim"]:
     """Directions all around."""
     around = 32  # directions in the plane, and half as many as in space
     if dim == 2:

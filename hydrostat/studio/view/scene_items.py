@@ -132,4 +132,4 @@ class Area:
     chosen: bool = False  # whether it is selected
 
 
-Thing = Dot | Strand | Ghost | Cloud | Area
+SceneItem = Dot | Strand | Ghost | Cloud | Area

@@ -7,7 +7,7 @@ import numpy as np
 from hydrostat.drawing import Color
 from hydrostat.geometry import find_crossings
 from hydrostat.simulation import Equilibrium, Simulation, find_contacts
-from hydrostat.studio.view.things import Dot, Look, RobotShape, Strand, Stroke, Thing
+from hydrostat.studio.view.scene_items import Dot, Look, RobotShape, SceneItem, Strand, Stroke
 
 OFF = "contact off: the body intersects itself here"
 TOUCH = "#8a2be2"
@@ -27,14 +27,14 @@ def with_touches(simulation: Simulation, pose: Equilibrium, shape: RobotShape, *
     return replace(shape, notes=notes, touches=find_contacts(simulation, pose), carried=pose.carried, crossing=crossing)
 
 
-def touch_things(shape: RobotShape, size: float) -> list[Thing]:
+def contact_items(shape: RobotShape, size: float) -> list[SceneItem]:
     """A dot where it touches, with an arrow along the force, longer for more; a ring where it crosses itself.
 
     Args:
         shape: shape of the body.
         size: size of the body [m].
     """
-    things: list[Thing] = []
+    things: list[SceneItem] = []
     hardest = max((touch.strength for touch in shape.touches), default=0.0)
     most = 8  # places that are shown, the hardest
     longest = 0.05  # arrow at the hardest, in sizes of the body

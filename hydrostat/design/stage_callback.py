@@ -4,17 +4,17 @@ from collections.abc import Callable
 
 from hydrostat.design.network import DesignStage
 
-Watch = Callable[[DesignStage], None]  # told a network on the way, each better than the ones told before
+StageCallback = Callable[[DesignStage], None]  # told a network on the way, each better than the ones told before
 
 
-def unseen(stage: DesignStage) -> None:
+def ignore_stage(stage: DesignStage) -> None:
     """Nobody watches."""
 
 
 class Better:
     """Passes on what has a smaller error than all before."""
 
-    def __init__(self, watch: Watch) -> None:
+    def __init__(self, watch: StageCallback) -> None:
         self._watch, self._least = watch, float("inf")
 
     def __call__(self, stage: DesignStage) -> None:
