@@ -4,8 +4,10 @@ from functools import partial
 
 import numpy as np
 
+from hydrostat.arrays import Nodes, Vector
 from hydrostat.geometry import Inner, Outline, read_drawing, size_for, triangulate
 from hydrostat.robot.body import Body
+from hydrostat.robot.limb_tips import find_limb_tips, measure_geodesics, name_tips
 from hydrostat.robot.marker import Marker, PoseTarget
 from hydrostat.robot.materials import get_material
 from hydrostat.robot.pin import Pin
@@ -44,8 +46,8 @@ def sketch_robot(
 ) -> Robot:
     """Robot from the bytes of a drawing (SVG, DXF, PNG, JPG), with sensible numbers where none are given.
 
-    It is held round its deepest point; one marker sits near the point of the body farthest from there, with a pose
-    that bends it sideways. Everything is meant to be changed.
+    It is held round its deepest point. The tip of each limb is a marker, named by its place ("upper left"), or "tip" if
+    there is one. A pose bends the longest limb sideways; the other tips stay. Everything is meant to be changed.
 
     Args:
         content: the drawing.
@@ -80,17 +82,30 @@ def sketch_robot(
         body = make(element_size=length, thickness=body.thickness or 0.0)
     center = np.array(maximum_inscribed_circle(outline.polygon).coords[0])
     depth = outline.polygon.boundary.distance(ShapelyPoint(center))
+    pin = Pin(at=_point(center), radius=_round(max(0.4 * depth, 1.3 * (body.element_size or 0.0))))
+    away, _ = measure_geodesics(body.mesh, pin.holds(body.mesh))
     within = body.mesh.nodes[np.setdiff1d(np.arange(len(body.mesh.nodes)), body.mesh.boundary_nodes)]
-    tip = within[int(np.argmax(np.linalg.norm(within - center, axis=1)))]
-    arm = tip - center
-    turned = center + 0.96 * (np.cos(_BEND) * arm + np.sin(_BEND) * np.array([-arm[1], arm[0]]))
+    ends = body.mesh.nodes[find_limb_tips(body.mesh, away)]
+    tips = np.array([_inner_tip(within, end, center, 2.5 * (body.element_size or 0.0)) for end in ends])
+    names = name_tips(body.mesh, tips)
+    arms = tips - center
+    turned = center + 0.96 * (np.cos(_BEND) * arms[0] + np.sin(_BEND) * np.array([-arms[0, 1], arms[0, 0]]))
+    others = np.abs(np.angle(arms @ [1, 1j] / (arms[0] @ [1, 1j]))) > 0.7  # a tip beside moves as well: lobes of a fin
+    targets = {names[0]: _point(turned)} | {names[other]: _point(tips[other]) for other in np.flatnonzero(others)}
     return Robot(
         name=name,
         body=body,
-        pins=(Pin(at=_point(center), radius=_round(max(0.4 * depth, 1.3 * (body.element_size or 0.0)))),),
-        markers=(Marker(name="tip", at=_point(tip)),),
-        poses={"bend": PoseTarget(name="bend", targets={"tip": _point(turned)})},
+        pins=(pin,),
+        markers=tuple(Marker(name=tip, at=_point(at)) for tip, at in zip(names, tips, strict=True)),
+        poses={"bend": PoseTarget(name="bend", targets=targets)},
     )
+
+
+def _inner_tip(within: Nodes, end: Vector, center: Vector, near: float) -> Vector:
+    """Inner node about the end of a limb that is farthest from the center."""
+    away = np.linalg.norm(within - end, axis=1)
+    chosen = within[away <= max(near, float(away.min()))]
+    return chosen[np.argmax(np.linalg.norm(chosen - center, axis=1))]
 
 
 _BEND = 0.3  # turn of the first pose about the pin [rad]: at 0.5 a fish with a narrow tail passes through itself

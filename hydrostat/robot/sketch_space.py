@@ -13,6 +13,7 @@ from hydrostat.given import Point
 from hydrostat.robot.body import Body, Source
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.hole_note import describe_filled_holes
+from hydrostat.robot.limb_tips import find_limb_tips, measure_geodesics, name_tips
 from hydrostat.robot.marker import Marker, PoseTarget
 from hydrostat.robot.materials import get_material
 from hydrostat.robot.pin import Pin
@@ -139,10 +140,11 @@ _SPOOL, _LEAST_SPOOL = 0.006, 0.002
 
 
 def _first_robot(body: Body, name: str) -> Robot:
-    """Body with first boundary conditions (a pin) and one tendon: a cable along its longest limb, a marker.
+    """Body with first boundary conditions (a pin) and one tendon: a cable along its longest limb, a marker at each tip.
 
     It is held at the stouter end of its longest side, or, if both ends are slender as of a starfish, round its deepest
-    point. The limb is the longest way through the body from there; the cable lies on one side of it.
+    point. The limb is the longest way through the body from there; the cable lies on one side of it, and the pose bends
+    it to that side.
     """
     mesh = body.mesh
     solid = Solid(Surface(mesh.nodes, mesh.boundary) if body.healing is None else body.healing.surface)
@@ -154,7 +156,12 @@ def _first_robot(body: Body, name: str) -> Robot:
     ways = [part * limb.reach(mesh, share, side) * side for part, share in zip(leave, _STATIONS, strict=True)]
     covered = [_cover_offset(mesh, solid, middle, way) for middle, way in zip(middles, ways, strict=True)]
     route = _drop_sharp_turns(_space_points(covered))
-    tip = _cover_offset(mesh, solid, limb.middle(mesh, 0.97), 0 * side)
+    ends = [
+        limb.middle(mesh, 0.97),
+        *(_end_middle(mesh, node) for node in find_limb_tips(mesh, limb.longest * limb.away)[1:]),
+    ]
+    tips = np.array([_cover_offset(mesh, solid, end, 0 * side) for end in ends])
+    tip, names = tips[0], name_tips(mesh, tips)
     spool = min(_SPOOL, max(_LEAST_SPOOL, -0.9 * float(solid.distances(route[:1])[0])))
     cable = Cable(winch="pull", points=tuple(map(_point, route)))
     travel = max(round(0.4 * cable.length, 3), 1e-3)
@@ -167,9 +174,16 @@ def _first_robot(body: Body, name: str) -> Robot:
         pins=(pin,),
         winches=(winch,),
         cables=(cable,),
-        markers=(Marker(name="tip", at=_point(tip)),),
-        poses={"bend": PoseTarget(name="bend", targets={"tip": _point(bent)})},
+        markers=tuple(Marker(name=name, at=_point(at)) for name, at in zip(names, tips, strict=True)),
+        poses={"bend": PoseTarget(name="bend", targets={names[0]: _point(bent)})},
     )
+
+
+def _end_middle(mesh: Mesh, tip: int) -> Vector:
+    """Center of the elements at the tip of a limb [m]."""
+    centers = mesh.nodes[mesh.elements].mean(axis=1)
+    away = np.linalg.norm(centers - mesh.nodes[tip], axis=1)
+    return centers[away <= max(0.03 * mesh.size, 1.01 * float(away.min()))].mean(axis=0)
 
 
 def _hold(mesh: Mesh) -> Pin:
@@ -209,6 +223,7 @@ class _Limb:
     """Longest path through a body from where it is held."""
 
     away: Vector  # distance of each node from there along edges, as a share of the longest one
+    longest: float  # that distance [m]
     path: Int[np.ndarray, " path"]  # nodes on the longest path, from its end
 
     def part(self, mesh: Mesh, share: float) -> Bool[np.ndarray, " elements"]:
@@ -243,19 +258,11 @@ class _Limb:
 
 
 def _limb(mesh: Mesh, held: Bool[np.ndarray, " nodes"]) -> _Limb:
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import dijkstra  # Imported here: not every command needs it.
-
-    one, two = mesh.edges.T
-    lengths = np.linalg.norm(mesh.nodes[one] - mesh.nodes[two], axis=1)
-    graph = coo_array((lengths, (one, two)), shape=2 * (len(mesh.nodes),)).tocsr()
-    away, before, _ = dijkstra(
-        graph, directed=False, indices=np.flatnonzero(held), min_only=True, return_predecessors=True
-    )
+    away, before = measure_geodesics(mesh, held)
     path = [int(np.argmax(np.where(np.isfinite(away), away, -1.0)))]
     while before[path[-1]] >= 0:
         path.append(int(before[path[-1]]))
-    return _Limb(away / away[path[0]], np.array(path))
+    return _Limb(away / away[path[0]], float(away[path[0]]), np.array(path))
 
 
 def _side(mesh: Mesh, arm: Vector) -> Vector:

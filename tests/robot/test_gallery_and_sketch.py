@@ -37,7 +37,8 @@ def test_sketch(svg: str, size: float | None, tmp_path: Path) -> None:
     assert robot_text(again) == robot_text(robot)
     assert find_risks(robot) == []
     assert 150 < len(robot.body.mesh.nodes) < 400
-    marker, target = robot.markers[0].at, robot.pose("bend").targets["tip"]
+    marker = robot.markers[0].at
+    target = robot.pose("bend").targets[robot.markers[0].name]
     assert 0 < sum((a - b) ** 2 for a, b in zip(marker, target, strict=True)) < robot.body.mesh.size**2
 
 
