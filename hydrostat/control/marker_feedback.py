@@ -9,6 +9,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 
 from hydrostat.arrays import Vector
+from hydrostat.control.guard import GuardLimits
 from hydrostat.control.marker_path import MarkerPath
 from hydrostat.errors import HydrostatError
 from hydrostat.ik import CORRECTION_DAMPING
@@ -81,7 +82,8 @@ class MarkerFeedback:
     Each frame shows an error at the time when it was taken. A damped least-squares step by the exact derivatives of the
     model states the correction that would have removed it; the present correction approaches that one. Lag does not
     add up, as the correction of that time is remembered. Corrections stay within 20 % of the travel of each winch, and
-    commands within its limits.
+    commands within its limits. They raise no simulated pull beyond what `TensionGuard` allows, also where motors do not
+    tell their torque.
 
     Attributes:
         is_waiting: True while motors hold because no marker is in sight.
@@ -152,6 +154,7 @@ class MarkerFeedback:
         self._watch(now)
         if not self.is_waiting:
             self._advance(step)
+        self._correction = self._correction * self._allowed_share(time)
         command = np.clip(contractions + self._correction, self._low, self._high)
         self._correction = command - contractions  # no windup at a limit
         self._past.append(_Past(now, time, self._correction))
@@ -167,6 +170,21 @@ class MarkerFeedback:
             move = (self._aim - self._correction) * (1.0 - np.exp(-GAIN * step))
         move = np.clip(move, -FASTEST_CORRECTION * step, FASTEST_CORRECTION * step)
         self._correction = np.clip(self._correction + move, -self._bound, self._bound)
+
+    def _allowed_share(self, time: float) -> float:
+        """Share of the correction that keeps all simulated pulls within the limits of the guard, to first order."""
+        pulls, slopes = self._path.pulls_at(time)
+        ways, limits = np.where(pulls < 0, -1.0, 1.0), GuardLimits()
+        more = ways * (slopes @ self._correction)
+        room = (limits.times - 1.0) * np.abs(pulls) + limits.more
+        shares = np.where(more > room, room / np.maximum(more, room), 1.0)
+        worst = int(np.argmin(shares))
+        if shares[worst] < 1.0:
+            self._tell_once(
+                f"warning: the correction of {self._winches[worst]} is bounded by its simulated tension. Fit the model "
+                "first: hydrostat identify"
+            )
+        return float(shares[worst])
 
     def _take(self, sight: MarkerSight) -> None:
         """Aim at the correction that would have removed the errors of a frame."""

@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from hydrostat.arrays import Float, Vector
+from hydrostat.control.model_tensions import winch_tensions
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import PinDrive, Robot
 from hydrostat.simulation import ContractionProfile, Simulation
@@ -19,17 +20,21 @@ POSES = 4000
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MarkerPath:
-    """Simulated markers along a profile, with their exact derivatives by the contractions.
+    """Simulated markers and pulls along a profile, with their exact derivatives by the contractions.
 
     Attributes:
         times: times of the profile [s].
         places: places of all markers [m].
         jacobians: derivatives dx/da of these places.
+        pulls: pull of each winch [N], as by `winch_tensions`.
+        pull_jacobians: derivatives dF/da of these pulls [N/m].
     """
 
     times: Vector
     places: Float[np.ndarray, "times markers dim"]
     jacobians: Float[np.ndarray, "times markers dim winches"]
+    pulls: Float[np.ndarray, "times winches"]
+    pull_jacobians: Float[np.ndarray, "times winches winches"]
 
     @classmethod
     def along(cls, robot: Robot, profile: ContractionProfile) -> "MarkerPath":
@@ -43,7 +48,9 @@ class MarkerPath:
             raise InputError(f"{robot.name}: no [[marker]] in robot.toml. Add one for each tag.")
         PinDrive.require_none(robot.drives, "corrections")
         times = _path_times(robot, profile)
-        simulation, pose, places, jacobians = Simulation(robot), None, [], []
+        simulation, pose = Simulation(robot), None
+        places, jacobians, pulls, pull_jacobians = [], [], [], []
+        network = np.array([winch_tensions(robot, row) for row in np.eye(len(robot.cables))]).T  # (winches, cables)
         for time in times.tolist():
             pose = simulation.solve(profile.at(time), start=pose, strict=False)
             if not pose.result.converged:
@@ -52,18 +59,31 @@ class MarkerPath:
                 )
             places.append(simulation.marker_anchors.positions(pose.nodes))
             jacobians.append(simulation.marker_jacobian(pose))
-        return cls(times=times, places=np.array(places), jacobians=np.array(jacobians))
+            pulls.append(winch_tensions(robot, pose.tensions))
+            still = np.zeros_like(pose.nodes)
+            pull_jacobians.append([simulation.adjoint(pose, still, tensions=row).contractions for row in network])
+        return cls(
+            times=times,
+            places=np.array(places),
+            jacobians=np.array(jacobians),
+            pulls=np.array(pulls),
+            pull_jacobians=np.array(pull_jacobians),
+        )
 
     def at(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Places and derivatives at a time [s], linear between poses."""
+        return self._mix(time, self.places), self._mix(time, self.jacobians)
+
+    def pulls_at(self, time: float) -> tuple[np.ndarray, np.ndarray]:
+        """Pulls and their derivatives at a time [s], linear between poses."""
+        return self._mix(time, self.pulls), self._mix(time, self.pull_jacobians)
+
+    def _mix(self, time: float, values: np.ndarray) -> np.ndarray:
         place = int(np.clip(np.searchsorted(self.times, time) - 1, 0, max(len(self.times) - 2, 0)))
         after = min(place + 1, len(self.times) - 1)
         length = self.times[after] - self.times[place]
         share = float(np.clip((time - self.times[place]) / length, 0.0, 1.0)) if length > 0 else 0.0
-        places, derivatives = (
-            (1 - share) * each[place] + share * each[after] for each in (self.places, self.jacobians)
-        )
-        return places, derivatives
+        return (1 - share) * values[place] + share * values[after]
 
 
 def _path_times(robot: Robot, profile: ContractionProfile) -> Vector:

@@ -23,6 +23,7 @@ from hydrostat.control import (
     TensionLookup,
     WinchMotor,
 )
+from hydrostat.control.model_tensions import winch_tensions
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Robot
 from hydrostat.simulation import ContractionProfile, Simulation
@@ -209,13 +210,18 @@ class Sights:
         self.newest = MarkerSight(time, {"tip": np.array(place)})
 
 
-def sighted() -> tuple[MarkerFeedback, Sights]:
-    """Feedback on one marker that is simulated to go 0.01 m/s in x; each winch moves it along one axis."""
+def sighted(slope: float = 0.0) -> tuple[MarkerFeedback, Sights]:
+    """Feedback on one marker that is simulated to go 0.01 m/s in x; each winch moves it along one axis.
+
+    The first winch pulls with 0.5 N/s; each correction adds to the pull of its winch by `slope` [N/m].
+    """
     robot = strip()
     path = MarkerPath(
         times=np.array([0.0, 10.0]),
         places=np.array([[[0.0, 0.0]], [[0.1, 0.0]]]),
         jacobians=np.tile(np.eye(2), (2, 1, 1, 1)),
+        pulls=np.array([[0.0, 0.0], [5.0, 0.0]]),
+        pull_jacobians=np.tile(slope * np.eye(2), (2, 1, 1)),
     )
     camera = Sights()
     return MarkerFeedback(replace(robot, markers=robot.markers[2:]), path, camera, lag=0.125), camera
@@ -247,3 +253,26 @@ def test_a_correction_does_not_wind_up_at_a_limit() -> None:
         camera.show(now, 0.01 * max(now - 0.125, 0.0), -0.02)
         assert feedback.correct(np.array([0.01, 0.03]), now, now)[1] == pytest.approx(0.03)
     assert feedback.correct(np.array([0.01, 0.02]), 2.0, 2.0)[1] == pytest.approx(0.02, abs=0.02 * 0.0625 + 1e-9)
+
+
+def test_a_correction_raises_no_pull_beyond_the_guard() -> None:
+    """Oracle: 2 N and half the simulated pull over 1,500 N/m by hand, at the time of the command."""
+    feedback, camera = sighted(slope=1500.0)
+    now, command = 0.0, np.zeros(2)
+    for now in np.arange(0.0, 4.0, 0.0625).tolist():
+        camera.show(now, 0.01 * max(now - 0.125, 0.0) - 0.02, 0.0)
+        command = feedback.correct(np.full(2, 0.01), now, now)
+    assert command[0] - 0.01 == pytest.approx((2.0 + 0.5 * 0.5 * now) / 1500.0, rel=1e-6)
+    assert command[1] == pytest.approx(0.01, abs=1e-6)
+
+
+def test_slopes_of_pulls_are_those_of_whole_solves() -> None:
+    robot, step = strip(), 1e-6
+    path = MarkerPath.along(robot, PROFILE)
+    middle = len(path.times) // 2
+    at, slopes = PROFILE.at(path.times[middle]), path.pull_jacobians[middle]
+    for winch, row in enumerate(np.eye(2)):
+        less, more = (
+            winch_tensions(robot, Simulation(robot).solve(at + sign * step * row).tensions) for sign in (-1, 1)
+        )
+        assert slopes[:, winch] == pytest.approx((more - less) / (2 * step), rel=1e-4, abs=1e-3)
