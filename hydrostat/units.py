@@ -102,7 +102,7 @@ def format_quantity(value: float, dimension: Dimension) -> str:
 
 
 def scale_up(number: Decimal, unit: str, dimension: Dimension) -> float:
-    """SI value of a bare number that stands in `unit`."""
+    """SI value of a bare number in `unit`."""
     return _si(number, unit_factor(unit, dimension))
 
 

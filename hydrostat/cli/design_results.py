@@ -34,7 +34,7 @@ def write_results(network: "Network", folder: Path) -> None:
 
 
 def write_kit(network: "Network", folder: Path) -> "Kit":
-    """The fabrication kit, in which what cannot be built well is told; its poses keep to the design's tension."""
+    """The fabrication kit, with problems listed. Its poses keep to the design's tension."""
     from hydrostat.camera import tag_files
     from hydrostat.fabrication import KitOptions, build_kit
 
@@ -46,7 +46,7 @@ def write_kit(network: "Network", folder: Path) -> "Kit":
 
 
 def designed_tension(robot: "Robot", folder: Path) -> float | None:
-    """The tension that a design kept [N], from the score.json beside its folder, or from studio.json in it.
+    """The tension that a design kept [N], from the score.json next to its folder, or from studio.json in it.
 
     None for a robot of which neither is. Raises InputError: studio.json is there, and cannot be read.
     """
@@ -55,7 +55,7 @@ def designed_tension(robot: "Robot", folder: Path) -> float | None:
 
 
 def designed_torque(robot: "Robot", folder: Path) -> float | None:
-    """The torque that a design kept [N m], from the score.json beside its folder; None without one."""
+    """The torque that a design kept [N m], from the score.json next to its folder; None without one."""
     return _design_limit(robot, folder, "torque_limit")
 
 

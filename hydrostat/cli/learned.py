@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def read_model(path: Path, robot: "Robot") -> "tuple[LearnedModel, Robot]":
-    """A model, and the robot, which feels contact if the model knows it (InputError: it is another robot's)."""
+    """A model, and the robot, with contact if the model was trained with it (InputError: another robot's model)."""
     from hydrostat.learning import LearnedModel
     from hydrostat.robot import Contact
 

@@ -7,7 +7,7 @@ if TYPE_CHECKING:
 
 
 def print_exceeded(pose: "Equilibrium", indent: str = "") -> None:
-    """Print strain beyond the known range of a material, and lines that would break."""
+    """Print strain beyond a material's measured range, and lines that would break."""
     from hydrostat.fabrication import find_weak_lines
 
     for reason in find_weak_lines(pose.robot, pose.tensions):

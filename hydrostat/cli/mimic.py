@@ -150,7 +150,7 @@ class _Session:
         print(f"{self.kind}: {words}", flush=True)
 
     def beat(self) -> None:
-        """Tell the motors that somebody is there."""
+        """Keep the motors' watchdog alive."""
         self.motors.drive(time.monotonic())
         self._way.observe(self.motors.places)
 

@@ -330,7 +330,7 @@ def _split_value(option: str, text: str, form: str) -> tuple[str, str]:
 
 
 def check_contraction(robot: "Robot", name: str, value: float, *, option: str = "--contract") -> None:
-    """Print a note if a winch cannot take in so much [m] (InputError: no such winch, or it takes in all of a cable)."""
+    """Print a note if a contraction [m] exceeds a winch's travel (InputError: unknown winch, or a cable's length)."""
     winch = robot.winch(name)
     if not -winch.release <= value <= winch.travel:
         print(

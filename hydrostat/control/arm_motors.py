@@ -28,7 +28,7 @@ def arm_motors(
     known: Pulls | None = None,
     log: Callable[[str], None] = lambda _: None,
 ) -> Motors:
-    """Motors that turn as they are told from now on, watched by a deadline and a guard.
+    """Armed motors that follow commands, supervised by a deadline and a guard.
 
     A correction.json in the folder, which `hydrostat identify` writes, corrects their commands.
 

@@ -68,7 +68,7 @@ class Port(Protocol):
         ...
 
     def read(self, size: int, /) -> bytes:
-        """So many bytes, or fewer after the time-out."""
+        """Read this number of bytes, or fewer after the timeout."""
         ...
 
     def close(self) -> None:
@@ -127,10 +127,10 @@ class Bus(ABC):
 
     @abstractmethod
     def write(self, angles: Vector, speeds: Vector) -> None:
-        """Let them go to angles [rad] at speeds of at most [rad/s]; return at once (HydrostatError: line gone)."""
+        """Let them go to angles [rad] at speeds of at most [rad/s]; return immediately (HydrostatError: line gone)."""
 
     def halt(self) -> None:  # noqa: B027 - where `stop` waits for nobody there is nothing to do
-        """Tell them once to stand where they were last heard, and wait for no answer; `stop` follows. It never raises.
+        """Command a stop at the last read positions, without waiting for an answer; `stop` follows. It never raises.
 
         For the other lines this is the time in which `stop` asks one that does not answer.
         """

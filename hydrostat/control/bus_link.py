@@ -134,7 +134,7 @@ class BusLink(Link):
             return self.facts
 
     def arm(self) -> None:
-        """Let motors turn from now on (HydrostatError: not calibrated, out of the limits, or one is not heard)."""
+        """Arm the motors (HydrostatError: not calibrated, out of the limits, or no answer from one)."""
         with self._lock:
             stops = self._stops
             self._must_be_known()
@@ -180,7 +180,7 @@ class BusLink(Link):
                 self._must_be_armed()
 
     def read(self, now: float) -> Vector:
-        """Contractions as last heard of [m]."""
+        """Contractions of the last reading [m]."""
         with self._lock:
             if self.state is LinkState.FAULT:
                 raise HydrostatError(self.why)
@@ -190,7 +190,7 @@ class BusLink(Link):
             return self._places.copy()
 
     def stop(self) -> None:
-        """Let the motors stand; whoever is about to tell or arm them in another thread sees it, and stops them too."""
+        """Stop the motors. A thread that is about to command or arm them sees it and stops them too."""
         self._stops += 1
         if self.state is LinkState.ARMED:
             self._stop_with_error(LinkState.STOPPED, "stopped")
@@ -207,7 +207,7 @@ class BusLink(Link):
         self._to(LinkState.CLOSED)
 
     def check_deadline(self) -> None:
-        """Stop motors that were told nothing for too long; `watch` asks it all the time."""
+        """Stop motors without a command for too long; `watch` calls it all the time."""
         if self.state is LinkState.ARMED and self._clock() - self._sent > DEADLINE:
             with self._lock:
                 if self.state is LinkState.ARMED and (since := self._clock() - self._sent) > DEADLINE:

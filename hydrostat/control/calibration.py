@@ -74,12 +74,12 @@ class WinchMotor:
         return taken + radius * (turned - begin)
 
     def angle(self, contraction: float) -> float:
-        """Angle of the motor at which so much is taken in [rad]."""
+        """Angle of the motor at a contraction [rad]."""
         begin, taken, radius = self._piece(contraction)
         return (np.nan if self.zero is None else self.zero) + self.turns * (begin + (contraction - taken) / radius)
 
     def reach(self, contraction: float) -> float:
-        """Radius at which cable runs on when so much is taken in [m]."""
+        """Winding radius at a contraction [m]."""
         return self._piece(contraction)[2]
 
     def _piece(self, contraction: float) -> tuple[float, float, float]:
@@ -203,7 +203,7 @@ class Calibration:
         return Calibration.usual(robot).assume_zeros()
 
     def write(self, folder: Path, *, name: str = CALIBRATION) -> Path:
-        """Write the motors of a robot beside its robot.toml, whole or not at all; returns the path."""
+        """Write the motors of a robot next to its robot.toml, whole or not at all; returns the path."""
         known = any(spool.zero is not None for spool in self.motors)
         told = (
             "zero and curve are of this one robot" if known else "hydrostat calibrate finds where cables begin to pull"

@@ -36,7 +36,7 @@ class CorrectedLink(Link):
         self._link.send(self._correction.command(contractions), now, speed=speed)
 
     def read(self, now: float) -> Vector:
-        """Contractions of the model, as last heard of [m]; errors as in `Link`."""
+        """Contractions of the model at the last reading [m]; errors as in `Link`."""
         return self._correction.effective(self._link.read(now))
 
     def stop(self) -> None:

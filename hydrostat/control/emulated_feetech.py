@@ -97,7 +97,7 @@ class EmulatedSts(EmulatedServo):
         return self.constant * STALL * int.from_bytes(self.table[BOUND : BOUND + 2], "little") / FULL
 
     def take(self, place: int, data: bytes) -> int:
-        """Write registers as told over the bus; returns the error of the answer."""
+        """Write registers as commanded over the bus; returns the error of the answer."""
         if place + len(data) <= STATE:
             self.table[place : place + len(data)] = data
             if place == TORQUE and data[0] == 1:

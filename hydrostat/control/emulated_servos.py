@@ -117,7 +117,7 @@ class EmulatedServo:
         return self.constant * min(bound, model.stall)
 
     def take(self, place: int, data: bytes) -> int:
-        """Write registers as told over the bus; returns the error of the answer."""
+        """Write registers as commanded over the bus; returns the error of the answer."""
         fired = self.get(WATCHDOG, 1) == -1
         if fired and place + len(data) > PWM and place < STATE:
             return 0x07  # goals are read-only

@@ -22,7 +22,7 @@ SPARE = 0.025
 
 
 def on_boards(calibration: Calibration, boards: Sequence[str]) -> Calibration:
-    """Motors as they are, if the boards bear them so; else one board filled after the other, zeros unknown.
+    """Motors as they are if the boards fit them; else one board filled after the other, zeros unknown.
 
     Raises:
         InputError: the boards do not bear all.

@@ -141,7 +141,7 @@ class FirmwareBus(Bus):
             self._send("G " + " ".join(f"{goal} {rate}" for goal, rate in pairs))
 
     def stop(self) -> None:
-        """Let them stand, told three times."""
+        """Stop them, with the command sent three times."""
         with suppress(Exception), self._lock:
             if self._known and not self._closed:
                 self._stood = True

@@ -82,7 +82,7 @@ class JoinedBus(Bus):
         self._each(lambda bus, places: bus.write(angles[places], speeds[places]))
 
     def halt(self) -> None:
-        """Tell all parts once."""
+        """Send a stop to all parts once."""
         for bus, _ in self._parts:
             with suppress(Exception):
                 bus.halt()

@@ -40,7 +40,7 @@ class Link(ABC):
 
     @abstractmethod
     def send(self, contractions: Vector, now: float, *, speed: float) -> None:
-        """Let the motors go to contractions [m] at so fast a cable [m/s], by a clock [s]; return at once.
+        """Let the motors go to contractions [m] at so fast a cable [m/s], by a clock [s]; return immediately.
 
         Raises:
             HydrostatError: it cannot be sent.
@@ -48,7 +48,7 @@ class Link(ABC):
 
     @abstractmethod
     def read(self, now: float) -> Vector:
-        """Contraction of each winch, as last heard of [m] (HydrostatError: the motors report an error, or nothing)."""
+        """Contraction of each winch at the last reading [m] (HydrostatError: motors report an error, or nothing)."""
 
     @abstractmethod
     def stop(self) -> None:

@@ -1,4 +1,4 @@
-"""`TensionLookup`, `tensions_along`, `WinchPull.of_robot`: what motors should feel, by simulation."""
+"""`TensionLookup`, `tensions_along`, `WinchPull.of_robot`: simulated motor loads."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""`Motors`: what the winches shall take in, and what they have."""
+"""`Motors`: commanded and measured contractions of the winches."""
 
 import math
 from collections.abc import Sequence
@@ -68,7 +68,7 @@ class Motors:
         self.fastest = speed
 
     def check(self, table: ProfileTable, *, speed: float = 1.0) -> None:
-        """Refuse a table that these motors cannot play at so many times its own speed.
+        """Refuse a table that these motors cannot play at a multiple of its own speed.
 
         The InputError names the line and the column of what is beyond the limits of its winch, or too fast.
         """
@@ -90,7 +90,7 @@ class Motors:
             )
 
     def ask(self, contractions: Vector) -> str:
-        """Command what winches can of this [m]; tell what they cannot (InputError: not finite; the command stays)."""
+        """Command contractions within limits [m]; return those beyond (InputError: not finite; the command stays)."""
         self.command = self._within(contractions)
         beyond = np.abs(contractions - self.command)
         if beyond.max(initial=0.0) <= NEAR:
@@ -106,7 +106,7 @@ class Motors:
         self.command = self._within(command)
 
     def drive(self, now: float, *, look: bool = True) -> bool:
-        """Send the command, read where the motors are by a clock [s] that never goes back; tell whether any moved.
+        """Send the command, read the motors by a monotonic clock [s]; return True if any moved.
 
         Reading all motors of a line takes milliseconds: who has news for them may look again a little later.
 

@@ -30,7 +30,7 @@ class Player:
 
     @property
     def loop(self) -> bool:
-        """Tell whether it begins again at the end until it is stopped."""
+        """Return True if it begins again at the end until it is stopped."""
         return self.rounds == inf
 
     def play(self, seconds: float) -> None:
@@ -50,7 +50,7 @@ class Player:
         self.speed = speed
 
     def advance(self, now: float, seconds: float) -> None:
-        """Go on with a clock [s], from when it is first told; after a timeline's seconds begin again, or stop."""
+        """Advance by a clock [s], from its first call; at the end of the timeline repeat, or stop."""
         if not self.playing:
             return
         passed = 0.0 if self._seen is None else max(0.0, now - self._seen)

@@ -60,7 +60,7 @@ class ServoBus(Bus):
         )
 
     def halt(self) -> None:
-        """Goals where each was heard a moment ago; none if another thread is on the line just now."""
+        """Last read positions as goals; none if another thread is using the line."""
         if not self._lock.acquire(blocking=False):
             return
         try:
@@ -72,7 +72,7 @@ class ServoBus(Bus):
             self._lock.release()
 
     def stop(self) -> None:
-        """Let them stand; where one cannot be heard, the goal that it has is the last it was told."""
+        """Stop them; one that does not answer keeps its last goal."""
         with suppress(Exception), self._lock:
             if not self._closed and self._known:
                 self._stand()

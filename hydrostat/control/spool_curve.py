@@ -1,4 +1,4 @@
-"""`SpoolCurve.measure`: how much cable a spool takes in by its angle, by a mark on the cable and a ruler beside it."""
+"""`SpoolCurve.measure`: cable taken in by a spool's angle, measured by a mark on the cable and a ruler next to it."""
 
 import time
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""`find_cable_zeros`: where the cables of each winch begin to pull, felt by the current of its motor at low current."""
+"""`find_cable_zeros`: where the cables of each winch go taut, detected by its motor's current at a low limit."""
 
 import time
 from collections.abc import Callable, Sequence

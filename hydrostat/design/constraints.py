@@ -186,7 +186,7 @@ class Constraints:
         return max(self.release, self.travel)
 
     def stand_outside(self, robot: Robot) -> bool:
-        """True if new winches of a robot stand in the world."""
+        """True if new winches of a robot are mounted outside the body."""
         if self.mount is None:
             return bool(robot.winches) and all(winch.mount is Mount.WORLD for winch in robot.winches)
         return self.mount is Mount.WORLD

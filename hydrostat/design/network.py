@@ -1,4 +1,4 @@
-"""`Network`: a designed robot with everything that tells how good it is and how it came about."""
+"""`Network`: a designed robot with its scores and the trace of the search."""
 
 # Of the thesis (docs/thesis.md): E24
 

@@ -1,4 +1,4 @@
-"""`DesignRequest`: what a design is asked, and how its method shall work."""
+"""`DesignRequest`: inputs of a design, and options of its method."""
 
 # Of the thesis (docs/thesis.md): F1, E28, M8 to M10, R39, R40, R43, E23, E24, E21
 

@@ -13,7 +13,7 @@ from hydrostat.robot import Body, Mount, Robot
 
 @dataclass(frozen=True, kw_only=True)
 class BuildTolerances:
-    """Standard deviations of what a builder cannot make just so, and the friction that is not known beforehand.
+    """Standard deviations of build tolerances, and the range of unknown friction.
 
     The default is hand-sewn plush: a needle goes in some 2 mm beside the mark, filling and felt differ from bag to
     bag, and fishing line in grommets rubs more or less. These are estimates by us, not measurements: measure yours.

@@ -91,7 +91,7 @@ class Kit:
 def manifest(
     robot: Robot, options: KitOptions, files: Mapping[str, bytes], *, checks: Sequence[Check], told: Mapping[str, Any]
 ) -> bytes:
-    """Return the text of manifest.json; `told` holds more facts, such as warnings and sizes."""
+    """Return the text of manifest.json; `told` holds further entries, such as warnings and sizes."""
     told = {
         "robot": {"name": robot.name, "sha256": robot_hash(robot)},
         **told,

@@ -17,7 +17,7 @@ _CHUNK = 200_000  # points in one call of the field
 _BLOCK = 8  # cells along the side of a block that is settled as a whole
 
 Settled = Callable[[Points, Vector], Bool[np.ndarray, " points"]]
-"""Tell whether the field has one sign all within a reach [m] of each point."""
+"""Return True if the field has one sign all within a reach [m] of each point."""
 
 
 def contour(

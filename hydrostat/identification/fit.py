@@ -99,13 +99,13 @@ class FittedModel:
 
     @property
     def information_gains(self) -> dict[str, float]:
-        """Share of each guess's uncertainty that the measurements took away: 0 where they tell nothing, 1 for all."""
+        """Share of each guess's uncertainty that the measurements took away: 0 for none, 1 for all."""
         kept = np.sqrt(np.diag(self.covariance))
         return {parameter.name: 1.0 - float(one) for parameter, one in zip(self.model.parameters, kept, strict=True)}
 
     @property
     def inseparable(self) -> list[tuple[str, str]]:
-        """Pairs whose values the measurements hardly tell apart: a change of one makes up for a change of the other."""
+        """Pairs of nearly indistinguishable parameters: a change of one makes up for a change of the other."""
         spread = np.sqrt(np.diag(self.covariance))
         correlation = self.covariance / np.outer(spread, spread)
         names = [parameter.name for parameter in self.model.parameters]

@@ -1,4 +1,4 @@
-"""`suggest_measurements`: poses and hung masses that tell most about the parameters of a robot."""
+"""`suggest_measurements`: most informative poses and hung masses for the parameters of a robot."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ CANDIDATES = 60
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SuggestedMeasurements:
-    """Measurements to make, those that tell most first.
+    """Suggested measurements, the most informative first.
 
     Attributes:
         commands: contraction of each winch [m], (rows, winches).
@@ -54,7 +54,7 @@ def suggest_measurements(
     tension: float = np.inf,
     seed: int = 0,
 ) -> SuggestedMeasurements:
-    """Choose poses and hung masses that tell most about the parameters (D-optimal, exact sensitivities as assumed).
+    """Choose poses and hung masses most informative about the parameters (D-optimal, exact sensitivities as assumed).
 
     Args:
         robot: robot as it is assumed to be built; all its markers are measured.

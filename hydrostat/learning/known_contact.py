@@ -42,7 +42,7 @@ def contact_in_model(facts: Mapping[str, Any]) -> KnownContact:
 
 
 def check_contact(known: KnownContact, robot: Robot) -> None:
-    """Check that a model knows the contact of a robot (InputError: it knows another, or only one of them has any)."""
+    """Check that a model was trained with a robot's contact (InputError: other contact, or one of them has none)."""
     mine = contact_facts(robot)
     if known.contact != mine.contact:
         have, lack = ("the model", "the robot") if known.contact else ("the robot", "the model")

@@ -150,7 +150,7 @@ class LearnedModel:
         return self._apply_inverse(given)
 
     def solve(self, targets: Targets, *, search: bool = True) -> LearnedPose:
-        """Contractions that bring markers to targets, as the networks know it.
+        """Contractions that bring markers to targets, by the inverse network.
 
         Args:
             targets: target positions [m]; markers that are not named may go anywhere.

@@ -79,7 +79,7 @@ class Perceptrons:
     def descend(
         self, start: Vector, goal: Vector, weights: Vector, box: tuple[Vector, Vector] | None = None
     ) -> tuple[Vector, float]:
-        """Levenberg-Marquardt from a point in a box to the best one hereabouts, and what is left there.
+        """Levenberg-Marquardt from a point in a box to a local optimum, and its residual.
 
         Minimizes the sum of squares of weights x (mean answer - goal) within the box. The first network leads there,
         all of them finish it.

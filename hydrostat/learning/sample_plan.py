@@ -234,7 +234,7 @@ class SamplePlan:
 
 
 def physics_hash(robot: Robot) -> str:
-    """SHA-256 of all that the poses of a robot depend on, but contact: not of its name, nor of poses it shall take."""
+    """SHA-256 of all that the poses of a robot depend on, but contact: not of its name, nor of its target poses."""
     bare = replace(robot, name="robot", poses={}, contact=None)
     made = b"" if robot.body.content else robot.body.mesh.nodes.tobytes() + robot.body.mesh.elements.tobytes()
     return hashlib.sha256(robot_hash(bare).encode() + made).hexdigest()

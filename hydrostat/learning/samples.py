@@ -214,7 +214,7 @@ class Samples(Tabular):
         return -np.array(self.facts["release"], dtype=float), np.array(self.facts["travel"], dtype=float)
 
     def first(self, count: int) -> "Samples":
-        """The first samples, by their number (InputError: there are not so many)."""
+        """A number of first samples (InputError: there are fewer)."""
         if not 1 <= count <= len(self):
             raise InputError(f"there are {len(self)} samples, not {count}")
         return self.only(np.arange(count))

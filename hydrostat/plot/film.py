@@ -112,7 +112,7 @@ class _Shot:
         self._simulation, self._last, self._count, self._progress = simulation, rest, count, progress
 
     def go(self, begin: Stop, end: Stop, count: int) -> None:
-        """Go from one stop to the next in so many frames, the last of them still."""
+        """Go from one stop to the next in a number of frames, the last of them still."""
         still = max(1, round(STILL * count))
         words = "back to rest" if not end.contractions.any() else f"to {end.name}"
         for number in range(1, count - still + 1):
@@ -137,7 +137,7 @@ class _Shot:
 
 
 def upright(robot: Robot, pose: Equilibrium) -> bool:
-    """Tell whether no element is inverted."""
+    """Return True if no element is inverted."""
     corners = pose.nodes[robot.body.mesh.elements]
     return bool((np.linalg.det(corners[:, 1:] - corners[:, :1]) > 0).all())
 

@@ -151,7 +151,7 @@ def folder_stamp(folder: Path) -> str:
 
 
 def changed_outside(folder: Path, stamp: str) -> bool:
-    """Tell whether someone else wrote into a folder since it had this `folder_stamp`."""
+    """Return True if someone else wrote into a folder since it had this `folder_stamp`."""
     return folder_stamp(folder) not in ("", stamp)
 
 
@@ -165,7 +165,7 @@ def _body_file(home: Path) -> str:
 
 
 def _is_other(file: Path, content: bytes) -> bool:
-    """Tell whether there is a file of other content; also one that cannot be read."""
+    """Return True if there is a file of other content; also one that cannot be read."""
     try:
         return file.exists() and file.read_bytes() != content
     except OSError:

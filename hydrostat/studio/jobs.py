@@ -151,7 +151,7 @@ class Jobs:
         self._bell.ring(Topic.JOB)
 
     def close(self) -> None:
-        """End all work at once; there will be no more."""
+        """End all work immediately; there will be no more."""
         with self._lock:
             self._closed = True
             if self.is_running and self.state is not None:

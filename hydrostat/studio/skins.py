@@ -62,7 +62,7 @@ class Skins:
         return next((skin for skin in skins if skin is not None and _is_of(skin, body, options)), None)
 
     def look(self, body: Body, options: KitOptions) -> None:
-        """Find what sewing the skin takes, unless it is known, asked for, or sewn flat; returns at once."""
+        """Find what sewing the skin takes, unless it is known, asked for, or sewn flat; returns immediately."""
         with self._lock:
             if not options.sews_skin(body) or self.of(body, options) is not None:
                 return
@@ -70,7 +70,7 @@ class Skins:
         self._begin()
 
     def close(self) -> None:
-        """End at once."""
+        """End immediately."""
         with self._lock:
             self._next = None
         self._jobs.close()

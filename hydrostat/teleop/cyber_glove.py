@@ -84,7 +84,7 @@ class EmulatedGlove:
         return len(self._told)
 
     def write(self, data: bytes, /) -> int:
-        """Hear what is asked."""
+        """Handle a request."""
         for _ in range(data.count(b"G")):
             shown = self.values + self._noise * self._random.normal(size=len(self.values))
             told = np.clip(np.rint(1 + 254 * shown), 1, 255).astype(np.uint8)

@@ -1,4 +1,4 @@
-"""`drive`: motors that follow what a person asks for, and hold when nobody is heard."""
+"""`drive`: motors that follow a person's input, and hold when it is lost."""
 
 import sys
 import threading
@@ -38,7 +38,7 @@ class DriveLoop:
         self._numbers = {name: index for index, name in enumerate(way.channels.names)}
 
     def step(self, now: float) -> bool:
-        """Hear, and tell the motors, by a clock [s]; tell whether the person goes on.
+        """Read the input and command the motors, by a clock [s]; return True if the person goes on.
 
         What is heard sooner than a tick after motors were read is told without reading them again, which takes as long
         as their answers do on the line.

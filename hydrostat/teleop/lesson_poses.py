@@ -100,7 +100,7 @@ class LessonPoses:
         return len(set(self.made.poses))
 
     def next_pose(self) -> Vector:
-        """Contractions of the pose that tells most [m]; the first is the rest."""
+        """Contractions of the most informative pose [m]; the first is the rest."""
         which = 0 if not self.made.poses and self._left[0] == 0 else self.made.next_pose(self._answers[self._left])
         return self._pool[self._left.pop(which)]
 

@@ -1,4 +1,4 @@
-"""`MappedHand`: a robot driven by a hand, as a glove or a camera tells it."""
+"""`MappedHand`: a robot driven by a hand that a glove or a camera measures."""
 
 import threading
 import time

@@ -1,4 +1,4 @@
-"""`Mimicry`: poses of a robot and what a glove told while a person mimicked them, or while the robot wore it."""
+"""`Mimicry`: poses of a robot with glove readings while a person mimicked them, or while the robot wore it."""
 
 import csv
 import io
@@ -16,7 +16,7 @@ from hydrostat.version import install_command
 
 
 class Mimicry:
-    """Pairs of what sensors told and what a robot did: its contractions, or the places of its fingertips.
+    """Pairs of sensor readings and robot outputs: its contractions, or positions of its fingertips.
 
     Both ways to such pairs end here: the robot takes a pose and a person mimics it, or the robot wears the glove.
     A pose may be told more than once; its rows are left out together when errors are asked for.

@@ -23,7 +23,7 @@ class HandReading:
 
 
 class HandSource(ABC):
-    """Contract of what tells where a hand is: a glove, a camera, a gamepad. A new kind is one class.
+    """Contract of a hand input: a glove, a camera, a gamepad. A new kind is one class.
 
     Attributes:
         names: sensor names.
@@ -33,7 +33,7 @@ class HandSource(ABC):
 
     @abstractmethod
     def read(self) -> HandReading:
-        """The newest values (HydrostatError: nothing is heard, or what is heard is wrong; nothing is made up)."""
+        """The newest values (HydrostatError: no reading, or a wrong one; values are never made up)."""
 
     @abstractmethod
     def close(self) -> None:
@@ -101,7 +101,7 @@ class DriveSource(ABC):
 
     @abstractmethod
     def read(self) -> DriveWish:
-        """The newest wish, at once (HydrostatError: the source is gone, and with it who drives)."""
+        """The newest request, immediately (HydrostatError: input lost)."""
 
     @abstractmethod
     def close(self) -> None:

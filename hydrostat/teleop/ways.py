@@ -42,10 +42,10 @@ class CommandMapper(ABC):
 
     @abstractmethod
     def ask(self, values: Vector) -> None:
-        """Let the channels have values [m]; return at once (HydrostatError: what solves has failed)."""
+        """Let the channels have values [m]; return immediately (HydrostatError: what solves has failed)."""
 
     def observe(self, places: Vector) -> None:
-        """Know where the motors are [m], so that a guard knows what they should feel there."""
+        """Update the motors' contractions [m], for which a guard expects tensions."""
         del places
 
     @abstractmethod
@@ -54,7 +54,7 @@ class CommandMapper(ABC):
 
     @abstractmethod
     def close(self) -> None:
-        """End what is done beside it."""
+        """End background work."""
 
 
 class WinchMapper(CommandMapper):

@@ -1,4 +1,4 @@
-"""Checks of what a solver may ask of an `Energy` beside its derivatives: laws, steps, supports, loads, history."""
+"""Checks of an `Energy` for the solver besides its derivatives: laws, steps, supports, loads, history."""
 
 from collections.abc import Iterable
 

@@ -165,13 +165,13 @@ class GoalEnv(gymnasium.Env, ABC):
 
 
 def prepare_robot(robot: Robot | str, contact: bool = False) -> Robot:
-    """A robot, itself or from its folder; one that feels itself if asked for and robot.toml says nothing of it."""
+    """A robot, itself or from its folder; with self-contact if requested and not set in robot.toml."""
     made = robot if isinstance(robot, Robot) else load_robot(robot)
     return replace(made, contact=Contact()) if contact and made.contact is None else made
 
 
 def finite_numbers(given: object, count: int, what: str, which: str) -> Vector:
-    """So many finite numbers (InputError: anything else)."""
+    """Vector of finite numbers of a given length (InputError: anything else)."""
     try:
         found = np.asarray(given, dtype=float).ravel()
     except (TypeError, ValueError):

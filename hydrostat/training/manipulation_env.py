@@ -1,4 +1,4 @@
-"""`ManipulationEnv`: a robot moves a free thing by keyframes (gymnasium, goal-based): what Push and Twist share."""
+"""`ManipulationEnv`: a robot moves a free object by keyframes (gymnasium, goal-based): what Push and Twist share."""
 
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence

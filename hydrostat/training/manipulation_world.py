@@ -1,4 +1,4 @@
-"""`ManipulationWorld`: a robot and a free thing that it pushes and turns, in time."""
+"""`ManipulationWorld`: a robot and a free object that it pushes and turns, in time."""
 
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -59,7 +59,7 @@ class ObjectState(NamedTuple):
 
 
 class ManipulationWorld:
-    """A robot and a free thing in dynamics, from keyframe to keyframe.
+    """A robot and a free object in dynamics, from keyframe to keyframe.
 
     Attributes:
         robot: robot that moves the object, which is among its obstacles.

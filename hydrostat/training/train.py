@@ -97,7 +97,7 @@ def _no_point(point: CurvePoint) -> None:
 
 @dataclass(frozen=True, kw_only=True)
 class Listener:
-    """Who is told how training goes.
+    """Callbacks for the progress of training.
 
     Attributes:
         point: called after each evaluation.

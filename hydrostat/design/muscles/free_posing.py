@@ -65,7 +65,7 @@ class FreePosing:
         self._able = self._largest_move()
 
     def rest(self) -> None:
-        """Let go of everything at once: no muscle pulls."""
+        """Let go of everything immediately: no muscle pulls."""
         self._radius = _RULES.max_step
         self._settle(self._resting, np.zeros(len(self.fibres)))
 

@@ -119,7 +119,7 @@ class RouteSearch:
         self.grown = 0
 
     def run(self) -> Network:
-        """Search, judge, and tell how it came about."""
+        """Search, evaluate the finalists, and return the network with its trace."""
         began = _measure_cpu_time()
         complete = True
         try:

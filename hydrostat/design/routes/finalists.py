@@ -125,7 +125,7 @@ class Finalists:
         return pushed_back(replace(layout, constraints=limits), self.region, 0.03 * self.robot.body.mesh.size)
 
     def first_to_fit(self, passed: Iterable[tuple[float, Layout]], most: int) -> list[Alternative]:
-        """The best of the networks on the way, with their costs, that a kit can be made of; so many are looked at."""
+        """The best networks of the search, with their costs, that a kit can be made of."""
         for _, layout in sorted(passed, key=lambda pair: pair[0])[:most]:
             judged = self.judge(layout)
             if judged is not None and kit_fits(judged):

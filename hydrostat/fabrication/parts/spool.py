@@ -21,12 +21,12 @@ def spool_turns(length: float, radius: float, spare: float) -> float:
 
 
 def width_for(turns: float, cable: float) -> float:
-    """Width of a groove [mm] that takes so many turns of a cable [mm] in one layer, rounded up."""
+    """Width of a groove [mm] for a number of turns of a cable [mm] in one layer, rounded up."""
     return _STEP * math.ceil((turns * LAY * cable + cable) / _STEP - 1e-9)
 
 
 def capacity(width: float, radius: float, cable: float, layers: int) -> float:
-    """Length of cable [mm] in so many full layers of a groove of this width [mm].
+    """Length of cable [mm] in a number of full layers of a groove of this width [mm].
 
     A layer has n = (width - cable) / (LAY cable) turns; the first lies at the radius [mm], to the middle of the cable,
     the next each a cable further out: 2 pi n (layers radius + cable layers (layers - 1) / 2).

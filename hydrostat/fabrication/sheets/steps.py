@@ -14,7 +14,7 @@ from hydrostat.units import plural
 
 @dataclass(frozen=True)
 class AssemblyStep:
-    """One thing to do."""
+    """Assembly step."""
 
     title: str  # title of the step
     minutes: float  # about how long it keeps a person busy

@@ -11,7 +11,7 @@ LEAST = 1e-3  # mean thickness of what two pieces share, above which they are in
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Placed:
-    """One thing in an assembly."""
+    """Part of an assembly."""
 
     name: str  # name of the piece, unique in the assembly, as in `Printed.name` if it is printed
     title: str  # title for a person
@@ -22,7 +22,7 @@ class Placed:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PartAssembly:
-    """Things put together, in millimeters."""
+    """Parts put together, in millimeters."""
 
     name: str  # name of the assembly
     pieces: tuple[Placed, ...]  # in the order in which they are put together

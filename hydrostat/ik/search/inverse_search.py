@@ -30,7 +30,7 @@ class SearchBudget:
 
     @classmethod
     def of(cls, seconds: float | None, tell: SearchProgress | None) -> Self:
-        """Patience for so many seconds from now, without end if that is None (InputError: not above 0)."""
+        """Budget of a number of seconds from now; None: no limit (InputError: not above 0)."""
         if tell is not None and not callable(tell):
             raise InputError(f"progress must be a function that is called with a step and an error, not {tell!r:.60}")
         if seconds is None:

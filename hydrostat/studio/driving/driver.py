@@ -57,11 +57,11 @@ class Driver(Stage):
 
     @property
     def strongest(self) -> float:
-        """The most that a cable should bear [N]."""
+        """Maximum cable tension [N]."""
         return self._machine.strongest
 
     def commands(self) -> dict[str, float]:
-        """Contractions that the winches are told [m], by name."""
+        """Commanded contractions [m], by winch."""
         with self._lock:
             self._machine.meet()
             return dict(zip(self.motors.names, self.motors.command.tolist(), strict=True))
@@ -81,7 +81,7 @@ class Driver(Stage):
         return most
 
     def turn(self, name: str, contraction: float) -> None:
-        """Let a winch take in so much [m], within limits; the selected key follows (InputError: no such winch)."""
+        """Set the contraction of a winch [m], within limits; the selected key follows (InputError: no such winch)."""
         if not isfinite(contraction):
             raise InputError(f"{name}: the contraction must be a number")
         with self._lock:
@@ -176,7 +176,7 @@ class Driver(Stage):
         self._tell()
 
     def set_speed(self, speed: float) -> None:
-        """Play at so many times the timeline's speed (InputError: it is out of range)."""
+        """Play at a multiple of the timeline's speed (InputError: it is out of range)."""
         self.player.set_speed(speed)
         self._tell()
 

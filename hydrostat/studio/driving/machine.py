@@ -101,7 +101,7 @@ class Machine:
 
     @property
     def strongest(self) -> float:
-        """The most that a cable should bear [N]."""
+        """Maximum cable tension [N]."""
         return self._document.work.wishes.constraints.tension
 
     def meet(self, robot: Robot | None = None) -> None:
@@ -127,7 +127,7 @@ class Machine:
             self._ask(self.player.time)
 
     def update_keys(self) -> None:
-        """The motors know the keys as they are now."""
+        """Update the motors to the present keys."""
         self._timeline = self._keyframes.timeline
 
     def run(self, now: float) -> bool:
@@ -152,7 +152,7 @@ class Machine:
         return new or playing != self.player.playing or time != self.player.time
 
     def due(self, now: float) -> bool:
-        """Tell whether it is time for the next `run`."""
+        """Return True if it is time for the next `run`."""
         # motors are told and read once in this time [s], however often there is a step: about 60 times a second
         tick = 1 / 70
         return not 0 <= now - self._ran < tick
@@ -168,7 +168,7 @@ class Machine:
 
     @property
     def busy(self) -> bool:
-        """Tell whether there is more to do."""
+        """Return True if there is more to do."""
         return self.player.playing or self.motors.is_moving
 
     def _motors_of(self, robot: Robot, before: Motors) -> Motors:

@@ -337,7 +337,7 @@ class Editor(Stage):
         self._ring()
 
     def _many(self, key: str) -> bool:
-        """Tell whether a part is one of several that are selected."""
+        """Return True if a part is one of several that are selected."""
         return key in self.selection and len(self.selection) > 1
 
     def _drag(self, robot: Robot, hold: Hold, at: Point) -> Robot:

@@ -111,12 +111,12 @@ class Mirror:
         return tuple(0.0 if axis == self.axis else value for axis, value in enumerate(at))
 
     def holds(self, robot: Robot, key: str) -> bool:
-        """Tell whether a part is on the plane."""
+        """Return True if a part is on the plane."""
         at = place_of(robot, key)
         return at is not None and abs(at[self.axis]) <= SAME * robot.body.mesh.size
 
     def near(self, robot: Robot, at: Point) -> bool:
-        """Tell whether a new part there is meant to be on the plane."""
+        """Return True if a new part there is meant to be on the plane."""
         on_plane = 0.01  # what is placed so near to the plane, as a share of the body, is put on it
         return abs(at[self.axis]) <= on_plane * robot.body.mesh.size
 

@@ -91,7 +91,7 @@ class Guard:
         return ""
 
     def _is_ours(self, host: str) -> bool:
-        """Tell whether a host, such as "localhost:8000", is this studio."""
+        """Return True if a host, such as "localhost:8000", is this studio."""
         name, port = host, "80"
         if not host.endswith("]") and ":" in host:
             name, _, port = host.rpartition(":")
@@ -160,7 +160,7 @@ def _is_count(text: str) -> bool:
 
 
 def _is_number(name: str) -> bool:
-    """Tell whether a name of a machine is an address in numbers."""
+    """Return True if a name of a machine is an address in numbers."""
     try:
         ip_address(name[1:-1] if name.startswith("[") and name.endswith("]") else name)
     except ValueError:

@@ -81,7 +81,7 @@ class Mover(ABC):
 
     @abstractmethod
     def rest(self) -> RobotShape:
-        """Back to rest at once: nothing pulls."""
+        """Back to rest immediately: nothing pulls."""
 
     @abstractmethod
     def update(self, held: Mapping[str, HeldPoint]) -> tuple[RobotShape, bool]:
@@ -114,7 +114,7 @@ class MuscleMover(Mover):
         return self._posing.nodes, self._posing.tensions
 
     def rest(self) -> RobotShape:
-        """Back to rest at once."""
+        """Back to rest immediately."""
         self._posing.rest()
         return self._shape({}, False)
 
@@ -209,7 +209,7 @@ class CableMover(Mover):
         return CableMover(self._simulation, tension=tension, start=self._pose, predictor=self.predictor)
 
     def rest(self) -> RobotShape:
-        """Back to rest at once."""
+        """Back to rest immediately."""
         self._begin(self._simulation.rest)
         return self._shape({}, ())
 
@@ -328,7 +328,7 @@ class Movers:
         return self._muscles
 
     def ready(self, robot: Robot, mode: Mode) -> bool:
-        """Tell whether there is a mover that fits, so that none has to be made."""
+        """Return True if there is a mover that fits, so that none has to be made."""
         found = self._muscles if mode is Mode.MUSCLES else self._cables
         return found is not None and same_physics(found.robot, robot, mode)
 
@@ -363,12 +363,12 @@ class Movers:
 
 
 def same_body(first: Robot, second: Robot) -> bool:
-    """Tell whether two robots have the same nodes."""
+    """Return True if two robots have the same nodes."""
     return first.body.mesh is second.body.mesh
 
 
 def same_physics(first: Robot, second: Robot, mode: Mode) -> bool:
-    """Tell whether what moves one moves the other in the same way; markers and poses do not matter."""
+    """Return True if what moves one moves the other in the same way; markers and poses do not matter."""
     if first is second:
         return True
     if not (same_body(first, second) and first.body == second.body):

@@ -78,7 +78,7 @@ class _ReachSearch:
     cloud: Cloud | None = None
 
     def fits(self, robot: Robot, tension: float) -> bool:
-        """Tell whether it would find the same with this robot and this limit."""
+        """Return True if it would find the same with this robot and this limit."""
         same = tension == self.tension and _place(robot, self.marker) == _place(self.robot, self.marker)
         return same and same_physics(self.robot, robot, Mode.CABLES)
 

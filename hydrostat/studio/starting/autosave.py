@@ -45,7 +45,7 @@ class HeldFolder:
 
 
 def is_held(folder: Path) -> bool:
-    """Tell whether a process that lives holds a folder."""
+    """Return True if a process that lives holds a folder."""
     try:
         with (folder / LOCK).open("r+b") as file:
             lock_file(file)
@@ -99,7 +99,7 @@ class Autosave:
         self._lock = Lock()
 
     def step(self, now: float) -> None:
-        """Keep the work if it is time to, by a clock [s] that never goes back. Returns at once: a thread writes."""
+        """Keep the work if it is time to, by a clock [s] that never goes back. Returns immediately: a thread writes."""
         state = self._state()
         if state != self._seen:
             if self._seen == self._kept and not self.problem:

@@ -108,7 +108,7 @@ def suggestions(text: str) -> list[str]:
 
 
 def is_robot(folder: Path) -> bool:
-    """Tell whether a folder holds a robot."""
+    """Return True if a folder holds a robot."""
     try:
         return (folder / "robot.toml").is_file()
     except (OSError, ValueError):

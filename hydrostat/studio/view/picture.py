@@ -74,7 +74,7 @@ class Picture:
         self._things = tuple(things)
 
     def fits(self, robot: Robot, things: Sequence[SceneItem]) -> bool:
-        """Tell whether these need no new scene: only places in the world and loads may differ."""
+        """Return True if these need no new scene: only places in the world and loads may differ."""
         return robot.body.mesh is self.robot.body.mesh and _signature(robot, things) == self.signature
 
     def scene(self) -> bytes:

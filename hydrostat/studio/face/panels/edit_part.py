@@ -208,7 +208,7 @@ def _number(page: WindowPage, key: str, field: str, label: str, unit: str, scale
 
 
 def _mount(page: WindowPage, key: str) -> Show:
-    """Tell whether a winch sits in the body."""
+    """Return True if a winch sits in the body."""
     switch = ui.switch("Fixed outside the body").props("dense").style("font-size: 13px").mark("edit-mount")
     switch.tooltip("The winch stays in place while the body moves")
     shown = [False]
