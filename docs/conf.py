@@ -12,7 +12,7 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 sys.path[:0] = [str(ROOT), str(HERE)]
 
-from site_reference import GENERATED, on_site, write_reference  # noqa: E402
+from site_reference import GENERATED, on_site, write_reference, write_toy  # noqa: E402
 
 from hydrostat import __version__  # noqa: E402
 
@@ -89,6 +89,7 @@ def read_source(_app: Any, page: str, source: list[str]) -> None:
 
 
 def setup(app: Any) -> None:
-    """Write the reference pages before Sphinx reads its sources."""
+    """Write the reference pages before Sphinx reads its sources, and the toy of the first page."""
     app.connect("builder-inited", lambda _app: write_reference(GENERATED))
+    app.connect("builder-inited", lambda site: write_toy(Path(site.outdir)))
     app.connect("source-read", read_source)

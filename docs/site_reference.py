@@ -3,6 +3,8 @@
 import ast
 import os
 import re
+import subprocess
+import sys
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -122,3 +124,10 @@ def write_reference(folder: Path) -> None:
         path = folder / name
         if not path.is_file() or path.read_text(encoding="utf-8") != text:
             path.write_text(text, encoding="utf-8")
+
+
+def write_toy(folder: Path) -> None:
+    """Write the starfish of the first page: `hydrostat share gallery:starfish`, 8 s of CPU time."""
+    folder.mkdir(parents=True, exist_ok=True)
+    command = [sys.executable, "-m", "hydrostat", "share", "gallery:starfish", "--out", str(folder / "starfish.html")]
+    subprocess.run(command, check=True, cwd=ROOT)

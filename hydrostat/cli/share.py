@@ -39,6 +39,7 @@ def share(
 
     Example: hydrostat share gallery:starfish --out starfish.html
     """
+    from hydrostat.control import CALIBRATION, Calibration
     from hydrostat.files import replace_file
     from hydrostat.toy import learn_shape, sample_shapes, toy_page
     from hydrostat.units import TIME
@@ -57,6 +58,7 @@ def share(
     if not loaded.cables:
         raise InputError(f"{robot}: no cables. Add winches and cables, or run `hydrostat design`.")
     flat = loaded.body.mesh.dim == 2
+    motors = Calibration.read(folder_of(robot), loaded) if (folder_of(robot) / CALIBRATION).exists() else None
     count = samples or (400 if flat else 2000)
     shares = (0.6, 0.35)  # of the time, for samples and for training
     with progress_bar() as progress:
@@ -71,7 +73,7 @@ def share(
             seed=seed,
             progress=progress,
         )
-    page = toy_page(loaded, shape, poses=poses, moves=_moves(folder_of(robot), loaded))
+    page = toy_page(loaded, shape, poses=poses, moves=_moves(folder_of(robot), loaded), motors=motors)
     replace_file(out, page.encode())
     _tell(shape, taken.lost, float(taken.crosses.mean()), count)
     print(f"Wrote {out} ({len(page) / 1e6:.2f} MB). Open it in any browser, or send it")

@@ -13,7 +13,15 @@ if TYPE_CHECKING:
     from hydrostat.control.dynamixel_bus import GOAL, TICK, DynamixelBus
     from hydrostat.control.emulated_feetech import EmulatedLine
     from hydrostat.control.emulated_servos import EmulatedChain, EmulatedServo, LiveChain
-    from hydrostat.control.firmware_build import board_kind, build_images, check_ports, flash, flash_command, on_boards
+    from hydrostat.control.firmware_build import (
+        board_kind,
+        build_images,
+        check_ports,
+        flash,
+        flash_command,
+        on_boards,
+        robot_word,
+    )
     from hydrostat.control.guard import TensionGuard, not_judged
     from hydrostat.control.link import Link, SimulatedLink
     from hydrostat.control.marker_feedback import LostAction, MarkerFeedback, MarkerSight
@@ -75,6 +83,7 @@ __all__ = [
     "on_boards",
     "open_bus",
     "open_line",
+    "robot_word",
     "steady",
     "tensions_along",
     "winch_tensions",

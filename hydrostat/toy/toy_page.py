@@ -13,15 +13,17 @@ from typing import Any
 import numpy as np
 
 from hydrostat.arrays import Vector
+from hydrostat.control import Calibration
 from hydrostat.drawing import Camera, Color
 from hydrostat.errors import InputError
 from hydrostat.fabrication import winch_marks_of
 from hydrostat.robot import Robot, robot_hash
 from hydrostat.toy.learned_shape import LearnedShape
+from hydrostat.toy.motor_facts import motor_facts
 from hydrostat.toy.toy_picture import ToyPicture
 from hydrostat.version import __version__
 
-_MODULES = ("model", "sight", "drawing", "surface", "player", "page")
+_MODULES = ("model", "sight", "drawing", "surface", "player", "board", "motors", "page")
 """JavaScript of the page, each before those that import it."""
 
 
@@ -44,6 +46,7 @@ def toy_page(
     *,
     poses: Sequence[ToyPose] = (),
     moves: Sequence[tuple[float, Vector]] = (),
+    motors: Calibration | None = None,
 ) -> str:
     """Return the page as text. Same robot, shape and poses, same bytes.
 
@@ -54,6 +57,7 @@ def toy_page(
         shape: learned shape of its body.
         poses: poses to play.
         moves: keyframes to play: times [s] and contractions of all winches [m].
+        motors: motors on one board with our firmware, which the page offers to drive.
 
     Raises:
         InputError: a body with more points on its surface than a browser without extensions draws.
@@ -81,6 +85,7 @@ def toy_page(
         "markers": [marker.name for marker in robot.markers],
         "poses": [{"name": pose.name, "contractions": list(pose.contractions)} for pose in poses],
         "moves": [[float(time), np.asarray(taken).tolist()] for time, taken in moves],
+        "motors": motor_facts(robot, motors),
         "groups": picture.facts(),
         "sizes": shape.network.sizes.tolist(),
         "numbers": _encode(shape.network.numbers[0], "<f4"),

@@ -108,11 +108,11 @@ function times(matrix, row, rows, columns, bias = null) {
  * @param {number[]} start scaled contractions
  * @param {number} point number of the point
  * @param {number[]} target place [m]
- * @param {{size: number, rounds?: number, still?: number}} options size of the body [m]; most steps; weight of winches
- *   that stay where they are
+ * @param {{size: number, rounds?: number, still?: number, kept?: {point: number, target: number[]}[]}} options size of
+ *   the body [m]; most steps; weight of winches that stay where they are; points that better stay at a place [m]
  */
-export function reach(model, start, point, target, { size, rounds = 8, still = 1e-3 }) {
-  const wish = { start, point, target, size, still };
+export function reach(model, start, point, target, { size, rounds = 8, still = 1e-3, kept = [] }) {
+  const wish = { start, point, target, size, still, kept };
   const found = descend(model, start, wish, rounds);
   const near = 1e-5, taut = start.map((value, i) => Math.max(value, model.rest[i]));
   if (found.cost < near || taut.every((value, i) => value === start[i])) return found.inputs;
@@ -142,21 +142,25 @@ function descend(model, from, wish, rounds) {
   return { inputs, cost: now.cost };
 }
 
+const KEPT = 0.2; // weight of points that better stay, beside the one that is dragged
+
 /** Half the squares of what is missed, in sizes of the body, with slope and matrix of normal equations. */
-function miss(model, inputs, { start, point, target, size, still }) {
+function miss(model, inputs, { start, point, target, size, still, kept }) {
   const count = inputs.length;
   const { values, slopes } = model.coordinates(inputs, true);
   const matrix = Array.from({ length: count }, (_, i) => Array.from({ length: count }, (_, j) => (i === j ? still * still : 0)));
   const slope = inputs.map((value, i) => still * still * (value - start[i]));
   let cost = 0.5 * still * still * inputs.reduce((sum, value, i) => sum + (value - start[i]) ** 2, 0);
-  for (let axis = 0; axis < model.dim; axis++) {
-    const index = point * model.dim + axis;
-    const far = (model.number(index, values, true) - target[axis]) / size;
-    const rises = slopes.map((row) => model.number(index, row, false) / size);
-    cost += 0.5 * far * far;
-    for (let i = 0; i < count; i++) {
-      slope[i] += far * rises[i];
-      for (let j = 0; j < count; j++) matrix[i][j] += rises[i] * rises[j];
+  for (const wish of [{ point, target, weight: 1 }, ...kept.map((each) => ({ ...each, weight: KEPT }))]) {
+    for (let axis = 0; axis < model.dim; axis++) {
+      const index = wish.point * model.dim + axis, weight = wish.weight / size;
+      const far = weight * (model.number(index, values, true) - wish.target[axis]);
+      const rises = slopes.map((row) => weight * model.number(index, row, false));
+      cost += 0.5 * far * far;
+      for (let i = 0; i < count; i++) {
+        slope[i] += far * rises[i];
+        for (let j = 0; j < count; j++) matrix[i][j] += rises[i] * rises[j];
+      }
     }
   }
   return { cost, slope, matrix };

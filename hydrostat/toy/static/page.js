@@ -5,6 +5,7 @@ import { Sight } from "./sight.js";
 import { draw } from "./drawing.js";
 import { Surface } from "./surface.js";
 import { Player } from "./player.js";
+import { offerMotors } from "./motors.js";
 
 const data = JSON.parse(document.getElementById("toy").textContent);
 const model = new Model(data);
@@ -18,6 +19,7 @@ const surface = body ? new Surface(below, Uint32Array.from(decode(data.faces, Ui
 const paper = above.getContext("2d");
 const held = new Map(); // pointers that hold a point or turn the view
 const state = { held: -1, goal: null, ink: "#000" };
+let kept = []; // markers that better stay while another point is dragged
 let asked = false;
 
 /** Ask for one picture at the next frame of the screen. */
@@ -32,7 +34,7 @@ function step(now) {
     move(model.scaled(player.at(now / 1000)));
     if (!player.plays) mark("");
   } else if (state.goal) {
-    inputs = reach(model, inputs, state.held, state.goal, { size: data.size });
+    inputs = reach(model, inputs, state.held, state.goal, { size: data.size, kept });
     settle();
   }
   state.ink = getComputedStyle(above).color;
@@ -42,7 +44,7 @@ function step(now) {
 }
 
 function move(to) {
-  inputs = Array.from(to);
+  inputs = Array.from(to, (value) => Math.min(1, Math.max(-1, value)));
   settle();
 }
 
@@ -90,6 +92,17 @@ function find(x, y, reachOf) {
   return best;
 }
 
+function placeOf(point) {
+  return Array.from(points.subarray(data.dim * point, data.dim * (point + 1)));
+}
+
+/** Markers with their places now, but those near a point, which go with it. */
+function others(point) {
+  const [, first, count] = data.groups.find(([kind]) => kind === "marker"), here = placeOf(point);
+  const all = Array.from({ length: count }, (_, i) => ({ point: first + i, target: placeOf(first + i) }));
+  return all.filter(({ target }) => Math.hypot(...target.map((value, axis) => value - here[axis])) > 0.15 * data.size);
+}
+
 function press(event) {
   const box = above.getBoundingClientRect(), [x, y] = [event.clientX - box.left, event.clientY - box.top];
   const near = event.pointerType === "touch" ? 44 : 26;
@@ -100,7 +113,8 @@ function press(event) {
   mark("");
   if (point >= 0) {
     state.held = point;
-    state.goal = Array.from(points.subarray(data.dim * point, data.dim * (point + 1)));
+    state.goal = placeOf(point);
+    kept = others(point);
   }
   document.body.classList.add("touched");
   redraw();
@@ -187,6 +201,16 @@ const all = data.poses.map((pose) => pose.contractions);
 if (data.moves.length > 1) addButton("Moves", (from, now) => player.follow(from, data.moves, now));
 if (all.length > 1) addButton("All poses", (from, now) => player.visit(from, [...all, still], now));
 addButton("Rest", (from, now) => player.visit(from, [still], now));
+
+offerMotors(data.motors, {
+  goal: () => model.contractions(inputs),
+  meet: (places) => {
+    player.stop();
+    state.goal = null;
+    move(model.scaled(places).map((value) => Math.min(1, Math.max(-1, value))));
+    redraw();
+  },
+});
 
 above.addEventListener("pointerdown", press);
 above.addEventListener("pointermove", drag);

@@ -23,6 +23,10 @@ export class Sight {
     });
     this.size = size;
     this.turn();
+    this.spans = [0, 1].map((axis) => {
+      const seen = Array.from({ length: points.length / dim }, (_, i) => this.see(points, dim * i)[axis]);
+      return Math.max(...seen.map((value) => 2 * Math.abs(value - 0.5)));
+    });
   }
 
   /** Axes to the right, up and towards the eye. */
@@ -41,8 +45,7 @@ export class Sight {
   fit(width, height) {
     this.width = width;
     this.height = height;
-    const wide = this.dim === 2 ? this.middle[0].span : this.size, tall = this.dim === 2 ? this.middle[1].span : this.size;
-    this.scale = this.zoom * Math.min(width / (1.35 * wide), height / (1.3 * tall));
+    this.scale = this.zoom * Math.min(width / (1.3 * this.spans[0]), height / (1.25 * this.spans[1]));
   }
 
   /** Pixels and depth of a point, which begins at a place of an array. */

@@ -1,0 +1,209 @@
+"""The page of a toy on Web Serial: a browser whose port is a stand-in for an emulated board. Oracle: that board."""
+
+import shutil
+import time
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import replace
+from math import pi
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+from emulated_board import BoardMotor, EmulatedBoard
+
+from hydrostat.control import Calibration, robot_word
+from hydrostat.learning import Perceptrons
+from hydrostat.robot import Robot, gallery_folder, load_robot
+from hydrostat.toy import LearnedShape, toy_page
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+STAND_IN = """
+const port = {
+  async open() {
+    this.readable = new ReadableStream({ start: (to) => { this.to = to; } });
+    this.writable = new WritableStream({
+      write: async (bytes) => {
+        const told = await window.boardWrite(Array.from(bytes));
+        if (told === null) throw new Error("gone");
+        if (told.length) this.to.enqueue(Uint8Array.from(told));
+      },
+    });
+  },
+  async close() {},
+};
+Object.defineProperty(navigator, "serial", { value: { requestPort: async () => port } });
+"""
+
+COUNTS = 1000.0
+
+
+@pytest.fixture(scope="module")
+def robot() -> Robot:
+    return load_robot(gallery_folder("starfish"))
+
+
+@pytest.fixture(scope="module")
+def motors(robot: Robot) -> Calibration:
+    usual = Calibration.usual(robot)
+    return Calibration(tuple(replace(each, counts=COUNTS, zero=0.0) for each in usual.motors))
+
+
+@pytest.fixture(scope="module")
+def text(robot: Robot, motors: Calibration) -> str:
+    """A page with motors; its shape, which these tests do not look at, stays at rest."""
+    winches = robot.winches
+    shape = LearnedShape(
+        low=np.array([-each.release for each in winches]),
+        high=np.array([each.travel for each in winches]),
+        network=Perceptrons.of_layers([(np.zeros((1, 3)), np.zeros(1))]),
+        mean=robot.body.mesh.nodes,
+        basis=np.zeros((1, *robot.body.mesh.nodes.shape)),
+        samples=1,
+        held_out=1,
+        error=0.0,
+        worst=0.0,
+        moved=0.0,
+        stopped=False,
+    )
+    return toy_page(robot, shape, motors=motors)
+
+
+@pytest.fixture
+def board(robot: Robot, motors: Calibration) -> EmulatedBoard:
+    most = 0.06 / 0.006
+    made = EmulatedBoard([BoardMotor(counts=COUNTS, most=most) for _ in robot.winches], robot_word(robot, motors))
+    made.marked = True
+    return made
+
+
+@pytest.fixture(scope="module")
+def browser() -> "Iterator[Browser]":
+    chromium = shutil.which("chromium") or shutil.which("google-chrome")
+    if not chromium:
+        pytest.skip("there is no Chromium; install Debian's package chromium")
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        opened = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
+        yield opened
+        opened.close()
+
+
+@pytest.fixture
+def connect(browser: "Browser", text: str, tmp_path: Path) -> "Iterator[Callable[[EmulatedBoard], Page]]":
+    """Open the page with a board behind its port, whose time is that of the clock, and press Connect."""
+    contexts = []
+
+    def open_page(board: EmulatedBoard) -> "Page":
+        clock = [time.monotonic()]
+
+        def write(data: list[int]) -> list[int] | None:
+            now = time.monotonic()
+            board.wait(min(now - clock[0], 0.15))  # a busy machine is not the board's silence
+            clock[0] = now
+            with suppress(OSError):
+                board.write(bytes(data))
+                return list(board.read(10_000))
+            return None
+
+        (tmp_path / "toy.html").write_text(text, encoding="utf-8")
+        context = browser.new_context()
+        contexts.append(context)
+        page = context.new_page()
+        page.expose_function("boardWrite", write)
+        page.add_init_script(STAND_IN)
+        page.goto((tmp_path / "toy.html").as_uri())
+        page.get_by_role("button", name="Connect").click()
+        return page
+
+    yield open_page
+    for context in contexts:
+        context.close()
+
+
+def _wait(page: "Page", truth: Callable[[], bool]) -> None:
+    for _ in range(200):
+        if truth():
+            return
+        page.wait_for_timeout(50)
+    pytest.fail("never true; the page says: " + page.locator("#motors p").inner_text())
+
+
+def _arm(page: "Page", board: EmulatedBoard) -> None:
+    button = page.get_by_role("button", name="Hold to arm")
+    _wait(page, button.is_visible)
+    button.hover()
+    page.mouse.down()
+    _wait(page, lambda: board.state == "armed" and page.locator("#motors .armed").is_visible())
+    page.mouse.up()
+
+
+def _turn(page: "Page", winch: int, millimeters: float) -> None:
+    page.locator(".knob input").nth(winch).fill(str(millimeters))
+
+
+def test_the_robot_follows_the_page_and_stops_when_it_is_hidden(
+    connect: "Callable[[EmulatedBoard], Page]", board: EmulatedBoard
+) -> None:
+    page = connect(board)
+    button = page.get_by_role("button", name="Hold to arm")
+    _wait(page, button.is_visible)
+    button.click()  # too short a press
+    page.wait_for_timeout(900)
+    assert board.state == "off"
+    _arm(page, board)
+    _turn(page, 0, 12.0)
+    wanted = COUNTS * 0.012 / (2 * pi * 0.006)
+    _wait(page, lambda: abs(board.motors[0].count - wanted) < 2)
+    assert [motor.count for motor in board.motors[1:]] == [0, 0]
+    _turn(page, 1, 60.0)
+    _wait(page, lambda: board.motors[1].count > 20)
+    page.evaluate("""() => {
+      Object.defineProperty(document, "hidden", { value: true });
+      document.dispatchEvent(new Event("visibilitychange"));
+    }""")
+    page.wait_for_timeout(100)
+    before = board.motors[1].count
+    board.wait(1.0)
+    assert board.motors[1].count - before <= 2
+    assert "page was hidden" in page.locator("#motors p").inner_text()
+
+
+def test_motors_stand_within_a_quarter_second_of_closing(
+    connect: "Callable[[EmulatedBoard], Page]", board: EmulatedBoard
+) -> None:
+    page = connect(board)
+    _arm(page, board)
+    _turn(page, 2, 60.0)
+    _wait(page, lambda: board.motors[2].count > 20)
+    page.close()
+    board.wait(0.25)
+    before = board.motors[2].count
+    board.wait(1.0)
+    assert board.motors[2].count == before
+
+
+def test_a_board_of_another_robot_is_refused(connect: "Callable[[EmulatedBoard], Page]", board: EmulatedBoard) -> None:
+    board.robot = "starfish.00000000"
+    page = connect(board)
+    status = page.locator("#motors p")
+    _wait(page, lambda: "built for starfish.00000000" in status.inner_text())
+    assert board.state == "off"
+    assert not page.get_by_role("button", name="Hold to arm").is_visible()
+
+
+def test_a_reset_board_needs_its_zero_and_a_pulled_cable_is_told(
+    connect: "Callable[[EmulatedBoard], Page]", board: EmulatedBoard
+) -> None:
+    board.marked = False
+    page = connect(board)
+    _wait(page, page.get_by_role("button", name="Set zero").is_visible)
+    page.get_by_role("button", name="Set zero").click()
+    _arm(page, board)
+    assert board.marked
+    board.gone = True
+    _wait(page, lambda: "unplugged" in page.locator("#motors p").inner_text())
