@@ -1,8 +1,9 @@
 """Array shapes and types of what is public are checked while the tests run; one thread of BLAS; two kits."""
 
 import gc
+import shutil
 import sys
-from collections.abc import Generator
+from collections.abc import Generator, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,6 +16,8 @@ import pytest  # noqa: E402
 import shape_checks  # noqa: E402
 
 if TYPE_CHECKING:
+    from playwright.sync_api import Browser
+
     from hydrostat.fabrication import Kit
 
 shape_checks.install("hydrostat")
@@ -72,6 +75,22 @@ def plush_kit() -> "Kit":
 def foam_kit() -> "Kit":
     """The kit of the fish tail."""
     return _kit("fish_tail")
+
+
+@pytest.fixture(scope="session")
+def browser() -> "Iterator[Browser]":
+    """Chromium, once for all tests: Playwright runs once in a process. Where there is none they are skipped."""
+    names = ("chromium", "chromium-browser", "google-chrome")
+    chromium = next((found for name in names if (found := shutil.which(name))), "")
+    if not chromium:
+        pytest.skip("there is no Chromium; install Debian's package chromium")
+    from playwright.sync_api import sync_playwright
+
+    flags = ["--no-sandbox", "--enable-unsafe-swiftshader"]
+    with sync_playwright() as playwright:
+        opened = playwright.chromium.launch(executable_path=chromium, args=flags)
+        yield opened
+        opened.close()
 
 
 @pytest.fixture

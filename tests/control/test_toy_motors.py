@@ -1,6 +1,5 @@
 """The page of a toy on Web Serial: a browser whose port is a stand-in for an emulated board. Oracle: that board."""
 
-import shutil
 import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
@@ -78,19 +77,6 @@ def board(robot: Robot, motors: Calibration) -> EmulatedBoard:
     made = EmulatedBoard([BoardMotor(counts=COUNTS, most=most) for _ in robot.winches], robot_word(robot, motors))
     made.marked = True
     return made
-
-
-@pytest.fixture(scope="module")
-def browser() -> "Iterator[Browser]":
-    chromium = shutil.which("chromium") or shutil.which("google-chrome")
-    if not chromium:
-        pytest.skip("there is no Chromium; install Debian's package chromium")
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        opened = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
-        yield opened
-        opened.close()
 
 
 @pytest.fixture

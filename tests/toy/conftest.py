@@ -1,6 +1,5 @@
-"""A small toy, and a browser to open it in; without Chromium the tests that need one are skipped."""
+"""A small toy, and pages that show it."""
 
-import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -50,19 +49,6 @@ def page_text(starfish: Robot, shape: LearnedShape) -> str:
     pose = ToyPose(name="</script><b>wave", contractions=(0.02, 0.0, 0.01))
     moves = [(0.0, np.zeros(3)), (1.0, np.array([0.01, 0.02, 0.0]))]
     return toy_page(starfish, shape, poses=[pose], moves=moves)
-
-
-@pytest.fixture(scope="session")
-def browser() -> "Iterator[Browser]":
-    chromium = next((found for name in ("chromium", "google-chrome") if (found := shutil.which(name))), "")
-    if not chromium:
-        pytest.skip("there is no Chromium; install Debian's package chromium")
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        opened = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
-        yield opened
-        opened.close()
 
 
 @pytest.fixture

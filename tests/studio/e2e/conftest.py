@@ -1,7 +1,6 @@
 """A studio as a program of its own, and a browser. Where there is no Chromium these tests are skipped."""
 
 import os
-import shutil
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -14,30 +13,12 @@ import pytest
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
-CHROMIUM = next(
-    (found for name in ("chromium", "chromium-browser", "google-chrome") if (found := shutil.which(name))), ""
-)
-
-FLAGS = ["--no-sandbox", "--enable-unsafe-swiftshader"]
-
 RUN = "from hydrostat.cli.main import main; main()"
 
 TIMEOUT = 300_000
 """The most that a test waits for one thing [ms]: the machine may be busy, and compile."""
 
 Open = Callable[..., "Page"]
-
-
-@pytest.fixture(scope="session")
-def browser() -> "Iterator[Browser]":
-    if not CHROMIUM:
-        pytest.skip("there is no Chromium; install Debian's package chromium")
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        opened = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        yield opened
-        opened.close()
 
 
 @contextmanager
