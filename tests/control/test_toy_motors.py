@@ -138,7 +138,10 @@ def test_the_robot_follows_the_page_and_stops_when_it_is_hidden(
     page = connect(board)
     button = page.get_by_role("button", name="Hold to arm")
     _wait(page, button.is_visible)
-    button.click()  # too short a press
+    button.hover()
+    page.mouse.down()
+    page.wait_for_timeout(250)  # too short a press
+    page.mouse.up()
     page.wait_for_timeout(900)
     assert board.state == "off"
     _arm(page, board)
