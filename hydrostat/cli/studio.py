@@ -17,8 +17,13 @@ def studio(
     ] = None,
     port: Annotated[int, typer.Option(metavar="PORT", help="TCP port. 0 = any free port.")] = 0,
     host: Annotated[
-        str, typer.Option(metavar="ADDRESS", help="Bind address. Remote clients need the printed token.")
-    ] = "127.0.0.1",
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help="Bind address. Remote clients need the printed token.",
+            show_default="127.0.0.1; with --class this computer's address in its network",
+        ),
+    ] = None,
     model: Annotated[
         Path | None,
         typer.Option(metavar="MODEL", help="Model of ROBOT from `hydrostat learn`, for a fast first answer to drags."),
@@ -26,6 +31,10 @@ def studio(
     rooms: Annotated[
         bool,
         typer.Option("--rooms", help="Give each browser its own robot, e.g. for a class."),
+    ] = False,
+    classroom: Annotated[
+        bool,
+        typer.Option("--class", help="Give each browser of the network its own robot; print the link and its QR code."),
     ] = False,
     browser: Annotated[bool, typer.Option(help="Open the browser.")] = True,
 ) -> None:
@@ -35,18 +44,20 @@ def studio(
 
     Example: hydrostat studio gallery:cupping_hand --model build/hand.model
 
-    Example: hydrostat studio gallery:starfish --rooms --host 192.168.1.20
+    Example: hydrostat studio gallery:starfish --class
     """
     try:
-        from hydrostat.studio import Rooms, serve
+        from hydrostat.studio import Rooms, find_network_address, serve, write_qr_text
     except ModuleNotFoundError as error:
         if error.name != "nicegui":
             raise
         raise InputError(f"studio: package nicegui not found. Install it: {install_command('studio')}") from None
     from hydrostat.studio import Session, state_folder
 
+    rooms = rooms or classroom
     if model is not None and (robot is None or rooms):
-        raise InputError("--model: needs its ROBOT, and is not available with --rooms.")
+        raise InputError("--model: needs its ROBOT, and is not available with --rooms or --class.")
+    host = host or (find_network_address() if classroom else "127.0.0.1")
     if rooms:
         if robot is not None:
             from hydrostat.robot import load_robot
@@ -59,5 +70,10 @@ def studio(
         if robot is not None:
             session.open_folder(robot, model)
         served = Rooms(session)
-    words = "Studio: {}   (Ctrl-C to stop)"
-    serve(served, host=host, port=port, show=browser, announce=lambda at: print(words.format(at), flush=True))
+
+    def announce(address: str) -> None:
+        print(f"Studio: {address}   (Ctrl-C to stop)", flush=True)
+        if classroom:
+            print(write_qr_text(address), flush=True)
+
+    serve(served, host=host, port=port, show=browser, announce=announce)

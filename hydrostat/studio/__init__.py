@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from hydrostat.studio.exporting.kit_work import page_pictures
     from hydrostat.studio.face.rooms import Rooms
     from hydrostat.studio.face.serve import serve
+    from hydrostat.studio.face.share import find_network_address, write_qr_text
     from hydrostat.studio.jobs import Jobs
     from hydrostat.studio.posing import (
         STRIDE,
@@ -44,11 +45,13 @@ __all__ = [
     "Proposer",
     "Rooms",
     "Session",
+    "find_network_address",
     "held_of",
     "page_pictures",
     "serve",
     "state_folder",
     "wished_request",
+    "write_qr_text",
 ]
 
 open_package(__name__)

@@ -1,9 +1,16 @@
-"""`Links`, `share_dialog`: addresses of a room, to work in it together or only to watch."""
+"""`Links`, `share_dialog`: addresses of a room, to work in it together or only to watch; QR codes of links."""
 
+import socket
 from collections.abc import Callable
 from dataclasses import dataclass
+from io import StringIO
+from urllib.parse import urlsplit
 
+import segno
 from nicegui import ui
+
+from hydrostat.errors import InputError
+from hydrostat.studio.face.guard import LOOPBACK
 
 
 @dataclass(frozen=True)
@@ -13,11 +20,40 @@ class Links:
     work: str  # who opens it works in the room
     watch: str  # who opens it sees the robot, and can change nothing
 
+    @property
+    def are_local(self) -> bool:
+        """True if no other computer can open them."""
+        return urlsplit(self.work).netloc.rpartition(":")[0] in LOOPBACK
+
+
+def find_network_address() -> str:
+    """Address of this computer in its network, by the route that packets to the outside would take; none is sent.
+
+    Raises:
+        InputError: it is in no network.
+    """
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.connect(("192.0.2.1", 9))  # an address of documentation (RFC 5737), never anybody's
+        except OSError:
+            raise InputError("--class: this computer is in no network. Connect it, or give --host ADDRESS.") from None
+        return str(probe.getsockname()[0])
+
+
+def write_qr_text(link: str) -> str:
+    """QR code of a link in block characters, white on black whatever the colors of the terminal."""
+    stream = StringIO()
+    segno.make(link, error="m").terminal(stream, compact=True)
+    return "\n".join(f"\x1b[97;40m{line}\x1b[0m" for line in stream.getvalue().split("\n") if line)
+
 
 def share_dialog(links: Links) -> Callable[[], object]:
     """Build the dialog with both addresses; returns what opens it."""
     with ui.dialog() as dialog, ui.card().classes("q-pa-md gap-3").style("width: 520px; max-width: 92vw"):
         ui.label("Share this room").classes("studio-title")
+        if links.are_local:
+            hint = "These links open on this computer only. For other computers start with hydrostat studio --class."
+            ui.label(hint).classes("studio-hint").props('data-testid="share-local"')
         for words, hint, link, name in (
             ("Work together", "People with this link can edit everything.", links.work, "share-work"),
             ("View only", "People with this link see the robot move and cannot edit.", links.watch, "share-watch"),
@@ -27,6 +63,10 @@ def share_dialog(links: Links) -> Callable[[], object]:
                 ui.label(hint).classes("studio-hint")
                 box = ui.input(value=link).props(f'readonly dense outlined aria-label="{words}" data-testid="{name}"')
                 box.classes("w-full studio-figure").on("focus", js_handler="(event) => event.target.select()")
+                if link == links.work and not links.are_local:
+                    code = segno.make(link, error="m").svg_inline(scale=4, dark="#2b2833", light="#ffffff")
+                    drawn = ui.html(code, sanitize=False).classes("self-center")
+                    drawn.props(f'role="img" aria-label="{words}, QR code"')
         with ui.row().classes("w-full justify-end"):
             ui.button("Close", on_click=dialog.close).props("flat no-caps")
     return dialog.open
