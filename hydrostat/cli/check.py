@@ -10,7 +10,7 @@ from hydrostat.errors import InputError
 from hydrostat.units import plural
 
 if TYPE_CHECKING:
-    from hydrostat.robot import Body, Robot, Rod
+    from hydrostat.robot import Body, Robot, Rod, Sensor
 
 
 def check(
@@ -44,6 +44,8 @@ def check(
         print(line)
     for rod in found.rods:
         print(_rod_line(rod))
+    for sensor in found.sensors:
+        print(f"sensor {sensor.name}: {sensor.kind}, {_noise_text(sensor)}")
     parts = {"pin": found.pins, "winch": found.winches, "cable": found.cables, "marker": found.markers}
     counts = ", ".join(plural(len(entries), noun) for noun, entries in parts.items())
     print(f"{counts}, poses: {', '.join(found.poses) or 'none'}")
@@ -223,6 +225,11 @@ def _rod_line(rod: "Rod") -> str:
     stretch = f"{axial:.3g} N" if axial < 1000 else f"{1e-3 * axial:.4g} kN"
     bend = f"{1e6 * bending:.3g} N mm²" if bending < 1e-3 else f"{1e6 * bending:.0f} N mm²"
     return f"rod {rod.name}: {1e3 * rod.length:.0f} mm long{thick}, EA {stretch}, EI {bend}"
+
+
+def _noise_text(sensor: "Sensor") -> str:
+    """Noise of a sensor, as robot.toml has it."""
+    return f"noise {sensor.noise_value()}" if sensor.noise else "no noise"
 
 
 def _mass_text(mass: float) -> str:

@@ -31,7 +31,7 @@ from hydrostat.units import plural
 
 if TYPE_CHECKING:
     from hydrostat.robot import Robot
-    from hydrostat.simulation import ContractionProfile, Equilibrium, Motion, Simulation
+    from hydrostat.simulation import ContractionProfile, Equilibrium, Motion, SensorReader, Simulation
 
 
 def simulate(
@@ -75,7 +75,7 @@ def simulate(
     Example: hydrostat simulate gallery:starfish --contract left=12mm --out build/pose
     """
     from hydrostat.cli.options import load_matplotlib
-    from hydrostat.simulation import write_pose
+    from hydrostat.simulation import SensorReader, write_pose
     from hydrostat.units import TIME
     from hydrostat.version import __version__
 
@@ -109,6 +109,7 @@ def simulate(
         pose = _solve(simulation, {**given, **driven}, forces, limit)
     seconds = time.process_time() - began
     _print_places(pose, loaded)
+    _print_readings(SensorReader(simulation), pose)
     for name, contraction in zip(forces, _contractions_of(pose, forces), strict=True):
         print(f"winch {name}: {1e3 * contraction:.2f} mm at {forces[name]:g} N")
         check_contraction(loaded, name, contraction, option="--pull")
@@ -154,6 +155,16 @@ def _print_places(found: "Equilibrium | Motion", robot: "Robot") -> None:
         print(f"cable {index + 1:<10} {tension:8.3f} N  {robot.cables[index].name}")
 
 
+def _print_readings(reader: "SensorReader", found: "Equilibrium | Motion") -> None:
+    """Print the reading of each sensor, without noise."""
+    readings = reader.read(found)
+    for sensor in reader.simulation.robot.sensors:
+        unit, factor = sensor.column
+        value = readings[sensor.name]
+        values = [value] if isinstance(value, int | float) else value.tolist()
+        print(f"{sensor.name:<16} {', '.join(f'{factor * each:z8.2f}' for each in values)} {unit}".rstrip())
+
+
 def _print_notes(simulation: "Simulation", pose: "Equilibrium") -> None:
     """Print what is in the way of a pose that was not found, and where else the body could have gone."""
     from hydrostat.geometry import find_crossings
@@ -182,7 +193,7 @@ def _move(
 ) -> list[Path]:
     """Move a robot from where it rests at first, print how it ended, and write all files; returns their paths."""
     from hydrostat.plot import draw_motion, draw_pose, save_png
-    from hydrostat.simulation import rests_at_first, write_motion, write_pose
+    from hydrostat.simulation import SensorReader, rests_at_first, write_motion, write_pose
     from hydrostat.units import TIME
     from hydrostat.version import __version__
 
@@ -193,7 +204,8 @@ def _move(
     began = time.process_time()
     with progress_bar() as progress:
         motions = _with_progress(simulation.play(profile, seconds, dt, start=start), seconds, progress)
-        files, table, last = write_motion(simulation.robot, motions, out)
+        reader = SensorReader(simulation)
+        files, table, last = write_motion(simulation.robot, motions, out, reader=reader)
     spent = time.process_time() - began
     extra = {"time": last.time, "kinetic": last.kinetic, "seconds": spent, "version": __version__}
     files += write_pose(simulation, last.pose, out, extra=extra)
@@ -201,6 +213,7 @@ def _move(
     files.append(save_png(picture, out / "pose.png"))
     files.append(save_png(draw_motion(simulation.robot, table), out / "motion.png"))
     _print_places(last, simulation.robot)
+    _print_readings(reader, last)
     fastest = 1e3 * float((last.velocities**2).sum(axis=1).max() ** 0.5)
     steps = f"{plural(len(table.times) - 1, 'step')} to {last.time:g} s, computed in {spent:.1f} s"
     print(f"{steps}. Maximum speed at the end: {fastest:.2g} mm/s")

@@ -186,6 +186,8 @@ class SamplePlan:
             "travel": [winch.travel for winch in robot.winches],
             "markers": [marker.name for marker in robot.markers],
             "cables": [cable.name for cable in robot.cables],
+            "sensors": [head for sensor in robot.sensors for head in sensor.heads(robot.body.mesh.dim)],
+            "noise": [sensor.noise for sensor in robot.sensors],
             "dim": robot.body.mesh.dim,
             "node_count": len(robot.body.mesh.nodes),
             "size": robot.body.mesh.size,
@@ -235,6 +237,6 @@ class SamplePlan:
 
 def physics_hash(robot: Robot) -> str:
     """SHA-256 of all that the poses of a robot depend on, but contact: not of its name, nor of its target poses."""
-    bare = replace(robot, name="robot", poses={}, contact=None)
+    bare = replace(robot, name="robot", poses={}, contact=None, sensors=())
     made = b"" if robot.body.content else robot.body.mesh.nodes.tobytes() + robot.body.mesh.elements.tobytes()
     return hashlib.sha256(robot_hash(bare).encode() + made).hexdigest()

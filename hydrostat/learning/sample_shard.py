@@ -6,7 +6,7 @@ from hydrostat.arrays import Vector
 from hydrostat.geometry import find_crossings
 from hydrostat.learning.sample_plan import SamplePlan, SamplingScheme, physics_hash
 from hydrostat.mechanics import Reason
-from hydrostat.simulation import Equilibrium, Simulation
+from hydrostat.simulation import Equilibrium, SensorReader, Simulation
 
 REASONS = (*Reason, "error")
 """Meaning of the numbers in column `reason`."""
@@ -16,7 +16,7 @@ def sample_type(plan: SamplePlan) -> np.dtype:
     """Columns of a file of samples, little-endian, SI units.
 
     Among them are `touches`, whether parts of the body push one another off, and `crosses`, whether it passes through
-    itself, which it can only without contact.
+    itself, which it can only without contact; `sensors` are readings with noise.
     """
     robot, dim = plan.robot, plan.robot.body.mesh.dim
     winches, markers = len(robot.winches), len(robot.markers)
@@ -35,6 +35,8 @@ def sample_type(plan: SamplePlan) -> np.dtype:
         ("tensions", "<f8", (len(robot.cables),)),
         ("tension_slopes", "<f8", (len(robot.cables), winches)),
     ]
+    if robot.sensors:
+        columns.append(("sensors", "<f8", (sum(sensor.count_values(dim) for sensor in robot.sensors),)))
     kept = [("nodes", "<f4", robot.body.mesh.nodes.shape)] if plan.nodes else []
     return np.dtype(columns + kept)
 
@@ -46,20 +48,20 @@ def sample_shard(plan: SamplePlan, shard: int) -> np.ndarray:
     for row, number, contractions in zip(rows, numbers, plan.contractions(numbers), strict=True):
         draw = plan.draw_of(number)
         row["number"], row["draw"] = number, list(SamplingScheme).index(draw)
-        _fill(row, simulation, contractions, plan.tension if draw is SamplingScheme.TENSION else None)
+        _fill(row, simulation, contractions, plan.tension if draw is SamplingScheme.TENSION else None, plan.seed)
     return rows
 
 
 def _simulation(plan: SamplePlan) -> Simulation:
     """Physics of the robot, kept by a process from one file to the next."""
-    key = physics_hash(plan.robot) + str(plan.robot.contact)
+    key = physics_hash(plan.robot) + str(plan.robot.contact) + str(plan.robot.sensors)
     if key not in _KEPT:
         _KEPT.clear()
         _KEPT[key] = Simulation(plan.robot)
     return _KEPT[key]
 
 
-def _fill(row: np.void, simulation: Simulation, contractions: Vector, tension: float | None) -> None:
+def _fill(row: np.void, simulation: Simulation, contractions: Vector, tension: float | None, seed: int) -> None:
     """Solve one sample; what has no equilibrium is NaN, never an exception that ends all others."""
     columns = row.dtype.names or ()
     for name in columns:
@@ -75,6 +77,9 @@ def _fill(row: np.void, simulation: Simulation, contractions: Vector, tension: f
     row["energy"], row["tensions"] = pose.energy, pose.tensions
     row["markers"] = anchors.positions(pose.nodes)
     row["touches"], row["crosses"] = _touches(simulation, pose), _crosses(simulation, pose)
+    if "sensors" in columns:
+        random = np.random.default_rng([seed, int(row["number"])])
+        row["sensors"] = SensorReader(simulation).read_vector(pose, random=random)
     if "nodes" in columns:
         row["nodes"] = pose.nodes
     if pose.result.stable:

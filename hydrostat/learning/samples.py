@@ -107,7 +107,12 @@ def _content(rows: np.ndarray) -> bytes:
 
 def _check_known(path: Path, known: dict[str, Any], facts: dict[str, Any]) -> None:
     """InputError: what a folder holds is not what is asked for, nor fewer samples of the same."""
-    known = {"contact_friction": 0.0 if known.get("contact") else None, **known}  # earlier ones do not say it
+    known = {
+        "contact_friction": 0.0 if known.get("contact") else None,
+        "sensors": [],
+        "noise": [],
+        **known,
+    }  # earlier ones do not say it
     differing = [key for key, value in facts.items() if known.get(key) != value and key != "count"]
     if differing:
         key = differing[0]
@@ -176,6 +181,7 @@ class Samples(Tabular):
         touches: True if parts of the body push one another off.
         crosses: True if the body passes through itself, as it may without contact.
         nodes: positions of all nodes [m], float32; None if they were not kept.
+        sensors: readings with noise, in SI, (samples, values), names in `facts`; None without sensors.
         lost: number of samples without a stable equilibrium, or without derivatives.
     """
 
@@ -190,6 +196,7 @@ class Samples(Tabular):
     crosses: Bool[np.ndarray, " samples"]
     nodes: np.ndarray | None
     lost: int
+    sensors: Float[np.ndarray, "samples values"] | None = None
 
     def __len__(self) -> int:
         return len(self.contractions)
@@ -232,6 +239,7 @@ class Samples(Tabular):
             touches=self.touches[which],
             crosses=self.crosses[which],
             nodes=None if self.nodes is None else self.nodes[which],
+            sensors=None if self.sensors is None else self.sensors[which],
             lost=self.lost,
         )
 
@@ -257,6 +265,7 @@ class Samples(Tabular):
             touches=rows["touches"] > 0,
             crosses=rows["crosses"] > 0,
             nodes=rows["nodes"] if "nodes" in (rows.dtype.names or ()) else None,
+            sensors=rows["sensors"] if "sensors" in (rows.dtype.names or ()) else None,
             lost=lost,
         )
 

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from hydrostat.robot.robot import Robot
     from hydrostat.robot.rod import Rod
     from hydrostat.robot.scaled import scaled_robot
+    from hydrostat.robot.sensor import Sensor, SensorKind
     from hydrostat.robot.sketch import sketch_robot
     from hydrostat.robot.sketch_space import SurfaceSketch, inflate_outline, sketch_mesh
     from hydrostat.robot.tables_file import TablesFile
@@ -65,6 +66,8 @@ __all__ = [
     "Robot",
     "RobotReader",
     "Rod",
+    "Sensor",
+    "SensorKind",
     "Source",
     "SurfaceSketch",
     "TablesFile",

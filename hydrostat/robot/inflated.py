@@ -81,6 +81,7 @@ def inflated_robot(robot: Robot, face: Face | str | None = None, *, element_size
         face=None,
         obstacles=(),
         loads=tuple(_lift_load(load) for load in robot.loads if load.pressure is None),  # its holes are open now
+        sensors=(),  # their faces and the sides to which they bend are those of a flat body
         rods=tuple(replace(rod, points=tuple(map(_raise_place, rod.points))) for rod in robot.rods),
     )
 

@@ -1,6 +1,7 @@
 """`Load`: a force or moment at a point of the body, a mass that hangs there, or a pressure in a cavity."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -8,7 +9,7 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh
-from hydrostat.given import Point, check_name, check_number, check_point, check_positive
+from hydrostat.given import Point, check_name, check_number, check_point, check_positive, check_unique, list_choices
 
 MOST_SHARE = 100.0
 """Largest share of a load in a motion: 1 is all of it. Write a larger load instead."""
@@ -123,7 +124,19 @@ class Load:
         return (self.mass or 0.0) * (np.zeros(dim) if gravity is None else np.array(gravity))
 
 
-def check_cavity(index: int, load: Load, mesh: Mesh) -> None:
+def check_loads(loads: Sequence[Load], names: list[str], mesh: Mesh, *, weightless: bool) -> None:
+    """Reject loads that do not fit a body with markers of these `names` (InputError)."""
+    check_unique("load", [load.name for load in loads])
+    for index, load in enumerate(loads):
+        if load.marker is not None and load.marker not in names:
+            raise InputError(f'load[{index}].marker: unknown marker "{load.marker}". {list_choices("markers", names)}')
+        if load.mass is not None and weightless:
+            raise InputError(f'load[{index}].mass weighs nothing without gravity; add gravity = "-y", or a force')
+        _check_cavity(index, load, mesh)
+        _check_axes(index, load, mesh.dim)
+
+
+def _check_cavity(index: int, load: Load, mesh: Mesh) -> None:
     """Reject a pressure at a point that is in no hole of the body (InputError)."""
     if load.pressure is None or load.at is None:
         return
@@ -135,7 +148,7 @@ def check_cavity(index: int, load: Load, mesh: Mesh) -> None:
         )
 
 
-def check_axes(index: int, load: Load, dim: int) -> None:
+def _check_axes(index: int, load: Load, dim: int) -> None:
     """Reject a force or moment with entries for another number of axes (InputError)."""
     if load.force is not None and (count := len(load.force)) != dim:
         raise InputError(f"load[{index}].force has {count} entries, but the body has {dim} axes")

@@ -21,6 +21,7 @@ from hydrostat.robot.pin_drive import PinDrive
 from hydrostat.robot.read import RobotReader, read_material
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.rod import Rod
+from hydrostat.robot.sensor import Sensor
 from hydrostat.robot.winch import Winch
 from hydrostat.robot.write import robot_text
 
@@ -121,8 +122,9 @@ _RECORDS = {
     "obstacle": Obstacle,
     "load": Load,
     "rod": Rod,
+    "sensor": Sensor,
 }
-_LISTS = ("pin", "drive", "winch", "cable", "marker", "pose", "obstacle", "load", "rod")
+_LISTS = ("pin", "drive", "winch", "cable", "marker", "pose", "obstacle", "load", "rod", "sensor")
 _SINGLE = ("body", "contact")
 _ORDER = ("", *_SINGLE, *_LISTS)
 _TOP = ("name", "length_unit", "gravity", "face")

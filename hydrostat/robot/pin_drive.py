@@ -87,7 +87,7 @@ class PinDrive:
         low, high = self.limits
         if not self.turns:
             return units.format_quantity(low, units.LENGTH), units.format_quantity(high, units.LENGTH)
-        return _degrees(low), _degrees(high)
+        return format_angle(low), format_angle(high)
 
     def format_value(self, value: float) -> str:
         """Value as text: degrees or millimeters."""
@@ -177,7 +177,7 @@ def check_drives(
             raise InputError(f'drive[{index}]: moves no pin. Add drive = "{drive.name}" to a [[pin]].')
 
 
-def _degrees(value: float) -> str:
+def format_angle(value: float) -> str:
     """Shortest text in degrees that reads back to an angle [rad]."""
     degrees = math.degrees(value)
     near = [degrees, math.nextafter(degrees, math.inf), math.nextafter(degrees, -math.inf)]

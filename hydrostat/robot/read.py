@@ -25,6 +25,7 @@ from hydrostat.robot.pin import Pin
 from hydrostat.robot.pin_drive import PinDrive
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.rod import Rod
+from hydrostat.robot.sensor import Sensor
 from hydrostat.robot.tables_file import TablesFile
 from hydrostat.robot.winch import Winch
 
@@ -107,6 +108,7 @@ class RobotReader(TablesFile):
             "obstacles": self.records("obstacle", self._obstacle),
             "loads": self.records("load", self._load),
             "rods": self.records("rod", self._rod),
+            "sensors": self.records("sensor", self._sensor),
         }
         poses: dict[str, PoseTarget] = {}
         for index, pose in enumerate(self.records("pose", self._pose)):
@@ -179,6 +181,18 @@ class RobotReader(TablesFile):
     def _rod(self, entry: Any) -> Rod:
         given = _given_keys(entry, "diameter", "young", "axial_stiffness", "bending_stiffness")
         return Rod(name=entry.name, points=tuple(self.point(point) for point in entry.points), **given)
+
+    def _sensor(self, entry: Any) -> Sensor:
+        given: dict[str, Any] = {"points": tuple(self.point(point) for point in entry.points)}
+        if entry.at is not None:
+            given["at"] = self.point(entry.at)
+        if entry.normal is not None:
+            given["normal"] = tuple(float(value) for value in entry.normal)
+        if entry.radius is not None:
+            given["radius"] = units.scale_up(entry.radius, self.unit, units.LENGTH)
+        if entry.noise is not None:
+            given["noise"] = Sensor.parse_noise(entry.kind, entry.noise)
+        return Sensor(name=entry.name, kind=entry.kind, **given)
 
     def _marker(self, entry: Any) -> Marker:
         return Marker(name=entry.name, at=self.point(entry.at))

@@ -18,13 +18,14 @@ from hydrostat.robot.cable import Cable, given_names, name_cables
 from hydrostat.robot.cable_side import Face
 from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape
 from hydrostat.robot.gravity import check_gravity, gravity_along
-from hydrostat.robot.load import Load, check_axes, check_cavity
+from hydrostat.robot.load import Load, check_loads
 from hydrostat.robot.marker import Marker, PoseTarget
 from hydrostat.robot.material import Material
 from hydrostat.robot.materials import get_material
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.pin_drive import PinDrive, check_drives
 from hydrostat.robot.rod import Rod, check_rods_inside
+from hydrostat.robot.sensor import Sensor, check_sensors
 from hydrostat.robot.winch import Mount, Winch
 from hydrostat.units import plural
 
@@ -52,6 +53,7 @@ class Robot:
         obstacles: rigid objects next to the body.
         loads: forces at points of the body, and hung masses.
         rods: elastic rods in the body.
+        sensors: sensors in the body; they change nothing of its physics.
 
     Raises:
         InputError: parts that do not fit together, such as a cable point outside the body.
@@ -72,6 +74,7 @@ class Robot:
     obstacles: tuple[Obstacle, ...] = ()
     loads: tuple[Load, ...] = ()
     rods: tuple[Rod, ...] = ()
+    sensors: tuple[Sensor, ...] = ()
     LARGEST_STEP = 4.0  # the spools of cables on one shaft differ by at most so many times
 
     def __post_init__(self) -> None:
@@ -99,7 +102,7 @@ class Robot:
         check_drives(self.drives, self.pins, self.winches, self.cables, self.body.mesh.dim)
         self._check_contact()
         self._check_markers_and_poses()
-        self._check_loads_and_rods()
+        self._check_inner_parts()
         self._check_cables()
 
     def winch(self, name: str) -> Winch:
@@ -239,6 +242,8 @@ class Robot:
             yield from ((f"rod[{index}].points[{place}]", point) for place, point in enumerate(rod.points))
         for index, load in enumerate(self.loads):
             yield from ((f"load[{index}].at", point) for point in load.body_points)
+        for index, sensor in enumerate(self.sensors):
+            yield from ((f"sensor[{index}].{key}", point) for key, point in sensor.places)
         for index, pose in enumerate(self.poses.values()):
             yield from ((f"pose[{index}].targets.{name}", point) for name, point in pose.targets.items())
 
@@ -301,20 +306,13 @@ class Robot:
                     key = f"pose[{index}].targets.{name}"
                     raise InputError(f'{key}: unknown marker "{name}". {list_choices("markers", names)}')
 
-    def _check_loads_and_rods(self) -> None:
-        names = [marker.name for marker in self.markers]
-        check_unique("load", [load.name for load in self.loads])
-        for index, load in enumerate(self.loads):
-            if load.marker is not None and load.marker not in names:
-                raise InputError(
-                    f'load[{index}].marker: unknown marker "{load.marker}". {list_choices("markers", names)}'
-                )
-            if load.mass is not None and self.gravity is None:
-                raise InputError(f'load[{index}].mass weighs nothing without gravity; add gravity = "-y", or a force')
-            check_cavity(index, load, self.body.mesh)
-            check_axes(index, load, self.body.mesh.dim)
+    def _check_inner_parts(self) -> None:
+        mesh, names = self.body.mesh, [marker.name for marker in self.markers]
+        check_loads(self.loads, names, mesh, weightless=self.gravity is None)
         check_unique("rod", [rod.name for rod in self.rods])
-        self._check_inside([(key, point) for key, point in self._points() if key.startswith(("load", "rod"))])
+        check_unique("sensor", [sensor.name for sensor in self.sensors])
+        check_sensors(self.sensors, mesh)
+        self._check_inside([(key, point) for key, point in self._points() if key.startswith(("load", "rod", "sensor"))])
         check_rods_inside(self.rods, self.body, self._text)
 
     def load_points(self) -> Points:
@@ -393,4 +391,5 @@ _PARTS = {
     "obstacles": Obstacle,
     "loads": Load,
     "rods": Rod,
+    "sensors": Sensor,
 }

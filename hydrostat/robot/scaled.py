@@ -1,5 +1,6 @@
 """`scaled_robot`: a robot of another size, with all of its parts where they were on it."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -13,6 +14,7 @@ from hydrostat.robot.marker import PoseTarget
 from hydrostat.robot.part import BodyPart
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.robot import Robot
+from hydrostat.robot.winch import Winch
 
 
 def scaled_robot(robot: Robot, factor: float) -> Robot:
@@ -56,16 +58,7 @@ def scaled_robot(robot: Robot, factor: float) -> Robot:
         body=_scaled_body(robot, factor, tuple(part.with_transform(point, factor) for part in robot.body.parts)),
         pins=tuple(map(scale_pin, robot.pins)),
         drives=tuple(drive.with_transform(point, length) for drive in robot.drives),
-        winches=tuple(
-            replace(
-                winch,
-                at=point(winch.at),
-                spool_radius=length(winch.spool_radius),
-                travel=length(winch.travel),
-                release=length(winch.release),
-            )
-            for winch in robot.winches
-        ),
+        winches=tuple(_scale_winch(winch, point(winch.at), length) for winch in robot.winches),
         cables=tuple(
             replace(
                 cable,
@@ -86,9 +79,15 @@ def scaled_robot(robot: Robot, factor: float) -> Robot:
         rods=tuple(
             replace(rod, points=tuple(map(point, rod.points)), diameter=maybe(rod.diameter)) for rod in robot.rods
         ),
+        sensors=tuple(sensor.with_transform(point, length) for sensor in robot.sensors),
         loads=tuple(replace(load, at=None if load.at is None else point(load.at)) for load in robot.loads),
         contact=None if contact is None else Contact(distance=maybe(contact.distance), friction=contact.friction),
     )
+
+
+def _scale_winch(winch: Winch, at: Point, length: Callable[[float], float]) -> Winch:
+    lengths = {key: length(getattr(winch, key)) for key in ("spool_radius", "travel", "release")}
+    return replace(winch, at=at, **lengths)
 
 
 def _scaled_body(robot: Robot, factor: float, parts: tuple[BodyPart, ...]) -> Body:

@@ -18,6 +18,7 @@ from hydrostat.robot.element_kind import ElementKind, MaterialLaw, Plane, Volume
 from hydrostat.robot.gravity import DIRECTIONS
 from hydrostat.robot.material import MOST_BRANCHES, MOST_TERMS
 from hydrostat.robot.part import PartShape
+from hydrostat.robot.sensor import SensorKind
 from hydrostat.robot.winch import Mount
 from hydrostat.toml_schema import (
     BendingStiffness,
@@ -278,6 +279,18 @@ class RodTable(TomlTable):
     bending_stiffness: BendingStiffness | None = None
 
 
+class SensorTable(TomlTable):
+    """[[sensor]]."""
+
+    name: Name
+    kind: SensorKind
+    points: Annotated[list[Coordinates], Field(max_length=1000)] = Field([])
+    at: Coordinates | None = None
+    normal: Coordinates | None = None
+    radius: Number | None = None
+    noise: Text | Number | None = None
+
+
 class RobotTable(TomlTable):
     """All tables of robot.toml."""
 
@@ -297,3 +310,4 @@ class RobotTable(TomlTable):
     obstacle: list[ObstacleTable] = Field([])
     load: list[LoadTable] = Field([])
     rod: list[RodTable] = Field([])
+    sensor: list[SensorTable] = Field([])

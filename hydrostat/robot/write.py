@@ -26,6 +26,7 @@ from hydrostat.robot.pin import DEFAULT_STIFFNESS, Pin
 from hydrostat.robot.pin_drive import PinDrive
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.rod import Rod
+from hydrostat.robot.sensor import Sensor
 from hydrostat.robot.winch import Mount
 
 
@@ -48,10 +49,8 @@ def save_robot(robot: Robot, folder: str | Path, *, text: str | None = None) -> 
     for name in (
         robot.name,
         *robot.poses,
-        *(
-            part.name
-            for part in (*robot.winches, *robot.cables, *robot.markers, *robot.loads, *robot.rods, *robot.drives)
-        ),
+        *(part.name for part in (*robot.winches, *robot.cables, *robot.markers)),
+        *(part.name for part in (*robot.loads, *robot.rods, *robot.sensors, *robot.drives)),
     ):
         check_name(name)
     try:
@@ -114,6 +113,7 @@ def robot_text(robot: Robot) -> str:
         "obstacle": map(writer.obstacle, robot.obstacles),
         "load": map(writer.load, robot.loads),
         "rod": map(writer.rod, robot.rods),
+        "sensor": map(writer.sensor, robot.sensors),
     }
     for key, entries in groups.items():
         tables = tomlkit.aot()
@@ -238,9 +238,7 @@ class _Writer:
         if obstacle.radius is not None:
             entry["radius"] = self.number(obstacle.radius)
         if obstacle.normal is not None:
-            entry["normal"] = self._array(
-                self._toml.value(units.plain(Decimal(repr(value)))) for value in obstacle.normal
-            )
+            entry["normal"] = self.direction(obstacle.normal)
         if obstacle.mesh is not None:
             entry["file"] = obstacle.mesh.file
         if obstacle.friction is not None:
@@ -290,6 +288,21 @@ class _Writer:
             key: units.format_quantity(value, units_of[key]) for key, value in given.items() if value is not None
         }
 
+    def sensor(self, sensor: Sensor) -> dict[str, Any]:
+        entry: dict[str, Any] = {"name": sensor.name, "kind": str(sensor.kind)}
+        if sensor.points:
+            entry["points"] = self.points(sensor.points)
+        if sensor.at is not None:
+            entry["at"] = self.point(sensor.at)
+        if sensor.normal is not None:
+            entry["normal"] = self.direction(sensor.normal)
+        if sensor.radius is not None:
+            entry["radius"] = self.number(sensor.radius)
+        return entry | ({"noise": sensor.noise_value()} if sensor.noise else {})
+
+    def direction(self, way: Iterable[float]) -> Any:
+        return self._array(self._toml.value(units.plain(Decimal(repr(float(value))))) for value in way)
+
     def _key(self, time: str, place: Point) -> Any:
         table = self._toml.inline_table()
         table.update({"time": time, "at": self.point(place)})
@@ -314,7 +327,7 @@ class _Writer:
             entry["at"] = self.point(drive.at)
         for key in ("axis", "slide"):
             if (way := getattr(drive, key)) is not None:
-                entry[key] = self._array(self._toml.value(units.plain(Decimal(repr(float(value))))) for value in way)
+                entry[key] = self.direction(way)
         low, high = drive.limits
         if drive.slide is not None or (low, high) != (-math.pi, math.pi):
             entry["min"], entry["max"] = drive.limit_texts()

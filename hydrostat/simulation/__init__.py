@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from hydrostat.simulation.motion_file import MotionTable, write_motion, write_pose
     from hydrostat.simulation.obstacle_frames import obstacle_forces, obstacles_in_pose, with_obstacles, with_replaced
     from hydrostat.simulation.sensitivities.adjoint import Sensitivity
+    from hydrostat.simulation.sensor_reader import SensorReader
     from hydrostat.simulation.simulation import Simulation
     from hydrostat.simulation.state_space import StateSpace, linearize
     from hydrostat.simulation.static_obstacles import require_static_obstacles, rests_at_first, without_contact_friction
@@ -46,6 +47,7 @@ __all__ = [
     "Multistability",
     "ProfileTable",
     "Sensitivity",
+    "SensorReader",
     "Simulation",
     "StateSpace",
     "StaticSolver",

@@ -19,6 +19,7 @@ from hydrostat.geometry import write_lines_vtu, write_vtu
 from hydrostat.robot import Robot, robot_hash
 from hydrostat.simulation.equilibrium import Equilibrium
 from hydrostat.simulation.obstacle_frames import carried_frames
+from hydrostat.simulation.sensor_reader import SensorReader
 from hydrostat.simulation.simulation import Simulation
 from hydrostat.simulation.time.motion import Motion
 
@@ -59,6 +60,13 @@ def _drive_facts(pose: Equilibrium) -> dict[str, dict[str, float]]:
     }
 
 
+def _sensor_facts(simulation: Simulation, pose: Equilibrium) -> dict[str, Any]:
+    """Reading of each sensor, without noise."""
+    if not simulation.robot.sensors:
+        return {}
+    return {"sensors": {name: np.array(value).tolist() for name, value in SensorReader(simulation).read(pose).items()}}
+
+
 def write_pose(
     simulation: Simulation,
     pose: Equilibrium,
@@ -81,7 +89,7 @@ def write_pose(
     """
     folder.mkdir(parents=True, exist_ok=True)
     robot = simulation.robot
-    facts = {**pose_facts(robot, pose), **(extra or {})}
+    facts = {**pose_facts(robot, pose), **_sensor_facts(simulation, pose), **(extra or {})}
     rest = robot.body.mesh.nodes
     fields = {"rest": rest, "displacement": pose.nodes - rest, "strain": pose.strains, "stress": pose.stresses}
     written = [
@@ -119,6 +127,7 @@ class MotionTable:
         tensions: cable tensions [N].
         energies: kinetic and potential energy [J].
         things: center of each moving obstacle [m], by name.
+        sensors: readings without noise, in SI, in the order of `SensorReader.heads`.
     """
 
     times: Vector
@@ -128,10 +137,16 @@ class MotionTable:
     energies: Float[np.ndarray, "rows 2"]
     drives: Float[np.ndarray, "rows drives"] = field(default_factory=lambda: np.zeros((0, 0)))
     things: Mapping[str, Float[np.ndarray, "rows dim"]] = field(default_factory=dict)
+    sensors: Float[np.ndarray, "rows values"] = field(default_factory=lambda: np.zeros((0, 0)))
 
 
 def write_motion(
-    robot: Robot, motions: Iterable[Motion], folder: Path, *, frames_per_second: float = 30.0
+    robot: Robot,
+    motions: Iterable[Motion],
+    folder: Path,
+    *,
+    frames_per_second: float = 30.0,
+    reader: SensorReader | None = None,
 ) -> tuple[list[Path], MotionTable, Motion]:
     """Write a motion; one that stops early is written as far as it got. Nothing is replaced before it has ended.
 
@@ -140,6 +155,7 @@ def write_motion(
         motions: its instants, at least one.
         folder: made if need be; the meshes go to `frames` in it.
         frames_per_second: frame rate of the meshes: each frame is the first instant at or after its time.
+        reader: sensors that are read; none if left out.
 
     Returns:
         The paths of motion.csv and motion.pvd, the table, and the last instant.
@@ -157,7 +173,7 @@ def write_motion(
                 stopped = motion
                 break
             last = motion
-            seen.append(_row(robot, motion))
+            seen.append((*_row(robot, motion), np.zeros(0) if reader is None else reader.read_vector(motion)))
             if motion.time - seen[0][0] >= len(frames) / frames_per_second - 1e-9:
                 frames.append((motion.time, _write_frame(robot, motion, Path(part), len(frames))))
         if last is None:
@@ -197,7 +213,7 @@ def _row(robot: Robot, motion: Motion) -> tuple:
 
 
 def _table(robot: Robot, rows: list[tuple]) -> MotionTable:
-    times, contractions, markers, tensions, energies, things, drives = zip(*rows, strict=True)
+    times, contractions, markers, tensions, energies, things, drives, sensors = zip(*rows, strict=True)
     return MotionTable(
         times=np.array(times),
         contractions=np.array(contractions).reshape(len(rows), len(robot.winches)),
@@ -206,6 +222,7 @@ def _table(robot: Robot, rows: list[tuple]) -> MotionTable:
         energies=np.array(energies),
         drives=np.array(drives).reshape(len(rows), len(robot.drives)),
         things={name: np.array([row[name] for row in things]) for name in things[0]},
+        sensors=np.array(sensors),
     )
 
 
@@ -236,7 +253,19 @@ def _csv(robot: Robot, table: MotionTable) -> bytes:
     driven = table.drives * [drive.column[1] for drive in robot.drives]
     columns = [table.times[:, None], 1e3 * table.contractions, driven, 1e3 * places, table.tensions, table.energies]
     columns += [1e3 * way for way in table.things.values()]
+    if table.sensors.shape[1]:
+        heads, factors = zip(*_sensor_columns(robot), strict=True)
+        head += heads
+        columns.append(table.sensors * np.array(factors))
     return csv_text(head, ([f"{value:.9g}" for value in row] for row in np.concatenate(columns, axis=1)))
+
+
+def _sensor_columns(robot: Robot) -> Iterator[tuple[str, float]]:
+    """Head of each column of readings, with its unit, and the factor from SI."""
+    for sensor in robot.sensors:
+        unit, factor = sensor.column
+        unit = unit.replace("/", "_").replace("^", "")
+        yield from ((f"{head}_{unit}" if unit else head, factor) for head in sensor.heads(robot.body.mesh.dim))
 
 
 def _pvd(frames: list[tuple[float, str]]) -> str:

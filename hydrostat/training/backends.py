@@ -9,7 +9,7 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.learning import LearnedModel
 from hydrostat.robot import Robot
-from hydrostat.simulation import Equilibrium, Simulation
+from hydrostat.simulation import Equilibrium, SensorReader, Simulation
 
 
 class Backend(ABC):
@@ -36,6 +36,11 @@ class Backend(ABC):
     def reach(self, contractions: Vector) -> Vector | None:
         """Coordinates of all markers [m] at contractions [m]; None where no equilibrium is found."""
 
+    def read_sensors(self, random: np.random.Generator) -> Vector:
+        """Readings of all sensors with noise, in SI (InputError: networks have none)."""
+        del random
+        raise InputError("networks know no readings of sensors: use the simulator, or options without sensors")
+
     def get_state(self) -> tuple[int, ...]:
         """State of the progress: equilibria, and the rest that the next episode depends on."""
         return (self.equilibria,)
@@ -51,6 +56,11 @@ class ExactBackend(Backend):
     def __init__(self, robot: Robot, *, from_rest: bool = True) -> None:
         """A robot; poses begin from rest unless the way shall count."""
         self._simulation, self._from_rest = Simulation(robot), from_rest
+        self._reader = SensorReader(self._simulation)
+
+    def read_sensors(self, random: np.random.Generator) -> Vector:
+        """Readings in the present pose, or at rest."""
+        return self._reader.read_vector(self.pose or self._simulation.rest, random=random)
 
     def back(self) -> None:
         """Go back to rest."""
@@ -100,6 +110,10 @@ class MixedBackend(Backend):
     def equilibria(self) -> int:  # type: ignore[override]
         """Equilibria of the exact backend."""
         return self._worlds[1].equilibria
+
+    def read_sensors(self, random: np.random.Generator) -> Vector:
+        """Readings of whichever is asked now."""
+        return self._now.read_sensors(random)
 
     def get_state(self) -> tuple[int, ...]:
         """Equilibria, and which episode it is."""

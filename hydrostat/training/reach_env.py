@@ -29,6 +29,7 @@ class ReachOptions:
         incremental: True if an action adds to the contractions, a tenth of their range at most.
         tolerance: largest mean distance of the markers that is a success [m].
         shaped: reward is minus the mean distance in units of the tolerance; else 0 for success and -1.
+        sensors: True if observations also hold `sensors`, the readings of the robot's sensors with noise, in SI.
 
     Raises:
         InputError: markers that are no list, no step, or a tolerance that is not above 0.
@@ -40,6 +41,7 @@ class ReachOptions:
     incremental: bool = False
     tolerance: float = 5e-3
     shaped: bool = True
+    sensors: bool = False
 
     def __post_init__(self) -> None:
         if isinstance(self.markers, str):
@@ -111,6 +113,10 @@ class ReachEnv(GoalEnv):
             achieved_goal=place,
             desired_goal=place,
         )
+        if self.options.sensors:
+            if not (count := sum(sensor.count_values(self._dim) for sensor in robot_.sensors)):
+                raise InputError(f"robot {robot_.name!r} has no sensors: add [[sensor]], or leave the option out")
+            self.observation_space["sensors"] = spaces.Box(-np.inf, np.inf, (count,), np.float64)
         self.steps, self.tolerance, self._pictures = self.options.steps, self.options.tolerance, None
         self._taken, self._at, self._goal = np.zeros(len(self._low)), self.rest, self.rest
 
@@ -185,7 +191,7 @@ class ReachEnv(GoalEnv):
     def portable(self) -> bool:
         """True if a policy sees nothing but the goal: one action, all markers, each winch alone."""
         options, names = self.options, [marker.name for marker in self.robot.markers]
-        moved_alone = not (options.incremental or options.pairs)
+        moved_alone = not (options.incremental or options.pairs or options.sensors)
         return options.steps == 1 and moved_alone and list(options.markers or names) == names
 
     @property
@@ -252,7 +258,8 @@ class ReachEnv(GoalEnv):
 
     def _observation(self) -> dict[str, Vector]:
         span = np.where(self._high > self._low, self._high - self._low, 1.0)
-        return {
+        seen = {"sensors": self.backend.read_sensors(self.np_random)} if self.options.sensors else {}
+        return seen | {
             "observation": np.clip(2.0 * (self._taken - self._low) / span - 1.0, -1.0, 1.0),
             "achieved_goal": ((self._at - self.rest) / self.unit)[self.seen],
             "desired_goal": ((self._goal - self.rest) / self.unit)[self.seen],

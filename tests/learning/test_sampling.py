@@ -24,6 +24,7 @@ from hydrostat.learning import SamplePlan, Samples, SamplingScheme, export_sampl
 from hydrostat.learning.sample_plan import shared_numbers
 from hydrostat.learning.sample_shard import REASONS
 from hydrostat.learning.samples import SampleFolder
+from hydrostat.robot import Sensor, SensorKind
 
 pytestmark = pytest.mark.usefixtures("unchecked")
 
@@ -40,6 +41,24 @@ def once(plan: SamplePlan, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def contents(folder: Path) -> dict[str, bytes]:
     return {file.name: file.read_bytes() for file in sorted(folder.iterdir())}
+
+
+def test_samples_hold_readings_with_noise(tmp_path: Path) -> None:
+    """Oracle: the reader; the same noise when samples are made again."""
+    path = ((0.02, 0.0), (0.18, 0.0))
+    robot = replace(strip_robot(columns=8, rows=2), sensors=(Sensor(name="flex", kind=SensorKind.BEND, points=path),))
+    clean = Samples.read(sample_robot(SamplePlan.of_robot(robot, 5), tmp_path / "clean").path)
+    simulation = hs.Simulation(robot)
+    reading = hs.SensorReader(simulation).read_vector(simulation.solve(clean.contractions[3]))
+    assert clean.sensors is not None
+    assert np.array_equal(clean.sensors[3], reading)
+    assert clean.facts["sensors"] == ["flex"]
+    noisy = replace(robot, sensors=(replace(robot.sensors[0], noise=0.1),))
+    again = [Samples.read(sample_robot(SamplePlan.of_robot(noisy, 5), tmp_path / name).path) for name in "ab"]
+    assert np.array_equal(again[0].sensors, again[1].sensors)  # type: ignore[arg-type]
+    assert 0.01 < np.abs(again[0].sensors - clean.sensors).mean() < 0.3  # type: ignore[operator]
+    with pytest.raises(InputError, match="another plan"):
+        sample_robot(SamplePlan.of_robot(noisy, 5), tmp_path / "clean")
 
 
 def test_a_sample_is_what_the_simulator_finds(plan: SamplePlan, once: Path) -> None:

@@ -2,6 +2,7 @@
 
 import csv
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -11,6 +12,7 @@ import pytest
 from builders import box_robot, strip_robot
 
 import hydrostat as hs
+from hydrostat.robot import Sensor, SensorKind
 from hydrostat.simulation import write_motion
 
 
@@ -55,3 +57,21 @@ def test_a_motion_that_stops_is_written_as_far_as_it_got(tmp_path: Path) -> None
         write_motion(robot, stopping(), tmp_path)
     assert len((tmp_path / "motion.csv").read_text().splitlines()) == 3
     assert "motion_0000.vtu" in (tmp_path / "motion.pvd").read_text()
+
+
+def test_readings_are_columns(tmp_path: Path) -> None:
+    """Oracle: the reader, at the last instant."""
+    path = ((0.02, 0.0), (0.18, 0.0))
+    sensors = (
+        Sensor(name="flex", kind=SensorKind.BEND, points=path),
+        Sensor(name="acc", kind=SensorKind.ACCELEROMETER, at=(0.1, 0.0)),
+    )
+    simulation = hs.Simulation(replace(strip_robot(columns=8, rows=2), sensors=sensors))
+    reader, profile = hs.SensorReader(simulation), hs.ContractionProfile.ramp(np.array([0.01, 0.0]), 0.05)
+    motions = simulation.play(profile, 0.05, 0.01)
+    files, table, last = write_motion(simulation.robot, motions, tmp_path, reader=reader)
+    head, *_, final = files[0].read_text().splitlines()
+    assert head.split(",")[-3:] == ["flex_deg", "acc_x_m_s2", "acc_y_m_s2"]
+    assert np.array_equal(table.sensors[-1], reader.read_vector(last))
+    assert np.array(final.split(",")[-3:], float) == pytest.approx(table.sensors[-1] * [180 / np.pi, 1, 1])
+    assert abs(table.sensors[-1, 1]) > 0

@@ -13,7 +13,8 @@ from builders import gallery_robot
 from model_cards import model_card
 
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.simulation import Simulation
+from hydrostat.robot import Sensor, SensorKind
+from hydrostat.simulation import SensorReader, Simulation
 
 gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed")
 
@@ -34,6 +35,24 @@ from hydrostat.training import (  # noqa: E402
 from hydrostat.training.backends import Backend, ExactBackend, LearnedBackend, MixedBackend  # noqa: E402
 
 Goals = list[dict[str, Any]]
+
+
+def test_observations_hold_readings() -> None:
+    """Oracle: the reader, at the contractions of the action; a robot without sensors is refused."""
+    robot = gallery_robot("starfish")
+    marker = robot.markers[0].at
+    sensed = replace(robot, sensors=(Sensor(name="tilt", kind=SensorKind.ORIENTATION, at=marker),))
+    env = ReachEnv(sensed, options=ReachOptions(sensors=True))
+    seen, _ = env.reset(seed=1)
+    assert env.observation_space.contains(seen)
+    assert seen["sensors"] == pytest.approx([0.0], abs=1e-9)
+    action = np.full(len(robot.winches), 0.3)
+    seen, *_ = env.step(action)
+    simulation = Simulation(sensed)
+    assert seen["sensors"] == SensorReader(simulation).read_vector(simulation.solve(env.contractions(action)))
+    assert not env.portable
+    with pytest.raises(InputError, match="no sensors"):
+        ReachEnv(robot, options=ReachOptions(sensors=True))
 
 
 class Straight(LearnedBackend):

@@ -92,6 +92,7 @@ class Dynamics:
         material = robot.body.material
         self.robot, self.masses = robot, body.inertias
         self._statics, self._tensions, self._markers, self._options = statics, tensions, markers, options
+        self.obstacles = body.obstacles  # indices of their energies
         self._guides, self._load_paths, self._begin = body.guides, body.load_paths, body.rest_unknowns
         branches = [(branch.modulus * branch.time, branch.time) for branch in material.relaxation]
         branches += [(material.viscosity, 0.0)] if material.viscosity else []
@@ -172,6 +173,11 @@ class Dynamics:
             end = begin + seconds * step / steps
             motion = self.step(motion, contraction_values(self.robot, profile.at(end)), end - motion.time, options, {})
             yield motion
+
+    def energies_at(self, motion: Motion) -> list[Energy]:
+        """Energies of statics at an instant of a motion: pins, guides and loads as then, after its history."""
+        nodes = _stack_rows(motion.nodes, motion, 0)
+        return self._remembering(motion.history, nodes, motion.controls, motion.pin_shifts, motion.time)
 
     def _advance(
         self, motion: Motion, goal: Vector, shifts: Points, dt: float, options: StepOptions
