@@ -55,21 +55,21 @@ def check(
         from hydrostat.design import BuildCost
 
         print(f"build: {BuildCost.of_robot(found, ())}; more if poses need stronger motors")
-    if stuffed:
-        _print_stuffed(found)
-    elif words and thorough:
-        _print_out_of_plane(found)
+    curled = _print_stuffed(found) if stuffed else _print_out_of_plane(found) if words and thorough else None
     reaches = bool(found.markers and found.cables)
     if reaches and thorough:
         _print_workspaces(found)
     left_out = ["marker workspaces"] * reaches + ["out-of-plane motion"] * (bool(words) and not stuffed)
     if left_out and not thorough:
         print(f"not computed: {' and '.join(left_out)}. Add --thorough. Loads of poses: hydrostat fabricate.")
-    _print_judgement(found)
+    _print_judgement(found, curled)
 
 
-def _print_judgement(robot: "Robot") -> None:
-    """Print the design review of a robot, as the studio does, regardless of the motor loads in its poses."""
+def _print_judgement(robot: "Robot", curled: str | None) -> None:
+    """Print the design review of a robot, as the studio does, and a warning of its stuffed body.
+
+    Motor loads of its poses are left aside.
+    """
     from hydrostat.design import Constraints, Diagnostic, Severity, find_no_room, review_robot
     from hydrostat.errors import NO_KIT, in_words
 
@@ -78,6 +78,7 @@ def _print_judgement(robot: "Robot") -> None:
     found += review_robot(robot, constraints=Constraints())
     if not robot.cables and (words := find_no_room(robot)):
         found.append(Diagnostic(text=words, weight=Severity.MIND, places=()))
+    found += [Diagnostic(text=curled, weight=Severity.MIND, places=())] if curled else []
     for finding in found:
         print(f"{FINDINGS[finding.weight]}: {in_words(finding.text)}")
     refused, risky = (sum(one.weight is weight for one in found) for weight in (Severity.REFUSED, Severity.MIND))
@@ -133,23 +134,26 @@ def _print_workspaces(robot: "Robot") -> None:
 _LARGE = 5000  # nodes of a body from which on even the fewest poses take long
 
 
-def _print_out_of_plane(robot: "Robot") -> None:
-    """Print the out-of-plane displacement of a stuffed flat robot with its cables as routed, if quickly computed."""
+def _print_out_of_plane(robot: "Robot") -> str | None:
+    """Print the out-of-plane displacement of a stuffed flat robot, if quickly computed; return its warning."""
     from hydrostat.errors import NotConvergedError
     from hydrostat.simulation import is_stuffed_motion_fast, solve_stuffed_motion
 
     if not is_stuffed_motion_fast(robot, len(robot.poses)):
         if robot.body.outline is not None and robot.poses:
             print("3D effect when stuffed: not computed (slow). Run hydrostat check --stuffed")
-        return
+        return None
     try:
-        print(f"3D effect when stuffed: {solve_stuffed_motion(robot, _full_contractions(robot))}")
+        found = solve_stuffed_motion(robot, _full_contractions(robot))
     except (InputError, NotConvergedError) as error:
         print(f"3D effect when stuffed: not computed ({error})")
+        return None
+    print(f"3D effect when stuffed: {found}")
+    return found.warning
 
 
-def _print_stuffed(robot: "Robot") -> None:
-    """Print the out-of-plane displacement of a flat robot once it is stuffed, by cable face."""
+def _print_stuffed(robot: "Robot") -> str | None:
+    """Print the out-of-plane displacement of a stuffed flat robot by cable face; return the warning of its own."""
     from hydrostat.robot import Face
     from hydrostat.simulation import solve_stuffed_motion
 
@@ -159,8 +163,10 @@ def _print_stuffed(robot: "Robot") -> None:
         raise InputError("--stuffed: needs at least one [[pose]] and one [[cable]]. Add them or remove --stuffed.")
     pulled = _full_contractions(robot)
     print("Stuffed 3D body, contractions of the flat model (maximum over markers and poses):")
-    for face in Face:
-        print(f"  cables {face.words}: {solve_stuffed_motion(robot, pulled, face)}")
+    by_face = {face: solve_stuffed_motion(robot, pulled, face) for face in Face}
+    for face, found in by_face.items():
+        print(f"  cables {face.words}: {found}")
+    return by_face[robot.face or Face.FRONT].warning
 
 
 def _full_contractions(robot: "Robot") -> list[Any]:

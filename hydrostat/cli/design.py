@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from hydrostat.cli.check import print_sewing
-from hydrostat.cli.design_record import open_record, tell_record, write_record
+from hydrostat.cli.design_record import RECORDS, open_record, tell_record, write_record
 from hydrostat.cli.design_results import STALE, print_front, print_poses, write_kit, write_results
 from hydrostat.cli.design_wishes import DesignArguments, parse_request
 from hydrostat.cli.fabricate import print_kit
@@ -269,7 +269,7 @@ def _write(network: "Network", out: Path, *, kit: bool) -> "Kit | None":
     began = time.perf_counter()
     with progress_bar() as progress:
         progress("Writing results", 0, 1)
-        with result_folder(out, stale=STALE) as folder:
+        with result_folder(out, stale=STALE, kept=RECORDS) as folder:
             write_results(network, folder)
         Kit.forget_files(out / "kit")
         made = write_kit(network, out / "kit") if kit else None

@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from hydrostat.design import DesignRequest, Network, SearchRecord
     from hydrostat.robot import Robot
 
-_FILE, _OLD = "search.json", "search.old.json"
+RECORDS = _FILE, _OLD = "search.json", "search.old.json"
+"""Files of a search that stand in a result folder before the results."""
 
 
 def open_record(out: Path, robot: "Robot", request: "DesignRequest", *, resume: bool) -> "SearchRecord":

@@ -91,25 +91,27 @@ def require_writable(folder: Path, what: str) -> None:
 
 
 @contextmanager
-def result_folder(out: Path, *, stale: str | None = None) -> Iterator[Path]:
+def result_folder(out: Path, *, stale: str | None = None, kept: Iterable[str] = ()) -> Iterator[Path]:
     """A folder to write to, whose files come to `out` at the end; nowhere if an error or Ctrl-C comes first.
 
-    A new folder is renamed as a whole. In one that exists each file takes the place of the one of its name, and others
-    stay, but for folders of earlier results that match the pattern `stale`.
+    A new folder is renamed as a whole, also where `out` has only files with the names in `kept`, which come along. In
+    another that exists each file takes the place of the one of its name, and others stay, but for folders of earlier
+    results that match the pattern `stale`.
     """
     from hydrostat.files import temporary_path
 
-    out = out.resolve()
-    beside = out if out.exists() else out.parent
+    out, names = out.resolve(), set(kept)
+    is_new = not out.exists() or (bool(names) and set(os.listdir(out)) <= names)
+    beside = out.parent if is_new else out
     beside.mkdir(parents=True, exist_ok=True)
     part = temporary_path(beside / out.name)
     shutil.rmtree(part, ignore_errors=True)
     part.mkdir()
     try:
         yield part
-        if not out.exists():
-            with suppress(OSError):  # another made it meanwhile
-                part.rename(out)
+        if is_new:
+            with suppress(OSError):  # another wrote to it meanwhile, or folders cannot be replaced
+                _replace_empty(out, part, names)
         if part.exists():
             _remove(out, stale)
             _move_files(part, out)
@@ -119,6 +121,16 @@ def result_folder(out: Path, *, stale: str | None = None) -> Iterator[Path]:
         raise InputError(str(error).replace(str(part), str(out))) from None
     finally:
         shutil.rmtree(part, ignore_errors=True)
+
+
+def _replace_empty(out: Path, part: Path, names: Iterable[str]) -> None:
+    """Move the files of these names from a folder into another, which takes the place of the first (OSError)."""
+    present = [name for name in names if (out / name).is_file()]
+    for name in present:
+        shutil.copy2(out / name, part / name)
+    for name in present:
+        (out / name).unlink()
+    part.rename(out)
 
 
 def _remove(out: Path, stale: str | None) -> None:

@@ -29,6 +29,20 @@ class StuffedMotion:
         )
         return f"{out} mm out of plane, {aside} mm in-plane deviation (flat model moves {moved} mm)"
 
+    @property
+    def warning(self) -> str | None:
+        """Warning of cables on one side that bend the body out of its plane; None where a quarter of the move is more.
+
+        Motion out of the plane is in no flat model, and no flat design counts it.
+        """
+        most = 0.25  # share of the displacement in the flat model; pairs stay within a millimeter of the plane
+        if self.face.flat or self.out <= most * self.moved:
+            return None
+        return (
+            f"cables {self.face.words}: they bend the stuffed body {1e3 * self.out:.0f} mm out of plane, where the "
+            f'flat model moves {1e3 * self.moved:.0f} mm in it. Set face = "pairs" above [body] to sew on both panels'
+        )
+
 
 def is_stuffed_motion_fast(robot: Robot, poses: int) -> bool:
     """Return True if `solve_stuffed_motion` of so many poses takes seconds: a flat drawn body, not too fine."""

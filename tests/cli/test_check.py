@@ -142,6 +142,9 @@ def test_a_flat_robot_says_where_its_cables_run_and_what_that_does(
         out = re.match(r"3D effect when stuffed: ([\d.]+) mm out of plane", lines[place + 2])
         assert out is not None
         found[lines[place].removeprefix("cables: ")] = float(out[1])
+        warned = [line for line in lines if line.startswith("warning: cables on the front: they bend")]
+        assert len(warned) == (face is Face.FRONT)
+        assert lines[-1] == f"OK: 0 errors, {len(warned)} warning{'s' * (not warned)}."
     assert 10 < found["on the front"] < 30
     assert found["on both faces, in pairs"] < 1
     fine = replace(robot, face=Face.PAIRS, body=replace(robot.body, element_size=1e-4))

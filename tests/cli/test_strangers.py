@@ -309,6 +309,22 @@ def test_two_writers_of_one_folder(tmp_path: Path) -> None:
     assert sorted(path.name for path in out.iterdir()) == ["a", "a.txt", "made"]
 
 
+def test_results_come_whole_where_only_the_record_of_a_search_is(tmp_path: Path) -> None:
+    """Oracle: the number of the folder itself, which a folder that is filled file by file keeps."""
+    (out := tmp_path / "out").mkdir()
+    (out / "search.json").write_text("steps")
+    for known, is_new in ((("search.json",), True), ((), False)):
+        before = out.stat().st_ino
+        with result_folder(out, kept=known) as part:
+            (part / "a").mkdir()
+            (part / "a" / "b.txt").write_text("b")
+            assert not (out / "a" / "b.txt").exists() or not is_new
+        assert (out.stat().st_ino != before) == is_new
+        assert (out / "search.json").read_text() == "steps"
+        assert (out / "a" / "b.txt").read_text() == "b"
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
+
+
 def test_complaints_name_the_folder_that_was_asked_for(tmp_path: Path) -> None:
     with (
         pytest.raises(InputError, match=rf"^{tmp_path}/out/a\.gif: cannot be written$"),

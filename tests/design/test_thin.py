@@ -1,12 +1,16 @@
 """Holes left out. Oracles: a straight cable, whose inner holes do nothing, and fresh solutions."""
 
+from types import SimpleNamespace
+
 import numpy as np
+import pytest
 from builders import strip_robot
 
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.region import Region
 from hydrostat.design.request import RouteOptions
 from hydrostat.design.routes.evaluator import Evaluator
+from hydrostat.design.routes.final_judgement import FinalJudgement
 from hydrostat.design.routes.growth import Growth
 from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
 from hydrostat.design.routes.propose import Proposals
@@ -55,3 +59,25 @@ def test_holes_that_matter_stay(unchecked: None) -> None:
     assert thinner.cost <= trial.cost
     kept = thinner.layout.routes[0].points[:, 1]
     assert kept.max() > 0.01
+
+
+@pytest.mark.parametrize(("error", "is_thinner"), [(1.01, True), (1.03, False)])
+def test_holes_left_out_may_cost_two_percent_and_the_network_with_them_stays(
+    monkeypatch: pytest.MonkeyPatch, error: float, is_thinner: bool
+) -> None:
+    """Oracle: `thinner_cost` of the rules; the other network is the first alternative, so nothing found is lost."""
+    monkeypatch.setattr("hydrostat.design.routes.final_judgement.kit_fits", lambda _: True)
+    thinner, whole = (SimpleNamespace(robot=None, built=built) for built in (error, 1.0))
+    finalists = SimpleNamespace(
+        judge_all=lambda trials, thorough=True: list(trials),
+        cost=lambda one: one.built,
+        judge=lambda _: None,
+        constraints=SimpleNamespace(built_in=False),
+    )
+    monkeypatch.setattr("hydrostat.design.routes.final_judgement.layout_of", lambda *_: None)
+    judgement = object.__new__(FinalJudgement)  # whose types are not those of the stand-ins
+    vars(judgement).update(
+        finalists=finalists, found=[thinner, whole], passed=[], sizes={}, thinner=thinner, complete=True, networks=[]
+    )
+    judgement.judge_networks()
+    assert judgement.networks == ([thinner, whole] if is_thinner else [whole, thinner])

@@ -114,6 +114,7 @@ class RouteSearch:
         self.stages: list[DesignStage] = []
         self.passed: list[tuple[float, Layout]] = []
         self.found: list[Trial] = []
+        self.thinner: Trial | None = None
         self.best: Trial | None = None
         self.sizes: dict[tuple[int, int], Trial] = {}
         self.grown = 0
@@ -171,7 +172,7 @@ class RouteSearch:
     def _judgement(self, complete: bool) -> FinalJudgement:
         found = self.found if complete else [trial for trial in (self.best,) if trial is not None]
         finalists = self.finalists if complete else replace(self.finalists, restarts=0)
-        return FinalJudgement(self.growth, finalists, found, self.passed, self.sizes, complete=complete)
+        return FinalJudgement(self.growth, finalists, found, self.passed, self.sizes, self.thinner, complete=complete)
 
     def _search(self) -> None:
         if self.constraints.mirror is not None and self.cables < 2:
@@ -207,8 +208,10 @@ class RouteSearch:
                 self._note_network("cables exchanged, via points moved", self.found[0])
                 self.found.sort(key=lambda trial: trial.cost)
         self.progress("Exchanging cables", 1, 1)
-        self.found[0] = self._thin_network(growth, self.found[0])
-        self._note_network("holes left out", self.found[0])
+        self.thinner = self._thin_network(growth, self.found[0])
+        if self.thinner is not None:
+            self.found.insert(0, self.thinner)  # before the network with all holes, which is judged too
+            self._note_network("holes left out", self.thinner)
 
     def _sketch_networks(self, growth: Growth, bare: Trial) -> list[Trial]:
         """Draw networks along the limbs, and grow the best of them by further cables that help."""
@@ -269,13 +272,13 @@ class RouteSearch:
         return trials
 
     @staticmethod
-    def _thin_network(growth: Growth, trial: Trial) -> Trial:
-        """Leave out holes that a network does not need, and refine it once more."""
+    def _thin_network(growth: Growth, trial: Trial) -> Trial | None:
+        """Leave out holes that a network does not need, and refine it once more; None if it keeps its holes."""
         thinner = remove_via_points(growth, trial)
         if thinner is trial:
-            return trial
+            return None
         thinner = growth.refine(thinner)
-        return thinner if thinner.cost < (1 + RULES.thinner_cost) * trial.cost else trial
+        return thinner if thinner.cost < (1 + RULES.thinner_cost) * trial.cost else None
 
     @cached_property
     def finalists(self) -> Finalists:

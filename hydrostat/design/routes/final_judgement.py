@@ -24,6 +24,7 @@ class FinalJudgement:
     found: Sequence[Trial]  # the networks of the search, the best first
     passed: Sequence[tuple[float, Layout]]  # cost and layout of the networks on the way
     sizes: dict[tuple[int, int], Trial]  # the best network of each size
+    thinner: Trial | None  # the network whose holes were left out, which may cost `RULES.thinner_cost` more
     complete: bool  # whether the search came to its end
     networks: list[Alternative] = field(default_factory=list)  # that were judged, the chosen one first
 
@@ -42,6 +43,7 @@ class FinalJudgement:
     def _judge_found(self) -> None:
         judged, finalists = self.networks, self.finalists
         judged += finalists.judge_all(self.found[:1])
+        thinner = judged[0] if judged and self.found[0] is self.thinner else None
         judged += finalists.judge_all(self.found[1:], thorough=not (judged and kit_fits(judged[0])))
         if judged and not kit_fits(judged[0]):
             refined = self.growth.refine if self.complete else self.growth.refine_briefly
@@ -57,7 +59,7 @@ class FinalJudgement:
                 "no network that was found keeps all constraints; relax them, or ask for other numbers of cables"
             )
         best = judged[0]
-        judged.sort(key=finalists.cost)
+        judged.sort(key=lambda one: finalists.cost(one) / (1 + RULES.thinner_cost * (one is thinner)))
         first = next((place for place, network in enumerate(judged) if kit_fits(network)), 0)
         judged.insert(0, judged.pop(first))
         if self.complete and judged[0] is not best:
