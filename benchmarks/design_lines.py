@@ -42,7 +42,8 @@ def row(name: str, out: Path) -> str:
     checks = re.search(r"Quality checks: (\d+) of (\d+)", done.stdout)
     counts = " | ".join(str(len(found)) for found in told.values())
     passed = "/".join(checks.groups()) if checks else "none"
-    return "\n".join([f"| {name} | {counts} | {passed} | {seconds:.0f} |", *told["error"], *told["warning"]])
+    failed = lines[-1:] if done.returncode else []
+    return "\n".join([f"| {name} | {counts} | {passed} | {seconds:.0f} |", *told["error"], *told["warning"], *failed])
 
 
 def main() -> None:
