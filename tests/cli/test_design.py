@@ -84,7 +84,7 @@ OPTIONS = {
     ("--winches", "1", "--cables", "3"): {"winches": 1, "cables": 3},
     ("--winches", "auto"): {"winches": "auto"},
     ("--winches", "auto", "--tolerance", "3 mm"): {"winches": "auto", "options": RouteOptions(tolerance=0.003)},
-    ("--warm-start",): {"improve": True},
+    ("--warm-start",): {"warm_start": True},
     ("--method", "trees"): {"method": "trees", "options": TreeOptions()},
     ("--method", "chang2018", "--tree-option", "phi=0.2"): {
         "method": "chang2018",
