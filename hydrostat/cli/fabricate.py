@@ -46,7 +46,11 @@ def fabricate(
     ] = None,
     motor: Annotated[
         str,
-        typer.Option(metavar="NAME", help="Motor model: n20, xl330, 25d, or auto for the first that is strong enough."),
+        typer.Option(
+            metavar="NAME",
+            help="Motor model: n20, xl330, 25d, xc330, sts3215, sts3215-12v, or auto: the first of n20, xl330 and 25d "
+            "that is strong enough.",
+        ),
     ] = "auto",
     mould: Annotated[
         str | None,

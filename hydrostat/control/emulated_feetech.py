@@ -12,7 +12,20 @@ from typing import Self
 
 from hydrostat.control.dynamixel_packets import ALL, PING, READ, SYNC_READ, SYNC_WRITE, WRITE
 from hydrostat.control.emulated_servos import EmulatedChain, EmulatedServo
-from hydrostat.control.feetech_bus import AMPERE, BOUND, FULL, GOAL, RISE, STALL, STATE, TICK, TORQUE, SumReader, pack
+from hydrostat.control.feetech_bus import (
+    AMPERE,
+    BOUND,
+    FULL,
+    GOAL,
+    RISE,
+    STALL,
+    STATE,
+    TICK,
+    TORQUE,
+    VOLTS,
+    SumReader,
+    pack,
+)
 
 
 class EmulatedLine:
@@ -83,10 +96,13 @@ class EmulatedSts(EmulatedServo):
     """A servo of the STS series; it has no watchdog."""
 
     model: int = 777
+    supply: float = 7.4  # voltage that it measures [V]
+    allowed: tuple[float, float] = (4.0, 8.0)  # least and greatest supply in its memory [V]
 
     def __post_init__(self) -> None:
         self.table = bytearray(80)
         self.table[0:6] = bytes([3, 10, 0, *self.model.to_bytes(2, "little"), self.number])
+        self.table[VOLTS : VOLTS + 2] = bytes([round(10 * self.allowed[1]), round(10 * self.allowed[0])])
         self.table[BOUND : BOUND + 2] = FULL.to_bytes(2, "little")
         self.heard, self.moved = -inf, 0.0
         self.step(0.0, 1e-3)
@@ -118,7 +134,7 @@ class EmulatedSts(EmulatedServo):
         self.angle += speed * dt
         current = min(self.load(self.angle) / self.constant, STALL) if on else 0.0
         self._write_register(STATE, round(self.counted_angle / TICK))
-        self.table[STATE + 6 : STATE + 8] = bytes([74, 85 if self.ails.hot else 35])
+        self.table[STATE + 6 : STATE + 8] = bytes([round(10 * self.supply), 85 if self.ails.hot else 35])
         self._write_register(STATE + 13, round(current / AMPERE))
 
     def _number(self, place: int) -> int:

@@ -71,9 +71,9 @@ def _sum(data: bytes) -> int:
     return ~sum(data) & 0xFF
 
 
-MODEL, LOW, MODE, TORQUE, RISE, GOAL, BOUND, STATE = 3, 9, 33, 40, 41, 42, 48, 56
-"""Registers: model, least and greatest angle, mode, torque on, acceleration (then goal, time and speed), goal, bound of
-torque, present angle (to current)."""
+MODEL, LOW, VOLTS, MODE, TORQUE, RISE, GOAL, BOUND, STATE = 3, 9, 14, 33, 40, 41, 42, 48, 56
+"""Registers: model, least and greatest angle, greatest and least supply, mode, torque on, acceleration (then goal, time
+and speed), goal, bound of torque, present angle (to current)."""
 STATE_BYTES = 15
 MODELS = {777: "STS3215"}
 """By the number of the model."""
@@ -81,6 +81,8 @@ TICK = 2 * pi / 4096  # angle of a step [rad]
 AMPERE = 6.5e-3  # current of a step [A]
 STALL = 2.7
 """Current at stall [A], that of the strongest variant: bounds are shares of the torque at stall."""
+SMALL, LARGE, SMALL_LIMIT = 7.4, 12.0, 10.0
+"""Supplies that STS3215 are sold for, and the greatest limit in the memory of those for the smaller [V]."""
 FULL = 1000  # bound of torque that bounds nothing
 STANDING = 2000  # speed at which they come back to where they shall stand [steps/s]
 FARTHEST = 30719  # step that a servo without limits of angle may go to
@@ -108,6 +110,7 @@ class FeetechBus(ServoBus):
         """Facts of the servos; none has a watchdog, none is written to its lasting memory."""
         with self._lock:
             facts = tuple(self._fact(index, number) for index, number in enumerate(self._numbers))
+            self._check_supply()
             self._known, self._holding = True, False
             return facts
 
@@ -179,6 +182,31 @@ class FeetechBus(ServoBus):
         low, high = _to_signed(told[LOW : LOW + 2], 15), _to_signed(told[LOW + 2 : LOW + 4], 15)
         self._low[index], self._high[index] = (low, high) if low < high else (-FARTHEST, FARTHEST)
         return MotorFacts(number=number, model=MODELS[model], firmware=100 * told[0] + told[1], watchdog=False)
+
+    def _check_supply(self) -> None:
+        """Refuse servos on a supply that is not theirs, and servos of two supplies on one bus (HydrostatError).
+
+        Variants for 7.4 V and 12 V look alike and answer with one model number. They differ in the greatest supply
+        that their memory allows.
+        """
+        ratings = dict[int, float]()
+        for number in self._numbers:
+            told, state = self._get(number, VOLTS, 2), self._get(number, STATE + 6, 1)
+            if told is None or state is None:
+                raise self._silent(number)
+            most, least, volts = 0.1 * told[0], 0.1 * told[1], 0.1 * state[0]
+            ratings[number] = rated = SMALL if most <= SMALL_LIMIT else LARGE
+            if not least <= volts <= most:
+                raise HydrostatError(
+                    f"motor {number} is a servo for {rated:g} V ({least:.1f} to {most:.1f} V) and measures "
+                    f"{volts:.1f} V. Switch the power off, then connect a supply of {rated:g} V."
+                )
+        if len(set(ratings.values())) > 1:
+            first, other = (next(n for n, rated in ratings.items() if rated == volts) for volts in (SMALL, LARGE))
+            raise HydrostatError(
+                f"motor {first} is a servo for {SMALL:g} V, motor {other} one for {LARGE:g} V. Use servos of one "
+                "voltage on a bus: read their labels."
+            )
 
     def _set(self, number: int, place: int, value: bytes, name: str) -> None:
         """Write a register, and read that it was taken: an answer does not tell which question it is to."""

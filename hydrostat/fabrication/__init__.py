@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from hydrostat.fabrication.lists.stitching import depth_table
     from hydrostat.fabrication.moulds.mould import make_mold
     from hydrostat.fabrication.moulds.pocket_room import PocketRoom
-    from hydrostat.fabrication.parts.motor import BOARDS, MOTORS, BoardKind, Motor, board_for
+    from hydrostat.fabrication.parts.motor import ALL_MOTORS, BOARDS, MOTORS, BoardKind, Motor, board_for
     from hydrostat.fabrication.parts.places import GIVES, TOUCHES, UnitBox, seam_of
     from hydrostat.fabrication.parts.winch_unit import unit_room
     from hydrostat.fabrication.patches.skin_mesh import skin_of_surface
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from hydrostat.fabrication.winch_marks import winch_marks_of
 
 __all__ = [
+    "ALL_MOTORS",
     "BOARDS",
     "GIVES",
     "MATERIAL_FIX",

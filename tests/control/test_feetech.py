@@ -157,6 +157,32 @@ def test_who_is_not_ready_is_told() -> None:
         hand.bus.identify()
 
 
+@pytest.mark.parametrize(
+    ("supply", "allowed", "told"),
+    [
+        (12.1, (4.0, 8.0), r"motor 2 is a servo for 7.4 V \(4.0 to 8.0 V\) and measures 12.1 V. Switch the power off"),
+        (3.2, (4.0, 8.0), "motor 2 is a servo for 7.4 V .* measures 3.2 V"),
+        (7.4, (9.0, 14.0), "motor 2 is a servo for 12 V .* measures 7.4 V.* supply of 12 V"),
+        (7.4, (4.0, 14.0), "motor 1 is a servo for 7.4 V, motor 2 one for 12 V. Use servos of one voltage"),
+    ],
+)
+def test_a_servo_on_the_wrong_supply_is_refused(supply: float, allowed: tuple[float, float], told: str) -> None:
+    """Oracle: limits and voltage that the emulated servo was given; none is armed."""
+    hand = Hand()
+    second = EmulatedSts(2, supply=supply, allowed=allowed)
+    chain = EmulatedFeetechChain([hand.servos[0], second])
+    bus = FeetechBus(chain, [1, 2], clock=chain.clock, wait=chain.wait)
+    with pytest.raises(HydrostatError, match=told):
+        bus.identify()
+    assert not second.table[TORQUE]
+
+
+def test_servos_for_12_volts_on_12_volts_are_taken() -> None:
+    chain = EmulatedFeetechChain([EmulatedSts(n, supply=12.1, allowed=(4.0, 14.0)) for n in (1, 2)])
+    facts = FeetechBus(chain, [1, 2], clock=chain.clock, wait=chain.wait).identify()
+    assert [fact.number for fact in facts] == [1, 2]
+
+
 def test_a_servo_that_counts_no_turns_is_never_sent_past_its_limits() -> None:
     hand = Hand()
     for servo in hand.servos:

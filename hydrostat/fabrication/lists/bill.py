@@ -80,6 +80,11 @@ PRICES = MappingProxyType(
             amount=28.64,
             source="parts list of a gripper with two Dynamixel servos (force_gripper_hardware): OpenRB-150",
         ),
+        "bus adapter": Price(
+            amount=11.0,
+            month="2026-11",
+            source="parts list of SO-ARM100 1.3 (TheRobotStudio): Waveshare's bus servo adapter, 11 USD, 12 EUR",
+        ),
         "driver": Price(amount=5.0),
         "supply": Price(amount=10.0),
         "fuse": Price(amount=2.0),

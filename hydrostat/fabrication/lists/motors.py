@@ -200,6 +200,9 @@ PLUG = 3.0
 CELL, CELLS, USED = 1.2, 2.0, 0.8
 """A NiMH cell of size AA: volts, ampere hours, and the share of them that is used."""
 
+FRESH = 1.45
+"""Volts of such a cell fresh from its charger: servos that refuse more than their range get fewer cells. From memory."""
+
 RESTING = 1 / 3
 """Share of the largest currents that motors draw on average while a robot is shown. Assumed, measured on none."""
 
@@ -265,7 +268,7 @@ class PowerPlan:
     @property
     def cells(self) -> int:
         """NiMH cells in a row that come nearest to the motors' volts without going beyond."""
-        return int(self.motor.volts / CELL + 1e-9)
+        return int(self.motor.volts / (FRESH if self.motor.bus == "feetech" else CELL) + 1e-9)
 
     @property
     def hours(self) -> float:

@@ -6,7 +6,7 @@ from dataclasses import replace
 from hydrostat.fabrication.inserts import Insert, InsertKind, filling_volume
 from hydrostat.fabrication.kit_options import Method
 from hydrostat.fabrication.kit_plan import Cloth, FoamNeeds, KitPlan
-from hydrostat.fabrication.lists.bill import NO_SOURCE, PRICES, BillGroup, Item, Price
+from hydrostat.fabrication.lists.bill import PRICES, BillGroup, Item, Price
 from hydrostat.fabrication.lists.cuts import CableCut, SheathCut
 from hydrostat.fabrication.lists.line import FishingLine
 from hydrostat.fabrication.lists.motors import PowerPlan
@@ -137,9 +137,7 @@ def _cables(plan: KitPlan, line: FishingLine, cuts: tuple[CableCut, ...], tubes:
 def _winches(plan: KitPlan) -> list[Item]:
     motor, count = plan.rigid.motor, plan.num_motors
     source = f"the table of motors ({motor.price_source})"
-    price = Price(amount=motor.price, source=source, month="dated as told there")
-    if motor.price_source.startswith(NO_SOURCE):
-        price = Price(amount=motor.price)
+    price = Price(amount=motor.price, source=source, month=f"noted {motor.price_month}")
     bought = [
         _item(BillGroup.WINCHES, "geared motor", motor.title, float(count), price, count * motor.mass),
         *(
@@ -170,6 +168,11 @@ def control_needs(plan: PowerPlan | None) -> list[Item]:
         _item(BillGroup.CONTROL, "switch", f"for {plan.fuse:g} A, large enough to be hit", 1.0, "switch"),
         _item(BillGroup.CONTROL, "twin lead", f"{area:g} mm^2 (AWG {gauge}) or thicker", 2.0, "lead"),
     ]
+    if plan.motor.bus == "feetech":
+        adapter = "Waveshare bus servo adapter or alike, USB to the three wires of ST and SC servos"
+        chain = "of three wires with plugs of 2.54 mm (5264-3), one from servo to servo"
+        board = _item(BillGroup.CONTROL, "bus servo adapter", adapter, 1.0, "bus adapter")
+        return [board, _item(BillGroup.CONTROL, "servo cable", chain, max(count - 1, 1), "servo cable"), *feed]
     if plan.servos:
         bus = "OpenRB-150 or alike, drives the servos by their bus"
         chain = "of three wires with JST EH plugs (X3P), one from servo to servo"

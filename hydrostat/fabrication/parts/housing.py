@@ -11,7 +11,7 @@ from functools import cached_property
 from shapely.geometry import MultiPoint, Polygon
 
 from hydrostat.fabrication.kit_options import PartOptions
-from hydrostat.fabrication.parts.motor import Motor
+from hydrostat.fabrication.parts.motor import Horn, Motor
 from hydrostat.fabrication.parts.screws import Screw
 from hydrostat.fabrication.parts.spool import Spool
 from hydrostat.fabrication.solids.construct import Box, Construction, Corner, Cuboid, Cylinder
@@ -51,9 +51,14 @@ def drive_of(motor: Motor, options: PartOptions) -> Drive:
     if motor.horn is None:
         start = max(plate, motor.shaft.boss_height) + options.clearance
         return Drive(floor=floor, plate=plate, disc=0.0, start=start, tip=motor.shaft.length)
-    disc = motor.horn.screw.floor(options.wall)
+    disc = motor.horn.screw.floor(coupling_wall(motor.horn, options))
     start = max(plate, motor.horn.height + disc + motor.horn.screw.head_height) + options.clearance
     return Drive(floor=floor, plate=plate, disc=disc, start=start, tip=start + STUB)
+
+
+def coupling_wall(horn: Horn, options: PartOptions) -> float:
+    """Least thickness of a coupling under the heads of its screws [mm]: above a hub there is a wall left."""
+    return options.wall if not horn.hub else horn.hub_height + options.clearance + options.wall
 
 
 def roof_of(options: PartOptions) -> float:
@@ -215,6 +220,10 @@ class Housing:
         else:
             body = body - Cylinder(drive.plate, self.recess).move(0, 0, drive.floor)
             body = body - Cylinder(drive.plate, motor.shaft.boss + self.options.clearance).move(0, 0, -1)
+        if motor.ridge is not None:
+            wide, deep, tall = (side + 2 * self.options.clearance for side in motor.ridge.size)
+            x, y, _ = (low - self.options.clearance for low in motor.ridge.low)
+            body = body - Box((wide, deep, tall)).move(x, y, -self.options.clearance)
         for x, y in motor.holes:
             body = body - self._slot(motor.screw.hole / 2).move(x, y, -1)
             if motor.horn is not None:
@@ -275,6 +284,10 @@ class Housing:
             return None
         body: Construction = Cylinder(drive.disc, horn.radius)
         body = body + self.motor.shaft.shape(drive.tip - horn.height)
+        if horn.hub:
+            body = body - Cylinder(
+                horn.hub_height + self.options.clearance + 1, horn.hub + self.options.clearance
+            ).move(0, 0, -1)
         hole = Cylinder(drive.disc + 2, horn.screw.hole / 2).move(horn.circle, 0, -1)
         for step in range(horn.count):
             body = body - hole.rotate(z=360 / horn.count * step)

@@ -5,10 +5,10 @@ All motors stand alike: the shaft is the z axis, the face that is screwed on lie
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.solids.construct import Box, Construction, Corner, Cylinder, segments
+from hydrostat.fabrication.solids.construct import Box, Construction, Corner, Cuboid, Cylinder, segments
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -110,6 +110,8 @@ class Horn:
     circle: float  # radius of the circle of its screw holes [mm]
     count: int  # number of its screw holes, the first at +x
     screw: FaceScrew  # screws in these holes
+    hub: float = 0.0  # radius of the hub that stands on the disc; 0: there is none
+    hub_height: float = 0.0  # height of that hub above the disc
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -124,6 +126,7 @@ class Motor:
     shaft: Shaft  # shaft that turns the spool; with a horn the coupling's, its length counted from the horn's top
     horn: Horn | None = None  # horn of a servo; None: the shaft is the motor's own
     holes: tuple[Corner, ...]  # places of the screws in the face
+    ridge: Cuboid | None = None  # part of its case that stands above the face
     # half length of the slots in the mating part along x [mm], as the place of the motor's holes is uncertain
     slot: float = 0.0
     screw: FaceScrew  # screw in the face
@@ -137,15 +140,21 @@ class Motor:
     mass: float  # [g]
     price: float  # price of one, rough [USD]
     price_source: str  # source of the price, with its date
+    price_month: str  # month of that price, or in which it was noted where the source has no date
+    bus: str = ""  # bus of a servo, by the name that --motors takes; empty for a geared motor
     source: str  # sources of its figures, and those that are uncertain
 
     @property
     def envelope(self) -> Construction:
         """Shape of all of it with what turns, without the coupling."""
+        body = self.body
+        if self.ridge is not None:
+            body = body + Box(self.ridge.size).move(*self.ridge.low)
         if self.horn is not None:
-            return self.body + Cylinder(self.horn.height, self.horn.radius)
+            hub = Cylinder(self.horn.height + self.horn.hub_height, self.horn.hub or self.shaft.diameter / 2)
+            return body + Cylinder(self.horn.height, self.horn.radius) + hub
         boss = Cylinder(self.shaft.boss_height, self.shaft.boss)
-        return self.body + boss + self.shaft.shape(self.shaft.length)
+        return body + boss + self.shaft.shape(self.shaft.length)
 
     def largest_torque(self, *, inside: bool = False) -> float:
         """The most that poses may ask of a motor [N m], with the margin.
@@ -158,19 +167,19 @@ class Motor:
     def choose(key: str, torques: Iterable[float], *, inside: bool = False, winches: int = 0) -> "Motor":
         """The motor of a key; "auto": the first of the table that carries the largest torque [N m], with the margin.
 
-        Outside the body it must carry it for long; `inside`, where there is little room, for seconds. Where none does
-        it is the strongest. More `winches` outside than one board bears get servos, which share one bus. Raises
-        InputError if no motor has this key.
+        Motors of `MORE_MOTORS` are taken by their key only. Outside the body a motor must carry the torque for long;
+        `inside`, where there is little room, for seconds. Where none does it is the strongest. More `winches` outside
+        than one board bears get servos, which share one bus. Raises InputError if no motor has this key.
         """
         if key == "auto":
             needed = max((float(torque) for torque in torques), default=0.0) - 1e-12
             able = [each for each in MOTORS if each.largest_torque(inside=inside) >= needed] or [MOTORS[-1]]
             many = winches > max(board.motors for board in BOARDS.values()) and not inside
             return next((each for each in able if each.horn is not None or not many), able[0])
-        for motor in MOTORS:
+        for motor in ALL_MOTORS:
             if motor.key == key:
                 return motor
-        raise InputError(f'unknown motor "{key}". Available: auto, {", ".join(each.key for each in MOTORS)}.')
+        raise InputError(f'unknown motor "{key}". Available: auto, {", ".join(each.key for each in ALL_MOTORS)}.')
 
 
 def _box_outline(low: Corner, high: Corner) -> tuple[Corner, ...]:
@@ -185,6 +194,7 @@ def _disc_outline(radius: float) -> tuple[Corner, ...]:
 _M1_6 = FaceScrew(size="M1.6", hole=1.9, head=3.2, head_height=1.3, depth=1.3)
 _M2 = FaceScrew(size="M2", hole=2.4, head=4.0, head_height=1.6, depth=4.0)
 _M2_HORN = FaceScrew(size="M2", hole=2.4, head=4.0, head_height=1.6, depth=2.5)
+_M3_HORN = FaceScrew(size="M3", hole=3.4, head=5.6, head_height=2.4, depth=2.5)
 _M3 = FaceScrew(size="M3", hole=3.4, head=5.6, head_height=2.4, depth=3.0)
 
 _N20 = Motor(
@@ -206,6 +216,7 @@ _N20 = Motor(
     mass=10.0,
     price=18.0,
     price_source="of its sister HPCB 75:1, 17.95 in an order list of the team ASROB-sumo, which has no date",
+    price_month="2026-11",
     source="Pololu, Micro Metal Gearmotors, Rev 2.0, May 2018: stall 20 kg mm (extrapolated), 45 rpm, 10 g, gearbox "
     "9 mm, M1.6 screws at most 1.3 mm deep; LP 6V: 0.36 A at stall, 0.02 A without load, 297.92:1. Pololu, product "
     "page 5215: section 10 x 12 mm, D shaft 3 x 9 mm. Load at most a quarter of stall: Pololu's forum, thread 14572 "
@@ -230,8 +241,10 @@ _XL330 = Motor(
     stall_current=1.47,
     free_current=0.02,
     mass=18.0,
-    price=25.0,
-    price_source="estimate, no source",
+    price=24.0,
+    price_source="bill of materials of the Koch arms (huggingface/lerobot): 24 USD, 40 to 46 EUR, no date",
+    price_month="2026-11",
+    bus="dynamixel",
     source="Robotis e-Manual, XL330-M288-T: 20 x 34 x 26 mm, 18 g, at 5 V stall 0.52 N m at 1.47 A, and 103 rpm. "
     "Load at most a fifth of stall: the same manual's note on XL-320 and AX-18A. Axis 9.5 mm below the top, case "
     "23 mm, horn 16 mm wide with 4 holes 6 mm from its axis, holes of the case 16 x 30 mm apart: a public OpenSCAD "
@@ -258,6 +271,7 @@ _POLOLU_25D = Motor(
     mass=100.0,
     price=47.0,
     price_source="AUD 72.95 for its sister 4822 at robotgear.com.au, no date, at 0.65 USD",
+    price_month="2026-11",
     source="Pololu, product page 4828: 25 mm wide, 71 mm long with encoder, D shaft 4 x 12.5 mm, stall 14 kg cm "
     "(extrapolated) at 2.0 A, 35 rpm at 0.12 A, 48 counts in a turn of the motor, 171.79:1. M3 holes 17 mm apart: Core "
     "Electronics, on the face of the motor of this family. Load at most a quarter of stall: Pololu's forum, thread "
@@ -265,7 +279,74 @@ _POLOLU_25D = Motor(
     "the threads, mass: measured on none, check yours.",
 )
 
+_XC330 = replace(
+    _XL330,
+    key="xc330",
+    title="Robotis Dynamixel XC330-M288-T",
+    stall_torque=930.0,
+    rated_torque=186.0,
+    speed=81.0,
+    stall_current=1.8,
+    mass=23.0,
+    price=107.0,
+    price_source="335.60 GBP for four in the bill of an adapter for surgical tools (Manaf2584), no date, at 1.28 USD",
+    source="Robotis e-Manual, XC330-M288-T: 20 x 34 x 26 mm, 23 g, at 5 V stall 0.93 N m at 1.80 A, and 81 rpm, metal "
+    "gears. Same case and horn as XL330 (the manual: same form factor); all places of holes as there, check yours.",
+)
+
+_STS3215 = Motor(
+    key="sts3215",
+    title="Feetech STS3215, 7.4 V, 19.5 kg cm (Waveshare, DFRobot: ST3215)",
+    body=Box((24.8, 45.4, 30.2)).move(-12.4, -35.2, -30.2)
+    + Cylinder(2.2, 10.0).move(0, 0, -32.4)
+    + Box((24.8, 29.9, 3.9)).move(-12.4, -35.2, -34.1),
+    outline=_box_outline((-12.4, -35.2), (12.4, 10.2)),
+    depth=34.1,
+    ridge=Cuboid(low=(-7.0, -34.8, 0.0), high=(7.0, -28.5, 2.7)),
+    shaft=Shaft(diameter=6.0, across=5.0, length=0.0, boss=10.0, boss_height=0.0),
+    horn=Horn(radius=10.0, height=2.5, circle=7.0, count=4, screw=_M3_HORN, hub=4.5, hub_height=3.0),
+    holes=((-10.25, -8.4), (10.25, -8.4), (-10.25, -29.1), (10.25, -29.1)),
+    slot=0.5,
+    screw=_M2,
+    stall_torque=1912.0,
+    rated_torque=382.0,
+    speed=52.0,
+    volts=7.4,
+    stall_current=2.7,
+    free_current=0.15,
+    mass=55.0,
+    price=15.0,
+    price_source="parts list of SO-ARM100 1.3 (TheRobotStudio): 15 USD, 13 EUR each, no date",
+    price_month="2026-11",
+    bus="feetech",
+    source="Little Bird Electronics, SER0069: 19.5 kg cm and 52 rpm at 7.4 V, 0.15 A without load, 4 to 7.4 V. Case, "
+    "horn (20 x 2.5 mm, 4 holes of 2.5 mm on a circle of 14 mm, M3 cut into them), ridge and depth: table of verified "
+    "parts of the robot Nova SM3, from Feetech's own model, 2026-07. Holes of the upper face: an OpenSCAD file of the "
+    "like case of LX-16A (plastibot/nenemiz), whose lower holes are those of that table. Load at most a fifth of "
+    "stall, as for the other servos. Current at stall: that of the 12 V variant. Mass, radius of the hub (4.5 mm): "
+    "measured on none, check yours.",
+)
+
+_STS3215_12V = replace(
+    _STS3215,
+    key="sts3215-12v",
+    title="Feetech STS3215-C018, 12 V, 30 kg cm",
+    stall_torque=2942.0,
+    rated_torque=588.0,
+    speed=45.0,
+    volts=12.0,
+    free_current=0.2,
+    price=17.6,
+    price_source="105.66 USD for six with an adapter (Alibaba) in the list of mhered/my_SO100ARM, no date",
+    source="Robonine, test of STS3215 C018: 30 kg cm and 45 rpm at 12 V by the data sheet; measured 35 kg cm, 46 rpm, "
+    "48 degree C after an hour at 15 kg cm, 71 degree C after two hours of swinging. Load at most a fifth of stall. "
+    "Case, horn, holes: as of the 7.4 V variant; current without load: estimate, check yours.",
+)
+
 MOTORS = (_N20, _XL330, _POLOLU_25D)  # from the weakest to the strongest
+MORE_MOTORS = (_XC330, _STS3215, _STS3215_12V)
+"""Motors that kits mount where their key is given: "auto" does not choose them."""
+ALL_MOTORS = (*MOTORS, *MORE_MOTORS)
 
 MARGIN = 2.0
 """Torque that a motor should have over the largest that was simulated. Simulated cables mostly run without friction:

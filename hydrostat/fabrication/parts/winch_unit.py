@@ -9,7 +9,7 @@ from manifold3d import Manifold
 
 from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.arrangement import LaidUnit, arrange_units
-from hydrostat.fabrication.parts.housing import Housing, drive_of, roof_of
+from hydrostat.fabrication.parts.housing import Housing, coupling_wall, drive_of, roof_of
 from hydrostat.fabrication.parts.motor import Motor
 from hydrostat.fabrication.parts.places import UnitBox, UnitPlace, seam_of
 from hydrostat.fabrication.parts.spool import Groove, Spool, capacity, spool_turns, width_for
@@ -386,7 +386,7 @@ def _bought_pieces(housing: Housing) -> tuple[tuple[str, int], ...]:
     motor, wall = housing.motor, housing.options.wall
     found = [(motor.screw.title(wall), len(motor.holes))]
     if motor.horn is not None:
-        found.append((motor.horn.screw.title(wall), motor.horn.count))
+        found.append((motor.horn.screw.title(coupling_wall(motor.horn, housing.options)), motor.horn.count))
     found.append((housing.screw.title, 4))
     if housing.outside:
         found.append(("M2 nut", 4))

@@ -149,8 +149,17 @@ def power_facts(plan: PowerPlan | None, robot: Robot) -> PowerFacts | None:
         "Minus of the supply and GND of the board are joined. Plus never goes to a pin of the board that is no supply.",
         f"From NiMH cells use {plan.cells} in a row with the same fuse; never charge them in the robot.",
     ]
-    if plan.servos:
+    if plan.motor.bus == "feetech":
+        mind += [
+            "STS3215 are sold for 7.4 V and for 12 V, in one case. "
+            f"This kit needs those for {plan.motor.volts:g} V: read the label of each servo. "
+            "On the wrong supply hydrostat refuses them as it connects.",
+            "Give each servo its number with the maker's program FD, one at a time, before you chain them. "
+            "Set both limits of angle to 0 there.",
+        ]
+    elif plan.servos:
         mind.append("Give each servo its number by ROBOTIS' Dynamixel Wizard, one at a time, before you chain them.")
+    if plan.servos:
         return {
             "rows": [list(row) for row in plan.table.texts],
             "mind": mind,

@@ -14,7 +14,7 @@ from hydrostat.fabrication.lists.cuts import cable_cuts, sheath_cuts
 from hydrostat.fabrication.lists.line import line_for
 from hydrostat.fabrication.lists.motors import power_plan
 from hydrostat.fabrication.lists.needs import all_needs, filling_mass
-from hydrostat.fabrication.parts.motor import MOTORS
+from hydrostat.fabrication.parts.motor import ALL_MOTORS, MOTORS
 from hydrostat.fabrication.solids.construct import Box, solid_of
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Winch
@@ -125,10 +125,12 @@ def test_what_closes_a_mould() -> None:
 
 
 def test_motors_keep_the_source_of_their_price() -> None:
-    for motor in MOTORS:
+    for motor in ALL_MOTORS:
         price = needs(given(square(), motor=motor))["geared motor"].price
         assert price.amount == motor.price
         assert motor.price_source in price.words
+        assert motor.price_month in price.words
+        assert motor.title in needs(given(square(), motor=motor))["geared motor"].specification
 
 
 def test_a_robot_without_a_zipper_buys_none() -> None:

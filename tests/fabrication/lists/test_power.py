@@ -4,7 +4,7 @@ import pytest
 
 from hydrostat.fabrication.lists.motors import PLUG, PowerPlan, power_plan
 from hydrostat.fabrication.lists.needs import control_needs
-from hydrostat.fabrication.parts.motor import MOTORS, board_for
+from hydrostat.fabrication.parts.motor import ALL_MOTORS, MOTORS, board_for
 
 N20, XL330, POLOLU_25D = MOTORS
 
@@ -19,6 +19,21 @@ def test_three_servos_by_hand() -> None:
     assert plan.cells == 4
     assert plan.hours == pytest.approx(0.8 * 2.0 / 0.31)
     assert {row.what: row.amount for row in plan.table.rows}["supply"] == "5 V, 3 A or more"
+
+
+@pytest.mark.parametrize(("key", "volts", "dollars"), [("sts3215", "7.4 V", 60.5), ("sts3215-12v", "12 V", 65.5)])
+def test_two_bus_servos_cost_about_sixty_dollars(key: str, volts: str, dollars: float) -> None:
+    """Oracle: by hand, 2 x 15 + 11 + 10 + 2 + 3 + 2 + 2 = 60 USD, less than 60 EUR; servos for 12 V cost 17.6 each."""
+    servo = next(motor for motor in ALL_MOTORS if motor.key == key)
+    items = control_needs(power_plan(dict.fromkeys("ab", 100.0), servo))
+    assert sum(item.cost for item in items) + 2 * servo.price < dollars
+    plan = power_plan(dict.fromkeys("ab", 100.0), servo)
+    assert plan is not None
+    assert 1.45 * plan.cells <= servo.volts + 0.6  # of 8.0 V that the smaller allows
+    what = {item.what: item.specification for item in items}
+    assert what["power supply"].startswith(volts)
+    assert "bus servo adapter" in what
+    assert "controller board for servos" not in what
 
 
 def test_ten_strong_servos_are_fed_in_several_places() -> None:

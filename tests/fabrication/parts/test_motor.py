@@ -1,14 +1,16 @@
 """Motors: the table is consistent, the choice is the first that carries the load, screws do not go too deep."""
 
+import re
+
 import pytest
 from manifold3d import Manifold
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.parts.motor import MOTORS, FaceScrew, Motor
+from hydrostat.fabrication.parts.motor import ALL_MOTORS, MOTORS, FaceScrew, Motor
 from hydrostat.fabrication.solids.construct import solid_of
 
 
-@pytest.mark.parametrize("motor", MOTORS, ids=lambda motor: motor.key)
+@pytest.mark.parametrize("motor", ALL_MOTORS, ids=lambda motor: motor.key)
 def test_the_outline_is_that_of_the_body(motor: Motor):
     """Oracle: the box round the solid."""
     low_x, low_y, low_z, high_x, high_y, high_z = solid_of(motor.body).bounding_box()
@@ -17,10 +19,10 @@ def test_the_outline_is_that_of_the_body(motor: Motor):
     assert (low_z, high_z) == pytest.approx((-motor.depth, 0.0))
 
 
-@pytest.mark.parametrize("motor", MOTORS, ids=lambda motor: motor.key)
+@pytest.mark.parametrize("motor", ALL_MOTORS, ids=lambda motor: motor.key)
 def test_what_turns_stands_on_the_face(motor: Motor):
     top = solid_of(motor.envelope).bounding_box()[5]
-    assert top == pytest.approx(motor.horn.height if motor.horn else motor.shaft.length)
+    assert top == pytest.approx(motor.horn.height + motor.horn.hub_height if motor.horn else motor.shaft.length)
 
 
 def test_the_flat_of_a_shaft_is_where_it_is_said():
@@ -33,11 +35,14 @@ def test_the_flat_of_a_shaft_is_where_it_is_said():
 def test_every_motor_is_stronger_than_the_one_before_and_says_where_its_figures_are_from():
     rated = [motor.rated_torque for motor in MOTORS]
     assert rated == sorted(rated)
-    for motor in MOTORS:
+    for motor in ALL_MOTORS:
         assert motor.rated_torque < motor.stall_torque / 3
         assert "check yours" in motor.source
         assert motor.price > 0
+        assert "no source" not in motor.price_source
         assert motor.price_source
+        assert re.fullmatch(r"20\d\d-[01]\d", motor.price_month)
+        assert (motor.bus != "") == (motor.horn is not None)
 
 
 def test_auto_takes_the_first_that_carries_the_load_for_long():
@@ -65,14 +70,16 @@ def test_a_motor_that_was_named_is_taken():
 
 
 def test_an_unknown_motor_is_refused_with_those_there_are():
-    with pytest.raises(InputError, match=r'unknown motor "nema"\. Available: auto, n20, xl330, 25d'):
+    with pytest.raises(
+        InputError, match=r'unknown motor "nema"\. Available: auto, n20, xl330, 25d, xc330, sts3215, sts3215-12v'
+    ):
         Motor.choose("nema", [0.1])
 
 
 @pytest.mark.parametrize("wall", [0.8, 1.2, 1.6, 2.0, 3.1])
 def test_screws_reach_into_the_motor_and_not_too_deep(wall: float):
     """Oracle: length minus floor."""
-    for screw in (*(motor.screw for motor in MOTORS), *(motor.horn.screw for motor in MOTORS if motor.horn)):
+    for screw in (*(motor.screw for motor in ALL_MOTORS), *(motor.horn.screw for motor in ALL_MOTORS if motor.horn)):
         into = screw.length(wall) - screw.floor(wall)
         assert screw.floor(wall) >= wall
         assert 0.6 * screw.depth <= into <= screw.depth
@@ -95,3 +102,9 @@ def test_more_winches_than_a_board_bears_get_servos_where_they_carry_it() -> Non
     assert Motor.choose("auto", [0.01], winches=7) is xl330
     assert Motor.choose("auto", [0.01], winches=7, inside=True) is n20
     assert Motor.choose("auto", [0.1], winches=7) is strong
+
+
+def test_a_motor_of_the_second_table_is_taken_by_its_key_only() -> None:
+    assert Motor.choose("sts3215-12v", [0.1]).volts == 12.0
+    assert Motor.choose("sts3215", [0.1]).volts == 7.4
+    assert all(Motor.choose("auto", [torque]) in MOTORS for torque in (0.01, 0.06, 0.3, 2.0))

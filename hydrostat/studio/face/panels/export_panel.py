@@ -7,7 +7,7 @@ from typing import Any
 
 from nicegui import ui
 
-from hydrostat.fabrication import MOTORS, KitOptions, Method, MoldKind, Paper
+from hydrostat.fabrication import ALL_MOTORS, KitOptions, Method, MoldKind, Paper
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.exporting.download import Download, file_name
 from hydrostat.studio.exporting.exporter import Export
@@ -196,7 +196,7 @@ def kit_choices(page: WindowPage) -> None:
     """Method, motor and paper; the rest behind a door."""
     exporter = page.session.exporter
     given: dict[str, Any] = {}
-    motors = {"auto": "Auto, by strength", **{motor.key: motor.title for motor in MOTORS}}
+    motors = {"auto": "Auto, by strength", **{motor.key: motor.title for motor in ALL_MOTORS}}
     with ui.element("div").classes("export-form"):
         ui.label("Body")
         given["method"] = ui.toggle(METHODS).props("dense no-caps unelevated").props('data-testid="kit-method"')
