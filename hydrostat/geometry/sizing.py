@@ -21,6 +21,7 @@ class TooManyNodesError(SurfaceError):
 
 
 FEWEST, MOST = 10, 200_000  # nodes that may be asked for
+_NEAR = 0.15  # the same for the first mesh, where a few must do
 CLOSE = 0.1  # how far the number may be off, as a fraction of it
 
 
@@ -48,7 +49,8 @@ def size_for(
         content: area [m^2] or volume [m^3] of the body.
         rim: length [m] or area [m^2] of its boundary, for a better first guess.
         dim: 2 or 3.
-        is_hasty: settle for a number within a quarter after a few meshes, as of a file that nobody knows.
+        is_hasty: settle for a number within a quarter after a few meshes, as of a file that nobody knows; or for more
+            where walls are so thin that coarser elements, refined there, need no fewer nodes.
 
     Raises:
         InputError: fewer nodes than a body so thin can have, or no mesh at all. Where `make` raises only
@@ -78,6 +80,9 @@ def size_for(
             count = 0 if isinstance(error, SurfaceError) or size**dim > fine * content else 10 * MOST
         if abs(count / nodes - 1) <= CLOSE:
             return size
+        if is_hasty and above and not tried and len(above) == 1:
+            size *= 0.8  # walls thinner than the elements were refined: finer ones need less of that
+            continue
         low, high = (size, high) if count > nodes else (low, size)
         size *= (max(count, 0.3 * nodes) / nodes) ** (1 / dim)
         if not low < size < high:
@@ -92,6 +97,11 @@ def size_for(
 def _is_enough(tried: dict[float, int], above: dict[float, int], nodes: int) -> bool:
     """Return True if a number is near enough for the nodes that were made to find it."""
     best = min((abs(count / nodes - 1) for count in tried.values()), default=np.inf)
+    if not tried and len(above) == 1:
+        return False  # a finer size comes next
+    finest = min(tried, default=np.inf)
+    if best <= _NEAR or any(size > finest for size in above):
+        return True  # near enough, or coarser elements need more nodes, as walls are thin
     made = sum(tried.values()) + sum(above.values())
     quick = 2000  # nodes that are made in a second or two
     return made >= max(quick, nodes * (2.2 if best <= 0.25 else 7.0 if tried else 4.0))

@@ -70,8 +70,9 @@ class SurfaceSketch:
         healing = heal(before, resolution=(element_size or _guess(before, nodes)) / 4)
         closed, meshes = healing.surface, {}
 
-        def fill(trial: float, most: float = 1.6) -> Mesh:
+        def fill(trial: float) -> Mesh:
             told(f"filling it with elements of {1e3 * trial:.3g} mm" + f", try {len(meshes) + 1}" * bool(meshes))
+            most = 1.6 if meshes else 4.0
             meshes[trial] = tetrahedralize(closed, trial, most_nodes=np.inf if element_size else most * nodes)
             return meshes[trial]
 
@@ -85,7 +86,7 @@ class SurfaceSketch:
             material=known,
             size=size,
             element_size=length,
-            mesh=meshes[length] if length in meshes else fill(length, 4.0),
+            mesh=meshes[length] if length in meshes else fill(length),
             healing=healing,
         )
         told("finding ends, winches and cables")

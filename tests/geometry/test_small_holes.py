@@ -6,6 +6,7 @@ from manifold3d import Manifold
 from solids import euler
 
 from hydrostat.errors import InputError
+from hydrostat.geometry.mesh import Mesh
 from hydrostat.geometry.sizing import TooManyNodesError, size_for
 from hydrostat.geometry.surface import Solid, Surface
 from hydrostat.geometry.tetrahedra.small_holes import fill_small_holes
@@ -142,3 +143,28 @@ def test_a_search_that_finds_only_too_many_ends_soon() -> None:
     assert size == tries[0]
     assert len(tries) <= 3
     assert issubclass(TooManyNodesError, InputError)
+
+
+def test_thin_walls_are_tried_with_finer_elements() -> None:
+    """Coarser elements are refined at thin walls, so that they need more nodes than finer ones."""
+    tries = []
+
+    def make(trial: float) -> Mesh:
+        tries.append(trial)
+        if trial == tries[0]:
+            raise TooManyNodesError("too many", 4800)
+        return Mesh(np.zeros((1900, 3)), np.zeros((0, 4), dtype=int))
+
+    assert size_for(1000, make, content=1e-5, rim=6e-3, dim=3, is_hasty=True) == tries[1]
+    assert tries[1] == pytest.approx(0.8 * tries[0], rel=0.01)
+    assert len(tries) == 2
+
+
+def test_finer_elements_that_do_not_help_are_left() -> None:
+    """Bumps smaller than the elements: a first mesh within half an element is kept."""
+    body = Manifold.cube((40, 20, 8))
+    for number in range(8):
+        body += Manifold.sphere(0.9, 12).translate((3 + 5 * number, 10, 8))
+    mesh = tetrahedralize(of(body), 0.0035)
+    assert len(mesh.nodes) < 500  # 568 with the rounds that do not help
+    assert fit(mesh, Solid(of(body)), 0.001).largest < 0.5 * 0.0035

@@ -137,8 +137,12 @@ _ADVICE = 0.7
 """Largest advised size, as a share of one that was too large; repeated advice then ends at a size that works."""
 
 
-_MANY, _CLOSE_ENOUGH = 2.5, 0.5
-"""Multiple of the first number of nodes from which on a boundary as near as this suffices, in element sizes."""
+_CLOSE_ENOUGH = 0.5
+_ENOUGH = ((2.5, _CLOSE_ENOUGH), (2.0, 0.35))
+"""Multiples of the first number of nodes from which on a boundary as near as this suffices, in element sizes."""
+
+_ALMOST, _GAIN = 0.3, 0.9
+"""Distance [element sizes] that is kept where a round of finer elements leaves more than this share of it."""
 
 _FEWEST, _MOST, _MOST_CELLS = 20, 400_000, 2_000_000
 """Elements, and cells of the lattice over the bounding box: what fits into memory."""
@@ -150,7 +154,8 @@ def tetrahedralize(surface: Surface, element_size: float, *, most_nodes: float =
     A lattice is cut along the surface (`stuffing.py`), then its nodes move until the elements are well shaped and their
     outer faces lie on the surface (`improve.py`). Where that fails, as the body or a gap is thinner than the elements,
     they are made smaller, until the boundary is nearer than a quarter of an element; than half of one where that takes
-    many nodes. Holes narrower than `HOLE_SHARE` elements are filled. The same surface and size give the same mesh.
+    many nodes or smaller ones do not help. Holes narrower than `HOLE_SHARE` elements are filled. The same surface and
+    size give the same mesh.
 
     Raises:
         InputError: so large that the body has too few elements, or so small that it has too many.
@@ -172,12 +177,16 @@ def tetrahedralize(surface: Surface, element_size: float, *, most_nodes: float =
     finer = 4  # rounds of finer elements where the boundary is not close
     bisections = 2  # of the longest edges, in each round; three halve the elements
     for size in element_size / 2.0 ** (np.arange(finer) * bisections / 3):
-        many = len(draft.mesh.nodes) > _MANY * len(first.mesh.nodes)
-        if not len(draft.places) or (many and draft.is_alike and draft.farthest <= _CLOSE_ENOUGH):
+        times = len(draft.mesh.nodes) / len(first.mesh.nodes)
+        enough = max((far for many, far in _ENOUGH if times > many), default=0.0)
+        if not len(draft.places) or (draft.is_alike and draft.farthest <= enough):
             break
         for _ in range(bisections):
             nodes, elements = bisect(nodes, elements, _too_long_near(nodes, elements, draft.places, size))
-        draft = _stuff_lattice(solid, nodes, elements, element_size, most_nodes, draft.places)
+        before, draft = draft, _stuff_lattice(solid, nodes, elements, element_size, most_nodes, draft.places)
+        if before.is_alike and _GAIN * before.farthest < min(draft.farthest, _GAIN * _ALMOST):
+            draft = before  # finer elements do not help
+            break
     if draft.lost > _CRUMB or (most_nodes < np.inf and draft.farthest > _CLOSE_ENOUGH):
         x, y, z = 1e3 * draft.places[0]
         raise SurfaceError(

@@ -56,6 +56,7 @@ class Hardware:
         self._robot: Robot | None = None
         self._lock, self._over = threading.RLock(), threading.Event()
         self._goal = self._places = self._pulls = np.zeros(0)
+        self._follows = False  # motors follow what is shown; false again once it was said that they do not
         self._shown = False  # whether the goal is what is shown, not what there was before
         self._alive = 0.0
         self._thread: threading.Thread | None = None
@@ -204,18 +205,25 @@ class Hardware:
         with self._lock:
             link = self._link
             if link is None or not self.is_armed:
-                return False
+                return self._notice_stop(link)
             now = time.monotonic()
             if now - self._alive > self._silent:
                 self._stand("no active browser tab: motors holding. Re-arm to continue")
                 return True
             link.send(self._goal, now, speed=link.limits.speed)
-            self._places = link.read(now)
+            self._places, self._follows = link.read(now), True
             return True
+
+    def _notice_stop(self, link: BusLink | None) -> bool:
+        """Take the reason why a link stopped by itself, such as for a late computer; True if it just has."""
+        if link is None or not self._follows:
+            return False
+        self._follows, self.words = False, self.words or link.why
+        return True
 
     def _stand(self, why: str) -> None:
         """Stop motors; state the reason if they were armed."""
-        link = self._link
+        link, self._follows = self._link, False
         if link is not None:
             if link.state is LinkState.ARMED:
                 self.words = why  # first, as whoever sees that motors stand reads why

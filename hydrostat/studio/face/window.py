@@ -43,7 +43,8 @@ addEventListener("click", (event) => {
   const letGo = () => document.activeElement?.closest("button, [role=button]") && document.activeElement.blur();
   if (event.detail) setTimeout(letGo);
 });
-setInterval(() => document.hidden || window.emitEvent?.("hydrostat_alive"), 150);
+const isMounted = () => document.getElementById("app")?.__vue_app__; // before, emitEvent has no page to ask
+setInterval(() => document.hidden || (isMounted() && window.emitEvent("hydrostat_alive")), 150);
 addEventListener("keydown", (event) => {
   const typing = event.target.closest?.("input, textarea, select, [contenteditable=true]");
   const word = (event.ctrlKey || event.metaKey) && "acdsv".includes(event.key.toLowerCase());

@@ -78,6 +78,18 @@ def test_they_hold_when_nobody_looks_at_the_page(session: Session) -> None:
     assert "no active browser tab" in hardware.words
 
 
+def test_a_link_that_stopped_by_itself_is_told(session: Session) -> None:
+    """The deadline is kept by a thread of the link, which knows no page."""
+    hardware = session.hardware
+    hardware.connect("emulated")
+    hardware.arm()
+    link = hardware._link
+    assert link is not None
+    assert until(lambda: hardware.beat() or hardware._follows)
+    link._stop_with_error(LinkState.HOLD, "this computer is late")
+    assert until(lambda: "this computer is late" in hardware.words)
+
+
 def test_another_stage_and_another_robot_hold_them(session: Session) -> None:
     hardware = session.hardware
     hardware.connect("emulated")

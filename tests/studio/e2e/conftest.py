@@ -52,7 +52,7 @@ def studio(tmp_path: Path, cache: Path) -> Callable[..., Any]:
 @pytest.fixture
 def window(browser: "Browser") -> Iterator[Open]:
     """Open a window on an address, with all that it complained about in `complaints`."""
-    contexts = []
+    contexts, broken = [], list[str]()
 
     def open_window(address: str, *, tour: bool = False) -> "Page":
         context = browser.new_context(viewport={"width": 1280, "height": 800}, accept_downloads=True)
@@ -61,9 +61,11 @@ def window(browser: "Browser") -> Iterator[Open]:
             context.add_init_script("localStorage.setItem('hydrostat-tour', '1')")
         page = context.new_page()
         page.set_default_timeout(TIMEOUT)
+        page.on("pageerror", lambda error: broken.append(str(error)))
         page.goto(address)
         return page
 
     yield open_window
     for context in contexts:
         context.close()
+    assert not [error for error in broken if "$refs" in error]  # scripts that run before the page is there
