@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
-from hydrostat.cli import OutFolder, report_progress, require_folder
+from hydrostat.cli import report_progress, require_folder
 from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
+from hydrostat_lab import catalog
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -41,9 +42,11 @@ class Size(StrEnum):
 def reproduce(
     what: Annotated[
         list[str],
-        typer.Argument(metavar="TABLE...", help="Tables and figures: table-5.1, table-5.2, figure-5.3, ..., or all."),
+        typer.Argument(metavar="TABLE...", help="Tables and figures: table-5.1, ..., all; or list, which prints them."),
     ],
-    out: OutFolder,
+    out: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Output folder (created if missing).", show_default=False)
+    ] = None,
     size: Annotated[str, typer.Option(metavar="minutes|hour|full", help="Sampling effort.")] = "minutes",
     sampling: Annotated[
         str, typer.Option(metavar="WAY,WAY", help="Sampling strategies: box, antagonist, faces.")
@@ -94,17 +97,26 @@ def reproduce(
     figure-5.13 runs the same method in FetchReach, figure-5.13-hand in HandReach (both gymnasium-robotics), and
     compares it with published curves.
 
+    `list` prints all tables and figures, also those of the README, with the results so far. reproduced.md in DIR shows
+    all that DIR has.
+
     Example: hydrostat reproduce table-5.1 figure-5.14 --out build/thesis
     """
     from hydrostat_lab.reproduce_reference import REFERENCE_TABLES, reproduce_reference
     from hydrostat_lab.reproduce_trials import GRADIENT, POLICIES, SHARED, TRIALS, HowMuch, reproduce_trials
 
+    if what == ["list"]:
+        print("\n".join(catalog.catalog_lines()))
+        return
     trials = (*TRIALS, SHARED, POLICIES, GRADIENT)
     there = (*THINGS, *trials, *REFERENCE_TABLES)
     asked = there if "all" in what else tuple(what)
     for name in asked:
         if name not in there:
             raise InputError(f'unknown table or figure "{name}". Available: all, {", ".join(there)}.')
+    if out is None:
+        raise InputError("Missing option '--out'. Write a folder, e.g. --out build/thesis.")
+    catalog.require_extras(asked)
     study, bodies = _study(parse_choice(Size, size, what="--size"), sampling, robots, counts, targets, seeds)
     require_folder(out)
     out.mkdir(parents=True, exist_ok=True)
@@ -115,6 +127,7 @@ def reproduce(
         reproduce_trials(names, _robot(bodies[0]), out, much, model=model, jobs=jobs)
     if references := [name for name in asked if name in REFERENCE_TABLES]:
         reproduce_reference(references, out, size=size, seeds=seeds)
+    print(f"Wrote {catalog.write_page(out)}")
 
 
 def _compare(asked: "Sequence[str]", study: "Study", bodies: "Sequence[str]", out: Path, jobs: int) -> None:

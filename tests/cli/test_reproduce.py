@@ -26,6 +26,27 @@ def test_errors_of_the_laboratory_arrive(run: Run, tmp_path: Path) -> None:
     assert "Missing option '--out'" in words
 
 
+def test_all_tables_are_listed(run: Run) -> None:
+    """Oracle: the choices that an unknown name is told."""
+    code, out, _ = run("reproduce", "list")
+    assert code == 0
+    _, _, words = run("reproduce", "table-9")
+    for name in words.split("Available: all, ")[1].strip(". \n").split(", "):
+        assert f"\n  {name} " in out
+    assert "benchmarks/simulate.py" in out
+
+
+def test_a_missing_package_is_named_before_anything_is_sampled(
+    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run("reproduce", "list")  # the laboratory can be imported from now on
+    monkeypatch.setattr("hydrostat_lab.catalog.find_spec", lambda name: None)
+    code, _, words = run("reproduce", "table-5.1", "--out", tmp_path / "out")
+    assert code == 1
+    assert words.startswith("hydrostat: error: table-5.1: package torch not found. Install it: pip install")
+    assert not (tmp_path / "out").exists()
+
+
 def test_without_the_laboratory_one_line_says_where_to_get_it(
     run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
