@@ -15,7 +15,7 @@ class CatalogEntry(NamedTuple):
 
     Attributes:
         name: name for `hydrostat reproduce`, or the command of a script.
-        shows: what it compares.
+        shows: subject of the comparison.
         verdict: result of the largest runs so far, as `lab/*/README.md` and docs/results.md have it.
         extra: extra of the package that it needs; empty if none.
     """

@@ -109,11 +109,7 @@ def reproduce(
         print("\n".join(catalog.catalog_lines()))
         return
     trials = (*TRIALS, SHARED, POLICIES, GRADIENT)
-    there = (*THINGS, *trials, *REFERENCE_TABLES)
-    asked = there if "all" in what else tuple(what)
-    for name in asked:
-        if name not in there:
-            raise InputError(f'unknown table or figure "{name}". Available: all, {", ".join(there)}.')
+    asked = _choose(what, (*THINGS, *trials, *REFERENCE_TABLES))
     if out is None:
         raise InputError("Missing option '--out'. Write a folder, e.g. --out build/thesis.")
     catalog.require_extras(asked)
@@ -128,6 +124,15 @@ def reproduce(
     if references := [name for name in asked if name in REFERENCE_TABLES]:
         reproduce_reference(references, out, size=size, seeds=seeds)
     print(f"Wrote {catalog.write_page(out)}")
+
+
+def _choose(what: "Sequence[str]", there: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the names of tables and figures (InputError: an unknown one)."""
+    asked = there if "all" in what else tuple(what)
+    for name in asked:
+        if name not in there:
+            raise InputError(f'unknown table or figure "{name}". Available: all, {", ".join(there)}.')
+    return asked
 
 
 def _compare(asked: "Sequence[str]", study: "Study", bodies: "Sequence[str]", out: Path, jobs: int) -> None:
