@@ -60,3 +60,15 @@ def test_the_command_for_an_extra_fits_the_installation(tmp_path: Path, monkeypa
     assert version.install_command("cad") == 'pip install -e ".[cad]"'
     monkeypatch.setattr(version, "__file__", str(tmp_path / "site-packages" / "hydrostat" / "version.py"))
     assert version.install_command("cad") == 'pip install "hydrostat[cad]"'
+
+
+def test_the_studio_without_its_extra_is_one_line() -> None:
+    """Oracle: a process in which none of the packages of the extra can be imported."""
+    program = (
+        "import sys; sys.modules |= dict.fromkeys('nicegui segno fastapi starlette uvicorn'.split());"
+        "sys.argv = ['hydrostat', 'studio']; from hydrostat.cli.main import main; main()"
+    )
+    found = check(sys.executable, "-c", program)
+    assert found.returncode == 2
+    assert found.stderr.startswith("hydrostat: error: studio: package starlette not found. Install it: pip install ")
+    assert found.stderr.count("\n") == 1

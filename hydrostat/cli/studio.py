@@ -49,9 +49,10 @@ def studio(
     try:
         from hydrostat.studio import Rooms, find_network_address, serve, write_qr_text
     except ModuleNotFoundError as error:
-        if error.name not in ("nicegui", "segno"):
+        package = (error.name or "").partition(".")[0]
+        if package == "hydrostat":
             raise
-        raise InputError(f"studio: package {error.name} not found. Install it: {install_command('studio')}") from None
+        raise InputError(f"studio: package {package} not found. Install it: {install_command('studio')}") from None
     from hydrostat.studio import Session, state_folder
 
     rooms = rooms or classroom
