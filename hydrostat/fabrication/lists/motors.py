@@ -201,7 +201,7 @@ CELL, CELLS, USED = 1.2, 2.0, 0.8
 """A NiMH cell of size AA: volts, ampere hours, and the share of them that is used."""
 
 FRESH = 1.45
-"""Volts of such a cell fresh from its charger: servos that refuse more than their range get fewer cells. From memory."""
+"""Volts of such a cell fresh from its charger, assumed: servos that refuse more than their range get fewer cells."""
 
 RESTING = 1 / 3
 """Share of the largest currents that motors draw on average while a robot is shown. Assumed, measured on none."""
