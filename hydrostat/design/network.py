@@ -92,8 +92,8 @@ class Network:
         source: the robot that it was designed for.
         request: request, with the constraints that the network keeps.
         ik_results: inverse-kinematics result of the new network for each pose, by its own winches; the true score.
-        built: rms error over markers and poses expected of a robot as it is built, its commands played open loop [m]:
-            `hydrostat.design.expected_error` with the uncertainty of the request.
+        expected_error: rms error over markers and poses expected of a robot as it is built, its commands played open
+            loop [m]: `hydrostat.design.expected_error` with the uncertainty of the request.
         alternatives: other networks, best first; by counts where the number of winches was found.
         trace: trace of the search.
         num_evaluated: number of networks with solved poses.

@@ -122,7 +122,7 @@ class FoamSolid(Energy):
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
         """Computed from the displacement gradient, so that little is lost to rounding near rest."""
-        derivatives = self._gradients(nodes)
+        derivatives = self._deformation_gradients(nodes)
         if not (np.linalg.det(np.eye(self._dim) + derivatives) > 0.0).all():
             return np.inf
         with np.errstate(over="ignore", invalid="ignore"):
@@ -165,7 +165,7 @@ class FoamSolid(Energy):
         return np.swapaxes(modes.reshape(shape), 1, 2) @ (weights * stiff).reshape(shape)
 
     def least_volume(self, nodes: Nodes) -> float:
-        return min(1.0, float(np.linalg.det(np.eye(self._dim) + self._gradients(nodes)).min(initial=1.0)))
+        return min(1.0, float(np.linalg.det(np.eye(self._dim) + self._deformation_gradients(nodes)).min(initial=1.0)))
 
     def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
         """By mu and lame of the material, and by the thickness."""
@@ -183,7 +183,7 @@ class FoamSolid(Energy):
             "thickness": np.array([self.mu * own]),
         }
 
-    def _gradients(self, nodes: Nodes) -> Square:
+    def _deformation_gradients(self, nodes: Nodes) -> Square:
         """F - I at each point."""
         moved = (nodes - self._rest)[self.stencils]
         moved = np.repeat(moved - moved[:, :1], self._points, axis=0)
@@ -194,7 +194,7 @@ class FoamSolid(Energy):
         last, kept = self._last
         if kept is not None and np.array_equal(last, nodes):
             return kept
-        derivatives = self._gradients(nodes) if derivatives is None else derivatives
+        derivatives = self._deformation_gradients(nodes) if derivatives is None else derivatives
         logs, right = _logs(derivatives)
         left = (right + derivatives @ right) * np.exp(-logs)[:, None, :]
         frame = _Frame(logs, left, right)

@@ -64,7 +64,7 @@ def test_the_constraints_of_the_page_hold(page: dict[str, Any]) -> None:
     robot, constraints, bounded = page["robot"], page["constraints"], page["bounded"]
     region = Region.of_body(robot.body, constraints.clearance)
     assert violations(bounded.robot, constraints, region) == []
-    assert max(reached.pose.tensions.max() for reached in bounded.reached) <= 15.0 * 1.001
+    assert max(reached.pose.tensions.max() for reached in bounded.ik_results) <= 15.0 * 1.001
 
 
 def test_what_is_locked_on_the_page_stays(page: dict[str, Any]) -> None:
@@ -75,7 +75,7 @@ def test_what_is_locked_on_the_page_stays(page: dict[str, Any]) -> None:
 
 def test_the_fewest_winches_of_the_page_keep_their_tolerance(page: dict[str, Any]) -> None:
     """Oracle: the error of each pose."""
-    assert all(reached.rms_error <= 6e-3 for reached in page["fewest"].reached)
+    assert all(reached.rms_error <= 6e-3 for reached in page["fewest"].ik_results)
     assert page["fewest"].alternatives
 
 

@@ -98,9 +98,9 @@ class Forgetful(Wrapped):
 
 
 SLIPS = {
-    SlopeOff: "slopes at",
-    SlopesOfNodesAlone: "slopes at",
-    SlopesTurned: "slopes: they have the shape",
+    SlopeOff: "jacobian at",
+    SlopesOfNodesAlone: "jacobian at",
+    SlopesTurned: "jacobian: they have the shape",
     RowsThatComeAndGo: "residual: it has .* rows at one posture",
     RowsInATable: "residual: it has the shape",
     ResidualNaN: r"residual at \[3\]: it is not finite",
@@ -124,5 +124,5 @@ def test_cables_that_rub_are_taken() -> None:
     rough = Simulation(replace(robot, cables=tuple(replace(cable, friction=0.2) for cable in robot.cables)))
     goal = MarkerTarget(targets={"tip": (0.2, 0.1)})
     check_objective(goal, rough, BENT[2], postures=1)
-    with pytest.raises(ConformanceError, match="slopes at"):
+    with pytest.raises(ConformanceError, match="jacobian at"):
         check_objective(Broken(lambda _: SlopeOff(goal.bind(rough))), rough, BENT[2], postures=1)
