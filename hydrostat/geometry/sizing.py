@@ -21,7 +21,7 @@ class TooManyNodesError(SurfaceError):
 
 
 FEWEST, MOST = 10, 200_000  # nodes that may be asked for
-_NEAR = 0.15  # the same for the first mesh, where a few must do
+_NEAR = 0.1  # the same for the first mesh, where a few must do
 CLOSE = 0.1  # how far the number may be off, as a fraction of it
 
 
