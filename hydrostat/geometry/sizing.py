@@ -21,7 +21,6 @@ class TooManyNodesError(SurfaceError):
 
 
 FEWEST, MOST = 10, 200_000  # nodes that may be asked for
-_NEAR = 0.1  # the same for the first mesh, where a few must do
 CLOSE = 0.1  # how far the number may be off, as a fraction of it
 
 
@@ -100,8 +99,8 @@ def _is_enough(tried: dict[float, int], above: dict[float, int], nodes: int) -> 
     if not tried and len(above) == 1:
         return False  # a finer size comes next
     finest = min(tried, default=np.inf)
-    if best <= _NEAR or any(size > finest for size in above):
-        return True  # near enough, or coarser elements need more nodes, as walls are thin
+    if any(size > finest for size in above):
+        return True  # coarser elements need more nodes, as walls are thin
     made = sum(tried.values()) + sum(above.values())
     quick = 2000  # nodes that are made in a second or two
     return made >= max(quick, nodes * (2.2 if best <= 0.25 else 7.0 if tried else 4.0))
