@@ -38,12 +38,14 @@ def row(name: str, out: Path) -> str:
     )
     seconds = sum(os.times()[2:4]) - before
     lines = (done.stdout + done.stderr).splitlines()
-    told = {kind: [line for line in lines if line.startswith(kind)] for kind in ("error", "warning", "note")}
+    printed = {kind: [line for line in lines if line.startswith(kind)] for kind in ("error", "warning", "note")}
     checks = re.search(r"Quality checks: (\d+) of (\d+)", done.stdout)
-    counts = " | ".join(str(len(found)) for found in told.values())
+    counts = " | ".join(str(len(found)) for found in printed.values())
     passed = "/".join(checks.groups()) if checks else "none"
     failed = lines[-1:] if done.returncode else []
-    return "\n".join([f"| {name} | {counts} | {passed} | {seconds:.0f} |", *told["error"], *told["warning"], *failed])
+    return "\n".join(
+        [f"| {name} | {counts} | {passed} | {seconds:.0f} |", *printed["error"], *printed["warning"], *failed]
+    )
 
 
 def main() -> None:

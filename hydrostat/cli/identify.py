@@ -169,10 +169,12 @@ def _print_values(found: "IdentifiedRobot") -> None:
     if pairs := [f"{one} and {other}" for one, other in fitted.inseparable]:
         print(f"note: these measurements hardly tell apart {', '.join(pairs)}: each can make up for the other.")
     for winch, length in found.pretension.items():
-        print(
-            f"note: the cables of {winch} are tight at rest, which robot.toml cannot hold. "
-            f"Add {1e3 * length:.2f} mm to its contractions."
-        )
+        words = f"{1e3 * length:.2f}"
+        if float(words) > 0:
+            print(
+                f"note: the cables of {winch} are tight at rest, which robot.toml cannot hold. "
+                f"Add {words} mm to its contractions."
+            )
 
 
 def _warn(robot: "Robot", table: "Measurements", found: "IdentifiedRobot") -> None:
@@ -210,8 +212,9 @@ def _warn(robot: "Robot", table: "Measurements", found: "IdentifiedRobot") -> No
             f"warning: the fit is {100 * error / size:.0f} % of the body off. Check units (mm), the frame's axes, and "
             "which marker and winch is which."
         )
-    far = np.argwhere(found.after > max(OUTLIER * rms(found.after), 0.01 * size))
-    for row, marker in far[:5].tolist():
+    far = np.argwhere(found.after > max(OUTLIER * rms(found.after), 0.01 * size)).tolist()
+    known = {(row, table.markers.index(marker)) for swap in swaps for row in swap.rows for marker in swap.markers}
+    for row, marker in [cell for cell in far if tuple(cell) not in known][:5]:
         print(
             f"warning: row {row + 1}: {table.markers[marker]} is {1e3 * found.after[row, marker]:.1f} mm off, much "
             "more than others. Measure it again, or empty its cells."
@@ -229,7 +232,7 @@ def _print_errors(found: "IdentifiedRobot", table: "Measurements", seconds: floa
     from hydrostat.identification import rms
 
     seen = plural(len(table.commands), "row")
-    missing = f", {plural(found.fitted.failed, 'row')} without equilibrium" if found.fitted.failed else ""
+    missing = f", {plural(found.fitted.num_failed, 'row')} without equilibrium" if found.fitted.num_failed else ""
     print(
         f"{seen}: rms error {1e3 * rms(found.before):.2f} mm as assumed, {1e3 * rms(found.after):.2f} mm fitted "
         f"({seconds:.1f} s{missing})"

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from hydrostat.robot import Robot
     from hydrostat.simulation import Simulation
 
-NOTICE_DELAY = 3.0  # seconds after which a person is told what takes so long
+NOTICE_DELAY = 3.0  # seconds after which a waiting person reads what is computed
 STOP_SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 """Signals that end work and keep what it has: Ctrl-C, a polite kill, a terminal that closes."""
 

@@ -83,7 +83,7 @@ class MarkerFeedback:
     model states the correction that would have removed it; the present correction approaches that one. Lag does not
     add up, as the correction of that time is remembered. Corrections stay within 20 % of the travel of each winch, and
     commands within its limits. They raise no simulated pull beyond what `TensionGuard` allows, also where motors do not
-    tell their torque.
+    report their torque.
 
     Attributes:
         is_waiting: True while motors hold because no marker is in sight.

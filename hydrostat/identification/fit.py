@@ -56,7 +56,7 @@ class FittedModel:
         noise: standard deviation of a measured coordinate or length about the model [m], from the residuals.
         force_noise: the same of a measured force [N]; NaN without forces.
         error: root mean square distance between predicted and measured markers of the fitted rows [m].
-        failed: fitted rows without an equilibrium.
+        num_failed: fitted rows without an equilibrium.
         iterations: evaluations of the model.
         message: reason why the fit stopped.
     """
@@ -70,7 +70,7 @@ class FittedModel:
     build_variance: Vector
     noise: float
     error: float
-    failed: int
+    num_failed: int
     iterations: int
     message: str
     force_noise: float = np.nan
@@ -179,7 +179,7 @@ def fit_model(
         build_variance=estimate_build_variance(*known) if refine else nothing,
         noise=fit.noise,
         error=rms(fit.distances),
-        failed=fit.failed,
+        num_failed=fit.num_failed,
         iterations=fit.count,
         message=message,
         force_noise=fit.force_noise,
@@ -246,7 +246,7 @@ class _Fit:
         return self._residuals.distances
 
     @property
-    def failed(self) -> int:
+    def num_failed(self) -> int:
         """Rows without an equilibrium."""
         return len(np.unique(self._residuals.rows[~self._solved]))
 

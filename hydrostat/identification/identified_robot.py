@@ -119,7 +119,7 @@ def start_of(model: IdentificationModel) -> FittedModel:
         build_variance=np.zeros(count),
         noise=np.nan,
         error=np.nan,
-        failed=0,
+        num_failed=0,
         iterations=0,
         message="not fitted",
     )

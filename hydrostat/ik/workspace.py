@@ -92,7 +92,7 @@ def find_workspaces(
     loading path where cables rub. Each stands for a share of the contractions; the Jacobian gives, to first order, what
     part that is of the places that a marker reaches, and the union of these parts is measured. With more than three
     winches the shares do not cover all contractions, and what is told is rather too little. Poses that are not stable
-    or ask a cable for more than it may bear are left out. So is friction of contact, which has no derivatives.
+    or ask a cable for more than its limit are left out. So is friction of contact, which has no derivatives.
 
     Args:
         simulation: the robot's physics.

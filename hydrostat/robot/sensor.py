@@ -113,7 +113,7 @@ class Sensor:
         return keyed if self.at is None else (("at", self.at),)
 
     def count_values(self, dim: int) -> int:
-        """Number of values of a reading in a body of so many dimensions."""
+        """Number of values of a reading in a body of `dim` dimensions."""
         if self.kind is SensorKind.ACCELEROMETER:
             return dim
         return 3 if dim == 3 and self.kind in (SensorKind.ORIENTATION, SensorKind.GYROSCOPE) else 1

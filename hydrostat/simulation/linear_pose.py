@@ -59,10 +59,10 @@ class LinearPose:
         if not 1 <= count < size:
             raise InputError(f"the number of modes must be from 1 to {size - 1}, not {count}")
 
-        def soften(forces: Vector) -> Vector:
+        def solve_scaled(forces: Vector) -> Vector:
             return root * self.stiffness.solve(root * forces)
 
-        inverse = LinearOperator((size, size), matvec=soften, dtype=float)  # pyright: ignore[reportCallIssue]
+        inverse = LinearOperator((size, size), matvec=solve_scaled, dtype=float)  # pyright: ignore[reportCallIssue]
         start = np.random.default_rng(0).standard_normal(size)
         values, vectors = eigsh(inverse, k=count, which="LA", v0=start)  # pyright: ignore[reportArgumentType]
         basis = vectors[:, np.argsort(-values)] / root[:, None]

@@ -45,7 +45,7 @@ class StuffedMotion:
 
 
 def is_stuffed_motion_fast(robot: Robot, poses: int) -> bool:
-    """Return True if `solve_stuffed_motion` of so many poses takes seconds: a flat drawn body, not too fine."""
+    """Return True if `solve_stuffed_motion` of this number of poses takes seconds: a flat drawn body, not too fine."""
     body = robot.body
     if body.outline is None or body.thickness is None or not robot.cables or not poses:
         return False

@@ -109,7 +109,7 @@ class _Training:
         return Perceptrons(sizes=self._sizes, numbers=np.concatenate([each.ravel() for each in self._weights])[None])
 
     def run(self, steps: int, seconds: float | None, progress: Progress) -> bool:
-        """Train, and tell whether time ended it early."""
+        """Train; return True if time ended it early."""
         began, batch = time.monotonic(), min(128, len(self._inputs))
         first, second = ([np.zeros_like(each) for each in self._weights] for _ in range(2))
         fast, slow, tiny, highest = 0.9, 0.999, 1e-8, 3e-3  # of Adam; its highest rate

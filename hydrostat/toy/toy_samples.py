@@ -41,17 +41,17 @@ def sample_shapes(
     Raises:
         InputError: a robot without winches or markers, or too few poses in the time.
     """
-    told, until = progress or no_progress, None if seconds is None else time.monotonic() + seconds
+    report, until = progress or no_progress, None if seconds is None else time.monotonic() + seconds
 
     def watch(stage: str, done: int, total: int) -> None:
-        told(stage, done, total)
+        report(stage, done, total)
         if until is not None and time.monotonic() > until and done < total:
             raise _TimeUpError("time is up")
 
     if count < LEAST:
         raise InputError(f"{count} samples are too few. Use {LEAST} or more.")
     a_file = 16  # poses in one file: what is lost when time is up
-    few = 4  # winches whose box so many samples fill
+    few = 4  # winches whose whole box the samples fill
     draws = (SamplingScheme.FACES, SamplingScheme.BOX)[: 2 if len(robot.winches) <= few else 1]
     plan = SamplePlan.of_robot(robot, count, seed=seed, draws=draws, nodes=True, shard=a_file)
     with TemporaryDirectory(prefix="hydrostat-") as folder, warnings.catch_warnings():

@@ -111,7 +111,7 @@ def test_hidden_parameters_of_a_heavy_strip_are_found() -> None:
     seen = MarkerPredictor(model, asked).predict(hidden, slopes=False).places + noise * rng.standard_normal((12, 2, 2))
     seen[3, 0] = np.nan
     found = fit_model(model, replace(asked, places=seen))
-    assert found.failed == 0
+    assert found.num_failed == 0
     assert found.noise == pytest.approx(noise, rel=0.4)
     inside = [low <= truth[name] <= high for name, (low, high) in found.intervals.items()]
     assert sum(inside) >= len(inside) - 1

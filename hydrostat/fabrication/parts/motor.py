@@ -169,7 +169,7 @@ class Motor:
 
         Motors of `MORE_MOTORS` are taken by their key only. Outside the body a motor must carry the torque for long;
         `inside`, where there is little room, for seconds. Where none does it is the strongest. More `winches` outside
-        than one board bears get servos, which share one bus. Raises InputError if no motor has this key.
+        than one board drives get servos, which share one bus. Raises InputError if no motor has this key.
         """
         if key == "auto":
             needed = max((float(torque) for torque in torques), default=0.0) - 1e-12

@@ -40,7 +40,7 @@ class _Model:
     unit: str = "millimeter"
     objects: dict[_Key, _Object] = field(default_factory=dict)
     items: list[tuple[_Key, np.ndarray]] = field(default_factory=list)
-    unprinted: int = 0  # items that the slicer was told not to print
+    unprinted: int = 0  # items marked as not to be printed
     others: set[str] = field(default_factory=set)
 
 

@@ -212,7 +212,7 @@ def write_vtu(mesh: Mesh, nodes: Nodes, point_data: Mapping[str, np.ndarray]) ->
 
 
 def write_lines_vtu(points: Points, counts: Sequence[int], cell_data: Mapping[str, np.ndarray]) -> bytes:
-    """Give lines as a VTU file for ParaView: each goes through so many of the points [m], with data of each line."""
+    """Give lines as a VTU file for ParaView: each goes through its count of the points [m], with data of each line."""
     lines = np.repeat(np.arange(len(counts)), counts)
     starts = np.flatnonzero(lines[:-1] == lines[1:])
     cells = {
@@ -225,7 +225,7 @@ def write_lines_vtu(points: Points, counts: Sequence[int], cell_data: Mapping[st
 
 
 def _vtu(points: Points, sections: Mapping[str, Mapping[str, np.ndarray]], count: int) -> bytes:
-    """Grid of one piece with so many cells."""
+    """Grid of one piece, by its number of cells."""
     lines = [
         '<?xml version="1.0"?>',
         '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt32" '

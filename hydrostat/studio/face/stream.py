@@ -129,7 +129,7 @@ class _Screen:
         """Send pictures until the connection ends."""
         # So many pictures may be on their way to a screen: one that is painted, and one that comes next
         most_flying = 2
-        timeout = 2.0  # A screen that has not painted for so long [s] is sent the next picture all the same
+        timeout = 2.0  # A screen that has not painted for so long [s] gets the next picture anyway
         while True:
             await self.fresh.wait()
             while self._flying >= most_flying:

@@ -37,11 +37,11 @@ export function taken(motor, angle) {
 export class Board {
   /**
    * @param {any} facts of the motors, as toy_page.py writes them: robot, speed [m/s], motors in the order of the winches
-   * @param {(state: string, words: string, readings: {taken: number[], amperes: number[]} | null) => void} tell
+   * @param {(state: string, words: string, readings: {taken: number[], amperes: number[]} | null) => void} report
    */
-  constructor(facts, tell) {
+  constructor(facts, report) {
     this.facts = facts;
-    this.tell = tell;
+    this.report = report;
     this.state = "closed";
     this.number = 0;
     this.heard = "";
@@ -71,11 +71,11 @@ export class Board {
 
   /** Refuse what is no board of ours, or one of another robot; a board that the port has reset begins after 2 s. */
   async identify() {
-    const told = (await this.surely("I", 25)).split(" ");
-    if (told[0] !== "ok" || told[1] !== "hydrostat" || told.length < 7) throw new Error("This port has no hydrostat firmware.");
-    if (told[4] !== this.facts.robot) throw new Error(`The board was built for ${told[4]}, not for this robot. Flash it again.`);
-    if (Number(told[5]) !== this.facts.motors.length) throw new Error(`The board has ${told[5]} motors. Flash it again.`);
-    const marked = told[told.length - 1] === "marked" && this.facts.calibrated;
+    const answer = (await this.surely("I", 25)).split(" ");
+    if (answer[0] !== "ok" || answer[1] !== "hydrostat" || answer.length < 7) throw new Error("This port has no hydrostat firmware.");
+    if (answer[4] !== this.facts.robot) throw new Error(`The board was built for ${answer[4]}, not for this robot. Flash it again.`);
+    if (Number(answer[5]) !== this.facts.motors.length) throw new Error(`The board has ${answer[5]} motors. Flash it again.`);
+    const marked = answer[answer.length - 1] === "marked" && this.facts.calibrated;
     await this.must("O");
     this.change(marked ? "ready" : "new", marked ? "Connected. Hold to arm." : "Turn all spools until each cable is just taut. Then set zero.");
   }
@@ -110,25 +110,25 @@ export class Board {
         const rate = (this.facts.speed / motor.radius) * scale;
         return `${Math.round(this.zeros[i] + scale * turned(motor, wanted))} ${Math.max(1, Math.round(rate))}`;
       });
-      const [went, told] = await Promise.all([this.ask(`G ${pairs.join(" ")}`), this.ask("R")]);
+      const [went, answer] = await Promise.all([this.ask(`G ${pairs.join(" ")}`), this.ask("R")]);
       if (this.state !== "armed") return;
       if (went !== "ok") throw new Error(went === null ? "The board does not answer." : `The board refused: ${went}.`);
-      this.read(told, false);
+      this.read(answer, false);
       this.timer = setTimeout(() => this.follow(), TURN);
     } catch (error) {
       this.stop(error instanceof Error ? error.message : String(error));
     }
   }
 
-  read(told, first) {
-    const { state, counts, amperes } = this.parse(told);
+  read(answer, first) {
+    const { state, counts, amperes } = this.parse(answer);
     if (!first && state !== "armed") throw new Error(`The board stopped: ${state}.`);
     const places = counts.map((count, i) => taken(this.facts.motors[i], (count - this.zeros[i]) * ((2 * Math.PI) / this.facts.motors[i].counts)));
-    this.tell(this.state, "", { taken: places, amperes });
+    this.report(this.state, "", { taken: places, amperes });
   }
 
-  parse(told) {
-    const words = (told ?? "").split(" "), numbers = words.slice(3).map(Number), count = this.order.length;
+  parse(answer) {
+    const words = (answer ?? "").split(" "), numbers = words.slice(3).map(Number), count = this.order.length;
     if (words[0] !== "ok" || numbers.length !== 2 * count || !numbers.every(Number.isFinite)) throw new Error("The board sent an unreadable answer.");
     const counts = new Array(count), amperes = new Array(count);
     this.order.forEach((i, slot) => { [counts[i], amperes[i]] = [numbers[2 * slot], numbers[2 * slot + 1] / 1000]; });
@@ -144,14 +144,14 @@ export class Board {
   }
 
   async must(words) {
-    const told = await this.surely(words);
-    if (told !== "ok") throw new Error(`The board refused: ${told}.`);
+    const answer = await this.surely(words);
+    if (answer !== "ok") throw new Error(`The board refused: ${answer}.`);
   }
 
   async surely(words, trials = 3) {
     for (let i = 0; i < trials; i++) {
-      const told = await this.ask(words);
-      if (told !== null) return told;
+      const answer = await this.ask(words);
+      if (answer !== null) return answer;
     }
     throw new Error("The board does not answer. Check its power and cable.");
   }
@@ -197,6 +197,6 @@ export class Board {
 
   change(state, words) {
     this.state = state;
-    this.tell(state, words, null);
+    this.report(state, words, null);
   }
 }
