@@ -53,10 +53,10 @@ lint: $(VENV)/check.installed
 	$(BIN)/pyright --pythonpath $(BIN)/python
 	if command -v npm > /dev/null; then $(MAKE) --no-print-directory lint-js; else echo "no npm: JavaScript is not linted"; fi
 
-# The studio's JavaScript: its types by tsc, the rest by eslint.
+# JavaScript of the studio and of shared pages: its types by tsc, the rest by eslint.
 lint-js: node_modules/installed
 	node_modules/.bin/tsc
-	node_modules/.bin/eslint hydrostat/studio/face/static
+	node_modules/.bin/eslint hydrostat/studio/face/static hydrostat/toy/static
 
 fix: $(VENV)/check.installed
 	$(BIN)/ruff check --fix .

@@ -1,14 +1,14 @@
-// Rules for the studio's JavaScript; types are checked by tsc (tsconfig.json).
+// Rules for the JavaScript of the studio and of shared pages; types are checked by tsc (tsconfig.json).
 import js from "@eslint/js";
 
 const page = ["window", "document", "console", "location", "performance", "WebSocket", "URL", "Path2D", "ResizeObserver",
   "MutationObserver", "requestAnimationFrame", "cancelAnimationFrame", "setTimeout", "clearTimeout", "getComputedStyle",
-  "TextDecoder"];
+  "TextDecoder", "TextEncoder", "navigator", "atob"];
 
 export default [
   js.configs.recommended,
   {
-    files: ["hydrostat/studio/face/static/**/*.js"],
+    files: ["hydrostat/studio/face/static/**/*.js", "hydrostat/toy/static/*.js"],
     languageOptions: { globals: Object.fromEntries(page.map((name) => [name, "readonly"])) },
     rules: {
       eqeqeq: "error",

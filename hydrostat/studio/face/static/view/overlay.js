@@ -115,19 +115,24 @@ export class Overlay {
     pen.globalAlpha = 1;
   }
 
+  winch(view, dot, lively) {
+    const { pen } = this;
+    this.halo(view, dot, 18);
+    this.disc(dot.x, dot.y, lively ? 13 : 12, dot.color, "#ffffff", 2);
+    pen.fillStyle = "#ffffff";
+    pen.font = `600 ${dot.short.length > 1 ? 11 : 13}px ${view.font}`;
+    pen.textAlign = "center";
+    pen.textBaseline = "middle";
+    pen.fillText(dot.short, dot.x, dot.y + 0.5);
+  }
+
   dot(view, dot) {
     const { pen } = this;
     const { x, y, look } = dot;
     const lively = dot.key && dot.key === view.hover;
     pen.globalAlpha = (dot.faint ? FAINT : 1) * (dot.depth > 1 ? 0.45 : 1);
     if (look === "winch") {
-      this.halo(view, dot, 18);
-      this.disc(x, y, lively ? 13 : 12, dot.color, "#ffffff", 2);
-      pen.fillStyle = "#ffffff";
-      pen.font = `600 ${dot.short.length > 1 ? 11 : 13}px ${view.font}`;
-      pen.textAlign = "center";
-      pen.textBaseline = "middle";
-      pen.fillText(dot.short, x, y + 0.5);
+      this.winch(view, dot, lively);
     } else if (look === "marker") {
       this.halo(view, dot, 11);
       this.disc(x, y, lively ? 6.5 : 5.5, dot.color, "#ffffff", 2);
