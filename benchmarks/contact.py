@@ -31,7 +31,7 @@ LEAST_GAP = 0.3
 
 
 def crosses(robot: Robot, nodes: Nodes) -> bool:
-    """Tell whether a body crosses itself: by ipctk in space, by cuts of edges in the plane."""
+    """Return True if a body crosses itself: by ipctk in space, by cuts of edges in the plane."""
     if robot.body.mesh.dim == 2:
         return len(find_crossings(robot.body.mesh, nodes)) > 0
     import ipctk

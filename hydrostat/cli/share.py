@@ -63,7 +63,7 @@ def share(
     shares = (0.6, 0.35)  # of the time, for samples and for training
     with progress_bar() as progress:
         simulation = prepare_physics(loaded)
-        poses = _poses(simulation, progress)
+        poses = _solve_poses(simulation, progress)
         taken = sample_shapes(loaded, count, seed=seed, seconds=seconds and shares[0] * seconds, progress=progress)
         shape = learn_shape(
             taken,
@@ -73,13 +73,13 @@ def share(
             seed=seed,
             progress=progress,
         )
-    page = toy_page(loaded, shape, poses=poses, moves=_moves(folder_of(robot), loaded), motors=motors)
+    page = toy_page(loaded, shape, poses=poses, moves=_read_moves(folder_of(robot), loaded), motors=motors)
     replace_file(out, page.encode())
-    _tell(shape, taken.lost, float(taken.crosses.mean()), count)
+    _print_error(shape, taken.lost, float(taken.crosses.mean()), count)
     print(f"Wrote {out} ({len(page) / 1e6:.2f} MB). Open it in any browser, or send it")
 
 
-def _poses(simulation: "Simulation", progress: "Progress") -> "list[ToyPose]":
+def _solve_poses(simulation: "Simulation", progress: "Progress") -> "list[ToyPose]":
     """Contractions for each pose of the robot."""
     from hydrostat.ik import solve_ik
     from hydrostat.toy import ToyPose
@@ -92,7 +92,7 @@ def _poses(simulation: "Simulation", progress: "Progress") -> "list[ToyPose]":
     return found
 
 
-def _moves(folder: Path, robot: "Robot") -> "list[tuple[float, Vector]]":
+def _read_moves(folder: Path, robot: "Robot") -> "list[tuple[float, Vector]]":
     """Keyframes that the studio saved with the robot; none without a readable studio.json."""
     import numpy as np
 
@@ -108,7 +108,7 @@ def _moves(folder: Path, robot: "Robot") -> "list[tuple[float, Vector]]":
     ]
 
 
-def _tell(shape: "LearnedShape", lost: int, crossing: float, count: int) -> None:
+def _print_error(shape: "LearnedShape", lost: int, crossing: float, count: int) -> None:
     """Print the error of a shape, and what limits it."""
     print(
         f"mean error {1e3 * shape.error:.2f} mm in {shape.held_out} held-out poses (mean motion "

@@ -99,6 +99,6 @@ def write_page(folder: Path) -> Path:
 
 
 def _belongs(stem: str, name: str) -> bool:
-    """Tell whether a file is of this entry, not of one whose name is longer."""
+    """Return True if a file is of this entry, not of one whose name is longer."""
     longer = [entry.name for entry in CATALOG["Chang (2018)"] if entry.name.startswith(f"{name}-")]
     return not any(stem == other or stem.startswith(f"{other}-") for other in longer)

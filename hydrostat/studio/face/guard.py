@@ -149,7 +149,7 @@ class _Body:
 
 
 def _is_near(scope: Scope, headers: Headers) -> bool:
-    """Tell whether, as a browser says, our own page asks, or nobody, or a person who follows a link to the page."""
+    """Return True if, as a browser says, our own page asks, or nobody, or a person who follows a link to the page."""
     sites = headers.getlist("sec-fetch-site")
     follows = scope["type"] == "http" and scope["method"] == "GET" and headers.get("sec-fetch-dest") == "document"
     return all(site in ("same-origin", "none") for site in sites) or (follows and "origin" not in headers)
