@@ -312,3 +312,6 @@ def _check(robot: Robot, measurements: Measurements) -> None:
             raise InputError(f'no marker "{name}"; the robot has {", ".join(known) or "none"}')
     if not (np.isfinite(measurements.places).any() or np.isfinite(measurements.known_lengths).any()):
         raise InputError("no place of a marker and no distance of two markers was measured")
+    forces = measurements.known_forces
+    if np.isfinite(forces).any() and not np.any(forces[np.isfinite(forces)]):
+        raise InputError("forces: every measured force is 0 N. Leave them out if no force was read.")

@@ -48,8 +48,16 @@ class Measurements:
         ):
             if value is not None and value.shape != (len(self.commands), columns):
                 raise InputError(f"{name} must have the shape ({len(self.commands)}, {columns}), not {value.shape}")
+        for pair in self.pairs:
+            if len({*pair} & {*range(len(self.markers))}) != 2:
+                raise InputError(f"pairs must name two of the {len(self.markers)} markers by number from 0, not {pair}")
+        for name in ("places", "lengths", "forces"):
+            if np.isinf(getattr(self, name) if getattr(self, name) is not None else 0.0).any():
+                raise InputError(f"{name} must be finite, or NaN where nothing was measured, not inf")
         masses = self.masses
-        if masses is not None and not (masses.shape == self.places.shape[:2] and (masses >= 0).all()):
+        if masses is not None and not (
+            masses.shape == self.places.shape[:2] and (masses >= 0).all() and np.isfinite(masses).all()
+        ):
             raise InputError("masses must be 0 or more [kg], a row for each pose, a column for each marker")
 
     @property

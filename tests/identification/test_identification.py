@@ -241,6 +241,22 @@ def test_a_table_is_read_and_refused_by_line(tmp_path: Path) -> None:
         assert words in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"forces": np.array([[np.inf, 0.0]])}, "forces must be finite"),
+        ({"forces": np.zeros((1, 2))}, "every measured force is 0 N"),
+        ({"places": np.full((1, 2, 2), -np.inf)}, "places must be finite"),
+        ({"masses": np.full((1, 2), np.inf)}, "masses must be 0 or more"),
+        ({"pairs": ((0, 7),), "lengths": np.ones((1, 1))}, r"2 markers by number from 0, not \(0, 7\)"),
+        ({"pairs": ((0, 0),), "lengths": np.ones((1, 1))}, r"2 markers by number from 0, not \(0, 0\)"),
+    ],
+)
+def test_impossible_measurements_are_refused(change: dict[str, object], words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        fit_model(named_model(strip(), ("young",)), replace(measured(strip(), np.full((1, 2), 0.005)), **change))
+
+
 def test_unknown_kinds_are_refused() -> None:
     with pytest.raises(InputError, match='unknown parameter "yuong"'):
         named_model(strip(), ("yuong",))
