@@ -2,6 +2,7 @@
 
     python docs/rendered_photographs.py FOLDER            # photographs, from which the commands of the page start
     python docs/rendered_photographs.py FOLDER --picture  # after them: its picture
+    python docs/rendered_photographs.py --errors          # errors of corners and markers over twenty pairs
 
 The hidden starfish hangs before its board. It is softer than assumed, two of its spools have other radii, and its mesh
 is finer than that of the robot that is fitted to it. Photographs go to FOLDER/photos, the robot as it is assumed to
@@ -19,7 +20,7 @@ from hydrostat.robot import Load, Robot, gallery_folder, load_robot
 from hydrostat.simulation import Simulation
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "camera"))
-from photographs import Camera, Scene, board_plane, photograph, wall_plane
+from photographs import Camera, Scene, board_plane, photograph, photograph_errors, wall_plane
 
 YOUNG = 0.75
 """Young's modulus over that which is assumed."""
@@ -106,5 +107,15 @@ def draw() -> None:
     wide.save(Path(__file__).parent / "pictures" / "photographs.jpg", quality=85)
 
 
+def print_errors(pairs: int = 20) -> None:
+    """Print errors of tag corners and of markers of a flat robot over pairs of photographs."""
+    results = [photograph_errors(seed) for seed in range(pairs)]
+    corners = [float(np.sqrt((each**2).mean())) for each, _, _ in results]
+    markers = 1e3 * np.concatenate([each for _, each, _ in results])
+    print(f"{pairs} pairs: corners RMS {np.median(corners):.3f} pixels (median), {max(corners):.3f} (worst)")
+    median, most = np.quantile(markers, [0.5, 0.95])
+    print(f"markers {median:.3f} mm (median), {most:.3f} (95 %), {max(markers):.3f} (worst)")
+
+
 if __name__ == "__main__":
-    draw() if "--picture" in sys.argv else main()
+    print_errors() if "--errors" in sys.argv else draw() if "--picture" in sys.argv else main()

@@ -13,13 +13,13 @@ import io
 import re
 
 import typst
-from photographs import Camera, Scene, board_plane, photograph, tag_corners, tag_plane, wall_plane
+from photographs import Camera, Scene, board_plane, photograph, photograph_errors, tag_plane, wall_plane
 from PIL import Image
 
 from hydrostat.camera import Photo, PhotoOptions, measure_photos, table_text
 from hydrostat.camera.calibrate_camera import calibrate_camera
 from hydrostat.camera.find_tags import find_tags
-from hydrostat.camera.locate_tags import locate_in_space, locate_on_plane
+from hydrostat.camera.locate_tags import locate_in_space
 from hydrostat.camera.print_tags import tags_source
 from hydrostat.camera.tags import board_corners, marker_tags
 from hydrostat.errors import InputError
@@ -44,27 +44,10 @@ def save(pixels: np.ndarray, file: Path) -> Path:
 
 @pytest.mark.slow
 def test_corners_and_markers_are_where_they_were_drawn() -> None:
-    """0.15 mm a pixel, 12 mm above the board, with distortion, blur, shadow, noise, clutter and covered tags."""
-    places = [(x, y, 0.012) for x in (-0.05, 0.0, 0.05) for y in (-0.03, 0.03)]
-    cameras = [Camera.above((0.0, 0.0), 0.172, tilt, azimuth, roll=8) for tilt, azimuth in ((3, 40), (18, 160))]
-    tags = []
-    for seed, camera in enumerate(cameras):
-        planes = [board_plane(), *(tag_plane(300 + i, at, 0.012, 30 * i) for i, at in enumerate(places))]
-        tags.append(find_tags(photograph(camera, planes, seed=seed), "photo"))
-    calibration = calibrate_camera(tags, (1280, 960))
-    corner_errors, errors = [], []
-    for camera, found, view in zip(cameras, tags, calibration.views, strict=True):
-        for index, at in enumerate(places):
-            corners = found[300 + index]
-            corner_errors.append(corners - camera.project(tag_corners(at, 0.012, 30 * index)))
-            errors.append(locate_on_plane(corners, calibration.lens, view, 0.012)[0] - at)
-        for number in (each for each in found if each < 300):
-            away = found[number] - camera.project(np.column_stack([board_corners(number), np.zeros(4)]))
-            corner_errors.append(away[np.linalg.norm(away, axis=1) < 1.0])  # others are covered by a tag
-    distances = np.linalg.norm(np.concatenate(corner_errors), axis=1)
-    assert np.sqrt((distances**2).mean()) < 0.15
-    assert np.linalg.norm(errors, axis=1).max() < 0.3e-3
-    assert calibration.lens.focal == pytest.approx(1150, rel=0.02)
+    corners, markers, focal = photograph_errors(seed=0)
+    assert np.sqrt((corners**2).mean()) < 0.15
+    assert markers.max() < 0.3e-3
+    assert focal == pytest.approx(1150, rel=0.02)
 
 
 CAMERAS = [
