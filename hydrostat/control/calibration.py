@@ -14,6 +14,7 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.files import read_stranger, replace_file
 from hydrostat.robot import PinDrive, Robot
+from hydrostat.units import quote
 
 CALIBRATION = "motors.toml"
 EMULATED_CALIBRATION = "motors_emulated.toml"
@@ -131,7 +132,7 @@ class Calibration:
                 raise InputError(f'{CALIBRATION}: winch "{name}" has no motor; add [[motor]] with winch = "{name}"')
         for name in given:
             if name not in wanted:
-                raise InputError(f'{CALIBRATION}: unknown winch "{name}". Available: {", ".join(wanted)}.')
+                raise InputError(f"{CALIBRATION}: unknown winch {quote(name)}. Available: {', '.join(wanted)}.")
         numbers = [(spool.board, spool.number) for spool in self.motors]
         if len(set(numbers)) < len(numbers) or len(set(given)) < len(given):
             raise InputError(
@@ -247,13 +248,15 @@ def _spool(entry: dict[str, Any], file: Path) -> WinchMotor:
     name = entry.get("winch", "?")
     for key, value in entry.items():
         if key not in _KEYS:
-            raise InputError(f'{file}: [[motor]] of "{name}": unknown key "{key}". Allowed: {", ".join(_KEYS)}.')
+            raise InputError(
+                f"{file}: [[motor]] of {quote(name)}: unknown key {quote(key)}. Allowed: {', '.join(_KEYS)}."
+            )
         too_large = isinstance(value, int) and abs(value) > 2**53
         if not isinstance(value, _KEYS[key]) or isinstance(value, bool) or too_large:
-            raise InputError(f'{file}: [[motor]] of "{name}": {key} cannot be {repr(value)[:60]}')
+            raise InputError(f"{file}: [[motor]] of {quote(name)}: {key} cannot be {repr(value)[:60]}")
     for key in ("winch", "number", "radius"):
         if key not in entry:
-            raise InputError(f'{file}: [[motor]] of "{name}" needs {key}')
+            raise InputError(f"{file}: [[motor]] of {quote(name)} needs {key}")
     try:
         given: dict[str, Any] = entry | {"radius": units.parse_quantity(entry["radius"], units.LENGTH)}
         given["curve"] = _pairs(entry.get("curve", []))

@@ -16,7 +16,7 @@ from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.errors import InputError
 from hydrostat.ik import place
 from hydrostat.robot import PoseTarget, Robot
-from hydrostat.units import plural
+from hydrostat.units import plural, quote
 
 AUTO = "auto"  # as many winches as are needed
 
@@ -282,7 +282,7 @@ class DesignRequest:
                 place(f'pose "{pose.name}": the target of {name}', point, robot.body.mesh)  # in meters
                 if name not in markers:
                     known = f"Available: {', '.join(markers)}." if markers else "The robot has no markers."
-                    raise InputError(f'pose "{pose.name}": unknown marker "{name}". {known}')
+                    raise InputError(f'pose "{pose.name}": unknown marker {quote(name)}. {known}')
         self.constraints.check(robot)
         if self.stuffed and robot.body.outline is None:
             raise InputError("filled: only for flat robots with a drawing. Remove it.")

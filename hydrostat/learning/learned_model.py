@@ -21,6 +21,7 @@ from hydrostat.learning.sample_plan import physics_hash
 from hydrostat.mechanics import Reason
 from hydrostat.robot import PoseTarget, Robot
 from hydrostat.simulation import Equilibrium
+from hydrostat.units import quote
 
 
 class Tier(StrEnum):
@@ -259,7 +260,7 @@ class LearnedModel:
         rows, dim, targets = self._rows, self.card.dim, target.targets
         for name, point in targets.items():
             if name not in rows:
-                raise InputError(f'unknown marker "{name}" of the model. Available: {", ".join(rows)}.')
+                raise InputError(f"unknown marker {quote(name)} of the model. Available: {', '.join(rows)}.")
             if len(point) != dim:
                 raise InputError(f'target of marker "{name}" must be {dim} finite coordinates [m]')
         unknown = (np.nan,) * dim

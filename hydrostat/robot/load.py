@@ -10,6 +10,7 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh
 from hydrostat.given import Point, check_name, check_number, check_point, check_positive, check_unique, list_choices
+from hydrostat.units import quote
 
 MOST_SHARE = 100.0
 """Largest share of a load in a motion: 1 is all of it. Write a larger load instead."""
@@ -129,7 +130,9 @@ def check_loads(loads: Sequence[Load], names: list[str], mesh: Mesh, *, weightle
     check_unique("load", [load.name for load in loads])
     for index, load in enumerate(loads):
         if load.marker is not None and load.marker not in names:
-            raise InputError(f'load[{index}].marker: unknown marker "{load.marker}". {list_choices("markers", names)}')
+            raise InputError(
+                f"load[{index}].marker: unknown marker {quote(load.marker)}. {list_choices('markers', names)}"
+            )
         if load.mass is not None and weightless:
             raise InputError(f'load[{index}].mass weighs nothing without gravity; add gravity = "-y", or a force')
         _check_cavity(index, load, mesh)

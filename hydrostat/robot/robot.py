@@ -27,7 +27,7 @@ from hydrostat.robot.pin_drive import PinDrive, check_drives
 from hydrostat.robot.rod import Rod, check_rods_inside
 from hydrostat.robot.sensor import Sensor, check_sensors
 from hydrostat.robot.winch import Mount, Winch
-from hydrostat.units import plural
+from hydrostat.units import plural, quote
 
 _Part = TypeVar("_Part", Winch, Cable, Marker)
 
@@ -304,7 +304,7 @@ class Robot:
             for name in pose.targets:
                 if name not in names:
                     key = f"pose[{index}].targets.{name}"
-                    raise InputError(f'{key}: unknown marker "{name}". {list_choices("markers", names)}')
+                    raise InputError(f"{key}: unknown marker {quote(name)}. {list_choices('markers', names)}")
 
     def _check_inner_parts(self) -> None:
         mesh, names = self.body.mesh, [marker.name for marker in self.markers]

@@ -13,6 +13,7 @@ from hydrostat.learning import LearnedModel
 from hydrostat.robot import PoseTarget, Robot
 from hydrostat.training.backends import Backend, ExactBackend, LearnedBackend, MixedBackend
 from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, finite_numbers, prepare_robot
+from hydrostat.units import quote
 
 BEYOND = 1.02
 """An action of 1 / 1.02 takes in all: a network that ends in tanh can reach the limits (as in a learned model)."""
@@ -99,7 +100,7 @@ class ReachEnv(GoalEnv):
         names = [marker.name for marker in robot_.markers]
         for name in self.options.markers:
             if name not in names:
-                raise InputError(f'robot {robot_.name!r}: unknown marker "{name}". Available: {", ".join(names)}.')
+                raise InputError(f"robot {robot_.name!r}: unknown marker {quote(name)}. Available: {', '.join(names)}.")
         rows = [names.index(name) for name in self.options.markers or names]
         self._dim = robot_.body.mesh.dim
         self.seen = (self._dim * np.array(rows)[:, None] + np.arange(self._dim)).ravel()
@@ -283,7 +284,7 @@ def _groups(robot: Robot, pairs: Sequence[Sequence[str]]) -> tuple[tuple[int, ..
     for pair in pairs:
         for name in pair:
             if name not in names:
-                raise InputError(f'robot {robot.name!r}: unknown winch "{name}". Available: {", ".join(names)}.')
+                raise InputError(f"robot {robot.name!r}: unknown winch {quote(name)}. Available: {', '.join(names)}.")
             used.append(names.index(name))
         if len(pair) != 2:
             raise InputError(f"a pair has two winches, not {len(pair)}: {', '.join(pair)}")

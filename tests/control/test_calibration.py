@@ -34,6 +34,13 @@ def test_emulated_motors_of_a_calibration_that_was_cut_short_say_so() -> None:
     link.close()
 
 
+def test_a_key_of_400_letters_is_cut(tmp_path: Path) -> None:
+    (tmp_path / "motors.toml").write_text(f'[[motor]]\nwinch = "left"\n{"a" * 400} = 1\n')
+    with pytest.raises(HydrostatError, match="unknown key") as told:
+        Calibration.read(tmp_path, strip_robot(columns=4, rows=1))
+    assert len(str(told.value).replace(str(tmp_path), "")) < 200
+
+
 def test_a_number_of_400_digits_is_refused(tmp_path: Path) -> None:
     for key in ("number", "current"):
         values = {"number": "1", "current": "0.5", key: "9" * 400}

@@ -24,6 +24,7 @@ from hydrostat.ik.objectives.objective import (
 )
 from hydrostat.robot import PoseTarget, Robot
 from hydrostat.simulation import Simulation
+from hydrostat.units import quote
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -158,7 +159,7 @@ def _index(robot: Robot, name: str) -> int:
     names = [marker.name for marker in robot.markers]
     if name not in names:
         known = f"Available: {', '.join(names)}." if names else "The robot has no markers."
-        raise InputError(f'unknown marker "{name}". {known}')
+        raise InputError(f"unknown marker {quote(name)}. {known}")
     return names.index(name)
 
 

@@ -16,6 +16,7 @@ from hydrostat.studio.jobs import Jobs, Report
 from hydrostat.studio.posing.movers import same_physics
 from hydrostat.studio.posing.pose_state import Mode
 from hydrostat.studio.view.scene_items import Cloud
+from hydrostat.units import quote
 
 COUNT = 400  # so many poses are tried
 
@@ -117,7 +118,7 @@ class MarkerReach:
         """Begin to look where a marker can go (InputError: no such marker, no cables, or other work is in progress)."""
         robot, tension = self._document.robot, self._document.work.wishes.constraints.tension
         if _place(robot, marker) is None:
-            raise InputError(f'unknown marker "{marker}"')
+            raise InputError(f"unknown marker {quote(marker)}")
         if not robot.cables:
             raise InputError("this robot has no cables yet. Find some in Design, or place them in Edit")
         before, search = self._search, _ReachSearch(robot, marker, tension)
