@@ -12,6 +12,10 @@ class InputError(HydrostatError):
     """Wrong input: a file, a key, a value or an argument."""
 
 
+GIVE_SIZE = 'give its size by --size 130mm, or size = "130 mm" in [body]'
+"""Remedy for a drawing or surface without a credible size."""
+
+
 class OutlineError(InputError):
     """Outline that cannot be a body: it is open, crosses itself, is empty or too thin."""
 

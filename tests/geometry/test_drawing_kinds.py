@@ -240,7 +240,7 @@ def test_old_and_bare_dxf() -> None:
 
 def test_a_drawing_in_meters_is_asked_about() -> None:
     content = drawn().replace(b"$INSUNITS\n 70\n4\n", b"$INSUNITS\n 70\n6\n")
-    with pytest.raises(OutlineError, match=r"a.dxf: would be 130 m long, as its unit says .* Give its size"):
+    with pytest.raises(OutlineError, match=r"a.dxf: would be 130 m long, as its unit says .* give its size"):
         read_drawing(content, name="a.dxf")
     assert read_drawing(content, name="a.dxf", size=0.13).outline.size == pytest.approx(0.13)
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hydrostat.errors import OutlineError
+from hydrostat.errors import GIVE_SIZE, OutlineError
 from hydrostat.geometry.files.drawing_body import Inner, drawing_of
 from hydrostat.geometry.files.drawn_line import DrawnLine, PageFacts
 from hydrostat.geometry.files.drawn_shapes import sorted_shapes
@@ -65,7 +65,7 @@ def read_dxf(
     if page is not None:
         page.check(kind, name)
     elif size is None and unit is None:
-        raise OutlineError(f"{name}: the drawing has no unit ($INSUNITS): give its size")
+        raise OutlineError(f"{name}: the drawing has no unit ($INSUNITS): {GIVE_SIZE}")
     space = _Space(document, name)
     with _listening(), np.errstate(all="ignore"), warnings.catch_warnings(action="ignore"):
         lines = space.lines()

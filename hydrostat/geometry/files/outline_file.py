@@ -6,7 +6,7 @@ from pathlib import PurePath
 import numpy as np
 from shapely.errors import GEOSException
 
-from hydrostat.errors import InputError, OutlineError
+from hydrostat.errors import GIVE_SIZE, InputError, OutlineError
 from hydrostat.files import MOST_DRAWN_BYTES
 from hydrostat.geometry.files.drawing_body import Inner
 from hydrostat.geometry.files.rings import Drawing, Page, one_line
@@ -90,5 +90,5 @@ def _read_drawing(
         raise OutlineError(f"{name}: its shapes cannot be sorted ({one_line(error)}): simplify the drawing") from None
     if size is None and page is None and drawing.outline.size > LARGEST:
         long = f"{drawing.outline.size:.4g} m long"
-        raise OutlineError(f"{name}: would be {long}, as its unit says (at most {LARGEST:g} m). Give its size")
+        raise OutlineError(f"{name}: would be {long}, as its unit says (at most {LARGEST:g} m): {GIVE_SIZE}")
     return drawing

@@ -8,7 +8,7 @@ from pathlib import PurePath
 
 import numpy as np
 
-from hydrostat.errors import SurfaceError
+from hydrostat.errors import GIVE_SIZE, SurfaceError
 from hydrostat.geometry.files.ply_file import read_ply, write_ply
 from hydrostat.geometry.files.soup import MOST_BYTES, Soup, check_count
 from hydrostat.geometry.files.step_file import read_step
@@ -115,8 +115,8 @@ def _surface(soup: Soup, name: str, unit: float, size: float | None) -> Surface:
     smallest, largest = 1e-6, 1e4  # m
     if not smallest <= extent * scale <= largest:
         raise SurfaceError(
-            f"{name}: is {1e3 * extent * scale:.3g} mm large, which no robot is: give its size, or the "
-            "unit of its numbers"
+            f"{name}: is {1e3 * extent * scale:.3g} mm large, which no robot is: {GIVE_SIZE}, "
+            "or the unit of its numbers"
         )
     return Surface(vertices * scale, triangles.reshape(-1, 3), soup.notes)
 

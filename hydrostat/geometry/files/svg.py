@@ -10,7 +10,7 @@ from xml.parsers import expat
 
 import numpy as np
 
-from hydrostat.errors import OutlineError
+from hydrostat.errors import GIVE_SIZE, OutlineError
 from hydrostat.geometry.files.drawing_body import Inner, drawing_of
 from hydrostat.geometry.files.drawn_line import DrawnLine, Fill, PageFacts
 from hydrostat.geometry.files.drawn_shapes import sorted_shapes
@@ -250,7 +250,7 @@ def read_svg(
     if page is not None:
         page.check(kind, name)
     elif size is None and document.unit is None:
-        raise OutlineError(f"{name}: the drawing has no physical size (width in mm, cm or in): give its size")
+        raise OutlineError(f"{name}: the drawing has no physical size (width in mm, cm or in): {GIVE_SIZE}")
     lines = _read_lines(document, name)
     shapes = sorted_shapes(lines, _sheet_of(document), name)
 
