@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrostat.cli.folders import require_writable
-from hydrostat.cli.waiting import one_interrupt, report_progress
+from hydrostat.cli.waiting import import_unbroken, one_interrupt, report_progress
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
@@ -60,6 +60,7 @@ def learn(
     clear_unfinished(out.parent)
     chosen = {"members": members, "steps": steps}
     options = LearnOptions(seed=seed, threads=threads, **{name: n for name, n in chosen.items() if n is not None})
+    import_unbroken("torch")
     samples = Samples.read(data)
     samples = samples if count is None else samples.first(count)
     if start is not None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, cast
 import typer
 
 from hydrostat.cli.folders import RobotFolder, require_folder
-from hydrostat.cli.waiting import one_interrupt, read_robot, report_progress
+from hydrostat.cli.waiting import import_unbroken, one_interrupt, read_robot, report_progress
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.version import install_command
 
@@ -173,6 +173,7 @@ def train(
     def tell(point: "CurvePoint") -> None:
         _row(f"{_line(point, word, factor)}   {time.process_time() - began:.0f} s")
 
+    import_unbroken("stable_baselines3", "sb3_contrib")
     with one_interrupt("stopping: --resume continues from the last row above", interrupt=True):
         more = {"resume": resume, "processes": processes}
         listener = training.Listener(point=tell, progress=progress)

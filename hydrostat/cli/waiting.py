@@ -6,6 +6,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
+from importlib import import_module
 from pathlib import Path
 from threading import Timer, current_thread, main_thread
 from types import FrameType
@@ -186,6 +187,28 @@ def one_interrupt(
     finally:
         for number in ours:
             signal.signal(number, before[number])
+
+
+def import_unbroken(*names: str) -> None:
+    """Import libraries that are installed, and let a signal that arrives meanwhile act after it.
+
+    PyTorch's import aborts the program when Ctrl-C meets it.
+    """
+    caught: list[int] = []
+    before = {number: signal.getsignal(number) for number in STOP_SIGNALS}
+    ours = [number for number, handler in before.items() if handler not in (None, signal.SIG_IGN)]
+    ours = ours if current_thread() is main_thread() else []
+    try:
+        for number in ours:
+            signal.signal(number, lambda number, _: caught.append(number))
+        for name in names:
+            with suppress(ModuleNotFoundError):
+                import_module(name)
+    finally:
+        for number in ours:
+            signal.signal(number, before[number])
+    if caught:
+        signal.raise_signal(caught[0])
 
 
 class _LastingOutput:

@@ -84,6 +84,22 @@ def test_one_signal_stops_and_then_all_is_as_before(
     assert ("stopping" in beside) == bool(words)
 
 
+def test_an_import_is_whole_before_it_is_interrupted(tmp_path: Path) -> None:
+    """Oracle: a library that aborts where Ctrl-C raises in the middle of its import, as PyTorch does."""
+    body = "import os, signal\ntry:\n    os.kill(os.getpid(), signal.SIGINT)\nexcept BaseException:\n    os.abort()\n"
+    (tmp_path / "met.py").write_text(body)
+    code = "from hydrostat.cli.waiting import import_unbroken\nimport_unbroken('absent', 'met')"
+    found = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        env=os.environ | {"PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path])},
+        preexec_fn=USUAL,
+    )
+    assert "KeyboardInterrupt" in found.stderr
+    assert found.returncode == -signal.SIGINT
+
+
 @pytest.mark.parametrize("heed", [False, True])
 def test_a_handler_that_was_not_set_from_python_stays(tmp_path: Path, heed: bool) -> None:
     """Oracle: a handler in C that stands before Python begins, which Python cannot put back."""
