@@ -1,12 +1,13 @@
 """`hydrostat learn`."""
 
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from hydrostat.cli.folders import require_writable
-from hydrostat.cli.waiting import import_unbroken, one_interrupt, report_progress
+from hydrostat.cli.waiting import hold_signals, one_interrupt, report_progress
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
@@ -60,7 +61,8 @@ def learn(
     clear_unfinished(out.parent)
     chosen = {"members": members, "steps": steps}
     options = LearnOptions(seed=seed, threads=threads, **{name: n for name, n in chosen.items() if n is not None})
-    import_unbroken("torch")
+    with hold_signals(), suppress(ModuleNotFoundError):
+        import torch  # noqa: F401  # pyright: ignore
     samples = Samples.read(data)
     samples = samples if count is None else samples.first(count)
     if start is not None:

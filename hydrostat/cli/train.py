@@ -2,13 +2,14 @@
 
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
 from hydrostat.cli.folders import RobotFolder, require_folder
-from hydrostat.cli.waiting import import_unbroken, one_interrupt, read_robot, report_progress
+from hydrostat.cli.waiting import hold_signals, one_interrupt, read_robot, report_progress
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.version import install_command
 
@@ -173,7 +174,8 @@ def train(
     def tell(point: "CurvePoint") -> None:
         _row(f"{_line(point, word, factor)}   {time.process_time() - began:.0f} s")
 
-    import_unbroken("stable_baselines3", "sb3_contrib")
+    with hold_signals(), suppress(ModuleNotFoundError):
+        import stable_baselines3  # noqa: F401  # pyright: ignore
     with one_interrupt("stopping: --resume continues from the last row above", interrupt=True):
         more = {"resume": resume, "processes": processes}
         listener = training.Listener(point=tell, progress=progress)

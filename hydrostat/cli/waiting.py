@@ -6,7 +6,6 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from importlib import import_module
 from pathlib import Path
 from threading import Timer, current_thread, main_thread
 from types import FrameType
@@ -189,11 +188,9 @@ def one_interrupt(
             signal.signal(number, before[number])
 
 
-def import_unbroken(*names: str) -> None:
-    """Import libraries that are installed, and let a signal that arrives meanwhile act after it.
-
-    PyTorch's import aborts the program when Ctrl-C meets it.
-    """
+@contextmanager
+def hold_signals() -> Iterator[None]:
+    """Let a signal that arrives in the block act after it: PyTorch's import aborts the program when Ctrl-C meets it."""
     caught: list[int] = []
     before = {number: signal.getsignal(number) for number in STOP_SIGNALS}
     ours = [number for number, handler in before.items() if handler not in (None, signal.SIG_IGN)]
@@ -201,9 +198,7 @@ def import_unbroken(*names: str) -> None:
     try:
         for number in ours:
             signal.signal(number, lambda number, _: caught.append(number))
-        for name in names:
-            with suppress(ModuleNotFoundError):
-                import_module(name)
+        yield
     finally:
         for number in ours:
             signal.signal(number, before[number])

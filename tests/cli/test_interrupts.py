@@ -88,7 +88,7 @@ def test_an_import_is_whole_before_it_is_interrupted(tmp_path: Path) -> None:
     """Oracle: a library that aborts where Ctrl-C raises in the middle of its import, as PyTorch does."""
     body = "import os, signal\ntry:\n    os.kill(os.getpid(), signal.SIGINT)\nexcept BaseException:\n    os.abort()\n"
     (tmp_path / "met.py").write_text(body)
-    code = "from hydrostat.cli.waiting import import_unbroken\nimport_unbroken('absent', 'met')"
+    code = "from hydrostat.cli.waiting import hold_signals\nwith hold_signals():\n    import met"
     found = subprocess.run(
         [sys.executable, "-c", code],
         capture_output=True,
