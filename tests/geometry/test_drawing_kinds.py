@@ -107,6 +107,21 @@ def test_what_is_painted_is_the_body(body: str, area: float, holes: int) -> None
     assert len(found.holes) == holes
 
 
+@pytest.mark.parametrize(
+    "clip",
+    [
+        f'<mask id="c"><rect {WINDOW} fill="black"/></mask><g mask="url(#c)">{TEAL}</g>',
+        '<clipPath id="c" clipPathUnits="objectBoundingBox"><rect width="1" height="1"/></clipPath>'
+        f'<g clip-path="url(#c)">{TEAL}</g>',
+    ],
+)
+def test_a_clip_that_is_not_applied_is_noted(clip: str) -> None:
+    assert read_drawing(svg(clip), name="a.svg").notes == (
+        "did not apply 1 clip (clip-path or mask); if the body needs it, release it",
+    )
+    assert read_drawing(svg(TEAL), name="a.svg").notes == ()
+
+
 def test_entities_that_are_words_are_read() -> None:
     head = '<!DOCTYPE svg [<!ENTITY ns "http://www.w3.org/2000/svg"><!ENTITY red "fill:red">]>'
     body = f'<svg xmlns="&ns;" {SHEET}><path style="&red;" d="{FISH}"/></svg>'

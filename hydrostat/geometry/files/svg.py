@@ -3,7 +3,7 @@
 import io
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
 from xml.parsers import expat
@@ -32,7 +32,7 @@ from hydrostat.geometry.files.svg_groups import (
     symbols_to_groups,
 )
 from hydrostat.geometry.outline import Ring
-from hydrostat.units import printable
+from hydrostat.units import plural, printable
 
 if TYPE_CHECKING:
     from svgelements import Path
@@ -58,6 +58,7 @@ class _SvgDocument:
     unit: tuple[float, float] | None
     # left, top, width and height of the page in user units; None if the drawing does not say
     sheet: tuple[float, float, float, float] | None
+    unread_clips: int  # elements whose clip path or mask is not applied
 
 
 def _open(content: bytes, name: str) -> _SvgDocument:
@@ -69,7 +70,7 @@ def _open(content: bytes, name: str) -> _SvgDocument:
     symbols_to_groups(root, _sheet(root))
     mark_labels(root)
     try:
-        mark_clips(root)
+        unread = mark_clips(root)
     except ValueError as error:
         raise OutlineError(f"{name}: {error}: release them, or save the outline alone") from None
     _strip_others(root)
@@ -82,7 +83,7 @@ def _open(content: bytes, name: str) -> _SvgDocument:
         raise OutlineError(f"{name}: its viewBox, {said!r}, must be four numbers, the last two above 0: save it again")
     sheet = _sheet(root)
     unit = _normalize(root)
-    return _SvgDocument(ElementTree.tostring(root), unit, sheet)
+    return _SvgDocument(ElementTree.tostring(root), unit, sheet, unread)
 
 
 def _guard(content: bytes, name: str) -> None:
@@ -257,7 +258,13 @@ def read_svg(
     def page_of(body: Ring) -> Page:
         return page or page_about(body, kind, (across, -down), size)
 
-    return drawing_of(shapes, name, inner, page_of, part=part)
+    drawing = drawing_of(shapes, name, inner, page_of, part=part)
+    if not document.unread_clips:
+        return drawing
+    note = (
+        f"did not apply {plural(document.unread_clips, 'clip')} (clip-path or mask); if the body needs it, release it"
+    )
+    return replace(drawing, notes=(*drawing.notes, note))
 
 
 def _sheet_of(document: _SvgDocument) -> PageFacts:

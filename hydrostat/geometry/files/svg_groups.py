@@ -92,16 +92,18 @@ def mark_labels(root: ElementTree.Element, layers: str = "") -> None:
         mark_labels(child, layers)
 
 
-def mark_clips(root: ElementTree.Element) -> None:
+def mark_clips(root: ElementTree.Element) -> int:
     """Put the shapes of a clip path beside each element that it clips; both are marked by a number.
 
     A mask clips as well, unless it has black in it. Only clip paths in the units of the drawing are known; others clip
-    nothing here. Raises ValueError: they would be repeated too often.
+    nothing here. Returns the number of elements whose clip path or mask is not applied. Raises ValueError: clip paths
+    would be repeated too often.
     """
     most = 20_000  # elements that clip paths are repeated as
     clips = {each.get("id", ""): each for each in root.iter() if _is_window(each)}
     sheet = _clips_of_names(root)
-    number = 0
+    number, unread = 0, 0
+    windows = {each.get("id", "") for each in root.iter() if _tag(each) in _WINDOWS and len(each)}
     for parent in list(root.iter()):
         if _tag(parent) in _WINDOWS:
             continue
@@ -113,6 +115,7 @@ def mark_clips(root: ElementTree.Element) -> None:
             found = _URL.search(said)
             clip = clips.get(found[1]) if found else None
             if clip is None:
+                unread += found is not None and found[1] in windows
                 continue
             number += 1
             most -= sum(1 for _ in clip.iter())
@@ -124,6 +127,7 @@ def mark_clips(root: ElementTree.Element) -> None:
             window.extend(deepcopy(list(clip)))
             group.append(element)
             parent[place] = group
+    return unread
 
 
 def _is_window(element: ElementTree.Element) -> bool:
