@@ -162,7 +162,7 @@ class Policy:
 
     def __call__(self, states: Tensor, goals: Tensor) -> Tensor:
         """Actions from -1 to 1."""
-        return torch.tanh(_layers(self.numbers, self.see(states, goals)))
+        return torch.tanh(apply_layers(self.numbers, self.see(states, goals)))
 
     def see(self, states: Tensor, goals: Tensor) -> Tensor:
         """Return the input of the networks."""
@@ -312,14 +312,14 @@ class HindsightDdpg:
         with torch.no_grad():
             targets = reward
             if self._gamma > 0:
-                following = torch.tanh(_layers(self._followers[0], then))
+                following = torch.tanh(apply_layers(self._followers[0], then))
                 targets = reward + self._gamma * self._value(self._followers[1], then, following)
             targets = cut_targets(targets, self._gamma) if options.cut else targets
         loss = (self._value(self._critic, seen, acts) - targets).square().mean(1).sum()
         self._critic_adam.zero_grad()
         loss.backward()
         self._critic_adam.step()
-        chosen = torch.tanh(_layers(self.policy.numbers, seen))
+        chosen = torch.tanh(apply_layers(self.policy.numbers, seen))
         fixed = [part.detach() for part in self._critic]
         effort = options.penalty * chosen.square().mean((1, 2))
         loss = (effort - self._value(fixed, seen, chosen).mean(1)).sum()
@@ -329,7 +329,7 @@ class HindsightDdpg:
 
     @staticmethod
     def _value(critic: Sequence[Tensor], seen: Tensor, acts: Tensor) -> Tensor:
-        return _layers(critic, torch.cat([seen, acts], -1))[..., 0]
+        return apply_layers(critic, torch.cat([seen, acts], -1))[..., 0]
 
     def _follow(self) -> None:
         """Targets go a little towards the networks."""
@@ -360,7 +360,7 @@ class HindsightDdpg:
             self._critic_adam.param_groups[0]["lr"] = late
 
 
-def _layers(numbers: Sequence[Tensor], values: Tensor) -> Tensor:
+def apply_layers(numbers: Sequence[Tensor], values: Tensor) -> Tensor:
     """Networks of all seeds, with ReLU between their layers."""
     last = len(numbers) - 2
     for layer in range(0, len(numbers), 2):

@@ -4,7 +4,7 @@ Each takes trials and pairs, (seeds, many, size), and gives what a policy is cal
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -12,7 +12,7 @@ from hydrostat.errors import HydrostatError
 from hydrostat.progress import Progress, no_progress
 from hydrostat.version import install_command
 from hydrostat_lab.experiments import SMALL
-from hydrostat_lab.hindsight_ddpg import HindsightDdpg
+from hydrostat_lab.hindsight_ddpg import HindsightDdpg, apply_layers
 from hydrostat_lab.trials import Begun, NetworkReach, Trials
 
 try:
@@ -97,6 +97,16 @@ def clone_actions(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> Ac
     return _fit_policy(trials, pairs, effort, loss)
 
 
+def clone_small(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> Act:
+    """The same cloning by a network like that of trial and error: `SMALL`'s layers, ReLU, no linear map (R88)."""
+
+    def loss(network: "_Network", rows: Tensor) -> Tensor:
+        wanted, reached = (_take_rows(part, rows) for part in (pairs.acts, pairs.reached))
+        return (network(reached) - wanted).square().sum(-1)
+
+    return _fit_policy(trials, pairs, effort, loss, _SmallNetwork(trials, pairs, SMALL.layers))
+
+
 def gradient(trials: NetworkReach, pairs: TriedPairs, effort: Budget) -> Act:
     """A network that learns from what its own actions reach, through exact slopes of the networks that it acts in.
 
@@ -148,28 +158,43 @@ PAIRS_ALONE, UNFILLED = ("ridge", "1-NN", "cloned", "constant"), ("trial and err
 class _Network:
     """Networks of all seeds from goals to actions, with SiLU and a linear map beside it."""
 
-    def __init__(self, trials: NetworkReach, pairs: TriedPairs) -> None:
+    def __init__(self, trials: NetworkReach, pairs: TriedPairs, layers: Sequence[int] | None = None) -> None:
+        layers = _LAYERS if layers is None else layers
         seeds, draw = len(pairs.acts), torch.Generator().manual_seed(_NETWORKS)
         self._mean, self._spread = pairs.reached.mean(1, keepdim=True), pairs.reached.std(1, keepdim=True)
         self.numbers: list[Tensor] = []
-        for one, two in pairwise([trials.goals, *_LAYERS, trials.actions]):
+        for one, two in pairwise([trials.goals, *layers, trials.actions]):
             self.numbers.append(torch.randn(seeds, one, two, generator=draw) / math.sqrt(one))
             self.numbers.append(torch.zeros(seeds, 1, two))
         self.numbers.append(torch.zeros(seeds, trials.goals, trials.actions))
         self.numbers = [part.requires_grad_() for part in self.numbers]
 
     def __call__(self, goals: Tensor) -> Tensor:
-        raw = answer(self.numbers, (goals - self._mean) / self._spread, None)[0]
+        raw = self._answer((goals - self._mean) / self._spread)
         return (_BEYOND * torch.tanh(raw)).clamp(-1.0, 1.0)
+
+    def _answer(self, values: Tensor) -> Tensor:
+        return answer(self.numbers, values, None)[0]
+
+
+class _SmallNetwork(_Network):
+    """Networks with ReLU and nothing beside it."""
+
+    def _answer(self, values: Tensor) -> Tensor:
+        return apply_layers(self.numbers[:-1], values)
 
 
 def _fit_policy(
-    trials: NetworkReach, pairs: TriedPairs, effort: Budget, loss: Callable[[_Network, Tensor], Tensor]
+    trials: NetworkReach,
+    pairs: TriedPairs,
+    effort: Budget,
+    loss: Callable[[_Network, Tensor], Tensor],
+    network: _Network | None = None,
 ) -> Act:
     """Networks by Adam on batches of pairs, with a rate that falls as a cosine."""
     torch.set_num_threads(1)
     torch.set_flush_denormal(True)  # numbers that fade to nothing take a hundred times as long
-    network, draw = _Network(trials, pairs), torch.Generator().manual_seed(_BATCHES)
+    network, draw = network or _Network(trials, pairs), torch.Generator().manual_seed(_BATCHES)
     adam = torch.optim.Adam(network.numbers, lr=_RATE, fused=True)
     seeds, many, _ = pairs.acts.shape
     for step in range(effort.steps):

@@ -5,6 +5,7 @@ import io
 from collections.abc import Sequence
 from dataclasses import replace
 from enum import StrEnum
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
@@ -14,6 +15,7 @@ from hydrostat.cli import report_progress, require_folder
 from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
 from hydrostat_lab import catalog
+from hydrostat_lab.reproduced_page import write_page
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -97,8 +99,8 @@ def reproduce(
     figure-5.13 runs the same method in FetchReach, figure-5.13-hand in HandReach (both gymnasium-robotics), and
     compares it with published curves.
 
-    `list` prints all tables and figures, also those of the README, with the results so far. reproduced.md in DIR shows
-    all that DIR has.
+    `list` prints all tables and figures, also those of the README, with the results so far. reproduced.md in DIR sets
+    the thesis, the largest runs and those of DIR side by side. Repeat the command to resume it: finished tables stay.
 
     Example: hydrostat reproduce table-5.1 figure-5.14 --out build/thesis
     """
@@ -121,13 +123,16 @@ def reproduce(
     if names := [name for name in asked if name in trials]:
         much = HowMuch(size=size, seeds=seeds, goals=targets, epochs=epochs)
         reproduce_trials(names, _robot(bodies[0]), out, much, model=model, jobs=jobs)
-    if references := [name for name in asked if name in REFERENCE_TABLES]:
-        reproduce_reference(references, out, size=size, seeds=seeds)
-    print(f"Wrote {catalog.write_page(out)}")
+    reproduce_reference([name for name in asked if name in REFERENCE_TABLES], out, size=size, seeds=seeds)
+    print(f"Wrote {write_page(out)}")
 
 
 def _choose(what: "Sequence[str]", there: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the names of tables and figures (InputError: an unknown one)."""
+    """Return the names of tables and figures, of all without those that miss a package (InputError: an unknown one)."""
+    others = tuple(name for name in there if name.startswith("figure-5.13"))
+    if "all" in what and find_spec("gymnasium_robotics") is None:
+        print(f"note: {' and '.join(others)} left out: package gymnasium-robotics not found.")
+        return tuple(name for name in there if name not in others)
     asked = there if "all" in what else tuple(what)
     for name in asked:
         if name not in there:

@@ -27,6 +27,8 @@ def reproduce_reference(names: Sequence[str], out: Path, *, size: str, seeds: in
     Raises:
         HydrostatError: torch, gymnasium-robotics or a fitting MuJoCo is missing.
     """
+    if not names:
+        return
     with trials_missing():
         from hydrostat_lab.reference import REFERENCES, run_reference
     from hydrostat.files import replace_file

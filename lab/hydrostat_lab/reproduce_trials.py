@@ -1,14 +1,21 @@
 """`reproduce_trials`: the thesis's experiments with reinforcement learning, for `hydrostat reproduce`."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from hydrostat.cli import report_progress
-from hydrostat_lab.trial_tables import drawn_runs, format_interval, judged_claims, shared_table, trials_missing
+from hydrostat_lab.trial_tables import (
+    drawn_runs,
+    format_interval,
+    is_finished,
+    judged_claims,
+    shared_table,
+    trials_missing,
+)
 
 if TYPE_CHECKING:
     from hydrostat.learning import LearnedModel
@@ -68,53 +75,72 @@ def reproduce_trials(
         jobs: processes that sample where there is no model.
     """
     with trials_missing():
-        from hydrostat_lab.experiments import EXPERIMENTS
-        from hydrostat_lab.run_experiment import run_experiment
-    from hydrostat.files import replace_file
-    from hydrostat.plot import save_png
+        import hydrostat_lab.experiments  # noqa: F401
     from hydrostat.simulation import Simulation
 
-    usual, progress = _SIZES[much.size], report_progress()
+    usual = _SIZES[much.size]
     usual = usual if much.goals is None else usual._replace(goals=much.goals)
     usual = usual if much.epochs is None else usual._replace(small=much.epochs, large=much.epochs)
+    usual = usual if much.seeds is None else usual._replace(seeds=much.seeds)
     networks = _networks(robot, out, model, usual.samples, jobs)
     networks.check(robot)
-    simulation, width = Simulation(robot), 1e3 * robot.body.mesh.size
-    count = usual.seeds if much.seeds is None else much.seeds
+    simulation = Simulation(robot)
+    settings = {**usual._asdict(), "pairs": list(usual.pairs), "samples": networks.card.samples}
+    settings |= {"robot": networks.card.physics, "error": networks.card.error}
     for name in names:
-        if name == SHARED:
-            _write_shared(networks, simulation, out, seeds=count, usual=usual)
-            continue
-        if name in (POLICIES, GRADIENT):
-            _policies(name, networks, simulation, out, seeds=count, usual=usual)
-            continue
-        experiment = EXPERIMENTS[name]
-        print(f"\n{name}: {experiment.title}")
-        print(f"{robot.name}, {width:.0f} mm; networks of {networks.card.samples} equilibria; {count} seeds:")
-        print(f"interquartile means and their 95 % intervals\n{_WORDS}")
-        done: list[Judged] = []
-        for judged in run_experiment(
-            experiment,
-            networks,
-            simulation,
-            seeds=count,
-            epochs=lambda layer: usual.small if layer < _LARGE else usual.large,
-            goals=usual.goals,
-            progress=progress,
-        ):
-            print(_line(judged, width), flush=True)
-            done.append(judged)
-        runs = {judged.name: judged.ran for judged in done}
-        kept = judged_claims(experiment, runs)
-        for judged in done:
-            exact = np.where(np.isnan(judged.exact), -1.0, judged.exact)
-            kept["runs"][judged.name]["in the simulator [cm]"] = exact.tolist()
-        replace_file(out / f"{name}.json", (json.dumps(kept, indent=1) + "\n").encode())
-        print(f"Wrote {save_png(drawn_runs(experiment, runs), out / f'{name}.png')} and {name}.json")
+        if not is_finished(out / f"{name}.json", settings):
+            write = _write_shared if name == SHARED else _policies if name in (POLICIES, GRADIENT) else _try
+            write(name, networks, simulation, out, usual=usual, settings=settings)
+
+
+def _try(
+    name: str,
+    networks: "LearnedModel",
+    simulation: "Simulation",
+    out: Path,
+    *,
+    usual: "_Trials",
+    settings: Mapping[str, object],
+) -> None:
+    """Run an experiment of the thesis, and judge its claims."""
+    from hydrostat.files import replace_file
+    from hydrostat.plot import save_png
+    from hydrostat_lab.experiments import EXPERIMENTS
+    from hydrostat_lab.run_experiment import run_experiment
+
+    experiment, width = EXPERIMENTS[name], 1e3 * simulation.robot.body.mesh.size
+    print(f"\n{name}: {experiment.title}")
+    print(f"{simulation.robot.name}, {width:.0f} mm; networks of {networks.card.samples} equilibria;", end=" ")
+    print(f"{usual.seeds} seeds:\ninterquartile means and their 95 % intervals\n{_WORDS}")
+    done: list[Judged] = []
+    for judged in run_experiment(
+        experiment,
+        networks,
+        simulation,
+        seeds=usual.seeds,
+        epochs=lambda layer: usual.small if layer < _LARGE else usual.large,
+        goals=usual.goals,
+        progress=report_progress(),
+    ):
+        print(_line(judged, width), flush=True)
+        done.append(judged)
+    runs = {judged.name: judged.ran for judged in done}
+    kept = {"settings": settings, **judged_claims(experiment, runs)}
+    for judged in done:
+        exact = np.where(np.isnan(judged.exact), -1.0, judged.exact)
+        kept["runs"][judged.name]["in the simulator [cm]"] = exact.tolist()
+    replace_file(out / f"{name}.json", (json.dumps(kept, indent=1) + "\n").encode())
+    print(f"Wrote {save_png(drawn_runs(experiment, runs), out / f'{name}.png')} and {name}.json")
 
 
 def _write_shared(
-    networks: "LearnedModel", simulation: "Simulation", out: Path, *, seeds: int, usual: "_Trials"
+    name: str,
+    networks: "LearnedModel",
+    simulation: "Simulation",
+    out: Path,
+    *,
+    usual: "_Trials",
+    settings: Mapping[str, object],
 ) -> None:
     """Trial and error beside others, of the pairs that it tried and of pairs drawn evenly."""
     from hydrostat_lab.policies import Budget
@@ -125,13 +151,19 @@ def _write_shared(
     budget = Budget(steps=max(2000, usual.steps // 6), epochs=usual.small)
     trials = NetworkReach(networks, groups=finger_pairs(networks))
     compared = compare_on_shared_data(
-        trials, simulation, seeds=seeds, goals=usual.goals, budget=budget, progress=report_progress()
+        trials, simulation, seeds=usual.seeds, goals=usual.goals, budget=budget, progress=report_progress()
     )
-    shared_table(SHARED, compared, out, 1e3 * simulation.robot.body.mesh.size)
+    shared_table(name, compared, out, 1e3 * simulation.robot.body.mesh.size, settings)
 
 
 def _policies(
-    table: str, networks: "LearnedModel", simulation: "Simulation", out: Path, *, seeds: int, usual: "_Trials"
+    table: str,
+    networks: "LearnedModel",
+    simulation: "Simulation",
+    out: Path,
+    *,
+    usual: "_Trials",
+    settings: Mapping[str, object],
 ) -> None:
     """Table and picture of ways to a policy of one action, over the equilibria that each has used."""
     from hydrostat.files import replace_file
@@ -146,8 +178,8 @@ def _policies(
         NetworkReach(networks, groups=finger_pairs(networks)),
         Budget(steps=usual.steps, epochs=usual.small, progress=report_progress()),
     )
-    every, width = drawn_pairs(trials, seeds, max(usual.pairs)), 1e3 * simulation.robot.body.mesh.size
-    known = networks.card.samples
+    seeds, width = usual.seeds, 1e3 * simulation.robot.body.mesh.size
+    every, known = drawn_pairs(trials, seeds, max(usual.pairs)), networks.card.samples
     print(f"\n{table}: policy methods with one action (T=1), {seeds} seeds, {usual.goals} goals in the simulator")
     print(f"{'method':24}{'pairs':>8}{'equilibria':>12}{'mean [mm]':>24}{'% size':>8}{'p99 [mm]':>10}{'lost':>6}")
     rows: list[dict[str, object]] = []
@@ -167,7 +199,8 @@ def _policies(
             act = way(trials, every.first(many), effort)
             exact = 10.0 * exact_distances(simulation, trials, act, seeds, asked, progress=report_progress())
             report(name, many, _count_equilibria(name, many, known, usual), exact)
-    replace_file(out / f"{table}.json", (json.dumps(rows, indent=1) + "\n").encode())
+    kept = {"settings": settings, "rows": rows}
+    replace_file(out / f"{table}.json", (json.dumps(kept, indent=1) + "\n").encode())
     curves: dict[str, list[tuple[float, float]]] = {}
     for row in rows:
         curves.setdefault(str(row["way"]), []).append((float(row["equilibria"]), float(np.mean(row["seeds"]))))  # type: ignore[arg-type]
@@ -235,7 +268,7 @@ class _Trials(NamedTuple):
 
 
 _SIZES = {
-    "minutes": _Trials(300, 3, 12, 3, 20, (100, 300), 500),
+    "minutes": _Trials(300, 3, 12, 1, 20, (100, 300), 500),
     "hour": _Trials(1000, 5, 30, 8, 60, (300, 10_000), 24_000),
     "full": _Trials(10_000, 10, 200, 50, 1000, (300, 3_000, 10_000), 48_000),
 }

@@ -12,7 +12,7 @@ from hydrostat.simulation import Simulation
 from hydrostat.version import install_command
 from hydrostat_lab.experiments import SMALL
 from hydrostat_lab.hindsight_ddpg import HindsightDdpg
-from hydrostat_lab.policies import Act, Budget, TriedPairs, clone_actions, drawn_pairs, nearest, ridge
+from hydrostat_lab.policies import Act, Budget, TriedPairs, clone_actions, clone_small, drawn_pairs, nearest, ridge
 from hydrostat_lab.run_experiment import exact_distances, exact_goals
 from hydrostat_lab.trials import NetworkReach
 
@@ -107,6 +107,7 @@ TRIED, BEST = "trial and error", "trial and error, best"
 OTHERS: Mapping[str, Callable[[NetworkReach, TriedPairs, Budget], Act]] = {
     "1-NN": nearest,
     "network": clone_actions,
+    "network 4 x 30": clone_small,
     "ridge": ridge,
 }
 """Ways to learn from pairs, by their names."""
@@ -116,6 +117,7 @@ ORDERS = (
     Order("trial and error ends nearer than a network, of the same pairs (N16, R90)", BEST, "network, shared"),
     Order("a network ends nearer than ridge regression (N16)", "network, shared", "ridge, shared"),
     Order("trial and error ends nearer than a network of pairs drawn evenly (R90, E61)", BEST, "network, independent"),
+    Order("trial and error ends nearer than an equal network of the same pairs (R88)", BEST, "network 4 x 30, shared"),
 )
 """Claims of the thesis about the end of its figure, and its conclusion when others have pairs of their own."""
 

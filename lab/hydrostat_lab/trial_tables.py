@@ -33,6 +33,17 @@ def trials_missing() -> Iterator[None]:
         raise HydrostatError(f"package {error.name} not found. Install it: {install_command('rl')}") from None
 
 
+def is_finished(file: Path, settings: Mapping[str, object]) -> bool:
+    """Return True if a file of numbers is of a finished run with these settings; say so."""
+    try:
+        same = json.loads(file.read_text(encoding="utf-8"))["settings"] == settings
+    except (OSError, ValueError, KeyError, TypeError):
+        return False
+    if same:
+        print(f"\n{file.stem}: finished before, see {file.name}", flush=True)
+    return same
+
+
 def judged_claims(experiment: "Experiment", ran: "Mapping[str, Ran]") -> dict[str, Any]:
     """Say what the claims come to; all numbers of the runs, for a file."""
     from hydrostat_lab.verdict import interquartile, verdict
@@ -43,7 +54,7 @@ def judged_claims(experiment: "Experiment", ran: "Mapping[str, Ran]") -> dict[st
         word = verdict(values, claim.above)
         number = f"{format_interval(interquartile(values), 3)} {claim.unit}".rstrip()
         print(f"  {claim.text}: {word}, {number} (claim: above {claim.above:g})")
-        claims.append({"claim": claim.text, "verdict": word, "seeds": values.tolist(), "above": claim.above})
+        claims.append({"claim": claim.text, "verdict": word, "number": number, "seeds": values.tolist()})
     runs = {
         name: {
             "actions": run.epochs.actions.tolist(),
@@ -72,7 +83,9 @@ def drawn_runs(experiment: "Experiment", ran: "Mapping[str, Ran]") -> "Figure":
     return draw_curves(panes)
 
 
-def shared_table(name: str, compared: "Iterable[OfPairs]", out: Path, width: float) -> None:
+def shared_table(
+    name: str, compared: "Iterable[OfPairs]", out: Path, width: float, settings: Mapping[str, object] | None = None
+) -> None:
     """Tell what each way leaves after so many pairs, which claims hold at the end, and draw it; size in mm."""
     from hydrostat.files import replace_file
     from hydrostat.plot import save_png
@@ -99,8 +112,10 @@ def shared_table(name: str, compared: "Iterable[OfPairs]", out: Path, width: flo
     for order in ORDERS:
         lead = ends[order.farther] - ends[order.nearer]
         word = verdict(lead, 0.0)
-        print(f"  {order.text}: {word}, by {format_interval(interquartile(lead), 3)} mm")
-        claims.append({"claim": order.text, "verdict": word, "seeds": lead.tolist()})
-    replace_file(out / f"{name}.json", (json.dumps({"claims": claims, "rows": rows}, indent=1) + "\n").encode())
+        number = f"{format_interval(interquartile(lead), 3)} mm"
+        print(f"  {order.text}: {word}, by {number}")
+        claims.append({"claim": order.text, "verdict": word, "number": number, "seeds": lead.tolist()})
+    kept = {"settings": settings, "claims": claims, "rows": rows}
+    replace_file(out / f"{name}.json", (json.dumps(kept, indent=1) + "\n").encode())
     axes = "action-outcome pairs", "mean error in networks [mm]"
     print(f"Wrote {save_png(draw_costs(curves, *axes), out / f'{name}.png')} and {name}.json")
