@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -37,6 +38,9 @@ def identify(
             "--fit", metavar="NAMES", help="Parameters to fit, with commas.", show_default="all that are common"
         ),
     ] = None,
+    in_order: Annotated[
+        bool, typer.Option("--in-order", help="The rows are one motion: each pose follows from the one before.")
+    ] = False,
     suggest: Annotated[
         int | None, typer.Option(metavar="N", help="Print the N most informative measurements to make.")
     ] = None,
@@ -52,7 +56,8 @@ def identify(
     friction, pins, gravity, rods, frame (of the measurement), force (scale of measured forces). Writes the fitted
     robot, parameters.csv with 95 % intervals and identified.png. Every fifth of ten or more rows is also predicted by a
     fit that did not see it. A correction of the contractions is written if it predicts such rows better:
-    correction.json. With --suggest, the command prints file names of photographs to take, the most informative first.
+    correction.json. Cables with friction pull less on the way back: measure up and down strokes, and add --in-order.
+    With --suggest, the command prints file names of photographs to take, the most informative first.
 
     Example: hydrostat identify my_starfish measured.csv --out build/fitted
     """
@@ -63,8 +68,8 @@ def identify(
     if names == ():
         raise InputError('--fit "": name at least one parameter')
     if suggest is not None:
-        if measurements is not None or out is not None:
-            raise InputError("--suggest: plans measurements and writes nothing. Remove TABLE.csv and --out.")
+        if measurements is not None or out is not None or in_order:
+            raise InputError("--suggest: plans measurements and writes nothing. Remove TABLE.csv, --out, --in-order.")
         _suggest(read_robot(robot), suggest, names, hang or [], tension)
         return
     if hang or tension is not None:
@@ -75,7 +80,7 @@ def identify(
     if out.resolve() == folder_of(robot).resolve():
         raise InputError(f"--out {out}: is the folder of the robot. Name another one.")
     loaded = read_robot(robot)
-    table = read_measurements(measurements, loaded)
+    table = replace(read_measurements(measurements, loaded), in_order=in_order)
     began = time.process_time()
     found = identify_robot(loaded, table, fit=names, progress=ProgressLines())
     _write(robot, table, found, out)

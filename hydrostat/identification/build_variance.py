@@ -26,8 +26,9 @@ def estimate_build_variance(
         numbers: coordinates of the fit.
         noises: standard deviation of a measured coordinate or length [m], and of a force [N].
     """
-    rows = measurements.rows(choose_rows(measurements))
+    chosen = choose_rows(measurements)
+    rows = measurements.rows(chosen)
     residuals = Residuals.of(MarkerPredictor(model, rows, deviations=DEVIATIONS).predict(numbers, slopes=True), rows)
     slopes = residuals.jacobian / np.where(residuals.is_force, noises[1], noises[0])[:, None]
-    information = len(measurements.commands) / len(rows.commands) * slopes.T @ slopes
+    information = len(measurements.commands) / len(chosen) * slopes.T @ slopes
     return np.diag(np.linalg.inv(information + np.eye(len(information))))[: len(numbers)]

@@ -90,6 +90,8 @@ def identify(
             progress=progress and (lambda line: progress(f"without held-out rows, {line}")),
         )
         held_before, held_after = _distances(assumed, asked), _distances(part, asked)
+        if measurements.in_order:
+            held_before, held_after = held_before[held_out], held_after[held_out]
     fitted = fit_model(model, measurements, progress=progress)
     changed, pretension = _robot(model, fitted, robot)
     return IdentifiedRobot(

@@ -16,6 +16,9 @@ from hydrostat.simulation import Equilibrium, Sensitivity, Simulation
 STEP = 1e-5
 """Change of a coordinate of the fit for differences, in spreads."""
 
+PATH_STEP = 1e-3
+"""The same for differences of whole loading paths, which friction makes less smooth."""
+
 
 @dataclass(frozen=True, eq=False)
 class MarkerPrediction:
@@ -80,9 +83,11 @@ class MarkerPredictor:
         network = winch_ratios(robot)
         loaded, loads = np.unique(self.measurements.hung_masses, axis=0, return_inverse=True)
         simulations = [Simulation(_with_masses(robot, markers, masses)) for masses in loaded]
+        before, follows = None, self.measurements.in_order
         for row, (contraction, load) in enumerate(zip(contractions, loads.ravel(), strict=True)):
             simulation = simulations[load]
-            pose = self._poses[row] = self._solve(simulation, contraction, self._poses[row])
+            pose = self._solve(simulation, contraction, before if follows else self._poses[row])
+            self._poses[row], before = pose, pose or before
             if pose is None:
                 continue
             at = anchors.positions(pose.nodes)
@@ -93,7 +98,28 @@ class MarkerPredictor:
                     force_jacobian[row] = self._force_slopes(simulation, pose, (network, scale), changes, row)
                 except NotConvergedError:
                     places[row], forces[row], self._poses[row] = np.nan, np.nan, None
-        return MarkerPrediction(places, jacobian, forces, force_jacobian)
+        found = MarkerPrediction(places, jacobian, forces, force_jacobian)
+        has_history = any(simulation.assembly.has_history for simulation in simulations)
+        return self._path_slopes(found, numbers) if slopes and follows and has_history else found
+
+    def _path_slopes(self, found: MarkerPrediction, numbers: Vector) -> MarkerPrediction:
+        """Prediction of a loading path with slopes by the parameters from differences of whole paths.
+
+        The adjoint holds the history of a pose, which the parameters change as well.
+        """
+        assert found.jacobian is not None
+        assert found.force_jacobian is not None
+        jacobian, force_jacobian = found.jacobian.copy(), found.force_jacobian.copy()
+        known = np.isfinite(self.measurements.known_forces)
+        for index, unit in enumerate(np.eye(len(numbers))):
+            less, more = (
+                MarkerPredictor(self.model, self.measurements).predict(numbers + step * unit, slopes=False)
+                for step in (-PATH_STEP, PATH_STEP)
+            )
+            by_place, by_force = more.places - less.places, more.forces - less.forces
+            jacobian[..., index] = np.nan_to_num(by_place / (2 * PATH_STEP))
+            force_jacobian[..., index] = np.where(known, np.nan_to_num(by_force / (2 * PATH_STEP)), 0.0)
+        return replace(found, jacobian=jacobian, force_jacobian=force_jacobian)
 
     def _changes(self, numbers: Vector, values: Values, robot: Robot) -> list["_Change"]:
         """Small changes of each parameter, then of each number that is not fitted."""
@@ -115,10 +141,9 @@ class MarkerPredictor:
         ]
 
     def _solve(self, simulation: Simulation, contractions: Vector, last: Equilibrium | None) -> Equilibrium | None:
-        if last is not None and not simulation.assembly.has_history:
-            pose = simulation.solve(
-                contractions, start=simulation.make_pose(last.contractions, last.result), strict=False
-            )
+        if last is not None and (self.measurements.in_order or not simulation.assembly.has_history):
+            start = simulation.make_pose(last.contractions, last.result, last.history)
+            pose = simulation.solve(contractions, start=start, strict=False)
             if pose.result.converged:
                 return pose
         pose = simulation.solve(contractions, strict=False)

@@ -21,6 +21,8 @@ class Measurements:
         lengths: these distances [m], (rows, pairs); NaN where they were not measured, none if left out.
         forces: force with which each winch pulls [N], (rows, winches): torque over the radius of its spool; NaN where
             it was not measured, none if left out.
+        in_order: True if the rows are one loading path, in their order, so that each begins where the one before
+            ended. Counts for robots whose pose depends on the path: cables with friction.
 
     Raises:
         InputError: arrays that do not fit one another, or numbers that are not finite.
@@ -33,6 +35,7 @@ class Measurements:
     pairs: tuple[tuple[int, int], ...] = ()
     lengths: Float[np.ndarray, "rows pairs"] | None = None
     forces: Float[np.ndarray, "rows winches"] | None = None
+    in_order: bool = False
 
     def __post_init__(self) -> None:
         if self.commands.ndim != 2 or not np.isfinite(self.commands).all():
@@ -83,7 +86,16 @@ class Measurements:
         return known
 
     def rows(self, chosen: np.ndarray) -> "Measurements":
-        """Some of the rows, by index or mask."""
+        """Some of the rows, by index or mask; of a loading path, all commands with these measurements alone."""
+        if self.in_order:
+            left = np.ones(len(self.commands), dtype=bool)
+            left[chosen] = False
+            return replace(
+                self,
+                places=np.where(left[:, None, None], np.nan, self.places),
+                lengths=None if self.lengths is None else np.where(left[:, None], np.nan, self.lengths),
+                forces=None if self.forces is None else np.where(left[:, None], np.nan, self.forces),
+            )
         kept = {
             name: value[chosen]
             for name in ("commands", "places", "masses", "lengths", "forces")

@@ -169,6 +169,26 @@ def test_forces_show_the_modulus_of_a_body_without_weight() -> None:
     assert np.log(high / low) / (2 * 1.96) == pytest.approx(0.2, rel=0.15)  # the torque constant is known to 20 %
 
 
+def test_up_and_down_strokes_show_friction() -> None:
+    """Oracle: hidden friction. Rows in the order of a loading path have the history that rows from rest lack."""
+    bends = ((0.0083, 0.0137), (0.0487, -0.0061), (0.0921, 0.0147), (0.1329, -0.0057), (0.1833, 0.0143))
+    cable = replace(strip().cables[0], points=bends, friction=0.1)
+    robot = replace(strip(), loads=(), cables=(cable,), winches=strip().winches[:1])
+    model, hidden = named_model(robot, ("friction",)), np.array([1.5])
+    path = replace(measured(robot, np.array([[2.0], [14.0], [8.0], [2.0], [8.0]]) * 1e-3), in_order=True)
+    seen = MarkerPredictor(model, path).predict(hidden, slopes=False)
+    free = MarkerPredictor(model, replace(path, in_order=False)).predict(hidden, slopes=False)
+    assert free.places[:2] == pytest.approx(seen.places[:2], abs=1e-7)
+    assert np.abs(free.forces - seen.forces).max() > 0.2 * seen.forces.max()
+    table = replace(path, places=seen.places + 1e-4 * np.random.default_rng(1).standard_normal(seen.places.shape))
+    found = fit_model(model, table, noise=1e-4, refine=False)
+    low, high = found.intervals["friction"]
+    assert low < model.values(hidden)["friction"] < high < 1.2 * low
+    part = table.rows(np.array([1, 3]))
+    assert np.isfinite(part.places[:, 0, 0]).tolist() == [False, True, False, True, False]
+    assert MarkerPredictor(model, part).predict(hidden, slopes=False).places == pytest.approx(seen.places)
+
+
 def test_lengths_by_ruler_need_no_places(tmp_path: Path) -> None:
     """Oracle: hidden spools, from three distances of two markers each in eight poses."""
     robot, file = strip(), tmp_path / "ruler.csv"
