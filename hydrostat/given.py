@@ -45,14 +45,14 @@ def check_positive(field: str, value: float, unit: str) -> None:
     """Reject a value that is no number, not finite or not above 0."""
     check_number(field, value, unit)
     if not 0 < value < math.inf:
-        raise InputError(f"{field} must be finite and above 0, not {value:g} {unit}")
+        raise InputError(f"{field} must be finite and above 0, not {value:g} {unit}".rstrip())
 
 
 def check_not_negative(field: str, value: float, unit: str) -> None:
     """Reject a value that is no number, not finite or below 0."""
     check_number(field, value, unit)
     if not 0 <= value < math.inf:
-        raise InputError(f"{field} must be finite and not negative, not {value:g} {unit}")
+        raise InputError(f"{field} must be finite and not negative, not {value:g} {unit}".rstrip())
 
 
 def check_point(field: str, point: Point) -> None:

@@ -311,7 +311,7 @@ class Robot:
         check_loads(self.loads, names, mesh, weightless=self.gravity is None)
         check_unique("rod", [rod.name for rod in self.rods])
         check_unique("sensor", [sensor.name for sensor in self.sensors])
-        check_sensors(self.sensors, mesh)
+        check_sensors(self)
         self._check_inside([(key, point) for key, point in self._points() if key.startswith(("load", "rod", "sensor"))])
         check_rods_inside(self.rods, self.body, self._text)
 

@@ -108,6 +108,10 @@ def _material_tag(value: object) -> str:
     return "<named>" if "name" in value else "<numbers>"
 
 
+def _noise_tag(value: object) -> str:
+    return "<text>" if isinstance(value, str) else "<number>"
+
+
 def _gravity_tag(value: object) -> str:
     return "<direction>" if isinstance(value, str) else "<components>"
 
@@ -288,7 +292,9 @@ class SensorTable(TomlTable):
     at: Coordinates | None = None
     normal: Coordinates | None = None
     radius: Number | None = None
-    noise: Text | Number | None = None
+    noise: (
+        Annotated[Annotated[Text, Tag("<text>")] | Annotated[Number, Tag("<number>")], Discriminator(_noise_tag)] | None
+    ) = None
 
 
 class RobotTable(TomlTable):

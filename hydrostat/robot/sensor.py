@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh
 from hydrostat.given import Point, check_name, check_not_negative, check_point, check_positive
 from hydrostat.robot.pin_drive import PinDrive, format_angle
+
+if TYPE_CHECKING:
+    from hydrostat.robot.robot import Robot
 
 
 class SensorKind(StrEnum):
@@ -123,6 +127,11 @@ class Sensor:
         count = self.count_values(dim)
         return [self.name] if count == 1 else [f"{self.name}_{axis}" for axis in "xyz"[:count]]
 
+    def columns(self, dim: int) -> list[str]:
+        """Name of each value with its unit, as in tables, such as "imu_x_deg"."""
+        unit = self.column[0].replace("/", "_").replace("^", "")
+        return [f"{head}_{unit}" if unit else head for head in self.heads(dim)]
+
     def with_transform(self, move: Callable[[Point], Point], scale: Callable[[float], float]) -> "Sensor":
         """Return the same sensor moved, its lengths [m] scaled."""
         noise = scale(self.noise) if self.kind is SensorKind.LENGTH else self.noise
@@ -163,9 +172,16 @@ class Sensor:
         return format_angle(self.noise) if unit is units.ANGLE else units.format_quantity(self.noise, unit)
 
 
-def check_sensors(sensors: tuple[Sensor, ...], mesh: Mesh) -> None:
-    """Reject sensors of a body with another dimension, and faces that hold no facet of the skin (InputError)."""
-    for index, sensor in enumerate(sensors):
+def check_sensors(robot: "Robot") -> None:
+    """Reject sensors of another dimension, on no facet of the skin, or whose names clash in tables (InputError)."""
+    mesh, axes = robot.body.mesh, "xyz"[: robot.body.mesh.dim]
+    taken = {"time_s": "time", "kinetic_J": "energy", "potential_J": "energy"}
+    taken |= {f"{winch.name}_mm": f"winch {winch.name}" for winch in robot.winches}
+    taken |= {drive.column[0]: f"drive {drive.name}" for drive in robot.drives}
+    taken |= {f"{marker.name}_{axis}_mm": f"marker {marker.name}" for marker in robot.markers for axis in axes}
+    taken |= {f"{body.name}_{axis}_mm": f"obstacle {body.name}" for body in robot.obstacles for axis in axes}
+    taken |= {f"cable_{number}_N": f"cable {number}" for number in range(1, len(robot.cables) + 1)}
+    for index, sensor in enumerate(robot.sensors):
         for key, point in sensor.places:
             if len(point) != mesh.dim:
                 raise InputError(f"sensor[{index}].{key} has {len(point)} coordinates, but the body has {mesh.dim}")
@@ -173,3 +189,9 @@ def check_sensors(sensors: tuple[Sensor, ...], mesh: Mesh) -> None:
             raise InputError(
                 f"sensor[{index}]: no face of the skin lies within its radius; move at to the skin or widen it"
             )
+        for head in {*sensor.heads(mesh.dim), *sensor.columns(mesh.dim)}:
+            if head in taken:
+                raise InputError(
+                    f'sensor[{index}].name: column "{head}" is that of {taken[head]} too. Rename the sensor.'
+                )
+        taken |= dict.fromkeys({*sensor.heads(mesh.dim), *sensor.columns(mesh.dim)}, f"sensor {sensor.name}")

@@ -1,12 +1,12 @@
 """`LinearPose`: stiffness, masses, viscosity and inputs of small motions about an equilibrium."""
 
-from typing import TYPE_CHECKING
+from operator import index
+from typing import TYPE_CHECKING, SupportsIndex
 
 import numpy as np
 
 from hydrostat.arrays import Float, Vector
 from hydrostat.errors import InputError, NotConvergedError
-from hydrostat.given import check_type
 from hydrostat.mechanics import Assembly
 from hydrostat.simulation.equilibrium import Equilibrium, check_pose
 from hydrostat.simulation.simulation import Simulation
@@ -50,12 +50,14 @@ class LinearPose:
             alone = Assembly([energy], rest=simulation.body.rest_unknowns, control_count=0)
             self.viscous = alone.hessian(nodes, np.zeros(0)) / memory.modulus(1.0)
 
-    def find_basis(self, count: int) -> Float[np.ndarray, "dofs modes"]:
+    def find_basis(self, count: SupportsIndex) -> Float[np.ndarray, "dofs modes"]:
         """Lowest modes, with unit modal mass; the sign is that of their largest entry."""
         from scipy.sparse.linalg import LinearOperator, eigsh  # Imported here: seldom needed.
 
         root, size = np.sqrt(self.masses), len(self.masses)
-        check_type(count, int, "the number of modes must be a whole number")
+        if isinstance(count, bool | np.bool) or not isinstance(count, SupportsIndex):
+            raise InputError(f"the number of modes must be a whole number, not {count!r:.60}")
+        count = index(count)
         if not 1 <= count < size:
             raise InputError(f"the number of modes must be from 1 to {size - 1}, not {count}")
 

@@ -1,6 +1,7 @@
 """`find_modes`: small free vibrations about an equilibrium."""
 
 from dataclasses import dataclass
+from typing import SupportsIndex
 
 import numpy as np
 
@@ -25,7 +26,7 @@ class Modes:
     shapes: Float[np.ndarray, "modes nodes dim"]
 
 
-def find_modes(simulation: Simulation, pose: Equilibrium | None = None, *, count: int = 6) -> Modes:
+def find_modes(simulation: Simulation, pose: Equilibrium | None = None, *, count: SupportsIndex = 6) -> Modes:
     """Lowest vibration modes about an equilibrium, with taut cables as springs and winches that stand still.
 
     Args:
@@ -46,5 +47,5 @@ def find_modes(simulation: Simulation, pose: Equilibrium | None = None, *, count
         viscosity / (1 + (time * rates) ** 2) for viscosity, time in zip(memory.viscosities, memory.times, strict=True)
     )
     damping = lost * np.diag(linear.reduce_viscous(basis)) / (2 * rates)
-    shapes = basis.T.reshape(count, *linear.assembly.shape)[:, : len(pose.nodes)]
+    shapes = basis.T.reshape(-1, *linear.assembly.shape)[:, : len(pose.nodes)]
     return Modes(frequencies=rates / (2 * np.pi), damping=damping, shapes=shapes)

@@ -254,18 +254,11 @@ def _csv(robot: Robot, table: MotionTable) -> bytes:
     columns = [table.times[:, None], 1e3 * table.contractions, driven, 1e3 * places, table.tensions, table.energies]
     columns += [1e3 * way for way in table.things.values()]
     if table.sensors.shape[1]:
-        heads, factors = zip(*_sensor_columns(robot), strict=True)
-        head += heads
-        columns.append(table.sensors * np.array(factors))
+        dim = robot.body.mesh.dim
+        head += [name for sensor in robot.sensors for name in sensor.columns(dim)]
+        factors = [sensor.column[1] for sensor in robot.sensors for _ in sensor.heads(dim)]
+        columns.append(table.sensors * factors)
     return csv_text(head, ([f"{value:.9g}" for value in row] for row in np.concatenate(columns, axis=1)))
-
-
-def _sensor_columns(robot: Robot) -> Iterator[tuple[str, float]]:
-    """Head of each column of readings, with its unit, and the factor from SI."""
-    for sensor in robot.sensors:
-        unit, factor = sensor.column
-        unit = unit.replace("/", "_").replace("^", "")
-        yield from ((f"{head}_{unit}" if unit else head, factor) for head in sensor.heads(robot.body.mesh.dim))
 
 
 def _pvd(frames: list[tuple[float, str]]) -> str:

@@ -1,11 +1,14 @@
 """`linearize`: linear state space of a robot about an equilibrium, for control."""
 
+import warnings
 from dataclasses import dataclass
+from typing import SupportsIndex
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hydrostat.arrays import Float, Nodes, Vector
+from hydrostat.errors import HydrostatWarning
 from hydrostat.given import check_not_negative
 from hydrostat.simulation.equilibrium import Equilibrium
 from hydrostat.simulation.linear_pose import LinearPose
@@ -66,7 +69,7 @@ class StateSpace:
 
 
 def linearize(
-    simulation: Simulation, pose: Equilibrium | None = None, *, modes: int = 10, drag: float = 0.0
+    simulation: Simulation, pose: Equilibrium | None = None, *, modes: SupportsIndex = 10, drag: float = 0.0
 ) -> StateSpace:
     """Linear state space about an equilibrium, from its lowest modes and the static move under each control.
 
@@ -75,7 +78,7 @@ def linearize(
 
     Args:
         simulation: physics of the robot.
-        pose: an equilibrium; that without contractions if left out.
+        pose: an equilibrium; that without contractions if left out, with a warning of slack cables, which move nothing.
         modes: number of modes, without the static moves.
         drag: drag force per mass and velocity [1/s], as in `StepOptions`.
 
@@ -84,7 +87,9 @@ def linearize(
         NotConvergedError: the pose is no stable equilibrium.
     """
     check_not_negative("drag", drag, "1/s")
-    pose = simulation.rest if pose is None else pose
+    if pose is None:
+        pose = simulation.rest
+        _warn_slack(pose)
     linear, robot = LinearPose(simulation, pose), simulation.robot
     basis = linear.with_static_moves(linear.find_basis(modes))
     viscous, memory, count = linear.reduce_viscous(basis), simulation.dynamics.memory, basis.shape[1]
@@ -115,3 +120,11 @@ def linearize(
         basis=basis,
         masses=linear.masses,
     )
+
+
+def _warn_slack(pose: Equilibrium) -> None:
+    """Warn of cables that are slack in the pose taken by default: a small contraction of them moves nothing."""
+    slack = [cable.name for cable, tension in zip(pose.robot.cables, pose.tensions, strict=True) if tension <= 0]
+    if slack:
+        words = f"slack at rest, so without gain: cables {', '.join(slack)}. Give a pose in which they are taut."
+        warnings.warn(words, HydrostatWarning, stacklevel=3)

@@ -7,7 +7,7 @@ import pytest
 from builders import FOAM, mesh_body, strip_mesh, strip_robot
 from scipy.linalg import expm
 
-from hydrostat.errors import InputError
+from hydrostat.errors import HydrostatWarning, InputError
 from hydrostat.robot import Material, Pin, Relaxation, Robot
 from hydrostat.simulation import Simulation, find_modes, linearize
 
@@ -80,11 +80,26 @@ def test_a_small_step_moves_as_in_time() -> None:
     assert again[: 2 * modes] == pytest.approx(state[: 2 * modes], abs=0.05 * np.abs(state).max())
 
 
+@pytest.mark.usefixtures("unchecked")
 def test_what_has_no_linear_model_is_refused() -> None:
     simulation = viscous_strip()
     with pytest.raises(InputError, match="from 1 to"):
         find_modes(simulation, count=0)
+    for count in (True, 2.0):
+        with pytest.raises(InputError, match="whole number"):
+            find_modes(simulation, count=count)  # type: ignore[arg-type]
+    assert len(find_modes(simulation, count=np.int64(2)).shapes) == 2
     robot = simulation.robot
     rubbing = robot.with_network(robot.winches, [replace(cable, friction=0.2) for cable in robot.cables])
     with pytest.raises(InputError, match="friction has no linear model"):
         find_modes(Simulation(rubbing))
+
+
+def test_slack_cables_at_rest_are_named() -> None:
+    """Oracle: the gain of a slack cable is 0."""
+    simulation = viscous_strip()
+    robot = simulation.robot
+    slack = robot.with_network(robot.winches, [replace(robot.cables[0], slack=0.002), *robot.cables[1:]])
+    with pytest.warns(HydrostatWarning, match=f"cables {robot.cables[0].name}"):
+        space = linearize(Simulation(slack), modes=2)
+    assert not space.gain[:, 0].any()

@@ -149,6 +149,7 @@ def test_sensors_are_kept_in_files(tmp_path: Path) -> None:
         ({"kind": "bend", "points": ((0.0, 0.0, 0.0), (0.1, 0.0, 0.0))}, "normal"),
         ({"kind": "smell", "at": (0.0, 0.0)}, "bend"),
         ({"kind": "strain", "points": ((0.0, 0.0), (0.1, 0.0)), "noise": -1.0}, "noise"),
+        ({"kind": "strain", "points": ((0.0, 0.0), (0.1, 0.0)), "noise": np.nan}, "noise must be .*, not nan$"),
     ],
 )
 def test_bad_sensors_get_one_line(given: dict[str, Any], told: str) -> None:
@@ -165,3 +166,27 @@ def test_sensors_outside_the_body_are_refused() -> None:
     ):
         with pytest.raises(InputError, match=told):
             strip(sensor)
+
+
+def test_noise_that_is_no_number_gets_one_line(tmp_path: Path) -> None:
+    save_robot(strip(replace(OTHERS[0], noise=0.01)).robot, tmp_path)
+    file = tmp_path / "robot.toml"
+    file.write_text(file.read_text().replace("noise = 0.01", "noise = nan"))
+    with pytest.raises(InputError, match=r"sensor\[0\].noise: [^:\n]*finite"):
+        load_robot(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "told"),
+    [
+        ("time_s", "b", r'sensor\[0\].name: column "time_s" is that of time too. Rename the sensor.'),
+        ("left_mm", "b", r"sensor\[0\].name: .* winch left too"),
+        ("b_x", "b", r"sensor\[1\].name: column \"b_x\" is that of sensor b_x too"),
+    ],
+)
+def test_names_that_clash_in_tables_are_refused(first: str, second: str, told: str) -> None:
+    sensors = (replace(OTHERS[0], name=first), replace(OTHERS[4], name=second))
+    robot = strip().robot
+    robot = robot.with_network([replace(robot.winches[0], name="left")], [replace(robot.cables[0], winch="left")])
+    with pytest.raises(InputError, match=told):
+        replace(robot, sensors=sensors)
