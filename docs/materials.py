@@ -50,6 +50,33 @@ Stress in kPa at a squeeze, sides free, by the foam law and Neo-Hookean with the
 {stresses}
 """
 
+HYSTERESIS = """\
+## Hysteresis
+
+No material has [hysteresis](robot_toml.md#hysteresis) by default. These are values to begin with, as shares of Young's
+modulus. The loss is the part of the work of a stretch from rest to 25 % that does not return on the way back, in closed
+form; the strain kept is the most that a bar keeps when released.
+
+{table}
+
+- **foams**: a foam maker's notes tell losses of 35 to 40 % for slabs of 20 kg/m^3, 30 to 35 % at 24 kg/m^3, 21 to 26 %
+  for dense reinforced foam, by the indentation test (quoted in a public record, the maker's paper not at hand). Shares
+  and strains are assumed, such that the loss lies within these.
+- **polyester fibre**: assumed, no loss was found. Fibres slide on each other from the first squeeze on. Believe it
+  within a factor of three.
+- **silicones, TPU**: none; their loss depends on rate: write `relaxation`.
+
+Measure yours: pull a robot half, whole, half and to 0, and compare the markers of both strokes. Cable friction makes
+them differ, too.
+"""
+
+SLIDERS = {
+    "polyurethane foam, soft": ((0.4, 0.02), (0.5, 0.1)),
+    "polyurethane foam, dense": ((0.3, 0.02), (0.25, 0.1)),
+    "polyester fibre": ((0.4, 0.02), (0.6, 0.1)),
+}
+"""Share of Young's modulus and strain of each slider."""
+
 SQUEEZES = 0.1, 0.25, 0.4, 0.6
 
 
@@ -66,7 +93,25 @@ def page() -> str:
     )
     return (
         f"{INTRODUCTION}\n{table}\n\n## Where the numbers come from, and who disagrees\n\n{sources}\n\n{foam_chapter()}"
+        f"\n{hysteresis_chapter()}"
     )
+
+
+def hysteresis_chapter() -> str:
+    """Chapter on values of hysteresis."""
+    rows = []
+    for name, sliders in SLIDERS.items():
+        loss, kept = hysteresis_loss(sliders, 0.25), sum(share * strain for share, strain in sliders)
+        shares = ", ".join(f"{100 * share:.3g} % at {strain:g}" for share, strain in sliders)
+        rows.append(f"| {name} | {shares} | {100 * loss:.0f} % | {100 * kept:.1f} % |")
+    head = ["| filling | share of Young's modulus, strain | loss at 25 % | strain kept, at most |", "|---|---|---|---|"]
+    return HYSTERESIS.format(table="\n".join([*head, *rows]))
+
+
+def hysteresis_loss(sliders: tuple[tuple[float, float], ...], most: float) -> float:
+    """Part of the work of a stretch from rest to `most` that is lost there and back, per unit of Young's modulus."""
+    up = most**2 / 2 + sum(share * strain * (most - strain / 2) for share, strain in sliders)
+    return sum(share * strain * (2 * most - 2.5 * strain) for share, strain in sliders) / up
 
 
 def foam_chapter() -> str:

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from hydrostat.mechanics.rigid import CarriedWarp, GuideEnergy, RigidBodyDofs, RigidEnergy
     from hydrostat.mechanics.rod_energy import RodEnergy, rod_points
     from hydrostat.mechanics.self_friction import SelfFrictionEnergy
+    from hydrostat.mechanics.slider_energy import SliderEnergy
     from hydrostat.mechanics.stiffness import Stiffness
     from hydrostat.mechanics.tension_law import TensionLaw
     from hydrostat.mechanics.viscous import MaxwellBranches, Metrics
@@ -79,6 +80,7 @@ __all__ = [
     "RodEnergy",
     "RoundOff",
     "SelfFrictionEnergy",
+    "SliderEnergy",
     "Stencils",
     "Stiffness",
     "TensionLaw",

@@ -111,6 +111,11 @@ class Assembly:
         return any(energy.has_history for energy in self.energies)
 
     @property
+    def follows_tangent(self) -> bool:
+        """True if the Hessian at a pose is that of going on: nothing with a history but sliders of materials."""
+        return all(energy.follows_tangent for energy in self.energies if energy.has_history)
+
+    @property
     def max_stalled_corrections(self) -> int:
         """Largest `max_stalled_corrections` of the energies with a history; 0 without one."""
         return max((energy.max_stalled_corrections for energy in self.energies if energy.has_history), default=0)

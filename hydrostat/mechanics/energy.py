@@ -145,6 +145,7 @@ class Energy(ABC):
         has_history: True if the energy depends on the loading path, as with friction. A solve then follows the path by
             `history_residual`, `with_corrected_history` and `with_advanced_history`, and `history` is kept with the
             pose.
+        follows_tangent: True if, with a history, its Hessian after an increment is that of going on.
         max_stalled_corrections: number of corrections in a row without progress after which a solve with history stops.
         stiffest: stiffness of its stiffest spring to a fixed place [N/m], which scales rounding errors of positions to
             forces.
@@ -157,6 +158,7 @@ class Energy(ABC):
     quadratic: ClassVar[bool] = False
     projects_first: ClassVar[bool] = False
     has_history: bool = False
+    follows_tangent: ClassVar[bool] = False
     max_stalled_corrections: ClassVar[int] = 40
     stiffest: float = 0.0
 

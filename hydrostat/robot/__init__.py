@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from hydrostat.robot.inflated import describe_cable_side, inflated_robot, sewn_robot, sewn_sides
     from hydrostat.robot.load import Load
     from hydrostat.robot.marker import Marker, PoseTarget
-    from hydrostat.robot.material import FOAM_POISSON_LIMIT, FoamTerm, Material, Relaxation
+    from hydrostat.robot.material import FOAM_POISSON_LIMIT, FoamTerm, Material, Relaxation, Slider
     from hydrostat.robot.materials import FOAMS, MATERIALS, get_material
     from hydrostat.robot.merge import comments, lost_comments, merged_text
     from hydrostat.robot.obstacle_lines import obstacle_lines, rims
@@ -68,6 +68,7 @@ __all__ = [
     "Rod",
     "Sensor",
     "SensorKind",
+    "Slider",
     "Source",
     "SurfaceSketch",
     "TablesFile",

@@ -33,6 +33,26 @@ class Relaxation:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Slider:
+    """Prandtl element of rate-free hysteresis: spring and slider in series, parallel to the elastic material.
+
+    It adds its modulus to the material's until its strain is reached, and then a stress of young x strain that stays
+    and that turns round with the motion after twice the strain. Several in parallel are Iwan's model.
+
+    Raises InputError: a number that is not finite and above 0, or a strain above 1.
+    """
+
+    young: float  # Young's modulus of the spring [Pa]; Poisson's ratio is 0
+    strain: float  # Green's strain at which it slips, 0.05 is 5 %
+
+    def __post_init__(self) -> None:
+        check_positive("young", self.young, "Pa")
+        check_positive("strain", self.strain, "")
+        if self.strain > 1:
+            raise InputError(f"strain must be at most 1, not {self.strain:g}; 0.05 is 5 %")
+
+
+@dataclass(frozen=True, kw_only=True)
 class FoamTerm:
     """Term of a foam law (Ogden and Storakers, "hyperfoam").
 
@@ -65,6 +85,7 @@ class Material:
         density: mass density [kg/m^3].
         viscosity: shear viscosity of a dashpot parallel to the elastic material (Kelvin-Voigt) [Pa s].
         relaxation: Maxwell branches parallel to the elastic material, together a Prony series.
+        hysteresis: Prandtl elements parallel to the elastic material, together an Iwan model.
         foam: terms of the foam law; empty for a Neo-Hookean material.
         largest_stretch: maximum stretch (length / rest length) for which the values are valid; None: unknown.
         largest_squeeze: maximum compression, as a share of the length, for which the values are valid, for a foam until
@@ -82,6 +103,7 @@ class Material:
     density: float
     viscosity: float = 0.0
     relaxation: tuple[Relaxation, ...] = ()
+    hysteresis: tuple[Slider, ...] = ()
     foam: tuple[FoamTerm, ...] = ()
     largest_stretch: float | None = None
     largest_squeeze: float | None = None
@@ -100,6 +122,8 @@ class Material:
         check_not_negative("viscosity", self.viscosity, "Pa s")
         if len(self.relaxation) > MOST_BRANCHES:
             raise InputError(f"relaxation must have at most {MOST_BRANCHES} branches, not {len(self.relaxation)}")
+        if len(self.hysteresis) > MOST_BRANCHES:
+            raise InputError(f"hysteresis must have at most {MOST_BRANCHES} elements, not {len(self.hysteresis)}")
         if self.foam:
             self._check_foam()
         if self.largest_stretch is not None and not 1 < self.largest_stretch < math.inf:
@@ -122,8 +146,8 @@ class Material:
 
     @property
     def elastic(self) -> Self:
-        """Return the same material without viscosity and relaxation: its long-term behavior."""
-        return replace(self, viscosity=0.0, relaxation=())
+        """Return the same material without viscosity, relaxation and hysteresis: its long-term behavior."""
+        return replace(self, viscosity=0.0, relaxation=(), hysteresis=())
 
     @property
     def lame(self) -> tuple[float, float]:

@@ -18,7 +18,7 @@ from hydrostat.robot.element_kind import MaterialLaw
 from hydrostat.robot.gravity import gravity_along
 from hydrostat.robot.load import Load
 from hydrostat.robot.marker import Marker, PoseTarget
-from hydrostat.robot.material import FoamTerm, Material, Relaxation
+from hydrostat.robot.material import FoamTerm, Material, Relaxation, Slider
 from hydrostat.robot.materials import get_material
 from hydrostat.robot.part import BodyPart, PartShape
 from hydrostat.robot.pin import Pin
@@ -289,6 +289,8 @@ def read_material(entry: Any) -> Material:
     viscous = _given_keys(entry, "viscosity")
     if entry.relaxation is not None:
         viscous["relaxation"] = tuple(_branch(index, branch) for index, branch in enumerate(entry.relaxation))
+    if entry.hysteresis is not None:
+        viscous["hysteresis"] = tuple(_slider(index, slider) for index, slider in enumerate(entry.hysteresis))
     terms = _foam_terms(entry)
     if hasattr(entry, "name"):
         known = get_material(entry.name, None if terms else entry.law)
@@ -318,6 +320,13 @@ def _branch(index: int, entry: Any) -> Relaxation:
         return Relaxation(modulus=entry.modulus, time=entry.time)
     except InputError as error:
         raise InputError(f"relaxation[{index}].{error}") from None
+
+
+def _slider(index: int, entry: Any) -> Slider:
+    try:
+        return Slider(young=entry.young, strain=float(entry.strain))
+    except InputError as error:
+        raise InputError(f"hysteresis[{index}].{error}") from None
 
 
 def _gravity(entry: Any, dim: int) -> tuple[float, ...] | None:

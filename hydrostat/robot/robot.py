@@ -311,7 +311,11 @@ class Robot:
         check_loads(self.loads, names, mesh, weightless=self.gravity is None)
         check_unique("rod", [rod.name for rod in self.rods])
         check_unique("sensor", [sensor.name for sensor in self.sensors])
-        check_sensors(self)
+        controls = [*(f"{winch.name}_mm" for winch in self.winches), *(drive.column[0] for drive in self.drives)]
+        places = [part.name for part in (*self.markers, *self.obstacles)]
+        check_sensors(
+            self.sensors, mesh, [*controls, *(f"cable_{n}_N" for n in range(1, 1 + len(self.cables)))], places
+        )
         self._check_inside([(key, point) for key, point in self._points() if key.startswith(("load", "rod", "sensor"))])
         check_rods_inside(self.rods, self.body, self._text)
 

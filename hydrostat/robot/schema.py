@@ -70,6 +70,16 @@ class RelaxationTable(TomlTable):
 Branches = Annotated[list[RelaxationTable], Field(max_length=MOST_BRANCHES)]
 
 
+class SliderTable(TomlTable):
+    """Prandtl element."""
+
+    young: Pressure
+    strain: Number
+
+
+Sliders = Annotated[list[SliderTable], Field(max_length=MOST_BRANCHES)]
+
+
 class FoamTermTable(TomlTable):
     """Term of a foam law."""
 
@@ -88,6 +98,7 @@ class NamedMaterialTable(TomlTable):
     terms: Terms | None = None
     viscosity: Viscosity | None = None
     relaxation: Branches | None = None
+    hysteresis: Sliders | None = None
 
 
 class MaterialTable(TomlTable):
@@ -100,6 +111,7 @@ class MaterialTable(TomlTable):
     terms: Terms | None = None
     viscosity: Viscosity | None = None
     relaxation: Branches | None = None
+    hysteresis: Sliders | None = None
 
 
 def _material_tag(value: object) -> str:

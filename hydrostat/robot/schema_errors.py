@@ -16,6 +16,7 @@ REFUSED = {
     "body.face": "where the cables of a flat robot run stands at the top of the file, before [body]; move it there",
     "body.viscosity": "it belongs to the material; write " + _VISCOUS,
     "body.relaxation": "it belongs to the material; write " + _VISCOUS,
+    "body.hysteresis": "it belongs to the material; write " + _VISCOUS,
     **dict.fromkeys(("body.material.young", "body.material.poisson", "body.material.density"), _NAMED),
     "part": "parts belong to the body; begin each with [[body.part]]",
 }
@@ -31,6 +32,7 @@ _EXAMPLES = {
     "poisson": "poisson = 0.3",
     "density": 'density = "40 kg/m^3"',
     "relaxation": 'relaxation = [{ modulus = "10 kPa", time = "2 s" }]',
+    "hysteresis": 'hysteresis = [{ young = "10 kPa", strain = 0.05 }]',
     "modulus": 'modulus = "10 kPa"',
     "time": 'time = "2 s"',
     "force": 'force = ["0 N", "-1 N"]',

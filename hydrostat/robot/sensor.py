@@ -4,7 +4,6 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,9 +13,6 @@ from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh
 from hydrostat.given import Point, check_name, check_not_negative, check_point, check_positive
 from hydrostat.robot.pin_drive import PinDrive, format_angle
-
-if TYPE_CHECKING:
-    from hydrostat.robot.robot import Robot
 
 
 class SensorKind(StrEnum):
@@ -172,16 +168,14 @@ class Sensor:
         return format_angle(self.noise) if unit is units.ANGLE else units.format_quantity(self.noise, unit)
 
 
-def check_sensors(robot: "Robot") -> None:
-    """Reject sensors of another dimension, on no facet of the skin, or whose names clash in tables (InputError)."""
-    mesh, axes = robot.body.mesh, "xyz"[: robot.body.mesh.dim]
-    taken = {"time_s": "time", "kinetic_J": "energy", "potential_J": "energy"}
-    taken |= {f"{winch.name}_mm": f"winch {winch.name}" for winch in robot.winches}
-    taken |= {drive.column[0]: f"drive {drive.name}" for drive in robot.drives}
-    taken |= {f"{marker.name}_{axis}_mm": f"marker {marker.name}" for marker in robot.markers for axis in axes}
-    taken |= {f"{body.name}_{axis}_mm": f"obstacle {body.name}" for body in robot.obstacles for axis in axes}
-    taken |= {f"cable_{number}_N": f"cable {number}" for number in range(1, len(robot.cables) + 1)}
-    for index, sensor in enumerate(robot.sensors):
+def check_sensors(sensors: tuple[Sensor, ...], mesh: Mesh, columns: list[str], places: list[str]) -> None:
+    """Reject sensors of another dimension, on no facet of the skin, or whose names clash in tables (InputError).
+
+    `columns` and those of positions of `places` are the others of motion.csv.
+    """
+    taken = dict.fromkeys(["time_s", "kinetic_J", "potential_J", *columns], "the motion")
+    taken |= {f"{name}_{axis}_mm": f"the position of {name}" for name in places for axis in "xyz"[: mesh.dim]}
+    for index, sensor in enumerate(sensors):
         for key, point in sensor.places:
             if len(point) != mesh.dim:
                 raise InputError(f"sensor[{index}].{key} has {len(point)} coordinates, but the body has {mesh.dim}")

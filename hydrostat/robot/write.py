@@ -19,7 +19,7 @@ from hydrostat.robot.contact import Contact, Obstacle
 from hydrostat.robot.element_kind import ElementKind, MaterialLaw, Plane, Volume
 from hydrostat.robot.gravity import direction_of
 from hydrostat.robot.load import Load
-from hydrostat.robot.material import FoamTerm, Material, Relaxation
+from hydrostat.robot.material import FoamTerm, Material, Relaxation, Slider
 from hydrostat.robot.materials import FOAMS, MATERIALS
 from hydrostat.robot.part import BodyPart
 from hydrostat.robot.pin import DEFAULT_STIFFNESS, Pin
@@ -203,6 +203,13 @@ class _Writer:
             table["viscosity"] = units.format_quantity(material.viscosity, units.VISCOSITY)
         if material.relaxation:
             table["relaxation"] = self.relaxation(material.relaxation)
+        if material.hysteresis:
+            table["hysteresis"] = self._array(map(self.slider, material.hysteresis))
+        return table
+
+    def slider(self, slider: Slider) -> Any:
+        table = self._toml.inline_table()
+        table["young"], table["strain"] = units.format_quantity(slider.young, units.PRESSURE), slider.strain
         return table
 
     def foam_term(self, term: FoamTerm) -> Any:

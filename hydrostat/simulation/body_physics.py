@@ -31,6 +31,7 @@ from hydrostat.mechanics import (
     RodEnergy,
     RoundOff,
     SelfFrictionEnergy,
+    SliderEnergy,
     Warp,
     WeightEnergy,
     grow_patches,
@@ -97,6 +98,7 @@ class BodyPhysics:
         if thin and solid.any():
             energies.append(_plane_stress(self.elastic, self.rest_unknowns, lame))
         energies += _foams(robot, self.elastic, self.rest_unknowns)
+        energies += _sliders(robot, self.elastic, self.rest_unknowns)
         energies += _barriers(body, self.elastic, self.rest_unknowns)
         if robot.gravity is not None:
             energies.append(WeightEnergy(self.rest_unknowns, self._heavy[:, None] * np.array(robot.gravity)))
@@ -289,6 +291,20 @@ def _foams(robot: Robot, elastic: NeoHookean | QuadraticSolid, rest: Nodes) -> l
         given = {"lame": material.lame, "terms": terms, "material": index, "is_free_across": body.plane is Plane.STRESS}
         points = {"gradients": gradients[own], "volumes": volumes[own]}
         found.append(FoamSolid(rest, elastic.stencils[own], **points, **given))
+    return found
+
+
+def _sliders(robot: Robot, elastic: NeoHookean | QuadraticSolid, rest: Nodes) -> list[SliderEnergy]:
+    """Hysteresis of each material."""
+    found, count = [], len(elastic.stencils)
+    gradients, volumes = (
+        each.reshape(count, -1, *each.shape[1:]) for each in (elastic.point_gradients, elastic.volumes)
+    )
+    for index, material in enumerate(robot.body.materials):
+        own = elastic.materials == index
+        for slider in material.hysteresis if own.any() else ():
+            points = {"gradients": gradients[own], "volumes": volumes[own]}
+            found.append(SliderEnergy(rest, elastic.stencils[own], **points, young=slider.young, strain=slider.strain))
     return found
 
 

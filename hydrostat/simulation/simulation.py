@@ -185,7 +185,7 @@ class Simulation:
             NotConvergedError: the Hessian is singular there: the pose is about to snap.
         """
         check_pose(pose, self.robot.body.mesh.nodes.shape, self.robot.num_controls, what="the pose")
-        if not self.assembly.has_history:
+        if self.assembly.follows_tangent:
             right = -self.assembly_at(pose).control_derivative(pose.unknowns, pose.controls).toarray()
             return self.response(pose, right).reshape(*self.assembly.shape, -1)[: len(pose.nodes)]
         cables, stiffness = self._rubbing(pose)
@@ -212,7 +212,7 @@ class Simulation:
             NotConvergedError: as for `jacobian`.
         """
         require_static_obstacles(self.robot, "the adjoint")
-        if self.assembly.has_history:
+        if not self.assembly.follows_tangent:
             right, pulls = cotangents(pose, self.assembly.shape, len(self.robot.cables), nodes, tensions)
             sensitivities = self.friction_sensitivities(pose, (right.reshape(1, -1), pulls[None]))
             return friction_adjoint(self.body, self.route_points, pose, sensitivities)
@@ -224,7 +224,7 @@ class Simulation:
         return friction_sensitivities(self.robot, self.route_points, *self._rubbing(pose), pose, rows)
 
     def _rubbing(self, pose: Equilibrium) -> tuple[FrictionCableEnergy, Stiffness]:
-        if self.friction is None or self._more or any(map(self.robot.friction_of, self.robot.obstacles)):
+        if self.friction is None or self._more or sum(each.has_history for each in self.assembly.energies) > 1:
             raise InputError("physics that remember the way have a derivative only for cables with friction alone")
         return self.friction.with_history(pose.history, pose.nodes, pose.controls), self._regular(pose)
 
@@ -241,7 +241,7 @@ class Simulation:
             InputError: physics that remember the way, such as cables with friction.
             NotConvergedError: the Hessian is singular there: the pose is about to snap.
         """
-        if self.assembly.has_history:
+        if not self.assembly.follows_tangent:
             raise InputError("with friction a pose gives way to forces as it goes on or back; ask for its adjoint")
         return response(self.assembly_at(pose), self._regular(pose), (pose.unknowns, pose.controls), forces)
 
@@ -332,9 +332,8 @@ class Simulation:
 
     def stiffness(self, pose: Equilibrium) -> Stiffness:
         """Factorized Hessian at a pose; after a solve it may be that of the start of its last step."""
-        if self.assembly.has_history:
-            return self.path.with_history(pose).stiffness(pose.unknowns, pose.controls)
-        return self.stiffness_of(pose) or self.assembly_at(pose).stiffness(pose.unknowns, pose.controls)
+        known = None if self.assembly.has_history else self.stiffness_of(pose)
+        return known or self.assembly_at(pose).stiffness(pose.unknowns, pose.controls)
 
     def _regular(self, pose: Equilibrium) -> Stiffness:
         if (stiffness := self.stiffness(pose)).singular:
@@ -343,6 +342,8 @@ class Simulation:
 
     def assembly_at(self, pose: Equilibrium) -> Assembly:
         """Sum of the energies that are active at a pose; contact is searched for only if the pose keeps no Hessian."""
+        if self.assembly.has_history:
+            return self.path.with_history(pose)
         known = self.stiffness_of(pose)
         return self.assembly.continuing(None if known is None else known.source).with_active_terms(pose.unknowns)
 

@@ -19,6 +19,7 @@ from hydrostat.mechanics import (
     PinEnergy,
     PressureEnergy,
     RodEnergy,
+    SliderEnergy,
     TensionLaw,
     WeightEnergy,
     rod_points,
@@ -90,6 +91,16 @@ def foam(dim: int, random: np.random.Generator, *, poisson: float, is_free_acros
         is_free_across=is_free_across and dim == 2,
     )
     return State(energy, deform(mesh, random), np.zeros(CONTROLS))
+
+
+def sliders(dim: int, random: np.random.Generator) -> State:
+    """Prandtl elements of which some slip, after a history."""
+    mesh = rough_mesh(dim, random)
+    shape = NeoHookean(mesh.nodes, mesh.elements, mu=0.0, lame=0.0, thickness=0.03 if dim == 2 else 1.0)
+    points = {"gradients": shape.shape_gradients[:, None], "volumes": shape.volumes[:, None]}
+    energy = SliderEnergy(mesh.nodes, mesh.elements, **points, young=11e3, strain=0.2)
+    before = energy.with_advanced_history(deform(mesh, random), np.zeros(0))
+    return State(before, deform(mesh, random), np.zeros(CONTROLS))
 
 
 def rod(dim: int, random: np.random.Generator, *, bent: bool) -> State:
@@ -213,6 +224,7 @@ ENERGIES: dict[str, Callable[[int, np.random.Generator], State]] = {
     "foam": lambda dim, random: foam(dim, random, poisson=0.25),
     "foam without effect sideways": lambda dim, random: foam(dim, random, poisson=0.0),
     "foam in plane stress": lambda dim, random: foam(dim, random, poisson=0.4, is_free_across=True),
+    "sliders": sliders,
     "pins": pins,
     "drives": drives,
     "weight": weight,

@@ -15,7 +15,7 @@ PAGE = (ROOT / "docs" / "robot_toml.md").read_text(encoding="utf-8")
 
 def test_robot_toml_of_its_page_is_read(tmp_path: Path) -> None:
     """Oracle: the numbers of its lines."""
-    first, foam, viscous = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
+    first, foam, viscous, sliding = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
     (tmp_path / "starfish.svg").write_text((ROOT / "examples" / "starfish" / "starfish.svg").read_text())
     (tmp_path / "robot.toml").write_text(first)
     robot = load_robot(tmp_path)
@@ -34,6 +34,7 @@ def test_robot_toml_of_its_page_is_read(tmp_path: Path) -> None:
     assert material.viscosity == 40.0
     assert len(material.relaxation) == 1
     assert read(foam).foam == (FoamTerm(share=1.0, exponent=8.0),)
+    assert [slider.strain for slider in read(sliding).hysteresis] == [0.02, 0.1]
 
 
 def test_every_key_of_robot_toml_is_on_its_page() -> None:

@@ -179,8 +179,8 @@ def test_noise_that_is_no_number_gets_one_line(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("first", "second", "told"),
     [
-        ("time_s", "b", r'sensor\[0\].name: column "time_s" is that of time too. Rename the sensor.'),
-        ("left_mm", "b", r"sensor\[0\].name: .* winch left too"),
+        ("time_s", "b", r'sensor\[0\].name: column "time_s" is that of the motion too. Rename the sensor.'),
+        ("left_mm", "b", r"sensor\[0\].name: .* the motion too"),
         ("b_x", "b", r"sensor\[1\].name: column \"b_x\" is that of sensor b_x too"),
     ],
 )

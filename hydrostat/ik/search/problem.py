@@ -119,6 +119,8 @@ class InverseProblem:
                 "the robot has no cables to pull; add winches and cables, or let `hydrostat design` find them"
             )
         require_static_obstacles(simulation.robot, "inverse kinematics")
+        if any(material.hysteresis for material in robot.body.materials):
+            raise InputError("inverse kinematics does not model hysteresis. Remove hysteresis from the material.")
         own = simulation.friction or simulation.cables
         others = [energy for energy in simulation.assembly.energies if energy is not own]
         idle, winches = (simulation.robot.body.mesh.nodes, np.zeros(robot.num_controls)), len(robot.winches)

@@ -87,8 +87,8 @@ def continue_branch(
     goal = simulation.as_contractions(contractions)
     if simulation.assembly.has_history:
         raise InputError(
-            "with friction equilibria are no branch, for every way ends elsewhere; set friction = 0 to follow one, or "
-            "compare ways by path_dependence"
+            "with friction or hysteresis equilibria are no branch, for every way ends elsewhere; remove it to follow "
+            "one, or compare ways by path_dependence"
         )
     require_static_obstacles(simulation.robot, "a branch of equilibria")
     PinDrive.require_none(simulation.robot.drives, "branches of equilibria")
