@@ -174,6 +174,7 @@ CATALOG = {
                 "trial and error ends nearer than a network of the same pairs (N16, R90)",
                 "a network ends nearer than ridge regression (N16)",
                 "trial and error ends nearer than a network of pairs drawn evenly (R90, E61)",
+                "trial and error ends nearer than an equal network of the same pairs (R88)",
             ),
         ),
         CatalogEntry(
