@@ -81,8 +81,9 @@ TICK = 2 * pi / 4096  # angle of a step [rad]
 AMPERE = 6.5e-3  # current of a step [A]
 STALL = 2.7
 """Current at stall [A], that of the strongest variant: bounds are shares of the torque at stall."""
-SMALL, LARGE, SMALL_LIMIT = 7.4, 12.0, 10.0
-"""Supplies that STS3215 are sold for, and the greatest limit in the memory of those for the smaller [V]."""
+SMALL, LARGE, SMALL_LIMIT, LARGE_LEAST, LITHIUM = 7.4, 12.0, 10.0, 9.0, 8.4
+"""Supplies that STS3215 are sold for, the greatest limit in the memory of those for the smaller, the least supply that
+we take for the larger (an empty pack of three lithium cells), and two full lithium cells [V]."""
 FULL = 1000  # bound of torque that bounds nothing
 STANDING = 2000  # speed at which they come back to where they shall stand [steps/s]
 FARTHEST = 30719  # step that a servo without limits of angle may go to
@@ -187,26 +188,30 @@ class FeetechBus(ServoBus):
         """Refuse servos on a supply that is not theirs, and servos of two supplies on one bus (HydrostatError).
 
         Variants for 7.4 V and 12 V look alike and answer with one model number. They differ in the greatest supply
-        that their memory allows.
+        that their memory allows: 8.0 V (python-st3215, issue 1) and 14.0 V (ROAR-QUTRC's table of registers).
         """
-        ratings = dict[int, float]()
+        found = dict[int, tuple[float, float, float]]()
         for number in self._numbers:
             told, state = self._get(number, VOLTS, 2), self._get(number, STATE + 6, 1)
             if told is None or state is None:
                 raise self._silent(number)
-            most, least, volts = 0.1 * told[0], 0.1 * told[1], 0.1 * state[0]
-            ratings[number] = rated = SMALL if most <= SMALL_LIMIT else LARGE
-            if not least <= volts <= most:
+            least, most, volts = found[number] = (0.1 * told[1], 0.1 * told[0], 0.1 * state[0])
+            if least >= most:
                 raise HydrostatError(
-                    f"motor {number} is a servo for {rated:g} V ({least:.1f} to {most:.1f} V) and measures "
-                    f"{volts:.1f} V. Switch the power off, then connect a supply of {rated:g} V."
+                    f"motor {number} allows supplies from {least:.1f} V up to {most:.1f} V, which is reversed. Set its "
+                    f"registers {VOLTS} (greatest) and {VOLTS + 1} (least) by its label, in 0.1 V."
                 )
-        if len(set(ratings.values())) > 1:
-            first, other = (next(n for n, rated in ratings.items() if rated == volts) for volts in (SMALL, LARGE))
+            if volts > most:
+                raise _tell_supply(number, *found[number])
+        kinds = {_read_rating(most): number for number, (_, most, _) in found.items()}
+        if len(kinds) > 1:
             raise HydrostatError(
-                f"motor {first} is a servo for {SMALL:g} V, motor {other} one for {LARGE:g} V. Use servos of one "
-                "voltage on a bus: read their labels."
+                f"motor {kinds[SMALL]} is a servo for {SMALL:g} V, motor {kinds[LARGE]} one for {LARGE:g} V. Use "
+                "servos of one voltage on a bus: read their labels."
             )
+        for number, (least, most, volts) in found.items():
+            if volts < max(least, LARGE_LEAST if _read_rating(most) == LARGE else 0.0):
+                raise _tell_supply(number, least, most, volts)
 
     def _set(self, number: int, place: int, value: bytes, name: str) -> None:
         """Write a register, and read that it was taken: an answer does not tell which question it is to."""
@@ -231,6 +236,24 @@ class FeetechBus(ServoBus):
     def _answers(self, count: int, size: int) -> list[Packet]:
         """Answers of such a size from servos that are ours."""
         return self._receive(count, lambda packet: packet.number in self._numbers and len(packet.content) == size)
+
+
+def _read_rating(most: float) -> float:
+    """Supply that a servo is sold for, by the greatest that its memory allows [V]."""
+    return SMALL if most <= SMALL_LIMIT else LARGE
+
+
+def _tell_supply(number: int, least: float, most: float, volts: float) -> HydrostatError:
+    """Error on a servo that measures another supply than its own, with what to connect [V]."""
+    rated, advice = _read_rating(most), ""
+    if rated == SMALL and most < volts <= LITHIUM + 0.2:
+        advice = f" Two full lithium cells give {LITHIUM:g} V: put a regulator behind them."
+    elif rated == LARGE and volts <= SMALL_LIMIT:
+        advice = f" If its label says {SMALL:g} V, set its register {VOLTS} to 80 instead."
+    return HydrostatError(
+        f"motor {number} is a servo for {rated:g} V (its memory allows {least:.1f} to {most:.1f} V) and measures "
+        f"{volts:.1f} V. Switch the power off, then connect a supply of {rated:g} V.{advice}"
+    )
 
 
 def _to_signed(data: bytes, bit: int) -> int:

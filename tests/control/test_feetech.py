@@ -160,9 +160,10 @@ def test_who_is_not_ready_is_told() -> None:
 @pytest.mark.parametrize(
     ("supply", "allowed", "told"),
     [
-        (12.1, (4.0, 8.0), r"motor 2 is a servo for 7.4 V \(4.0 to 8.0 V\) and measures 12.1 V. Switch the power off"),
+        (12.1, (4.0, 8.0), r"motor 2 is .* 7.4 V \(its memory allows 4.0 to 8.0 V\) and measures 12.1 V.*7.4 V.$"),
+        (8.4, (4.0, 8.0), "motor 2 .* measures 8.4 V.* Two full lithium cells give 8.4 V: put a regulator"),
         (3.2, (4.0, 8.0), "motor 2 is a servo for 7.4 V .* measures 3.2 V"),
-        (7.4, (9.0, 14.0), "motor 2 is a servo for 12 V .* measures 7.4 V.* supply of 12 V"),
+        (7.4, (8.0, 4.0), r"motor 2 allows supplies from 8.0 V up to 4.0 V, which is reversed. Set its registers 14"),
         (7.4, (4.0, 14.0), "motor 1 is a servo for 7.4 V, motor 2 one for 12 V. Use servos of one voltage"),
     ],
 )
@@ -177,10 +178,16 @@ def test_a_servo_on_the_wrong_supply_is_refused(supply: float, allowed: tuple[fl
     assert not second.table[TORQUE]
 
 
-def test_servos_for_12_volts_on_12_volts_are_taken() -> None:
-    chain = EmulatedFeetechChain([EmulatedSts(n, supply=12.1, allowed=(4.0, 14.0)) for n in (1, 2)])
-    facts = FeetechBus(chain, [1, 2], clock=chain.clock, wait=chain.wait).identify()
-    assert [fact.number for fact in facts] == [1, 2]
+@pytest.mark.parametrize("supply", [5.0, 7.4, 8.4, 8.9, 9.0, 12.1, 12.6])
+def test_servos_for_12_volts_are_taken_on_3_lithium_cells_and_refused_on_2(supply: float) -> None:
+    """Oracle: three lithium cells give 9 to 12.6 V, two give at most 8.4 V; the memory allows both."""
+    chain = EmulatedFeetechChain([EmulatedSts(n, supply=supply, allowed=(4.0, 14.0)) for n in (1, 2)])
+    bus = FeetechBus(chain, [1, 2], clock=chain.clock, wait=chain.wait)
+    if supply < 9.0:
+        with pytest.raises(HydrostatError, match=rf"motor 1 is a servo for 12 V .* {supply} V.* 12 V. If its label"):
+            bus.identify()
+    else:
+        assert [fact.number for fact in bus.identify()] == [1, 2]
 
 
 def test_a_servo_that_counts_no_turns_is_never_sent_past_its_limits() -> None:

@@ -296,7 +296,7 @@ _XC330 = replace(
 
 _STS3215 = Motor(
     key="sts3215",
-    title="Feetech STS3215, 7.4 V, 19.5 kg cm (Waveshare, DFRobot: ST3215)",
+    title="Feetech STS3215-C001, 7.4 V, 19.5 kg cm (DFRobot: SER0069)",
     body=Box((24.8, 45.4, 30.2)).move(-12.4, -35.2, -30.2)
     + Cylinder(2.2, 10.0).move(0, 0, -32.4)
     + Box((24.8, 29.9, 3.9)).move(-12.4, -35.2, -34.1),
@@ -330,7 +330,7 @@ _STS3215 = Motor(
 _STS3215_12V = replace(
     _STS3215,
     key="sts3215-12v",
-    title="Feetech STS3215-C018, 12 V, 30 kg cm",
+    title="Feetech STS3215-C018, 12 V, 30 kg cm (Waveshare: ST3215)",
     stall_torque=2942.0,
     rated_torque=588.0,
     speed=45.0,
@@ -339,7 +339,8 @@ _STS3215_12V = replace(
     price=17.6,
     price_source="105.66 USD for six with an adapter (Alibaba) in the list of mhered/my_SO100ARM, no date",
     source="Robonine, test of STS3215 C018: 30 kg cm and 45 rpm at 12 V by the data sheet; measured 35 kg cm, 46 rpm, "
-    "48 degree C after an hour at 15 kg cm, 71 degree C after two hours of swinging. Load at most a fifth of stall. "
+    "48 degree C after an hour at 15 kg cm, 71 degree C after two hours of swinging. Waveshare's ST3215: 6 to 12.6 V, "
+    "30 kg cm (robotika.vosrk.cz); that it is the same servo is assumed. Load at most a fifth of stall. "
     "Case, horn, holes: as of the 7.4 V variant; current without load: estimate, check yours.",
 )
 

@@ -81,7 +81,8 @@ class PowerFacts(TypedDict):
     """Power supply and wires."""
 
     rows: list[list[str]]  # parts and settings of the supply
-    mind: list[str]  # sentences on what may go wrong
+    warnings: list[str]  # sentences on what may go wrong
+    start: list[str]  # steps from the first volt to the first move
     title: str  # title of the table of pins
     heads: list[str]  # heading of each column of that table
     pins: list[list[str]]  # its rows

@@ -139,30 +139,28 @@ def _short_title(placed: Placed) -> str:
 
 
 def power_facts(plan: PowerPlan | None, robot: Robot) -> PowerFacts | None:
-    """Supply, fuse, leads, battery, warnings and wiring table; None without motors."""
+    """Supply, fuse, leads, battery, warnings, first start and wiring table; None without motors."""
     if plan is None:
         return None
-    marks = winch_marks_of(robot)
+    marks, is_measured = winch_marks_of(robot), not any(cable.reverse for cable in robot.cables)
     named = [f"{marks[name]} {shorten_text(name, 24)}" for name in plan.winches]
-    mind = [
+    warnings = [
         "The fuse sits in the plus lead, at the supply. The switch for the motors stays in reach while they turn.",
         "Minus of the supply and GND of the board are joined. Plus never goes to a pin of the board that is no supply.",
         f"From NiMH cells use {plan.cells} in a row with the same fuse; never charge them in the robot.",
     ]
-    if plan.motor.bus == "feetech":
-        mind += [
-            "STS3215 are sold for 7.4 V and for 12 V, in one case. "
-            f"This kit needs those for {plan.motor.volts:g} V: read the label of each servo. "
-            "On the wrong supply hydrostat refuses them as it connects.",
-            "Give each servo its number with the maker's program FD, one at a time, before you chain them. "
-            "Set both limits of angle to 0 there.",
-        ]
-    elif plan.servos:
-        mind.append("Give each servo its number by ROBOTIS' Dynamixel Wizard, one at a time, before you chain them.")
     if plan.servos:
+        if plan.motor.bus == "feetech":
+            warnings += [
+                "STS3215 are sold for 7.4 V and for 12 V, in one case. "
+                f"This kit needs those for {plan.motor.volts:g} V: read the label of each servo. "
+                "On the wrong supply hydrostat refuses them as it connects.",
+                "The bus adapter passes the supply on as it is. Read the range printed on it: some state 9 to 12.6 V.",
+            ]
         return {
             "rows": [list(row) for row in plan.table.texts],
-            "mind": mind,
+            "warnings": warnings,
+            "start": _list_first_steps(plan, is_measured=is_measured),
             "title": "Servos",
             "heads": ["ID", "winch"],
             "pins": [[str(number), name] for number, name in enumerate(named, start=1)],
@@ -172,18 +170,55 @@ def power_facts(plan: PowerPlan | None, robot: Robot) -> PowerFacts | None:
         for wires in BOARDS[board].wiring[: len(named) - place]:
             pins.append([named[place], board if len(plan.boards) == 1 else f"{board} {number}", *wires])
             place += 1
-    mind += [
-        f"The firmware needs to know this motor: hydrostat firmware ROBOT --motor {plan.motor.key} --out DIR.",
-        "10 kOhm from each PWM pin to GND keeps motors off while the board starts; 10 uF from RESET to GND, put in "
-        "after the firmware is written, keeps it from starting again when a program opens its port.",
-        "A motor that runs away at once has its two wires swapped: the board stops it after 0.2 s.",
+    warnings += [
+        "10 kOhm from each PWM pin to GND keeps motors off while the board starts.",
+        "A motor that runs away has its two wires swapped: the board stops it after 0.2 s.",
     ]
     if len(plan.boards) > 1:
-        mind.append("Each board has its own USB cable; tell hydrostat their ports with commas: firmware:PORT,PORT.")
+        warnings.append("Each board has its own USB cable. Separate their ports by commas: firmware:PORT,PORT.")
     return {
         "rows": [list(row) for row in plan.table.texts],
-        "mind": mind,
+        "warnings": warnings,
+        "start": _list_first_steps(plan, is_measured=is_measured),
         "title": "Pins of the board",
         "heads": ["winch", "board", "PWM", "direction", "A", "B", "current"],
         "pins": pins,
     }
+
+
+def _list_first_steps(plan: PowerPlan, *, is_measured: bool) -> list[str]:
+    """Steps from the first volt to the first move, each with its check."""
+    chain = "Chain the servos in the order of the table, then plug the board into the computer."
+    if plan.motor.bus == "feetech":
+        kind = "feetech"
+        ready = [
+            "Plug in one servo at a time. Give it its number with the maker's program FD. Set both limits of angle to "
+            "0 there. Write the number on the servo.",
+            chain,
+        ]
+    elif plan.servos:
+        kind = "dynamixel"
+        ready = [
+            "Load the example usb_to_dynamixel onto the OpenRB-150 with the Arduino IDE.",
+            "Plug in one servo at a time. Give it its number with ROBOTIS' Dynamixel Wizard. Write it on the servo.",
+            chain,
+        ]
+    else:
+        kind = "firmware"
+        ready = [
+            "Wire one winch by the table, then the others.",
+            f"Run: hydrostat firmware ROBOT --board {plan.boards[0]} --motor {plan.motor.key} --out DIR --flash PORT. "
+            "It prints the pins: compare them with the table.",
+            "Put 10 uF from RESET to GND (plus to RESET). The board then keeps running when a program opens its port. "
+            "Take it out before you flash again.",
+        ]
+    return [
+        f"Leave the switch off. Measure the supply behind the fuse: {plan.motor.volts:g} V, plus on the plus lead.",
+        *ready,
+        "Find the port: /dev/ttyUSB0 or /dev/ttyACM0 on Linux, COM3 or alike on Windows.",
+        f"Keep a hand on the switch and turn it on. Run: hydrostat calibrate ROBOT --motors {kind}:PORT. Check that "
+        "the winch that turns is the one that it names."
+        if is_measured
+        else "Keep a hand on the switch and turn it on. Write the zeros of the winches, as under Calibrate.",
+        f"Run: hydrostat play ROBOT MOVES --motors {kind}:PORT. Begin with small moves.",
+    ]

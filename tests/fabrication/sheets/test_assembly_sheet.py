@@ -20,10 +20,11 @@ from hydrostat.fabrication.lists.motors import power_plan
 from hydrostat.fabrication.lists.stitching import DepthRow, PointAccess
 from hydrostat.fabrication.lists.table import Table
 from hydrostat.fabrication.moulds.casting import make_casting
-from hydrostat.fabrication.parts.motor import MOTORS
+from hydrostat.fabrication.parts.motor import ALL_MOTORS, MOTORS
 from hydrostat.fabrication.parts.winch_unit import winch_units
 from hydrostat.fabrication.sheets.assembly_sheet import assembly_sheet
 from hydrostat.fabrication.sheets.legible import legible, note_lines, shorten_text, typeset
+from hydrostat.fabrication.sheets.list_facts import power_facts
 from hydrostat.fabrication.sheets.steps import plush_steps
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import MATERIALS, Mount
@@ -116,7 +117,23 @@ def test_winches_that_pull_both_ways_are_not_sent_to_a_command_that_refuses_them
 @pytest.mark.slow
 def test_a_sheet_tells_which_motor_the_firmware_is_for():
     power = power_plan({plush().plan.robot.winches[0].name: 40.0}, next(one for one in MOTORS if one.key == "n20"))
-    assert "hydrostat firmware ROBOT --motor n20" in words(assembly_sheet(*plush(lists=lists(2, power=power))))
+    assert "firmware ROBOT --board uno --motor n20" in words(assembly_sheet(*plush(lists=lists(2, power=power))))
+
+
+@pytest.mark.parametrize("key", [motor.key for motor in ALL_MOTORS])
+def test_the_first_start_ends_in_commands_that_the_robot_and_its_motors_take(key: str) -> None:
+    """Oracle: the kinds of motors of the command line, and its refusal of winches that pull both ways."""
+    robot, motor = plush().plan.robot, next(one for one in ALL_MOTORS if one.key == key)
+    power = power_plan(dict.fromkeys((winch.name for winch in robot.winches), 40.0), motor)
+    kind = {"xl330": "dynamixel", "xc330": "dynamixel"}.get(key, "feetech" if key.startswith("sts") else "firmware")
+    first, *others = robot.cables
+    both = robot.with_network(robot.winches, [replace(first, reverse=True), *others])
+    for one, calibrated in ((robot, True), (both, False)):
+        facts = power_facts(power, one)
+        assert facts is not None
+        steps = " ".join(facts["start"])
+        assert (f"hydrostat calibrate ROBOT --motors {kind}:PORT" in steps) == calibrated
+        assert steps.count(f"--motors {kind}:PORT") == 1 + calibrated
 
 
 def test_what_a_foam_sheet_says(foam_sheet):
