@@ -1,8 +1,10 @@
 """`build_kit`: from a robot to everything that it is built from."""
 
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 
+from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.fabrication.body_work import foam_work, plush_work
 from hydrostat.fabrication.checks.solid_checks import solid_checks, spool_checks, too_large
 from hydrostat.fabrication.demand import Demand
@@ -23,7 +25,8 @@ from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.fabrication.solids.step import require_cad, step_bytes
 from hydrostat.given import check_type, path_of
 from hydrostat.progress import Progress
-from hydrostat.robot import Face, Robot, describe_cable_side, sewn_robot
+from hydrostat.robot import Face, Robot, describe_cable_side, sewn_robot, sewn_sides
+from hydrostat.simulation import is_stuffed_motion_fast, solve_stuffed_motion
 from hydrostat.units import plural
 
 
@@ -179,7 +182,10 @@ def _findings(plan: KitPlan, lists: Lists) -> KitFindings:
     return KitFindings(
         checks=checks,
         problems=tuple(dict.fromkeys((*known, *made, *large, *failed))),
-        warnings=(*_cable_warnings(plan), *_part_warnings(plan), *work.warnings, *rigid.warnings, *lists.warnings),
+        warnings=(
+            *(*_cable_warnings(plan), *_bending_warnings(plan), *_part_warnings(plan)),
+            *(*work.warnings, *rigid.warnings, *lists.warnings),
+        ),
         notes=(*work.notes, *rigid.notes, *plan.demand.far),
     )
 
@@ -189,6 +195,25 @@ def _cable_warnings(plan: KitPlan) -> tuple[str, ...]:
     if plan.drawn.cables:
         return ()
     return ("the robot has no cables: the kit has its body alone. `hydrostat design` adds winches and cables",)
+
+
+def _bending_warnings(plan: KitPlan) -> tuple[str, ...]:
+    """Warn of cables on one panel that bend the body out of its plane, as `check --thorough` does where that is quick.
+
+    Elsewhere the warning is without a length.
+    """
+    robot, pulled = plan.drawn, plan.demand.contractions
+    one_panel = len(sewn_sides(robot)) == 1 and robot.face is not Face.MIDDLE
+    if plan.method is not Method.PLUSH or robot.body.mesh.dim != 2 or not (robot.cables and one_panel):
+        return ()
+    if is_stuffed_motion_fast(robot, len(pulled)):
+        with suppress(InputError, NotConvergedError):
+            found = solve_stuffed_motion(robot, pulled).warning
+            return () if found is None else (found,)
+    return (
+        f"the cables are sewn on the {sewn_sides(robot)[0]} alone: they also bend the body toward it (hydrostat check "
+        '--stuffed prints by how much). Set face = "pairs" above [body] to sew on both panels',
+    )
 
 
 def _part_warnings(plan: KitPlan) -> tuple[str, ...]:

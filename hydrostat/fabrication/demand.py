@@ -31,6 +31,7 @@ class Demand:
     taken: Float[np.ndarray, "winches 2"]  # least and most cable that each winch takes in [m], (winches, 2)
     missed: tuple[str, ...] = ()  # poses that could not be solved, in words
     far: tuple[str, ...] = ()  # sentences on poses that are out of reach
+    contractions: tuple[Vector, ...] = ()  # of all winches in each pose of the robot that was solved [m]
 
     @staticmethod
     def find(
@@ -117,7 +118,8 @@ class _PoseLoads:
         """The largest of all, those at rest among them."""
         poses = [self._simulation.rest, *self.solved.values()]
         found = _sum_up(self._robot, tuple(self.solved), [(pose.contractions, pose.tensions) for pose in poses])
-        return replace(found, missed=tuple(self._missed), far=tuple(self._far))
+        own = tuple(pose.contractions for pose in self.solved.values()) if self._robot.poses else ()
+        return replace(found, missed=tuple(self._missed), far=tuple(self._far), contractions=own)
 
 
 def shaft_torques(robot: Robot, tensions: Vector) -> Vector:

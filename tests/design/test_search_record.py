@@ -66,6 +66,11 @@ def test_the_record_of_another_search_is_refused(tmp_path: Path) -> None:
         SearchRecord.read(file, ROBOT, replace(REQUEST, cables=4))
     with pytest.raises(InputError, match=r"another search \(robot differs\)"):
         SearchRecord.read(file, strip_robot(columns=8, rows=3), REQUEST)
+    for old in ('"workspace_weight"', '"warm_start"', '"version"'):  # keys that had other names once
+        earlier = tmp_path / "earlier.json"
+        earlier.write_text(file.read_text().replace(old, '"other_name"'))
+        with pytest.raises(InputError, match="written by another version of hydrostat. Start without --resume"):
+            SearchRecord.read(earlier, ROBOT, REQUEST)
     with pytest.raises(InputError, match="no such file"):
         SearchRecord.read(tmp_path / "none.json", ROBOT, REQUEST)
     record = SearchRecord([{"step": "sketch", "tried": 1, "networks": None}])

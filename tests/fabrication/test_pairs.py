@@ -25,7 +25,9 @@ from hydrostat.fabrication.patterns.shape import Circle, PatternPart
 from hydrostat.fabrication.patterns.svg_writer import pattern_svg
 from hydrostat.fabrication.sheets.legible import typeset
 from hydrostat.fabrication.solids.construct import solid_of
+from hydrostat.ik import IKOptions, solve_ik
 from hydrostat.robot import Face, Robot, gallery_folder, get_material, load_robot, robot_hash, sewn_robot
+from hydrostat.simulation import Simulation, solve_stuffed_motion
 
 
 def starfish(face: Face | None) -> Robot:
@@ -141,7 +143,18 @@ def test_motors_are_asked_for_the_same_and_each_line_for_half(pairs: Kit) -> Non
     one, both = Demand.find(starfish(None)), Demand.find(sewn_robot(robot))
     np.testing.assert_allclose(both.tensions[:5], both.tensions[5:], rtol=1e-6, atol=1e-9)
     np.testing.assert_allclose(both.torques, one.torques, rtol=0.03)
-    assert not any("alone" in warning for warning in pairs.warnings)
+
+
+@pytest.mark.slow
+def test_one_panel_is_warned_of_as_by_check(single: Kit, pairs: Kit) -> None:
+    """Oracle: the warning of `hydrostat check --thorough`; without poses one without a length."""
+    robot = single.robot
+    commands = [solve_ik(Simulation(robot), pose, options=IKOptions(restarts=0)).pose for pose in robot.poses.values()]
+    warning = solve_stuffed_motion(robot, [one.contractions for one in commands]).warning
+    assert [words for words in single.warnings if "bend" in words] == [warning]
+    assert not any("bend" in words for words in pairs.warnings)
+    still = build_kit(replace(robot, poses={}))
+    assert any(words.startswith("the cables are sewn on the front alone: they also bend") for words in still.warnings)
 
 
 @pytest.mark.slow
@@ -171,10 +184,6 @@ def test_holes_are_where_the_robot_says(face: Face | None, front: int, back: int
         2 * bool(front),
         2 * bool(back),
     ]
-    alone = [warning for warning in pattern.warnings if "alone" in warning]
-    assert len(alone) == (face is not Face.PAIRS)
-    if face is not Face.PAIRS:
-        assert alone[0].startswith(f"the cables are sewn on the {face or 'front'} alone")
 
 
 def test_marks_of_the_back_are_those_of_the_front_mirrored() -> None:

@@ -89,6 +89,8 @@ class SearchRecord:
         if not known:
             raise InputError(f"{file}: not the record of a search. Start without --resume.")
         asked = json.loads(json.dumps(_identity(robot, request)))
+        if (read.get("version"), _fields(read.get("request"))) != (__version__, _fields(asked["request"])):
+            raise InputError(f"{file}: written by another version of hydrostat. Start without --resume.")
         for name, value in asked.items():
             if read.get(name) != value:
                 own = _differences(read.get(name), value) if name == "request" else name
@@ -101,6 +103,14 @@ def _identity(robot: Robot, request: DesignRequest) -> dict[str, Any]:
     asked = {name: value for name, value in request.as_values().items() if name != "seconds"}
     poses = {pose.name: {name: list(at) for name, at in pose.targets.items()} for pose in request.poses}
     return {"version": __version__, "robot": robot_hash(robot), "request": asked | {"poses": poses}}
+
+
+def _fields(request: object) -> set[str]:
+    """Names of the fields of a request and of its records; poses have names of their own."""
+    if not isinstance(request, Mapping):
+        return set()
+    below = (_fields(value) for name, value in request.items() if name != "poses")
+    return set(request).union(*below)
 
 
 def _differences(one: object, other: Mapping[str, Any]) -> str:

@@ -242,20 +242,13 @@ def _back(draft: _PatternDraft, shapes: tuple[Shape, ...]) -> Panel:
 
 
 def _warnings(draft: _PatternDraft, thickness: float, *, gusset: bool) -> tuple[str, ...]:
-    """Warn of the thickness, the opening and cables on one panel."""
+    """Warn of the thickness and the opening."""
     warnings = list(draft.opening.warnings if draft.opening else ())
     stuffed = stuffed_thickness(draft.skin.seam)
     if not gusset and thickness > stuffed:
         warnings.append(
             f"without a gusset the stuffed body is about {stuffed:.0f} mm thick, but it was simulated with "
             f"{thickness:g} mm. It will be softer. Sew it with the gusset or simulate it thinner"
-        )
-    if draft.robot.cables and len(sewn_sides(draft.robot)) == 1:
-        (panel,) = sewn_sides(draft.robot)
-        warnings.append(
-            f"the cables are sewn on the {panel} alone, so they also curl the body toward it (`hydrostat check ROBOT "
-            '--thorough` prints by how much). Set face = "pairs" before [body] in the robot file to sew each on both '
-            "panels"
         )
     return tuple(warnings)
 
