@@ -118,13 +118,15 @@ def row(number: int, seed: int, seconds: float, keep: Path | None) -> tuple[str,
         save_robot(robot, folder / "robot")
         asked = f"{len(robot.markers)} limbs, {len(robot.poses)} poses, {winches}/{cables}"
         options = ["--winches", str(winches), "--cables", str(cables), "--time", f"{seconds:g}s", "--kit"]
-        code = "import sys; sys.argv[0] = 'hydrostat'; from hydrostat.cli.main import main; main()"
+        most = int(seconds + 2 * LATE)  # CPU seconds: other programs on the machine do not end a run
+        limit = f"import resource, sys; resource.setrlimit(resource.RLIMIT_CPU, ({most}, {most}))"
+        code = f"{limit}; sys.argv[0] = 'hydrostat'; from hydrostat.cli.main import main; main()"
         command = [sys.executable, "-c", code, "design", str(folder / "robot"), *options, "--out", str(folder / "out")]
         began, before = time.monotonic(), resource.getrusage(resource.RUSAGE_CHILDREN)
         try:
-            run = subprocess.run(command, capture_output=True, text=True, timeout=20 * seconds, check=False)
+            run = subprocess.run(command, capture_output=True, text=True, timeout=100 * seconds, check=False)
         except subprocess.TimeoutExpired:
-            return f"| {number} | {asked} | FAULT | | | | | | {20 * seconds:.0f} | endless |", True
+            return f"| {number} | {asked} | FAULT | | | | | | {100 * seconds:.0f} | endless |", True
         after, wall = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic() - began
         cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
         (folder / "told.txt").write_text(run.stdout + run.stderr)

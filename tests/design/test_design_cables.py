@@ -138,7 +138,7 @@ def test_progress_is_told() -> None:
 
 @pytest.mark.parametrize(
     ("example", "pose", "winches", "cables"),
-    [("starfish", "wave", 2, 6), ("pig", "hello", 1, 2), ("letter_e", "clap", 1, 3)],
+    [("starfish", "wave", 2, 6), ("letter_e", "clap", 1, 3)],
 )
 @pytest.mark.slow
 def test_the_kit_accepts_designs_of_the_examples(

@@ -116,7 +116,6 @@ LIMITS: dict[str, tuple[Case, dict[str, Any]]] = {
     "locked cable": (Case(2, 3, robot=deep()), {"locked_cables": ("down 1",)}),
     "locked cable alone": (Case(1, 1, robot=strip()), {"locked_cables": ("down 1",)}),
     "world": (Case(1, 2, (UP,), strip_robot(columns=10, rows=3, mount=Mount.WORLD)), {"mount": Mount.WORLD}),
-    "improved": (Case(2, 2, robot=deep(), warm_start=True), {}),
     "improved beside a locked cable": (Case(2, 2, robot=deep(), warm_start=True), {"locked_cables": ("down 1",)}),
 }
 
