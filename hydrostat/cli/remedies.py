@@ -29,9 +29,9 @@ def kit_remedy(robot: "Robot", folder: Path, out: Path, *, options: "KitOptions"
     if any(MATERIAL_FIX in reason for reason in told):
         return f"hydrostat materials, then edit material in {place}"
     known = set(find_refusals(robot, options=options))
-    for motor in MOTORS if known and known >= set(told) else ():
-        if not find_refusals(robot, options=replace(options, motor=motor.key)):
-            return f"hydrostat fabricate {place} --motor {motor.key} --out {kit}"
+    for motor in ("auto", *(each.key for each in MOTORS)) if known and known >= set(told) else ():
+        if motor != options.motor and not find_refusals(robot, options=replace(options, motor=motor)):
+            return f"hydrostat fabricate {place}{'' if motor == 'auto' else f' --motor {motor}'} --out {kit}"
     if told and set(body_refusals(robot)) >= set(told):
         for seam in (6, 5, 4, 3):
             narrow = replace(options, pattern=replace(options.pattern, seam_allowance=float(seam)))

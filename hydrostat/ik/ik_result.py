@@ -18,7 +18,7 @@ class IKStatus(StrEnum):
     """Why inverse kinematics ended."""
 
     REACHED = "target reached"
-    LOCAL_OPTIMUM = "local optimum: target not reached"
+    LOCAL_OPTIMUM = "local optimum"
     STALLED = "stalled: line search failed before convergence"
     INFEASIBLE = "infeasible: no pose found within the tension limits"
     ITERATION_LIMIT = "iteration limit reached"
@@ -75,8 +75,10 @@ class IKResult(Tabular):
     @property
     def outcome(self) -> str:
         """Reason why the search ended, in words; at an optimum that is close to its targets, how close."""
-        if self.status is not IKStatus.LOCAL_OPTIMUM or not (self.errors and self.is_close):
+        if self.status is not IKStatus.LOCAL_OPTIMUM or not self.errors:
             return str(self.status)
+        if not self.is_close:
+            return f"{self.status}: target not reached"
         return f"reached within {_round_up(1e3 * max(self.errors.values())):g} mm"
 
     def __repr__(self) -> str:

@@ -202,7 +202,7 @@ def _alone(place: UnitPlace, thickness: float) -> list[str]:
 
 
 def _bulging(place: UnitPlace, thickness: float) -> list[str]:
-    if not thickness < place.depth <= (1 + GIVES) * thickness:
+    if not thickness + 0.5 <= place.depth <= (1 + GIVES) * thickness:  # mm
         return []
     return [
         f"{place.box.words} is thicker than the body of {thickness:.0f} mm, which will bulge by "

@@ -252,7 +252,8 @@ class CableMover(Mover):
         notes = reached.active_limits
         if not more and max(reached.errors.values()) > MISSED * self.robot.body.mesh.size:
             stopped = reached.status is not IKStatus.ITERATION_LIMIT
-            notes = (*notes, str(reached.status if stopped else IKStatus.LOCAL_OPTIMUM))
+            ended = reached if stopped else replace(reached, status=IKStatus.LOCAL_OPTIMUM)
+            notes = (*notes, ended.outcome)
         if not more:
             notes = (*notes, *self._band())
         shape = self._shape(dict(reached.errors), notes, settled=not more)
