@@ -52,11 +52,12 @@ def identify(
 ) -> None:
     """Fit a robot's parameters to measured marker positions.
 
-    Parameters: young, poisson, density, stiffness (of cables), zero and gain (of winches), routes (points of cables),
-    friction, pins, gravity, rods, frame (of the measurement), force (scale of measured forces). Writes the fitted
-    robot, parameters.csv with 95 % intervals and identified.png. Every fifth of ten or more rows is also predicted by a
-    fit that did not see it. A correction of the contractions is written if it predicts such rows better:
-    correction.json. Cables with friction pull less on the way back: measure up and down strokes, and add --in-order.
+    Parameters: young, poisson, density, hysteresis (scale of its moduli), stiffness (of cables), zero and gain (of
+    winches), routes (points of cables), friction, pins, gravity, rods, frame (of the measurement), force (scale of
+    measured forces). Writes the fitted robot, parameters.csv with 95 % intervals and identified.png. Every fifth of ten
+    or more rows is also predicted by a fit that did not see it. A correction of the contractions is written if it
+    predicts such rows better: correction.json. Friction and hysteresis make strokes up and down differ: measure both,
+    and add --in-order.
     With --suggest, the command prints file names of photographs to take, the most informative first.
 
     Example: hydrostat identify my_starfish measured.csv --out build/fitted

@@ -8,7 +8,7 @@ import numpy as np
 
 from hydrostat.errors import InputError
 from hydrostat.identification.model import IdentificationModel, Parameter, Values
-from hydrostat.robot import FOAM_POISSON_LIMIT, Robot
+from hydrostat.robot import FOAM_POISSON_LIMIT, Material, Robot
 from hydrostat.units import MM
 
 NARROW = 1e-6
@@ -99,6 +99,23 @@ def _with_material(key: str) -> Callable[[Robot, Values], Robot]:
         return replace(robot, body=replace(robot.body, material=material, parts=parts))
 
     return change
+
+
+def _hysteresis(robot: Robot) -> list[Parameter]:
+    return [Parameter(name="hysteresis.scale", start=1.0, spread=0.7, log=True)] * robot.body.has_hysteresis
+
+
+def _with_hysteresis(robot: Robot, values: Values) -> Robot:
+    """Robot whose sliders all have this multiple of their modulus."""
+
+    def scale(material: Material) -> Material:
+        sliders = (replace(each, young=each.young * values["hysteresis.scale"]) for each in material.hysteresis)
+        return replace(material, hysteresis=tuple(sliders))
+
+    parts = (
+        part if part.material is None else replace(part, material=scale(part.material)) for part in robot.body.parts
+    )
+    return replace(robot, body=replace(robot.body, material=scale(robot.body.material), parts=tuple(parts)))
 
 
 def _each_cable(robot: Robot, key: str) -> list[Parameter]:
@@ -251,6 +268,7 @@ KINDS: dict[str, ParameterKind] = {
         ),
         robot=_with_material("density"),
     ),
+    "hysteresis": ParameterKind(parameters=_hysteresis, robot=_with_hysteresis),
     "stiffness": ParameterKind(
         parameters=lambda robot: _each_cable(robot, "stiffness"),
         robot=_with_stiffness,

@@ -68,10 +68,13 @@ class MarkerPredictor:
         """Places at coordinates of the fit, with their Jacobian if requested.
 
         Raises:
-            InputError: values that no robot can have, or that change how many cables, points or parts it has.
+            InputError: values that no robot can have, or that change how many cables, points or parts it has; slopes of
+                a robot with cable friction and hysteresis.
         """
         values = self.model.values(numbers)
         robot = self.model.robot(values)
+        if slopes and robot.body.has_hysteresis and any(cable.friction for cable in robot.cables):
+            raise InputError("identification fits cable friction or hysteresis, not both. Remove one of them.")
         contractions = self.model.contractions(values, self.measurements.commands)
         rows, markers = len(contractions), self.measurements.markers
         anchors = _anchors(robot, markers)
@@ -100,10 +103,11 @@ class MarkerPredictor:
                     places[row], forces[row], self._poses[row] = np.nan, np.nan, None
         found = MarkerPrediction(places, jacobian, forces, force_jacobian)
         has_history = any(simulation.assembly.has_history for simulation in simulations)
-        return self._path_slopes(found, numbers) if slopes and follows and has_history else found
+        by_paths = has_history and (follows or robot.body.has_hysteresis)
+        return self._path_slopes(found, numbers) if slopes and by_paths else found
 
     def _path_slopes(self, found: MarkerPrediction, numbers: Vector) -> MarkerPrediction:
-        """Prediction of a loading path with slopes by the parameters from differences of whole paths.
+        """Prediction with slopes by the parameters from differences of all rows, each with its own history.
 
         The adjoint holds the history of a pose, which the parameters change as well.
         """

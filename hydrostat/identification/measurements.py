@@ -22,7 +22,7 @@ class Measurements:
         forces: force with which each winch pulls [N], (rows, winches): torque over the radius of its spool; NaN where
             it was not measured, none if left out.
         in_order: True if the rows are one loading path, in their order, so that each begins where the one before
-            ended. Counts for robots whose pose depends on the path: cables with friction.
+            ended. Counts for robots whose pose depends on the path: friction of cables, hysteresis of materials.
 
     Raises:
         InputError: arrays that do not fit one another, or numbers that are not finite.

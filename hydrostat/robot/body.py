@@ -99,8 +99,7 @@ class Body:
         parts = tuple(parts)
         linear = self.with_elements(ElementKind.LINEAR)
         whole = replace(linear, parts=parts)  # parts that do not fit raise before the mesh is changed
-        made = replace(whole, mesh=conform(linear.mesh, parts)) if parts else whole
-        return made.with_elements(self.elements)
+        return (replace(whole, mesh=conform(linear.mesh, parts)) if parts else whole).with_elements(self.elements)
 
     def with_elements(self, kind: "ElementKind | str") -> "Body":
         """Return the body with linear or quadratic elements of the same corners.
@@ -117,6 +116,11 @@ class Body:
     def materials(self) -> tuple[Material, ...]:
         """Material of the body, then that of each part."""
         return (self.material, *(part.material_in(self.material) for part in self.parts))
+
+    @property
+    def has_hysteresis(self) -> bool:
+        """True if any material has hysteresis."""
+        return any(material.hysteresis for material in self.materials)
 
     @cached_property
     def element_materials(self) -> Int[np.ndarray, " elements"]:
@@ -344,10 +348,9 @@ def _rings(edges: Int[np.ndarray, "edges 2"]) -> Iterator[Int[np.ndarray, " _"]]
     while following:
         ring = [min(following)]
         while ring[-1] in following:
-            ends = following[ring[-1]]
             here = ring[-1]
-            ring.append(ends.pop())
-            if not ends:
+            ring.append(following[here].pop())
+            if not following[here]:
                 del following[here]
         yield np.array(ring[:-1])
 

@@ -33,7 +33,7 @@ class LinearPose:
             NotConvergedError: the pose is no stable equilibrium.
         """
         check_pose(pose, simulation.robot.body.mesh.nodes.shape, simulation.robot.num_controls, what="the pose")
-        if any(material.hysteresis for material in simulation.robot.body.materials):
+        if simulation.robot.body.has_hysteresis:
             raise InputError("hysteresis has no linear model: remove it from the material")
         if simulation.assembly.has_history:
             raise InputError("friction has no linear model: set the friction of cables, contact and obstacles to 0")

@@ -21,7 +21,7 @@ from hydrostat.identification.find_faults import Swap, find_slip, find_swaps
 from hydrostat.identification.identified_robot import start_of
 from hydrostat.identification.kinds import KINDS, named_model
 from hydrostat.identification.marker_predictor import MarkerPredictor
-from hydrostat.robot import Cable, Load, Marker, Mount, Pin, Robot, Rod, Winch
+from hydrostat.robot import Cable, Load, Marker, Mount, Pin, Robot, Rod, Slider, Winch
 from hydrostat.simulation import Simulation
 
 UPPER = ((0.0083, 0.0137), (0.0587, 0.0161), (0.1129, 0.0147), (0.1833, 0.0143))
@@ -381,3 +381,25 @@ def test_tolerances_are_the_deviations_of_the_intervals() -> None:
     told = tomllib.loads(identified_tolerances(found).decode())["built"]
     assert told["spool"] == pytest.approx(max(expected["up.gain"], expected["down.gain"]), rel=5e-3)
     assert told["young"] == pytest.approx(expected["body.young"], rel=5e-3)
+
+
+def test_up_and_down_strokes_show_hysteresis() -> None:
+    """Oracle: hidden scale of the sliders' moduli; central differences of whole paths of another step."""
+    body = mesh_body(strip_mesh(4, 1))
+    sliders = (Slider(young=4e3, strain=0.01), Slider(young=2e3, strain=0.04))
+    robot = replace(strip(), loads=(), body=replace(body, material=replace(body.material, hysteresis=sliders)))
+    model, hidden = named_model(robot, ("hysteresis",)), np.array([0.8])
+    assert model.robot(model.values(hidden)).body.material.hysteresis[1].young == pytest.approx(2e3 * np.exp(0.56))
+    path = replace(measured(robot, np.array([[6.0, 0], [16, 0], [8, 0], [2, 0]]) * 1e-3), in_order=True)
+    seen = MarkerPredictor(model, path).predict(hidden, slopes=True)
+    steps = [MarkerPredictor(model, path).predict(hidden + step, slopes=False).places for step in (-0.01, 0.01)]
+    assert seen.jacobian[..., 0] == pytest.approx((steps[1] - steps[0]) / 0.02, abs=2e-6)  # type: ignore[index]
+    free = MarkerPredictor(model, replace(path, in_order=False)).predict(hidden, slopes=False)
+    assert np.abs(free.places - seen.places)[:2].max() < 1e-4 < np.abs(free.places - seen.places)[2:].max()
+    table = replace(path, places=seen.places + 1e-4 * np.random.default_rng(1).standard_normal(seen.places.shape))
+    found = fit_model(model, table, noise=1e-4, refine=False)
+    low, high = found.intervals["hysteresis.scale"]
+    assert low < model.values(hidden)["hysteresis.scale"] < high < 1.5 * low
+    rubbing = robot.with_network(robot.winches, [replace(cable, friction=0.1) for cable in robot.cables])
+    with pytest.raises(InputError, match="identification fits cable friction or hysteresis, not both"):
+        fit_model(named_model(rubbing, ("hysteresis",)), table, noise=1e-4)

@@ -119,7 +119,7 @@ class InverseProblem:
                 "the robot has no cables to pull; add winches and cables, or let `hydrostat design` find them"
             )
         require_static_obstacles(simulation.robot, "inverse kinematics")
-        if any(material.hysteresis for material in robot.body.materials):
+        if robot.body.has_hysteresis:
             raise InputError("inverse kinematics does not model hysteresis. Remove hysteresis from the material.")
         own = simulation.friction or simulation.cables
         others = [energy for energy in simulation.assembly.energies if energy is not own]
