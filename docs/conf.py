@@ -94,5 +94,6 @@ def read_source(_app: Any, page: str, source: list[str]) -> None:
 def setup(app: Any) -> None:
     """Write the reference pages before Sphinx reads its sources, and the toy of the first page."""
     app.connect("builder-inited", lambda _app: write_reference(GENERATED))
-    app.connect("builder-inited", lambda site: write_toy(Path(site.outdir)))
+    app.add_config_value("toy_options", "", "")
+    app.connect("builder-inited", lambda site: write_toy(Path(site.outdir), site.config.toy_options))
     app.connect("source-read", read_source)

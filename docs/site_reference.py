@@ -126,8 +126,8 @@ def write_reference(folder: Path) -> None:
             path.write_text(text, encoding="utf-8")
 
 
-def write_toy(folder: Path) -> None:
-    """Write the starfish of the first page: `hydrostat share gallery:starfish`, 8 s of CPU time."""
+def write_toy(folder: Path, options: str = "") -> None:
+    """Write the starfish of the first page: `hydrostat share gallery:starfish`, 8 s of CPU time without options."""
     folder.mkdir(parents=True, exist_ok=True)
     command = [sys.executable, "-m", "hydrostat", "share", "gallery:starfish", "--out", str(folder / "starfish.html")]
-    subprocess.run(command, check=True, cwd=ROOT)
+    subprocess.run([*command, *options.split()], check=True, cwd=ROOT)
