@@ -68,6 +68,9 @@ Depth = Annotated[
     ),
 ]
 Tension = Annotated[str | None, _option("FORCE", "Maximum cable tension.", "Constraints.tension")]
+MotorOption = Annotated[
+    str | None, _option("NAME", "Motor model, such as sts3215: see hydrostat fabricate.", "Constraints.motor")
+]
 Slack = Annotated[str | None, _option("LENGTH", "Maximum cable slack.", "Constraints.slack")]
 SteppedSpools = Annotated[
     bool, typer.Option("--stepped-spools", help="Allow cable spools from half to twice the winch spool radius.")
@@ -151,6 +154,7 @@ def design(
     clearance: Clearance = None,
     depth: Depth = None,
     tension: Tension = None,
+    motor: MotorOption = None,
     slack: Slack = None,
     stepped_spools: SteppedSpools = False,
     two_way: TwoWay = False,
@@ -203,6 +207,7 @@ def design(
             "tension": tension,
             "slack": slack,
         },
+        motor=motor,
         stepped=stepped_spools,
         two_way=two_way,
         symmetric=symmetric,

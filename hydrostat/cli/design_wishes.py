@@ -34,6 +34,7 @@ class DesignArguments:
     measured: Path | None = None  # file of tolerances that a measurement wrote, if there is one
     file: Path | None = None  # of constraints; what follows comes before it
     limits: Mapping[str, str | int | None] = field(default_factory=dict)  # by the fields of `Constraints`
+    motor: str | None = None
     stepped: bool = False
     two_way: bool = False
     symmetric: str | None = None
@@ -93,6 +94,7 @@ def _constraints(robot: "Robot", typed: DesignArguments) -> "Constraints":
         raise InputError(f"--symmetric {typed.symmetric}: unknown axis. Allowed: x, y, z.")
     given: dict[str, Any] = {
         **{name: _limit(name, value) for name, value in typed.limits.items()},
+        "motor": typed.motor,
         "spool_ratio": Constraints.STEPPED if typed.stepped else None,
         "two_way": typed.two_way or None,
         "mirror": typed.symmetric,

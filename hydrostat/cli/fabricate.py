@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hydrostat.cli.design_results import designed_tension, designed_torque
+from hydrostat.cli.design_results import designed_motor, designed_tension, designed_torque
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
 from hydrostat.cli.options import parse_optional, positive
 from hydrostat.cli.waiting import progress_bar, read_robot
@@ -45,13 +45,14 @@ def fabricate(
         ),
     ] = None,
     motor: Annotated[
-        str,
+        str | None,
         typer.Option(
             metavar="NAME",
             help="Motor model: n20, xl330, 25d, xc330, sts3215, sts3215-12v, or auto: the first of n20, xl330 and 25d "
             "that is strong enough.",
+            show_default="that of the design, else auto",
         ),
-    ] = "auto",
+    ] = None,
     mould: Annotated[
         str | None,
         typer.Option(metavar="printed|silicone", help="Mold material for foam robots.", show_default="printed"),
@@ -84,7 +85,6 @@ def fabricate(
     kind = parse_choice(kits.MoldKind, mould or "printed", what="--mould")
     options = kits.KitOptions(
         method=None if method is None else parse_choice(kits.Method, method, what="--method"),
-        motor=motor,
         mould=kits.MoldOptions(kind=kind, bed=_lengths("--bed", bed)),
         paper=parse_choice(kits.Paper, paper, what="--paper"),
         pattern=kits.PatternOptions(seam_allowance=_millimeters("--seam", seam)),
@@ -98,7 +98,8 @@ def fabricate(
     began = time.perf_counter()
     loaded = read_robot(robot)
     kept = designed_tension(loaded, robot) if limit is None else None
-    options = replace(options, tension=kept or limit, torque=designed_torque(loaded, robot))
+    chosen, torque = motor or designed_motor(loaded, robot), designed_torque(loaded, robot)
+    options = replace(options, tension=kept or limit, torque=torque, motor=chosen)
     if mould is not None and options.method_for(loaded.body) is not kits.Method.FOAM:
         raise InputError("--mould: needs a foam body. Remove it, or add --method foam.")
     kit = _build_or_report(robot, loaded, options, out)

@@ -16,6 +16,7 @@ from hydrostat.arrays import Vector
 from hydrostat.closed_set import make_member
 from hydrostat.design.zone import Zone, ZoneUnion
 from hydrostat.errors import InputError
+from hydrostat.fabrication import ALL_MOTORS
 from hydrostat.ik import Limits
 from hydrostat.robot import Cable, Mount, Robot, Winch
 
@@ -100,6 +101,7 @@ class Constraints:
         longest: maximum length of a cable from winch to stopper [m]; None: any.
         tension: maximum cable tension [N].
         torque: maximum torque of the motor of a winch [N m]; None: as much as the tensions need.
+        motor: key of the motor of the winches, such as "sts3215"; "auto": the weakest that is strong enough and fits.
         travel: maximum contraction of a winch [m].
         release: maximum payout of a winch [m].
         spool_radius: radius of the spools [m].
@@ -136,6 +138,7 @@ class Constraints:
     longest: float | None = _limit(None, Range(above=True, most=LONGEST, optional=True, unit="m"))
     tension: float = _limit(20.0, Range(above=True, most=1000.0, unit="N"), trees=True)
     torque: float | None = _limit(None, Range(above=True, most=100.0, unit="N m", optional=True))
+    motor: str = _limit("auto", trees=True)
     travel: float = _limit(0.06, _LENGTH, trees=True)
     release: float = _limit(0.0, _GAP, trees=True)
     spool_radius: float = _limit(0.006, _LENGTH, trees=True)
@@ -159,6 +162,9 @@ class Constraints:
         for field in ("leads", "built_in", "two_way"):
             if not isinstance(getattr(self, field), bool):
                 _refuse(field, getattr(self, field), "True or False")
+        keys = ("auto", *(motor.key for motor in ALL_MOTORS))
+        if self.motor not in keys:
+            _refuse("motor", self.motor, f"one of {', '.join(keys)}")
         if self.mirror not in (None, "x", "y", "z"):
             _refuse("mirror", self.mirror, '"x", "y", "z", or None for no symmetry')
         self._check_numbers()

@@ -174,7 +174,9 @@ def evaluate_stuffed(found: Network, *, progress: Progress) -> Network:
     Compared are alternatives with no more winches and no more cables, of which a kit can be made. Stopped
     (KeyboardInterrupt), the best of those that were looked at is returned.
     """
-    first = Alternative(robot=found.robot, ik_results=found.ik_results, expected_error=found.expected_error)
+    first = Alternative(
+        robot=found.robot, ik_results=found.ik_results, expected_error=found.expected_error, motor=found.motor
+    )
     winches, cables = size_of(found)
     small = [one for one in found.alternatives if size_of(one)[0] <= winches and size_of(one)[1] <= cables]
     fitting = [one for one in small if not find_refusals(one.robot, Demand.of_results(one.robot, one.ik_results))]

@@ -15,6 +15,7 @@ from hydrostat.design.request import DesignRequest
 from hydrostat.design.zone import Zone
 from hydrostat.errors import InputError
 from hydrostat.fabrication import (
+    ALL_MOTORS,
     GIVES,
     MOTORS,
     Cuboid,
@@ -49,13 +50,13 @@ def built_in(robot: Robot, constraints: Constraints, *, winches: int, cables: in
     return replace(constraints, winch_zones=zones, torque=min(own, _torque_to_hold(motor)))
 
 
-def find_holding_torque(robot: Robot, reached: Sequence[IKResult]) -> float | None:
+def find_holding_torque(robot: Robot, reached: Sequence[IKResult], *, motor: str = "auto") -> float | None:
     """Torque that the motor of a kit holds for long [N m], if poses ask for more; None if not, or for no motor."""
     if not any(winch.mount is Mount.BODY for winch in robot.winches):
         return None
     torques = Demand.of_results(robot, reached).torques
-    motor = find_motor(robot, torques, KitOptions())
-    return _torque_to_hold(motor) if float(torques.max()) > motor.largest_torque() else None
+    chosen = find_motor(robot, torques, KitOptions(motor=motor))
+    return _torque_to_hold(chosen) if float(torques.max()) > chosen.largest_torque() else None
 
 
 def _torque_to_hold(motor: Motor) -> float:
@@ -101,7 +102,7 @@ def winch_room(
     whole hours of a clock; it takes both of a pair. In space its pocket lies along the mold. The motor is the strongest
     that leaves room for all winches. Zones as given and None: where no motor fits.
     """
-    for motor in reversed(MOTORS):
+    for motor in reversed(_motors(constraints)):
         box = unit_room(*_example(robot, constraints, cables), PartOptions(), motor)
         if robot.body.thickness is None:
             zones = _pocket_zones(robot, constraints, box, winches)
@@ -110,6 +111,11 @@ def winch_room(
         if zones:
             return zones, motor
     return constraints.winch_zones, None
+
+
+def _motors(constraints: Constraints) -> tuple[Motor, ...]:
+    """Motors that a kit may take, from the weakest to the strongest."""
+    return tuple(motor for motor in ALL_MOTORS if motor.key == constraints.motor) or MOTORS
 
 
 def _flat_zones(robot: Robot, constraints: Constraints, box: Cuboid, winches: int) -> tuple[Zone, ...]:
@@ -199,7 +205,7 @@ def _no_room(robot: Robot, constraints: Constraints, cables: int, winches: int) 
             f"body: no room for a motor with {cables} cables on its winch, but for one with {fits}. Ask for fewer, "
             f"e.g. --winches {winches} --cables {winches * fits}."
         )
-    motor, body, cables = MOTORS[0], robot.body, 1
+    motor, body, cables = _motors(constraints)[0], robot.body, 1
     box = unit_room(*_example(robot, constraints, cables), PartOptions(), motor)
     smallest = f"{motor.title}, {sides_text(sorted(box.size, reverse=True))} mm"
     lift = 'Or put winches outside, as [[winch]] with mount = "world".'

@@ -42,6 +42,7 @@ BAD: dict[str, tuple[Any, ...]] = {
     "two_way": (1, None, "yes"),
     "leads": (1, None, "yes"),
     "mirror": ("w", "X", 0, "left"),
+    "motor": ("servo", None, 3),
     "locked_winches": ("left", (1,), ("left", "left"), 3),
     "locked_cables": ("left 1", (1,), (True,), ("left 1", "left 1"), 0),
 }
@@ -62,6 +63,7 @@ GOOD: dict[str, tuple[Any, ...]] = {
     "release": (0.0,),
     "spool_ratio": (1, 4.0),
     "mirror": (None, "x", "y", "z"),
+    "motor": ("auto", "n20", "sts3215-12v"),
     "locked_winches": ((), ["left", "right"]),
     "locked_cables": ((), ["left 1", "right 1"]),
 }

@@ -111,6 +111,22 @@ def test_a_pocket_fits_wherever_there_is_room_in_foam(unchecked: None) -> None:
     assert not any(map(fits, places[away > 8e-3][::8]))
 
 
+def test_a_motor_of_choice_decides_room_and_torque() -> None:
+    """Oracle: the motor's own rating; a strip too narrow for it says what size would do."""
+    wide = strip_robot(columns=4, rows=1)
+    wide = replace(wide, body=replace(wide.body, thickness=0.05))
+    own = Constraints(motor="sts3215")
+    servo = Motor.choose("sts3215", ())
+    held = built_in(wide, own, winches=1, cables=1)
+    assert held.torque == pytest.approx(servo.largest_torque(), rel=0.1)
+    assert built_in(wide, Constraints(motor="n20"), winches=1, cables=1).torque < 0.5 * held.torque
+    thin = replace(wide, body=replace(wide.body, thickness=0.01))
+    with pytest.raises(InputError, match=r"no room for the motor .*STS3215"):
+        built_in(thin, own, winches=1, cables=1)
+    with pytest.raises(InputError, match="motor must be one of auto, n20"):
+        Constraints(motor="servo")
+
+
 def test_torque_to_hold_is_asked_for_where_a_motor_holds_for_seconds_only() -> None:
     """Oracle: the smallest motor bears 49 N mm for long and half of 196 N mm for seconds, each with a margin of 2."""
     network = plain_network()

@@ -106,5 +106,8 @@ def _worth(network: Alternative | Network) -> tuple[bool, float]:
 
 def _all(network: Network) -> tuple[Alternative, ...]:
     return Alternative(
-        robot=network.robot, ik_results=network.ik_results, expected_error=network.expected_error
+        robot=network.robot,
+        ik_results=network.ik_results,
+        expected_error=network.expected_error,
+        motor=network.motor,
     ), *network.alternatives
