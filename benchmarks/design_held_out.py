@@ -83,7 +83,7 @@ def _hidden(robot: Robot, body: Body, cables: int, draw: np.random.Generator) ->
     Raises:
         RuntimeError: none is found.
     """
-    crossing = replace(body.constraints, winch_gap=0.0, hole_gap=0.0, cable_gap=0.0, turn=75.0)
+    crossing = replace(body.constraints, winch_gap=0.0, hole_gap=0.0, cable_gap=0.0, max_turn=75.0)
     dense = replace(crossing, mount=Mount.BODY, travel=1.0)
     found = random_network(ground(robot, dense), cables, cables, draw)
     if found is None:

@@ -79,7 +79,7 @@ def network(method: str, robot: Robot, body: Body, poses: Sequence[PoseTarget]) 
         return robot
     constraints, uncertainty = body.constraints, None
     if method == "exact":
-        constraints = replace(constraints, cable_gap=0.0, turn=75.0, built_in=False)
+        constraints = replace(constraints, cable_gap=0.0, max_turn=75.0, built_in=False)
         uncertainty = BuildTolerances.none()
     if method == "two_way":
         constraints = replace(constraints, two_way=True)

@@ -1,17 +1,20 @@
 """Design request of `hydrostat design`, from its options and its constraints file."""
 
-from collections.abc import Mapping, Sequence
+import warnings
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, get_type_hints
+from typing import TYPE_CHECKING, Any, TypeVar, get_type_hints
 
 from hydrostat.cli.options import positive
 from hydrostat.closed_set import parse_choice
-from hydrostat.errors import InputError
+from hydrostat.errors import HydrostatWarning, InputError
 
 if TYPE_CHECKING:
     from hydrostat.design import BuildTolerances, Constraints, DesignMethod, DesignRequest, RouteOptions, TreeOptions
     from hydrostat.robot import Robot
+
+_Read = TypeVar("_Read")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,14 +85,25 @@ def _uncertainty(robot: "Robot", typed: DesignArguments) -> "BuildTolerances | N
     if typed.measured is None or not typed.measured.exists():
         return None
     print(f"note: build tolerances are those of {typed.measured}.")
-    return read_uncertainty(typed.measured, robot)
+    return _read_noting(read_uncertainty, typed.measured, robot)
+
+
+def _read_noting(read: Callable[[Path, "Robot"], _Read], file: Path, robot: "Robot") -> _Read:
+    """Record of a file; keys of older files are printed as notes."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", HydrostatWarning)
+        try:
+            return read(file, robot)
+        finally:
+            for warning in caught:
+                print(f"note: {warning.message}.")
 
 
 def _constraints(robot: "Robot", typed: DesignArguments) -> "Constraints":
     """The constraints of a file, with those of the command line before them."""
     from hydrostat.design import Constraints, read_constraints
 
-    constraints = Constraints() if typed.file is None else read_constraints(typed.file, robot)
+    constraints = Constraints() if typed.file is None else _read_noting(read_constraints, typed.file, robot)
     if typed.symmetric not in (None, "x", "y", "z"):
         raise InputError(f"--symmetric {typed.symmetric}: unknown axis. Allowed: x, y, z.")
     given: dict[str, Any] = {

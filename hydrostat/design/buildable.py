@@ -24,8 +24,8 @@ def violations(robot: Robot, constraints: Constraints, region: Region) -> list[s
       from the world, or begins at a winch that is locked, neither that point nor a clearance's way on from it counts.
     - Where cables run at a depth under the skin, points lie there to half a millimeter, and straight segments neither
       leave the body nor dive 3 mm deeper.
-    - Segments keep out of `keep_out` along their whole length, bare ones out of `still`; without `leads`, sheaths are
-      for `still` alone.
+    - Segments keep out of `keep_out` along their whole length, bare ones out of `passive_zones`; without `leads`,
+      sheaths are for `passive_zones` alone.
     - Holes are all points of cables but the first. Two that coincide are one. In the body, winches keep two spool
       radii from holes of cables that others pull.
     - Cables keep the `cable_gap` from each other all along, and two spool radii from winches of others. Two of one

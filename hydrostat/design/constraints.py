@@ -80,7 +80,7 @@ class Constraints:
     Attributes:
         winch_zones: zones for winches; anywhere in the body if there is none.
         keep_out: zones without cables.
-        still: passive zones: cables run in sheaths here, so that they move nothing.
+        passive_zones: passive zones: cables run in sheaths here, so that they move nothing.
         mount: place of the winches, in the body or in the world; None: as the robot's own winches are, in the body if
             it has none.
             Winches in the world stand at places of the robot's own winches.
@@ -96,9 +96,9 @@ class Constraints:
         cable_gap: minimum distance [m] between two cables, or two parts of one, so that none cross or run side by side
             within a stitch; and of cables from winches that do not pull them beyond two spool radii. Cables of one
             winch may be nearer within two spool radii of it. 0: cables may cross.
-        turn: maximum turn of a cable at a via point [degrees].
+        max_turn: maximum turn of a cable at a via point [degrees].
         bend_radius: minimum radius of the arc that fits a turn between the middles of its two segments [m].
-        longest: maximum length of a cable from winch to stopper [m]; None: any.
+        max_length: maximum length of a cable from winch to stopper [m]; None: any.
         tension: maximum cable tension [N].
         torque: maximum torque of the motor of a winch [N m]; None: as much as the tensions need.
         motor: key of the motor of the winches, such as "sts3215"; "auto": the weakest that is strong enough and fits.
@@ -123,7 +123,7 @@ class Constraints:
 
     winch_zones: tuple[Zone, ...] = ()
     keep_out: tuple[Zone, ...] = ()
-    still: tuple[Zone, ...] = ()
+    passive_zones: tuple[Zone, ...] = ()
     mount: Mount | None = None
     built_in: bool = True
     cables_per_winch: int = _limit(6, Range(whole=True, least=1, most=60), trees=True)
@@ -133,9 +133,9 @@ class Constraints:
     winch_gap: float = _limit(0.025, _GAP, trees=True)
     hole_gap: float = _limit(0.004, _GAP, trees=True)
     cable_gap: float = _limit(0.004, _GAP)
-    turn: float = _limit(30.0, Range(above=True, most=180.0, unit="degrees"))
+    max_turn: float = _limit(30.0, Range(above=True, most=180.0, unit="degrees"))
     bend_radius: float = _limit(0.0, _GAP)
-    longest: float | None = _limit(None, Range(above=True, most=LONGEST, optional=True, unit="m"))
+    max_length: float | None = _limit(None, Range(above=True, most=LONGEST, optional=True, unit="m"))
     tension: float = _limit(20.0, Range(above=True, most=1000.0, unit="N"), trees=True)
     torque: float | None = _limit(None, Range(above=True, most=100.0, unit="N m", optional=True))
     motor: str = _limit("auto", trees=True)
@@ -151,9 +151,9 @@ class Constraints:
     locked_cables: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        for field in ("winch_zones", "keep_out", "still", "locked_winches", "locked_cables"):
+        for field in ("winch_zones", "keep_out", "passive_zones", "locked_winches", "locked_cables"):
             object.__setattr__(self, field, _several(field, getattr(self, field)))
-        for field in ("winch_zones", "keep_out", "still"):
+        for field in ("winch_zones", "keep_out", "passive_zones"):
             for place, zone in enumerate(getattr(self, field)):
                 if not isinstance(zone, Zone):
                     _refuse(f"{field}[{place}]", zone, "a Zone, such as Zone(at=(0.0, 0.0), radius=0.01)")
@@ -223,7 +223,7 @@ class Constraints:
         its body is not centered on, or winches in the world where it has no winch to stand for one.
         """
         mesh = robot.body.mesh
-        for field in ("winch_zones", "keep_out", "still"):
+        for field in ("winch_zones", "keep_out", "passive_zones"):
             for place, zone in enumerate(getattr(self, field)):
                 if zone.dim != mesh.dim:
                     raise InputError(

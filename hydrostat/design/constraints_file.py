@@ -1,5 +1,7 @@
 """`read_constraints`: from a TOML file to `Constraints` for one robot."""
 
+import re
+import warnings
 from dataclasses import fields, replace
 from decimal import Decimal
 from enum import StrEnum
@@ -13,7 +15,7 @@ from hydrostat import units
 from hydrostat.design.constraints import RANGES, Constraints
 from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.design.zone import Zone
-from hydrostat.errors import InputError
+from hydrostat.errors import HydrostatWarning, InputError
 from hydrostat.files import read_text
 from hydrostat.robot import Robot, TablesFile
 from hydrostat.toml_schema import Angle, Coordinates, Force, Length, Name, Number, TomlTable, Torque
@@ -41,7 +43,7 @@ class Axis(StrEnum):
 
 
 class ZoneTable(TomlTable):
-    """[[winch_zone]], [[keep_out]], [[still]]."""
+    """[[winch_zone]], [[keep_out]], [[passive_zone]]."""
 
     at: Coordinates | None = None
     radius: Number | None = None
@@ -50,7 +52,7 @@ class ZoneTable(TomlTable):
 
 
 class BuiltTable(TomlTable):
-    """[built]: the fields of `BuildTolerances`."""
+    """[tolerances]: the fields of `BuildTolerances`."""
 
     sewing: Length | None = None
     friction: Annotated[list[Number], Field(min_length=2, max_length=2)] | None = None
@@ -62,9 +64,13 @@ class BuiltTable(TomlTable):
     spool: Number | None = None
 
 
-ZONES = {"winch_zone": "winch_zones", "keep_out": "keep_out", "still": "still"}
+ZONES = {"winch_zone": "winch_zones", "keep_out": "keep_out", "passive_zone": "passive_zones"}
 """Tables of the file, and the fields of `Constraints` that they make."""
 
+RENAMED = {"turn": "max_turn", "longest": "max_length", "still": "passive_zone", "built": "tolerances"}
+"""Keys of older files, which are still read, and their present names."""
+
+_OLD_KEY = re.compile(rf"^([ 	]*\[{{0,2}}[ 	]*)({'|'.join(RENAMED)})(?=[ 	]*[\].=])", re.MULTILINE)
 _KINDS = {"mirror": Axis, "locked_winches": list[Name], "locked_cables": list[Part], bool: Choice}
 _QUANTITIES = {"m": Length, "degrees": Angle, "N": Force, "N m": Torque, "": Number}
 
@@ -92,7 +98,7 @@ ConstraintsTable = create_model(
     __base__=TomlTable,
     __doc__="The whole file: the fields of `Constraints`, zones as tables of one zone each.",
     **_forms(),
-    built=(BuiltTable | None, None),
+    tolerances=(BuiltTable | None, None),
 )
 
 
@@ -100,15 +106,16 @@ def read_constraints(path: str | Path, robot: Robot) -> Constraints:
     """Constraints for a robot from a file; what it leaves out is as in `Constraints`.
 
     Keys are the fields of `Constraints`: quantities as text with their unit ("5 mm"), zones as tables [[winch_zone]],
-    [[keep_out]] and [[still]] in the length unit of the robot's file, cables by their names, or by numbers that count
-    from 1. Raises InputError: one line that names the file, the line, the key, what is wrong and what is allowed.
+    [[keep_out]] and [[passive_zone]] in the length unit of the robot's file, cables by name or by
+    number, counted from 1. Keys of older files are read too, with a `HydrostatWarning` that names the present ones.
+    Raises InputError: one line that names the file, the line, the key, what is wrong and what is allowed.
     """
     path = Path(path)
     return _ConstraintsReader(path, read_text(path), robot).constraints()
 
 
 def read_uncertainty(path: str | Path, robot: Robot) -> BuildTolerances:
-    """Read the build tolerances of a robot, from the table [built] of a file of constraints.
+    """Read the build tolerances of a robot, from the table [tolerances] of a file of constraints.
 
     Keys are the fields of `BuildTolerances`: lengths as text with their unit, friction as the least and the largest
     coefficient, all else as plain numbers. What is left out is as is usual for the body (`BuildTolerances.of`). Raises
@@ -125,7 +132,11 @@ class _ConstraintsReader(TablesFile):
     empty = None
 
     def __init__(self, file: Path, text: str, robot: Robot) -> None:
-        super().__init__(file, text)
+        old = dict.fromkeys(found[2] for found in _OLD_KEY.finditer(text))
+        if old:
+            keys = ", ".join(f"{key} is now {RENAMED[key]}" for key in old)
+            warnings.warn(f"{file}: renamed keys: {keys}", HydrostatWarning, stacklevel=3)
+        super().__init__(file, _OLD_KEY.sub(lambda found: found[1] + RENAMED[found[2]], text))
         self.robot, self.unit = robot, robot.length_unit
 
     def form(self) -> type[TomlTable]:
@@ -134,7 +145,7 @@ class _ConstraintsReader(TablesFile):
     def constraints(self) -> Constraints:
         """The constraints that the text describes, which fit the robot."""
         given: dict[str, Any] = {
-            key: _plain(value) for key, value in self.table if value is not None and key not in {*ZONES, "built"}
+            key: _plain(value) for key, value in self.table if value is not None and key not in {*ZONES, "tolerances"}
         }
         for table, field in ZONES.items():
             given[field] = self.records(table, self._zone)
@@ -147,11 +158,11 @@ class _ConstraintsReader(TablesFile):
 
     def uncertainty(self) -> BuildTolerances:
         """The tolerances that the text describes, those usual for the body where it says nothing."""
-        given = {key: value for key, value in self.table.built or () if value is not None}
+        given = {key: value for key, value in self.table.tolerances or () if value is not None}
         numbers = {
             key: tuple(map(float, value)) if isinstance(value, list) else float(value) for key, value in given.items()
         }
-        return self.at("built", lambda: _usual_but(numbers, self.robot))
+        return self.at("tolerances", lambda: _usual_but(numbers, self.robot))
 
     def _zone(self, entry: Any) -> Zone:
         zone = Zone(
@@ -193,5 +204,8 @@ def _fitting(given: dict[str, Any], robot: Robot) -> Constraints:
         constraints = Constraints(**given)
         constraints.check(robot)
     except InputError as error:
-        raise InputError(str(error).removeprefix("constraints: ")) from None
+        message = str(error).removeprefix("constraints: ")
+        for table, field in ZONES.items():  # as the file calls it
+            message = message.replace(f"{field}[", f"{table}[")
+        raise InputError(message) from None
     return constraints

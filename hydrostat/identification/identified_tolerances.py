@@ -9,7 +9,7 @@ FIELDS = {"young": "young", "stiffness": "stiffness", "gain": "spool"}
 
 
 def identified_tolerances(found: IdentifiedRobot) -> bytes:
-    """Text of a file of constraints whose table [built] holds the intervals of the fit.
+    """Text of a file of constraints whose table [tolerances] holds the intervals of the fit.
 
     A field is the largest standard deviation of its parameters that the measurements show. Fields of others are left
     out, so that the usual tolerances hold. Pins are left out as well: a design does not depend on them.
@@ -29,4 +29,4 @@ def identified_tolerances(found: IdentifiedRobot) -> bytes:
     lines = [f"{field} = {deviation:.3g}" for field, deviation in deviations.items()]
     lines += [friction] if friction else []
     head = "# Build tolerances of the fitted robot, by hydrostat identify. hydrostat design reads them."
-    return "\n".join([head, "[built]", *lines, ""]).encode()
+    return "\n".join([head, "[tolerances]", *lines, ""]).encode()

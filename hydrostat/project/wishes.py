@@ -21,11 +21,16 @@ from hydrostat.units import quote
 
 
 class Paint(StrEnum):
-    """Meanings of painted zones: names of fields of `Constraints`."""
+    """Meanings of painted zones, as studio.json names them."""
 
     WINCH_ZONES = "winch_zones"
     KEEP_OUT = "keep_out"
     STILL = "still"
+
+    @property
+    def constraint(self) -> str:
+        """Name of the field of `Constraints` that holds these zones."""
+        return "passive_zones" if self is Paint.STILL else self.value
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,7 +94,9 @@ class Wishes:
 
     def to_constraints(self, robot: Robot) -> Constraints:
         """Constraints of the design settings, without parts to keep that are gone (InputError: impossible limits)."""
-        zones: dict[str, Any] = {paint: tuple(zone for other, zone in self.zones if other is paint) for paint in Paint}
+        zones: dict[str, Any] = {
+            paint.constraint: tuple(zone for other, zone in self.zones if other is paint) for paint in Paint
+        }
         names = {winch.name for winch in robot.winches}
         return replace(
             self.constraints,
@@ -116,7 +123,7 @@ OWN = tuple(one.name for one in fields(Wishes))
 OPTIONS = ("tolerance", "simplicity")
 """Fields of `RouteOptions` that can be wished."""
 
-ELSEWHERE = (*Paint, "locked_winches", "locked_cables", "spool_ratio")
+ELSEWHERE = (*(paint.constraint for paint in Paint), "locked_winches", "locked_cables", "spool_ratio")
 """Fields of `Constraints` that are wished by other names: as `zones`, `kept_winches`, `kept_cables` and "stepped"."""
 
 

@@ -45,8 +45,8 @@ def test_knobs_of_the_thesis_have_the_same_names_everywhere() -> None:
 def test_measured_tolerances_are_taken_unless_a_file_is_given(tmp_path: Path) -> None:
     measured, given = tmp_path / "tolerances.toml", tmp_path / "limits.toml"
     assert parse_request(robot(), DesignArguments(measured=measured)).uncertainty is None
-    measured.write_text("[built]\nyoung = 0.02\n")
-    given.write_text("[built]\nyoung = 0.3\n")
+    measured.write_text("[tolerances]\nyoung = 0.02\n")
+    given.write_text("[tolerances]\nyoung = 0.3\n")
     for typed, young in (
         (DesignArguments(measured=measured), 0.02),
         (DesignArguments(measured=measured, file=given), 0.3),

@@ -56,7 +56,7 @@ def network(
 
 
 def broken(robot: Robot, **limits: Any) -> list[str]:
-    constraints = Constraints(**{"cable_gap": 0.0, "turn": 75.0, **limits})
+    constraints = Constraints(**{"cable_gap": 0.0, "max_turn": 75.0, **limits})
     constraints.check(robot)
     return violations(robot, constraints, Region.of_body(robot.body, constraints.clearance))
 

@@ -32,8 +32,8 @@ from hydrostat.design.constraints import Constraints
 from hydrostat.design.zone import Zone
 from hydrostat.robot import Cable, Mount, PoseTarget, Winch
 
-LEADS = {"leads": False, "still": (Zone(box=((0.04, 0.02), (0.07, 0.04))),)}
-ROUND = {"turn": 180.0, "bend_radius": 0.02}
+LEADS = {"leads": False, "passive_zones": (Zone(box=((0.04, 0.02), (0.07, 0.04))),)}
+ROUND = {"max_turn": 180.0, "bend_radius": 0.02}
 
 CASES: dict[str, tuple[dict[str, Any], dict[str, Any], dict[str, Any], str]] = {
     "winch_zones": (
@@ -114,29 +114,29 @@ CASES: dict[str, tuple[dict[str, Any], dict[str, Any], dict[str, Any], str]] = {
         {"sheathed": ((0, 1),)},
         "cable[0] between points 0 and 1: inside keep_out[0] (5 mm deep). Allowed: outside. Reroute it.",
     ),
-    "still": (
-        {"still": (Zone(at=(0.045, 0.03), radius=0.005),)},
+    "passive_zones": (
+        {"passive_zones": (Zone(at=(0.045, 0.03), radius=0.005),)},
         {"sheathed": ((0, 1),)},
         {"sheathed": ((1, 2),)},
-        "cable[0] between points 0 and 1: no sheath in still[0] (5 mm deep). Allowed: outside.",
+        "cable[0] between points 0 and 1: no sheath in passive_zones[0] (5 mm deep). Allowed: outside.",
     ),
-    "still beside a bare segment": (
-        {"still": (Zone(at=(0.045, 0.02), radius=0.01),)},
+    "passive beside a bare segment": (
+        {"passive_zones": (Zone(at=(0.045, 0.02), radius=0.01),)},
         {"up": ((0.03, 0.03 + HAIR), (0.06, 0.03 + HAIR), *UP[2:])},
         {"up": ((0.03, 0.03 - HAIR), (0.06, 0.03 - HAIR), *UP[2:])},
-        "cable[0] between points 0 and 1: no sheath in still[0] (0.1 mm deep). Allowed: outside.",
+        "cable[0] between points 0 and 1: no sheath in passive_zones[0] (0.1 mm deep). Allowed: outside.",
     ),
     "no leads": (
         {"leads": False},
         {},
         {"sheathed": ((0, 1),)},
-        "cable[0] between points 0 and 1: sheath outside the still zones. Not allowed without leads.",
+        "cable[0] between points 0 and 1: sheath outside passive zones. Not allowed without leads.",
     ),
-    "no leads but in still zones": (
+    "no leads but in passive zones": (
         LEADS,
         {"sheathed": ((0, 2),)},
         {"sheathed": ((0, 3),), "up": (*UP, (0.18, 0.03))},
-        "cable[0] between points 2 and 3: sheath outside the still zones. Not allowed without leads.",
+        "cable[0] between points 2 and 3: sheath outside passive zones. Not allowed without leads.",
     ),
     "hole_gap": (
         {"hole_gap": 0.06},
@@ -186,7 +186,7 @@ CASES: dict[str, tuple[dict[str, Any], dict[str, Any], dict[str, Any], str]] = {
         {"more": [("up", (UP[0], (UP[0][0] + 0.04 * np.cos(FAN - 0.01), UP[0][1] - 0.04 * np.sin(FAN - 0.01))))]},
         "cable[2] between points 0 and 1: too close to cable[0] between points 0 and 1 (9.8",
     ),
-    "turn": ({}, {"up": corner(74.8)}, {"up": corner(75.2)}, "cable[0].points[1]: turn too sharp (75.2 degrees)."),
+    "max_turn": ({}, {"up": corner(74.8)}, {"up": corner(75.2)}, "cable[0].points[1]: turn too sharp (75.2 degrees)."),
     "turn in space": (
         {},
         {"up": high(corner(74.8)), "down": high(DOWN)},
@@ -205,11 +205,11 @@ CASES: dict[str, tuple[dict[str, Any], dict[str, Any], dict[str, Any], str]] = {
         {"up": corner(60, first=0.04 / 3**0.5 - HAIR)},
         "cable[0].points[1]: bend too sharp (radius 19.91 mm). Minimum bend_radius: 20 mm. Move the point.",
     ),
-    "longest": (
-        {"longest": 0.13},
+    "max_length": (
+        {"max_length": 0.13},
         {"up": moved(UP, 3, 0.16 - HAIR, 0.03)},
         {"up": moved(UP, 3, 0.16 + HAIR, 0.03)},
-        "cable[0]: too long (130.1 mm). Maximum (longest): 130 mm. Shorten it.",
+        "cable[0]: too long (130.1 mm). Maximum: 130 mm. Shorten it.",
     ),
     "slack": (
         {"slack": 0.005},
@@ -316,7 +316,7 @@ def test_rounding_breaks_nothing() -> None:
     away = 0.045 + 4.9e-6
     assert broken(network(up=moved(UP, 3, 0.15, away))) == []
     assert broken(network(up=corner(75.05))) == []
-    assert broken(network(), winch_clearance=0.02, winch_gap=0.06, longest=0.12, cables_per_winch=1) == []
+    assert broken(network(), winch_clearance=0.02, winch_gap=0.06, max_length=0.12, cables_per_winch=1) == []
 
 
 def reached(contractions: tuple[float, ...], tensions: tuple[float, ...], name: str | None = "wave") -> Any:

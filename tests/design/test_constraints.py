@@ -19,7 +19,7 @@ BALL = Zone(at=(0.05, 0.0, 0.0), radius=0.01)
 BAD: dict[str, tuple[Any, ...]] = {
     "winch_zones": ((BALL, "here"), DISC, "left"),
     "keep_out": ((3,), 5.0),
-    "still": ((None,),),
+    "passive_zones": ((None,),),
     "mount": ("air", 1),
     "cables_per_winch": (0, -1, 2.5, True, "2", nan),
     "clearance": (0.0, -0.001, inf, nan, "5 mm", None, True),
@@ -28,9 +28,9 @@ BAD: dict[str, tuple[Any, ...]] = {
     "hole_gap": (-0.001, nan, (0.004,)),
     "cable_gap": (-0.001, inf, nan, "4 mm", None),
     "built_in": (1, None, "yes"),
-    "turn": (0.0, -5.0, 180.1, nan, "75"),
+    "max_turn": (0.0, -5.0, 180.1, nan, "75"),
     "bend_radius": (-0.001, inf, nan, None),
-    "longest": (0.0, -1.0, inf, "1 m"),
+    "max_length": (0.0, -1.0, inf, "1 m"),
     "depth": (-0.001, 0.2, inf, "1 mm"),
     "tension": (0.0, -1.0, inf, "20 N", None),
     "torque": (0.0, -1.0, nan, "1 N m"),
@@ -56,8 +56,8 @@ GOOD: dict[str, tuple[Any, ...]] = {
     "hole_gap": (0, 0.0),
     "cable_gap": (0.0, 0.01),
     "built_in": (True, False),
-    "turn": (180.0, 180, np.float64(0.1)),
-    "longest": (None, 0.1),
+    "max_turn": (180.0, 180, np.float64(0.1)),
+    "max_length": (None, 0.1),
     "depth": (None, 0.0, 0.003),
     "torque": (None, 0.1),
     "release": (0.0,),
@@ -120,10 +120,10 @@ def test_constraints_that_fit() -> None:
         mount=Mount.WORLD,
     )
     limits.check(strip_robot())
-    Constraints(still=(BALL,)).check(box_robot())
+    Constraints(passive_zones=(BALL,)).check(box_robot())
 
 
-@pytest.mark.parametrize("field", ["winch_zones", "keep_out", "still"])
+@pytest.mark.parametrize("field", ["winch_zones", "keep_out", "passive_zones"])
 def test_zones_have_the_dimensions_of_the_body(field: str) -> None:
     assert misfit({field: (DISC, BALL)}).startswith(f"constraints: {field}[1]: wrong dimension (3). Body: 2. ")
     assert misfit({field: (DISC,)}, space=True).startswith(f"constraints: {field}[0]: wrong dimension (2). Body: 3. ")

@@ -15,7 +15,7 @@ from hydrostat.design.constraints_file import (
     read_constraints,
     read_uncertainty,
 )
-from hydrostat.errors import InputError
+from hydrostat.errors import HydrostatWarning, InputError
 from hydrostat.robot import Mount
 
 ALL = """
@@ -27,9 +27,9 @@ winch_gap = "30 mm"
 hole_gap = "3 mm"
 cable_gap = "5 mm"
 built_in = false
-turn = "60 deg"
+max_turn = "60 deg"
 bend_radius = "8 mm"
-longest = "0.4 m"
+max_length = "0.4 m"
 tension = "15 N"
 torque = "0.1 N m"
 motor = "sts3215"
@@ -54,7 +54,7 @@ outline = [[50, -20], [90, -20], [70, 20]]
 at = [100, 0]
 radius = 12.5
 
-[[still]]
+[[passive_zone]]
 at = [20, 5]
 radius = 10
 """
@@ -65,7 +65,7 @@ MADE = Constraints(
         Zone(outline=((0.05, -0.02), (0.09, -0.02), (0.07, 0.02))),
     ),
     keep_out=(Zone(at=(0.1, 0.0), radius=0.0125),),
-    still=(Zone(at=(0.02, 0.005), radius=0.01),),
+    passive_zones=(Zone(at=(0.02, 0.005), radius=0.01),),
     mount=Mount.WORLD,
     cables_per_winch=4,
     clearance=0.004,
@@ -74,9 +74,9 @@ MADE = Constraints(
     hole_gap=0.003,
     cable_gap=0.005,
     built_in=False,
-    turn=60.0,
+    max_turn=60.0,
     bend_radius=0.008,
-    longest=0.4,
+    max_length=0.4,
     tension=15.0,
     torque=0.1,
     motor="sts3215",
@@ -99,7 +99,7 @@ def file(tmp_path: Path) -> Path:
 
 
 def test_every_field_can_stand_in_the_file(file: Path) -> None:
-    keys = set(ConstraintsTable.model_fields) - {"built"}
+    keys = set(ConstraintsTable.model_fields) - {"tolerances"}
     assert {ZONES.get(key, key) for key in keys} == {field.name for field in fields(MADE)}
     for field in fields(MADE):
         if field.name == "depth":  # for bodies in space
@@ -127,7 +127,7 @@ def test_what_is_left_out_is_as_ever(file: Path) -> None:
 
 BUILT = """
 clearance = "4 mm"
-[built]
+[tolerances]
 sewing = "1 mm"
 friction = [0.1, 0.3]
 young = 0.1
@@ -146,23 +146,35 @@ def test_tolerances_stand_in_the_same_file(file: Path) -> None:
         sewing=1e-3, friction=(0.1, 0.3), young=0.1, thickness=0.05, stiffness=0.15, pins=0.25, slack=5e-4, spool=0.01
     )
     assert read_constraints(file, strip_robot()).clearance == 4e-3
-    file.write_text("[built]\nspool = 0.01")
+    file.write_text("[tolerances]\nspool = 0.01")
     for robot in (strip_robot(), box_robot()):
         assert read_uncertainty(file, robot) == replace(BuildTolerances.of(robot.body), spool=0.01)
     file.write_text("")
     assert read_uncertainty(file, strip_robot()) == BuildTolerances()
 
 
+def test_keys_of_older_files_are_read_and_named_anew(file: Path) -> None:
+    file.write_text('turn = "60 deg"\nlongest = "1 m"\n[[still]]\nat = [20, 5]\nradius = 10\n[built]\nspool = 0.01')
+    with pytest.warns(HydrostatWarning, match="turn is now max_turn, longest is now max_length, still is now"):
+        read = read_constraints(file, strip_robot())
+    assert (read.max_turn, read.max_length, len(read.passive_zones)) == (60.0, 1.0, 1)
+    with pytest.warns(HydrostatWarning, match="built is now tolerances"):
+        assert read_uncertainty(file, strip_robot()).spool == 0.01
+    file.write_text('\nturn = "200 deg"')
+    with pytest.warns(HydrostatWarning), pytest.raises(InputError, match="line 2: max_turn must be"):
+        read_constraints(file, strip_robot())
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     {
-        "sewing = 2": 'built.sewing: 2 has no unit; write a length as text: "12 mm"',
-        "young = -0.1": "built.young must be at least 0 and at most 1, not -0.1",
-        "friction = [0.3, 0.1]": "built.friction must rise from at least 0 to at most 1, not (0.3, 0.1)",
+        "sewing = 2": 'tolerances.sewing: 2 has no unit; write a length as text: "12 mm"',
+        "young = -0.1": "tolerances.young must be at least 0 and at most 1, not -0.1",
+        "friction = [0.3, 0.1]": "tolerances.friction must rise from at least 0 to at most 1, not (0.3, 0.1)",
     }.items(),
 )
 def test_a_wrong_tolerance_is_one_line(text: str, message: str, file: Path) -> None:
-    file.write_text(f"[built]\n{text}")
+    file.write_text(f"[tolerances]\n{text}")
     with pytest.raises(InputError) as caught:
         read_uncertainty(file, strip_robot())
     assert str(caught.value) == f"{file}, line 2: {message}"
@@ -179,8 +191,8 @@ ERRORS = {
     '\nclearance = "-5 mm"': "line 2: clearance must be above 0 and at most 1 m, not -0.005; in meters: 5 mm is 0.005",
     'tension = "3 mm"': 'line 1: tension: "mm" does not measure a force; write for example "20 N"',
     'torque = "3 N"': 'line 1: torque: "N" does not measure a torque; write for example "0.1 N m"',
-    "turn = 75": 'line 1: turn: 75 has no unit; write an angle as text: "75 deg"',
-    'turn = "200 deg"': "line 1: turn must be above 0 and at most 180 degrees, not 200.0",
+    "max_turn = 75": 'line 1: max_turn: 75 has no unit; write an angle as text: "75 deg"',
+    'max_turn = "200 deg"': "line 1: max_turn must be above 0 and at most 180 degrees, not 200.0",
     "spool_ratio = 9": "line 1: spool_ratio must be at least 1 and at most 4, not 9.0",
     'mount = "air"': 'line 1: mount: "air" is not known; allowed are: body or world',
     'mirror = "w"': 'line 1: mirror: "w" is not known; allowed are: x, y or z',
@@ -195,9 +207,12 @@ ERRORS = {
     'locked_winches = ["bob"]': 'line 1: locked_winches[0]: unknown winch "bob". Available: up, down.',
     "[[keep_out]]\nat = [1, 2]": "line 1: keep_out[0]: a zone about a point needs both at and radius; "
     "give the other too",
-    "[[still]]\nat = [1, 2]\nradius = 0": "line 3: still[0].radius of a zone must be finite and above 0 m, not 0.0",
-    "[[still]]\nat = [1, 2, 3]\nradius = 1": "line 1: still[0]: wrong dimension of its points (3). Body: 2.",
-    "[[still]]\noutline = [[0, 0], [1, 1]]": "line 2: still[0].outline: has 2 entries, at least 3 are needed",
+    "[[passive_zone]]\nat = [1, 2]\nradius = 0": "line 3: passive_zone[0].radius "
+    "of a zone must be finite and above 0 m, not 0.0",
+    "[[passive_zone]]\nat = [1, 2, 3]\nradius = 1": "line 1: passive_zone[0]: wrong dimension "
+    "of its points (3). Body: 2.",
+    "[[passive_zone]]\noutline = [[0, 0], [1, 1]]": "line 2: passive_zone[0].outline: "
+    "has 2 entries, at least 3 are needed",
     "[[keep_out]]\nat = [1, 2]\nradius = 3\n[[keep_out]]\nradios = 3": "line 5: keep_out[1].radios: unknown key "
     '"radios", did you mean radius? allowed here are: at, radius, box, outline',
     "keep_out = 3": "line 1: keep_out: begin each with [[keep_out]], in two pairs of brackets",

@@ -106,4 +106,4 @@ def test_a_number_of_winches_that_cannot_be_built_is_passed_over(unchecked: None
     network = design_cables(bare(), [UP, DOWN], winches="auto", cables=3, constraints=limits, options=options(1e-9))
     assert broken(network) == []
     with pytest.raises(HydrostatError):
-        design_cables(bare(), [UP], winches="auto", cables=2, constraints=Constraints(longest=0.003), options=SMALL)
+        design_cables(bare(), [UP], winches="auto", cables=2, constraints=Constraints(max_length=0.003), options=SMALL)

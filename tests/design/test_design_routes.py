@@ -79,11 +79,11 @@ LIMITS: dict[str, tuple[Case, dict[str, Any]]] = {
     "usual": (Case(robot=deep_and_bare()), {}),
     "still across, with slack": (
         Case(1, 2, (UP,)),
-        {"still": (Zone(box=((0.05, -0.03), (0.1, 0.03))),), "slack": 0.004},
+        {"passive_zones": (Zone(box=((0.05, -0.03), (0.1, 0.03))),), "slack": 0.004},
     ),
     "still and small, with a short travel": (
         Case(1, 2, (UP,)),
-        {"still": (Zone(at=(0.1, 0.015), radius=0.006),), "travel": 0.008},
+        {"passive_zones": (Zone(at=(0.1, 0.015), radius=0.006),), "travel": 0.008},
     ),
     "keep out, on like spools": (
         Case(1, 2, (UP,)),
@@ -103,8 +103,8 @@ LIMITS: dict[str, tuple[Case, dict[str, Any]]] = {
     ),
     "winch gap": (Case(2, 2), {"winch_gap": 0.09}),
     "gaps": (Case(2, 3, robot=deep_and_bare()), {"hole_gap": 0.015, "cable_gap": 0.009}),
-    "turn and clearance": (Case(1, 2, (UP,)), {"turn": 20.0, "clearance": 0.012}),
-    "bend radius and length": (Case(1, 2, (UP,)), {"bend_radius": 0.06, "longest": 0.08}),
+    "turn and clearance": (Case(1, 2, (UP,)), {"max_turn": 20.0, "clearance": 0.012}),
+    "bend radius and length": (Case(1, 2, (UP,)), {"bend_radius": 0.06, "max_length": 0.08}),
     "tension": (Case(2, 3, robot=deep_and_bare()), {"tension": 4.0}),
     "torque": (Case(2, 4, robot=deep_and_bare()), {"torque": 0.05, "cables_per_winch": 2}),
     "release, no leads": (Case(2, 3, robot=deep_and_bare()), {"release": 0.01, "leads": False}),

@@ -65,31 +65,31 @@ BROKEN: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     ),
     "holes of two cables": ({"down": moved(DOWN, 2, 0.1115, 0.029)}, {}),
     "holes of one cable": ({"up": (*UP, (0.1525, 0.031))}, {}),
-    "a hole at another winch": ({"down": moved(DOWN, 1, 0.034, 0.025)}, {"turn": 180.0}),
+    "a hole at another winch": ({"down": moved(DOWN, 1, 0.034, 0.025)}, {"max_turn": 180.0}),
     "two winches": ({}, {"winch_gap": 0.07}),
     "a winch near the edge": ({"up": moved(UP, 0, 0.03, 0.043)}, {}),
     "a winch nearer to the edge than cables may be": ({"up": moved(UP, 0, 0.03, 0.048)}, {"winch_clearance": 0.0}),
     "a winch outside its zones": (
         {}, {"winch_zones": (Zone(at=(0.03, 0.0), radius=0.026), Zone(at=(0.1, 0.0), radius=0.01))}
     ),
-    "a winch near one in the world": ({"up": moved(UP, 0, 0.02, -0.02), "mount": Mount.WORLD}, {"turn": 120.0}),
+    "a winch near one in the world": ({"up": moved(UP, 0, 0.02, -0.02), "mount": Mount.WORLD}, {"max_turn": 120.0}),
     "through a disc": ({}, {"keep_out": (Zone(at=(0.09, 0.025), radius=0.009),)}),
     "through a small disc": ({}, {"keep_out": (Zone(at=(0.09, 0.0305), radius=0.002),)}),
     "through a corner": ({}, {"keep_out": (Zone(box=((0.088, 0.0), (0.092, 0.0325))),)}),
     "through a polygon": ({}, {"keep_out": (Zone(outline=((0.08, 0.0), (0.1, 0.0), (0.09, 0.034))),)}),
-    "bare through a still zone": ({}, {"still": (Zone(at=(0.13, 0.027), radius=0.006),)}),
+    "bare through a still zone": ({}, {"passive_zones": (Zone(at=(0.13, 0.027), radius=0.006),)}),
     "a lead through a forbidden zone": ({"sheathed": ((0, 1),)}, {"keep_out": (Zone(at=(0.05, 0.028), radius=0.006),)}),
     "from the world through a zone": (
         {"up": ((-0.03, 0.04), *UP[1:]), "mount": Mount.WORLD}, {"keep_out": (Zone(at=(0.02, 0.034), radius=0.004),)}
     ),
-    "a turn": ({"up": moved(UP, 2, 0.085, 0.0)}, {"turn": 60.0}),
+    "a turn": ({"up": moved(UP, 2, 0.085, 0.0)}, {"max_turn": 60.0}),
     "a bend": ({"up": moved(UP, 2, 0.11, 0.012)}, {"bend_radius": 0.05}),
-    "a long cable": ({}, {"longest": 0.1}),
+    "a long cable": ({}, {"max_length": 0.1}),
     "slack": ({"slack": 0.004}, {"slack": 0.002}),
     "a spool": ({"spool_radius": 0.0095}, {"spool_ratio": 1.5}),
     "all at once": (
         {"up": moved(UP, 2, 0.11, 0.047), "down": moved(DOWN, 3, 0.14, -0.048)},
-        {"longest": 0.11, "turn": 40.0, "bend_radius": 0.02, "winch_gap": 0.062,
+        {"max_length": 0.11, "max_turn": 40.0, "bend_radius": 0.02, "winch_gap": 0.062,
          "keep_out": (Zone(at=(0.09, 0.036), radius=0.006),)},
     ),
 }  # fmt: skip
@@ -147,11 +147,11 @@ KINDS: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
         {"sheathed": ((0, 1),)},
         {
             "keep_out": (Zone(at=(0.09, 0.002), radius=0.01), Zone(box=((0.16, -0.01), (0.18, 0.01)))),
-            "still": (Zone(at=(0.09, 0.04), radius=0.003),),
+            "passive_zones": (Zone(at=(0.09, 0.04), radius=0.003),),
             "winch_zones": (Zone(at=(0.03, 0.0), radius=0.04),),
         },
     ),
-    "bends and lengths": ({"up": moved(UP, 2, 0.11, 0.02)}, {"bend_radius": 0.01, "longest": 0.13}),
+    "bends and lengths": ({"up": moved(UP, 2, 0.11, 0.02)}, {"bend_radius": 0.01, "max_length": 0.13}),
     "slack and spools": ({}, {"slack": 0.01, "spool_ratio": 1.5}),
     "world": ({"up": ((-0.03, 0.04), *UP[1:]), "mount": Mount.WORLD}, {}),
 }

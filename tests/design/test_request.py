@@ -27,7 +27,7 @@ def test_every_number_has_its_range() -> None:
     for ranges, record in ((RANGES, Constraints()), (ROUTE_RANGES, RouteOptions()), (COUNTS, asked)):
         assert all(allowed.holds(getattr(record, name)) for name, allowed in ranges.items())
     numbers = {name for name, value in vars(Constraints()).items() if type(value) in (int, float)}
-    assert set(RANGES) == {*numbers, "depth", "longest", "torque"}
+    assert set(RANGES) == {*numbers, "depth", "max_length", "torque"}
     assert set(ROUTE_RANGES) == {field.name for field in fields(RouteOptions)}
 
 

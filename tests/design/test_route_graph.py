@@ -93,7 +93,7 @@ def test_zones() -> None:
     out, still = Zone(at=(0.1, -0.03), radius=0.011), Zone(box=((0.15, -0.05), (0.2, 0.05)))
     stand = Zone(box=((0.0, -0.05), (0.06, 0.05)))
     constraints = Constraints(
-        clearance=0.004, winch_clearance=0.008, keep_out=(out,), still=(still,), winch_zones=(stand,)
+        clearance=0.004, winch_clearance=0.008, keep_out=(out,), passive_zones=(still,), winch_zones=(stand,)
     )
     graph = RouteGraph.build(robot, Region.of_body(robot.body, 0.004), constraints, spacing=SPACING)
     assert 0 < len(graph.points) < len(made("comb")[1].points)

@@ -91,6 +91,6 @@ def test_the_file_of_constraints_on_its_page_is_read(tmp_path: Path) -> None:
     path = tmp_path / "constraints.toml"
     path.write_text(section.split("```toml\n")[1].split("```")[0])
     read = read_constraints(path, load_robot(ROOT / "examples" / "starfish"))
-    assert (read.clearance, read.turn, read.slack, read.spool_ratio) == pytest.approx((0.006, 60.0, 0.010, 2.0))
+    assert (read.clearance, read.max_turn, read.slack, read.spool_ratio) == pytest.approx((0.006, 60.0, 0.010, 2.0))
     assert (read.locked_winches, read.locked_cables, read.mirror) == (("left",), ("left 1",), "x")
-    assert [len(zones) for zones in (read.winch_zones, read.keep_out, read.still)] == [1, 1, 1]
+    assert [len(zones) for zones in (read.winch_zones, read.keep_out, read.passive_zones)] == [1, 1, 1]

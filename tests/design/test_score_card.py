@@ -13,7 +13,7 @@ from hydrostat.robot import Mount, robot_hash
 ZONED = Constraints(
     winch_zones=(Zone(box=((0.0, 0.0), (0.1, 0.1))),),
     keep_out=(Zone(at=(0.0, 0.0), radius=0.01),),
-    still=(Zone(outline=((0.0, 0.0), (0.1, 0.0), (0.0, 0.1))),),
+    passive_zones=(Zone(outline=((0.0, 0.0), (0.1, 0.0), (0.0, 0.1))),),
     mount=Mount.WORLD,
     locked_cables=("up 1",),
 )
@@ -29,7 +29,7 @@ def test_a_grown_network_as_json() -> None:
     assert read["poses"]["up"]["contractions"] == {"up": 0.01, "down": 0.0}
     constraints = read["request"]["constraints"]
     assert constraints["keep_out"] == [{"at": [0.0, 0.0], "radius": 0.01, "box": None, "outline": []}]
-    assert constraints["still"][0]["outline"] == [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]]
+    assert constraints["passive_zones"][0]["outline"] == [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]]
     assert constraints["mount"] == "world"
     assert [stage["rms_error"] for stage in read["stages"]] == [0.03 / number for number in range(1, 12)]
     assert [stage["cables"] for stage in read["stages"]] == [1] * 5 + [2] * 6

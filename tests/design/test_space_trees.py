@@ -67,7 +67,7 @@ def test_winches_stand_in_a_body_where_the_robots_own_do() -> None:
 def test_a_network_in_space_can_be_built(name: str, pose: str, unchecked: None) -> None:
     """By sentences of the checks, which know nothing of trees; and it reaches what it says, by a fresh simulation."""
     network, robot = designed(name, pose), gallery_robot(name)
-    limits = replace(LIMITS, cable_gap=0.0, turn=TreeOptions.turn)
+    limits = replace(LIMITS, cable_gap=0.0, max_turn=TreeOptions.turn)
     assert violations(network.robot, limits, Region.of_body(robot.body, LIMITS.clearance)) == []
     own = {winch.at for winch in robot.winches}
     world = robot.winches[0].mount is Mount.WORLD

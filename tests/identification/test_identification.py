@@ -378,7 +378,7 @@ def test_tolerances_are_the_deviations_of_the_intervals() -> None:
     )
     own = {parameter.name: index for index, parameter in enumerate(model.parameters)}
     expected = {name: model.parameters[index].spread / np.sqrt(1 + informed[index] / 4) for name, index in own.items()}
-    told = tomllib.loads(identified_tolerances(found).decode())["built"]
+    told = tomllib.loads(identified_tolerances(found).decode())["tolerances"]
     assert told["spool"] == pytest.approx(max(expected["up.gain"], expected["down.gain"]), rel=5e-3)
     assert told["young"] == pytest.approx(expected["body.young"], rel=5e-3)
 

@@ -29,7 +29,7 @@ class _Segments:
 
 
 def clearance_violations(parts: Parts) -> Iterator[str]:
-    """Points and segments near the edge, segments in forbidden zones, bare ones in still zones, needless sheaths."""
+    """Points and segments near the edge, segments in forbidden zones, bare ones in passive zones, needless sheaths."""
     if not parts.new_cables:
         return
     segments = _segments(parts)
@@ -38,8 +38,10 @@ def clearance_violations(parts: Parts) -> Iterator[str]:
     for number, zone in enumerate(parts.constraints.keep_out):
         every = np.ones(len(segments.bare), dtype=bool)
         yield from _through(segments, zone, f"inside keep_out[{number}]", "Reroute it", every)
-    for number, zone in enumerate(parts.constraints.still):
-        yield from _through(segments, zone, f"no sheath in still[{number}]", "Sheathe or reroute it", segments.bare)
+    for number, zone in enumerate(parts.constraints.passive_zones):
+        yield from _through(
+            segments, zone, f"no sheath in passive_zones[{number}]", "Sheathe or reroute it", segments.bare
+        )
     if not parts.constraints.leads:
         yield from _sheathed_for_nothing(parts, segments)
 
@@ -132,11 +134,11 @@ def _sheathed_for_nothing(parts: Parts, segments: _Segments) -> Iterator[str]:
     chosen = np.flatnonzero(~segments.bare)
     starts, ends = segments.starts[chosen], segments.ends[chosen]
     needed = np.zeros(len(chosen), dtype=bool)
-    for zone in parts.constraints.still:
+    for zone in parts.constraints.passive_zones:
         needed |= zone.least(starts, ends, limit=LENGTH) < LENGTH
     for index in chosen[~needed]:
         yield (
-            f"{segments.name(index)}: sheath outside the still zones. Not allowed without leads. "
+            f"{segments.name(index)}: sheath outside passive zones. Not allowed without leads. "
             "Remove it or allow leads."
         )
 
@@ -284,8 +286,9 @@ def _sharp_bends(parts: Parts, index: int) -> Iterator[str]:
     for corner, (turn, arc) in enumerate(zip(np.degrees(turns), arcs, strict=True)):
         name = f"cable[{index}].points[{corner + 1}]"
         enters = corner == 0 and parts.outside(parts.robot.cables[index])
-        if turn > limits.turn + ANGLE and not enters:
-            yield f"{name}: turn too sharp ({turn:.4g} degrees). Maximum turn: {limits.turn:g} degrees. Move the point."
+        if turn > limits.max_turn + ANGLE and not enters:
+            most = f"{limits.max_turn:g} degrees"
+            yield f"{name}: turn too sharp ({turn:.4g} degrees). Maximum turn: {most}. Move the point."
         if limits.bend_radius * gentler[corner] > tangents[corner] + LENGTH:
             least = mm(limits.bend_radius)
             yield f"{name}: bend too sharp (radius {mm(arc)}). Minimum bend_radius: {least}. Move the point."
@@ -293,8 +296,8 @@ def _sharp_bends(parts: Parts, index: int) -> Iterator[str]:
 
 def _wrong_lengths(parts: Parts, index: int) -> Iterator[str]:
     cable, limits = parts.robot.cables[index], parts.constraints
-    if limits.longest is not None and cable.length > limits.longest + LENGTH:
-        yield f"cable[{index}]: too long ({mm(cable.length)}). Maximum (longest): {mm(limits.longest)}. Shorten it."
+    if limits.max_length is not None and cable.length > limits.max_length + LENGTH:
+        yield f"cable[{index}]: too long ({mm(cable.length)}). Maximum: {mm(limits.max_length)}. Shorten it."
     if cable.slack > limits.slack + LENGTH:
         yield f"cable[{index}]: slack too large ({mm(cable.slack)}). Maximum: {mm(limits.slack)}. Reduce it."
 

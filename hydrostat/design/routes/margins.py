@@ -74,7 +74,7 @@ class _MarginRows:
             self._within(spots, limits - depths, -ways)
         for zone in self.constraints.keep_out:
             self._outside(zone, spots)
-        for zone in self.constraints.still:
+        for zone in self.constraints.passive_zones:
             self._outside(zone, spots.select(np.flatnonzero(spots.bare)))
 
     def _within(self, spots: "_Spots", lefts: Vector, ways: Points) -> None:
@@ -104,8 +104,8 @@ class _MarginRows:
     def _between_parts(self) -> Margins:
         """Winches, holes and cables apart from each other; turns and lengths of cables."""
         layout, own = self.layout, self.constraints
-        longest = np.inf if own.longest is None else own.longest
-        turn = np.radians(own.turn - _DEGREE)
+        longest = np.inf if own.max_length is None else own.max_length
+        turn = np.radians(own.max_turn - _DEGREE)
         limits = [own.winch_gap, own.hole_gap, own.cable_gap, turn, own.bend_radius, longest, self.reach, _HAIR]
         room = _ROOM
         while True:

@@ -106,7 +106,7 @@ class Proposals:
         limits = PathLimits(
             max_edges=options.max_edges,
             turn=self._turn,
-            longest=constraints.longest,
+            longest=constraints.max_length,
             leads=constraints.leads,
             lead_penalty=options.lead_penalty,
         )
@@ -116,7 +116,7 @@ class Proposals:
     def _turn(self) -> float:
         """The sharpest turn that via points at their spacing may have [degrees]."""
         constraints = self.evaluator.constraints
-        turn = max(constraints.turn, RULES.coarse_turn)
+        turn = max(constraints.max_turn, RULES.coarse_turn)
         if constraints.bend_radius == 0.0:
             return turn
         return min(turn, float(np.degrees(2 * np.arctan(0.5 * self.spacing / constraints.bend_radius))))

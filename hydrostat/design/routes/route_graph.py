@@ -127,7 +127,7 @@ class RouteGraph:
             points=points,
             anchors=anchors,
             edges=edges,
-            still=_meets(points, edges, constraints.still),
+            still=_meets(points, edges, constraints.passive_zones),
             winch_places=places,
             size=mesh.size,
             region=region,

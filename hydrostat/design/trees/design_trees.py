@@ -106,7 +106,7 @@ class _TreeDesign:
         self.robot, self.request, self.progress, self.watch = robot, request, progress, watch
         self.options = request.tree_options
         # The thesis knows no distance between cables, and its routes turn as its options say.
-        self.constraints = replace(request.constraints, cable_gap=0.0, turn=self.options.turn)
+        self.constraints = replace(request.constraints, cable_gap=0.0, max_turn=self.options.turn)
         self.winches, self.cables = int(request.winches), request.cables
         self.body, self.mesh = body, robot.body.mesh
         self.region = Region.of_body(robot.body, self.constraints.clearance)

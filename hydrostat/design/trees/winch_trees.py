@@ -98,7 +98,7 @@ class WinchTrees:
         onward = np.array([[route[1] - route[0], route[-2] - route[-1]] for route in self.routes]).reshape(ends.shape)
         arriving = ends - self.ways.points[self.places][:, None]
         lengths = np.linalg.norm(arriving, axis=2) * np.linalg.norm(onward, axis=1)
-        back = (arriving * onward).sum(axis=2) < np.cos(np.radians(self.constraints.turn)) * lengths
+        back = (arriving * onward).sum(axis=2) < np.cos(np.radians(self.constraints.max_turn)) * lengths
         away += np.where(back, self.mesh.size, 0.0)
         pairs = away.reshape(len(self.places), len(self.routes), 2)
         return pairs.min(axis=2), pairs[:, :, 1] < pairs[:, :, 0]

@@ -32,7 +32,8 @@ def test_every_wish_is_a_constraint(starfish: Robot) -> None:
         kept_cables=("left 2",),
     )
     assert wishes.to_constraints(starfish) == Constraints(
-        keep_out=(DISC, TRIANGLE), still=(TRIANGLE,), winch_zones=(DISC,), mirror="x", tension=12.0, clearance=0.004,
+        keep_out=(DISC, TRIANGLE), passive_zones=(TRIANGLE,), winch_zones=(DISC,), mirror="x", tension=12.0,
+        clearance=0.004,
         cables_per_winch=3, slack=0.01, spool_ratio=2.0, torque=0.2, locked_winches=("left",),
         locked_cables=("left 2",),
     )  # fmt: skip

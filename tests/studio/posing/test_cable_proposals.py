@@ -143,7 +143,7 @@ def test_winch_trees_are_proposed_where_no_route_is_sketched(starfish: Robot, un
     assert "no sketched route" in found.words
     robot = starfish.with_network(found.winches, found.cables)
     assert limit_travels(robot).winches == found.winches
-    limits = Constraints(clearance=0.006, cable_gap=0.0, turn=TreeOptions.turn)
+    limits = Constraints(clearance=0.006, cable_gap=0.0, max_turn=TreeOptions.turn)
     assert violations(robot, limits, Region.of_body(robot.body, 0.006)) == []
     named = with_pose(robot, POSE, held)
     simulation = Simulation(named)
