@@ -15,12 +15,10 @@ def motor_facts(robot: Robot, calibration: Calibration | None) -> dict[str, Any]
     return {
         "robot": robot_word(robot, calibration),
         "speed": LinkLimits().speed,
-        "calibrated": calibration.is_complete,
         "motors": [
             {
                 "mark": marks[winch.name],
                 "number": motor.number,
-                "zero": motor.zero or 0.0,
                 "turns": motor.turns,
                 "radius": motor.radius,
                 "curve": [list(point) for point in motor.curve],

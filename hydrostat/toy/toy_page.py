@@ -60,8 +60,13 @@ def toy_page(
         motors: motors on one board with our firmware, which the page offers to drive.
 
     Raises:
-        InputError: a body with more points on its surface than a browser without extensions draws.
+        InputError: a body with more points on its surface than a browser without extensions draws, or a pose or
+            keyframe without one finite contraction for each winch.
     """
+    for pose in poses:
+        _check_taken(f'pose "{pose.name}"', pose.contractions, robot)
+    for time, taken in moves:
+        _check_taken(f"keyframe at {time:g} s", taken, robot, time)
     picture = ToyPicture.of(robot, shape)
     most = 65_536  # points of a surface by 16 bit numbers of WebGL 1
     if len(picture.faces) and int(picture.faces.max()) >= most:
@@ -93,7 +98,7 @@ def toy_page(
         "basis": _encode(picture.basis, "<f4"),
         "faces": _encode(picture.faces, "<u4"),
     }
-    text = json.dumps(facts, separators=(",", ":"), ensure_ascii=True).replace("<", "\\u003c")
+    text = json.dumps(facts, separators=(",", ":"), ensure_ascii=True, allow_nan=False).replace("<", "\\u003c")
     script = _script()
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     filled = {
@@ -106,6 +111,14 @@ def toy_page(
         "SCRIPT": script,
     }
     return re.sub(r"@([A-Z_]+)@", lambda found: filled[found[1]], _static("toy.html"))
+
+
+def _check_taken(name: str, contractions: Sequence[float] | Vector, robot: Robot, time: float = 0.0) -> None:
+    """Check contractions [m] and time [s] of a pose."""
+    numbers, wanted = np.asarray(contractions), (len(robot.winches),)
+    if numbers.shape != wanted or not (np.isfinite(numbers).all() and np.isfinite(time)):
+        told = ", ".join(f"{number:g}" for number in numbers.ravel().tolist())
+        raise InputError(f"{name}: contractions [{told}]. Give {wanted[0]} finite numbers, one for each winch.")
 
 
 def _view(robot: Robot) -> tuple[Vector, Vector]:

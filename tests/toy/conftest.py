@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 HOSTILE = '</script><script>window.hacked=1</script><img src=x onerror="window.hacked=1">@DATA@'
 """A name that would run if it were ever taken as markup."""
 
-Open = Callable[[str], "Page"]
+Open = Callable[..., "Page"]
 
 
 @pytest.fixture(scope="session")
@@ -56,13 +56,14 @@ def open_page(browser: "Browser", tmp_path_factory: pytest.TempPathFactory) -> I
     """Open a text as a page of a phone; what it complains about fails the test."""
     contexts, complaints = [], []
 
-    def open_text(text: str) -> "Page":
+    def open_text(text: str, script: str = "") -> "Page":
         file = tmp_path_factory.mktemp("toy") / "toy.html"
         file.write_text(text, encoding="utf-8")
         context = browser.new_context(viewport={"width": 390, "height": 844})
         contexts.append(context)
         page = context.new_page()
         page.on("pageerror", lambda error: complaints.append(str(error)))
+        page.add_init_script(script)
         page.goto(file.as_uri())
         return page
 

@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
+from hydrostat.errors import InputError
 from hydrostat.learning import Perceptrons
 from hydrostat.plot import Attachments, FlatSkin
-from hydrostat.robot import Robot
-from hydrostat.toy import LearnedShape
+from hydrostat.robot import Robot, gallery_folder, load_robot
+from hydrostat.toy import LearnedShape, ToyPose, toy_page
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-Open = Callable[[str], "Page"]
+Open = Callable[..., "Page"]
 ROWS = [[0.0, 0.0, 0.0], [0.03, -0.01, 0.06], [0.011, 0.027, 0.004]]
 """Contractions at which answers are compared [m]."""
 
@@ -57,6 +58,52 @@ def test_a_hostile_name_is_shown_and_not_run(page_text: str, starfish: Robot, op
     page.evaluate("document.body.insertAdjacentHTML('beforeend', '<img src=x onerror=\"window.hacked=1\">')")
     page.wait_for_timeout(100)
     assert page.evaluate("window.hacked") is None  # the policy of the page, were markup ever to come in
+
+
+def test_a_pose_without_finite_contractions_is_refused(starfish: Robot, shape: LearnedShape) -> None:
+    for wrong in ((0.0, 0.0), (0.0, 0.0, np.nan)):
+        with pytest.raises(InputError, match=r'pose "bent": contractions \[0, 0.*3 finite numbers'):
+            toy_page(starfish, shape, poses=[ToyPose(name="bent", contractions=wrong)])
+        with pytest.raises(InputError, match="keyframe at 2 s"):
+            toy_page(starfish, shape, moves=[(2.0, np.array(wrong))])
+
+
+def test_only_the_button_that_was_pressed_is_marked(starfish: Robot, shape: LearnedShape, open_page: Open) -> None:
+    poses = [ToyPose(name="Rest", contractions=(0.02, 0.01, 0.0))] * 2
+    page = open_page(toy_page(starfish, shape, poses=poses))
+    page.locator("#poses button").nth(1).click()
+    pressed = "[...document.querySelectorAll('#poses button')].map(each => each.getAttribute('aria-pressed'))"
+    assert page.evaluate(pressed) == ["false", "true", "false", "false"]
+
+
+def test_a_body_in_space_is_dots_where_webgl_is_missing(open_page: Open) -> None:
+    robot = load_robot(gallery_folder("trunk"))
+    nodes = robot.body.mesh.nodes
+    still = LearnedShape(
+        low=np.array([-each.release for each in robot.winches]),
+        high=np.array([each.travel for each in robot.winches]),
+        network=Perceptrons.of_layers([(np.zeros((1, len(robot.winches))), np.zeros(1))]),
+        mean=nodes,
+        basis=np.zeros((1, *nodes.shape)),
+        samples=1,
+        held_out=1,
+        error=0.0,
+        worst=0.0,
+        moved=0.0,
+        stopped=False,
+    )
+    off = "HTMLCanvasElement.prototype.getContext = (get => function (kind, ...more) {"
+    off += " return kind === 'webgl' ? null : get.call(this, kind, ...more); })(HTMLCanvasElement.prototype.getContext)"
+    page = open_page(toy_page(robot, still), off)
+    page.wait_for_timeout(200)
+    felt = """() => {
+      const paper = document.getElementById("above");
+      const bytes = paper.getContext("2d").getImageData(0, 0, paper.width, paper.height).data;
+      let count = 0;
+      for (let i = 0; i < bytes.length; i += 4) count += bytes[i] === 0xf0 && bytes[i + 2] === 0x9c;
+      return count;
+    }"""
+    assert page.evaluate(felt) > 500  # pixels in the color of felt
 
 
 def test_the_page_answers_as_python_does(page_text: str, starfish: Robot, shape: LearnedShape, open_page: Open) -> None:

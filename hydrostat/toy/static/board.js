@@ -12,26 +12,34 @@ export function lineOf(text) {
   return `${text}*${check.toString(16).toUpperCase().padStart(4, "0")}\n`;
 }
 
-/** Angle of a motor from its zero [rad] at which so much cable is taken in [m]; `curve` as in motors.toml. */
-export function turned(motor, contraction) {
+const RANGE_TOLERANCE = 5e-4; // motors may stand so far beyond the limits of their winch [m], as in bus_link.py
+const TAUT = "Turn all spools until each cable is just taut. Then set zero.";
+
+/** Straight pieces of a curve, as in motors.toml: start [rad], cable taken in there [m], radius [m]. */
+function piecesOf(motor) {
   const points = [[0, 0], ...motor.curve];
-  let piece = [0, 0, motor.radius];
-  for (let i = 1; i < points.length; i++) {
-    const [angle, taken] = points[i - 1], radius = (points[i][1] - taken) / (points[i][0] - angle);
-    if (contraction > taken) piece = [angle, taken, radius];
-  }
-  return motor.turns * (piece[0] + (contraction - piece[1]) / piece[2]);
+  const rising = motor.curve.map(([angle, taken], i) => [...points[i], (taken - points[i][1]) / (angle - points[i][0])]);
+  return [[0, 0, motor.radius], ...rising];
+}
+
+/** Angle of a motor from its zero [rad] at which so much cable is taken in [m]. */
+function turned(motor, contraction) {
+  const pieces = piecesOf(motor), [start, before, radius] = pieces.findLast(([, each]) => contraction > each) ?? pieces[0];
+  return motor.turns * (start + (contraction - before) / radius);
 }
 
 /** Cable taken in [m] at an angle from the zero [rad]: the inverse of `turned`. */
-export function taken(motor, angle) {
-  const points = [[0, 0], ...motor.curve], way = motor.turns * angle;
-  let piece = [0, 0, motor.radius];
-  for (let i = 1; i < points.length; i++) {
-    const [start, before] = points[i - 1], radius = (points[i][1] - before) / (points[i][0] - start);
-    if (way > start) piece = [start, before, radius];
-  }
-  return piece[1] + piece[2] * (way - piece[0]);
+function taken(motor, angle) {
+  const way = motor.turns * angle, pieces = piecesOf(motor);
+  const [start, before, radius] = pieces.findLast(([each]) => way > each) ?? pieces[0];
+  return before + radius * (way - start);
+}
+
+/** Largest radius on the way between two contractions [m]. */
+function widest(motor, one, two) {
+  const [low, high] = [Math.min(one, two), Math.max(one, two)], pieces = piecesOf(motor);
+  const passed = pieces.filter(([, start], i) => (i === 0 || start <= high) && (pieces[i + 1]?.[1] ?? Infinity) >= low);
+  return Math.max(...passed.map(([, , radius]) => radius));
 }
 
 export class Board {
@@ -47,8 +55,11 @@ export class Board {
     this.heard = "";
     this.waiting = new Map();
     this.timer = 0;
+    this.stops = 0; // how often it was told to stop or to arm
+    this.live = false; // whether the board may have been armed since its zero was set
+    this.places = facts.motors.map(() => 0); // cable taken in at the last reading [m]
     this.order = facts.motors.map((_, i) => i).sort((a, b) => facts.motors[a].number - facts.motors[b].number);
-    this.zeros = facts.motors.map((motor) => motor.zero * (motor.counts / (2 * Math.PI)));
+    this.zeros = facts.motors.map(() => 0);
   }
 
   /** Open a port and ask who is there; a board that was made for another robot is refused. */
@@ -61,10 +72,7 @@ export class Board {
     try {
       await this.identify();
     } catch (error) {
-      await this.reader.cancel().catch(() => {});
-      this.reader.releaseLock();
-      this.writer.releaseLock();
-      await port.close().catch(() => {});
+      await this.release();
       throw error;
     }
   }
@@ -75,28 +83,62 @@ export class Board {
     if (answer[0] !== "ok" || answer[1] !== "hydrostat" || answer.length < 7) throw new Error("This port has no hydrostat firmware.");
     if (answer[4] !== this.facts.robot) throw new Error(`The board was built for ${answer[4]}, not for this robot. Flash it again.`);
     if (Number(answer[5]) !== this.facts.motors.length) throw new Error(`The board has ${answer[5]} motors. Flash it again.`);
-    const marked = answer[answer.length - 1] === "marked" && this.facts.calibrated;
     await this.must("O");
-    this.change(marked ? "ready" : "new", marked ? "Connected. Hold to arm." : "Turn all spools until each cable is just taut. Then set zero.");
+    this.live = false;
+    this.change("new", `Connected. ${TAUT}`);
   }
 
-  /** Take where the motors stand as the robot at rest. */
+  /** Take where the motors stand as the robot at rest; only this page knows it, so the board is not marked. */
   async setZero() {
-    const { counts } = this.parse(await this.surely("R"));
-    await this.must("M");
-    this.zeros = counts;
+    this.zeros = this.parse(await this.surely("R")).counts;
     this.change("ready", "Zero is set. Hold to arm.");
   }
 
   /** Switch torque on where the motors stand; contractions are asked for by `goal` from then on. */
   async arm(goal) {
     if (this.state !== "ready") return;
+    const stops = ++this.stops;
     const bounds = this.order.map((i) => Math.max(1, Math.round(1000 * this.facts.motors[i].current)));
-    await this.must(`A ${bounds.join(" ")}`);
+    const beforeStop = (answer) => {
+      if (stops === this.stops && answer !== null) return answer;
+      this.stop();
+      throw new Error(answer === null ? "The board did not answer. Hold again to arm." : "Stopped. Hold to arm.");
+    };
+    // A reset board counts from 0 wherever it stands. It takes a line with an old number, and one that was armed is off.
+    if (!beforeStop(await this.ask("R", this.number)).startsWith("no old")) return this.forget();
+    const stands = this.parse(beforeStop(await this.ask("R")));
+    if (this.live && stands.state === "off") return this.forget();
+    this.requireWithin(stands);
+    this.live = true;
+    const answer = beforeStop(await this.ask(`A ${bounds.join(" ")}`)); // not sent again: a reset may be why it is silent
+    if (answer !== "ok") throw new Error(`The board refused: ${answer}.`);
+    const reading = this.parse(beforeStop(await this.surely("R")));
     this.goal = goal;
-    this.read(await this.surely("R"), true);
     this.change("armed", "Armed. The robot follows the page.");
-    this.timer = setTimeout(() => this.follow(), TURN);
+    if (this.read(reading)) this.timer = setTimeout(() => this.follow(), TURN);
+  }
+
+  /** Refuse to arm motors that stand beyond the limits of their winches. */
+  requireWithin({ counts }) {
+    this.placesAt(counts).forEach((place, i) => {
+      const { mark, low, high } = this.facts.motors[i];
+      if (place >= low - RANGE_TOLERANCE && place <= high + RANGE_TOLERANCE) return;
+      const [at, from, to] = [place, low, high].map((value) => (1000 * value).toFixed(1));
+      const words = `${mark} stands at ${at} mm. Its limits are ${from} and ${to} mm. ${TAUT}`;
+      this.change("new", words);
+      throw new Error(words);
+    });
+  }
+
+  placesAt(counts) {
+    return counts.map((count, i) => taken(this.facts.motors[i], (count - this.zeros[i]) * ((2 * Math.PI) / this.facts.motors[i].counts)));
+  }
+
+  /** Ask for the zero again, as the board was reset. */
+  forget() {
+    this.stop();
+    this.live = false;
+    this.change("new", `The board was reset. ${TAUT}`);
   }
 
   /** Send goals and read, again and again; whatever goes wrong stops the motors. */
@@ -107,28 +149,32 @@ export class Board {
         const motor = this.facts.motors[i], scale = motor.counts / (2 * Math.PI);
         const wanted = Math.min(motor.high, Math.max(motor.low, this.goal()[i]));
         if (!Number.isFinite(wanted)) throw new Error("The goal is no number.");
-        const rate = (this.facts.speed / motor.radius) * scale;
-        return `${Math.round(this.zeros[i] + scale * turned(motor, wanted))} ${Math.max(1, Math.round(rate))}`;
+        const rate = (this.facts.speed / widest(motor, this.places[i], wanted)) * scale;
+        return `${Math.round(this.zeros[i] + scale * turned(motor, wanted))} ${Math.max(1, Math.floor(rate))}`;
       });
       const [went, answer] = await Promise.all([this.ask(`G ${pairs.join(" ")}`), this.ask("R")]);
       if (this.state !== "armed") return;
-      if (went !== "ok") throw new Error(went === null ? "The board does not answer." : `The board refused: ${went}.`);
-      this.read(answer, false);
+      if (!this.read(this.parse(answer))) return;
+      if (went !== "ok") throw new Error(`The board refused: ${went ?? "no answer"}.`);
       this.timer = setTimeout(() => this.follow(), TURN);
     } catch (error) {
       this.stop(error instanceof Error ? error.message : String(error));
     }
   }
 
-  read(answer, first) {
-    const { state, counts, amperes } = this.parse(answer);
-    if (!first && state !== "armed") throw new Error(`The board stopped: ${state}.`);
-    const places = counts.map((count, i) => taken(this.facts.motors[i], (count - this.zeros[i]) * ((2 * Math.PI) / this.facts.motors[i].counts)));
-    this.report(this.state, "", { taken: places, amperes });
+  /** Take a reading of armed motors; false if the board was reset. */
+  read({ state, counts, amperes }) {
+    if (state === "off") this.forget();
+    else if (state !== "armed") throw new Error(`The board stopped: ${state}.`);
+    if (this.state !== "armed") return false;
+    this.places = this.placesAt(counts);
+    this.report(this.state, "", { taken: this.places, amperes });
+    return true;
   }
 
   parse(answer) {
-    const words = (answer ?? "").split(" "), numbers = words.slice(3).map(Number), count = this.order.length;
+    if (answer === null) throw new Error("The board does not answer. Check its power and cable.");
+    const words = answer.split(" "), numbers = words.slice(3).map(Number), count = this.order.length;
     if (words[0] !== "ok" || numbers.length !== 2 * count || !numbers.every(Number.isFinite)) throw new Error("The board sent an unreadable answer.");
     const counts = new Array(count), amperes = new Array(count);
     this.order.forEach((i, slot) => { [counts[i], amperes[i]] = [numbers[2 * slot], numbers[2 * slot + 1] / 1000]; });
@@ -138,8 +184,9 @@ export class Board {
   /** Stop the motors where they are. Without any word from here the board stops itself 200 ms after the last one. */
   stop(words = "Stopped. Hold to arm.") {
     clearTimeout(this.timer);
+    this.stops++;
     if (this.state === "closed") return;
-    for (let i = 0; i < 3; i++) this.send("S");
+    for (let i = 0; this.live && i < 3; i++) this.send("S"); // a line that a reset board takes would hide the reset
     if (this.state === "armed") this.change("ready", words);
   }
 
@@ -156,15 +203,15 @@ export class Board {
     throw new Error("The board does not answer. Check its power and cable.");
   }
 
-  send(words) {
-    this.number = (this.number + 1) % 256;
-    this.writer.write(new TextEncoder().encode(lineOf(`${this.number} ${words}`))).catch(() => this.lose());
-    return this.number;
+  send(words, number = (this.number + 1) % 256) {
+    this.number = number;
+    this.writer.write(new TextEncoder().encode(lineOf(`${number} ${words}`))).catch(() => this.lose());
+    return number;
   }
 
-  /** The answer to a line, null after the time. */
-  ask(words) {
-    const number = this.send(words);
+  /** The answer to a line, null after the time; its number is the next one if none is given. */
+  ask(words, given) {
+    const number = this.send(words, given);
     return new Promise((resolve) => {
       const late = setTimeout(() => { this.waiting.delete(number); resolve(null); }, SILENT);
       this.waiting.set(number, (text) => { clearTimeout(late); this.waiting.delete(number); resolve(text); });
@@ -193,6 +240,15 @@ export class Board {
     if (this.state === "closed") return;
     clearTimeout(this.timer);
     this.change("closed", "The cable is unplugged. The board stops by itself.");
+    this.release();
+  }
+
+  /** Give the port back, so that it can be opened again. */
+  async release() {
+    await this.reader.cancel().catch(() => {});
+    this.reader.releaseLock();
+    this.writer.releaseLock();
+    await this.port.close().catch(() => {});
   }
 
   change(state, words) {

@@ -7,7 +7,7 @@ const FELT = "#f0c29c", FELT_LIGHT = "#f8d9bd", SEAM = "#b9774b", STITCH = "#fff
  * @param {any} sight
  * @param {any} data
  * @param {Float64Array} points
- * @param {{held: number, goal: number[] | null, ink: string}} state
+ * @param {{held: number, goal: number[] | null, ink: string, dots: boolean}} state dots: draw a surface as dots
  */
 export function draw(paper, sight, data, points, state) {
   paper.clearRect(0, 0, sight.width, sight.height);
@@ -15,6 +15,7 @@ export function draw(paper, sight, data, points, state) {
   if (data.dim === 2) drawFelt(paper, sight, data, points, unit);
   let cable = 0;
   for (const [kind, first, count] of data.groups) {
+    if (kind === "surface" && state.dots) drawDots(paper, sight, points, first, count, unit);
     if (kind === "drawn") line(paper, sight, data, points, first, count, DARK, 2 * unit);
     if (kind === "cable") {
       const color = data.winches[data.cables[cable++]].color;
@@ -48,6 +49,16 @@ function drawFelt(paper, sight, data, points, unit) {
   paper.setLineDash([5 * unit, 4 * unit]);
   paper.stroke();
   paper.setLineDash([]);
+}
+
+/** Points of a surface, the far ones first. */
+function drawDots(paper, sight, points, first, count, unit) {
+  const seen = Array.from({ length: count }, (_, i) => sight.see(points, 3 * (first + i))).sort((one, two) => one[2] - two[2]);
+  const side = 3.2 * unit, [far, near] = [seen[0][2], seen[count - 1][2]];
+  for (const [x, y, depth] of seen) {
+    paper.fillStyle = depth - far > 0.5 * (near - far) ? FELT : SEAM;
+    paper.fillRect(x - side / 2, y - side / 2, side, side);
+  }
 }
 
 function trace(paper, sight, data, points, first, count, closed) {

@@ -18,7 +18,7 @@ const [below, above] = ["below", "above"].map((id) => /** @type {HTMLCanvasEleme
 const surface = body ? new Surface(below, Uint32Array.from(decode(data.faces, Uint32Array)), body[1], body[2]) : null;
 const paper = above.getContext("2d");
 const held = new Map(); // pointers that hold a point or turn the view
-const state = { held: -1, goal: null, ink: "#000" };
+const state = { held: -1, goal: null, ink: "#000", dots: Boolean(surface && !surface.gl) };
 let kept = []; // markers that better stay while another point is dragged
 let asked = false;
 
@@ -32,7 +32,7 @@ function step(now) {
   asked = false;
   if (player.plays) {
     move(model.scaled(player.at(now / 1000)));
-    if (!player.plays) mark("");
+    if (!player.plays) mark(null);
   } else if (state.goal) {
     inputs = reach(model, inputs, state.held, state.goal, { size: data.size, kept });
     settle();
@@ -58,11 +58,9 @@ function settle() {
   });
 }
 
-/** Name of the pose that is played, to its button. */
-function mark(name) {
-  for (const button of document.querySelectorAll("#poses button")) {
-    button.setAttribute("aria-pressed", String(button.textContent === name && name !== ""));
-  }
+/** Show which button's pose is played; null for none. */
+function mark(played) {
+  for (const button of document.querySelectorAll("#poses button")) button.setAttribute("aria-pressed", String(button === played));
 }
 
 function resize() {
@@ -110,7 +108,7 @@ function press(event) {
   above.setPointerCapture(event.pointerId);
   held.set(event.pointerId, { x, y, point });
   player.stop();
-  mark("");
+  mark(null);
   if (point >= 0) {
     state.held = point;
     state.goal = placeOf(point);
@@ -156,9 +154,9 @@ function turnWheel(event) {
 function playFrom(button, start) {
   const on = button.getAttribute("aria-pressed") === "true";
   player.stop();
-  mark("");
+  mark(null);
   if (!on) {
-    mark(button.textContent);
+    mark(button);
     start(model.contractions(inputs), performance.now() / 1000);
   }
   document.body.classList.add("touched");
@@ -184,7 +182,7 @@ const knobs = data.winches.map((winch, i) => {
   slider.disabled = !(winch.high > winch.low);
   slider.addEventListener("input", () => {
     player.stop();
-    mark("");
+    mark(null);
     const taken = model.contractions(inputs);
     taken[i] = Number(slider.value) / 1000;
     move(model.scaled(taken));
