@@ -164,9 +164,11 @@ def test_every_constraint_is_kept(name: str, unchecked: None) -> None:
 
 
 def test_every_constraint_has_a_case() -> None:
-    """But a depth under the skin, which designs of bodies in space keep: `test_skin_region`."""
+    """But a depth under the skin, which designs of bodies in space keep (`test_skin_region`), and a motor
+    (`test_winch_room`).
+    """
     asked = {key for _, limits in LIMITS.values() for key in limits}
-    assert asked == set(Constraints.__dataclass_fields__) - {"spool_radius", "depth"}
+    assert asked == set(Constraints.__dataclass_fields__) - {"spool_radius", "depth", "motor"}
 
 
 @pytest.mark.parametrize("name", ["usual", "tension", "mirror, two winches"])
@@ -241,7 +243,9 @@ def test_winches_move_apart_for_motors_that_hold_for_long(monkeypatch: pytest.Mo
     usual = designed("usual")
     enough, torque = 1.05 * far(usual.robot), usual.constraints.torque
     monkeypatch.setattr(
-        final_judgement, "find_holding_torque", lambda robot, _: None if far(robot) >= enough else 0.5 * (torque or 1.0)
+        final_judgement,
+        "find_holding_torque",
+        lambda robot, *_, **__: None if far(robot) >= enough else 0.5 * (torque or 1.0),
     )
     held = designed.__wrapped__("usual")
     assert far(held.robot) >= enough

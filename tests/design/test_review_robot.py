@@ -118,7 +118,7 @@ def test_a_network_that_can_be_built_comes_before_a_better_one_that_cannot(
     best = robot_hash(free.robot)
     monkeypatch.setattr(
         "hydrostat.design.routes.finalists.find_refusals",
-        lambda made, demand: ("no room",) if robot_hash(made) == best else (),
+        lambda made, demand, **_: ("no room",) if robot_hash(made) == best else (),
     )
     bound = designed.__wrapped__("letter_s", 1, 2)
     assert robot_hash(bound.robot) == robot_hash(min(free.alternatives, key=lambda other: other.expected_error).robot)
