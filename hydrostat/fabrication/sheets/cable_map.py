@@ -303,7 +303,9 @@ class _Scene:
 def single_maps(
     robot: Robot, stitches: Sequence[CableStitches], *, width: float, height: float, view: Camera | None = None
 ) -> list[Canvas]:
-    """Return pages of at most twelve small maps; none for fewer than three cables.
+    """Return pages of maps with one cable each, as large as fit on one page; none for fewer than three cables.
+
+    Pages have up to three columns and four rows.
 
     Args:
         robot: robot with the cables.
@@ -316,12 +318,13 @@ def single_maps(
     if len(robot.cables) < fewest:
         return []
     scene = _flat_scene(robot, stitches) if view is None else _space_scene(robot, view)
-    columns, rows = 3, 4  # maps on a page
-    room = width / columns
-    tall = min(
-        height / rows, _CELL_HEAD + 2 * _CELL_MARGIN + Canvas.fit_height(scene.box, room - 2 * _CELL_MARGIN, 1e3)
-    )
     count = len(scene.runs(CanvasFrame.fit(scene.box, (0.0, 0.0, 1.0, 1.0))))
+    for columns in (1, 2, 3):
+        room, rows = width / columns, 4 if columns == 3 else -(-count // columns)
+        tall = _CELL_HEAD + 2 * _CELL_MARGIN + Canvas.fit_height(scene.box, room - 2 * _CELL_MARGIN, 1e3)
+        if rows * tall <= height:
+            break
+    tall = min(tall, height / rows)
     each = columns * max(int(height / tall), 1)
     pages = []
     for start in range(0, count, each):
