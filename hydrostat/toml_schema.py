@@ -1,8 +1,9 @@
 """Quantities, names and coordinates in tables of TOML files, as types of pydantic that check them."""
 
+import re
 from collections.abc import Callable
 from decimal import Decimal
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, Strict
 
@@ -11,6 +12,7 @@ from hydrostat.errors import InputError
 from hydrostat.given import check_name
 from hydrostat.units import quote
 
+SLOW = "2 Hz"  # frequency of viscosity = "material"
 LARGEST = 10**12  # no number of robot.toml is larger, whether bare or in SI
 
 
@@ -63,6 +65,23 @@ Text = Annotated[str, Field(min_length=1, max_length=200)]
 Name = Annotated[str, BeforeValidator(_name)]
 Components = Annotated[list[Acceleration], Field(min_length=2, max_length=3)]
 Pair = Annotated[list[Annotated[int, Strict()]], Field(min_length=2, max_length=2)]
+
+
+class LossFrequency(NamedTuple):
+    """Frequency at which a named material has its loss factor [Hz]."""
+
+    frequency: float
+
+
+def _named_viscosity(value: object) -> float | LossFrequency:
+    """Viscosity, or "material", or "material at 7 Hz"."""
+    material = re.fullmatch(r"material(?: at (.*))?", value) if isinstance(value, str) else None
+    if material is None:
+        return _quantity(units.VISCOSITY)(value)
+    return LossFrequency(_quantity(units.FREQUENCY)(material[1] or SLOW))
+
+
+NamedViscosity = Annotated[float | LossFrequency, BeforeValidator(_named_viscosity)]
 
 
 class TomlTable(BaseModel):

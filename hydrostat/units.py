@@ -38,6 +38,7 @@ PRESSURE = Dimension("a pressure", "Pa", "kPa", "30 kPa")
 DENSITY = Dimension("a density", "kg/m^3", "kg/m^3", "40 kg/m^3")
 STIFFNESS = Dimension("a stiffness", "N/m", "N/mm", "4 N/mm")
 ACCELERATION = Dimension("an acceleration", "m/s^2", "m/s^2", "9.81 m/s^2")
+FREQUENCY = Dimension("a frequency", "Hz", "Hz", "2 Hz")
 VISCOSITY = Dimension("a viscosity", "Pa*s", "Pa s", "40 Pa s")
 MASS = Dimension("a mass", "kg", "g", "58 g")
 TIME = Dimension("a time", "s", "s", "2 s")
@@ -55,6 +56,7 @@ COMMON = {
         DENSITY: {"kg/m^3": "1"},
         STIFFNESS: {"N/m": "1", "N/mm": "1000"},
         ACCELERATION: {"m/s^2": "1", "mm/s^2": "0.001"},
+        FREQUENCY: {"Hz": "1"},
         VISCOSITY: {"Pa s": "1"},
         MASS: {"kg": "1", "g": "0.001"},
         TIME: {"s": "1", "ms": "0.001"},

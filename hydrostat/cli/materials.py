@@ -24,11 +24,11 @@ def materials(
             _print_foam(FOAMS[found.name])
         return
     width = max(map(len, MATERIALS))
-    print(f"{'':<{width}}  {'kg/m^3':>7}  {'Young':>9}  {'Poisson':>7}  range")
+    print(f"{'':<{width}}  {'kg/m^3':>7}  {'Young':>9}  {'Poisson':>7}  {'loss':>4}  range")
     for material in MATERIALS.values():
         print(
             f"{material.name:<{width}}  {material.density:>7.0f}  {material.young_text:>9}  {material.poisson:>7.2f}"
-            f"  {material.range_text}"
+            f"  {material.loss_factor:>4g}  {material.range_text}"
         )
     print('Source of each material: hydrostat materials NAME, e.g. hydrostat materials "ecoflex 00-30"')
 
@@ -39,7 +39,8 @@ def _print_one(material: "Material") -> None:
     print(f"  Young's modulus  {material.young_text}")
     print(f"  Poisson's ratio  {material.poisson:.2f}")
     print(f"  range            {material.range_text}")
-    _print_texts(("source", material.source), ("note", material.note))
+    print(f"  loss factor      {material.loss_factor:g}")
+    _print_texts(("source", material.source), ("loss source", material.loss_source), ("note", material.note))
 
 
 def _print_foam(material: "Material") -> None:

@@ -90,8 +90,10 @@ class Material:
         largest_stretch: maximum stretch (length / rest length) for which the values are valid; None: unknown.
         largest_squeeze: maximum compression, as a share of the length, for which the values are valid, for a foam until
             its walls touch; None: unknown.
+        loss_factor: tangent of the angle between stress and strain in a slow vibration; None: unknown.
         name: name in the material table; empty for a material given by its values.
         source: source of the values.
+        loss_source: source of the loss factor.
         note: limits of the values, and sources that disagree.
 
     Raises:
@@ -107,8 +109,10 @@ class Material:
     foam: tuple[FoamTerm, ...] = ()
     largest_stretch: float | None = None
     largest_squeeze: float | None = None
+    loss_factor: float | None = None
     name: str = ""
     source: str = ""
+    loss_source: str = ""
     note: str = ""
 
     def __post_init__(self) -> None:
@@ -120,6 +124,8 @@ class Material:
             )
         check_positive("density", self.density, "kg/m^3")
         check_not_negative("viscosity", self.viscosity, "Pa s")
+        if self.loss_factor is not None:
+            check_not_negative("loss_factor", self.loss_factor, "")
         if len(self.relaxation) > MOST_BRANCHES:
             raise InputError(f"relaxation must have at most {MOST_BRANCHES} branches, not {len(self.relaxation)}")
         if len(self.hysteresis) > MOST_BRANCHES:
@@ -148,6 +154,18 @@ class Material:
     def elastic(self) -> Self:
         """Return the same material without viscosity, relaxation and hysteresis: its long-term behavior."""
         return replace(self, viscosity=0.0, relaxation=(), hysteresis=())
+
+    def with_damping(self, frequency: float) -> Self:
+        """Return the material with the viscosity that has its loss factor in shear at a frequency [Hz].
+
+        A mode of that frequency then has about half the loss factor as damping ratio; others in proportion to theirs.
+
+        Raises InputError: no loss factor, or a frequency that is not above 0.
+        """
+        check_positive("frequency", frequency, "Hz")
+        if self.loss_factor is None:
+            raise InputError("the material has no loss factor. Use a material of the table, or write a viscosity.")
+        return replace(self, viscosity=self.loss_factor * self.lame[0] / (2 * math.pi * frequency))
 
     @property
     def lame(self) -> tuple[float, float]:

@@ -14,6 +14,7 @@ from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
 from hydrostat.given import check_type
 from hydrostat.robot.element_kind import MaterialLaw
+from hydrostat.robot.losses import LOSSES
 from hydrostat.robot.material import FoamTerm, Material
 from hydrostat.units import quote
 
@@ -232,7 +233,12 @@ _TABLE = (
     _lattice(_TPU, 0.2),
 )
 
-MATERIALS = MappingProxyType({material.name: material for material in _TABLE})  # materials by name
+MATERIALS = MappingProxyType(
+    {
+        material.name: replace(material, loss_factor=LOSSES[material.name][0], loss_source=LOSSES[material.name][1])
+        for material in _TABLE
+    }
+)  # materials by name
 
 _CUSHION = (FoamTerm(share=0.995, exponent=8.0), FoamTerm(share=0.005, exponent=-4.0))
 

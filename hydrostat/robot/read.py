@@ -294,6 +294,8 @@ def read_material(entry: Any) -> Material:
     terms = _foam_terms(entry)
     if hasattr(entry, "name"):
         known = get_material(entry.name, None if terms else entry.law)
+        if isinstance(entry.viscosity, tuple):  # LossFrequency
+            viscous["viscosity"] = known.with_damping(entry.viscosity[0]).viscosity
         return replace(known, **viscous, **({"foam": terms} if terms else {}))
     if entry.law is MaterialLaw.FOAM and not terms:
         raise InputError("terms are missing; a foam law needs them: terms = [{ share = 1, exponent = 8 }]")

@@ -29,6 +29,7 @@ from hydrostat.toml_schema import (
     Length,
     Mass,
     Name,
+    NamedViscosity,
     Number,
     Pair,
     Pressure,
@@ -96,7 +97,7 @@ class NamedMaterialTable(TomlTable):
     name: Text
     law: MaterialLaw | None = None
     terms: Terms | None = None
-    viscosity: Viscosity | None = None
+    viscosity: NamedViscosity | None = None
     relaxation: Branches | None = None
     hysteresis: Sliders | None = None
 

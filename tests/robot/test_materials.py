@@ -1,5 +1,6 @@
 """The table of materials. Oracles: physical bounds, stresses of data sheets, the page in docs/, the files of robots."""
 
+import math
 import sys
 from dataclasses import replace
 from importlib.util import module_from_spec, spec_from_file_location
@@ -39,6 +40,9 @@ def test_bounds(material: Material) -> None:
     assert 0 < material.largest_squeeze < 0.9
     assert len(material.source) > 30
     assert len(material.note) > 30
+    assert material.loss_factor is not None
+    assert 0.01 < material.loss_factor < 1
+    assert len(material.loss_source) > 20
     assert material.name == material.name.lower()
     assert not material.source.endswith(".")  # the page adds it
 
@@ -207,3 +211,22 @@ def test_foam_laws_that_are_wrong(material: str, told: str, tmp_path: Path) -> N
         load(tmp_path, edit(GOOD, '"polyester fibre"', material))
     assert "\n" not in str(caught.value)
     assert "body.material" in str(caught.value)
+
+
+def test_damping_of_the_table_is_read(tmp_path: Path) -> None:
+    """Oracle: in shear the loss modulus, viscosity x 2 pi f, is the loss factor times the shear modulus."""
+    for text, frequency in (("material", 2), ("material at 7 Hz", 7)):
+        robot = load(tmp_path, edit(GOOD, '"polyester fibre"', f'{{ name = "polyester fibre", viscosity = "{text}" }}'))
+        assert robot.body.material.viscosity * 2 * math.pi * frequency == pytest.approx(0.5 * 30e3 / 2.6)
+    assert 'viscosity = "131.' in robot_text(robot)
+    for text, told in (
+        ("material at 7 s", '"s" does not measure a frequency'),
+        ("material at -1 Hz", "frequency must be"),
+    ):
+        with pytest.raises(InputError, match=f"material.*{told}"):
+            load(tmp_path, edit(GOOD, '"polyester fibre"', f'{{ name = "polyester fibre", viscosity = "{text}" }}'))
+    numbers = '{ young = "30 kPa", poisson = 0.3, density = "40 kg/m^3", viscosity = "material" }'
+    with pytest.raises(InputError, match=r'body.material.viscosity: "material" is not a viscosity; write for example'):
+        load(tmp_path, edit(GOOD, '"polyester fibre"', numbers))
+    with pytest.raises(InputError, match="the material has no loss factor"):
+        Material(young=1e4, poisson=0.3, density=40.0).with_damping(2.0)
