@@ -53,13 +53,12 @@ Stress in kPa at a squeeze, sides free, by the foam law and Neo-Hookean with the
 DAMPING = """\
 ## Damping
 
-A motion in time is undamped unless you write a [viscosity](robot_toml.md#viscous-materials). `viscosity = "material
-at 7 Hz"` takes the one that has the loss factor of the table at 7 Hz: loss factor x shear modulus / (2 pi f).
-`"material"` alone means 2 Hz; in Python `material.with_damping(7.0)`. Take the frequency at which the robot swings,
-the first of `find_modes(simulation)`: 7.2 Hz for the starfish. That mode then has half the loss factor as damping
-ratio at Poisson's ratio 0, and 17 % less in a flat body at 0.3. Of other modes it is in proportion to their
-frequency, as that of a viscosity is, where real loss factors change less. Air in cells, seams and cables add damping
-that is not in the table.
+A motion in time is undamped unless you write a [viscosity](robot_toml.md#viscous-materials). Write
+`viscosity = "material at 7 Hz"` for the one that has the loss factor of the table at 7 Hz: loss factor x shear modulus
+/ (2 pi f). `"material"` alone means 2 Hz; in Python it is `material.with_damping(7.0)`. Take the frequency at which the
+robot swings, the first of `find_modes(simulation)`: 7.2 Hz for the starfish. That mode then has half the loss factor as
+damping ratio at Poisson's ratio 0, and 17 % less in a flat body at 0.3. Damping ratios of other modes are in proportion
+to their frequencies; real loss factors change less. Air in cells, seams and cables add damping that is not in the table.
 
 {table}
 
@@ -118,11 +117,10 @@ def page() -> str:
 
 def damping_chapter() -> str:
     """Chapter on loss factors."""
-    rows = [
-        f"| {material.name} | {material.loss_factor:g} | {float(f'{material.with_damping(2.0).viscosity:.2g}'):.0f} Pa s "
-        f"| {material.loss_source} |"
-        for material in MATERIALS.values()
-    ]
+    rows = []
+    for material in MATERIALS.values():
+        viscosity = float(f"{material.with_damping(2.0).viscosity:.2g}")
+        rows.append(f"| {material.name} | {material.loss_factor:g} | {viscosity:.0f} Pa s | {material.loss_source} |")
     head = ["| name | loss factor | viscosity at 2 Hz | source of the loss factor |", "|---|---|---|---|"]
     return DAMPING.format(table="\n".join([*head, *rows]))
 
