@@ -58,7 +58,8 @@ A motion in time is undamped unless you write a [viscosity](robot_toml.md#viscou
 / (2 pi f). `"material"` alone means 2 Hz; in Python it is `material.with_damping(7.0)`. Take the frequency at which the
 robot swings, the first of `find_modes(simulation)`: 7.2 Hz for the starfish. That mode then has half the loss factor as
 damping ratio at Poisson's ratio 0, and 17 % less in a flat body at 0.3. Damping ratios of other modes are in proportion
-to their frequencies; real loss factors change less. Air in cells, seams and cables add damping that is not in the table.
+to their frequencies; real loss factors change less. Air in cells, seams and cables add damping that is not in the
+table.
 
 {table}
 
