@@ -105,6 +105,11 @@ def check_unique(kind: str, names: list[str]) -> None:
             raise InputError(f'{kind}[{index}].name: there are two of the name "{name}"; names must be unique')
 
 
-def list_choices(kind: str, names: list[str]) -> str:
-    """Names that are available, in words; `kind` is their plural."""
-    return f"Available: {', '.join(names)}." if names else f"The robot has no {kind}."
+def list_choices(kind: str, names: list[str], given: str = "") -> str:
+    """Names that are available, in words, then the one that is most like `given`; `kind` is their plural."""
+    from difflib import get_close_matches
+
+    if not names:
+        return f"The robot has no {kind}."
+    near = get_close_matches(given[:60], names, n=1)
+    return f"Available: {', '.join(names)}." + (f" Did you mean {units.quote(near[0])}?" if near else "")

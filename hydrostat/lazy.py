@@ -80,7 +80,11 @@ class _LazyPackage(ModuleType):
         if name in self._rooms:
             return import_module(f"{self.__name__}.{name}")
         if name not in self.__all__:
-            raise AttributeError(f"module {self.__name__!r} has no attribute {name!r}", name=name, obj=self)
+            from difflib import get_close_matches
+
+            near = get_close_matches(name, self.__all__, n=1)
+            hint = f". Did you mean {near[0]!r}?" if near else ""
+            raise AttributeError(f"module {self.__name__!r} has no attribute {name!r}{hint}")
         module, original = self._homes[name]
         value = getattr(import_module(module), original)
         self.__dict__[name] = value

@@ -44,6 +44,8 @@ def _public(door: ModuleType, name: str) -> object:
 def test_an_unknown_name_is_an_attribute_error() -> None:
     with pytest.raises(AttributeError, match="has no attribute 'octopus'"):
         _ = hs.octopus
+    with pytest.raises(AttributeError, match=r"'Simulatoin'\. Did you mean 'Simulation'"):
+        _ = hs.Simulatoin
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,10 @@ def found_folder(robot: Path) -> Path:
     if not str(robot).startswith("gallery:"):
         if not (robot / "robot.toml").exists() and (robot / "robot" / "robot.toml").is_file():
             raise InputError(f"{robot}: results of a design. The robot is {robot / 'robot'}")
+        if not robot.exists() and robot.suffix != ".toml":
+            raise InputError(
+                f"{robot}: there is no such file. Begin a robot: hydrostat new {robot} --from gallery:starfish"
+            )
         return robot
     from hydrostat.robot import GALLERY, gallery_folder
 

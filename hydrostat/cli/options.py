@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from hydrostat.errors import InputError
+from hydrostat.given import list_choices
 from hydrostat.units import plural
 
 if TYPE_CHECKING:
@@ -215,8 +216,7 @@ def moves(robot: "Robot", texts: Sequence[str] | None) -> dict[str, float]:
     for text in texts or []:
         name, value = _split_value("--move", text, "DRIVE=VALUE, e.g. leg=30deg")
         if name not in drives:
-            known = f"Available: {', '.join(drives)}." if drives else "The robot has no drives."
-            raise InputError(f'--move {text}: unknown drive "{name}". {known}')
+            raise InputError(f'--move {text}: unknown drive "{name}". {list_choices("drives", list(drives), name)}')
         if name in found:
             raise InputError(f'--move: "{name}" is given twice. Give each name once.')
         try:
@@ -331,6 +331,9 @@ def _split_value(option: str, text: str, form: str) -> tuple[str, str]:
 
 def check_contraction(robot: "Robot", name: str, value: float, *, option: str = "--contract") -> None:
     """Print a note if a contraction [m] exceeds a winch's travel (InputError: unknown winch, or a cable's length)."""
+    winches = [each.name for each in robot.winches]
+    if name not in winches and name in {each.name for each in robot.markers}:
+        raise InputError(f'{option} {name}: "{name}" is a marker. {list_choices("winches", winches)}')
     winch = robot.winch(name)
     if not -winch.release <= value <= winch.travel:
         print(

@@ -77,4 +77,8 @@ def studio(
         if classroom:
             print(write_qr_text(address), flush=True)
 
-    serve(served, host=host, port=port, show=browser, announce=announce)
+    try:
+        serve(served, host=host, port=port, show=browser, announce=announce)
+    except KeyboardInterrupt:
+        print("Studio ended. It keeps unsaved work for its next start.")
+        raise typer.Exit(130) from None

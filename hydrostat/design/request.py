@@ -14,6 +14,7 @@ from hydrostat.design.constraints import ROUTES_ONLY, Constraints, Range
 from hydrostat.design.muscles.activation import FibreKind
 from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.errors import InputError
+from hydrostat.given import list_choices
 from hydrostat.ik import place
 from hydrostat.robot import PoseTarget, Robot
 from hydrostat.units import plural, quote
@@ -281,7 +282,7 @@ class DesignRequest:
                     )
                 place(f'pose "{pose.name}": the target of {name}', point, robot.body.mesh)  # in meters
                 if name not in markers:
-                    known = f"Available: {', '.join(markers)}." if markers else "The robot has no markers."
+                    known = list_choices("markers", markers, name)
                     raise InputError(f'pose "{pose.name}": unknown marker {quote(name)}. {known}')
         self.constraints.check(robot)
         if self.stuffed and robot.body.outline is None:

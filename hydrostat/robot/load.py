@@ -131,7 +131,8 @@ def check_loads(loads: Sequence[Load], names: list[str], mesh: Mesh, *, weightle
     for index, load in enumerate(loads):
         if load.marker is not None and load.marker not in names:
             raise InputError(
-                f"load[{index}].marker: unknown marker {quote(load.marker)}. {list_choices('markers', names)}"
+                f"load[{index}].marker: unknown marker {quote(load.marker)}. "
+                f"{list_choices('markers', names, load.marker)}"
             )
         if load.mass is not None and weightless:
             raise InputError(f'load[{index}].mass weighs nothing without gravity; add gravity = "-y", or a force')

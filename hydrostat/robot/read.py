@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeGuard
 from hydrostat import units
 from hydrostat.errors import InputError
 from hydrostat.files import read_stranger, read_text
+from hydrostat.given import list_choices
 from hydrostat.robot.body import Body, Source
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.contact import ClosedMesh, Contact, Obstacle, closed_mesh
@@ -49,7 +50,7 @@ def list_gallery() -> list[str]:
 def gallery_folder(name: str) -> Path:
     """Folder of a gallery robot (InputError: the gallery has no robot of this name)."""
     if name not in list_gallery():
-        raise InputError(f'unknown gallery robot "{name}". Available: {", ".join(list_gallery())}.')
+        raise InputError(f'unknown gallery robot "{name}". {list_choices("robots", list_gallery(), name)}')
     return _shelf() / name
 
 

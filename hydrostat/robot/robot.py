@@ -125,7 +125,7 @@ class Robot:
     def pose(self, name: str) -> PoseTarget:
         """Return the target pose of this name (InputError: there is none)."""
         if name not in self.poses:
-            raise InputError(f'unknown pose "{name}". {list_choices("poses", list(self.poses))}')
+            raise InputError(f'unknown pose "{name}". {list_choices("poses", list(self.poses), name)}')
         return self.poses[name]
 
     @property
@@ -299,12 +299,12 @@ class Robot:
 
     def _check_markers_and_poses(self) -> None:
         names = [marker.name for marker in self.markers]
-        self._check_inside([(f"marker[{index}].at", marker.at) for index, marker in enumerate(self.markers)])
+        self._check_inside([(f'marker[{i}].at ("{each.name}")', each.at) for i, each in enumerate(self.markers)])
         for index, pose in enumerate(self.poses.values()):
             for name in pose.targets:
                 if name not in names:
                     key = f"pose[{index}].targets.{name}"
-                    raise InputError(f"{key}: unknown marker {quote(name)}. {list_choices('markers', names)}")
+                    raise InputError(f"{key}: unknown marker {quote(name)}. {list_choices('markers', names, name)}")
 
     def _check_inner_parts(self) -> None:
         mesh, names = self.body.mesh, [marker.name for marker in self.markers]
@@ -383,7 +383,7 @@ def _find_part(kind: str, kinds: str, parts: Iterable[_Part], name: str) -> _Par
     for part in parts:
         if part.name == name:
             return part
-    raise InputError(f'unknown {kind} "{name}". {list_choices(kinds, [part.name for part in parts])}')
+    raise InputError(f'unknown {kind} "{name}". {list_choices(kinds, [part.name for part in parts], name)}')
 
 
 _PARTS = {

@@ -97,6 +97,9 @@ def _message(error: Any, location: tuple[Any, ...], form: type[TomlTable]) -> st
             return f"must be one table, begun with [{key}] in one pair of brackets"
         hint = f"; write for example {_EXAMPLES[key]}" if key == "targets" else ""
         return f"{quote(error['input'])} is not a table{hint}"
+    if kind == "too_short" and location[:1] == ("pose",) and names[1:2] == ["targets"]:
+        count = len(error["input"])
+        return f"has {count} {'entry' if count == 1 else 'entries'}; a target is [x, y], on bodies in space [x, y, z]"
     if kind not in _SENTENCES:
         return error["msg"].removeprefix("Value error, ")
     limits = {name: str(limit).replace("'", "") for name, limit in error.get("ctx", {}).items()}

@@ -93,7 +93,8 @@ class TablesFile(ABC):
         except tomllib.TOMLDecodeError as error:
             what, _, place = str(error).partition(" (at line ")
             line = re.match(r"\d+", place)
-            self.fail("", f"not TOML: {what}", int(line[0]) if line else None)
+            hint = '; a text on this line is not closed, " is missing' if what == r"Illegal character '\n'" else ""
+            self.fail("", f"not TOML: {what}{hint}", int(line[0]) if line else None)
         except RecursionError:
             self.fail("", f"not TOML of {self.kind}: brackets are nested too deep")
         except (ValueError, ArithmeticError):

@@ -246,7 +246,9 @@ def test_what_killed_runs_left_is_cleared_by_the_next(tmp_path: Path) -> None:
     clear_unfinished(tmp_path / "nowhere")
 
 
-@pytest.mark.parametrize("command", ["learn nothing --out here/m.model", "train robot --method guess --out here"])
+@pytest.mark.parametrize(
+    "command", ["learn nothing --out here/m.model", "train gallery:starfish --method guess --out here"]
+)
 def test_what_killed_learning_left_is_cleared_too(
     run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: str
 ) -> None:

@@ -201,7 +201,8 @@ ERRORS = {
     "write for example cables_per_winch = 4",
     "locked_cables = [1, 3]": 'line 1: locked_cables[1]: unknown cable "3". Available: up 1, down 1.',
     "locked_cables = [0]": 'line 1: locked_cables[0]: unknown cable "0". Available: up 1, down 1.',
-    'locked_cables = ["up"]': 'line 1: locked_cables[0]: unknown cable "up". Available: up 1, down 1.',
+    'locked_cables = ["up"]': 'line 1: locked_cables[0]: unknown cable "up". Available: up 1, down 1. '
+    + 'Did you mean "up 1"?',
     "locked_cables = [true]": "line 1: locked_cables[0]: neither a name nor a number that counts from 1",
     'locked_winches = "up"': 'line 1: locked_winches: "up" is not a list; write for example locked_winches = ["left"]',
     'locked_winches = ["bob"]': 'line 1: locked_winches[0]: unknown winch "bob". Available: up, down.',

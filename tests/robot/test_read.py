@@ -300,7 +300,7 @@ LINES = [
     (
         'winch = "right"',
         'winch = "rigth"',
-        'line 32: cable[1].winch: unknown winch "rigth". Available: left, right.',
+        'line 32: cable[1].winch: unknown winch "rigth". Available: left, right. Did you mean "right"?',
     ),
     (
         "tip = [20, 10]",
@@ -308,7 +308,11 @@ LINES = [
         'line 45: pose[0].targets.top: unknown marker "top". Available: tip.',
     ),
     ("tip = [20, 10]\n", "", "line 44: pose[0].targets must name at least one marker"),
-    ("at = [25, 0]", "at = [31, 0]", "line 40: marker[0].at = [31, 0] lies 1 mm outside the body; move it inside"),
+    (
+        "at = [25, 0]",
+        "at = [31, 0]",
+        'line 40: marker[0].at ("tip") = [31, 0] lies 1 mm outside the body; move it inside',
+    ),
     ('"right"', '"left"', 'line 22: winch[1].name: there are two of the name "left"; names must be unique'),
     (
         "[[pose]]",

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.solids.construct import Box, Construction, Corner, Cuboid, Cylinder, segments
+from hydrostat.given import list_choices
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -179,7 +180,8 @@ class Motor:
         for motor in ALL_MOTORS:
             if motor.key == key:
                 return motor
-        raise InputError(f'unknown motor "{key}". Available: auto, {", ".join(each.key for each in ALL_MOTORS)}.')
+        known = list_choices("motors", ["auto", *(each.key for each in ALL_MOTORS)], key)
+        raise InputError(f'unknown motor "{key}". {known}')
 
 
 def _box_outline(low: Corner, high: Corner) -> tuple[Corner, ...]:

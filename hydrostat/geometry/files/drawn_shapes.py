@@ -138,7 +138,10 @@ def _refuse_open(rings: list[DrawnLine], loose: list[DrawnLine], branch: Outline
         gap = float(np.linalg.norm(line.points[0] - line.points[-1]))
         raise OutlineError(f"{name}: the outline is open between {start} and {end}, a gap of {gap:.4g}: close the path")
     if not rings or max(line.extent for line in rings) == 0.0:
-        raise OutlineError(f"{name}: no closed shape: draw the outline of the body as one closed path")
+        raise OutlineError(
+            f"{name}: no closed shape: draw the outline of the body as one closed path. "
+            "Text must become paths (Inkscape: Path, Object to Path)"
+        )
 
 
 def unite_fills(rings: list[DrawnLine]) -> tuple[list[DrawnLine], int]:

@@ -121,7 +121,17 @@ def _guard(content: bytes, name: str) -> None:
     try:
         parser.Parse(content, True)
     except (expat.ExpatError, ValueError, LookupError) as error:
-        raise OutlineError(f"{name}: not an SVG drawing ({error}): save it as SVG") from error
+        raise OutlineError(f"{name}: {_fault(content, error)}") from error
+
+
+def _fault(content: bytes, error: Exception) -> str:
+    """Words for a file that is no XML: a picture by its first bytes, else a text that breaks off, else another one."""
+    for kind, start in (("PNG", b"\x89PNG"), ("JPEG", b"\xff\xd8\xff"), ("PDF", b"%PDF")):
+        if content.startswith(start):
+            return f"not an SVG drawing but a {kind}: rename it to end in .{kind.lower().replace('jpeg', 'jpg')}"
+    if b"<svg" in content[:4000]:
+        return f"not an SVG drawing that is whole ({error}): it is cut off or damaged; save it again"
+    return f"not an SVG drawing ({error}): save it as SVG"
 
 
 def _plain_rules(text: str) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 from hydrostat.arrays import Bool, Float, Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry import Anchors, locate
-from hydrostat.given import Point
+from hydrostat.given import Point, list_choices
 from hydrostat.ik.objectives.objective import (
     EquilibriumState,
     Objective,
@@ -158,8 +158,7 @@ class MarkerResidual(Residual):
 def _index(robot: Robot, name: str) -> int:
     names = [marker.name for marker in robot.markers]
     if name not in names:
-        known = f"Available: {', '.join(names)}." if names else "The robot has no markers."
-        raise InputError(f"unknown marker {quote(name)}. {known}")
+        raise InputError(f"unknown marker {quote(name)}. {list_choices('markers', names, name)}")
     return names.index(name)
 
 
