@@ -1,6 +1,6 @@
 """Small robot folders: a rectangle 60 x 40 mm, centered, of few elements."""
 
-import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -145,7 +145,7 @@ MAXIMAL_IN = {
 
 def mesh_once(patch: pytest.MonkeyPatch) -> None:
     """From now on the same outline and size are meshed once: that a mesh is the same again is tested elsewhere."""
-    module = sys.modules["hydrostat.geometry.triangles.triangulate"]
+    module = import_module("hydrostat.geometry.triangles.triangulate")
     mesh, kept = module.triangulate, {}
 
     def once(outline, element_size):
