@@ -1,10 +1,11 @@
 """Small robot folders: a rectangle 60 x 40 mm, centered, of few elements."""
 
-from importlib import import_module
+import sys
 from pathlib import Path
 
 import pytest
 
+from hydrostat import geometry
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot, load_robot
 
@@ -145,8 +146,8 @@ MAXIMAL_IN = {
 
 def mesh_once(patch: pytest.MonkeyPatch) -> None:
     """From now on the same outline and size are meshed once: that a mesh is the same again is tested elsewhere."""
-    module = import_module("hydrostat.geometry.triangles.triangulate")
-    mesh, kept = module.triangulate, {}
+    mesh, kept = geometry.triangulate, {}  # loads its module
+    module = sys.modules[mesh.__module__]
 
     def once(outline, element_size):
         key = (outline.exterior.tobytes(), element_size)
