@@ -166,7 +166,10 @@ ASTRAY = {
         "must be a pose of this robot",
     ),
     "step from a pose": (lambda s: s.step(s.rest, {}, 0.01), "goes on from a motion, not from Equilibrium"),
-    "play of a dict": (lambda s: s.play({"left": 0.01}, 1.0, 0.01), "by a Profile, such as Profile.ramp"),
+    "play of a dict": (
+        lambda s: s.play({"left": 0.01}, 1.0, 0.01),
+        "such as ContractionProfile.ramp",
+    ),
     "design of a name": (lambda s: hs.design_cables("starfish", s.robot.poses.values()), "for a Robot, such as"),
     "design of one pose": (lambda s: hs.design_cables(s.robot, s.robot.poses["wave"]), "must be several"),
     "a text for a number": (

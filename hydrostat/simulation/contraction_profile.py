@@ -14,6 +14,7 @@ import numpy as np
 from hydrostat.arrays import Float, Vector
 from hydrostat.errors import InputError
 from hydrostat.files import csv_text, read_stranger, replace_file
+from hydrostat.given import check_not_negative
 from hydrostat.robot import Robot
 from hydrostat.simulation.controls import contraction_values
 from hydrostat.units import quote
@@ -56,8 +57,19 @@ class ContractionProfile:
 
     @classmethod
     def ramp(cls, contractions: Vector, seconds: float) -> Self:
-        """Gently from rest to the contractions [m] within some time [s]."""
+        """Gently from rest to the contractions [m] within some time [s] (InputError: names, not an array)."""
+        _check_array(contractions)
         return cls(times=np.array([0.0, seconds]), values=np.array([0 * contractions, contractions]), gentle=True)
+
+    @classmethod
+    def step(cls, contractions: Vector, begin: float = 0.0) -> Self:
+        """Suddenly, within a microsecond, from 0 to the contractions [m] at a time [s].
+
+        Raises InputError: names, not an array, or a time below 0.
+        """
+        _check_array(contractions)
+        check_not_negative("begin", begin, "s")
+        return cls(times=np.array([begin, begin + 1e-6]), values=np.array([0 * contractions, contractions]))
 
     def at(self, time: float) -> Vector:
         """Contractions at a time [s]."""
@@ -95,12 +107,17 @@ class ContractionProfile:
         )
 
 
+def _check_array(contractions: object) -> None:
+    if not isinstance(contractions, np.ndarray):
+        raise InputError("a profile needs an array: simulation.as_contractions({...}) makes one of names")
+
+
 def check_profile(profile: object, robot: Robot) -> None:
     """Check that a motion can be played by a profile (InputError: it is none, or one of another robot)."""
     if not isinstance(profile, ContractionProfile):
         raise InputError(
-            f"a motion is played by a Profile, such as Profile.ramp(simulation.contractions({{...}}), seconds), "
-            f"not by {profile!r:.60}"
+            "a motion is played by a ContractionProfile, such as ContractionProfile.ramp(simulation.as_contractions("
+            f"{{...}}), seconds), not by {profile!r:.60}"
         )
     values = profile.values
     contraction_values(robot, values[0])

@@ -7,6 +7,7 @@ import pytest
 from builders import strip_robot
 
 import hydrostat as hs
+from hydrostat.errors import InputError
 from hydrostat.simulation import ContractionProfile, ProfileTable
 
 
@@ -92,3 +93,14 @@ def test_what_is_written_is_read_back(tmp_path: Path) -> None:
     again = ContractionProfile.read(path, robot)
     assert again.times == pytest.approx(profile.times)
     assert again.values == pytest.approx(profile.values, abs=1e-11)
+
+
+def test_a_step_is_sudden(unchecked: None) -> None:
+    """Oracle: the contractions before and after it; names and times below 0 get one line."""
+    profile = ContractionProfile.step(np.array([0.01, 0.0]), begin=0.2)
+    assert (profile.at(0.0)[0], profile.at(0.2)[0], profile.at(0.2 + 2e-6)[0], profile.at(9.0)[0]) == (0, 0, 0.01, 0.01)
+    for make in (ContractionProfile.step, ContractionProfile.ramp):
+        with pytest.raises(InputError, match=r"a profile needs an array: simulation.as_contractions"):
+            make({"left": 0.01}, 1.0)  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="begin must be"):
+        ContractionProfile.step(np.array([0.01]), begin=-1.0)
