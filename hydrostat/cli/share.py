@@ -112,7 +112,8 @@ def _print_error(shape: "LearnedShape", lost: int, crossing: float, count: int) 
     """Print the error of a shape, and what limits it."""
     print(
         f"mean error {1e3 * shape.error:.2f} mm in {shape.held_out} held-out poses (mean motion "
-        f"{1e3 * shape.moved:.1f} mm), below {1e3 * shape.worst:.2f} mm at all nodes in 95 % of them"
+        f"{1e3 * shape.moved:.1f} mm); the worst node of a pose is off by less than {1e3 * shape.worst:.2f} mm in 95 % "
+        "of them"
     )
     found = shape.samples + shape.held_out + lost
     if found < count or shape.stopped:

@@ -277,13 +277,12 @@ def _insert_summary(plan: KitPlan) -> tuple[str, ...]:
 
 def _summary(plan: KitPlan, lists: Lists) -> tuple[str, ...]:
     """Return the summary of a kit, one line for each of its contents."""
-    count = sum(part.count for part in plan.printed)
     mass = sum(part.count * part.mass for part in plan.printed)
     used, packs = lists.cost
     return (
         *plan.work.summary,
         f"Winches: {len(plan.rigid.units)} x {plan.rigid.motor.title}" if plan.rigid.units else "Winches: none",
         *_insert_summary(plan),
-        f"To print: {plural(count, 'piece')}, about {mass:.0f} g",
+        f"To print: {plan.pieces}, about {mass:.0f} g",
         f"Material used: about {used:.0f} USD; to buy (full packs): {packs:.0f} USD",
     )

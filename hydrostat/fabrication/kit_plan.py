@@ -15,6 +15,7 @@ from hydrostat.fabrication.patterns.stitches import CableStitches
 from hydrostat.fabrication.solids.assembly import PartAssembly
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Robot
+from hydrostat.units import plural
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,6 +99,13 @@ class KitPlan:
     def printed(self) -> tuple[Printed, ...]:
         """All pieces for a 3D printer."""
         return (*self.rigid.printed, *self.work.printed)
+
+    @property
+    def pieces(self) -> str:
+        """Number of printed pieces in words, such as "24 pieces, and 118 optional grommets"."""
+        optional = self.rigid.grommet.count if self.rigid.grommet is not None else 0
+        needed = plural(sum(part.count for part in self.printed) - optional, "piece")
+        return needed + (f", and {plural(optional, 'optional grommet')}" if optional else "")
 
     @property
     def print_hours(self) -> float:

@@ -99,10 +99,10 @@ def _tight_bays(seam: Polygon, cut: Polygon, slits: MultiLineString, options: Pa
     far = [corner for corner in corners if edges.distance(corner) > 3 * options.seam_allowance]
     bays = shapely.union_all([corner.buffer(options.seam_allowance) for corner in far])
     ends = [max(far, key=lambda corner: edges.distance(corner) * bay.covers(corner)) for bay in _polygons(bays)]
-    return tuple(
-        f"the seam allowance fills the narrow bay at {_at(end)}. Snip the cloth open there, down to the seam"
-        for end in ends
-    )
+    if not ends:
+        return ()
+    bays_at = f"{'bay' if len(ends) == 1 else 'bays'} at {', '.join(_at(end) for end in ends)}"
+    return (f"the seam allowance fills the narrow {bays_at}. Snip the cloth open there, down to the seam",)
 
 
 def _polygons(geometry: BaseGeometry) -> list[Polygon]:

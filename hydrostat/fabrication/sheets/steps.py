@@ -197,6 +197,7 @@ def plush_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
             f"pattern/pattern_{plan.options.paper}.pdf at 100 %, check that the bar measures 100 mm, cut by hand and "
             "punch the pinholes. Keep the grain arrows along the cloth.",
         ),
+        *_decorate(plan.robot),
         *(_cables(plan) if cables else ()),
         AssemblyStep(
             "Put the zipper in",
@@ -216,6 +217,17 @@ def plush_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
             + held_text(plan.robot),
         ),
     )
+
+
+def _decorate(robot: Robot) -> tuple[AssemblyStep, ...]:
+    """Step for the lines that are drawn on the body, such as a face; none without them."""
+    if not robot.body.marks:
+        return ()
+    words = (
+        "Embroider or applique the thin lines that are drawn in the outline, such as eyes and a mouth, while the panel "
+        "is flat. Keep the pinholes free."
+    )
+    return (AssemblyStep("Decorate", 10 + 2 * len(robot.body.marks), words),)
 
 
 def insert_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
@@ -248,12 +260,11 @@ def _pair_sentence(plan: KitPlan) -> str:
 def _prints(plan: KitPlan) -> tuple[AssemblyStep, ...]:
     if not plan.printed:
         return ()
-    count = plural(sum(part.count for part in plan.printed), "part")
     return (
         AssemblyStep(
             "Print the parts",
             20,
-            f"All plates from parts/plate_1.3mf on: {count} of "
+            f"All plates from parts/plate_1.3mf on: {plan.pieces}, of "
             "PLA, 0.2 mm layers, no supports, as they lie. Try every fit before you go on: spools turn freely, motors "
             "slide in without force.",
             wait=f"about {minutes_text(60 * plan.print_hours)} of printing",
