@@ -81,9 +81,9 @@ TICK = 2 * pi / 4096  # angle of a step [rad]
 AMPERE = 6.5e-3  # current of a step [A]
 STALL = 2.7
 """Current at stall [A], that of the strongest variant: bounds are shares of the torque at stall."""
-SMALL, LARGE, SMALL_LIMIT, LARGE_LEAST, LITHIUM = 7.4, 12.0, 10.0, 9.0, 8.4
+SMALL, LARGE, SMALL_LIMIT, LARGE_LEAST, LITHIUM, EMPTY = 7.4, 12.0, 10.0, 9.0, 8.4, 8.0
 """Supplies that STS3215 are sold for, the greatest limit in the memory of those for the smaller, the least supply that
-we take for the larger (an empty pack of three lithium cells), and two full lithium cells [V]."""
+we take for the larger (an empty pack of three lithium cells), two full lithium cells, eight empty NiMH cells [V]."""
 FULL = 1000  # bound of torque that bounds nothing
 STANDING = 2000  # speed at which they come back to where they shall stand [steps/s]
 FARTHEST = 30719  # step that a servo without limits of angle may go to
@@ -249,7 +249,8 @@ def _tell_supply(number: int, least: float, most: float, volts: float) -> Hydros
     if rated == SMALL and most < volts <= LITHIUM + 0.2:
         advice = f" Two full lithium cells give {LITHIUM:g} V: put a regulator behind them."
     elif rated == LARGE and volts <= SMALL_LIMIT:
-        advice = f" If its label says {SMALL:g} V, set its register {VOLTS} to 80 instead."
+        charge = " Charge a battery of eight NiMH cells." if volts >= EMPTY else ""
+        advice = f"{charge} If its label says {SMALL:g} V, set its register {VOLTS} to 80 instead."
     return HydrostatError(
         f"motor {number} is a servo for {rated:g} V (its memory allows {least:.1f} to {most:.1f} V) and measures "
         f"{volts:.1f} V. Switch the power off, then connect a supply of {rated:g} V.{advice}"

@@ -192,15 +192,16 @@ def _list_first_steps(plan: PowerPlan, *, is_measured: bool) -> list[str]:
     if plan.motor.bus == "feetech":
         kind = "feetech"
         ready = [
-            "Plug in one servo at a time. Give it its number with the maker's program FD. Set both limits of angle to "
-            "0 there. Write the number on the servo.",
+            "Plug in one servo at a time, with the switch off. Turn it on. Give the servo its number with the maker's "
+            "program FD, and set both limits of angle to 0. Turn the switch off. Write the number on the servo.",
             chain,
         ]
     elif plan.servos:
         kind = "dynamixel"
         ready = [
             "Load the example usb_to_dynamixel onto the OpenRB-150 with the Arduino IDE.",
-            "Plug in one servo at a time. Give it its number with ROBOTIS' Dynamixel Wizard. Write it on the servo.",
+            "Plug in one servo at a time, with the switch off. Turn it on. Give the servo its number with ROBOTIS' "
+            "Dynamixel Wizard. Turn the switch off. Write the number on the servo.",
             chain,
         ]
     else:
