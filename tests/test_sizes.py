@@ -30,6 +30,7 @@ LARGE_FUNCTIONS = {
 MANY_PARAMETERS = {
     "hydrostat/cli/design.py:design": "a parameter is an option of the command line",
     "hydrostat/cli/fabricate.py:fabricate": "a parameter is an option of the command line",
+    "hydrostat/cli/firmware.py:firmware": "a parameter is an option of the command line",
     "hydrostat/cli/new.py:new": "a parameter is an option of the command line",
     "hydrostat/cli/pose.py:pose": "a parameter is an option of the command line",
     "hydrostat/cli/grasp.py:grasp": "a parameter is an option of the command line",

@@ -119,7 +119,7 @@ def _take_up(
         print(f"{kind}: {taken.motor.winch}: {words}", flush=True)
 
     found = control.find_cable_zeros(bus, calibration.motors, model, save)
-    bus.mark()
+    bus.mark(np.array([known[motor.winch].zero for motor in calibration.motors]))
     return found, np.array([fact.constant for fact in facts])
 
 

@@ -1,6 +1,7 @@
 """`hydrostat firmware`."""
 
 from dataclasses import replace
+from pathlib import Path
 from shlex import join
 from typing import TYPE_CHECKING, Annotated
 
@@ -13,7 +14,6 @@ from hydrostat.units import plural
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-    from pathlib import Path
 
     from hydrostat.control import Calibration
     from hydrostat.fabrication import Motor
@@ -50,13 +50,19 @@ def firmware(
     rpm: Annotated[
         float | None, typer.Option(metavar="N", help="No-load speed [turns/min].", show_default="that of the motor")
     ] = None,
+    moves: Annotated[
+        Path | None,
+        typer.Option(metavar="MOVES.csv", help="Table of contractions that a button plays.", show_default="none"),
+    ] = None,
+    rate: Annotated[int, typer.Option(metavar="5|10|25|50", help="Rows per second stored of --moves.")] = 25,
 ) -> None:
     """Build Arduino firmware for geared motors, and flash it.
 
     Limits come from robot.toml and motors.toml. Missing encoder counts are added to motors.toml; --motor or --counts
     replaces them. Robots with more motors than one board drives use several boards, each with its own port. Without
-    --flash the command prints the flash command instead of running it. Needs Debian's gcc-avr and avr-libc, and avrdude
-    to flash. Then run: hydrostat calibrate ROBOT --motors firmware:/dev/ttyACM0.
+    --flash the command prints the flash command instead of running it. With --moves the board plays the table without
+    a computer, once it was calibrated. Needs Debian's gcc-avr and avr-libc, and avrdude to flash. Then run: hydrostat
+    calibrate ROBOT --motors firmware:/dev/ttyACM0.
 
     Example: hydrostat firmware examples/starfish --board mega --out build/firmware
     """
@@ -92,12 +98,17 @@ def firmware(
     shown = ", ".join(dict.fromkeys(f"{each.counts:g}" for each in given.motors))
     print(f"Motor: {chosen.title}{'' if motor else ' (check the kit; change with --motor)'}")
     print(f"{shown} counts per spool turn, no-load speed {turns:g} turns/min")
-    images = control.build_images(loaded, given, boards, places, rpm=turns, stall=chosen.stall_current)
+    baked = None if moves is None else control.bake_moves(moves, folder, loaded, given, boards[0], rate=rate)
+    text = "" if baked is None else baked.settings
+    images = control.build_images(loaded, given, boards, places, rpm=turns, stall=chosen.stall_current, moves=text)
     if given != calibration:
         print(f"Wrote {given.write(folder)}")
     for number, (kind, image) in enumerate(zip(boards, images, strict=False), 1):
         _tell(kind, number, given)
         _flash(kind, image, ports[number - 1] if ports else None)
+    if baked is not None:
+        words = f"{baked.seconds:.1f} s, {baked.size / 1000:.1f} kB. Button between pin"
+        print(f"{moves}: {words} {control.board_kind(boards[0]).button} and GND plays and stops it, after calibration.")
     if ports:
         print(f"{port}: flashed. Pay out all cables, then: hydrostat calibrate {folder} --motors firmware:{port}")
 

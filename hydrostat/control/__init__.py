@@ -22,6 +22,7 @@ if TYPE_CHECKING:
         on_boards,
         robot_word,
     )
+    from hydrostat.control.firmware_moves import bake_moves
     from hydrostat.control.guard import TensionGuard, not_judged
     from hydrostat.control.link import Link, SimulatedLink
     from hydrostat.control.marker_feedback import LostAction, MarkerFeedback, MarkerSight
@@ -71,6 +72,7 @@ __all__ = [
     "WinchPull",
     "add_cable_layers",
     "arm_motors",
+    "bake_moves",
     "board_kind",
     "build_images",
     "check_port",

@@ -93,8 +93,11 @@ class Bus(ABC):
     lost_position: bool = False
     silence: float = inf
 
-    def mark(self) -> None:  # noqa: B027 - most motors know their angle by themselves
-        """Remember that the motors are calibrated, where that can be lost (HydrostatError: it cannot be remembered)."""
+    def mark(self, zeros: Vector | None = None) -> None:  # noqa: B027 - most motors know their angle by themselves
+        """Remember that the motors are calibrated, where that can be lost (HydrostatError: it cannot be remembered).
+
+        Angles of the zeros [rad] are for boards that play moves alone.
+        """
 
     @abstractmethod
     def identify(self) -> tuple[MotorFacts, ...]:

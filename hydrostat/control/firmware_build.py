@@ -114,11 +114,22 @@ def build_firmware(settings: str, board: str, folder: Path) -> Path:
 
 
 def build_images(
-    robot: Robot, calibration: Calibration, boards: Sequence[str], folders: Sequence[Path], *, rpm: float, stall: float
+    robot: Robot,
+    calibration: Calibration,
+    boards: Sequence[str],
+    folders: Sequence[Path],
+    *,
+    rpm: float,
+    stall: float,
+    moves: str = "",
 ) -> list[Path]:
-    """Compile the firmware of each board into its folder, and return the images; arguments as `firmware_settings`."""
+    """Compile the firmware of each board into its folder, and return the images.
+
+    Arguments as `firmware_settings`; `moves` is text that the settings of each get, too.
+    """
     texts = [
-        firmware_settings(robot, calibration, rpm=rpm, stall=stall, board=number + 1) for number in range(len(folders))
+        firmware_settings(robot, calibration, rpm=rpm, stall=stall, board=number + 1) + moves
+        for number in range(len(folders))
     ]
     return [build_firmware(*each) for each in zip(texts, boards, folders, strict=False)]
 

@@ -86,10 +86,11 @@ class FirmwareBus(Bus):
             facts = {"model": f"{told[3]} ({told[4]})", "firmware": int(told[2]), "watchdog": proved}
             return tuple(MotorFacts(number=slot + 1, **facts) for slot in np.argsort(self._order).tolist())
 
-    def mark(self) -> None:
-        """Let the board remember, until its power goes, that the zeros of its motors are known."""
+    def mark(self, zeros: Vector | None = None) -> None:
+        """Let the board remember, until its power goes, that the zeros of its motors are known, and where they are."""
+        told = [] if zeros is None else np.rint(zeros * self._scale)[self._order].astype(int).tolist()
         with self._lock:
-            self._must("M", "that it is calibrated")
+            self._must(" ".join(["M", *map(str, told)]), "that it is calibrated")
             self.lost_position = False
 
     def arm(self, currents: Vector) -> None:

@@ -40,9 +40,9 @@ class JoinedBus(Bus):
         """Facts of the motors of all parts; each part tries its own watchdogs."""
         return self._whole(self._each(lambda bus, _: bus.identify()))
 
-    def mark(self) -> None:
+    def mark(self, zeros: Vector | None = None) -> None:
         """Let each part remember that its motors are calibrated."""
-        self._each(lambda bus, _: bus.mark())
+        self._each(lambda bus, places: bus.mark(None if zeros is None else zeros[places]))
 
     def arm(self, currents: Vector) -> None:
         """Switch torque on in all parts, one after the other; all stop if one does not take it."""

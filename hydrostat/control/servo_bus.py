@@ -10,6 +10,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from hydrostat.arrays import Vector
 from hydrostat.control.bus import Bus, Port, Reading, steady
 from hydrostat.control.dynamixel_packets import Packet, PacketReader
 from hydrostat.errors import HydrostatError
@@ -85,7 +86,7 @@ class ServoBus(Bus):
             with suppress(Exception):
                 self._port.close()
 
-    def mark(self) -> None:
+    def mark(self, zeros: Vector | None = None) -> None:
         """Their zeros are known."""
         self.lost_position = False
 

@@ -61,10 +61,12 @@ class Board:
         settings = settings or file.read_text()
         self._bench = ctypes.CDLL(str(folder() / "bench.so"))
         self._bench.bench_plant.restype = ctypes.POINTER(Plant)
+        self._bench.bench_press.argtypes = [ctypes.c_char, ctypes.c_int, ctypes.c_int]
         self._bench.bench_seconds.restype = self._bench.bench_pulse.restype = ctypes.c_double
         assert self._bench.bench_start(str(program(chip, settings)).encode(), chip.encode(), int(full)) == 0
         self.winches = [self._bench.bench_plant(index).contents for index in range(2)]
         self.timeout: float | None = 0.02
+        self._button = (b"D", 2) if chip == "atmega328p" else (b"B", 6)
         self._got = b""
         self.number = 0
         self.run(0.01)
@@ -101,6 +103,16 @@ class Board:
     def pulse(self) -> float:
         """The last pulse of the first servo [s]."""
         return self._bench.bench_pulse()
+
+    def press(self, seconds: float = 0.1) -> None:
+        """Press its button for so long, and let it go for 0.05 s."""
+        for down, time in ((1, seconds), (0, 0.05)):
+            self._bench.bench_press(*self._button, down)
+            self.run(time)
+
+    def is_lit(self) -> bool:
+        """Whether its light is on."""
+        return bool(self._bench.bench_light())
 
     def close(self) -> None:
         """Let it go."""

@@ -84,6 +84,8 @@ def test_pins_that_are_told_are_those_of_the_boards() -> None:
     lines = [line for line in (FIRMWARE / "board.h").read_text().splitlines() if "&TCCR" in line and "/*" in line]
     told = [re.findall(r"A?\d+", line.split("/*")[1]) for line in lines]
     assert told == [list(pins) for kind in BOARDS.values() for pins in kind.wiring]
+    buttons = re.findall(r"#define BUTTON \d /\* between pin (\d+) and GND", (FIRMWARE / "board.h").read_text())
+    assert buttons == [kind.button for kind in BOARDS.values()]
 
 
 def test_a_robot_on_its_board_is_driven_within_its_limits(robot: Robot, motors: Calibration) -> None:
@@ -159,6 +161,9 @@ def test_firmware_is_built_shown_and_flashed(robot: Robot, tmp_path: Path, monke
     written = [line.split("flash:w:")[1] for line in noted.read_text().splitlines()]
     assert written == [f"{tmp_path}/two/board_{number}/winches.hex:i" for number in (1, 2)]
     assert [each.board for each in Calibration.read(folder, robot_of(folder)).motors] == [1, 1, 2]
+    (tmp_path / "dance.csv").write_text("time_s\n0\n2\n")
+    dance = run(app, [*given, "--moves", str(tmp_path / "dance.csv")])
+    assert "dance.csv: 2.0 s, 0.3 kB. Button between pin 12 and GND" in dance.output  # 51 rows of 3 motors
     small = run(app, [*given, "--motor", "n20"])
     assert "3575.04 counts per spool turn" in small.output
     assert "micro metal gearmotor" in run(app, given).output  # what motors.toml tells is not called another motor

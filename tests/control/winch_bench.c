@@ -45,11 +45,20 @@ static void servo(struct avr_irq_t *irq, uint32_t value, void *param) {
         pulse = avr->cycle / 16e6 - rose;
 }
 
+static avr_ioport_external_t outside[26]; /* what drives the pins of each port, stronger than pull-ups */
+
 static void pin(char port, int number, int value) {
     if (port == 'K' && (pins_k >> number & 1) != value) {
         pins_k ^= 1 << number;
         if (avr->data[0x6D] >> number & 1)
             avr_raise_interrupt(avr, &changed);
+    }
+    avr_ioport_external_t *known = &outside[port - 'A'];
+    if (!(known->mask >> number & 1) || (known->value >> number & 1) != value) {
+        known->name = port;
+        known->mask |= 1 << number;
+        known->value = (known->value & ~(1 << number)) | value << number;
+        avr_ioctl(avr, AVR_IOCTL_IOPORT_SET_EXTERNAL(port), known);
     }
     avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ(port), number), value);
 }
@@ -130,6 +139,7 @@ int bench_start(const char *path, const char *chip, int full) {
     static const Plant mega[2] = {{.duty = 0x98, .control = 0x90, .bit = 7, .port = 0x22, .direction = 0, .adc = 0, .encoder = 'B'},
                                   {.duty = 0x9A, .control = 0x90, .bit = 5, .port = 0x22, .direction = 1, .adc = 1, .encoder = 'B', .channel = 2}};
     pins_k = 0;
+    memset(outside, 0, sizeof outside);
     pulse = 0;
     memset(&changed, 0, sizeof changed);
     if (full) {
@@ -178,6 +188,11 @@ int bench_heard(char *into, int most) {
     got_bytes = 0;
     return bytes;
 }
+/* Hold the button of a port and pin, or let it go. */
+void bench_press(char port, int number, int down) {
+    pin(port, number, !down);
+}
+int bench_light(void) { return avr->data[0x25] >> (avr->data[0x24] & 0x20 ? 5 : 7) & 1; } /* port B */
 Plant *bench_plant(int i) { return &plants[i]; }
 double bench_pulse(void) { return pulse; }
 double bench_seconds(void) { return avr->cycle / 16e6; }

@@ -34,6 +34,10 @@ static const ServoPin servo_pins[] = {{&PORTB, 0}, {&PORTB, 1}, {&PORTB, 2}, {&P
 #define SERVO_TIMER TIMER1_COMPA_vect
 #define SERVO_AT OCR1A
 #define SERVO_NOW TCNT1
+#define BUTTON 2 /* between pin 2 and GND */
+#define BUTTON_PORT PORTD
+#define BUTTON_PINS PIND
+#define LIGHT 5 /* pin 13 */
 static void start_board(void) {
     DDRD |= 1 << 6 | 1 << 5 | 1 << 4 | 1 << 7;
     PORTC |= 0x0F;                     /* pull-ups of encoders */
@@ -69,6 +73,10 @@ static const ServoPin servo_pins[] = {{&PORTC, 0}, {&PORTC, 1}, {&PORTC, 2}, {&P
 #define SERVO_TIMER TIMER5_COMPA_vect
 #define SERVO_AT OCR5A
 #define SERVO_NOW TCNT5
+#define BUTTON 6 /* between pin 12 and GND */
+#define BUTTON_PORT PORTB
+#define BUTTON_PINS PINB
+#define LIGHT 7 /* pin 13 */
 static void start_board(void) {
     DDRE |= 1 << 3 | 1 << 4 | 1 << 5;
     DDRH |= 1 << 3 | 1 << 4 | 1 << 5;
@@ -86,6 +94,9 @@ static void start_board(void) {
 #else
 #error "the boards are Uno (ATmega328P) and Mega (ATmega2560)"
 #endif
+
+#define LIGHT_PORT PORTB
+#define LIGHT_DIRECTION DDRB
 
 #if DCS > BRIDGES
 #error "this board has fewer H-bridges than the robot has DC motors"

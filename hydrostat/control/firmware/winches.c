@@ -74,6 +74,8 @@ static uint8_t silence; /* ticks since a good line */
 static volatile uint8_t ticks;
 static uint8_t cause __attribute__((section(".noinit")));
 static uint8_t marked; /* zeros were found since the power came on: 0 after each start */
+static uint8_t zeroed; /* whether the board itself knows them, and no encoder was lost since */
+static uint8_t alone;  /* whether moves play without a computer, see moves.h */
 
 /* The watchdog still runs after it has reset the processor: it is switched off before anything else. */
 void begin(void) __attribute__((naked, used, section(".init3")));
@@ -206,6 +208,7 @@ static void stand(void) {
         motor->hot = motor->stuck = 0;
         motor->pace_seen = 0;
     }
+    alone = 0;
 }
 
 static void fault(enum State why, uint8_t motor) {
@@ -268,17 +271,32 @@ static void measure(void) {
     ADCSRA |= 1 << ADSC;
 }
 
+/* So many whole numbers, and nothing after them; 0 where they are not there. */
+static uint8_t numbers(char *text, int32_t *found, uint8_t wanted) {
+    for (uint8_t i = 0; i < wanted; i++) {
+        char *end;
+        found[i] = strtol(text, &end, 10);
+        if (end == text || (*end && *end != ' '))
+            return 0;
+        text = end;
+    }
+    return *text == 0;
+}
+
+#include "moves.h"
+
 static void tick(void) {
     measure();
     if (silence < 255)
         silence++;
-    if (state == ARMED && silence >= (uint16_t)DEADLINE_MS * RATE / 1000)
+    if (state == ARMED && !alone && silence >= (uint16_t)DEADLINE_MS * RATE / 1000)
         fault(SILENT, 0);
     if (lost) {
         if (state != OFF)
             fault(ENCODER, lost - 1);
-        lost = 0;
+        lost = zeroed = 0;
     }
+    play_alone();
     for (uint8_t i = 0; i < COUNT; i++) {
         if (state == ARMED)
             move_on(i);
@@ -338,22 +356,12 @@ static void no(uint8_t number, const char *why) {
     end_line();
 }
 
-/* So many whole numbers, and nothing after them; 0 where they are not there. */
-static uint8_t numbers(char *text, int32_t *found, uint8_t wanted) {
-    for (uint8_t i = 0; i < wanted; i++) {
-        char *end;
-        found[i] = strtol(text, &end, 10);
-        if (end == text || (*end && *end != ' '))
-            return 0;
-        text = end;
-    }
-    return *text == 0;
-}
-
 static void go(uint8_t number, char *text) {
     int32_t told[2 * COUNT];
     if (state != ARMED)
         return no(number, words[state]);
+    if (alone)
+        return no(number, "alone");
     if (!numbers(text, told, 2 * COUNT))
         return no(number, "goals");
     for (uint8_t i = 0; i < COUNT; i++)
@@ -433,7 +441,11 @@ static void obey(char *line) {
     case 'A': return arm(number, text);
     case 'S': stand(); break;
     case 'O': stand(); state = OFF; break;
-    case 'M': marked = 1; break;
+    case 'M':
+        if (!keep_zeros(text))
+            return no(number, "zeros");
+        marked = 1;
+        break;
     default: return no(number, "word");
     }
     answer(number, "ok");
@@ -467,6 +479,7 @@ static void listen(uint8_t ticked) {
 
 int main(void) {
     start_board();
+    start_button();
     UBRR0 = F_CPU / 16 / BAUD_RATE - 1;
     UCSR0B = 1 << RXEN0 | 1 << TXEN0 | 1 << RXCIE0;
     ADCSRA = 1 << ADEN | 7;

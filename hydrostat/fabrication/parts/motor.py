@@ -21,12 +21,16 @@ class BoardKind:
         motors: number of geared DC motors with encoders that it drives.
         loader: options of avrdude for its bootloader.
         wiring: pins for each motor: PWM and direction to the driver, encoder A and B, the driver's current sense.
+        button: pin of the button that starts moves that play alone; it closes to GND.
+        room: bytes of its program memory that such moves may take, beside program and bootloader.
     """
 
     chip: str
     motors: int
     loader: tuple[str, ...]
     wiring: Sequence[tuple[str, str, str, str, str]]
+    button: str
+    room: int
 
 
 BOARDS = {
@@ -35,6 +39,8 @@ BOARDS = {
         motors=2,
         loader=("-c", "arduino", "-b", "115200"),
         wiring=(("6", "4", "A0", "A1", "A4"), ("5", "7", "A2", "A3", "A5")),
+        button="2",
+        room=23_000,
     ),
     "mega": BoardKind(
         chip="atmega2560",
@@ -48,6 +54,8 @@ BOARDS = {
             ("7", "26", "A12", "A13", "A4"),
             ("8", "27", "A14", "A15", "A5"),
         ),
+        button="12",
+        room=32_000,
     ),
 }
 """By the names that `board.h` gives them; a test holds the pins equal to those there."""

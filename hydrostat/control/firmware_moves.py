@@ -1,0 +1,124 @@
+"""Moves that a board plays alone: a table of contractions as counts of encoders, in the settings of its firmware."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from math import ceil, pi
+from pathlib import Path
+
+import numpy as np
+
+from hydrostat.arrays import Vector
+from hydrostat.control.bus_link import LinkLimits
+from hydrostat.control.calibration import Calibration
+from hydrostat.control.corrected_link import correct_table
+from hydrostat.control.firmware_build import board_kind
+from hydrostat.control.link import SimulatedLink
+from hydrostat.control.motors import Motors
+from hydrostat.errors import InputError
+from hydrostat.robot import Robot
+from hydrostat.simulation import ProfileTable
+
+TICKS, TICK = 250, 62 * 1024 / 16e6
+"""Ticks of the board in a second by their name, and what one lasts [s]: 62 counts of a timer that divides by 1024."""
+
+RATES = (5, 10, 25, 50)
+"""Rows a second that moves may have; the board interpolates linearly."""
+
+_LARGEST = 32_767
+
+
+@dataclass(frozen=True, kw_only=True)
+class BakedMoves:
+    """Moves of one board.
+
+    Attributes:
+        steps: counts from the zeros by `step`, a row for each time, a column for each motor in its order.
+        step: counts of a step.
+        rate: rows a second.
+    """
+
+    steps: np.ndarray = field(repr=False)
+    step: int
+    rate: int
+
+    @property
+    def seconds(self) -> float:
+        """Time from the first row to the last [s]."""
+        return (len(self.steps) - 1) * _measure_row(self.rate)
+
+    @property
+    def size(self) -> int:
+        """Program memory [B]."""
+        return 2 * self.steps.size
+
+    @property
+    def settings(self) -> str:
+        """Text for settings.h, after that of `firmware_settings`."""
+        ends = zip(self.steps.min(axis=0).tolist(), self.steps.max(axis=0).tolist(), strict=True)
+        return (
+            "/* moves that a button plays: rows, ticks from row to row, counts of a step, and steps from the zeros */\n"
+            f"#define MOVE_ROWS {len(self.steps)}\n#define MOVE_TICKS {TICKS // self.rate}\n"
+            f"#define MOVE_STEP {self.step}\n#define MOVE_ENDS {{ \\\n{_list_rows(ends)}}}\n"
+            f"#define MOVES {{ \\\n{_list_rows(self.steps.tolist())}}}\n"
+        )
+
+
+def bake_moves(
+    path: Path, folder: Path, robot: Robot, calibration: Calibration, board: str, *, rate: int = 25
+) -> BakedMoves:
+    """Moves for the one board of a robot, as `hydrostat play` would command them.
+
+    Args:
+        path: table of contractions.
+        folder: robot folder; its correction.json, if any, corrects the table.
+        robot: robot with the winches.
+        calibration: motors with counts; their zeros are not needed.
+        board: kind of the board.
+        rate: rows a second, of `RATES`.
+
+    Raises:
+        InputError: several boards, another rate, a table that motors cannot play or that the board has no room for.
+    """
+    if rate not in RATES:
+        raise InputError(f"--rate {rate}: unknown rate. Available: {', '.join(map(str, RATES))} rows/s.")
+    if calibration.boards > 1:
+        raise InputError(f"--moves plays on one board, and this robot has {calibration.boards}.")
+    calibration.check(robot)
+    table = ProfileTable.open(path, robot)
+    limits = Motors(robot.winches, SimulatedLink(np.zeros(len(robot.winches))), fastest=LinkLimits().speed)
+    limits.check(table)
+    corrected = correct_table(table, folder, robot)
+    try:
+        limits.check(corrected)
+    except InputError as error:
+        raise InputError(f"{error}, as correction.json corrects it") from None
+    profile = corrected.profile
+    rows = max(2, ceil(float(profile.times[-1]) / _measure_row(rate) - 1e-9) + 1)
+    room = board_kind(board).room // (2 * len(calibration.motors))
+    if rows > room:
+        longest, slowest = (room - 1) * _measure_row(rate), (room - 1) * _measure_row(RATES[0])
+        raise InputError(
+            f"{path.name}: {profile.times[-1]:.1f} s at {rate} rows/s exceed the memory of board {board}. Longest: "
+            f"{longest:.1f} s, or {slowest:.1f} s with --rate {RATES[0]}."
+        )
+    counts = np.array([_count_from_zeros(calibration, profile.at(row * _measure_row(rate))) for row in range(rows)])
+    step = max(1, ceil(np.abs(counts).max() / _LARGEST))
+    return BakedMoves(steps=np.rint(counts / step).astype(int), step=step, rate=rate)
+
+
+def _measure_row(rate: int) -> float:
+    """Time that a row lasts on the board [s]."""
+    return TICKS // rate * TICK
+
+
+def _count_from_zeros(calibration: Calibration, contractions: Vector) -> list[float]:
+    """Counts of each motor in the order of the board."""
+    ordered = sorted(zip(calibration.motors, contractions.tolist(), strict=True), key=lambda each: each[0].number)
+    return [
+        replace(motor, zero=0.0).angle(contraction) * (motor.counts or 0.0) / (2 * pi) for motor, contraction in ordered
+    ]
+
+
+def _list_rows(rows: Iterable[Iterable[int]]) -> str:
+    """Rows as initializers of C."""
+    return "".join(f"    {{{', '.join(map(str, row))}}}, \\\n" for row in rows)
