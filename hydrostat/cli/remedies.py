@@ -31,7 +31,7 @@ def kit_remedy(robot: "Robot", folder: Path, out: Path, *, options: "KitOptions"
     known = set(find_refusals(robot, options=options))
     for motor in ("auto", *(each.key for each in MOTORS)) if known and known >= set(told) else ():
         if motor != options.motor and not find_refusals(robot, options=replace(options, motor=motor)):
-            return f"hydrostat fabricate {place}{'' if motor == 'auto' else f' --motor {motor}'} --out {kit}"
+            return f"hydrostat fabricate {place} --motor {motor} --out {kit}"
     if told and set(body_refusals(robot)) >= set(told):
         for seam in (6, 5, 4, 3):
             narrow = replace(options, pattern=replace(options.pattern, seam_allowance=float(seam)))

@@ -138,7 +138,7 @@ class Constraints:
     max_length: float | None = _limit(None, Range(above=True, most=LONGEST, optional=True, unit="m"))
     tension: float = _limit(20.0, Range(above=True, most=1000.0, unit="N"), trees=True)
     torque: float | None = _limit(None, Range(above=True, most=100.0, unit="N m", optional=True))
-    motor: str = _limit("auto", trees=True)
+    motor: str = "auto"
     travel: float = _limit(0.06, _LENGTH, trees=True)
     release: float = _limit(0.0, _GAP, trees=True)
     spool_radius: float = _limit(0.006, _LENGTH, trees=True)

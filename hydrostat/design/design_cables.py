@@ -19,7 +19,6 @@ from hydrostat.design.stage_callback import Better, StageCallback, ignore_stage
 from hydrostat.design.stuffed_results import StuffedResults, check_stuffed, solve_stuffed
 from hydrostat.design.trees.design_trees import design_trees
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.fabrication import Demand, find_refusals
 from hydrostat.given import check_type
 from hydrostat.progress import Progress, no_progress
 from hydrostat.robot import PinDrive, PoseTarget, Robot
@@ -179,7 +178,7 @@ def evaluate_stuffed(found: Network, *, progress: Progress) -> Network:
     )
     winches, cables = size_of(found)
     small = [one for one in found.alternatives if size_of(one)[0] <= winches and size_of(one)[1] <= cables]
-    fitting = [one for one in small if not find_refusals(one.robot, Demand.of_results(one.robot, one.ik_results))]
+    fitting = [one for one in small if kit_fits(one)]
     finalists = [first, *fitting[: FINALISTS - 1]]
     judged: list[tuple[Alternative, StuffedResults]] = []
     complete = found.complete

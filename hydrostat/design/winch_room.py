@@ -50,6 +50,14 @@ def built_in(robot: Robot, constraints: Constraints, *, winches: int, cables: in
     return replace(constraints, winch_zones=zones, torque=min(own, _torque_to_hold(motor)))
 
 
+def limit_torque(constraints: Constraints) -> Constraints:
+    """The constraints with the torque that a motor of choice holds for long, wherever the winches stand."""
+    if constraints.motor == "auto":
+        return constraints
+    most = _torque_to_hold(Motor.choose(constraints.motor, ()))
+    return replace(constraints, torque=min(constraints.torque or math.inf, most))
+
+
 def find_holding_torque(robot: Robot, reached: Sequence[IKResult], *, motor: str = "auto") -> float | None:
     """Torque that the motor of a kit holds for long [N m], if poses ask for more; None if not, or for no motor."""
     if not any(winch.mount is Mount.BODY for winch in robot.winches):

@@ -13,7 +13,7 @@ from hydrostat.design.constraints import Constraints
 from hydrostat.design.design_cables import design_cables
 from hydrostat.design.request import RouteOptions
 from hydrostat.design.routes.finalists import kit_fits
-from hydrostat.design.winch_room import _example, built_in, find_holding_torque, find_no_room, winch_room
+from hydrostat.design.winch_room import _example, built_in, find_holding_torque, find_no_room, limit_torque, winch_room
 from hydrostat.design.zone import Zone
 from hydrostat.errors import InputError
 from hydrostat.fabrication import (
@@ -120,6 +120,9 @@ def test_a_motor_of_choice_decides_room_and_torque() -> None:
     held = built_in(wide, own, winches=1, cables=1)
     assert held.torque == pytest.approx(servo.largest_torque(), rel=0.1)
     assert built_in(wide, Constraints(motor="n20"), winches=1, cables=1).torque < 0.5 * held.torque
+    outside = limit_torque(replace(own, mount="world"))
+    assert outside.torque == held.torque
+    assert limit_torque(Constraints(torque=0.1)).torque == 0.1
     thin = replace(wide, body=replace(wide.body, thickness=0.01))
     with pytest.raises(InputError, match=r"no room for the motor .*STS3215"):
         built_in(thin, own, winches=1, cables=1)

@@ -31,7 +31,7 @@ from hydrostat.design.routes.thin import remove_via_points
 from hydrostat.design.skin_region import cable_region
 from hydrostat.design.stage_callback import StageCallback, ignore_stage
 from hydrostat.design.uncertainty import BuildTolerances
-from hydrostat.design.winch_room import built_in
+from hydrostat.design.winch_room import built_in, limit_torque
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.kernel import THREADS
 from hydrostat.progress import Progress
@@ -96,7 +96,7 @@ class RouteSearch:
         self.robot, self.request, self.progress, self.watch = robot, request, progress, watch
         self.hints, self.physics = hints, body
         self.winches, self.cables = int(request.winches), request.cables
-        self.constraints, self.options = request.constraints, request.route_options
+        self.constraints, self.options = limit_torque(request.constraints), request.route_options
         if self.constraints.built_in and not request.warm_start and not self.constraints.stand_outside(robot):
             self.constraints = built_in(robot, self.constraints, winches=self.winches, cables=self.cables)
         self.evaluator = Evaluator(

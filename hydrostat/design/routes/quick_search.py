@@ -22,7 +22,7 @@ from hydrostat.design.routes.search_rules import RULES
 from hydrostat.design.routes.sketch import draw_lines, sketches
 from hydrostat.design.skin_region import cable_region
 from hydrostat.design.uncertainty import BuildTolerances
-from hydrostat.design.winch_room import built_in
+from hydrostat.design.winch_room import built_in, limit_torque
 from hydrostat.robot import Marker, PoseTarget, Robot
 from hydrostat.simulation import BodyPhysics
 
@@ -62,7 +62,7 @@ class QuickSearch:
         self.request = request.fit_robot(self.robot)
         self.body = body or BodyPhysics(self.robot)
         self.winches, self.cables = int(request.winches), request.cables
-        own = request.constraints
+        own = limit_torque(request.constraints)
         inside = own.built_in and not own.stand_outside(self.robot)
         self.constraints = built_in(self.robot, own, winches=self.winches, cables=self.cables) if inside else own
         self._lines: dict[tuple[float, ...], list[Line]] = {}

@@ -99,20 +99,27 @@ export class Board {
     if (this.state !== "ready") return;
     const stops = ++this.stops;
     const bounds = this.order.map((i) => Math.max(1, Math.round(1000 * this.facts.motors[i].current)));
-    const beforeStop = (answer) => {
-      if (stops === this.stops && answer !== null) return answer;
-      this.stop();
-      throw new Error(answer === null ? "The board did not answer. Hold again to arm." : "Stopped. Hold to arm.");
+    const heard = (answer) => {
+      if (stops !== this.stops) {
+        this.stop();
+        throw new Error("Stopped. Hold to arm.");
+      }
+      if (answer === null) { // a reset board may have taken the line, and would take the next one for an old one
+        this.forget("The board did not answer.");
+        throw new Error(`The board did not answer. ${TAUT}`);
+      }
+      return answer;
     };
     // A reset board counts from 0 wherever it stands. It takes a line with an old number, and one that was armed is off.
-    if (!beforeStop(await this.ask("R", this.number)).startsWith("no old")) return this.forget();
-    const stands = this.parse(beforeStop(await this.ask("R")));
+    if (!heard(await this.ask("R", this.number)).startsWith("no old")) return this.forget();
+    const stands = this.parse(heard(await this.ask("R")));
     if (this.live && stands.state === "off") return this.forget();
     this.requireWithin(stands);
     this.live = true;
-    const answer = beforeStop(await this.ask(`A ${bounds.join(" ")}`)); // not sent again: a reset may be why it is silent
+    const answer = heard(await this.ask(`A ${bounds.join(" ")}`)); // not sent again: a reset may be why it is silent
     if (answer !== "ok") throw new Error(`The board refused: ${answer}.`);
-    const reading = this.parse(beforeStop(await this.surely("R")));
+    const reading = this.parse(heard(await this.ask("R")));
+    if (this.placesAt(reading.counts).some((place, i) => Math.abs(place - this.placesAt(stands.counts)[i]) > RANGE_TOLERANCE)) return this.forget();
     this.goal = goal;
     this.change("armed", "Armed. The robot follows the page.");
     if (this.read(reading)) this.timer = setTimeout(() => this.follow(), TURN);
@@ -134,11 +141,11 @@ export class Board {
     return counts.map((count, i) => taken(this.facts.motors[i], (count - this.zeros[i]) * ((2 * Math.PI) / this.facts.motors[i].counts)));
   }
 
-  /** Ask for the zero again, as the board was reset. */
-  forget() {
+  /** Ask for the zero again, as the board was reset, or may have been. */
+  forget(why = "The board was reset.") {
     this.stop();
     this.live = false;
-    this.change("new", `The board was reset. ${TAUT}`);
+    this.change("new", `${why} ${TAUT}`);
   }
 
   /** Send goals and read, again and again; whatever goes wrong stops the motors. */
