@@ -202,8 +202,10 @@ def hold_signals() -> Iterator[None]:
     finally:
         for number in ours:
             signal.signal(number, before[number])
-    if caught:
-        signal.raise_signal(caught[0])
+        for number in sorted(
+            set(caught), key=lambda number: number == signal.SIGINT
+        ):  # those that end the program first
+            signal.raise_signal(number)
 
 
 class _LastingOutput:

@@ -113,6 +113,8 @@ def test_what_is_painted_is_the_body(body: str, area: float, holes: int) -> None
         f'<mask id="c"><rect {WINDOW} fill="black"/></mask><g mask="url(#c)">{TEAL}</g>',
         '<clipPath id="c" clipPathUnits="objectBoundingBox"><rect width="1" height="1"/></clipPath>'
         f'<g clip-path="url(#c)">{TEAL}</g>',
+        f'<g clip-path="inset(5px)">{TEAL}</g>',
+        f'<clipPath id="c"><rect {FULL}/></clipPath><g clip-path="url(#c)" mask="url(#m)">{TEAL}</g>',
     ],
 )
 def test_a_clip_that_is_not_applied_is_noted(clip: str) -> None:

@@ -103,7 +103,7 @@ def mark_clips(root: ElementTree.Element) -> int:
     clips = {each.get("id", ""): each for each in root.iter() if _is_window(each)}
     sheet = _clips_of_names(root)
     number, unread = 0, 0
-    windows = {each.get("id", "") for each in root.iter() if _tag(each) in _WINDOWS and len(each)}
+    windows = {each.get("id", "") for each in root.iter() if _tag(each) in _WINDOWS}
     for parent in list(root.iter()):
         if _tag(parent) in _WINDOWS:
             continue
@@ -115,8 +115,9 @@ def mark_clips(root: ElementTree.Element) -> int:
             found = _URL.search(said)
             clip = clips.get(found[1]) if found else None
             if clip is None:
-                unread += found is not None and found[1] in windows
+                unread += said.strip() not in ("", "none") and (found is None or found[1] in windows)
                 continue
+            unread += bool(element.get("clip-path") and element.get("mask"))
             number += 1
             most -= sum(1 for _ in clip.iter())
             if most < 0:
