@@ -285,6 +285,8 @@ class DesignRequest:
                     known = list_choices("markers", markers, name)
                     raise InputError(f'pose "{pose.name}": unknown marker {quote(name)}. {known}')
         self.constraints.check(robot)
+        if robot.body.has_hysteresis:
+            raise InputError("material.hysteresis: not known to designs. Remove it for the design, then add it again.")
         if self.stuffed and robot.body.outline is None:
             raise InputError("filled: only for flat robots with a drawing. Remove it.")
         fitted = replace(self, uncertainty=self.uncertainty or BuildTolerances.of(robot.body))

@@ -109,20 +109,22 @@ class MarkerPredictor:
     def _path_slopes(self, found: MarkerPrediction, numbers: Vector) -> MarkerPrediction:
         """Prediction with slopes by the parameters from differences of all rows, each with its own history.
 
-        The adjoint holds the history of a pose, which the parameters change as well.
+        The adjoint holds the history of a pose, which the parameters change as well. It stays where a path of a
+        difference fails, and for numbers that are not fitted.
         """
         assert found.jacobian is not None
         assert found.force_jacobian is not None
         jacobian, force_jacobian = found.jacobian.copy(), found.force_jacobian.copy()
-        known = np.isfinite(self.measurements.known_forces)
         for index, unit in enumerate(np.eye(len(numbers))):
             less, more = (
                 MarkerPredictor(self.model, self.measurements).predict(numbers + step * unit, slopes=False)
                 for step in (-PATH_STEP, PATH_STEP)
             )
-            by_place, by_force = more.places - less.places, more.forces - less.forces
-            jacobian[..., index] = np.nan_to_num(by_place / (2 * PATH_STEP))
-            force_jacobian[..., index] = np.where(known, np.nan_to_num(by_force / (2 * PATH_STEP)), 0.0)
+            by_place = (more.places - less.places) / (2 * PATH_STEP)
+            by_force = (more.forces - less.forces) / (2 * PATH_STEP)
+            jacobian[..., index] = np.where(np.isfinite(by_place), by_place, jacobian[..., index])
+            known = np.isfinite(by_force) & np.isfinite(self.measurements.known_forces)
+            force_jacobian[..., index] = np.where(known, by_force, force_jacobian[..., index])
         return replace(found, jacobian=jacobian, force_jacobian=force_jacobian)
 
     def _changes(self, numbers: Vector, values: Values, robot: Robot) -> list["_Change"]:
@@ -150,6 +152,8 @@ class MarkerPredictor:
             pose = simulation.solve(contractions, start=start, strict=False)
             if pose.result.converged:
                 return pose
+            if simulation.assembly.has_history:  # from rest it would lose its history
+                return None
         pose = simulation.solve(contractions, strict=False)
         return pose if pose.result.converged else None
 

@@ -225,7 +225,7 @@ class Simulation:
 
     def _rubbing(self, pose: Equilibrium) -> tuple[FrictionCableEnergy, Stiffness]:
         if self.friction is None or self._more or sum(each.has_history for each in self.assembly.energies) > 1:
-            raise InputError("physics that remember the way have a derivative only for cables with friction alone")
+            raise InputError("derivatives follow the history of cables with friction, and of nothing else beside it")
         return self.friction.with_history(pose.history, pose.nodes, pose.controls), self._regular(pose)
 
     def response(

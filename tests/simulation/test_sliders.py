@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from builders import FOAM, gallery_robot, strip_mesh, strip_robot
 
+from hydrostat.design import DesignRequest
 from hydrostat.errors import InputError
 from hydrostat.mechanics import NeoHookean, SliderEnergy
-from hydrostat.robot import Slider, load_robot, save_robot
+from hydrostat.robot import Marker, PoseTarget, Slider, load_robot, save_robot
 from hydrostat.simulation import Simulation, find_modes
 
 SLIDERS = (Slider(young=20e3, strain=0.01), Slider(young=10e3, strain=0.04))
@@ -99,10 +100,17 @@ def test_files_and_bad_input(tmp_path: Path) -> None:
         find_modes(strip())
 
 
+def test_designs_refuse_hysteresis_before_they_search() -> None:
+    target = PoseTarget(name="up", targets={"tip": (0.19, 0.02)})
+    robot = replace(strip().robot, markers=(Marker(name="tip", at=(0.19, 0.0)),))
+    with pytest.raises(InputError, match=r"material\.hysteresis: not known to designs"):
+        DesignRequest(poses=(target,)).fit_robot(robot)
+
+
 def test_with_friction_no_derivative_is_given() -> None:
     robot = strip_robot(columns=4, rows=1)
     robot = replace(robot, body=replace(robot.body, material=replace(FOAM, hysteresis=SLIDERS)))
     robot = robot.with_network(robot.winches, [replace(cable, friction=0.2) for cable in robot.cables])
     simulation = Simulation(robot)
-    with pytest.raises(InputError, match="derivative only for cables with friction alone"):
+    with pytest.raises(InputError, match="derivatives follow the history of cables with friction"):
         simulation.jacobian(simulation.solve([0.005, 0.0]))

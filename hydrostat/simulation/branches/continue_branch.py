@@ -88,7 +88,7 @@ def continue_branch(
     if simulation.assembly.has_history:
         raise InputError(
             "with friction or hysteresis equilibria are no branch, for every way ends elsewhere; remove it to follow "
-            "one, or compare ways by path_dependence"
+            "one, or compare ways by hs.find_equilibria"
         )
     require_static_obstacles(simulation.robot, "a branch of equilibria")
     PinDrive.require_none(simulation.robot.drives, "branches of equilibria")
