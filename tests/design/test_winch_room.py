@@ -120,7 +120,7 @@ def test_a_motor_of_choice_decides_room_and_torque() -> None:
     held = built_in(wide, own, winches=1, cables=1)
     assert held.torque == pytest.approx(servo.largest_torque(), rel=0.1)
     assert built_in(wide, Constraints(motor="n20"), winches=1, cables=1).torque < 0.5 * held.torque
-    outside = limit_torque(replace(own, mount="world"))
+    outside = limit_torque(replace(own, mount=Mount.WORLD))
     assert outside.torque == held.torque
     assert limit_torque(Constraints(torque=0.1)).torque == 0.1
     thin = replace(wide, body=replace(wide.body, thickness=0.01))
