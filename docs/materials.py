@@ -78,8 +78,8 @@ form; the strain kept is the most that a bar keeps when released.
 
 {table}
 
-- **foams**: a foam maker's notes tell losses of 35 to 40 % for slabs of 20 kg/m^3, 30 to 35 % at 24 kg/m^3, 21 to 26 %
-  for dense reinforced foam, by the indentation test (quoted in a public record, the maker's paper not at hand). Shares
+- **foams**: a foam maker reports losses of 35 to 40 % for slabs of 20 kg/m^3, 30 to 35 % at 24 kg/m^3, 21 to 26 % for
+  dense reinforced foam, by the indentation test (quoted at second hand: we have not read the maker's paper). Shares
   and strains are assumed, such that the loss lies within these.
 - **polyester fibre**: assumed, no loss was found. Fibres slide on each other from the first squeeze on. Believe it
   within a factor of three.
