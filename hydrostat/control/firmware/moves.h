@@ -8,6 +8,7 @@
 #ifdef MOVE_ROWS
 #include <avr/pgmspace.h>
 #define HOLD_TICKS (2 * RATE)
+#define AIM_TICKS 5 /* from one goal to the next, as from a computer: goals in each tick make the current tremble */
 #define BOUNCE 5 /* ticks in which a button is steady */
 
 enum Phase { BY_COMPUTER, ARRIVE, PLAY, HOLD };
@@ -88,7 +89,8 @@ static void play_alone(void) {
             passed = 0;
             row++;
         }
-        aim_at_moves();
+        if (passed % AIM_TICKS == 0)
+            aim_at_moves();
         if (row >= MOVE_ROWS - 1)
             alone = HOLD;
     }
