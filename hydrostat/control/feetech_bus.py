@@ -84,6 +84,7 @@ STALL = 2.7
 SMALL, LARGE, SMALL_LIMIT, LARGE_LEAST, LITHIUM, EMPTY = 7.4, 12.0, 10.0, 9.0, 8.4, 8.0
 """Supplies that STS3215 are sold for, the greatest limit in the memory of those for the smaller, the least supply that
 we take for the larger (an empty pack of three lithium cells), two full lithium cells, eight empty NiMH cells [V]."""
+LARGE_MOST = 14.0  # greatest supply of a servo for 12 V, whatever its memory allows [V]
 FULL = 1000  # bound of torque that bounds nothing
 STANDING = 2000  # speed at which they come back to where they shall stand [steps/s]
 FARTHEST = 30719  # step that a servo without limits of angle may go to
@@ -201,7 +202,7 @@ class FeetechBus(ServoBus):
                     f"motor {number} allows supplies from {least:.1f} V up to {most:.1f} V, which is reversed. Set its "
                     f"registers {VOLTS} (greatest) and {VOLTS + 1} (least) by its label, in 0.1 V."
                 )
-            if volts > most:
+            if volts > min(most, LITHIUM if _read_rating(most) == SMALL else LARGE_MOST):
                 raise _tell_supply(number, *found[number])
         kinds = {_read_rating(most): number for number, (_, most, _) in found.items()}
         if len(kinds) > 1:

@@ -162,6 +162,8 @@ def test_who_is_not_ready_is_told() -> None:
     [
         (12.1, (4.0, 8.0), r"motor 2 is .* 7.4 V \(its memory allows 4.0 to 8.0 V\) and measures 12.1 V.*7.4 V.$"),
         (8.4, (4.0, 8.0), "motor 2 .* measures 8.4 V.* Two full lithium cells give 8.4 V: put a regulator"),
+        (9.5, (4.0, 10.0), "motor 2 is a servo for 7.4 V .* measures 9.5 V"),
+        (20.0, (4.0, 25.5), "motor 2 is a servo for 12 V .* measures 20.0 V"),
         (3.2, (4.0, 8.0), "motor 2 is a servo for 7.4 V .* measures 3.2 V"),
         (7.4, (8.0, 4.0), r"motor 2 allows supplies from 8.0 V up to 4.0 V, which is reversed. Set its registers 14"),
         (7.4, (4.0, 14.0), "motor 1 is a servo for 7.4 V, motor 2 one for 12 V. Use servos of one voltage"),
