@@ -72,6 +72,8 @@ def firmware(
     known = {each.key: each for each in MOTORS if each.counts}
     if motor is not None and motor not in known:
         raise InputError(f"--motor {motor}: unknown motor. Available: {', '.join(known)}. Or give --counts and --rpm.")
+    if moves is None and rate != 25:
+        raise InputError("--rate: needs --moves. Add it, or remove --rate.")
     folder = robot if robot.is_dir() else robot.parent
     loaded = read_robot(robot)
     if not loaded.winches:

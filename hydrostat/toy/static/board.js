@@ -56,7 +56,7 @@ export class Board {
     this.waiting = new Map();
     this.timer = 0;
     this.stops = 0; // how often it was told to stop or to arm
-    this.live = false; // whether the board may have been armed since its zero was set
+    this.mayBeArmed = false; // whether the board may have been armed since its zero was set
     this.places = facts.motors.map(() => 0); // cable taken in at the last reading [m]
     this.order = facts.motors.map((_, i) => i).sort((a, b) => facts.motors[a].number - facts.motors[b].number);
     this.zeros = facts.motors.map(() => 0);
@@ -79,18 +79,18 @@ export class Board {
 
   /** Refuse what is no board of ours, or one of another robot; a board that the port has reset begins after 2 s. */
   async identify() {
-    const answer = (await this.surely("I", 25)).split(" ");
+    const answer = (await this.askRepeatedly("I", 25)).split(" ");
     if (answer[0] !== "ok" || answer[1] !== "hydrostat" || answer.length < 7) throw new Error("This port has no hydrostat firmware.");
     if (answer[4] !== this.facts.robot) throw new Error(`The board was built for ${answer[4]}, not for this robot. Flash it again.`);
     if (Number(answer[5]) !== this.facts.motors.length) throw new Error(`The board has ${answer[5]} motors. Flash it again.`);
-    await this.must("O");
-    this.live = false;
+    await this.command("O");
+    this.mayBeArmed = false;
     this.change("new", `Connected. ${TAUT}`);
   }
 
   /** Take where the motors stand as the robot at rest; only this page knows it, so the board is not marked. */
   async setZero() {
-    this.zeros = this.parse(await this.surely("R")).counts;
+    this.zeros = this.parse(await this.askRepeatedly("R")).counts;
     this.change("ready", "Zero is set. Hold to arm.");
   }
 
@@ -113,9 +113,9 @@ export class Board {
     // A reset board counts from 0 wherever it stands. It takes a line with an old number, and one that was armed is off.
     if (!heard(await this.ask("R", this.number)).startsWith("no old")) return this.forget();
     const stands = this.parse(heard(await this.ask("R")));
-    if (this.live && stands.state === "off") return this.forget();
+    if (this.mayBeArmed && stands.state === "off") return this.forget();
     this.requireWithin(stands);
-    this.live = true;
+    this.mayBeArmed = true;
     const answer = heard(await this.ask(`A ${bounds.join(" ")}`)); // not sent again: a reset may be why it is silent
     if (answer !== "ok") throw new Error(`The board refused: ${answer}.`);
     const reading = this.parse(heard(await this.ask("R")));
@@ -144,7 +144,7 @@ export class Board {
   /** Ask for the zero again, as the board was reset, or may have been. */
   forget(why = "The board was reset.") {
     this.stop();
-    this.live = false;
+    this.mayBeArmed = false;
     this.change("new", `${why} ${TAUT}`);
   }
 
@@ -193,16 +193,16 @@ export class Board {
     clearTimeout(this.timer);
     this.stops++;
     if (this.state === "closed") return;
-    for (let i = 0; this.live && i < 3; i++) this.send("S"); // a line that a reset board takes would hide the reset
+    for (let i = 0; this.mayBeArmed && i < 3; i++) this.send("S"); // a line that a reset board takes would hide the reset
     if (this.state === "armed") this.change("ready", words);
   }
 
-  async must(words) {
-    const answer = await this.surely(words);
+  async command(words) {
+    const answer = await this.askRepeatedly(words);
     if (answer !== "ok") throw new Error(`The board refused: ${answer}.`);
   }
 
-  async surely(words, trials = 3) {
+  async askRepeatedly(words, trials = 3) {
     for (let i = 0; i < trials; i++) {
       const answer = await this.ask(words);
       if (answer !== null) return answer;
