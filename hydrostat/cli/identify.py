@@ -70,7 +70,9 @@ def identify(
         raise InputError('--fit "": name at least one parameter')
     if suggest is not None:
         if measurements is not None or out is not None or in_order:
-            raise InputError("--suggest: plans measurements and writes nothing. Remove TABLE.csv, --out, --in-order.")
+            raise InputError(
+                "--suggest: plans measurements and writes nothing. Remove TABLE.csv, --out and --in-order."
+            )
         _suggest(read_robot(robot), suggest, names, hang or [], tension)
         return
     if hang or tension is not None:

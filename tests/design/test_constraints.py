@@ -133,7 +133,7 @@ def test_what_is_locked_must_be_there() -> None:
     told = misfit({"locked_winches": ("up", "left")})
     assert told == 'constraints: locked_winches[1]: unknown winch "left". Available: up, down.'
     told = misfit({"locked_cables": ("up 1", "up 2")})
-    assert told == 'constraints: locked_cables[1]: unknown cable "up 2". Available: up 1, down 1.'
+    assert told == 'constraints: locked_cables[1]: unknown cable "up 2". Available: up 1, down 1. Did you mean "up 1"?'
     assert 'unknown cable "up 1"' in misfit({"locked_cables": ("up 1",)}, bare=True)
 
 

@@ -180,7 +180,7 @@ def test_friction_and_another_memory_go_together() -> None:
     assert pose.result.converged
     assert len(pose.history) == len(alone.solve(PULL).history) + 2
     assert (pose.tensions > 0).any()
-    with pytest.raises(InputError, match="remember the way"):
+    with pytest.raises(InputError, match="derivatives follow"):
         both.jacobian(pose)
 
 
