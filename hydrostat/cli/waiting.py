@@ -202,9 +202,7 @@ def hold_signals() -> Iterator[None]:
     finally:
         for number in ours:
             signal.signal(number, before[number])
-        for number in sorted(
-            set(caught), key=lambda number: number == signal.SIGINT
-        ):  # those that end the program first
+        for number in sorted(set(caught), key=lambda each: each == signal.SIGINT):  # the others end the program
             signal.raise_signal(number)
 
 

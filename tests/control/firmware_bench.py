@@ -5,13 +5,16 @@ import shutil
 import subprocess
 import tempfile
 import zlib
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
 import pytest
+from builders import strip_robot
 
 from hydrostat.control.firmware_build import BOARDS, build_firmware
 from hydrostat.control.firmware_bus import line_of
+from hydrostat.robot import Robot
 
 SOURCE = Path(__file__).with_name("winch_bench.c")
 FIRMWARE = Path(__file__).parents[2] / "hydrostat" / "control" / "firmware"
@@ -142,3 +145,11 @@ class Board:
             said = self.ask(words)
             self.run(0.03)
         return said
+
+
+def two_winch_strip() -> Robot:
+    """Two winches that take in 30 mm, on spools of 5 mm."""
+    strip = strip_robot(columns=4, rows=1)
+    winches = tuple(replace(each, travel=0.03, release=0.0, spool_radius=0.005) for each in strip.winches[:2])
+    names = {winch.name for winch in winches}
+    return replace(strip, winches=winches, cables=tuple(each for each in strip.cables if each.winch in names))

@@ -6,8 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders import strip_robot
-from firmware_bench import FIRMWARE, Board
+from firmware_bench import FIRMWARE, Board, two_winch_strip
 from typer.testing import CliRunner
 
 from hydrostat.cli.main import app
@@ -22,11 +21,7 @@ COUNTS = 1000.0
 
 @pytest.fixture
 def robot() -> Robot:
-    """Two winches that take in 30 mm, on spools of 5 mm."""
-    strip = strip_robot(columns=4, rows=1)
-    winches = tuple(replace(each, travel=0.03, release=0.0, spool_radius=0.005) for each in strip.winches[:2])
-    names = {winch.name for winch in winches}
-    return replace(strip, winches=winches, cables=tuple(each for each in strip.cables if each.winch in names))
+    return two_winch_strip()
 
 
 @pytest.fixture

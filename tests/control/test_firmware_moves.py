@@ -5,8 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders import strip_robot
-from firmware_bench import Board, folder
+from firmware_bench import Board, folder, two_winch_strip
 
 from hydrostat.control import BusLink, Calibration, Motors, Player, bake_moves
 from hydrostat.control.firmware_build import BOARDS, build_firmware, firmware_settings, robot_word
@@ -24,11 +23,7 @@ ZEROS = (-40.0, -25.0)
 
 @pytest.fixture
 def robot() -> Robot:
-    """Two winches that take in 30 mm, on spools of 5 mm."""
-    strip = strip_robot(columns=4, rows=1)
-    winches = tuple(replace(each, travel=0.03, release=0.0, spool_radius=0.005) for each in strip.winches[:2])
-    names = {winch.name for winch in winches}
-    return replace(strip, winches=winches, cables=tuple(each for each in strip.cables if each.winch in names))
+    return two_winch_strip()
 
 
 @pytest.fixture

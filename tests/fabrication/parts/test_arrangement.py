@@ -91,7 +91,8 @@ def test_a_body_thinner_than_stuffing_gives_is_refused_and_a_little_thinner_is_t
     for unit in of(thinnest / (1 + GIVES) + 0.1):
         assert unit.problems == ()
         assert any("which will bulge by" in text for text in unit.notes)
-    assert not any("bulge" in text for unit in of(thinnest + 0.1) for text in unit.notes)
+    assert any("will bulge by 1 mm" in text for unit in of(thinnest - 0.6) for text in unit.notes)
+    assert not any("bulge" in text for unit in of(thinnest - 0.4) for text in unit.notes)
 
 
 def test_a_motor_longer_than_the_body_is_refused():
