@@ -28,7 +28,8 @@ LOSSES = MappingProxyType(
         ),
         "polyethylene foam": (
             0.17,
-            "expanded polyethylene: 0.167 in a hobbyist's test (Audio qualia, new damping factors), frequency not stated",
+            "expanded polyethylene: 0.167 in a hobbyist's test (Audio qualia, new damping factors), frequency not"
+            " stated",
         ),
         "ecoflex 00-10": _SILICONE,
         "ecoflex 00-30": _SILICONE,
