@@ -39,7 +39,7 @@ def write_kit(network: "Network", folder: Path) -> "Kit":
     from hydrostat.fabrication import KitOptions, build_kit
 
     limits, robot = network.constraints, network.robot
-    options = KitOptions(force=True, tension=limits.tension_limit, torque=limits.torque, motor=network.motor)
+    options = KitOptions(force=True, tension=limits.tension_limit, torque=limits.torque)
     kit = build_kit(robot, options=options, added=tag_files(robot, options.paper))
     kit.write(folder)
     return kit
@@ -59,20 +59,8 @@ def designed_torque(robot: "Robot", folder: Path) -> float | None:
     return _design_limit(robot, folder, "torque_limit")
 
 
-def designed_motor(robot: "Robot", folder: Path) -> str:
-    """Key of the motor that a design was made for; "auto" without one."""
-    found = _design_value(robot, folder, "motor")
-    return found if isinstance(found, str) else "auto"
-
-
 def _design_limit(robot: "Robot", folder: Path, name: str) -> float | None:
     """A limit of the design that made a robot; None where there is no such design or no such limit."""
-    found = _design_value(robot, folder, name)
-    return found if isinstance(found, float) else None
-
-
-def _design_value(robot: "Robot", folder: Path, name: str) -> Any:
-    """A value of the score.json of the design that made a robot; None where there is none."""
     from hydrostat.robot import robot_hash
 
     own = robot_hash(robot)
@@ -80,7 +68,7 @@ def _design_value(robot: "Robot", folder: Path, name: str) -> Any:
         try:
             card = json.loads((place / "score.json").read_text(encoding="utf-8"))
             if own in {card["robot"], *(other["robot"] for other in card["alternatives"])}:
-                return float(card[name]) if isinstance(card.get(name), int) else card.get(name)
+                return None if card[name] is None else float(card[name])
         except (OSError, ValueError, KeyError, TypeError):
             continue
     return None
@@ -135,7 +123,7 @@ def print_poses(network: "Network", seconds: float) -> tuple[str, ...]:
         f"expected as-built error {1e3 * network.expected_error:.2f} mm{after} "
         f"({plural(network.num_evaluated, 'candidate')}, {seconds:.1f} s)"
     )
-    print(f"build: {BuildCost.of_robot(robot, network.ik_results, motor=network.motor)}")
+    print(f"build: {BuildCost.of_robot(robot, network.ik_results)}")
     if words := describe_cable_side(robot):
         print(f"cables: {words}")
     _print_stuffed(network)
@@ -189,7 +177,7 @@ def print_front(network: "Network") -> None:
         for name in ("winches", "cables", "as-built error", "motors", work, "price"):
             motors.add_column(name, justify="right")
         for winches, one in best.items():
-            effort = BuildCost.of_robot(one.robot, one.ik_results, motor=one.motor)
+            effort = BuildCost.of_robot(one.robot, one.ik_results)
             values = (f"{effort.motors} × {effort.motor}", f"{effort.minutes:.0f} min", f"{effort.price:.0f} USD")
             motors.add_row(str(winches), str(len(one.robot.cables)), f"{1e3 * one.expected_error:.2f} mm", *values)
         console.print(motors)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hydrostat.cli.design_results import designed_motor, designed_tension, designed_torque
+from hydrostat.cli.design_results import designed_tension, designed_torque
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
 from hydrostat.cli.options import parse_optional, positive
 from hydrostat.cli.waiting import progress_bar, read_robot
@@ -45,14 +45,13 @@ def fabricate(
         ),
     ] = None,
     motor: Annotated[
-        str | None,
+        str,
         typer.Option(
             metavar="NAME",
-            help="Motor model: n20, xl330, 25d, xc330, sts3215, sts3215-12v, or auto: the first of n20, xl330 and 25d "
-            "that is strong enough.",
-            show_default="that of the design, else auto",
+            help="Motor model: n20, xl330, 25d, xc330, sts3215, sts3215-12v, or auto: that of robot.toml, else the "
+            "first of n20, xl330 and 25d that is strong enough.",
         ),
-    ] = None,
+    ] = "auto",
     mould: Annotated[
         str | None,
         typer.Option(metavar="printed|silicone", help="Mold material for foam robots.", show_default="printed"),
@@ -91,6 +90,7 @@ def fabricate(
         parts=kits.PartOptions(
             cable=_millimeters("--line", line), clearance=_millimeters("--print-clearance", clearance)
         ),
+        motor=motor,
         step=step,
         force=force,
     )
@@ -98,8 +98,7 @@ def fabricate(
     began = time.perf_counter()
     loaded = read_robot(robot)
     kept = designed_tension(loaded, robot) if limit is None else None
-    chosen, torque = motor or designed_motor(loaded, robot), designed_torque(loaded, robot)
-    options = replace(options, tension=kept or limit, torque=torque, motor=chosen)
+    options = replace(options, tension=kept or limit, torque=designed_torque(loaded, robot))
     if mould is not None and options.method_for(loaded.body) is not kits.Method.FOAM:
         raise InputError("--mould: needs a foam body. Remove it, or add --method foam.")
     kit = _build_or_report(robot, loaded, options, out)

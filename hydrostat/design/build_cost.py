@@ -59,9 +59,7 @@ class BuildCost:
         return dict(vars(self))
 
     @staticmethod
-    def of_robot(
-        robot: Robot, reached: Sequence[IKResult], *, times: SewingTimes | None = None, motor: str = "auto"
-    ) -> "BuildCost":
+    def of_robot(robot: Robot, reached: Sequence[IKResult], *, times: SewingTimes | None = None) -> "BuildCost":
         """Count what a network takes; an "auto" motor follows from the tensions of the poses that it reaches.
 
         Cables in pairs are sewn twice: all but motors counts for both. Printed and cast bodies have no pairs.
@@ -76,7 +74,7 @@ class BuildCost:
         if motors:
             rows = [shaft_torques(robot, pose.pose.tensions) for pose in reached]
             torques = np.array(rows).reshape(-1, len(robot.winches))
-            chosen = find_motor(robot, torques.ravel().tolist(), KitOptions(motor=motor))
+            chosen = find_motor(robot, torques.ravel().tolist(), KitOptions())
             used, most = {cable.winch for cable in cables}, 1e3 * torques.max(axis=0, initial=0.0)
             pairs = zip(robot.winches, most.tolist(), strict=True)
             power = power_plan({winch.name: torque for winch, torque in pairs if winch.name in used}, chosen)

@@ -87,7 +87,7 @@ def find_network(
 
     `watch` receives each better network that is found on the way. `record` keeps the steps of a search for routes, and
     begins with those that it knows; parts with contact have none. The cables of a flat robot that does not say where
-    they run are designed to be sewn in pairs (`assign_cable_sides`), and the network's robot says so.
+    they run are designed to be sewn in pairs (`assign_cable_sides`), and the network's robot says so, and its motor.
 
     Raises:
         InputError: a request that does not fit the robot.
@@ -96,7 +96,7 @@ def find_network(
     if not isinstance(robot, Robot):
         raise InputError(f"a network is found for a Robot, such as load_robot gives, not for {robot!r:.60}")
     PinDrive.require_none(robot.drives, "cable design")
-    stated, told = assign_cable_sides(robot), progress or no_progress
+    stated, told = replace(assign_cable_sides(robot), motor=request.motor_for(robot)), progress or no_progress
     fitted = request.fit_robot(stated)
     if fitted.stuffed:
         check_stuffed(stated)  # told before the search
@@ -173,9 +173,7 @@ def evaluate_stuffed(found: Network, *, progress: Progress) -> Network:
     Compared are alternatives with no more winches and no more cables, of which a kit can be made. Stopped
     (KeyboardInterrupt), the best of those that were looked at is returned.
     """
-    first = Alternative(
-        robot=found.robot, ik_results=found.ik_results, expected_error=found.expected_error, motor=found.motor
-    )
+    first = Alternative(robot=found.robot, ik_results=found.ik_results, expected_error=found.expected_error)
     winches, cables = size_of(found)
     small = [one for one in found.alternatives if size_of(one)[0] <= winches and size_of(one)[1] <= cables]
     fitting = [one for one in small if kit_fits(one)]

@@ -19,7 +19,7 @@ def draw_first_cable(robot: Robot) -> Robot | None:
 
     The body is flat. The cable keeps the usual constraints, and a kit can be made.
     """
-    constraints = Constraints()
+    constraints = Constraints(motor=robot.motor)
     places, outline = find_winch_places(robot, constraints), robot.body.outline
     if outline is None or not len(places) or not robot.markers:
         return None

@@ -76,7 +76,6 @@ class Alternative:
     robot: Robot  # with that network
     ik_results: tuple[IKResult, ...]  # what it reaches of each pose
     expected_error: float  # rms error expected of a robot as it is built, its commands played open loop [m]
-    motor: str = "auto"  # key of the motor of its winches, as the constraints ask
 
     @property
     def rms_error(self) -> float:
@@ -130,11 +129,6 @@ class Network:
     def constraints(self) -> Constraints:
         """Constraints of the network."""
         return self.request.constraints
-
-    @property
-    def motor(self) -> str:
-        """Key of the motor of its winches; "auto" for the weakest that fits."""
-        return self.constraints.motor
 
     @property
     def rms_error(self) -> float:

@@ -289,8 +289,17 @@ class DesignRequest:
             raise InputError("material.hysteresis: not known to designs. Remove it for the design, then add it again.")
         if self.stuffed and robot.body.outline is None:
             raise InputError("filled: only for flat robots with a drawing. Remove it.")
-        fitted = replace(self, uncertainty=self.uncertainty or BuildTolerances.of(robot.body))
-        return replace(fitted, constraints=_with_own(self.constraints, robot)) if self.warm_start else fitted
+        trees = self.method.grows_trees  # these keep to no motor
+        constraints = self.constraints if trees else replace(self.constraints, motor=self.motor_for(robot))
+        return replace(
+            self,
+            uncertainty=self.uncertainty or BuildTolerances.of(robot.body),
+            constraints=_with_own(constraints, robot) if self.warm_start else constraints,
+        )
+
+    def motor_for(self, robot: Robot) -> str:
+        """Key of the motor of the winches: that of the constraints, else that of the robot."""
+        return robot.motor if self.constraints.motor == "auto" else self.constraints.motor
 
     def as_values(self) -> dict[str, Any]:
         """Counts, constraints and options as plain values, poses by their names."""

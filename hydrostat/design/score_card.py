@@ -23,10 +23,10 @@ def score_card(network: Network, *, version: str) -> dict[str, Any]:
         "rms_error_as_built": network.expected_error,
         "rms_error_corrected": corrected_error(network),
         "rms_error_at_rest": network.rest_error,
-        "craft": BuildCost.of_robot(robot, network.ik_results, motor=network.motor).as_values,
+        "craft": BuildCost.of_robot(robot, network.ik_results).as_values,
         "tension_limit": network.constraints.tension_limit,
         "torque_limit": network.constraints.torque,
-        "motor": network.motor,
+        "motor": robot.motor,
         "poses": {pose.pose_target.name: _pose_results(robot, pose) for pose in network.ik_results},
         "winches": _winches(robot),
         "cables": _cables(robot),
@@ -123,7 +123,7 @@ def _by_winches(one: Alternative | Network) -> dict[str, Any]:
         "winches": len(one.robot.winches),
         "cables": len(one.robot.cables),
         "rms_error_as_built": one.expected_error,
-        "craft": BuildCost.of_robot(one.robot, one.ik_results, motor=one.motor).as_values,
+        "craft": BuildCost.of_robot(one.robot, one.ik_results).as_values,
     }
 
 
@@ -133,7 +133,7 @@ def _alternative(other: Alternative) -> dict[str, Any]:
         "cables": len(other.robot.cables),
         "rms_error": other.rms_error,
         "rms_error_as_built": other.expected_error,
-        "craft": BuildCost.of_robot(other.robot, other.ik_results, motor=other.motor).as_values,
+        "craft": BuildCost.of_robot(other.robot, other.ik_results).as_values,
         "poses": {pose.pose_target.name: pose.rms_error for pose in other.ik_results},
         "robot": robot_hash(other.robot),
     }

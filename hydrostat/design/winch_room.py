@@ -58,12 +58,12 @@ def limit_torque(constraints: Constraints) -> Constraints:
     return replace(constraints, torque=min(constraints.torque or math.inf, most))
 
 
-def find_holding_torque(robot: Robot, reached: Sequence[IKResult], *, motor: str = "auto") -> float | None:
+def find_holding_torque(robot: Robot, reached: Sequence[IKResult]) -> float | None:
     """Torque that the motor of a kit holds for long [N m], if poses ask for more; None if not, or for no motor."""
     if not any(winch.mount is Mount.BODY for winch in robot.winches):
         return None
     torques = Demand.of_results(robot, reached).torques
-    chosen = find_motor(robot, torques, KitOptions(motor=motor))
+    chosen = find_motor(robot, torques, KitOptions())
     return _torque_to_hold(chosen) if float(torques.max()) > chosen.largest_torque() else None
 
 
@@ -77,7 +77,7 @@ def find_no_room(robot: Robot) -> str | None:
 
     A design of one winch may put all of its cables there, and its unit is longer the more cables it holds.
     """
-    constraints, usual = Constraints(), DesignRequest.cables
+    constraints, usual = Constraints(motor=robot.motor), DesignRequest.cables
     if constraints.stand_outside(robot) or not has_known_room(robot.body):
         return None
     return None if winch_room(robot, constraints, usual)[1] is not None else _no_room(robot, constraints, usual, 1)

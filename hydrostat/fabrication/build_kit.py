@@ -67,7 +67,7 @@ def build_kit(
     check_type(robot, Robot, "a kit is made of a Robot, such as load_robot gives")
     check_type(options, (KitOptions, type(None)), "options must be KitOptions(...)")
     options, tell = options or KitOptions(), _Stages(progress)
-    Motor.choose(options.motor, ())  # a name that is wrong is told before the work
+    Motor.choose(options.motor_for(robot), ())  # a name that is wrong is told before the work
     if options.step:
         require_cad()
     plan = _plan(robot, options, tell)

@@ -8,7 +8,7 @@ from typing import Any
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
 from hydrostat.given import check_number
-from hydrostat.robot import Body
+from hydrostat.robot import Body, Robot
 
 PRINTED = ("tpu 85a",)  # materials of filament: a body of them is printed in one piece
 CASTABLE = ("flexfoam-it", "ecoflex", "dragon skin")  # beginnings of names of materials that are poured
@@ -189,7 +189,7 @@ class KitOptions:
 
     Attributes:
         method: fabrication method. None: print for filament, foam for what is poured, plush for a flat or stuffed body.
-        motor: key of a motor in the table, or "auto": the first that is strong enough.
+        motor: key of a motor in the table, or "auto": that of the robot, else the first that is strong enough.
         tension: maximum cable tension in its poses [N], for the choice of motors and lines. None: the limit of its
             winches. A designed robot keeps to the limit of its design.
         torque: maximum torque of a winch in its poses [N m], as the tension.
@@ -226,6 +226,10 @@ class KitOptions:
             check_number(name, value, unit)
             if not (math.isfinite(value) and value > 0):
                 raise InputError(f"{name} must be above 0 {unit}, not {value:g} {unit}")
+
+    def motor_for(self, robot: Robot) -> str:
+        """Key of the motor: that of the options, else that of the robot."""
+        return robot.motor if self.motor == "auto" else self.motor
 
     def method_for(self, body: Body) -> Method:
         """Method by which a body is made."""

@@ -39,14 +39,15 @@ def find_refusals(robot: Robot, demand: Demand | None = None, *, options: KitOpt
 def find_motor(robot: Robot, torques: Iterable[float], options: KitOptions) -> Motor:
     """Choose the motor of a kit for the torques of its poses [N m] (InputError: an unknown key).
 
-    For "auto" it is the weakest that holds the poses for long and whose units fit into the body, none above another.
-    If there is none, it is the strongest that does so for seconds. Else units may lie above each other. If no motor
-    fits, the choice is that of `choose_motor`.
+    For "auto" it is that of the robot. For a robot without one it is the weakest that holds the poses for long and
+    whose units fit into the body, none above another. If there is none, it is the strongest that does so for seconds.
+    Else units may lie above each other. If no motor fits, the choice is that of `choose_motor`.
     """
     inside = any(winch.mount is Mount.BODY for winch in robot.winches)
     needed = [float(torque) for torque in torques]
-    chosen = Motor.choose(options.motor, needed, inside=inside, winches=len(robot.winches))
-    if options.motor != "auto" or not inside:
+    key = options.motor_for(robot)
+    chosen = Motor.choose(key, needed, inside=inside, winches=len(robot.winches))
+    if key != "auto" or not inside:
         return chosen
     most = max(needed, default=0.0) - 1e-12
     steady = [motor for motor in MOTORS if motor.largest_torque() >= most]

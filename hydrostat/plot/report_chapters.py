@@ -302,7 +302,7 @@ def _winch_table(best: Mapping[int, Alternative | Network]) -> Html:
     """Table of as-built error and effort by the number of winches."""
     rows = []
     for winches, one in best.items():
-        effort = BuildCost.of_robot(one.robot, one.ik_results, motor=one.motor)
+        effort = BuildCost.of_robot(one.robot, one.ik_results)
         made = (effort.motors, f"{effort.minutes:.0f}", f"{effort.price:.0f}")
         rows.append((winches, len(one.robot.cables), millimeters(one.expected_error), *made))
     work = BuildCost.cable_work(next(iter(best.values())).robot)
@@ -347,7 +347,7 @@ def _pictures(network: Network, others: Sequence[Alternative]) -> Html:
         robot = other.robot
         head = f"{plural(len(robot.winches), 'winch')}, {plural(len(robot.cables), 'cable')}"
         figure = draw_stage(robot, like=network.robot, frame=frame)
-        effort = BuildCost.of_robot(robot, other.ik_results, motor=other.motor)
+        effort = BuildCost.of_robot(robot, other.ik_results)
         told = f": {_rms_text(other.expected_error)} once built; {effort}"
         pictures.append(picture(figure, f"alternative-{index}", head, told))
     return grid(*pictures, kind="tiny")

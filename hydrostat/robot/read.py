@@ -119,8 +119,9 @@ class RobotReader(TablesFile):
         body = self._body()
         gravity = self.at("", lambda: _gravity(table.gravity, body.mesh.dim))
         contact = None if table.contact is None else self.at("contact", lambda: self._contact(table.contact))
-        options = {"length_unit": self.unit, "gravity": gravity, "face": table.face, "contact": contact}
-        return self.at("", lambda: Robot(name=table.name, body=body, poses=poses, **options, **parts))
+        given = {"name": table.name, "length_unit": self.unit, "face": table.face, "motor": table.motor}
+        options = {"gravity": gravity, "contact": contact, **given}
+        return self.at("", lambda: Robot(body=body, poses=poses, **options, **parts))
 
     def _pin(self, entry: Any) -> Pin:
         return Pin(

@@ -49,6 +49,7 @@ class Robot:
         length_unit: length unit of the coordinates in its file.
         gravity: acceleration along each axis of the body [m/s^2], or a word such as "-y"; None: weightless.
         face: side of a flat body on which its cables run, or a word such as "pairs"; None: unspecified.
+        motor: key of the motor of its winches, such as "sts3215"; "auto": the weakest that fits.
         contact: self-contact and obstacle contact; None: disabled, so the body passes through itself.
         obstacles: rigid objects next to the body.
         loads: forces at points of the body, and hung masses.
@@ -70,6 +71,7 @@ class Robot:
     length_unit: str = "mm"
     gravity: tuple[float, ...] | None = None
     face: Face | None = None
+    motor: str = "auto"
     contact: Contact | None = None
     obstacles: tuple[Obstacle, ...] = ()
     loads: tuple[Load, ...] = ()
@@ -210,6 +212,7 @@ class Robot:
             check_type(getattr(self, what), (tuple, list), f"{what} must be several, such as () for none")
             for part in getattr(self, what):
                 check_type(part, kind, f"{what} must be {kind.__name__} records")
+        check_type(self.motor, str, 'motor must be a key, such as "sts3215"')
         check_type(self.poses, Mapping, "poses must be given by name")
         for pose in self.poses.values():
             check_type(pose, PoseTarget, "poses must be Pose records")
@@ -363,9 +366,7 @@ class Robot:
 
     def _check_inside(self, named: Sequence[tuple[str, Point]]) -> None:
         """Reject points outside the body; one search for all points is far quicker than one for each."""
-        if not named:
-            return
-        distances = self.body.distances(np.array([point for _, point in named]))
+        distances = self.body.distances(np.array([point for _, point in named])) if named else ()
         for (key, point), distance in zip(named, distances, strict=True):
             if distance > 0:
                 out = f"lies {self._text(float(distance))} outside the body"

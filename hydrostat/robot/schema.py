@@ -318,6 +318,7 @@ class RobotTable(TomlTable):
     length_unit: Text = "mm"
     gravity: Gravity | None = None
     face: Face | None = None
+    motor: Name = "auto"
     body: BodyTable
     pin: list[PinTable] = Field([])
     drive: list[DriveTable] = Field([])

@@ -100,6 +100,8 @@ def robot_text(robot: Robot) -> str:
         document["gravity"] = writer.gravity(robot.gravity)
     if robot.face is not None:
         document["face"] = str(robot.face)
+    if robot.motor != "auto":
+        document["motor"] = robot.motor
     document["body"] = writer.body(robot.body)
     if robot.contact is not None:
         document["contact"] = writer.contact(robot.contact)

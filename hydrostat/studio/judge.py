@@ -165,12 +165,13 @@ class Judge:
 
 
 def _alike(one: Robot, other: Robot) -> bool:
-    """True if two robots have the same body, network and poses, so that facts about one hold for the other."""
+    """True if two robots have the same body, network, poses and motor, so that facts about one hold for the other."""
     return one is other or (
         one.body is other.body
         and one.winches == other.winches
         and one.cables == other.cables
         and one.poses == other.poses
+        and one.motor == other.motor
     )
 
 

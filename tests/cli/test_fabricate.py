@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from plush import near_the_edge
 
-from hydrostat.cli.design_results import designed_motor, designed_tension
+from hydrostat.cli.design_results import designed_tension
 from hydrostat.errors import InputError
 from hydrostat.project import Wishes, Work
 from hydrostat.robot import load_robot, robot_hash, save_robot
@@ -103,13 +103,11 @@ def test_check_refuses_with_the_same_sentences(run: Run, tmp_path: Path) -> None
 def test_the_tension_of_its_design_is_beside_a_robot(tmp_path: Path) -> None:
     """Oracles: the score.json of a design and of another robot, for the network and for an alternative."""
     robot = near_the_edge()
-    card = {"robot": robot_hash(robot), "alternatives": [{"robot": "other"}], "tension_limit": 12.5, "motor": "xl330"}
+    card = {"robot": robot_hash(robot), "alternatives": [{"robot": "other"}], "tension_limit": 12.5}
     out = tmp_path / "out"
     (out / "alternatives").mkdir(parents=True)
     (out / "score.json").write_text(json.dumps(card))
     assert designed_tension(robot, out / "robot") == 12.5
-    assert designed_motor(robot, out / "robot") == "xl330"
-    assert designed_motor(robot, tmp_path / "alone") == "auto"
     assert designed_tension(robot.with_network(robot.winches, robot.cables[:1]), out / "robot") is None
     assert designed_tension(robot, tmp_path / "alone" / "robot" / "deep") is None
     card |= {"robot": "other", "alternatives": [{"robot": robot_hash(robot)}]}

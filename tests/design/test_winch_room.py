@@ -9,6 +9,7 @@ from builders import gallery_robot, mesh_body, strip_mesh, strip_robot
 from moulds.mould_robots import blob_body, foam_robot, slab_body
 from plot.designs import plain_network
 
+from hydrostat.design import DesignRequest, QuickSearch, draw_first_cable
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.design_cables import design_cables
 from hydrostat.design.request import RouteOptions
@@ -128,6 +129,19 @@ def test_a_motor_of_choice_decides_room_and_torque() -> None:
         built_in(thin, own, winches=1, cables=1)
     with pytest.raises(InputError, match="motor must be one of auto, n20"):
         Constraints(motor="servo")
+
+
+def test_the_motor_of_a_robot_decides_too() -> None:
+    """Oracle: refusals of a kit with that motor: none for its own first cable, some for that of a small motor."""
+    robot = replace(gallery_robot("starfish"), motor="sts3215")
+    assert find_refusals(draw_first_cable(robot)) == ()
+    assert find_refusals(replace(draw_first_cable(replace(robot, motor="auto")), motor="sts3215"))
+    pose = robot.poses["wave"]
+    quick = QuickSearch(robot, DesignRequest(poses=(pose,), winches=1, cables=1))
+    assert (quick.robot.motor, quick.constraints.motor) == ("sts3215", "sts3215")
+    given = QuickSearch(robot, DesignRequest(poses=(pose,), winches=1, cables=1, constraints=Constraints(motor="n20")))
+    assert given.robot.motor == "n20"
+    assert given.constraints.torque < quick.constraints.torque
 
 
 def test_torque_to_hold_is_asked_for_where_a_motor_holds_for_seconds_only() -> None:

@@ -25,6 +25,7 @@ from hydrostat.fabrication import (
     PatternOptions,
     UnbuildableError,
     build_kit,
+    find_motor,
     write_kit,
 )
 from hydrostat.fabrication.sheets.legible import typeset
@@ -136,6 +137,16 @@ def test_letter_paper_and_stages():
 def test_an_unknown_motor_is_refused():
     with pytest.raises(InputError, match="n20, "):
         build_kit(crossed(), options=KitOptions(motor="v8"))
+    with pytest.raises(InputError, match='unknown motor "v9"'):
+        build_kit(replace(crossed(), motor="v9"))
+
+
+def test_a_written_kit_has_the_motor_of_its_robot(tmp_path):
+    """Oracle: the key that robot.toml names; options come first."""
+    robot = replace(crossed(), motor="xl330")
+    kit = write_kit(robot, tmp_path, options=KitOptions(force=True))
+    assert (kit.motor, find_motor(robot, (), KitOptions(motor="n20")).key) == ("xl330", "n20")
+    assert json.loads((tmp_path / "manifest.json").read_text())["motor"] == "xl330"
 
 
 @pytest.mark.parametrize(

@@ -39,6 +39,15 @@ def test_an_old_file_says_nothing_and_keeps_its_comments_when_it_learns_to(tmp_p
     assert load(tmp_path, text).face is Face.PAIRS
 
 
+def test_the_motor_of_a_file_reads_back(tmp_path: Path) -> None:
+    """Oracle: the line of the file; a robot without one has none, and keeps its hash."""
+    robot = load(tmp_path, edit(GOOD, "format = 1", 'format = 1\nmotor = "sts3215"'))
+    assert robot.motor == "sts3215"
+    assert 'motor = "sts3215"' in robot_text(robot).splitlines()
+    assert "motor" not in robot_text(replace(robot, motor="auto"))
+    assert load(tmp_path, merged_text(GOOD, robot)).motor == "sts3215"
+
+
 def test_what_is_no_face_is_told(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r'face.*"table" is not known; allowed are: front, back, pairs or middle'):
         load(tmp_path, edit(GOOD, "format = 1", 'format = 1\nface = "table"'))

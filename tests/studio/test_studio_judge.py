@@ -62,6 +62,9 @@ def test_other_wishes_and_other_kits_are_judged_anew(squid: Robot) -> None:
     assert judge.of(squid, WISHES) is None
     strong = judged(judge, squid)
     assert {one.weight for one in strong} > {one.weight for one in usual}
+    of_robot = replace(squid, motor="25d")
+    judge.options = KitOptions()
+    assert {one.text for one in judged(judge, of_robot)} == {one.text for one in strong}
     judge.options = KitOptions()
     assert judge.of(squid, WISHES) == usual
 

@@ -109,5 +109,4 @@ def _all(network: Network) -> tuple[Alternative, ...]:
         robot=network.robot,
         ik_results=network.ik_results,
         expected_error=network.expected_error,
-        motor=network.motor,
     ), *network.alternatives

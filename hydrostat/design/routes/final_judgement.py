@@ -73,7 +73,7 @@ class FinalJudgement:
 
         Winches stand farther apart, so that stronger motors fit, or poses ask for less torque.
         """
-        torque = find_holding_torque(network.robot, network.ik_results, motor=network.motor)
+        torque = find_holding_torque(network.robot, network.ik_results)
         if torque is None:
             return None
         return self._hold_apart(network) or self._hold_weaker(network, torque)
@@ -94,7 +94,7 @@ class FinalJudgement:
             held = self.finalists.judge(refined.layout) if hopeful else None
             if held is None or held.expected_error > allowed:
                 continue
-            if kit_fits(held) and find_holding_torque(held.robot, held.ik_results, motor=held.motor) is None:
+            if kit_fits(held) and find_holding_torque(held.robot, held.ik_results) is None:
                 return held
         return None
 

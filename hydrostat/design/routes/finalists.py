@@ -18,7 +18,7 @@ from hydrostat.design.routes.reach_from_rest import reach_from_rest
 from hydrostat.design.routes.refine import pushed_back
 from hydrostat.design.routes.search_rules import RULES
 from hydrostat.errors import NotConvergedError
-from hydrostat.fabrication import Demand, KitOptions, find_refusals
+from hydrostat.fabrication import Demand, find_refusals
 from hydrostat.ik import IKOptions
 from hydrostat.robot import Robot, limit_travels
 from hydrostat.simulation import Simulation, cable_sensitivities
@@ -60,8 +60,7 @@ class Finalists:
         if pulls(robot, reached, self.constraints):
             return None
         built = expected_error(simulation, reached, self.evaluator.uncertainty)
-        motor = self.constraints.motor
-        return Alternative(robot=robot, ik_results=tuple(reached), expected_error=built, motor=motor)
+        return Alternative(robot=robot, ik_results=tuple(reached), expected_error=built)
 
     def safe_robot(self, layout: Layout) -> Robot:
         """The robot of a layout, coordinates rounded, new winches with travels that are safe."""
@@ -138,7 +137,7 @@ def kit_fits(network: Alternative | Network) -> bool:
     """True if the kit of a network would not be refused; each network is examined once."""
     if network not in _EXAMINED:
         demand = Demand.of_results(network.robot, network.ik_results)
-        refusals = find_refusals(network.robot, demand, options=KitOptions(motor=network.motor))
+        refusals = find_refusals(network.robot, demand)
         _EXAMINED[network] = not refusals
     return _EXAMINED[network]
 

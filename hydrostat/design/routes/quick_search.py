@@ -58,11 +58,11 @@ class QuickSearch:
 
     def __init__(self, robot: Robot, request: DesignRequest, body: BodyPhysics | None = None) -> None:
         """Prepare a body (InputError: the request does not fit it, or it is too thin for the constraints)."""
-        self.robot = assign_cable_sides(robot)
+        self.robot = replace(assign_cable_sides(robot), motor=request.motor_for(robot))
         self.request = request.fit_robot(self.robot)
         self.body = body or BodyPhysics(self.robot)
         self.winches, self.cables = int(request.winches), request.cables
-        own = limit_torque(request.constraints)
+        own = limit_torque(self.request.constraints)
         inside = own.built_in and not own.stand_outside(self.robot)
         self.constraints = built_in(self.robot, own, winches=self.winches, cables=self.cables) if inside else own
         self._lines: dict[tuple[float, ...], list[Line]] = {}

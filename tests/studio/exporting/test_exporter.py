@@ -143,7 +143,9 @@ def test_results_belong_to_the_robot_they_were_made_of(exporter: Exporter) -> No
 
 @pytest.mark.slow
 def test_failed_work_says_why(exporter: Exporter) -> None:
-    exporter.options = replace(exporter.options, motor="none such")
+    """The motor that robot.toml names reaches the kit of the studio."""
+    document = exporter._document
+    document.change("name a motor", robot=replace(document.robot, motor="none such"))
     exporter.make_kit()
     finished(exporter)
     assert exporter.kit is None
