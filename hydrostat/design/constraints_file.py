@@ -70,7 +70,6 @@ ZONES = {"winch_zone": "winch_zones", "keep_out": "keep_out", "passive_zone": "p
 RENAMED = {"turn": "max_turn", "longest": "max_length", "still": "passive_zone", "built": "tolerances"}
 """Keys of older files, which are still read, and their present names."""
 
-_OLD_KEY = re.compile(rf"^([ 	]*\[{{0,2}}[ 	]*)({'|'.join(RENAMED)})(?=[ 	]*[\].=])", re.MULTILINE)
 _KINDS = {"mirror": Axis, "locked_winches": list[Name], "locked_cables": list[Part], bool: Choice}
 _QUANTITIES = {"m": Length, "degrees": Angle, "N": Force, "N m": Torque, "": Number}
 
@@ -132,15 +131,29 @@ class _ConstraintsReader(TablesFile):
     empty = None
 
     def __init__(self, file: Path, text: str, robot: Robot) -> None:
-        old = dict.fromkeys(found[2] for found in _OLD_KEY.finditer(text))
-        if old:
-            keys = ", ".join(f"{key} is now {RENAMED[key]}" for key in old)
-            warnings.warn(f"{file}: renamed keys: {keys}", HydrostatWarning, stacklevel=3)
-        super().__init__(file, _OLD_KEY.sub(lambda found: found[1] + RENAMED[found[2]], text))
+        self.old: dict[str, str] = {}  # older names of keys that are there, by their present ones
+        super().__init__(file, text)
         self.robot, self.unit = robot, robot.length_unit
+        if self.old:
+            keys = ", ".join(f"{old} is now {key}" for key, old in self.old.items())
+            warnings.warn(f"{file}: renamed keys: {keys}", HydrostatWarning, stacklevel=3)
 
     def form(self) -> type[TomlTable]:
         return ConstraintsTable
+
+    def written_key(self, key: str) -> str:
+        """The key with the older name that the file has for it."""
+        return re.sub(r"^\w+", lambda name: self.old.get(name[0], name[0]), key)
+
+    def _data(self) -> dict[str, Any]:
+        """File as tomllib reads it, with the present names of keys."""
+        data = super()._data()
+        for old in [key for key in data if key in RENAMED]:
+            if RENAMED[old] in data:
+                self.fail(old, f"is now {RENAMED[old]}, which is there too. Remove one.")
+            self.old[RENAMED[old]] = old
+            data[RENAMED[old]] = data.pop(old)
+        return data
 
     def constraints(self) -> Constraints:
         """The constraints that the text describes, which fit the robot."""

@@ -63,9 +63,13 @@ class TablesFile(ABC):
                 self.fail(f"{key}.{place[0]}".removeprefix("."), message[place.end() :])
             self.fail(key if otherwise is None else otherwise, message)
 
+    def written_key(self, key: str) -> str:
+        """The key as the file has it."""
+        return key
+
     def fail(self, key: str, message: str, line: int | None = None) -> NoReturn:
         """Complain of a key (InputError: always)."""
-        line = line or find_line(self.text, key)
+        line = line or find_line(self.text, self.written_key(key))
         where = f"{self.file}{f', line {line}' if line else ''}"
         told = key + message if message.startswith((" ", ":")) else f"{key}: {message}" if key else message
         longest = 400  # characters of a complaint, its file and line not counted
@@ -101,7 +105,7 @@ class TablesFile(ABC):
             self.fail("", f"not TOML of {self.kind}: a number is too large or has too many digits")
 
 
-_HEADER = re.compile(r"\s*\[\[?\s*([A-Za-z_][\w.]*)\s*\]")
+_HEADER = re.compile(r"""\s*\[\[?\s*["']?([A-Za-z_][\w.]*)["']?\s*\]""")
 _STEP = re.compile(r"(\w+)(?:\[(\d+)\])?(?:\[\d+\])*(?:\.|(?=\W|$))")
 
 

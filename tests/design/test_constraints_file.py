@@ -163,6 +163,16 @@ def test_keys_of_older_files_are_read_and_named_anew(file: Path) -> None:
     file.write_text('\nturn = "200 deg"')
     with pytest.warns(HydrostatWarning), pytest.raises(InputError, match="line 2: max_turn must be"):
         read_constraints(file, strip_robot())
+    file.write_text('\'longest\' = "1 m"\n"built" = { spool = 0.01 }\nstill = [{ at = [20, 5], radius = 10 }]')
+    with pytest.warns(HydrostatWarning, match="longest is now max_length, built is now tolerances, still is now"):
+        read = read_constraints(file, strip_robot())
+    assert (read.max_length, len(read.passive_zones)) == (1.0, 1)
+    file.write_text('[["still"]]\nat = [20, 5]\nradius = 10\n[["still"]]\nat = [20, 5]\nradius = "wide"')
+    with pytest.raises(InputError, match=r"line 6: passive_zone\[1\]\.radius"):
+        read_constraints(file, strip_robot())
+    file.write_text('max_turn = "60 deg"\nturn = "50 deg"')
+    with pytest.raises(InputError, match=r"line 2: turn: is now max_turn, which is there too\. Remove one\."):
+        read_constraints(file, strip_robot())
 
 
 @pytest.mark.parametrize(
