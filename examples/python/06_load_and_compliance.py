@@ -2,7 +2,7 @@
 Loads and compliance
 ====================
 
-At the end you have the compliance of an arm's tip in a pose, and a hung mass that confirms it.
+At the end you have the compliance of an arm's tip in a pose, a force that confirms it, and the force for a place.
 """
 
 # %%
@@ -30,6 +30,11 @@ error = float(np.linalg.norm(moved - compliance @ force) / np.linalg.norm(moved)
 print(f"moved {1e3 * np.linalg.norm(moved):.3f} mm, predicted to {100 * error:.1f} %")
 
 # %%
-# 0.5 N is no longer small.
-load = hs.Load(name="thread", marker="left", force=(0.0, -0.5))
-figure = hs.Simulation(replace(robot, loads=(load,))).solve({"left": 0.012}).plot()
+# 0.5 N is no longer small. As a control, the force in newtons is a number that the solver takes or finds.
+load = hs.Load(name="thread", marker="left", force=(0.0, -1.0), drive="thread")
+drive = hs.LoadDrive(name="thread", min=0.0, max=2.0)
+pulled = hs.Simulation(replace(robot, loads=(load,), drives=(drive,)))
+figure = pulled.solve({"left": 0.012, "thread": 0.5}).plot()
+found = hs.solve_ik(pulled, {"left": pose.markers["left"] + (0.0, -0.005)})
+taken, pull = 1e3 * found.pose.contractions["left"], found.pose.drives["thread"]
+print(f"tip 5 mm lower: winch {taken:.1f} mm, thread {pull:.2f} N")

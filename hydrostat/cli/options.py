@@ -205,9 +205,9 @@ def _contraction(text: str) -> tuple[str, float]:
 
 
 def moves(robot: "Robot", texts: Sequence[str] | None) -> dict[str, float]:
-    """Angles [rad] and travels [m] by drive, from texts such as "leg=30deg" (InputError: a text or drive that is none).
+    """Angles [rad], travels [m] and shares of loads by drive, from texts such as "leg=30deg".
 
-    A warning is printed for a drive beyond its limits.
+    Raises InputError: a text or drive that is none. A warning is printed for a drive beyond its limits.
     """
     from hydrostat.robot import PinDrive
 
@@ -220,7 +220,7 @@ def moves(robot: "Robot", texts: Sequence[str] | None) -> dict[str, float]:
         if name in found:
             raise InputError(f'--move: "{name}" is given twice. Give each name once.')
         try:
-            found[name] = PinDrive.parse_value(value, turns=drives[name].turns)
+            found[name] = drives[name].parse(value)
         except InputError as error:
             raise InputError(f"--move {text}: {error}") from None
         if drives[name].turns and abs(found[name]) > 2 * math.pi:

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from hydrostat.mechanics.cable_friction import FrictionCableEnergy
     from hydrostat.mechanics.capstan import ViaPointTurns
     from hydrostat.mechanics.contact import ContactEnergy
+    from hydrostat.mechanics.controlled_load import ControlledLoad
     from hydrostat.mechanics.drive_energy import DriveEnergy
     from hydrostat.mechanics.energy import ContactForces, Energy, LowRankStiffness, Stencils
     from hydrostat.mechanics.factorization import Analysis, Backend, Factorization
@@ -50,6 +51,7 @@ __all__ = [
     "CarriedWarp",
     "ContactEnergy",
     "ContactForces",
+    "ControlledLoad",
     "DriveEnergy",
     "Energy",
     "Factorization",

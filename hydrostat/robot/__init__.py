@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from hydrostat.robot.hole_note import describe_filled_holes
     from hydrostat.robot.inflated import describe_cable_side, inflated_robot, sewn_robot, sewn_sides
     from hydrostat.robot.load import Load
+    from hydrostat.robot.load_drive import LoadDrive
     from hydrostat.robot.marker import Marker, PoseTarget
     from hydrostat.robot.material import FOAM_POISSON_LIMIT, FoamTerm, Material, Relaxation, Slider
     from hydrostat.robot.materials import FOAMS, MATERIALS, get_material
@@ -53,6 +54,7 @@ __all__ = [
     "Face",
     "FoamTerm",
     "Load",
+    "LoadDrive",
     "Marker",
     "Material",
     "Mount",

@@ -14,6 +14,7 @@ from hydrostat.robot.cable import Cable
 from hydrostat.robot.cable_side import Face
 from hydrostat.robot.load import Load
 from hydrostat.robot.pin import Pin
+from hydrostat.robot.pin_drive import PinDrive
 from hydrostat.robot.robot import Robot
 
 
@@ -66,6 +67,8 @@ def inflated_robot(robot: Robot, face: Face | str | None = None, *, element_size
     face = Face(face or robot.face or Face.FRONT)
     body = _blown_up(robot.body, element_size)
     flat = robot.gravity
+    loads = tuple(_lift_load(load) for load in robot.loads if load.pressure is None)  # its holes are open now
+    scaled = {load.drive for load in loads}
     return replace(
         robot,
         body=body,
@@ -80,7 +83,8 @@ def inflated_robot(robot: Robot, face: Face | str | None = None, *, element_size
         gravity=None if flat is None else (*flat, 0.0),
         face=None,
         obstacles=(),
-        loads=tuple(_lift_load(load) for load in robot.loads if load.pressure is None),  # its holes are open now
+        loads=loads,
+        drives=tuple(drive for drive in robot.drives if isinstance(drive, PinDrive) or drive.name in scaled),
         sensors=(),  # their faces and the sides to which they bend are those of a flat body
         rods=tuple(replace(rod, points=tuple(map(_raise_place, rod.points))) for rod in robot.rods),
     )

@@ -30,6 +30,7 @@ class Load:
         moment: moment on the elements there [N m]: one number in the plane, from x to y, or one about each axis.
         path: keyframes of a motion: times [s] and the share of the load then, linear between them, constant before and
             after. Without a path, and in statics, all of it acts.
+        drive: name of the `LoadDrive` whose value is the share that acts; None without one.
 
     Raises:
         InputError: not one of `at` and `marker`, not one of `force`, `mass`, `pressure` and `moment`, or a number out
@@ -44,6 +45,7 @@ class Load:
     pressure: float | None = None
     moment: tuple[float, ...] | None = None
     path: tuple[tuple[float, float], ...] = ()
+    drive: str | None = None
 
     def __post_init__(self) -> None:
         check_name(self.name)
@@ -57,6 +59,8 @@ class Load:
             self._check_moment(self.moment)
         if self.path:
             self._check_path()
+        if self.drive is not None and (self.path or self.mass is not None):
+            raise InputError(f"drive: not available with {'path' if self.path else 'mass'}. Remove one of them.")
         if self.pressure is not None:
             if self.at is None:
                 raise InputError("pressure needs at, a point in the hole of the body that it fills")

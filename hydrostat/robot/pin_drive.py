@@ -12,6 +12,8 @@ from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.given import Point, check_name, check_number, check_point, list_choices
 from hydrostat.robot.cable import Cable
+from hydrostat.robot.load import Load
+from hydrostat.robot.load_drive import LoadDrive, check_load_drives
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.winch import Winch
 
@@ -57,14 +59,13 @@ class PinDrive:
         self._set_limits()
 
     def _set_limits(self) -> None:
-        unit = "rad" if self.turns else "m"
         for key, sign in (("min", -1), ("max", 1)):
             if (value := getattr(self, key)) is None:
                 if not self.turns:
                     raise InputError('a slide needs its travel, such as min = "0 mm" and max = "20 mm"')
                 object.__setattr__(self, key, sign * math.pi)
                 continue
-            check_number(key, value, unit)
+            check_number(key, value, self.unit)
             if not 0 <= sign * value < math.inf:
                 raise InputError(f"{key} must not be {'above' if sign < 0 else 'below'} 0, where the robot rests")
             if self.turns and abs(value) > _LARGEST_TURN:
@@ -74,6 +75,11 @@ class PinDrive:
     def turns(self) -> bool:
         """True for a rotation, whose value is an angle [rad]; False for a slide [m]."""
         return self.slide is None
+
+    @property
+    def unit(self) -> str:
+        """Unit of its value: rad or m."""
+        return "rad" if self.turns else "m"
 
     @property
     def limits(self) -> tuple[float, float]:
@@ -118,13 +124,13 @@ class PinDrive:
         return first, np.cross(axis, first)
 
     @staticmethod
-    def require_none(drives: "Sequence[PinDrive]", what: str) -> None:
+    def require_none(drives: "Sequence[PinDrive | LoadDrive]", what: str) -> None:
         """Reject a robot with drives where only its winches are controls (InputError: it has one)."""
         if drives:
             raise InputError(f'drives, such as "{drives[0].name}", are not available in {what}. Remove them.')
 
     @staticmethod
-    def check_values(drives: "Sequence[PinDrive]", values: Iterable[float]) -> list[str]:
+    def check_values(drives: "Sequence[PinDrive | LoadDrive]", values: Iterable[float]) -> list[str]:
         """Drives out of their limits, in words; empty where none is."""
         hair = 1e-9  # Tolerance for rounding errors [rad or m]
         told = []
@@ -136,7 +142,7 @@ class PinDrive:
         return told
 
     @staticmethod
-    def check_radians(drives: "Sequence[PinDrive]", values: Vector) -> None:
+    def check_radians(drives: "Sequence[PinDrive | LoadDrive]", values: Vector) -> None:
         """Reject angles that are degrees (InputError: more than a turn)."""
         for drive, value in zip(drives, values, strict=True):
             if drive.turns and abs(value) > _LARGEST_TURN:
@@ -144,6 +150,10 @@ class PinDrive:
                     f'the angle of drive "{drive.name}", {value:g} rad, is more than a turn; angles are in radians: '
                     "30 degrees are 0.5236"
                 )
+
+    def parse(self, text: str) -> float:
+        """Value of a text [rad or m], as `parse_value` reads it."""
+        return self.parse_value(text, turns=self.turns)
 
     @staticmethod
     def parse_value(text: str, *, turns: bool) -> float:
@@ -155,21 +165,29 @@ class PinDrive:
 
 
 def check_drives(
-    drives: Sequence[PinDrive], pins: Sequence[Pin], winches: Sequence[Winch], cables: Sequence[Cable], dim: int
+    drives: Sequence[PinDrive | LoadDrive],
+    driven: tuple[Sequence[Pin], Sequence[Load]],
+    winches: Sequence[Winch],
+    cables: Sequence[Cable],
+    dim: int,
 ) -> None:
-    """Reject drives that move no pin, pins of an unknown drive, names given twice and directions of another space."""
+    """Reject drives that move no pin or load, unknown drives, names given twice and directions of another space."""
+    pins, loads = driven
+    check_load_drives([drive for drive in drives if isinstance(drive, LoadDrive)], loads)
     if drives and any(cable.friction for cable in cables):
         raise InputError("drive[0]: not available with cable friction. Remove friction from the cables.")
-    names = [drive.name for drive in drives]
+    names = [drive.name for drive in drives if isinstance(drive, PinDrive)]
     used, taken = {pin.drive for pin in pins}, {winch.name for winch in winches}
     for index, pin in enumerate(pins):
         if pin.drive is not None and pin.drive not in names:
-            known = list_choices("drives", names)
+            known = list_choices("drives of pins", names)
             raise InputError(f'pin[{index}].drive: unknown drive "{pin.drive}". {known}')
     for index, drive in enumerate(drives):
         if drive.name in taken:
             raise InputError(f'drive[{index}].name: "{drive.name}" is already the name of a drive or winch')
         taken.add(drive.name)
+        if isinstance(drive, LoadDrive):
+            continue
         key = "slide" if drive.at is None else "at"
         if (count := len(drive.slide or drive.at or ())) != dim:
             raise InputError(f"drive[{index}].{key} has {count} coordinates, but the body has {dim}")

@@ -18,6 +18,7 @@ from hydrostat.robot.contact import ClosedMesh, Contact, Obstacle, closed_mesh
 from hydrostat.robot.element_kind import MaterialLaw
 from hydrostat.robot.gravity import gravity_along
 from hydrostat.robot.load import Load
+from hydrostat.robot.load_drive import LoadDrive
 from hydrostat.robot.marker import Marker, PoseTarget
 from hydrostat.robot.material import FoamTerm, Material, Relaxation, Slider
 from hydrostat.robot.materials import get_material
@@ -131,13 +132,15 @@ class RobotReader(TablesFile):
             **_given_keys(entry, "stiffness", "drive"),
         )
 
-    def _drive(self, entry: Any) -> PinDrive:
+    def _drive(self, entry: Any) -> PinDrive | LoadDrive:
+        if entry.at is None and entry.slide is None and entry.axis is None:
+            return _load_drive(entry)
         given: dict[str, Any] = {} if entry.at is None else {"at": self.point(entry.at)}
         for key in ("axis", "slide"):
             if (way := getattr(entry, key)) is not None:
                 given[key] = tuple(float(value) for value in way)
         for key, text in _given_keys(entry, "min", "max").items():
-            given[key] = _drive_value(key, text, turns=entry.slide is None)
+            given[key] = _drive_value(key, str(text), turns=entry.slide is None)
         return PinDrive(name=entry.name, **given)
 
     def _contact(self, entry: Any) -> Contact:
@@ -178,7 +181,9 @@ class RobotReader(TablesFile):
         if entry.moment is not None:
             force["moment"] = tuple(entry.moment) if isinstance(entry.moment, list) else (entry.moment,)
         path = tuple((key.time, float(key.share)) for key in entry.path)
-        return Load(name=entry.name, **at, **force, path=path, **_given_keys(entry, "marker", "mass", "pressure"))
+        return Load(
+            name=entry.name, **at, **force, path=path, **_given_keys(entry, "marker", "mass", "pressure", "drive")
+        )
 
     def _rod(self, entry: Any) -> Rod:
         given = _given_keys(entry, "diameter", "young", "axial_stiffness", "bending_stiffness")
@@ -337,6 +342,15 @@ def _gravity(entry: Any, dim: int) -> tuple[float, ...] | None:
     if entry is None:
         return None
     return gravity_along(entry, dim) if isinstance(entry, str) else tuple(entry)
+
+
+def _load_drive(entry: Any) -> LoadDrive:
+    """Drive that has no place, so that it scales loads."""
+    if not all(isinstance(limit, Decimal) for limit in (entry.min, entry.max)):
+        raise InputError(
+            "give at (pins turn about it), slide (they slide along it), or min and max without unit (it scales loads)"
+        )
+    return LoadDrive(name=entry.name, min=float(entry.min), max=float(entry.max))
 
 
 def _drive_value(key: str, text: str, *, turns: bool) -> float:

@@ -19,6 +19,7 @@ from hydrostat.robot.cable_side import Face
 from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape
 from hydrostat.robot.gravity import check_gravity, gravity_along
 from hydrostat.robot.load import Load, check_loads
+from hydrostat.robot.load_drive import LoadDrive
 from hydrostat.robot.marker import Marker, PoseTarget
 from hydrostat.robot.material import Material
 from hydrostat.robot.materials import get_material
@@ -39,9 +40,8 @@ class Robot:
     Attributes:
         name: name of the robot.
         body: soft body.
-        pins: boundary conditions; together they must exclude rigid motion. None: the robot lies on the ground, an
-            obstacle.
-        drives: actuators that move pins, in the order of every array of drive values.
+        pins: boundary conditions that together exclude rigid motion. None: the robot lies on the ground, an obstacle.
+        drives: actuators that move pins or scale loads, in the order of every array of drive values.
         winches: winches in the order of every array of contractions.
         cables: cables in the order of every array of tensions; a cable without a name gets one.
         markers: tracked points.
@@ -63,7 +63,7 @@ class Robot:
     name: str
     body: Body
     pins: tuple[Pin, ...]
-    drives: tuple[PinDrive, ...] = ()
+    drives: tuple[PinDrive | LoadDrive, ...] = ()
     winches: tuple[Winch, ...] = ()
     cables: tuple[Cable, ...] = ()
     markers: tuple[Marker, ...] = ()
@@ -101,7 +101,7 @@ class Robot:
         if self.gravity is not None:
             check_gravity(self.gravity, self.body.mesh.dim)
         self._check_pins()
-        check_drives(self.drives, self.pins, self.winches, self.cables, self.body.mesh.dim)
+        check_drives(self.drives, (self.pins, self.loads), self.winches, self.cables, self.body.mesh.dim)
         self._check_contact()
         self._check_markers_and_poses()
         self._check_inner_parts()
@@ -211,7 +211,7 @@ class Robot:
         for what, kind in _PARTS.items():
             check_type(getattr(self, what), (tuple, list), f"{what} must be several, such as () for none")
             for part in getattr(self, what):
-                check_type(part, kind, f"{what} must be {kind.__name__} records")
+                check_type(part, kind, f"{what} must be {getattr(kind, '__name__', 'drive')} records")
         check_type(self.motor, str, 'motor must be a key, such as "sts3215"')
         check_type(self.poses, Mapping, "poses must be given by name")
         for pose in self.poses.values():
@@ -389,7 +389,7 @@ def _find_part(kind: str, kinds: str, parts: Iterable[_Part], name: str) -> _Par
 
 _PARTS = {
     "pins": Pin,
-    "drives": PinDrive,
+    "drives": (PinDrive, LoadDrive),
     "winches": Winch,
     "cables": Cable,
     "markers": Marker,

@@ -192,8 +192,8 @@ class DriveTable(TomlTable):
     at: Coordinates | None = None
     axis: Coordinates | None = None
     slide: Coordinates | None = None
-    min: Text | None = None
-    max: Text | None = None
+    min: Text | Number | None = None
+    max: Text | Number | None = None
 
 
 class WinchTable(TomlTable):
@@ -283,6 +283,7 @@ class LoadTable(TomlTable):
     pressure: Pressure | None = None
     moment: Torque | Annotated[list[Torque], Field(min_length=3, max_length=3)] | None = None
     path: list[LoadKeyframeTable] = Field([])
+    drive: Text | None = None
 
 
 class RodTable(TomlTable):

@@ -19,6 +19,7 @@ from hydrostat.robot.contact import Contact, Obstacle
 from hydrostat.robot.element_kind import ElementKind, MaterialLaw, Plane, Volume
 from hydrostat.robot.gravity import direction_of
 from hydrostat.robot.load import Load
+from hydrostat.robot.load_drive import LoadDrive
 from hydrostat.robot.material import FoamTerm, Material, Relaxation, Slider
 from hydrostat.robot.materials import FOAMS, MATERIALS
 from hydrostat.robot.part import BodyPart
@@ -282,6 +283,8 @@ class _Writer:
             entry["moment"] = moment if len(moment) > 1 else moment[0]
         if load.path:
             entry["path"] = self._array(map(self.load_keyframe, load.path))
+        if load.drive is not None:
+            entry["drive"] = load.drive
         return entry
 
     def rod(self, rod: Rod) -> dict[str, Any]:
@@ -330,8 +333,10 @@ class _Writer:
             entry["drive"] = pin.drive
         return entry
 
-    def drive(self, drive: PinDrive) -> dict[str, Any]:
+    def drive(self, drive: PinDrive | LoadDrive) -> dict[str, Any]:
         entry: dict[str, Any] = {"name": drive.name}
+        if isinstance(drive, LoadDrive):
+            return entry | {"min": drive.min, "max": drive.max}
         if drive.at is not None:
             entry["at"] = self.point(drive.at)
         for key in ("axis", "slide"):

@@ -37,7 +37,7 @@ class Equilibrium(Tabular):
         history: history variables of the physics: cable slip at each point with friction so far and the anchors of the
             skin on obstacles with friction [m]; empty without friction.
         robot: robot that is in this pose.
-        drives: value of each drive: angle [rad] or travel [m].
+        drives: value of each drive: angle [rad], travel [m] or share of loads.
         carried: unknowns of moving obstacles [m]: position and axes of each; empty if no obstacle moves.
     """
 
@@ -184,7 +184,7 @@ def pose_columns(state: Any) -> Columns:
     names = name_values(robot)
     columns = named_columns("contraction", names["contractions"], np.atleast_2d(state.contractions), "m")
     for drive, value in zip(robot.drives, state.drives, strict=True):
-        columns[f"drive_{drive.name}_{'rad' if drive.turns else 'm'}"] = np.array([float(value)])
+        columns[f"drive_{drive.name}_{drive.unit}"] = np.array([float(value)])
     columns |= marker_columns({name: np.atleast_2d(place) for name, place in state.markers.items()})
     return columns | named_columns("tension", names["tensions"], np.atleast_2d(state.tensions), "N")
 

@@ -1,7 +1,6 @@
 """Files of poses (JSON) and of motions (NumPy), written and read."""
 
 import json
-import math
 import shutil
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -53,11 +52,11 @@ def pose_facts(robot: Robot, pose: Equilibrium) -> dict[str, Any]:
 
 
 def _drive_facts(pose: Equilibrium) -> dict[str, dict[str, float]]:
-    """Angle or travel of each drive."""
-    return {
-        drive.name: {"angle_deg": math.degrees(value)} if drive.turns else {"travel_mm": 1e3 * float(value)}
-        for drive, value in zip(pose.robot.drives, pose.drives, strict=True)
-    }
+    """Angle, travel or share of each drive."""
+    keys, facts = {"rad": "angle_deg", "m": "travel_mm", "share": "share"}, {}
+    for drive, value in zip(pose.robot.drives, pose.drives, strict=True):
+        facts[drive.name] = {keys[drive.unit]: drive.column[1] * float(value)}
+    return facts
 
 
 def _sensor_facts(simulation: Simulation, pose: Equilibrium) -> dict[str, Any]:

@@ -71,7 +71,7 @@ class Simulation:
         self.route_points: RoutePoints = route_points(robot)
         self.cables = cable_energy(robot, self.route_points)
         self.friction = friction_energy(robot, self.route_points)
-        more = [self.friction or self.cables, *drive_energies(robot, self.body.pins), *energies]
+        more = [self.friction or self.cables, *drive_energies(robot, self.body), *energies]
         self.assembly: Assembly = self.body.assembly.with_added_energies(more, control_count=robot.num_controls)
         self._more = tuple(energies)
         springs = [*(cable.stiffness for cable in robot.cables), *(energy.stiffest for energy in energies)]

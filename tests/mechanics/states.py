@@ -10,6 +10,7 @@ from hydrostat.geometry import Mesh, locate
 from hydrostat.mechanics import (
     CableEnergy,
     CableSegments,
+    ControlledLoad,
     DriveEnergy,
     Energy,
     FibreEnergy,
@@ -205,6 +206,12 @@ def moment(dim: int, random: np.random.Generator) -> State:
     return State(energy, deform(mesh, random), np.zeros(CONTROLS))
 
 
+def controlled(dim: int, random: np.random.Generator, of: Callable[[int, np.random.Generator], State]) -> State:
+    """A load of which a control lets a share act."""
+    state = of(dim, random)
+    return State(ControlledLoad(state.energy, 1), state.nodes, random.uniform(-1.5, 1.5, CONTROLS))
+
+
 def edge_fibres(dim: int, random: np.random.Generator) -> State:
     mesh = rough_mesh(dim, random)
     energy = FibreEnergy(stencils=mesh.edges, weights=np.tile([-1.0, 1.0], (len(mesh.edges), 1)))
@@ -230,6 +237,8 @@ ENERGIES: dict[str, Callable[[int, np.random.Generator], State]] = {
     "weight": weight,
     "pressure": pressure,
     "moment": moment,
+    "controlled pressure": lambda dim, random: controlled(dim, random, pressure),
+    "controlled moment": lambda dim, random: controlled(dim, random, moment),
     "rod": lambda dim, random: rod(dim, random, bent=False),
     "rod that is bent at rest": lambda dim, random: rod(dim, random, bent=True),
     "fibres on edges": edge_fibres,

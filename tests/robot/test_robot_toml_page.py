@@ -15,7 +15,7 @@ PAGE = (ROOT / "docs" / "robot_toml.md").read_text(encoding="utf-8")
 
 def test_robot_toml_of_its_page_is_read(tmp_path: Path) -> None:
     """Oracle: the numbers of its lines."""
-    first, foam, viscous, sliding = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
+    first, driven, foam, viscous, sliding = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
     (tmp_path / "starfish.svg").write_text((ROOT / "examples" / "starfish" / "starfish.svg").read_text())
     (tmp_path / "robot.toml").write_text(first)
     robot = load_robot(tmp_path)
@@ -24,6 +24,8 @@ def test_robot_toml_of_its_page_is_read(tmp_path: Path) -> None:
     assert robot.contact is not None
     assert robot.contact.friction == 0.4
     assert robot.obstacles[0].friction == 0.6
+    (tmp_path / "robot.toml").write_text(f"{first}\n{driven}")
+    assert load_robot(tmp_path).drives[1].limits == (-0.5, 2.0)
     lines = [line for line in first.splitlines() if not line.startswith("material")]
 
     def read(table: str) -> Material:

@@ -14,7 +14,7 @@ from hydrostat.ik.ik_result import IKResult, IKStatus
 from hydrostat.ik.search.linear_model import channels
 from hydrostat.ik.search.problem import InverseProblem, InverseState, ModelStep
 from hydrostat.mechanics import NewtonResult
-from hydrostat.robot import PinDrive, PoseTarget
+from hydrostat.robot import LoadDrive, PinDrive, PoseTarget
 from hydrostat.simulation import Equilibrium
 
 SearchProgress = Callable[[int, float], None]
@@ -358,7 +358,7 @@ def limits_that_hold(search: InverseSearch, found: Descent) -> tuple[str, ...]:
     return tuple(words)
 
 
-def drive_at_end(drive: PinDrive, value: float, hair: float) -> list[str]:
+def drive_at_end(drive: PinDrive | LoadDrive, value: float, hair: float) -> list[str]:
     """Limit at which a drive stands, in words; empty within its limits."""
     low, high = drive.limits
     ends = {"maximum": value >= high - hair, "minimum": value <= low + hair}

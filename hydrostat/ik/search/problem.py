@@ -156,7 +156,7 @@ class InverseProblem:
         """
         contractions = self.bounds.spread @ values
         allowed = self.simulation.solver.force_tolerance(result.nodes, contractions) if history is None else np.inf
-        sharp = result.residual <= allowed if history is None else whole
+        sharp = bool(result.residual <= allowed) if history is None else whole
         nodes = result.nodes if sharp or history is not None else self._resting(result, contractions)
         posture = posture_of(self.simulation, nodes, contractions, history)
         errors: dict[str, float] = {}

@@ -12,8 +12,9 @@ from hydrostat.geometry import locate
 from hydrostat.mechanics import Assembly, CableEnergy, Stiffness
 from hydrostat.robot import Material, Robot
 from hydrostat.simulation.body_physics import BodyPhysics
-from hydrostat.simulation.drive_energies import drive_energies
+from hydrostat.simulation.drive_energies import pin_drives
 from hydrostat.simulation.equilibrium import Equilibrium
+from hydrostat.simulation.load_energies import driven_loads
 from hydrostat.simulation.route_points import RoutePoints, RouteSlopes
 
 
@@ -178,8 +179,8 @@ def _check_shape(name: str, given: np.ndarray, shape: tuple[int, ...]) -> np.nda
 
 def by_body(body: BodyPhysics, pose: Equilibrium, field: Nodes) -> dict[str, Any]:
     """Sensitivities by materials, thickness and stiffness of pins, by their names in `Sensitivity`."""
-    works = _parameter_works(body, pose.nodes, field)
-    for moved in drive_energies(pose.robot, body.pins):
+    works = _parameter_works(body, pose, field)
+    for moved in pin_drives(pose.robot, body.pins):
         works["support_stiffness"] = works["support_stiffness"] + moved.support_work(field, pose.controls)
     materials = pose.robot.body.materials
     shear, squeeze = (_add(np.zeros(len(materials)), works.get(name, np.zeros(0))) for name in ("mu", "lame"))
@@ -208,12 +209,14 @@ def by_body(body: BodyPhysics, pose: Equilibrium, field: Nodes) -> dict[str, Any
     }
 
 
-def _parameter_works(body: BodyPhysics, nodes: Nodes, field: Nodes) -> dict[str, Vector]:
+def _parameter_works(body: BodyPhysics, pose: Equilibrium, field: Nodes) -> dict[str, Vector]:
     """Sums of the works of all energies by names of parameters."""
+    found = [energy.parameter_work(pose.nodes, field) for energy in body.assembly.energies]
+    driven = driven_loads(pose.robot, body.rest_unknowns)
+    found += [load.parameter_work_at(pose.nodes, field, pose.controls) for load in driven]
     works: dict[str, Vector] = {}
-    for energy in body.assembly.energies:
-        for name, work in energy.parameter_work(nodes, field).items():
-            works[name] = _add(works.get(name, np.zeros(0)), work)
+    for name, work in (item for each in found for item in each.items()):
+        works[name] = _add(works.get(name, np.zeros(0)), work)
     return works
 
 
@@ -279,6 +282,7 @@ def by_routes(
 
 def _load_gradients(pose: Equilibrium, field: Nodes) -> Points:
     """Derivatives by the forces of loads; a pressure or moment is no force at a point, so its row is 0."""
+    shares: dict[str | None, float] = dict(zip((drive.name for drive in pose.robot.drives), pose.drives, strict=True))
     sensitivities = locate(pose.robot.body.mesh, pose.robot.load_points()).positions(field[: len(pose.nodes)])
     sensitivities[[load.force is None and load.mass is None for load in pose.robot.loads]] = 0.0
-    return sensitivities
+    return sensitivities * np.array([shares.get(load.drive, 1.0) for load in pose.robot.loads])[:, None]

@@ -78,7 +78,7 @@ class BatchResult(Tabular):
         robot, count = self.robot, len(self.robot.winches)
         columns = named_columns("contraction", [w.name for w in robot.winches], self.contractions[:, :count], "m")
         for drive, values in zip(robot.drives, self.contractions[:, count:].T, strict=True):
-            columns[f"drive_{drive.name}_{'rad' if drive.turns else 'm'}"] = values
+            columns[f"drive_{drive.name}_{drive.unit}"] = values
         columns |= marker_columns({m.name: self.markers[:, row] for row, m in enumerate(robot.markers)})
         return columns | named_columns("tension", [cable.name for cable in robot.cables], self.tensions, "N")
 
