@@ -30,9 +30,9 @@ COLORS = 128
 
 
 @contextmanager
-def studio(robot: str | None) -> Iterator[str]:
-    """A studio that runs; its address."""
-    command = [sys.executable, "-c", "from hydrostat.cli.main import main; main()", "studio", "--no-browser"]
+def studio(robot: str | None, *options: str) -> Iterator[list[str]]:
+    """A studio that runs; its address, and that of the teacher of a class."""
+    command = [sys.executable, "-c", "from hydrostat.cli.main import main; main()", "studio", "--no-browser", *options]
     command += [] if robot is None else [str(gallery_folder(robot))]
     with (
         TemporaryDirectory() as state,
@@ -41,14 +41,17 @@ def studio(robot: str | None) -> Iterator[str]:
         ) as process,
     ):
         assert process.stdout is not None
-        yield next(word for word in process.stdout.readline().split() if word.startswith("http://"))
+        found: list[str] = []
+        while len(found) < 1 + ("--class" in options):
+            found += [word for word in process.stdout.readline().split() if word.startswith("http://")]
+        yield found
         process.terminate()
 
 
 @contextmanager
 def window(browser: Browser, robot: str | None, *, dark: bool = False) -> Iterator[Page]:
     """A window on a studio."""
-    with studio(robot) as address:
+    with studio(robot) as (address,):
         context = browser.new_context(viewport=SIZE, color_scheme="dark" if dark else "light")
         context.add_init_script("localStorage.setItem('hydrostat-tour', '1')")
         page = context.new_page()
@@ -199,6 +202,32 @@ def take_hand(browser: Browser) -> None:
         keep(page, "hand")
 
 
+def take_class(browser: Browser) -> None:
+    """The wall of a class."""
+    pupils = {"Ada": ("top", 90), "Bo & Carl": ("left", 60), "Dilek": ("right", -80), "Émile": ("top", -120)}
+    with studio("starfish", "--class", "--host", "127.0.0.1") as (link, teacher):
+        contexts = []
+        for name, (marker, dx) in pupils.items():
+            context = browser.new_context(viewport=SIZE)
+            contexts.append(context)
+            context.add_init_script("localStorage.setItem('hydrostat-tour', '1')")
+            page = context.new_page()
+            page.set_default_timeout(240_000)
+            page.goto(link)
+            page.get_by_label("Nickname").fill(name)
+            page.get_by_text("Start").click()
+            page.wait_for_function("window.__app && window.__app.painted > 0")
+            drag(page, f"marker:{marker}", dx, 40)
+            settle(page)
+        page = browser.new_page(viewport={"width": 1280, "height": 420})
+        page.goto(teacher)
+        page.get_by_text("Émile").wait_for()
+        page.wait_for_timeout(4000)
+        keep(page, "class")
+        for context in contexts:
+            context.close()
+
+
 TAKES = {
     "start": take_start,
     "photo": take_photo,
@@ -206,6 +235,7 @@ TAKES = {
     "proposal": take_proposal,
     "kit": take_kit,
     "hand": take_hand,
+    "class": take_class,
 }
 
 

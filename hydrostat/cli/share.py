@@ -11,11 +11,9 @@ from hydrostat.cli.waiting import prepare_physics, progress_bar, read_robot
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
-    from hydrostat.arrays import Vector
-    from hydrostat.progress import Progress
+    from hydrostat.control import Timeline
     from hydrostat.robot import Robot
-    from hydrostat.simulation import Simulation
-    from hydrostat.toy import LearnedShape, ToyPose
+    from hydrostat.toy import LearnedShape
 
 
 def share(
@@ -41,7 +39,7 @@ def share(
     """
     from hydrostat.control import CALIBRATION, Calibration
     from hydrostat.files import replace_file
-    from hydrostat.toy import learn_shape, sample_shapes, toy_page
+    from hydrostat.toy import default_samples, make_toy
     from hydrostat.units import TIME
 
     if out.suffix.lower() not in (".html", ".htm"):
@@ -57,55 +55,31 @@ def share(
     loaded = read_robot(robot)
     if not loaded.cables:
         raise InputError(f"{robot}: no cables. Add winches and cables, or run `hydrostat design`.")
-    flat = loaded.body.mesh.dim == 2
     motors = Calibration.read(folder_of(robot), loaded) if (folder_of(robot) / CALIBRATION).exists() else None
-    count = samples or (400 if flat else 2000)
-    shares = (0.6, 0.35)  # of the time, for samples and for training
     with progress_bar() as progress:
-        simulation = prepare_physics(loaded)
-        poses = _solve_poses(simulation, progress)
-        taken = sample_shapes(loaded, count, seed=seed, seconds=seconds and shares[0] * seconds, progress=progress)
-        shape = learn_shape(
-            taken,
-            simulation.rest.nodes,
-            steps=6000 if flat else 12_000,
-            seconds=seconds and shares[1] * seconds,
+        toy = make_toy(
+            prepare_physics(loaded),
+            samples=samples,
+            seconds=seconds,
             seed=seed,
+            timeline=_read_moves(folder_of(robot), loaded),
+            motors=motors,
             progress=progress,
         )
-    page = toy_page(loaded, shape, poses=poses, moves=_read_moves(folder_of(robot), loaded), motors=motors)
+    page, taken = toy.page, toy.samples
     replace_file(out, page.encode())
-    _print_error(shape, taken.lost, float(taken.crosses.mean()), count)
+    _print_error(toy.shape, taken.lost, float(taken.crosses.mean()), samples or default_samples(loaded))
     print(f"Wrote {out} ({len(page) / 1e6:.2f} MB). Open it in any browser, or send it")
 
 
-def _solve_poses(simulation: "Simulation", progress: "Progress") -> "list[ToyPose]":
-    """Contractions for each pose of the robot."""
-    from hydrostat.ik import solve_ik
-    from hydrostat.toy import ToyPose
-
-    robot, found = simulation.robot, []
-    for number, name in enumerate(robot.poses, 1):
-        taken = solve_ik(simulation, robot.pose(name)).pose.contractions
-        found.append(ToyPose(name=name, contractions=tuple(taken.tolist())))
-        progress("poses", number, len(robot.poses))
-    return found
-
-
-def _read_moves(folder: Path, robot: "Robot") -> "list[tuple[float, Vector]]":
-    """Keyframes that the studio saved with the robot; none without a readable studio.json."""
-    import numpy as np
-
+def _read_moves(folder: Path, robot: "Robot") -> "Timeline | None":
+    """Keyframes that the studio saved with the robot; None without a readable studio.json."""
     from hydrostat.project import read_project_file
 
     try:
-        timeline, _ = read_project_file(folder, [cable.name for cable in robot.cables])
+        return read_project_file(folder, [cable.name for cable in robot.cables])[0]
     except InputError:
-        return []
-    return [
-        (key.time, np.array([key.contractions.get(winch.name, 0.0) for winch in robot.winches]))
-        for key in timeline.keys
-    ]
+        return None
 
 
 def _print_error(shape: "LearnedShape", lost: int, crossing: float, count: int) -> None:

@@ -53,19 +53,14 @@ def studio(
         if package == "hydrostat":
             raise
         raise InputError(f"studio: package {package} not found. Install it: {install_command('studio')}") from None
-    from hydrostat.studio import Session, state_folder
+    from hydrostat.studio import Classroom, Session, state_folder
 
     rooms = rooms or classroom
     if model is not None and (robot is None or rooms):
         raise InputError("--model: needs its ROBOT, and is not available with --rooms or --class.")
     host = host or (find_network_address() if classroom else "127.0.0.1")
     if rooms:
-        if robot is not None:
-            from hydrostat.robot import load_robot
-
-            robot = found_folder(robot)
-            load_robot(robot)  # what is wrong with it is told now, not to each who comes
-        served = Rooms(state=state_folder(), first=robot)
+        served = Rooms(state=state_folder(), first=robot and found_folder(robot))
     else:
         session = Session(state_folder())
         if robot is not None:
@@ -73,12 +68,16 @@ def studio(
         served = Rooms(session)
 
     def announce(address: str) -> None:
-        print(f"Studio: {address}   (Ctrl-C to stop)", flush=True)
+        if "/class/" in address:
+            print(f"Teacher: {address}   (keep this link to yourself)", flush=True)
+            return
+        print(f"{'Pupils' if classroom else 'Studio'}: {address}   (Ctrl-C to stop)", flush=True)
         if classroom:
             print(write_qr_text(address), flush=True)
 
     try:
-        serve(served, host=host, port=port, show=browser, announce=announce)
+        teacher = Classroom(served) if classroom else None
+        serve(served, host=host, port=port, show=browser, classroom=teacher, announce=announce)
     except KeyboardInterrupt:
         print("Studio ended. It keeps unsaved work for its next start.")
         raise typer.Exit(130) from None

@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from hydrostat.studio.designing.run import wished_request
     from hydrostat.studio.document import Document
     from hydrostat.studio.exporting.kit_work import page_pictures
+    from hydrostat.studio.face.classroom import Classroom
     from hydrostat.studio.face.rooms import Rooms
     from hydrostat.studio.face.serve import serve
     from hydrostat.studio.face.share import find_network_address, write_qr_text
@@ -33,6 +34,7 @@ __all__ = [
     "STRIDE",
     "Bell",
     "CableMover",
+    "Classroom",
     "Document",
     "HeldPoint",
     "Hit",

@@ -14,6 +14,7 @@ class Topic(StrEnum):
     JOB = "job"
     DRIVE = "drive"
     NOTE = "note"
+    LOCK = "lock"
 
 
 Listener = Callable[[Topic], None]  # told what has changed, in the thread that did; returns at once and never raises

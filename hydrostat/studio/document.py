@@ -14,6 +14,8 @@ from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.jobs import Slots
 from hydrostat.studio.judge import Judge
 
+LOCKED = "your teacher has locked the robots. Wait until they are unlocked"
+
 MOST_STEPS = 500  # so many changes can be undone; older ones are forgotten
 
 
@@ -42,6 +44,7 @@ class Document:
         self.text = ""  # of the robot.toml that it was opened from; "": none
         self.stamp = ""  # of that folder when it was opened or saved last (`folder_stamp`)
         self.designs = b""  # networks found for the robot, to be kept for a crash; their room knows what is in them
+        self.is_locked = False  # whether nothing of it may be changed
         self.serial = 0  # counts the changes, undoing included; the same number means the same work
         self._lock = RLock()
         self._past: list[Change] = []
@@ -116,6 +119,7 @@ class Document:
         found for it before a crash.
         """
         with self._lock:
+            self._require_unlocked()
             self._past, self._future = [Change("open", work)], []
             self._body, self.model, self.designs = None, None, designs
             self.folder, self._saved, self.text = folder, work if saved else None, text
@@ -132,12 +136,13 @@ class Document:
         wishes: Wishes | None = None,
         merge: str = "",
     ) -> None:
-        """Replace parts of the work (InputError: no robot is open).
+        """Replace parts of the work (InputError: no robot is open, or it is locked).
 
         The label says what was done, as a person would. A change in a row with the same word `merge` replaces the one
         before.
         """
         with self._lock:
+            self._require_unlocked()
             given = {"robot": robot, "timeline": timeline, "wishes": wishes}
             parts = {key: value for key, value in given.items() if value is not None}
             change = Change(label, replace(self.work, **parts), merge)
@@ -178,6 +183,7 @@ class Document:
 
     def _move(self, source: list[Change], goal: list[Change], *, least: int) -> bool:
         with self._lock:
+            self._require_unlocked()
             if len(source) < least:
                 return False
             goal.append(source.pop())
@@ -185,6 +191,10 @@ class Document:
             self.serial += 1
         self.bell.ring(Topic.ROBOT, Topic.SHAPE, Topic.SCENE)
         return True
+
+    def _require_unlocked(self) -> None:
+        if self.is_locked:
+            raise InputError(LOCKED)
 
     def _forget_physics(self) -> None:
         """Physics take megabytes: only the last few states keep theirs."""

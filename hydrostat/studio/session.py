@@ -11,11 +11,11 @@ from typing import Any
 from hydrostat.closed_set import parse_choice
 from hydrostat.errors import HydrostatError, InputError, in_words
 from hydrostat.learning import LearnedModel
-from hydrostat.project import open_note
-from hydrostat.robot import Contact
+from hydrostat.project import Work, open_note
+from hydrostat.robot import Contact, Robot
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.designing.designer import Designer
-from hydrostat.studio.document import Document
+from hydrostat.studio.document import LOCKED, Document
 from hydrostat.studio.driving.driver import Driver
 from hydrostat.studio.driving.hardware import Hardware
 from hydrostat.studio.editing.editor import Editor
@@ -28,7 +28,8 @@ from hydrostat.studio.stage import Hit, Stage, StageName
 from hydrostat.studio.starting.starter import Starter
 from hydrostat.studio.view.coloring import Coloring, Scale, node_values, scale
 from hydrostat.studio.view.picture import Show, Shown
-from hydrostat.studio.view.scene_items import rest_shape
+from hydrostat.studio.view.scene_items import RobotShape, rest_shape
+from hydrostat.studio.view.thumbnail import draw_thumbnail
 
 
 class Tone(StrEnum):
@@ -64,7 +65,7 @@ class Session:
         self.bell = Bell()  # rings when something has changed
         self.document = Document(self.bell, slots)  # the robot, with undo
         self.jobs = Jobs(self.bell, slots)  # long work
-        self.starter = Starter(self.document, self.jobs, state)
+        self.starter = Starter(self.document, self.jobs, state, guest=guest)
         self.editor = Editor(self.document, self.jobs)
         self.poser = Poser(self.document, self.jobs)
         self.photographs = Photographs(self.document, self.jobs)  # of the built robot
@@ -152,6 +153,8 @@ class Session:
     def grab(self, screen: str, hit: Hit, stamp: float = 0.0) -> bool:
         """Take hold of a hit by a screen's pointer; whether it did. The first frame with the answer has the stamp."""
         with self._lock:
+            if self._is_refused():
+                return False
             if self._holder is not None and self._holder != screen:
                 self.tell("another window is dragging. Wait until it releases", Tone.PLAIN)
                 return False
@@ -182,7 +185,7 @@ class Session:
     def click(self, screen: str, hit: Hit) -> None:
         """Take a click of a screen's pointer."""
         with self._lock:
-            if self._holder in (None, screen) and self.document.is_open:
+            if self._holder in (None, screen) and self.document.is_open and not self._is_refused():
                 self._try(lambda: self.current.click(hit))
         self.bell.ring(Topic.SHAPE, Topic.SCENE)
 
@@ -191,6 +194,8 @@ class Session:
         if name == "escape":
             self.hardware.hold()  # without waiting for whoever works with the session just now
         with self._lock:
+            if name != "escape" and self._is_refused():
+                return False
             meant = self.document.is_open and bool(self._try(lambda: self.current.key(name)))
         self.bell.ring(Topic.SHAPE, Topic.SCENE)
         return meant
@@ -209,6 +214,8 @@ class Session:
         """Take back the last change: a drag of the stage that is shown, else one of the document."""
         label = self.undo_label
         with self._lock:
+            if self._is_refused():
+                return
             done = self.current.undo if self.document.is_open and self.current.undo_label else self.document.undo
             done()
         self.tell(f"undone: {label}" if label else "nothing to undo")
@@ -217,9 +224,40 @@ class Session:
         """Do again what was undone."""
         label = self.redo_label
         with self._lock:
+            if self._is_refused():
+                return
             done = self.current.redo if self.document.is_open and self.current.redo_label else self.document.redo
             done()
         self.tell(f"redone: {label}" if label else "nothing to redo")
+
+    @property
+    def is_locked(self) -> bool:
+        """True while a teacher has locked it."""
+        return self.document.is_locked
+
+    def lock(self, on: bool) -> None:
+        """Let nothing be dragged or changed, or let it again."""
+        with self._lock:
+            self._let_go()
+            self.document.is_locked = on
+        self.bell.ring(Topic.LOCK, Topic.SHAPE)
+
+    def receive(self, work: Work) -> None:
+        """Show a robot that a teacher hands out; one step to undo where a robot is open."""
+        with self._lock:
+            self._let_go()
+            locked, self.document.is_locked = self.document.is_locked, False
+            try:
+                if self.document.is_open:
+                    parts = {"robot": work.robot, "timeline": work.timeline, "wishes": work.wishes}
+                    self.document.change(f"hand out {work.robot.name}", **parts)
+                else:
+                    self.document.open(work)
+            finally:
+                self.document.is_locked = locked
+        if self.stage is StageName.START:
+            self.go(StageName.POSE)
+        self.tell(f"your teacher handed out {work.robot.name}. Undo brings your robot back")
 
     def save(self, folder: Path | None = None) -> None:
         """Save the robot where it was, or in another folder (InputError: it has none yet, or cannot be written)."""
@@ -293,15 +331,24 @@ class Session:
         if not self.document.is_open:
             return None
         with self._lock:
-            robot, shape, things = self.document.robot, self.current.shape(), self.current.scene_items()
-        if len(shape.nodes) != len(robot.body.mesh.nodes):
-            shape = rest_shape(robot)  # the body was changed at this very moment; the next one is right
+            robot, shape, things = *self._look(), self.current.scene_items()
         head = {"stage": str(self.stage), "stamp": self.answered, "errors": shape.errors, "notes": list(shape.notes)}
         return self._show.moment(robot, shape, things, head, node_values(robot, shape, self.coloring))
 
-    def release_screen(self, screen: str) -> None:
-        """Release what a disconnected screen was dragging."""
-        self.release(screen)
+    def thumbnail(self) -> bytes:
+        """Return a small picture of the robot as it is shown now, as WebP; empty without a robot."""
+        if not self.document.is_open:
+            return b""
+        with self._lock:
+            robot, shape = self._look()
+        return draw_thumbnail(robot, shape)
+
+    def _look(self) -> tuple[Robot, RobotShape]:
+        """Return the robot and its shape."""
+        robot, shape = self.document.robot, self.current.shape()
+        if len(shape.nodes) != len(robot.body.mesh.nodes):
+            shape = rest_shape(robot)  # the body was changed at this very moment; the next one is right
+        return robot, shape
 
     def close(self) -> None:
         """End all work; what is not saved is there next time."""
@@ -328,6 +375,12 @@ class Session:
         self._unsewn = skin
         if self.stage in (StageName.POSE, StageName.DRIVE):
             self.tell(f"skin cannot be sewn: {in_words(skin.findings[0].text)}", Tone.BAD)
+
+    def _is_refused(self) -> bool:
+        """True if the room is locked, which is told."""
+        if self.is_locked:
+            self.tell(LOCKED, Tone.BAD)
+        return self.is_locked
 
     def _let_go(self) -> None:
         if self._holder is not None:

@@ -7,9 +7,10 @@ from hydrostat.lazy import open_package
 if TYPE_CHECKING:
     from hydrostat.toy.learn_shape import learn_shape
     from hydrostat.toy.learned_shape import LearnedShape
-    from hydrostat.toy.toy_page import ToyPose, toy_page
+    from hydrostat.toy.make_toy import default_samples, make_toy
+    from hydrostat.toy.toy_page import toy_page
     from hydrostat.toy.toy_samples import sample_shapes
 
-__all__ = ["LearnedShape", "ToyPose", "learn_shape", "sample_shapes", "toy_page"]
+__all__ = ["LearnedShape", "default_samples", "learn_shape", "make_toy", "sample_shapes", "toy_page"]
 
 open_package(__name__)

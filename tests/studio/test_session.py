@@ -115,7 +115,7 @@ def test_one_screen_at_a_time_holds(session: Session) -> None:
 
 def test_a_screen_that_is_gone_lets_go(session: Session) -> None:
     session.grab("a", BODY)
-    session.release_screen("a")
+    session.release("a")
     assert diary(session)[-1] == "release"
     assert session.grab("b", BODY)
 

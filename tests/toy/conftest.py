@@ -11,7 +11,8 @@ from hydrostat.arrays import Nodes
 from hydrostat.learning import Samples
 from hydrostat.robot import Robot, gallery_folder, load_robot
 from hydrostat.simulation import Simulation
-from hydrostat.toy import LearnedShape, ToyPose, learn_shape, sample_shapes, toy_page
+from hydrostat.toy import LearnedShape, learn_shape, sample_shapes, toy_page
+from hydrostat.toy.toy_page import ToyPose
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page

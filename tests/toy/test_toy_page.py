@@ -12,7 +12,8 @@ from hydrostat.errors import InputError
 from hydrostat.learning import Perceptrons
 from hydrostat.plot import Attachments, FlatSkin
 from hydrostat.robot import Robot, gallery_folder, load_robot
-from hydrostat.toy import LearnedShape, ToyPose, toy_page
+from hydrostat.toy import LearnedShape, toy_page
+from hydrostat.toy.toy_page import ToyPose
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page

@@ -1,10 +1,14 @@
-"""`Download`, `archive`: a file to take home, and many files as one."""
+"""`Download`, `archive`, `work_zip`: a file to take home, many files as one, a robot as one."""
 
 import io
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
+
+from hydrostat.project import Work
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,6 +45,21 @@ def archive(files: Mapping[str, bytes], *, folder: str) -> bytes:
             entry.compress_type, entry.external_attr = ZIP_DEFLATED, mode
             zipped.writestr(entry, files[path])
     return buffer.getvalue()
+
+
+def work_files(work: Work, text: str) -> dict[str, bytes]:
+    """Files of the folder of a robot by their paths; the text is that of the robot.toml that it was opened from."""
+    with TemporaryDirectory() as scratch:
+        folder = Path(scratch)
+        work.save(folder, text)
+        paths = [path for path in folder.rglob("*") if path.is_file()]
+        return {path.relative_to(folder).as_posix(): path.read_bytes() for path in paths}
+
+
+def work_zip(work: Work, text: str) -> Download:
+    """The folder of a robot in one file."""
+    name = file_name(work.robot.name)
+    return Download(name=f"{name}.zip", content=archive(work_files(work, text), folder=name), title="Robot")
 
 
 def file_name(name: str) -> str:

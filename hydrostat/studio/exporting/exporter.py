@@ -3,8 +3,6 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 from hydrostat.errors import HydrostatError, InputError
@@ -13,7 +11,7 @@ from hydrostat.ik import IKOptions, IKResult, solve_ik
 from hydrostat.robot import Face, Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
-from hydrostat.studio.exporting.download import Download, archive, file_name
+from hydrostat.studio.exporting.download import Download, archive, file_name, work_zip
 from hydrostat.studio.exporting.kit_work import KitMade, make_kit
 from hydrostat.studio.exporting.report_work import make_pictures, make_report
 from hydrostat.studio.jobs import Jobs
@@ -99,15 +97,15 @@ class Exporter(Stage):
         """Make the kit as a job; if forced, even where it cannot be built well (InputError: no cables, or busy)."""
         if not self._document.robot.cables:
             raise InputError("a kit needs cables. Press Design, or place winches and cables by hand")
+        options = self.kit_options()
+        self._start(Export.KIT, "Building the kit", make_kit, replace(options, force=force or options.force))
+
+    def kit_options(self) -> KitOptions:
+        """Options of the next kit, with the limits that were asked for (InputError: no robot is open)."""
         robot = self._document.robot
-        wished, designed = (
-            self._document.work.wishes.to_constraints(robot),
-            self._document.judge.torque_limit(robot),
-        )
+        wished, designed = self._document.work.wishes.to_constraints(robot), self._document.judge.torque_limit(robot)
         limits = [torque for torque in (wished.torque, designed) if torque is not None]
-        kept = replace(self.options, tension=wished.tension_limit, torque=min(limits, default=None))
-        options = replace(kept, force=force or kept.force)
-        self._start(Export.KIT, "Building the kit", make_kit, options)
+        return replace(self.options, tension=wished.tension_limit, torque=min(limits, default=None))
 
     def make_report(self) -> None:
         """Write the report, in a process of its own (InputError: other work is in progress)."""
@@ -127,14 +125,7 @@ class Exporter(Stage):
 
     def robot_zip(self) -> Download:
         """The folder of the robot in one file (InputError: no robot is open)."""
-        work = self._document.work
-        name = file_name(work.robot.name)
-        with TemporaryDirectory() as scratch:
-            folder = Path(scratch)
-            work.save(folder, self._document.text)
-            paths = [path for path in folder.rglob("*") if path.is_file()]
-            files = {path.relative_to(folder).as_posix(): path.read_bytes() for path in paths}
-        return Download(name=f"{name}.zip", content=archive(files, folder=name), title="Robot")
+        return work_zip(self._document.work, self._document.text)
 
     def enter(self) -> None:
         """Let a process stand ready, so that work begins at once."""

@@ -13,7 +13,7 @@ LOOPBACK = ("127.0.0.1", "localhost", "[::1]")  # names of this machine that a p
 COOKIE = "hydrostat_token"  # followed by the port: cookies do not know ports, and two studios may run on one machine
 LARGEST = 200_000_000  # no request has more bytes
 
-_ROOM = re.compile(r"/(room|watch)/[A-Za-z0-9_-]+")  # what a link with a token may lead to, beside the front
+_ROOM = re.compile(r"/(room|watch|class)/[A-Za-z0-9_-]+")  # what a link with a token may lead to, beside the front
 
 SAFE_HEADERS = {
     "content-security-policy": (

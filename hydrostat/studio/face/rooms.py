@@ -2,15 +2,19 @@
 
 import re
 import time
+import unicodedata
 from base64 import urlsafe_b64encode
 from collections import Counter
+from contextlib import suppress
 from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
 from secrets import token_urlsafe
 from threading import Lock, Thread
 
-from hydrostat.errors import InputError
+from hydrostat.errors import HydrostatError, InputError
+from hydrostat.project import Work, text_of
+from hydrostat.robot import load_robot
 from hydrostat.studio.face.pulse import Pulse
 from hydrostat.studio.face.stream import Stream
 from hydrostat.studio.jobs import Slots
@@ -18,6 +22,8 @@ from hydrostat.studio.session import Session
 
 MOST = 48  # so many rooms are open at a time
 IDLE = 120.0  # a room that nobody looked at for so long [s] may be closed for another; its work is kept
+
+LONGEST_NAME = 24  # characters of a nickname
 
 RETRY = 30  # a page that found no room asks again after so long [s]
 
@@ -35,6 +41,7 @@ class Room:
     key: str  # who knows it may work here
     session: Session  # the robot and all that can be done with it
     address: str = ""  # of the computer that first asked for it
+    name: str = ""  # nickname of the pupil
     stream: Stream = field(init=False)  # to the screens in it
     pulse: Pulse = field(init=False)  # its threads
     seen: float = 0.0  # when somebody came in last, by a clock that only grows [s]
@@ -67,7 +74,10 @@ class Rooms:
             first: folder of a robot of which each new room has a copy; None: rooms begin empty.
         """
         works = 2  # so many long works run at a time, of all rooms
-        self._state, self._first, self._slots = state, first, Slots(works)
+        self.first = None if first is None else (Work(robot=load_robot(first)), text_of(first))  # with its robot.toml
+        self.slots = Slots(works)
+        self.locked = False  # whether rooms that open are locked
+        self._state = state
         self._lock, self._open = Lock(), False
         self._rooms: dict[str, Room] = {}
         self._only = None if only is None else Room(new_key(), only)
@@ -91,12 +101,24 @@ class Rooms:
         for room in rooms:
             room.close()
 
-    def enter(self, key: str = "", *, address: str = "", visit: bool = False) -> Room:
+    def list_rooms(self) -> list[Room]:
+        """Rooms that are open now."""
+        return list(self._rooms.values())
+
+    def rename(self, room: Room, name: str) -> None:
+        """Give the pupil of a room a nickname; a number follows one that another has (InputError: nothing is left)."""
+        name = clean_name(name)
+        others = {other.name.casefold() for other in self.list_rooms() if other is not room}
+        named = (name if n == 1 else f"{name} {n}" for n in range(1, len(others) + 2))
+        room.name = next(each for each in named if each.casefold() not in others)
+
+    def enter(self, key: str = "", *, address: str = "", name: str = "", visit: bool = False) -> Room:
         """The room of a key, made where there is none yet.
 
         Args:
             key: name of the room.
-            address: address of the client; the one with most unvisited rooms loses one first.
+            address: address of the client; the one with most rooms loses one first.
+            name: nickname of the pupil, for a room that is made.
             visit: True for a page that has loaded and connects.
 
         Raises:
@@ -112,6 +134,7 @@ class Rooms:
             if room is None:
                 self._make_way(address)
                 room = self._rooms[key] = Room(key, self._session(key), address)
+                self.rename(room, name or "Pupil")
                 if self._open:
                     room.pulse.start()
             room.seen, room.visited = time.monotonic(), room.visited or visit
@@ -125,22 +148,39 @@ class Rooms:
     def _session(self, key: str) -> Session:
         name = sha256(key.encode()).hexdigest()[:24]
         state = None if self._state is None else self._state / "rooms" / name
-        session = Session(state, guest=True, slots=self._slots)
-        if self._first is not None and not session.starter.autosave.find_recovered():
-            session.starter.open_gallery(self._first)
+        session = Session(state, guest=True, slots=self.slots)
+        with suppress(HydrostatError, OSError):  # work that cannot be read stays in Start
+            for left in session.starter.autosave.find_recovered()[:1]:
+                session.starter.autosave.restore(left)
+        if not session.document.is_open and self.first is not None:
+            work, text = self.first
+            session.document.open(work, text=text)
+        if session.document.is_open:
             session.go("pose")
+        session.lock(self.locked)
         return session
 
     def _make_way(self, address: str) -> None:
-        """Close a room that no page visited, or that nobody has looked at for longest, if there are too many."""
+        """Close a room if there are too many.
+
+        First goes one that no page visited, then one of a computer that has at least two more than the one that asks,
+        or one that nobody has looked at for longest.
+        """
         if len(self._rooms) < MOST:
             return
+        count = Counter(room.address for room in self._rooms.values())
         bare = Counter(room.address for room in self._rooms.values() if not room.visited)
         bare[address] += 1
-        idle = [room for room in self._rooms.values() if not room.stream.screens]
-        oldest = min(idle, key=lambda room: (room.visited, -bare[room.address], room.seen), default=None)
+        oldest = min(
+            (room for room in self._rooms.values() if not room.stream.screens),
+            key=lambda room: (room.visited, -bare[room.address], room.seen),
+            default=None,
+        )
         if oldest is None or (oldest.visited and time.monotonic() - oldest.seen < IDLE):
-            raise RoomsFullError(f"all {MOST} rooms of this studio are in use. Try again in a minute")
+            greedy, rooms = count.most_common(1)[0]
+            if rooms < count[address] + 2:
+                raise RoomsFullError(f"all {MOST} rooms of this studio are in use. Try again in a minute")
+            oldest = min((room for room in self._rooms.values() if room.address == greedy), key=lambda room: room.seen)
         del self._rooms[oldest.key]
         Thread(target=oldest.close, name="closing a room", daemon=True).start()
 
@@ -148,3 +188,17 @@ class Rooms:
 def new_key() -> str:
     """A key that nobody guesses."""
     return token_urlsafe(18)
+
+
+def clean_name(text: str) -> str:
+    """A nickname of letters that are seen: no controls, no marks that turn the text around or pile up.
+
+    Raises:
+        InputError: nothing is left of it.
+    """
+    seen = [letter for letter in unicodedata.normalize("NFC", text[:1000]) if letter.isprintable()]
+    name = "".join(letter for letter in seen if not unicodedata.combining(letter))
+    name = " ".join(name.split())[:LONGEST_NAME].strip()
+    if not name:
+        raise InputError("nickname missing. Write at least one letter")
+    return name

@@ -18,6 +18,8 @@ from starlette.websockets import WebSocket
 
 from hydrostat.errors import InputError
 from hydrostat.studio.bell import Topic
+from hydrostat.studio.face.class_pages import add_class_pages, ask_nickname, read_nickname, remember
+from hydrostat.studio.face.classroom import Classroom
 from hydrostat.studio.face.guard import LOOPBACK, Guard
 from hydrostat.studio.face.page import HEARTBEAT, Toasts, WindowPage
 from hydrostat.studio.face.rooms import RETRY, Room, Rooms, RoomsFullError, new_key
@@ -32,27 +34,32 @@ TITLE = "hydrostat studio"
 ROOM = "hydrostat_room"  # the cookie of a browser's own room, followed by the port
 
 
-def make_app(rooms: Rooms, *, token: str | None = None, port: int = 0) -> FastAPI:
+def make_app(rooms: Rooms, *, token: str | None = None, port: int = 0, classroom: Classroom | None = None) -> FastAPI:
     """The app of some rooms, without a guard. There can be one in a process, as NiceGUI has one set of pages.
 
-    Links that are shown have the token, if there is one; the cookie of a browser's room has the port in its name.
+    Links that are shown have the token, if there is one; the cookie of a browser's room has the port in its name. In a
+    class, pupils give a nickname before they enter.
     """
 
     @asynccontextmanager
     async def life(_: FastAPI) -> AsyncIterator[None]:
         rooms.start()
         yield
+        if classroom is not None:
+            classroom.close()
         rooms.close()
 
     app = FastAPI(lifespan=life, docs_url=None, redoc_url=None, openapi_url=None)
 
-    _add_streams(app, rooms)
-    _add_pages(rooms, token, f"{ROOM}_{port}")
+    _add_streams(app, rooms, port)
+    _add_pages(rooms, token, port, classroom)
+    if classroom is not None:
+        add_class_pages(app, classroom, token, port)
     ui.run_with(app, show_welcome_message=False, reconnect_timeout=30.0)
     return app
 
 
-def _add_streams(app: FastAPI, rooms: Rooms) -> None:
+def _add_streams(app: FastAPI, rooms: Rooms, port: int) -> None:
     """Pictures to all screens and pointers back, by the key of a room; none to those who watch."""
 
     async def show(socket: WebSocket, room: Room, *, watching: bool = False) -> None:
@@ -63,7 +70,7 @@ def _add_streams(app: FastAPI, rooms: Rooms) -> None:
     @app.websocket("/stream/{key}")
     async def connect(socket: WebSocket, key: str = "") -> None:
         try:
-            room = rooms.enter(key, address=_address(socket), visit=True)
+            room = rooms.enter(key, address=_address(socket), name=read_nickname(socket, port), visit=True)
         except InputError:
             await socket.close(1008)
         else:
@@ -75,33 +82,35 @@ def _add_streams(app: FastAPI, rooms: Rooms) -> None:
         await (socket.close(1008) if room is None else show(socket, room, watching=True))
 
 
-def _add_pages(rooms: Rooms, token: str | None, cookie: str) -> None:
+def _add_pages(rooms: Rooms, token: str | None, port: int, classroom: Classroom | None) -> None:
     """The page of a room, of those who watch, and the front, which leads each browser into its own room."""
+    asked = f"?token={token}" if token else ""
 
     def build(request: Request, room: Room) -> None:
-        base, asked = str(request.base_url), f"?token={token}" if token else ""
+        base = str(request.base_url)
         own = f"room/{room.key}" if rooms.many else ""
         links = Links(f"{base}{own}{asked}", f"{base}watch/{room.watch_key}{asked}")
         stream = f"/stream/{room.key}" if rooms.many else "/stream"
-        page = build_window(room.session, stream, links if rooms.many or token else None)
+        page = build_window(room.session, stream, links if rooms.many or token else None, room if classroom else None)
         ui.context.client.on_delete(page.close)
-
-    kept = 90 * 24 * 3600  # a browser remembers its room so long [s]
 
     @ui.page("/", title=TITLE, language="en-US")
     def front(request: Request) -> Response | None:
         if not rooms.many:
             build(request, rooms.enter())
             return None
-        key = request.cookies.get(cookie) or new_key()
+        key = request.cookies.get(f"{ROOM}_{port}") or new_key()
         response = RedirectResponse(f"/room/{quote(key, safe='')}", headers={"cache-control": "no-store"})
-        response.set_cookie(cookie, key, httponly=True, samesite="lax", max_age=kept)
+        remember(response, f"{ROOM}_{port}", key)
         return response
 
     @ui.page("/room/{key}", title=TITLE, language="en-US")
     def window(request: Request, key: str) -> Response | None:
+        name = read_nickname(request, port)
+        if classroom is not None and not name:
+            return ask_nickname(key)
         try:
-            build(request, rooms.enter(key, address=_address(request)))
+            build(request, rooms.enter(key, address=_address(request), name=name))
         except RoomsFullError as error:
             return _full(str(error))
         except InputError as error:
@@ -138,12 +147,13 @@ def serve(
     host: str = "127.0.0.1",
     port: int = 0,
     show: bool = True,
+    classroom: Classroom | None = None,
     announce: Callable[[str], None] = print,
 ) -> None:
     """Serve rooms until Ctrl-C (InputError: the address cannot be listened at).
 
     At another address than this machine's own a token is asked for. Port 0 is a free one; `announce` is told the
-    address, `show` opens the browser.
+    address, that of a class and then that of its teacher; `show` opens the browser, of a class on the teacher's page.
     """
     # threads take turns so often [s]: a solver in one must not keep the pointer waiting in another
     switch = 1e-3
@@ -154,10 +164,14 @@ def serve(
     number = listener.getsockname()[1]
     name = host if ":" not in host else f"[{host}]"
     shown = name if host not in ("0.0.0.0", "::") else socket.gethostname()
-    app = make_app(rooms, token=token, port=number)
+    app = make_app(rooms, token=token, port=number, classroom=classroom)
     guarded: ASGIApp = Guard(app, port=number, names=LOOPBACK if own else (*LOOPBACK, shown), token=token)
-    address = f"http://{shown}:{number}/" + (f"?token={token}" if token else "")
+    base, asked = f"http://{shown}:{number}/", f"?token={token}" if token else ""
+    address = f"{base}{asked}"
     announce(address)
+    if classroom is not None:
+        address = f"{base}class/{classroom.key}{asked}"
+        announce(address)
     if show:
         webbrowser.open(address)
     config = uvicorn.Config(guarded, log_level="warning", ws_max_size=1 << 20, timeout_graceful_shutdown=2)

@@ -18,7 +18,7 @@ class Links:
     """The two addresses of a room."""
 
     work: str  # who opens it works in the room
-    watch: str  # who opens it sees the robot, and can change nothing
+    watch: str  # who opens it sees the robot, and can change nothing; "": there is none
 
     @property
     def are_local(self) -> bool:
@@ -50,16 +50,24 @@ def write_qr_text(link: str) -> str:
 def share_dialog(links: Links) -> Callable[[], object]:
     """Build the dialog with both addresses; returns what opens it."""
     with ui.dialog() as dialog, ui.card().classes("q-pa-md gap-3").style("width: 520px; max-width: 92vw"):
-        ui.label("Share this room").classes("studio-title")
+        ui.label("Share this room" if links.watch else "Link for pupils").classes("studio-title")
         if links.are_local:
             hint = "These links open on this computer only. For other computers start with hydrostat studio --class."
             ui.label(hint).classes("studio-hint").props('data-testid="share-local"')
         for words, hint, link, name in (
-            ("Work together", "People with this link can edit everything.", links.work, "share-work"),
+            (
+                "Work together",
+                "People with this link can edit everything." if links.watch else "Show it, or write it on the board.",
+                links.work,
+                "share-work",
+            ),
             ("View only", "People with this link see the robot move and cannot edit.", links.watch, "share-watch"),
         ):
+            if not link:
+                continue
             with ui.column().classes("w-full gap-1"):
-                ui.label(words).classes("studio-section")
+                if links.watch:
+                    ui.label(words).classes("studio-section")
                 ui.label(hint).classes("studio-hint")
                 box = ui.input(value=link).props(f'readonly dense outlined aria-label="{words}" data-testid="{name}"')
                 box.classes("w-full studio-figure").on("focus", js_handler="(event) => event.target.select()")

@@ -28,10 +28,12 @@ class Stream:
         self._numbers = itertools.count(1)
         self._loop: asyncio.AbstractEventLoop | None = None
         self._latest: Shown | None = None
+        self.serial = 0  # counts the pictures
 
     def publish(self, shown: Shown) -> None:
         """Hand a picture to all screens; from any thread."""
         self._latest = shown
+        self.serial += 1
         if self._loop is not None:
             with suppress(RuntimeError):  # the loop has ended: there is no screen left
                 self._loop.call_soon_threadsafe(self._wake)
@@ -58,7 +60,7 @@ class Stream:
             with suppress(asyncio.CancelledError, WebSocketDisconnect, RuntimeError):
                 await writer
             del self._screens[name]
-            self._session.release_screen(name)
+            self._session.release(name)
 
     def _wake(self) -> None:
         for screen in self._screens.values():

@@ -17,6 +17,7 @@ from hydrostat.studio.face.panels.export_panel import export_panel
 from hydrostat.studio.face.panels.motors_card import stop_button
 from hydrostat.studio.face.panels.pose_panel import pose_panel
 from hydrostat.studio.face.panels.start_panel import start_panel
+from hydrostat.studio.face.rooms import Room
 from hydrostat.studio.face.share import Links, share_dialog
 from hydrostat.studio.face.tour import STAGES, Tour, help_dialog, offer_tour
 from hydrostat.studio.face.view_bar import view_bar
@@ -71,17 +72,23 @@ PANELS = {
 Ask = Callable[[], Any]
 
 
-def build_window(session: Session, stream: str = "/stream", links: Links | None = None) -> WindowPage:
+def build_window(
+    session: Session,
+    stream: str = "/stream",
+    links: Links | None = None,
+    pupil: Room | None = None,
+) -> WindowPage:
     """Build the page of one browser window; it follows the session from now on.
 
-    Pictures come by the path of a stream; links to the room, if any, can be shared.
+    Pictures come by the path of a stream; links to the room, if any, can be shared. In the room of a pupil the
+    nickname is shown.
     """
     page = WindowPage(session)
     dark = dress()
     tour = Tour()
     ask_save, ask_help = SaveDialog(page), help_dialog(tour)
     page.save = ask_save.save
-    _header(page, dark, ask_save, ask_help, links)
+    _header(page, dark, ask_save, ask_help, links, pupil)
     with ui.element("div").classes("studio-body") as body:
         page.whole = ui.column().classes("studio-whole")
         with ui.element("div").classes("studio-work") as work:
@@ -100,6 +107,15 @@ def build_window(session: Session, stream: str = "/stream", links: Links | None 
         page.toasts.room.move(body if start else view)
         page.show_panel(PANELS[session.stage])
 
+    with body, ui.element("div").classes("class-lock").props('role="status" data-testid="locked"') as banner:
+        ui.icon("lock", size="18px")
+        ui.label("Locked by your teacher")
+
+    def show_lock() -> None:
+        banner.set_visibility(session.is_locked)
+        for room in (work, page.panel, page.whole):
+            room.props("inert") if session.is_locked else room.props(remove="inert")
+
     brush = [False]
 
     def follow_brush() -> None:
@@ -110,6 +126,7 @@ def build_window(session: Session, stream: str = "/stream", links: Links | None 
 
     page.on(Topic.STAGE, show_stage, lasting=True)
     page.on(Topic.SCENE, follow_brush, lasting=True)
+    page.on(Topic.LOCK, show_lock, lasting=True)
     dark.on_value_change(lambda: page.viewport.set_dark(bool(dark.value)))
     ui.keyboard(on_key=lambda event: _key(page, event, ask_save, ask_help), repeating=False)
     ui.timer(HEARTBEAT, page.beat)
@@ -119,11 +136,15 @@ def build_window(session: Session, stream: str = "/stream", links: Links | None 
     return page
 
 
-def _header(page: WindowPage, dark: ui.dark_mode, ask_save: SaveDialog, ask_help: Ask, links: Links | None) -> None:
+def _header(
+    page: WindowPage, dark: ui.dark_mode, ask_save: SaveDialog, ask_help: Ask, links: Links | None, pupil: Room | None
+) -> None:
     """Name, stages, undo, save."""
     session = page.session
     with ui.header().classes("studio-header"):
         ui.label("hydrostat").classes("studio-brand")
+        if pupil is not None:
+            ui.label().classes("studio-pupil").bind_text_from(pupil, "name").props('data-testid="pupil"')
         name = ui.label().classes("studio-name")
         ui.space()
         with ui.element("div").classes("studio-stages"):

@@ -87,9 +87,12 @@ class Autosave:
     moment one whole copy is there.
     """
 
-    def __init__(self, document: Document, folder: Path | None) -> None:
-        """Keep what is changed in the folder that all studios of this person share; None: nothing is kept."""
-        self._document, self._folder = document, folder
+    def __init__(self, document: Document, folder: Path | None, *, guest: bool = False) -> None:
+        """Keep what is changed in the folder that all studios of this person share; None: nothing is kept.
+
+        Of a guest, who has no other folder, saved work is kept too.
+        """
+        self._document, self._folder, self._guest = document, folder, guest
         self._held: HeldFolder | None = None
         self._seen = self._kept = (0, True, b"")
         self._changed = self._asked = 0.0
@@ -109,18 +112,18 @@ class Autosave:
             return
         if self.problem and now - self._asked < AGAIN:
             return
-        nothing = state[1] and not state[2]
-        if nothing or self.problem or now - self._changed >= QUIET_TIME or now - self._asked >= LONGEST:
+        if self._is_over(state) or self.problem or now - self._changed >= QUIET_TIME or now - self._asked >= LONGEST:
             self._asked = now
             self._writer = Thread(target=self._keep, name="autosave", daemon=True)
             self._writer.start()
 
     def close(self) -> None:
         """End with the studio: what is saved is kept no longer, what is not is there next time."""
-        if not self._document.is_saved:
+        is_over = self._document.is_saved and (not self._guest or self._is_over(self._state()))
+        if not is_over:
             self._keep()
         with self._lock:
-            if self._document.is_saved:
+            if is_over:
                 self._remove()
             if self._held is not None:
                 self._held.let_go()
@@ -149,6 +152,11 @@ class Autosave:
     def _state(self) -> tuple[int, bool, bytes]:
         return (self._document.serial, self._document.is_saved, self._document.designs)
 
+    def _is_over(self, state: tuple[int, bool, bytes]) -> bool:
+        """True if nothing of it is to be kept; the first robot of a guest is there again anyway."""
+        serial, is_saved, designs = state
+        return is_saved and not designs and not (self._guest and (serial > 1 or self._count))
+
     def _keep(self) -> bool:
         """Write the work as it is now, or remove what was kept if it is saved; whether that could be done."""
         if self._folder is None:
@@ -158,7 +166,7 @@ class Autosave:
             if state == self._kept:
                 return True
             try:
-                if state[1] and not state[2]:
+                if self._is_over(state):
                     self._remove()
                 else:
                     self._write(self._folder, self._document.work, state[2])

@@ -127,10 +127,11 @@ _LIGHT = {"name", "material"}  # what can be changed without a new mesh
 class Starter(Stage):
     """The stage where work begins: a robot of the gallery, a folder, a file, or an outline drawn by hand."""
 
-    def __init__(self, document: Document, jobs: Jobs, state: Path | None = None) -> None:
+    def __init__(self, document: Document, jobs: Jobs, state: Path | None = None, *, guest: bool = False) -> None:
         """A stage that opens robots in a document, meshes in jobs, and remembers in a folder; None: nothing."""
         self._document, self._jobs = document, jobs
-        self.autosave = Autosave(document, None if state is None else state / "work")  # keeps the work of the session
+        # keeps the work of the session
+        self.autosave = Autosave(document, None if state is None else state / "work", guest=guest)
         self.draft: BodyDraft | None = None  # what is to become a robot; None: nothing was brought
         self.sketch: Sketch | None = None  # what was made of a draft, perhaps one before the present; None: nothing yet
         self.choice: PartChoice | None = None  # shapes of the draft's file that may be the body; None: no choice

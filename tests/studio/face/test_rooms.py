@@ -44,10 +44,8 @@ def test_each_key_has_its_own_robot_and_keeps_it(rooms: Rooms, tmp_path: Path) -
     assert first.watch_key not in (one, rooms.enter(two).watch_key)
     rooms.close()
     again = Rooms(state=tmp_path / "state", first=gallery_folder("starfish"))
-    (left,) = again.enter(one).session.starter.autosave.find_recovered()
-    again.enter(one).session.starter.autosave.restore(left)
     assert "tip" in {marker.name for marker in again.enter(one).session.document.robot.markers}
-    assert not again.enter(two).session.starter.autosave.find_recovered(), "nobody is offered the work of others"
+    assert again.enter(two).session.document.is_saved, "nobody is given the work of others"
     assert one not in "".join(str(path) for path in tmp_path.rglob("*")), "a key can be read on the disk"
     again.close()
 
@@ -88,6 +86,19 @@ def test_bare_requests_take_no_room_from_a_class(rooms: Rooms, monkeypatch: pyte
     left = [rooms.find_watched(room.watch_key) for room in (pupil, loading, attacks[-1], late)]
     assert left == [pupil, loading, attacks[-1], late]
     assert not any(rooms.find_watched(room.watch_key) for room in attacks[:-1])
+
+
+def test_who_takes_all_rooms_makes_way(rooms: Rooms, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Oracle: of rooms that are all looked at, the computer with most loses its oldest; equal ones wait."""
+    monkeypatch.setattr(rooms_module, "MOST", 3)
+    pupil, *greedy = (rooms.enter(new_key(), address=address, visit=True) for address in ("a", "b", "b"))
+    for room in (pupil, *greedy):
+        room.stream._screens["one"] = object()  # type: ignore[assignment]
+    late = rooms.enter(new_key(), address="c", visit=True)
+    assert [rooms.find_watched(room.watch_key) for room in (pupil, *greedy, late)] == [pupil, None, greedy[1], late]
+    late.stream._screens["one"] = object()  # type: ignore[assignment]
+    with pytest.raises(RoomsFullError):
+        rooms.enter(new_key(), address="d")
 
 
 def test_long_work_stands_in_line() -> None:
@@ -142,12 +153,14 @@ class _Stay(HTTPRedirectHandler):
         return None
 
 
-def fetched(server: Server, path: str, cookie: str = "") -> tuple[int, dict[str, str], str]:
+def fetched(server: Server, path: str, cookie: str = "", form: str | None = None) -> tuple[int, dict[str, str], str]:
     """Status, headers and body of a page, redirections not followed."""
-    request = Request(f"http://127.0.0.1:{server.port}{path}", headers={"Cookie": cookie} if cookie else {})
+    own = f"http://127.0.0.1:{server.port}"
+    headers = {"Cookie": cookie, "Origin": own} if cookie else {"Origin": own}
+    request = Request(f"{own}{path}", data=None if form is None else form.encode(), headers=headers)
     try:
         with build_opener(_Stay).open(request, timeout=60) as answer:
-            return answer.status, dict(answer.headers), answer.read().decode()
+            return answer.status, dict(answer.headers), answer.read().decode(errors="replace")
     except HTTPError as error:
         return error.code, dict(error.headers), error.read().decode()
 
@@ -181,13 +194,24 @@ def test_a_class_in_browsers(serving: Callable[..., Server]) -> None:
     cookie, place = headers["set-cookie"].split(";")[0], headers["location"]
     assert fetched(server, "/", cookie)[1]["location"] == place
     assert fetched(server, "/")[1]["location"] != place
-    status, _, page = fetched(server, place)
-    assert (status, '<html lang="en' in page) == (200, True)
     key = place.rpartition("/")[2]
+    assert 'name="name"' in fetched(server, place)[2], "who has no nickname is asked for one"
+    assert 'role="alert">nickname missing' in fetched(server, "/join", form=f"room={key}&name=%E2%80%AE")[2]
+    status, headers, _ = fetched(server, "/join", form=f"room={key}&name=<b>Zo%C3%AB")
+    assert (status, headers["location"]) == (303, place)
+    named = headers["set-cookie"].split(";")[0]
+    status, _, page = fetched(server, place, named)
+    assert (status, '<html lang="en' in page, "<b>Zo" in page) == (200, True, False)
+    assert fetched(server, f"/join?{key}", form="x" * 5000)[0] == 413
+    assert fetched(server, f"/class/{key}")[0] == 404, "a pupil is no teacher"
+    wall = fetched(server, f"/class/{'k' * 24}")
+    assert (wall[0], "<b>Zo" in wall[2]) == (200, False)
     watch = Room(key, Session()).watch_key
     assert fetched(server, f"/watch/{watch}")[0] == 200
+    assert fetched(server, f"/class/{'k' * 24}/picture/{watch}")[1]["content-type"] == "image/webp"
+    assert fetched(server, f"/class/{key}/picture/{watch}")[0] == 404
     assert fetched(server, f"/watch/{key}")[0] == 404
-    assert fetched(server, "/room/short")[0] == 404
+    assert fetched(server, "/room/short", named)[0] == 404
     grab = {"kind": "grab", "key": "marker:top", "world": [0, 0.1, 0]}
     drag = {"kind": "drag", "world": [0.0, 0.12, 0]}
     with screen(server, f"/stream/{key}") as own, screen(server, f"/watched/{watch}") as watcher:
@@ -209,3 +233,6 @@ def test_what_a_guest_takes_home_counts_as_saved(rooms: Rooms) -> None:
     assert not session.document.is_saved
     assert session.take_home().name == "mine.zip"
     assert session.document.is_saved
+    key = rooms.list_rooms()[0].key
+    rooms.close()
+    assert rooms.enter(key).session.document.robot.name == "mine", "who comes back finds it all the same"

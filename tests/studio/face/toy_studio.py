@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from hydrostat.robot import gallery_folder
+from hydrostat.studio.face.classroom import Classroom
 from hydrostat.studio.face.rooms import Rooms
 from hydrostat.studio.face.serve import serve
 from hydrostat.studio.session import Session
@@ -36,9 +37,10 @@ class Toy(Stage):
 
 
 def main(host: str, many: str = "") -> None:
-    """Serve until the program is ended; one room for all, or many."""
+    """Serve until the program is ended; one room for all, or a class."""
     if many:
-        serve(Rooms(first=gallery_folder("starfish")), host=host, show=False, announce=announce)
+        rooms = Rooms(first=gallery_folder("starfish"))
+        serve(rooms, host=host, show=False, classroom=Classroom(rooms, key="k" * 24), announce=announce)
         return
     session = Session()
     session.open_folder(gallery_folder("starfish"))

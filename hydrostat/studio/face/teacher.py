@@ -1,0 +1,225 @@
+"""`build_teacher`: the page of a teacher: a wall of all robots, what is handed out, the lock, all to take home."""
+
+from collections.abc import Callable
+
+from nicegui import events, run, ui
+
+from hydrostat.errors import HydrostatError
+from hydrostat.project import Work
+from hydrostat.robot import gallery_folder, list_gallery, load_robot
+from hydrostat.studio.face.classroom import Classroom
+from hydrostat.studio.face.page import Toasts, icon_button
+from hydrostat.studio.face.rooms import Room
+from hydrostat.studio.face.share import Links, share_dialog
+from hydrostat.studio.face.tour import STAGES
+from hydrostat.studio.face.window import dress
+from hydrostat.studio.session import Tone
+from hydrostat.studio.starting.starter import unpack_robot
+from hydrostat.units import plural
+
+BEAT = 1.0  # the wall follows the rooms within this time [s]
+
+
+def build_teacher(classroom: Classroom, link: str, pictures: str) -> None:
+    """Build the page; the link is that of the pupils, pictures of rooms are at a path with their watch keys."""
+    _TeacherPage(classroom, link, pictures)
+
+
+class _TeacherPage:
+    def __init__(self, classroom: Classroom, link: str, pictures: str) -> None:
+        self._class, self._pictures = classroom, pictures
+        dark = dress()
+        with ui.header().classes("studio-header"):
+            ui.label("hydrostat").classes("studio-brand")
+            self._count = ui.label().classes("class-count").props('data-testid="pupils"')
+            ui.space()
+            lock = ui.switch(
+                "Lock", value=classroom.rooms.locked, on_change=lambda event: self._lock(bool(event.value))
+            )
+            lock.props('data-testid="lock"').tooltip("Nobody can drag or change a robot")
+            for words, icon, build in (
+                ("Hand out", "redeem", self._hand_out_dialog),
+                ("Take home", "download", self._pack_dialog),
+            ):
+                button = ui.button(words, icon=icon, color=None, on_click=build())
+                button.props["aria-label"] = words
+                button.props(f'flat no-caps dense data-testid="{words.lower().replace(" ", "-")}"')
+            show_link = share_dialog(Links(link, ""))
+            button = ui.button("Link", icon="qr_code_2", color=None, on_click=show_link)
+            button.props('aria-label="Link" flat no-caps dense data-testid="link"')
+            icon_button("dark_mode", "Light or dark", dark.toggle, small=False).classes("studio-tool")
+        with ui.element("main").classes("class-room"):
+            self._hint = ui.label("No pupils yet. Show them the link.").classes("studio-hint")
+            self.wall = ui.element("div").classes("class-wall")
+            self._toasts = Toasts()
+        self._cards: dict[str, _PupilCard] = {}
+        ui.timer(BEAT, self._beat)
+        self._beat()
+
+    def _beat(self) -> None:
+        """Follow the rooms."""
+        rooms = self._class.list_rooms()
+        self._count.set_text(f"Class, {plural(len(rooms), 'pupil')}")
+        self._hint.set_visibility(not rooms)
+        for key in self._cards.keys() - {room.key for room in rooms}:
+            self._cards.pop(key).element.delete()
+        for place, room in enumerate(rooms):
+            if room.key not in self._cards:
+                with self.wall:
+                    self._cards[room.key] = _PupilCard(self, room, self._pictures)
+            card = self._cards[room.key]
+            if self.wall.default_slot.children[place : place + 1] != [card.element]:
+                card.element.move(self.wall, place)
+            card.show()
+        self._show_packing()
+
+    def act(self, action: Callable[..., object], *arguments: object) -> None:
+        """Do something; what was wrong is told."""
+        try:
+            action(*arguments)
+        except HydrostatError as error:
+            self.tell(str(error), Tone.BAD)
+
+    def tell(self, text: str, tone: Tone = Tone.PLAIN) -> None:
+        """Show a note."""
+        self._toasts.show(text, tone)
+
+    def _lock(self, on: bool) -> None:
+        self._class.lock(on)
+        self.tell("All robots are locked" if on else "Robots are unlocked")
+
+    def hand_out(self, work: Work, text: str = "") -> None:
+        """Give a robot to all."""
+        self._class.hand_out(work, text)
+        self.tell(f"Handed out {work.robot.name}", Tone.GOOD)
+
+    def rename(self, room: Room, name: str) -> None:
+        """Give a pupil another nickname (InputError: nothing is left of it)."""
+        self._class.rooms.rename(room, name)
+
+    def _hand_out_dialog(self) -> Callable[[], object]:
+        with ui.dialog() as dialog, ui.card().classes("q-pa-md gap-3 class-dialog"):
+            ui.label("Hand out a robot").classes("studio-title")
+            ui.label("Everybody gets a copy. Undo brings their own robot back. New pupils start with it.").classes(
+                "studio-hint"
+            )
+            chosen = ui.select(list_gallery(), value="starfish", label="Gallery").classes("w-full")
+
+            async def give() -> None:
+                dialog.close()
+                robot = await run.io_bound(load_robot, gallery_folder(str(chosen.value)))
+                self.act(self.hand_out, Work(robot=robot))
+
+            async def brought(event: events.UploadEventArguments) -> None:
+                content = await event.file.read()
+                dialog.close()
+                upload.reset()
+                try:
+                    work, text = await run.io_bound(unpack_robot, event.file.name, content)
+                except HydrostatError as error:
+                    self.tell(str(error), Tone.BAD)
+                else:
+                    self.act(self.hand_out, work, text)
+
+            upload = ui.upload(label="Or a robot as .zip", max_files=1, max_file_size=20_000_000, auto_upload=True)
+            upload.props("accept=.zip flat bordered").classes("w-full").on_upload(brought)
+            with ui.row().classes("w-full justify-end"):
+                ui.button("Cancel", on_click=dialog.close).props("flat no-caps")
+                ui.button("Hand out", on_click=give).props('unelevated no-caps data-testid="hand-out-now"')
+        return dialog.open
+
+    def _pack_dialog(self) -> Callable[[], object]:
+        with ui.dialog() as dialog, ui.card().classes("q-pa-md gap-3 class-dialog"):
+            ui.label("Take home").classes("studio-title")
+            ui.label("One .zip with a folder for each pupil. class.txt in it lists what could not be made.").classes(
+                "studio-hint"
+            )
+            ui.checkbox("Robots", value=True).props("disable")
+            kits = ui.checkbox("Kits, about 5 s each").props('data-testid="kits"')
+            pages = ui.checkbox("Pages to share, up to 20 s each").props('data-testid="pages"')
+            self._packing = ui.label().classes("studio-hint").props('role="status" data-testid="packing"')
+            with ui.row().classes("w-full justify-end"):
+                ui.button("Close", on_click=dialog.close).props("flat no-caps")
+                self._stop = ui.button("Stop", on_click=self._class.jobs.stop).props("flat no-caps color=negative")
+                self._pack = ui.button(
+                    "Pack", on_click=lambda: self.act(lambda: self._class.pack(kits=kits.value, pages=pages.value))
+                ).props('unelevated no-caps data-testid="pack"')
+                self._download = ui.button("Download", on_click=self._take).props(
+                    'unelevated no-caps data-testid="take-zip"'
+                )
+        return dialog.open
+
+    def _show_packing(self) -> None:
+        state, made = self._class.jobs.state, self._class.made
+        running = state is not None and state.running
+        self._stop.set_visibility(running)
+        self._pack.set_visibility(not running)
+        self._download.set_visibility(made is not None)
+        if state is not None and running:
+            self._packing.set_text(f"{state.done + 1} of {state.total}: {state.stage}" if state.total else state.stage)
+        elif made is not None:
+            self._packing.set_text(f"{made.name}, {made.size}")
+        else:
+            self._packing.set_text(state.error if state is not None else "")
+
+    def _take(self) -> None:
+        made = self._class.made
+        if made is not None:
+            ui.download.content(made.content, made.name, media_type=made.media_type)
+
+
+class _PupilCard:
+    """A pupil on the wall. Nicknames are set as text and attributes, never as markup."""
+
+    def __init__(self, page: _TeacherPage, room: Room, pictures: str) -> None:
+        self._page, self._room, self._pictures = page, room, pictures
+        self._serial = -1
+        self._named = ""
+        with ui.element("article").classes("class-card") as self.element:
+            with ui.link(target=f"/room/{room.key}", new_tab=True).classes("class-open") as self._open:
+                self._picture = ui.element("img").classes("class-picture").props('alt=""')
+            with ui.row().classes("w-full items-center no-wrap gap-1"):
+                self._name = ui.label().classes("class-name")
+                ui.space()
+                self._menu = icon_button("more_vert", "", None)
+                with self._menu, ui.menu():
+                    ui.menu_item("Rename", self._rename)
+                    ui.menu_item("Hand out to all", self._hand_out)
+                    ui.menu_item("Stop job", room.session.jobs.stop)
+            self._state = ui.label().classes("studio-hint class-state")
+
+    def show(self) -> None:
+        """Follow the room."""
+        session, room = self._room.session, self._room
+        if room.name != self._named:
+            self._named = room.name
+            self._name.set_text(room.name)
+            self._open.props["aria-label"] = f"Open the robot of {room.name}"
+            self._menu.props["aria-label"] = f"Menu of {room.name}"
+            self._open.update()
+            self._menu.update()
+        robot = session.document.robot.name if session.document.is_open else "no robot"
+        job = session.jobs.state
+        doing = job.title if job is not None and job.running else STAGES[session.stage].title
+        self._state.set_text(f"{robot}, {doing}" if room.stream.screens else f"{robot}, away")
+        self.element.classes(**{"remove" if room.stream.screens else "add": "class-away"})
+        if room.stream.serial != self._serial:
+            self._serial = room.stream.serial
+            self._picture.props["src"] = f"{self._pictures}/{room.watch_key}?{self._serial}"
+            self._picture.update()
+
+    async def _rename(self) -> None:
+        with self._page.wall, ui.dialog() as dialog, ui.card().classes("q-pa-md class-dialog"):
+            name = ui.input("Nickname", value=self._room.name).classes("w-full").props("autofocus")
+            name.on("keydown.enter", lambda: dialog.submit(name.value))
+            with ui.row().classes("w-full justify-end"):
+                ui.button("Cancel", on_click=dialog.close).props("flat no-caps")
+                ui.button("Rename", on_click=lambda: dialog.submit(name.value)).props("unelevated no-caps")
+        found = await dialog
+        dialog.delete()
+        if found is not None:
+            self._page.act(self._page.rename, self._room, str(found))
+
+    def _hand_out(self) -> None:
+        document = self._room.session.document
+        self._page.act(lambda: self._page.hand_out(document.work, document.text))

@@ -1,0 +1,114 @@
+"""What a teacher decides. Oracles: robots of the rooms, files of the zip."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from io import BytesIO
+from zipfile import ZipFile
+
+import pytest
+
+from hydrostat.errors import InputError
+from hydrostat.fabrication import KitOptions
+from hydrostat.project import Work
+from hydrostat.robot import Robot, gallery_folder, load_robot
+from hydrostat.studio.exporting.class_work import PupilWork, pack_class
+from hydrostat.studio.face.classroom import Classroom
+from hydrostat.studio.face.rooms import Room, Rooms, clean_name, new_key
+from hydrostat.studio.stage import Hit
+from hydrostat.studio.starting.starter import unpack_robot
+
+
+@pytest.fixture(scope="module")
+def starfish() -> Robot:
+    return load_robot(gallery_folder("starfish"))
+
+
+@pytest.fixture
+def classroom() -> Iterator[Classroom]:
+    made = Classroom(Rooms(first=gallery_folder("starfish")))
+    yield made
+    made.close()
+    made.rooms.close()
+
+
+def enter(classroom: Classroom, *names: str) -> list[Room]:
+    return [classroom.rooms.enter(new_key(), name=name) for name in names]
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("  Ada   B\n", "Ada B"),
+        ("\u202eadA\u200b", "adA"),  # turned around; an unseen letter
+        ("Z\u0300\u0301\u0302o", "Zo"),  # marks that pile up
+        ("<b>", "<b>"),  # harmless: it is text wherever it is shown
+        ("x" * 99, "x" * 24),
+    ],
+)
+def test_a_nickname_is_letters_that_are_seen(text: str, name: str) -> None:
+    assert clean_name(text) == name
+
+
+def test_nobody_takes_the_nickname_of_another(classroom: Classroom) -> None:
+    first, second, third = enter(classroom, "Ada", "ada", "")
+    assert [first.name, second.name, third.name] == ["Ada", "ada 2", "Pupil"]
+    classroom.rooms.rename(second, "ADA")
+    assert second.name == "ADA 2"
+    with pytest.raises(InputError, match="nickname missing"):
+        classroom.rooms.rename(second, " \u200b")
+
+
+def test_locked_robots_stay_as_they_are(classroom: Classroom, starfish: Robot) -> None:
+    (room,) = enter(classroom, "Ada")
+    session = room.session
+    session.document.change("rename", robot=replace(starfish, name="mine"))
+    classroom.lock(True)
+    (late,) = enter(classroom, "Late")
+    assert late.session.is_locked
+    assert not session.grab("screen", Hit(key="marker:top", world=(0.0, 0.1)))
+    session.undo()
+    assert session.key("r") is False
+    for act in (
+        lambda: session.editor.rename("marker:top", "tip"),
+        lambda: session.starter.open_gallery(gallery_folder("starfish")),
+    ):
+        with pytest.raises(InputError, match="teacher has locked"):
+            act()
+    assert session.document.robot.name == "mine"
+    classroom.lock(False)
+    session.undo()
+    assert session.document.robot.name == "starfish"
+
+
+def test_a_robot_is_handed_out_and_undone(classroom: Classroom, starfish: Robot) -> None:
+    mine = replace(starfish, name="mine")
+    here, locked = enter(classroom, "Ada", "Bo")
+    here.session.document.change("rename", robot=mine)
+    classroom.lock(True)
+    classroom.hand_out(Work(robot=replace(starfish, name="task")))
+    (new,) = enter(classroom, "New")
+    assert {room.session.document.robot.name for room in (here, locked, new)} == {"task"}
+    assert here.session.is_locked
+    classroom.lock(False)
+    here.session.undo()
+    assert here.session.document.robot is mine
+
+
+class Silent:
+    def progress(self, stage: str, done: int, total: int) -> None: ...
+    def part(self, value: object) -> None: ...
+    def finish(self) -> None: ...
+
+
+def test_a_class_takes_all_home(starfish: Robot) -> None:
+    """Names that lead out of the folder, or that are one on some systems, are harmless; what fails is told."""
+    bare = replace(starfish, winches=(), cables=(), poses={}, name="bare")
+    names = ("../../Ada", "ada!", "ADA?")
+    works = [PupilWork(name, Work(robot=bare), "", KitOptions()) for name in names]
+    with ZipFile(BytesIO(pack_class(Silent(), works, kits=True, pages=False).content)) as made:
+        files = sorted(made.namelist(), key=str.casefold)
+        assert [file.casefold() for file in files] == [
+            "class/ada/bare.zip", "class/ada_2/bare.zip", "class/ada_3/bare.zip", "class/class.txt"
+        ]  # fmt: skip
+        assert unpack_robot("bare.zip", made.read(files[0]))[0].robot.name == "bare"
+        assert made.read("class/class.txt").decode().count("no kit: the robot has no cables") == 3
