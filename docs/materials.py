@@ -35,6 +35,28 @@ foams, van Wyk's law. What is assumed is called so.
 "The thesis" is [this one](thesis.md).
 """
 
+OWN = """\
+## Own materials
+
+`hydrostat identify my_robot measured.csv --out build/fitted --save-material "gray felt"` adds the fitted material of
+the body to `~/.config/hydrostat/materials.toml` (Windows: `%LOCALAPPDATA%\\hydrostat`; or the file that
+`HYDROSTAT_MATERIALS` names). You can write it by hand too:
+
+```toml
+[[material]]
+name = "gray felt"
+young = "22 kPa"
+young_interval = ["20.8 kPa", "23.8 kPa"]   # 95 %; optional
+poisson = 0.3
+density = "40 kg/m^3"
+source = "hydrostat identify, 10 rows of measured.csv"
+```
+
+Other keys are those of a material in [robot.toml](robot_toml.md). Use the name like one of the table, also in the
+studio and in `robot.with_material("gray felt")`. Designs take the interval as the uncertainty of Young's modulus. A
+robot that is saved holds the values, not the name: it is the same on another computer.
+"""
+
 FOAM = """\
 ## Foam laws
 
@@ -111,8 +133,8 @@ def page() -> str:
         f"- **{material.name}**: {material.source}. {material.note}".rstrip() for material in MATERIALS.values()
     )
     return (
-        f"{INTRODUCTION}\n{table}\n\n## Where the numbers come from, and who disagrees\n\n{sources}\n\n{foam_chapter()}"
-        f"\n{damping_chapter()}{hysteresis_chapter()}"
+        f"{INTRODUCTION}\n{table}\n\n{OWN}\n## Where the numbers come from, and who disagrees\n\n{sources}\n\n"
+        f"{foam_chapter()}\n{damping_chapter()}{hysteresis_chapter()}"
     )
 
 

@@ -41,6 +41,10 @@ def identify(
     in_order: Annotated[
         bool, typer.Option("--in-order", help="The rows are one motion: each pose follows from the one before.")
     ] = False,
+    save_material: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="Add the fitted material of the body to your own materials."),
+    ] = None,
     suggest: Annotated[
         int | None, typer.Option(metavar="N", help="Print the N most informative measurements to make.")
     ] = None,
@@ -55,7 +59,8 @@ def identify(
     Parameters: young, poisson, density, hysteresis (scale of its moduli), stiffness (of cables), zero and gain (of
     winches), routes (points of cables), friction, pins, gravity, rods, frame (of the measurement), force (scale of
     measured forces). Writes the fitted robot, parameters.csv with 95 % intervals and identified.png. Every fifth of ten
-    or more rows is also predicted by a fit that did not see it. A correction of the contractions is written if it
+    or more rows is also predicted by a fit that did not see it. `hydrostat design` takes the interval of the fitted
+    material as its uncertainty. A correction of the contractions is written if it
     predicts such rows better: correction.json. Friction and hysteresis make strokes up and down differ: measure both,
     and add --in-order.
     With --suggest, the command prints file names of photographs to take, the most informative first.
@@ -69,10 +74,8 @@ def identify(
     if names == ():
         raise InputError('--fit "": name at least one parameter')
     if suggest is not None:
-        if measurements is not None or out is not None or in_order:
-            raise InputError(
-                "--suggest: plans measurements and writes nothing. Remove TABLE.csv, --out and --in-order."
-            )
+        if measurements is not None or out is not None or in_order or save_material is not None:
+            raise InputError("--suggest: plans measurements and writes nothing. Remove TABLE.csv and options of a fit.")
         _suggest(read_robot(robot), suggest, names, hang or [], tension)
         return
     if hang or tension is not None:
@@ -80,6 +83,8 @@ def identify(
     if measurements is None or out is None:
         raise InputError("give TABLE.csv and --out DIR to fit, or --suggest N to plan measurements")
     require_folder(out)
+    if save_material is not None:
+        _check_material(save_material, names)
     if out.resolve() == folder_of(robot).resolve():
         raise InputError(f"--out {out}: is the folder of the robot. Name another one.")
     loaded = read_robot(robot)
@@ -90,6 +95,9 @@ def identify(
     _print_values(found)
     _print_errors(found, table, time.process_time() - began)
     _warn(loaded, table, found)
+    if save_material is not None:
+        rows = plural(len(table.commands), "row")
+        _save_material(save_material, found, f"hydrostat identify, {rows} of {measurements.name}")
     print(f"Wrote {out}. Next: hydrostat check {out}")
 
 
@@ -159,6 +167,29 @@ def _write(path: Path, table: "Measurements", found: "IdentifiedRobot", out: Pat
         (out / "correction.json").unlink(missing_ok=True)
     else:
         replace_file(out / "correction.json", found.correction.text())
+
+
+def _check_material(name: str, fit: tuple[str, ...] | None) -> None:
+    """Check that a fit can make a material of this name (InputError: it cannot)."""
+    from hydrostat.given import check_name
+    from hydrostat.robot import MATERIALS, own_materials
+
+    own_materials()  # a wrong file is named before the fit
+    if check_name(name).lower() in MATERIALS:
+        raise InputError(f'--save-material "{name}": is in the table of materials. Name another one.')
+    if fit is not None and "young" not in fit:
+        raise InputError("--save-material: the fit leaves Young's modulus out. Add young to --fit.")
+
+
+def _save_material(name: str, found: "IdentifiedRobot", source: str) -> None:
+    from hydrostat.robot import save_own_material
+
+    material = found.robot.body.material
+    if material.young_interval is None:
+        print(f'warning: these measurements do not show body.young. "{name}" was not saved.')
+        return
+    path = save_own_material(replace(material, name=name, source=source))
+    print(f'Wrote {path}. Use it: material = "{name}" in robot.toml')
 
 
 def _print_values(found: "IdentifiedRobot") -> None:

@@ -53,8 +53,13 @@ class BuildTolerances:
 
     @classmethod
     def of(cls, body: Body) -> Self:
-        """Return the usual tolerances of a body: sewn where it is flat, cast with tubes in the mould in space."""
-        return cls() if body.mesh.dim == 2 else cls(sewing=1e-3, friction=(0.0, 0.15), thickness=0.0)
+        """Return the usual tolerances of a body: sewn where it is flat, cast with tubes in the mould in space.
+
+        The deviation of Young's modulus is that of the material's interval, if it was measured.
+        """
+        usual = cls() if body.mesh.dim == 2 else cls(sewing=1e-3, friction=(0.0, 0.15), thickness=0.0)
+        measured = body.material.young_deviation
+        return usual if measured is None else replace(usual, young=min(measured, 1.0))
 
     @classmethod
     def none(cls) -> Self:
@@ -102,7 +107,8 @@ class BuildTolerances:
                     spool_radius=scale * (cable.spool_radius or winch.spool_radius),
                 )
             )
-        material = replace(robot.body.material, young=float(young) * robot.body.material.young, name="", source="")
+        given = robot.body.material
+        material = replace(given.with_young(float(young) * given.young), name="", source="")
         thickness = robot.body.thickness
         body = replace(robot.body, material=material, thickness=None if thickness is None else float(thick) * thickness)
         return replace(

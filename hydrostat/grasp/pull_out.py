@@ -256,7 +256,7 @@ def _cases(robot: Robot, thing: Obstacle) -> Iterator[tuple[str, Robot, Obstacle
         yield f"friction {friction:g}", robot, replace(thing, friction=friction)
     material = robot.body.material
     for factor in MODULI:
-        body = replace(robot.body, material=replace(material, young=factor * material.young))
+        body = replace(robot.body, material=material.with_young(factor * material.young))
         yield f"modulus {factor - 1:+.0%}", replace(robot, body=body), thing
     place = thing.frame()[0]
     for axis in range(len(place)):

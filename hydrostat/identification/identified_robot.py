@@ -12,7 +12,7 @@ from hydrostat.identification.fit_contraction_map import fit_contraction_map
 from hydrostat.identification.kinds import KINDS, named_model
 from hydrostat.identification.measurements import Measurements
 from hydrostat.identification.model import IdentificationModel
-from hydrostat.robot import PinDrive, Robot
+from hydrostat.robot import Material, PinDrive, Robot
 from hydrostat.units import MM
 
 UNKNOWN = 0.3
@@ -94,6 +94,7 @@ def identify(
             held_before, held_after = held_before[held_out], held_after[held_out]
     fitted = fit_model(model, measurements, progress=progress)
     changed, pretension = _robot(model, fitted, robot)
+    changed = _with_intervals(changed, fitted)
     return IdentifiedRobot(
         fitted=fitted,
         robot=changed,
@@ -158,6 +159,24 @@ def _robot(model: IdentificationModel, fitted: FittedModel, assumed: Robot) -> t
         return robot.with_network(winches, cables), {name: zeros[name] for name in gains if name in tight}
     except InputError as error:
         raise InputError(f"the fitted robot cannot be built: {error}") from None
+
+
+def _with_intervals(robot: Robot, fitted: FittedModel) -> Robot:
+    """Robot whose materials have the interval of Young's modulus, where the measurements show it."""
+    gains, intervals = fitted.information_gains, fitted.intervals
+
+    def measured(owner: str, material: Material) -> Material:
+        name = f"{owner}.young"
+        if gains.get(name, 0.0) < UNKNOWN:
+            return material
+        low, high = (_round_number(end) for end in intervals[name])
+        return replace(material, young_interval=(min(low, material.young), max(high, material.young)))
+
+    parts = tuple(
+        part if part.material is None else replace(part, material=measured(part.name, part.material))
+        for part in robot.body.parts
+    )
+    return replace(robot, body=replace(robot.body, material=measured("body", robot.body.material), parts=parts))
 
 
 def _round_number(value: float) -> float:

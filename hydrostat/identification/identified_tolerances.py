@@ -4,7 +4,7 @@ import numpy as np
 
 from hydrostat.identification.identified_robot import IdentifiedRobot
 
-FIELDS = {"young": "young", "stiffness": "stiffness", "gain": "spool"}
+FIELDS = {"stiffness": "stiffness", "gain": "spool"}
 """Field of `design.BuildTolerances` for each kind of parameter whose logarithm is fitted."""
 
 
@@ -12,7 +12,8 @@ def identified_tolerances(found: IdentifiedRobot) -> bytes:
     """Text of a file of constraints whose table [tolerances] holds the intervals of the fit.
 
     A field is the largest standard deviation of its parameters that the measurements show. Fields of others are left
-    out, so that the usual tolerances hold. Pins are left out as well: a design does not depend on them.
+    out, so that the usual tolerances hold. Pins are left out as well: a design does not depend on them. Young's modulus
+    has its interval in the material of the fitted robot.
     """
     fitted, deviations, friction = found.fitted, dict[str, float](), ""
     widths = np.sqrt(np.diag(fitted.interval_covariance)).tolist()

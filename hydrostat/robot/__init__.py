@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from hydrostat.robot.materials import FOAMS, MATERIALS, get_material
     from hydrostat.robot.merge import comments, lost_comments, merged_text
     from hydrostat.robot.obstacle_lines import obstacle_lines, rims
+    from hydrostat.robot.own_materials import own_materials, save_own_material
     from hydrostat.robot.part import BodyPart
     from hydrostat.robot.pin import Pin
     from hydrostat.robot.pin_drive import PinDrive
@@ -94,9 +95,11 @@ __all__ = [
     "lost_comments",
     "merged_text",
     "obstacle_lines",
+    "own_materials",
     "rims",
     "robot_hash",
     "robot_text",
+    "save_own_material",
     "save_robot",
     "scaled_robot",
     "sewn_robot",

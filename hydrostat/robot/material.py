@@ -83,6 +83,7 @@ class Material:
         young: Young's modulus [Pa].
         poisson: Poisson's ratio.
         density: mass density [kg/m^3].
+        young_interval: 95 % interval of a measured Young's modulus [Pa]; None: not measured.
         viscosity: shear viscosity of a dashpot parallel to the elastic material (Kelvin-Voigt) [Pa s].
         relaxation: Maxwell branches parallel to the elastic material, together a Prony series.
         hysteresis: Prandtl elements parallel to the elastic material, together an Iwan model.
@@ -103,6 +104,7 @@ class Material:
     young: float
     poisson: float
     density: float
+    young_interval: tuple[float, float] | None = None
     viscosity: float = 0.0
     relaxation: tuple[Relaxation, ...] = ()
     hysteresis: tuple[Slider, ...] = ()
@@ -141,6 +143,11 @@ class Material:
                 f"young = {self.young:g} Pa is too small (minimum {SOFTEST:g} Pa). Units are Pa: for 30 kPa write 30e3."
             )
 
+        if self.young_interval is not None:
+            low, high = self.young_interval
+            if not 0 < low <= self.young <= high < math.inf:
+                raise InputError(f"young_interval must hold young ({self.young:g} Pa), not {low:g} to {high:g} Pa")
+
     def _check_foam(self) -> None:
         total = sum(term.share for term in self.foam)
         if len(self.foam) > MOST_TERMS:
@@ -172,6 +179,18 @@ class Material:
         """Lame's parameters mu and lambda [Pa]."""
         mu = self.young / (2 * (1 + self.poisson))
         return mu, self.young * self.poisson / ((1 + self.poisson) * (1 - 2 * self.poisson))
+
+    def with_young(self, young: float) -> Self:
+        """Return the material with another Young's modulus [Pa], whose interval is unknown."""
+        return replace(self, young=young, young_interval=None)
+
+    @property
+    def young_deviation(self) -> float | None:
+        """Standard deviation of the logarithm of Young's modulus by its interval; None: not measured."""
+        if self.young_interval is None:
+            return None
+        low, high = self.young_interval
+        return math.log(high / low) / (2 * 1.96)
 
     @property
     def young_text(self) -> str:

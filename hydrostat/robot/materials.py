@@ -288,7 +288,9 @@ FOAMS = MappingProxyType({material.name: material for material in _FOAM_TABLE}) 
 
 
 def get_material(name: str, law: MaterialLaw | str | None = None) -> Material:
-    """Material of the table; capitals do not matter (InputError: no material has this name).
+    """Material of the table, else of the user's own file; capitals do not matter (InputError: no such material).
+
+    One of the user's own comes without its name, as a robot keeps its values: it is the same on another computer.
 
     Args:
         name: name of the material.
@@ -302,7 +304,12 @@ def get_material(name: str, law: MaterialLaw | str | None = None) -> Material:
     if material is None:
         from difflib import get_close_matches
 
-        near = get_close_matches(name.lower(), MATERIALS, n=1)
+        from hydrostat.robot.own_materials import own_materials
+
+        own = own_materials()
+        if name.lower() in own and law is None:
+            return replace(own[name.lower()], name="", source="")
+        near = get_close_matches(name.lower(), [*MATERIALS, *own], n=1)
         hint = f'did you mean "{near[0]}"? ' if near else ""
         raise InputError(
             f"unknown material {quote(name)}; {hint}`hydrostat materials` lists all {len(MATERIALS)}; "

@@ -15,12 +15,12 @@ from hydrostat.given import list_choices
 from hydrostat.robot.body import Body, Source
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.contact import ClosedMesh, Contact, Obstacle, closed_mesh
-from hydrostat.robot.element_kind import MaterialLaw
 from hydrostat.robot.gravity import gravity_along
 from hydrostat.robot.load import Load
 from hydrostat.robot.load_drive import LoadDrive
 from hydrostat.robot.marker import Marker, PoseTarget
-from hydrostat.robot.material import FoamTerm, Material, Relaxation, Slider
+from hydrostat.robot.material import Material
+from hydrostat.robot.material_table import given_keys, inelastic_values, material_of
 from hydrostat.robot.materials import get_material
 from hydrostat.robot.part import BodyPart, PartShape
 from hydrostat.robot.pin import Pin
@@ -129,7 +129,7 @@ class RobotReader(TablesFile):
             at=None if entry.at is None else self.point(entry.at),
             radius=units.scale_up(entry.radius, self.unit, units.LENGTH),
             box=None if entry.box is None else (self.point(entry.box[0]), self.point(entry.box[1])),
-            **_given_keys(entry, "stiffness", "drive"),
+            **given_keys(entry, "stiffness", "drive"),
         )
 
     def _drive(self, entry: Any) -> PinDrive | LoadDrive:
@@ -139,13 +139,13 @@ class RobotReader(TablesFile):
         for key in ("axis", "slide"):
             if (way := getattr(entry, key)) is not None:
                 given[key] = tuple(float(value) for value in way)
-        for key, text in _given_keys(entry, "min", "max").items():
+        for key, text in given_keys(entry, "min", "max").items():
             given[key] = _drive_value(key, str(text), turns=entry.slide is None)
         return PinDrive(name=entry.name, **given)
 
     def _contact(self, entry: Any) -> Contact:
         friction = {} if entry.friction is None else {"friction": float(entry.friction)}
-        return Contact(**_given_keys(entry, "distance"), **friction)
+        return Contact(**given_keys(entry, "distance"), **friction)
 
     def _obstacle(self, entry: Any) -> Obstacle:
         given: dict[str, Any] = {}
@@ -157,7 +157,7 @@ class RobotReader(TablesFile):
             given["normal"] = tuple(float(value) for value in entry.normal)
         if entry.friction is not None:
             given["friction"] = float(entry.friction)
-        given |= _given_keys(entry, "mass")
+        given |= given_keys(entry, "mass")
         if entry.file is not None:
             given["mesh"] = self._closed_mesh("obstacle.file", entry.file)
         given["path"] = tuple((key.time, self.point(key.at)) for key in entry.path)
@@ -165,14 +165,14 @@ class RobotReader(TablesFile):
 
     def _winch(self, entry: Any) -> Winch:
         return Winch(
-            name=entry.name, at=self.point(entry.at), **_given_keys(entry, "spool_radius", "travel", "release", "mount")
+            name=entry.name, at=self.point(entry.at), **given_keys(entry, "spool_radius", "travel", "release", "mount")
         )
 
     def _cable(self, entry: Any) -> Cable:
         points = tuple(self.point(point) for point in entry.points)
         sheathed = {} if entry.sheathed is None else {"sheathed": tuple((start, end) for start, end in entry.sheathed)}
         friction = {} if entry.friction is None else {"friction": float(entry.friction)}
-        given = _given_keys(entry, "name", "stiffness", "smoothing", "slack", "spool_radius", "reverse")
+        given = given_keys(entry, "name", "stiffness", "smoothing", "slack", "spool_radius", "reverse")
         return Cable(winch=entry.winch, points=points, **sheathed, **friction, **given)
 
     def _load(self, entry: Any) -> Load:
@@ -182,11 +182,11 @@ class RobotReader(TablesFile):
             force["moment"] = tuple(entry.moment) if isinstance(entry.moment, list) else (entry.moment,)
         path = tuple((key.time, float(key.share)) for key in entry.path)
         return Load(
-            name=entry.name, **at, **force, path=path, **_given_keys(entry, "marker", "mass", "pressure", "drive")
+            name=entry.name, **at, **force, path=path, **given_keys(entry, "marker", "mass", "pressure", "drive")
         )
 
     def _rod(self, entry: Any) -> Rod:
-        given = _given_keys(entry, "diameter", "young", "axial_stiffness", "bending_stiffness")
+        given = given_keys(entry, "diameter", "young", "axial_stiffness", "bending_stiffness")
         return Rod(name=entry.name, points=tuple(self.point(point) for point in entry.points), **given)
 
     def _sensor(self, entry: Any) -> Sensor:
@@ -237,7 +237,7 @@ class RobotReader(TablesFile):
                 material=material,
                 size=entry.size,
                 thickness=entry.thickness,
-                **_given_keys(entry, "volume", *(("inner", "drawing_part") if source is Source.OUTLINE else ())),
+                **given_keys(entry, "volume", *(("inner", "drawing_part") if source is Source.OUTLINE else ())),
             ),
             otherwise=f"body.{source}",
         )
@@ -265,7 +265,7 @@ class RobotReader(TablesFile):
         if entry.material is not None:
             given["material"] = self.at(f"{where}.material", lambda: read_material(entry.material))
         points = tuple(self.point(point) for point in entry.points)
-        return BodyPart(name=entry.name, shape=entry.shape, points=points, **given, **_given_keys(entry, "density"))
+        return BodyPart(name=entry.name, shape=entry.shape, points=points, **given, **given_keys(entry, "density"))
 
     def _closed_mesh(self, key: str, name: str) -> ClosedMesh:
         file = self._file(key, name)
@@ -293,49 +293,13 @@ def read_material(entry: Any) -> Material:
     """Return a material by name or by its values (InputError: an unknown name, or a value out of its range)."""
     if isinstance(entry, str):
         return get_material(entry)
-    viscous = _given_keys(entry, "viscosity")
-    if entry.relaxation is not None:
-        viscous["relaxation"] = tuple(_branch(index, branch) for index, branch in enumerate(entry.relaxation))
-    if entry.hysteresis is not None:
-        viscous["hysteresis"] = tuple(_slider(index, slider) for index, slider in enumerate(entry.hysteresis))
-    terms = _foam_terms(entry)
-    if hasattr(entry, "name"):
-        known = get_material(entry.name, None if terms else entry.law)
-        if isinstance(entry.viscosity, tuple):  # LossFrequency
-            viscous["viscosity"] = known.with_damping(entry.viscosity[0]).viscosity
-        return replace(known, **viscous, **({"foam": terms} if terms else {}))
-    if entry.law is MaterialLaw.FOAM and not terms:
-        raise InputError("terms are missing; a foam law needs them: terms = [{ share = 1, exponent = 8 }]")
-    return Material(young=entry.young, poisson=float(entry.poisson), density=entry.density, foam=terms, **viscous)
-
-
-def _foam_terms(entry: Any) -> tuple[FoamTerm, ...]:
-    if entry.terms is None:
-        return ()
-    if entry.law is not MaterialLaw.FOAM:
-        raise InputError('terms are those of a foam law; write law = "foam" with them, or remove them')
-    return tuple(_foam_term(index, term) for index, term in enumerate(entry.terms))
-
-
-def _foam_term(index: int, entry: Any) -> FoamTerm:
-    try:
-        return FoamTerm(share=float(entry.share), exponent=float(entry.exponent))
-    except InputError as error:
-        raise InputError(f"terms[{index}].{error}") from None
-
-
-def _branch(index: int, entry: Any) -> Relaxation:
-    try:
-        return Relaxation(modulus=entry.modulus, time=entry.time)
-    except InputError as error:
-        raise InputError(f"relaxation[{index}].{error}") from None
-
-
-def _slider(index: int, entry: Any) -> Slider:
-    try:
-        return Slider(young=entry.young, strain=float(entry.strain))
-    except InputError as error:
-        raise InputError(f"hysteresis[{index}].{error}") from None
+    if not hasattr(entry, "name"):
+        return material_of(entry)
+    given = inelastic_values(entry)
+    known = get_material(entry.name, None if given.get("foam") else entry.law)
+    if isinstance(entry.viscosity, tuple):  # LossFrequency
+        given["viscosity"] = known.with_damping(entry.viscosity[0]).viscosity
+    return replace(known, **given)
 
 
 def _gravity(entry: Any, dim: int) -> tuple[float, ...] | None:
@@ -358,8 +322,3 @@ def _drive_value(key: str, text: str, *, turns: bool) -> float:
         return PinDrive.parse_value(text, turns=turns)
     except InputError as error:
         raise InputError(f"{key}: {error}") from None
-
-
-def _given_keys(entry: Any, *keys: str) -> dict[str, Any]:
-    """Keys that stand in the file; the others keep the record's own defaults."""
-    return {key: getattr(entry, key) for key in keys if getattr(entry, key) is not None}

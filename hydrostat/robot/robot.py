@@ -184,11 +184,11 @@ class Robot:
         if not isinstance(known, Material):
             raise InputError(f"material must be a Material or a name of the table, not {material!r:.60}")
         numbers = ("young", "poisson", "density", "viscosity")
-        for name in changed:
-            if name not in numbers:
-                raise InputError(f'unknown material value "{name}". Allowed: {", ".join(numbers)}.')
+        for name in (each for each in changed if each not in numbers):
+            raise InputError(f'unknown material value "{name}". Allowed: {", ".join(numbers)}.')
         if changed:
-            known = replace(known, **changed, name="", source="", note="")
+            interval = {"young_interval": None} if "young" in changed else {}
+            known = replace(known, **changed, **interval, name="", source="", note="")
         return replace(self, body=replace(self.body, material=known))
 
     def __repr__(self) -> str:

@@ -14,9 +14,9 @@ from pydantic import (
 from hydrostat.geometry import Inner
 from hydrostat.robot.cable_side import Face
 from hydrostat.robot.contact import ObstacleShape
-from hydrostat.robot.element_kind import ElementKind, MaterialLaw, Plane, Volume
+from hydrostat.robot.element_kind import ElementKind, Plane, Volume
 from hydrostat.robot.gravity import DIRECTIONS
-from hydrostat.robot.material import MOST_BRANCHES, MOST_TERMS
+from hydrostat.robot.material_schema import AnyMaterial
 from hydrostat.robot.part import PartShape
 from hydrostat.robot.sensor import SensorKind
 from hydrostat.robot.winch import Mount
@@ -29,7 +29,6 @@ from hydrostat.toml_schema import (
     Length,
     Mass,
     Name,
-    NamedViscosity,
     Number,
     Pair,
     Pressure,
@@ -38,7 +37,6 @@ from hydrostat.toml_schema import (
     Time,
     TomlTable,
     Torque,
-    Viscosity,
 )
 from hydrostat.units import quote
 
@@ -61,66 +59,6 @@ def _format(value: object) -> object:
 Direction = Annotated[str, AfterValidator(_direction)]
 
 
-class RelaxationTable(TomlTable):
-    """Maxwell branch."""
-
-    modulus: Pressure
-    time: Time
-
-
-Branches = Annotated[list[RelaxationTable], Field(max_length=MOST_BRANCHES)]
-
-
-class SliderTable(TomlTable):
-    """Prandtl element."""
-
-    young: Pressure
-    strain: Number
-
-
-Sliders = Annotated[list[SliderTable], Field(max_length=MOST_BRANCHES)]
-
-
-class FoamTermTable(TomlTable):
-    """Term of a foam law."""
-
-    share: Number
-    exponent: Number
-
-
-Terms = Annotated[list[FoamTermTable], Field(min_length=1, max_length=MOST_TERMS)]
-
-
-class NamedMaterialTable(TomlTable):
-    """Material by name, with its law and viscosity."""
-
-    name: Text
-    law: MaterialLaw | None = None
-    terms: Terms | None = None
-    viscosity: NamedViscosity | None = None
-    relaxation: Branches | None = None
-    hysteresis: Sliders | None = None
-
-
-class MaterialTable(TomlTable):
-    """Material by its numbers."""
-
-    young: Pressure
-    poisson: Number
-    density: Density
-    law: MaterialLaw | None = None
-    terms: Terms | None = None
-    viscosity: Viscosity | None = None
-    relaxation: Branches | None = None
-    hysteresis: Sliders | None = None
-
-
-def _material_tag(value: object) -> str:
-    if not isinstance(value, dict):
-        return "<name>"
-    return "<named>" if "name" in value else "<numbers>"
-
-
 def _noise_tag(value: object) -> str:
     return "<text>" if isinstance(value, str) else "<number>"
 
@@ -131,14 +69,6 @@ def _gravity_tag(value: object) -> str:
 
 Gravity = Annotated[
     Annotated[Direction, Tag("<direction>")] | Annotated[Components, Tag("<components>")], Discriminator(_gravity_tag)
-]
-
-
-AnyMaterial = Annotated[
-    Annotated[Text, Tag("<name>")]
-    | Annotated[NamedMaterialTable, Tag("<named>")]
-    | Annotated[MaterialTable, Tag("<numbers>")],
-    Discriminator(_material_tag),
 ]
 
 

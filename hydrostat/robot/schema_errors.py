@@ -5,7 +5,6 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from hydrostat.robot.schema import RobotTable
 from hydrostat.toml_schema import TomlTable
 from hydrostat.units import quote
 
@@ -67,7 +66,7 @@ _BRANCHES = ("<", "function-", "list[")
 """Beginnings of what pydantic calls the kinds of value that a key may have; they are no keys."""
 
 
-def first_complaint(error: ValidationError, form: type[TomlTable] = RobotTable) -> tuple[str, str]:
+def first_complaint(error: ValidationError, form: type[TomlTable]) -> tuple[str, str]:
     """Return the key, such as cable[1].points[0], and the error; unknown keys first, as they explain missing ones."""
     errors = error.errors()
     worst: Any = next((entry for entry in errors if entry["type"] == "extra_forbidden"), errors[0])
@@ -75,7 +74,7 @@ def first_complaint(error: ValidationError, form: type[TomlTable] = RobotTable) 
     return _dotted_path(location), _message(worst, location, form)
 
 
-def allowed_keys(key: str, form: type[TomlTable] = RobotTable) -> list[str]:
+def allowed_keys(key: str, form: type[TomlTable]) -> list[str]:
     """Keys that the table at a key such as cable[1], in any of its forms, may have; none if it is no table."""
     tables = [form]
     for step in filter(None, key.split(".")):

@@ -16,11 +16,12 @@ from hydrostat.given import Point, check_name, check_type, path_of
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.contact import Contact, Obstacle
-from hydrostat.robot.element_kind import ElementKind, MaterialLaw, Plane, Volume
+from hydrostat.robot.element_kind import ElementKind, Plane, Volume
 from hydrostat.robot.gravity import direction_of
 from hydrostat.robot.load import Load
 from hydrostat.robot.load_drive import LoadDrive
-from hydrostat.robot.material import FoamTerm, Material, Relaxation, Slider
+from hydrostat.robot.material import Material
+from hydrostat.robot.material_table import material_values
 from hydrostat.robot.materials import FOAMS, MATERIALS
 from hydrostat.robot.part import BodyPart
 from hydrostat.robot.pin import DEFAULT_STIFFNESS, Pin
@@ -190,44 +191,11 @@ class _Writer:
         """Name of the table, or an inline table of the name or the numbers, then the viscosity."""
         if MATERIALS.get(material.name) == material:
             return material.name
-        table = self._toml.inline_table()
         elastic, known = material.elastic, FOAMS.get(material.name)
-        if elastic == known or replace(elastic, foam=()) == MATERIALS.get(material.name):
-            table["name"] = material.name
-        else:
-            table["young"] = units.format_quantity(material.young, units.PRESSURE)
-            table["poisson"] = material.poisson
-            table["density"] = units.format_quantity(material.density, units.DENSITY)
-        if material.foam:
-            table["law"] = str(MaterialLaw.FOAM)
-            if elastic != known:
-                table["terms"] = self._array(map(self.foam_term, material.foam))
-        if material.viscosity:
-            table["viscosity"] = units.format_quantity(material.viscosity, units.VISCOSITY)
-        if material.relaxation:
-            table["relaxation"] = self.relaxation(material.relaxation)
-        if material.hysteresis:
-            table["hysteresis"] = self._array(map(self.slider, material.hysteresis))
-        return table
-
-    def slider(self, slider: Slider) -> Any:
+        is_named = elastic == known or replace(elastic, foam=()) == MATERIALS.get(material.name)
         table = self._toml.inline_table()
-        table["young"], table["strain"] = units.format_quantity(slider.young, units.PRESSURE), slider.strain
+        table.update(material_values(material, name=material.name if is_named else "", known=known))
         return table
-
-    def foam_term(self, term: FoamTerm) -> Any:
-        table = self._toml.inline_table()
-        table["share"], table["exponent"] = term.share, term.exponent
-        return table
-
-    def relaxation(self, branches: Iterable[Relaxation]) -> Any:
-        tables = []
-        for branch in branches:
-            table = self._toml.inline_table()
-            table["modulus"] = units.format_quantity(branch.modulus, units.PRESSURE)
-            table["time"] = units.format_quantity(branch.time, units.TIME)
-            tables.append(table)
-        return self._array(tables)
 
     def gravity(self, gravity: tuple[float, ...]) -> Any:
         """Direction such as "-y", or one acceleration for each axis."""

@@ -160,7 +160,11 @@ def _alter_robot(
     moduli = {
         name: _number(name, value) for name, value in (("young", young), ("poisson", poisson)) if value is not None
     }
-    body = replace(robot.body, material=replace(robot.body.material, **moduli)) if moduli else robot.body
+    body = (
+        replace(robot.body, material=replace(robot.body.material, **moduli, young_interval=None))
+        if moduli
+        else robot.body
+    )
     winches = robot.winches if routes is None else _moved_winches(robot, cables)
     return replace(robot, body=body, cables=cables, winches=winches)
 

@@ -4,9 +4,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from hydrostat.design import BuildTolerances, read_uncertainty
-from hydrostat.robot import gallery_folder, load_robot
+from hydrostat.robot import gallery_folder, get_material, load_robot
 from hydrostat.simulation import Simulation
 
 Run = Callable[..., tuple[int, str, str]]
@@ -42,3 +43,32 @@ def test_spools_are_found_and_doubtful_rows_named(run: Run, tmp_path: Path) -> N
     code, text, _ = run("identify", "gallery:starfish", table, "--fit", "gain", "--out", out)
     assert code == 0
     assert "contracts by 400 mm in row 4, beyond its travel of 60 mm" in text
+
+
+def test_a_material_is_saved_with_its_interval(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Oracle: the hidden modulus of a robot whose pulls were measured."""
+    monkeypatch.setenv("HYDROSTAT_MATERIALS", str(tmp_path / "materials.toml"))
+    robot = load_robot(gallery_folder("starfish"))
+    hidden = Simulation(robot.with_material(young=25e3))
+    table = tmp_path / "pulls.csv"
+    lines = ["left_mm,left_force_n,top_x_mm,top_y_mm"]
+    for pull in (10.0, 20.0, 30.0):
+        pose = hidden.solve({"left": 1e-3 * pull})
+        force = sum(
+            tension for cable, tension in zip(robot.cables, pose.tensions, strict=True) if cable.winch == "left"
+        )
+        lines.append(",".join(f"{value:.4f}" for value in (pull, force, *(1e3 * pose.markers["top"]))))
+    table.write_text("\n".join(lines) + "\n")
+    options = ("--fit", "young", "--out", tmp_path / "fitted")
+    code, text, _ = run("identify", "gallery:starfish", table, *options, "--save-material", "my felt")
+    assert code == 0, text
+    low, high = get_material("my felt").young_interval or (0.0, 0.0)
+    assert low < 25e3 < high
+    assert load_robot(tmp_path / "fitted").body.material == get_material("my felt")
+    assert f'Wrote {tmp_path / "materials.toml"}. Use it: material = "my felt"' in text
+    assert "my felt" in run("materials")[1]
+    assert "3 rows of pulls.csv" in run("materials", "my felt")[1]
+    for name, told in (("PDMS", "is in the table of materials"), ("a/b", 'has "/" in it')):
+        code, _, errors = run("identify", "gallery:starfish", table, *options, "--save-material", name)
+        assert code == 2
+        assert told in errors

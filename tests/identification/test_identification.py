@@ -380,7 +380,7 @@ def test_tolerances_are_the_deviations_of_the_intervals() -> None:
     expected = {name: model.parameters[index].spread / np.sqrt(1 + informed[index] / 4) for name, index in own.items()}
     told = tomllib.loads(identified_tolerances(found).decode())["tolerances"]
     assert told["spool"] == pytest.approx(max(expected["up.gain"], expected["down.gain"]), rel=5e-3)
-    assert told["young"] == pytest.approx(expected["body.young"], rel=5e-3)
+    assert "young" not in told  # the fitted material has its interval
 
 
 def test_up_and_down_strokes_show_hysteresis() -> None:

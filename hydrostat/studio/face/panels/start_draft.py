@@ -1,21 +1,22 @@
 """Start: what is being made of a file: its picture, its repair report, its numbers."""
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from typing import Any
 
 from nicegui import events, ui
 
-from hydrostat.errors import HydrostatError, in_words
+from hydrostat.errors import HydrostatError, InputError, in_words
 from hydrostat.geometry import Inner
-from hydrostat.robot import MATERIALS
+from hydrostat.robot import MATERIALS, get_material, own_materials
 from hydrostat.studio.face.dialogs import may_leave
 from hydrostat.studio.face.messages import sent_number
 from hydrostat.studio.face.page import WindowPage
 from hydrostat.studio.skins import SewnSkin
 from hydrostat.studio.stage import StageName
-from hydrostat.studio.starting.draft import SMOOTHINGS, THRESHOLDS, BodyDraft, PhotoReading, material_words, young_words
+from hydrostat.studio.starting.draft import SMOOTHINGS, THRESHOLDS, BodyDraft, PhotoReading, material_words
 from hydrostat.studio.starting.photo import overlay
 from hydrostat.studio.starting.sketch import PartChoice, Sketch
 
@@ -258,7 +259,9 @@ class _Fields:
     def __init__(self, page: WindowPage) -> None:
         self._page, self._starter = page, page.session.starter
         spread = "no-caps spread unelevated"
-        materials = {key: f"{key}, {young_words(found)}" for key, found in MATERIALS.items()}
+        materials = {key: f"{key}, {found.young_text}" for key, found in MATERIALS.items()}
+        with suppress(InputError):  # a file of own materials that is wrong
+            materials |= {key: f"{key}, {found.young_text}" for key, found in own_materials().items()}
         with ui.element("div").classes("start-fields"):
             self._name = ui.input("Name").props("outlined dense debounce=500")
             self._size = _Length("Longest side", lambda value: self._ask(size=value), "size")
@@ -294,7 +297,7 @@ class _Fields:
         self._within.set_visibility(draft.is_drawing)
         self._inner.set_value(draft.inner)
         self._material.set_value(draft.material)
-        self._words.set_text(material_words(MATERIALS[draft.material]))
+        self._words.set_text(material_words(get_material(draft.material)))
         self._enable()
         self._fine.set_value(_level(draft, flat))
         body = None if sketch is None else sketch.robot.body
