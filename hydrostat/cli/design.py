@@ -15,7 +15,7 @@ from hydrostat.cli.design_results import STALE, print_front, print_poses, write_
 from hydrostat.cli.design_wishes import DesignArguments, parse_request
 from hydrostat.cli.fabricate import print_kit
 from hydrostat.cli.folders import OutFolder, RobotFolder, folder_of, require_folder, result_folder
-from hydrostat.cli.options import DefaultText
+from hydrostat.cli.options import Budget, DefaultText, MotorOption, parse_budget
 from hydrostat.cli.remedies import body_refusals, design_remedy
 from hydrostat.cli.waiting import one_interrupt, progress_bar, read_robot
 from hydrostat.units import plural
@@ -68,9 +68,6 @@ Depth = Annotated[
     ),
 ]
 Tension = Annotated[str | None, _option("FORCE", "Maximum cable tension.", "Constraints.tension")]
-MotorOption = Annotated[
-    str | None, _option("NAME", "Motor model, such as sts3215: see hydrostat fabricate.", "Constraints.motor")
-]
 Slack = Annotated[str | None, _option("LENGTH", "Maximum cable slack.", "Constraints.slack")]
 SteppedSpools = Annotated[
     bool, typer.Option("--stepped-spools", help="Allow cable spools from half to twice the winch spool radius.")
@@ -155,6 +152,7 @@ def design(
     depth: Depth = None,
     tension: Tension = None,
     motor: MotorOption = None,
+    budget: Budget = None,
     slack: Slack = None,
     stepped_spools: SteppedSpools = False,
     two_way: TwoWay = False,
@@ -220,19 +218,21 @@ def design(
     source = read_robot(robot)
     request = parse_request(source, typed)
     _refuse_body(source, request)
+    spend = parse_budget(budget)
+    _refuse_budget(request, request.motor_for(source), spend)
     record = open_record(out, source, request, resume=resume)
     with one_interrupt(STOPPING, interrupt=True) as pass_over:
         network = _search(source, request, record, out)
         pass_over()
         printed = print_poses(network, time.perf_counter() - began)
         print(end="", flush=True)
-        made = _write(network, out, kit=kit)
+        made = _write(network, out, kit=kit, budget=spend)
         write_record(record, network, out, source, request)
     if made is not None:
         print_kit(made, printed=printed)
     _tell_count(network, request)
-    fits = kit_fits(network) and not (made is not None and made.problems)
-    _tell_next(network, robot, out, kit=kit, fits=fits)
+    fits = kit_fits(network) and not (made is not None and made.problems) and not _tell_price(network, spend)
+    _tell_next(network, robot, out, kit=kit, fits=fits, budget=spend)
     if network.timed_out:
         print(f"time limit of {time_limit} reached: best network so far")
     elif not network.complete:
@@ -255,6 +255,35 @@ def _refuse_body(source: "Robot", request: "DesignRequest") -> None:
         print(f"warning: {reason}", file=sys.stderr, flush=True)
 
 
+def _refuse_budget(request: "DesignRequest", key: str, budget: float | None) -> None:
+    """Stop before the search if a budget does not buy the motors of the winches that are asked for (InputError)."""
+    from hydrostat.errors import InputError
+    from hydrostat.fabrication import ALL_MOTORS, motors_price
+
+    if budget is None:
+        return
+    least = request.winches if isinstance(request.winches, int) else 1
+    motors = [motor for motor in ALL_MOTORS if key in ("auto", motor.key)]
+    price, cheapest = min((motors_price([0.0] * least, motor), motor.key) for motor in motors)
+    if price > budget:
+        count = plural(least, "motor")
+        raise InputError(
+            f"--budget {budget:g}USD: {count} with boards and power cost at least {price:.0f} USD ({cheapest}). Ask "
+            "for fewer winches or a greater budget."
+        )
+
+
+def _tell_price(network: "Network", budget: float | None) -> bool:
+    """Print an error if motors, power and cables of a network cost more than a budget; True if they do."""
+    from hydrostat.design import BuildCost
+
+    price = BuildCost.of_robot(network.robot, network.ik_results).price
+    if budget is None or price <= budget:
+        return False
+    print(f"error: motors, power and cables cost {price:.0f} USD, more than the budget of {budget:g} USD")
+    return True
+
+
 def _search(source: "Robot", request: "DesignRequest", record: "SearchRecord", out: Path) -> "Network":
     """Find the network; exit where it is interrupted before the first one."""
     from hydrostat.design import find_network
@@ -267,7 +296,7 @@ def _search(source: "Robot", request: "DesignRequest", record: "SearchRecord", o
             raise typer.Exit(130) from None
 
 
-def _write(network: "Network", out: Path, *, kit: bool) -> "Kit | None":
+def _write(network: "Network", out: Path, *, kit: bool, budget: float | None) -> "Kit | None":
     """Write the results, with the kit if wanted, and print the seconds that this took."""
     from hydrostat.fabrication import Kit
 
@@ -277,7 +306,7 @@ def _write(network: "Network", out: Path, *, kit: bool) -> "Kit | None":
         with result_folder(out, stale=STALE, kept=RECORDS) as folder:
             write_results(network, folder)
         Kit.forget_files(out / "kit")
-        made = write_kit(network, out / "kit") if kit else None
+        made = write_kit(network, out / "kit", budget=budget) if kit else None
         progress("Writing results", 1, 1)
     print(f"results written in {time.perf_counter() - began:.1f} s", file=sys.stderr, flush=True)
     return made
@@ -316,7 +345,7 @@ def _tell_count(network: "Network", request: "DesignRequest") -> None:
         print_front(network)
 
 
-def _tell_next(network: "Network", source: Path, out: Path, *, kit: bool, fits: bool) -> None:
+def _tell_next(network: "Network", source: Path, out: Path, *, kit: bool, fits: bool, budget: float | None) -> None:
     """Print the locations of the results and the next command."""
     if network.alternatives:
         print(f"Alternatives: {out / 'alternatives'}")
@@ -325,7 +354,8 @@ def _tell_next(network: "Network", source: Path, out: Path, *, kit: bool, fits: 
     elif kit:
         print(f"To build it, start with {out / 'kit' / 'assembly_sheet.pdf'}")
     else:
-        print(f"Next: hydrostat fabricate {quote(str(out / 'robot'))} --out {quote(str(out / 'kit'))}")
+        spend = "" if budget is None else f" --budget {budget:g}USD"
+        print(f"Next: hydrostat fabricate {quote(str(out / 'robot'))}{spend} --out {quote(str(out / 'kit'))}")
     limits = network.constraints
     given = f"--tension {limits.tension_limit:.4g}N"
     if limits.torque is not None:

@@ -33,13 +33,13 @@ def write_results(network: "Network", folder: Path) -> None:
     write_report(network, folder / "report.html", facts=_facts(network))
 
 
-def write_kit(network: "Network", folder: Path) -> "Kit":
+def write_kit(network: "Network", folder: Path, *, budget: float | None) -> "Kit":
     """The fabrication kit, with problems listed. Its poses keep to the design's tension."""
     from hydrostat.camera import tag_files
     from hydrostat.fabrication import KitOptions, build_kit
 
     limits, robot = network.constraints, network.robot
-    options = KitOptions(force=True, tension=limits.tension_limit, torque=limits.torque)
+    options = KitOptions(force=True, tension=limits.tension_limit, torque=limits.torque, budget=budget)
     kit = build_kit(robot, options=options, added=tag_files(robot, options.paper))
     kit.write(folder)
     return kit

@@ -11,7 +11,7 @@ import typer
 
 from hydrostat.cli.design_results import designed_tension, designed_torque
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
-from hydrostat.cli.options import parse_optional, positive
+from hydrostat.cli.options import Budget, MotorOption, parse_budget, parse_optional, positive
 from hydrostat.cli.waiting import progress_bar, read_robot
 from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
@@ -44,14 +44,8 @@ def fabricate(
             show_default="print for TPU, foam for what is poured, plush for flat or stuffed bodies",
         ),
     ] = None,
-    motor: Annotated[
-        str,
-        typer.Option(
-            metavar="NAME",
-            help="Motor model: n20, xl330, 25d, xc330, sts3215, sts3215-12v, or auto: that of robot.toml, else the "
-            "first of n20, xl330 and 25d that is strong enough.",
-        ),
-    ] = "auto",
+    motor: MotorOption = None,
+    budget: Budget = None,
     mould: Annotated[
         str | None,
         typer.Option(metavar="printed|silicone", help="Mold material for foam robots.", show_default="printed"),
@@ -90,19 +84,21 @@ def fabricate(
         parts=kits.PartOptions(
             cable=_millimeters("--line", line), clearance=_millimeters("--print-clearance", clearance)
         ),
-        motor=motor,
         step=step,
         force=force,
     )
     limit = parse_optional("--tension", tension, FORCE)
+    spend = parse_budget(budget)
     began = time.perf_counter()
     loaded = read_robot(robot)
     kept = designed_tension(loaded, robot) if limit is None else None
-    options = replace(options, tension=kept or limit, torque=designed_torque(loaded, robot))
+    torque = designed_torque(loaded, robot)
+    options = replace(options, tension=kept or limit, torque=torque, motor=motor or "auto", budget=spend)
     if mould is not None and options.method_for(loaded.body) is not kits.Method.FOAM:
         raise InputError("--mould: needs a foam body. Remove it, or add --method foam.")
     kit = _build_or_report(robot, loaded, options, out)
     kit.write(out)
+    _print_motors(loaded, kit, options)
     print_kit(kit)
     if loaded.markers:
         print("Tags for photographs, with their places: tags.pdf")
@@ -131,6 +127,27 @@ def _build_or_report(folder: Path, robot: "Robot", options: "KitOptions", out: P
         count = f"{plural(len(error.reasons), 'problem')} {'prevents' if len(error.reasons) == 1 else 'prevent'}"
         words = f"{folder}: {count} fabrication. Fix the robot, or add --force to write the kit anyway."
         raise InputError(words) from None
+
+
+def _print_motors(robot: "Robot", kit: "Kit", options: "KitOptions") -> None:
+    """Print a table of the motors that the winches may have, the cheapest first; nothing without winches."""
+    from rich.console import Console
+    from rich.table import Table
+
+    from hydrostat.fabrication import motor_offers
+
+    if not robot.cables:
+        return
+    count = plural(len({cable.winch for cable in robot.cables}), "winch")
+    table = Table(title=f"motors for {count}, with boards and power", title_justify="left")
+    for name, justify in (("motor", "left"), ("price", "right"), ("full travel in", "right"), ("", "left")):
+        table.add_column(name, justify=justify)  # type: ignore[arg-type]
+    for offer in motor_offers(robot, kit.torques, options):
+        words = offer.problem or (f"no better than {offer.better}" if offer.better else "")
+        chosen = "chosen" + (f", {words}" if words else "") if offer.motor.key == kit.motor else words
+        seconds = "stalls" if offer.seconds is None else f"{offer.seconds:.1f} s"
+        table.add_row(offer.motor.key, f"{offer.price:.0f} USD", seconds, chosen)
+    Console(markup=False).print(table)
 
 
 def print_kit(kit: "Kit", *, printed: Collection[str] = ()) -> None:

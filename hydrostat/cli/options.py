@@ -1,6 +1,7 @@
 """Parsing of options given as text: quantities with units, limits, contractions."""
 
 import math
+import re
 import sys
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
@@ -82,6 +83,18 @@ EqualWinches = Annotated[
 ]
 
 
+class MotorText(str):
+    """Text of the default of --motor, with the names of all motors, which are read as help is printed."""
+
+    __slots__ = ()
+
+    def __format__(self, spec: str) -> str:
+        """The default and the names."""
+        from hydrostat.fabrication import ALL_MOTORS
+
+        return format(f"{self!s}. Motors: {', '.join(motor.key for motor in ALL_MOTORS)}", spec)
+
+
 class DefaultText(str):
     """Text of an option's default: "Record.field" of `hydrostat.design`, read from there when help is printed.
 
@@ -112,6 +125,20 @@ MotorPort = Annotated[
         show_default="simulated motors",
     ),
 ]
+MotorOption = Annotated[
+    str | None,
+    typer.Option(
+        metavar="NAME|auto",
+        help="Motor model, or auto: the cheapest that fits, is strong enough and not slow.",
+        show_default=MotorText("that of robot.toml, else auto"),
+    ),
+]
+Budget = Annotated[
+    str | None,
+    typer.Option(
+        metavar="AMOUNT", help="Maximum price of the kit in whole packs, e.g. 250USD.", show_default="no limit"
+    ),
+]
 PictureWidth = Annotated[int, typer.Option(metavar="PIXELS", help="Width of the animation [pixels].")]
 
 
@@ -131,6 +158,16 @@ def positive(option: str, text: str, dimension: "Dimension", *, zero: bool = Fal
 def parse_optional(option: str, text: str | None, dimension: "Dimension", *, zero: bool = False) -> float | None:
     """Parse an option like `positive`; return None for an option that is not given."""
     return None if text is None else positive(option, text, dimension, zero=zero)
+
+
+def parse_budget(text: str | None) -> float | None:
+    """Amount of --budget, such as 120USD [USD]; None if not given (InputError: another currency, no amount)."""
+    if text is None:
+        return None
+    match = re.fullmatch(r"\s*(\d+(?:\.\d+)?)\s*(?:USD|usd|\$)\s*", text)
+    if match is None or not float(match[1]) > 0:
+        raise InputError(f"--budget {text}: not an amount. Prices are in USD: write one above 0, e.g. 120USD.")
+    return float(match[1])
 
 
 def middle(text: str, dim: int) -> "Vector":

@@ -1,5 +1,6 @@
 """Commands that fix what prevents a kit."""
 
+import re
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
@@ -20,7 +21,7 @@ def kit_remedy(robot: "Robot", folder: Path, out: Path, *, options: "KitOptions"
     It is `hydrostat materials` if the material is a cause, and `hydrostat check` if no kit can be made of the body
     itself.
     """
-    from hydrostat.fabrication import MATERIAL_FIX, MOTORS, Method, find_refusals
+    from hydrostat.fabrication import ALL_MOTORS, MATERIAL_FIX, OVER_BUDGET, Method, find_refusals
 
     place, kit = quote(str(folder)), quote(str(out))
     told = list(reasons)
@@ -28,8 +29,13 @@ def kit_remedy(robot: "Robot", folder: Path, out: Path, *, options: "KitOptions"
         return f"hydrostat fabricate {place} --mould silicone --out {kit}"
     if any(MATERIAL_FIX in reason for reason in told):
         return f"hydrostat materials, then edit material in {place}"
+    if found := next((reason for reason in told if OVER_BUDGET in reason), ""):
+        budget, fewer = f"--budget {options.budget:g}USD", max(len(robot.winches) - 1, 1)
+        if motor := re.search(r"--motor (\S+)", found):
+            return f"hydrostat fabricate {place} --motor {motor[1]} {budget} --out {kit}"
+        return f"hydrostat design {place} --winches {fewer} {budget} --out {quote(f'{out}_design')}"
     known = set(find_refusals(robot, options=options))
-    for motor in ("auto", *(each.key for each in MOTORS)) if known and known >= set(told) else ():
+    for motor in ("auto", *(each.key for each in ALL_MOTORS)) if known and known >= set(told) else ():
         if motor != options.motor and not find_refusals(robot, options=replace(options, motor=motor)):
             return f"hydrostat fabricate {place} --motor {motor} --out {kit}"
     if told and set(body_refusals(robot)) >= set(told):

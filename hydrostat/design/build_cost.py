@@ -7,7 +7,7 @@ import numpy as np
 
 from hydrostat.design.checks.cables import SAME
 from hydrostat.design.polyline import nearest_shares, turns
-from hydrostat.fabrication import PRICES, KitOptions, Method, control_needs, find_motor, power_plan, shaft_torques
+from hydrostat.fabrication import PRICES, KitOptions, Method, find_motor, motors_price, shaft_torques
 from hydrostat.ik import IKResult
 from hydrostat.robot import Cable, Mount, Robot, sewn_sides
 from hydrostat.units import plural
@@ -73,12 +73,11 @@ class BuildCost:
         price, key = PRICES["line"].amount * length + PRICES["tube"].amount * tube, ""
         if motors:
             rows = [shaft_torques(robot, pose.pose.tensions) for pose in reached]
-            torques = np.array(rows).reshape(-1, len(robot.winches))
-            chosen = find_motor(robot, torques.ravel().tolist(), KitOptions())
-            used, most = {cable.winch for cable in cables}, 1e3 * torques.max(axis=0, initial=0.0)
-            pairs = zip(robot.winches, most.tolist(), strict=True)
-            power = power_plan({winch.name: torque for winch, torque in pairs if winch.name in used}, chosen)
-            price += motors * chosen.price + sum(item.cost for item in control_needs(power))
+            torques = np.array(rows).reshape(-1, len(robot.winches)).max(axis=0, initial=0.0).tolist()
+            chosen = find_motor(robot, torques, KitOptions())
+            used = {cable.winch for cable in cables}
+            pulled = [each for winch, each in zip(robot.winches, torques, strict=True) if winch.name in used]
+            price += motors_price(pulled, chosen)
             key = chosen.key
         return BuildCost(
             holes=holes,

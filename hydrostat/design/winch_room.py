@@ -54,7 +54,7 @@ def limit_torque(constraints: Constraints) -> Constraints:
     """The constraints with the torque that a motor of choice holds for long, wherever the winches stand."""
     if constraints.motor == "auto":
         return constraints
-    most = _torque_to_hold(Motor.choose(constraints.motor, ()))
+    most = _torque_to_hold(Motor.choose(constraints.motor))
     return replace(constraints, torque=min(constraints.torque or math.inf, most))
 
 
@@ -63,7 +63,7 @@ def find_holding_torque(robot: Robot, reached: Sequence[IKResult]) -> float | No
     if not any(winch.mount is Mount.BODY for winch in robot.winches):
         return None
     torques = Demand.of_results(robot, reached).torques
-    chosen = find_motor(robot, torques, KitOptions())
+    chosen = find_motor(robot, torques.tolist(), KitOptions())
     return _torque_to_hold(chosen) if float(torques.max()) > chosen.largest_torque() else None
 
 

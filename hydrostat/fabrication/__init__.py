@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from hydrostat.fabrication.kit import Check, Kit, UnbuildableError
     from hydrostat.fabrication.kit_options import (
         MATERIAL_FIX,
+        OVER_BUDGET,
         STUFFINGS,
         KitOptions,
         Method,
@@ -20,9 +21,8 @@ if TYPE_CHECKING:
         PatternOptions,
     )
     from hydrostat.fabrication.lists.bill import PRICES
-    from hydrostat.fabrication.lists.motors import power_plan
-    from hydrostat.fabrication.lists.needs import control_needs
     from hydrostat.fabrication.lists.stitching import depth_table
+    from hydrostat.fabrication.motor_choice import find_motor, motor_offers, motors_price
     from hydrostat.fabrication.moulds.mould import make_mold
     from hydrostat.fabrication.moulds.pocket_room import PocketRoom
     from hydrostat.fabrication.parts.motor import ALL_MOTORS, BOARDS, MOTORS, BoardKind, Motor, board_for
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from hydrostat.fabrication.patches.skin_mesh import skin_of_surface
     from hydrostat.fabrication.patches.space_pattern import Sewing, space_pattern
     from hydrostat.fabrication.patterns.pattern import plush_pattern
-    from hydrostat.fabrication.refusals import find_motor, find_refusals
+    from hydrostat.fabrication.refusals import find_refusals
     from hydrostat.fabrication.sheets.tiles import PAPERS
     from hydrostat.fabrication.solids.construct import Cuboid, sides_text
     from hydrostat.fabrication.weak_lines import find_weak_lines
@@ -43,6 +43,7 @@ __all__ = [
     "GIVES",
     "MATERIAL_FIX",
     "MOTORS",
+    "OVER_BUDGET",
     "PAPERS",
     "PRICES",
     "STUFFINGS",
@@ -66,14 +67,14 @@ __all__ = [
     "UnitBox",
     "board_for",
     "build_kit",
-    "control_needs",
     "depth_table",
     "find_motor",
     "find_refusals",
     "find_weak_lines",
     "make_mold",
+    "motor_offers",
+    "motors_price",
     "plush_pattern",
-    "power_plan",
     "seam_of",
     "shaft_torques",
     "sides_text",

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 
 from hydrostat.errors import InputError, NotConvergedError
@@ -9,16 +10,17 @@ from hydrostat.fabrication.body_work import foam_work, plush_work
 from hydrostat.fabrication.checks.solid_checks import solid_checks, spool_checks, too_large
 from hydrostat.fabrication.demand import Demand
 from hydrostat.fabrication.kit import MANIFEST, Kit, UnbuildableError, manifest
-from hydrostat.fabrication.kit_options import KitOptions, Method
+from hydrostat.fabrication.kit_options import OVER_BUDGET, KitOptions, Method
 from hydrostat.fabrication.kit_plan import BodyWork, KitFindings, KitPlan
 from hydrostat.fabrication.lists.lists import Lists, make_lists
+from hydrostat.fabrication.motor_choice import find_motor, motors_price, pulled_torques
 from hydrostat.fabrication.parts.motor import Motor
 from hydrostat.fabrication.parts.rigid_parts import RigidParts, rigid_parts
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.pattern import cut_sheet
 from hydrostat.fabrication.patterns.svg_writer import pattern_svg
 from hydrostat.fabrication.print_work import print_work
-from hydrostat.fabrication.refusals import find_motor, find_refusals
+from hydrostat.fabrication.refusals import find_refusals
 from hydrostat.fabrication.sheets.assembly_sheet import assembly_sheet
 from hydrostat.fabrication.solids.print_files import stl_bytes, three_mf_plates
 from hydrostat.fabrication.solids.printed import Printed
@@ -67,7 +69,8 @@ def build_kit(
     check_type(robot, Robot, "a kit is made of a Robot, such as load_robot gives")
     check_type(options, (KitOptions, type(None)), "options must be KitOptions(...)")
     options, tell = options or KitOptions(), _Stages(progress)
-    Motor.choose(options.motor_for(robot), ())  # a name that is wrong is told before the work
+    if (key := options.motor_for(robot)) != "auto":
+        Motor.choose(key)  # a name that is wrong is told before the work
     if options.step:
         require_cad()
     plan = _plan(robot, options, tell)
@@ -94,6 +97,7 @@ def build_kit(
         robot=robot,
         method=plan.method,
         motor=plan.rigid.motor.key,
+        torques=tuple(plan.demand.torques.tolist()),
         printed=plan.printed,
         files=files,
         summary=summary,
@@ -143,12 +147,12 @@ def _parts_and_body(
 
     Felt has holes for grommets, foam has room for winches.
     """
-    motor = find_motor(drawn, demand.torques, options).key
+    motor = find_motor(drawn, demand.torques.tolist(), options).key
 
     def rigid(holes: int) -> RigidParts:
         tell("Winches")
         pinhole, bed = options.pattern.pinhole, options.mould.bed
-        return rigid_parts(robot, demand, motor=motor, options=options.parts, bed=bed, holes=holes, hole=pinhole)
+        return rigid_parts(robot, motor=motor, options=options.parts, bed=bed, holes=holes, hole=pinhole)
 
     if options.method_for(robot.body) is Method.PLUSH:
         tell("Pattern")
@@ -181,7 +185,7 @@ def _findings(plan: KitPlan, lists: Lists) -> KitFindings:
     made = (*rigid.problems, *work.problems, *lists.problems)
     return KitFindings(
         checks=checks,
-        problems=tuple(dict.fromkeys((*known, *made, *large, *failed))),
+        problems=tuple(dict.fromkeys((*known, *made, *large, *failed, *_budget_problems(plan, lists)))),
         warnings=(
             *(*_cable_warnings(plan), *_bending_warnings(plan), *_part_warnings(plan)),
             *(*work.warnings, *rigid.warnings, *lists.warnings),
@@ -195,6 +199,21 @@ def _cable_warnings(plan: KitPlan) -> tuple[str, ...]:
     if plan.drawn.cables:
         return ()
     return ("the robot has no cables: the kit has its body alone. `hydrostat design` adds winches and cables",)
+
+
+def _budget_problems(plan: KitPlan, lists: Lists) -> tuple[str, ...]:
+    """A line if the kit costs more than its budget in whole packs, with the cheapest that it can be."""
+    budget, cost = plan.options.budget, lists.cost[1]
+    if budget is None or cost <= budget:
+        return ()
+    free, options = replace(plan.drawn, motor="auto"), replace(plan.options, motor="auto")
+    cheapest = find_motor(free, plan.demand.torques.tolist(), options)
+    pulled = pulled_torques(plan.robot, plan.demand.torques.tolist())
+    least = cost + motors_price(pulled, cheapest) - motors_price(pulled, plan.rigid.motor)
+    shares = ", ".join(f"{row.group} {row.cost_packs:.0f}" for row in lists.bill.rows[:-1] if row.is_total)
+    other = f"With --motor {cheapest.key} it costs about {least:.0f} USD"
+    way = other if least < cost else f"No cheaper motor than {plan.rigid.motor.key} does"
+    return (f"the kit costs {cost:.0f} USD in whole packs ({shares}), {OVER_BUDGET} {budget:g} USD. {way}",)
 
 
 def _bending_warnings(plan: KitPlan) -> tuple[str, ...]:

@@ -54,6 +54,7 @@ class Kit:
         robot: robot of the kit.
         method: method by which the body is made.
         motor: key of the motor in its winches.
+        torques: largest torque of each winch in its poses [N m], for `motor_offers`.
         printed: all parts for a 3D printer.
         files: content by path.
         summary: contents, one line each.
@@ -66,6 +67,7 @@ class Kit:
     robot: Robot
     method: Method
     motor: str
+    torques: tuple[float, ...] = ()
     printed: tuple[Printed, ...]
     files: Mapping[str, bytes]
     summary: tuple[str, ...]

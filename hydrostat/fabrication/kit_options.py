@@ -19,6 +19,9 @@ BLOCKS = ("polyurethane foam", "polyethylene foam")  # materials that are bought
 MATERIAL_FIX = "Set the body's material to"
 """Words of each reason for which a kit needs another material."""
 
+OVER_BUDGET = "more than the budget of"
+"""Words of the reason that a kit costs too much."""
+
 
 def block_problem(name: str) -> str:
     """Return the reason why no method makes a body of a foam that comes in blocks."""
@@ -189,7 +192,9 @@ class KitOptions:
 
     Attributes:
         method: fabrication method. None: print for filament, foam for what is poured, plush for a flat or stuffed body.
-        motor: key of a motor in the table, or "auto": that of the robot, else the first that is strong enough.
+        motor: key of a motor in the table, or "auto": that of the robot, else the cheapest that fits, is strong enough
+            and not slow.
+        budget: maximum price of the kit in whole packs [USD]; None: no limit.
         tension: maximum cable tension in its poses [N], for the choice of motors and lines. None: the limit of its
             winches. A designed robot keeps to the limit of its design.
         torque: maximum torque of a winch in its poses [N m], as the tension.
@@ -201,11 +206,12 @@ class KitOptions:
         mould: options for the mold of a foam robot.
 
     Raises:
-        InputError: a text that is no method or no paper, a tension or torque that is not above 0.
+        InputError: a text that is no method or no paper, a tension, torque or budget that is not above 0.
     """
 
     method: Method | None = None
     motor: str = "auto"
+    budget: float | None = None
     tension: float | None = None
     torque: float | None = None
     paper: Paper = Paper.A4
@@ -219,7 +225,7 @@ class KitOptions:
         if self.method is not None:
             make_member(self, "method", Method)
         make_member(self, "paper", Paper)
-        for name, unit in (("tension", "N"), ("torque", "N m")):
+        for name, unit in (("tension", "N"), ("torque", "N m"), ("budget", "USD")):
             value = getattr(self, name)
             if value is None:
                 continue

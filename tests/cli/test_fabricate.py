@@ -4,13 +4,16 @@ import csv
 import json
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from builders import gallery_robot
 from plush import near_the_edge
 
 from hydrostat.cli.design_results import designed_tension
 from hydrostat.errors import InputError
+from hydrostat.fabrication import ALL_MOTORS
 from hydrostat.project import Wishes, Work
 from hydrostat.robot import load_robot, robot_hash, save_robot
 
@@ -156,3 +159,43 @@ def test_force_builds_it_and_says_why_not(run: Run, tmp_path: Path) -> None:
     assert code == 0
     assert out.count("error: ") == 2
     assert (tmp_path / "kit" / "assembly_sheet.pdf").is_file()
+
+
+@pytest.mark.slow
+def test_a_budget_refuses_and_names_the_cheapest_way(run: Run, tmp_path: Path) -> None:
+    """Oracle: the cost in whole packs of the kit without a budget, and the prices in its table of motors."""
+    robot = gallery_robot("finger")
+    save_robot(replace(robot, poses={}), tmp_path / "robot")
+    code, out, _ = run("fabricate", tmp_path / "robot", "--motor", "25d", "--out", tmp_path / "kit")
+    assert code == 0
+    cost = int(re.findall(r"full packs\): (\d+) USD", out)[0])
+    rows = [line.split("│")[1:5] for line in out.splitlines() if "│" in line]
+    assert {row[0].strip() for row in rows} == {motor.key for motor in ALL_MOTORS}
+    assert [row[3].strip().split(",")[0] for row in rows if row[0].strip() == "25d"] == ["chosen"]
+    code, out, _ = run(
+        "fabricate", tmp_path / "robot", "--motor", "25d", "--budget", f"{cost - 1} USD", "--out", tmp_path / "less"
+    )
+    assert code == 2
+    assert not (tmp_path / "less").exists()
+    assert f"costs {cost} USD in whole packs" in out
+    ((motor, least),) = re.findall(r"With --motor (\S+) it costs about (\d+) USD", out)
+    prices = {row[0].strip(): int(row[1].split()[0]) for row in rows}
+    assert motor == min(prices, key=prices.__getitem__)
+    assert int(least) == pytest.approx(cost - prices["25d"] + prices[motor], abs=2)
+    assert f"--motor {motor} --budget {cost - 1}USD" in out
+
+
+@pytest.mark.parametrize("text", ["120 EUR", "0 USD", "-5USD", "much", "nan USD"])
+def test_a_budget_is_an_amount_of_dollars(run: Run, tmp_path: Path, text: str) -> None:
+    code, _, err = run("fabricate", "gallery:finger", f"--budget={text}", "--out", tmp_path / "kit")
+    assert code == 2
+    assert "e.g. 120USD" in err
+
+
+def test_a_budget_below_the_motors_stops_a_design(run: Run, tmp_path: Path) -> None:
+    """Oracle: two STS3215 with boards and power are 60 USD (test_power)."""
+    code, _, err = run(
+        "design", "gallery:finger", "--winches", "2", "--cables", "2", "--budget", "50USD", "--out", tmp_path / "design"
+    )
+    assert code == 2
+    assert "2 motors with boards and power cost at least 60 USD (sts3215)" in err

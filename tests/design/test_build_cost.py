@@ -7,7 +7,7 @@ import pytest
 
 from hydrostat.design import BuildCost
 from hydrostat.design.build_cost import SewingTimes, front
-from hydrostat.fabrication import MOTORS
+from hydrostat.fabrication import ALL_MOTORS
 from hydrostat.robot import Cable, Face, Robot, gallery_folder, load_robot
 
 
@@ -91,7 +91,7 @@ def test_no_body_is_sewn_that_is_printed_or_cast(starfish: Robot) -> None:
 
 def test_motors_are_those_of_the_table(starfish: Robot) -> None:
     found = BuildCost.of_robot(starfish, [])
-    assert found.motor in {motor.key for motor in MOTORS}
+    assert found.motor in {motor.key for motor in ALL_MOTORS}
     assert found.motors == len({cable.winch for cable in starfish.cables})
     assert np.isfinite(found.price)
-    assert found.price > found.motors * min(motor.price for motor in MOTORS)
+    assert found.price > found.motors * min(motor.price for motor in ALL_MOTORS)

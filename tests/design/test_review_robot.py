@@ -10,7 +10,7 @@ from builders import gallery_robot, gallery_texts
 from hydrostat.design import Constraints, Network, RouteOptions, design_cables
 from hydrostat.design.finding import Severity
 from hydrostat.design.review_robot import review_robot
-from hydrostat.fabrication import MOTORS, Demand, KitOptions, UnbuildableError, build_kit
+from hydrostat.fabrication import ALL_MOTORS, Demand, KitOptions, UnbuildableError, build_kit
 from hydrostat.robot import Robot, find_risks, robot_hash
 
 SMALL = RouteOptions(starts=1, exchanges=0, refine_steps=2, trials=2, steps=2, max_edges=6)
@@ -86,7 +86,8 @@ def test_the_motor_of_the_judgement_is_that_of_the_poses(unchecked: None) -> Non
     robot = gallery_robot("squid")
     demand = Demand.find(replace(robot, poses=dict(list(robot.poses.items())[:1])))
     strong = replace(demand, torques=np.full(len(robot.winches), 10.0))
-    assert refused(robot, demand=strong) == refused(robot, options=KitOptions(motor=MOTORS[-1].key))
+    strongest = max(ALL_MOTORS, key=lambda motor: motor.stall_torque)
+    assert refused(robot, demand=strong) == refused(robot, options=KitOptions(motor=strongest.key))
     assert refused(robot, demand=strong) != []
 
 

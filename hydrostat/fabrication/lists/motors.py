@@ -44,16 +44,8 @@ class WinchSizing:
 
     @property
     def time(self) -> float | None:
-        """Time for the full travel as torque rises evenly from none to the largest [s]; None: it never gets there.
-
-        With q the largest torque over that of stall, speed falls along the travel as 1 - q x; the integral of 1/speed
-        gives - ln(1 - q) / q times the time without load.
-        """
-        if self.torque >= self.motor.stall_torque:
-            return None
-        share = self.torque / self.motor.stall_torque
-        slower = -math.log1p(-share) / share if share > 1e-9 else 1.0
-        return slower * self.travel / (2 * math.pi * self.radius * self.motor.speed / 60)
+        """Time for the full travel [s], as `travel_time`."""
+        return travel_time(self.motor, self.torque, 1e-3 * self.travel, 1e-3 * self.radius)
 
     @property
     def verdict(self) -> str:
@@ -63,6 +55,24 @@ class WinchSizing:
         if self.torque_with_margin > self.motor.stall_torque:
             return "no margin"
         return "holds for seconds" if self.torque_with_margin > self.motor.rated_torque else "good"
+
+
+def travel_time(motor: Motor, torque: float, travel: float, radius: float) -> float | None:
+    """Time for a travel on a spool of a radius [m] as torque rises evenly to the largest [N mm]; None: it stalls [s].
+
+    With q the largest torque over that of stall, speed falls along the travel as 1 - q x; the integral of 1/speed gives
+    - ln(1 - q) / q times the time without load.
+    """
+    share = torque / motor.stall_torque
+    if share >= 1:
+        return None
+    slower = -math.log1p(-share) / share if share > 1e-9 else 1.0
+    return slower * travel / (2 * math.pi * radius * motor.speed / 60)
+
+
+def turns_of(winch: Winch) -> float:
+    """Turns of the spool of a winch from its maximum payout to its full travel."""
+    return (winch.travel + winch.release) / (2 * math.pi * winch.spool_radius)
 
 
 _MINDS = {
@@ -125,7 +135,7 @@ def _sizing(robot: Robot, demand: Demand, motor: Motor, winch: Winch, torque: fl
         tension=max(mine, default=0.0),
         torque=1e3 * torque,
         radius=1e3 * winch.spool_radius,
-        turns=(winch.travel + winch.release) / (2 * math.pi * winch.spool_radius),
+        turns=turns_of(winch),
         travel=1e3 * winch.travel,
         motor=motor,
     )

@@ -4,7 +4,7 @@ All motors stand alike: the shaft is the z axis, the face that is screwed on lie
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from hydrostat.errors import InputError
@@ -145,6 +145,7 @@ class Motor:
     volts: float  # voltage of all its figures [V]
     stall_current: float  # [A]
     free_current: float  # without load [A]
+    turns: float = math.inf  # turns of its shaft from one end to the other
     counts: float = 0.0  # counts of its encoder in a turn of the shaft, all edges; 0: it has none
     mass: float  # [g]
     price: float  # price of one, rough [USD]
@@ -172,19 +173,15 @@ class Motor:
         """
         return 1e-3 * (BRIEF * self.stall_torque if inside else self.rated_torque) / MARGIN
 
-    @staticmethod
-    def choose(key: str, torques: Iterable[float], *, inside: bool = False, winches: int = 0) -> "Motor":
-        """The motor of a key; "auto": the first of the table that carries the largest torque [N m], with the margin.
+    @property
+    def volume(self) -> float:
+        """Volume of the box round its outline [mm^3]."""
+        xs, ys = zip(*self.outline, strict=True)
+        return (max(xs) - min(xs)) * (max(ys) - min(ys)) * self.depth
 
-        Motors of `MORE_MOTORS` are taken by their key only. Outside the body a motor must carry the torque for long;
-        `inside`, where there is little room, for seconds. Where none does it is the strongest. More `winches` outside
-        than one board drives get servos, which share one bus. Raises InputError if no motor has this key.
-        """
-        if key == "auto":
-            needed = max((float(torque) for torque in torques), default=0.0) - 1e-12
-            able = [each for each in MOTORS if each.largest_torque(inside=inside) >= needed] or [MOTORS[-1]]
-            many = winches > max(board.motors for board in BOARDS.values()) and not inside
-            return next((each for each in able if each.horn is not None or not many), able[0])
+    @staticmethod
+    def choose(key: str) -> "Motor":
+        """The motor of a key (InputError: no motor has it)."""
         for motor in ALL_MOTORS:
             if motor.key == key:
                 return motor
@@ -354,10 +351,12 @@ _STS3215_12V = replace(
     "Case, horn, holes: as of the 7.4 V variant; current without load: estimate, check yours.",
 )
 
-MOTORS = (_N20, _XL330, _POLOLU_25D)  # from the weakest to the strongest
-MORE_MOTORS = (_XC330, _STS3215, _STS3215_12V)
-"""Motors that kits mount where their key is given: "auto" does not choose them."""
-ALL_MOTORS = (*MOTORS, *MORE_MOTORS)
+MOTORS = (_N20, _XL330, _POLOLU_25D)
+"""From the weakest to the strongest: designs look for room in the body for the strongest of these that has it."""
+AUTO_MOTORS = (*MOTORS, _STS3215, _STS3215_12V)
+"""Motors that "auto" chooses among: an XC330 costs four times as much as any other servo, so it is taken by its key."""
+ALL_MOTORS = (*MOTORS, _XC330, _STS3215, _STS3215_12V)
+"""All that kits mount."""
 
 MARGIN = 2.0
 """Torque that a motor should have over the largest that was simulated. Simulated cables mostly run without friction:

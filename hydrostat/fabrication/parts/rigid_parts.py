@@ -5,7 +5,6 @@ from collections import Counter
 from dataclasses import dataclass, replace
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.demand import Demand
 from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.base_plate import BasePlate, base_plate
 from hydrostat.fabrication.parts.body_seat import BodySeat, body_seat
@@ -15,7 +14,7 @@ from hydrostat.fabrication.parts.winch_unit import WinchUnit, find_crowded_units
 from hydrostat.fabrication.solids.assembly import PartAssembly
 from hydrostat.fabrication.solids.construct import Construction, Cylinder, Revolve
 from hydrostat.fabrication.solids.printed import Printed
-from hydrostat.robot import Mount, Robot
+from hydrostat.robot import Robot
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -139,7 +138,6 @@ class RigidParts:
 
 def rigid_parts(
     robot: Robot,
-    demand: Demand,
     *,
     motor: str,
     options: PartOptions,
@@ -149,12 +147,11 @@ def rigid_parts(
 ) -> RigidParts:
     """The rigid parts of a robot.
 
-    The motor is a key of the table, or "auto"; the bed is the largest piece that the printer takes, along x, y and z
+    The motor is a key of the table; the bed is the largest piece that the printer takes, along x, y and z
     [mm]; so many pinholes of the diameter `hole` [mm] get a grommet. Raises InputError: there is no such motor, or a
     pinhole is too small for a grommet.
     """
-    inside = any(winch.mount is Mount.BODY for winch in robot.winches)
-    chosen = Motor.choose(motor, demand.torques, inside=inside, winches=len(robot.winches))
+    chosen = Motor.choose(motor)
     units = winch_units(robot, options, chosen)
     seat = body_seat(robot, options, bed)
     return RigidParts(

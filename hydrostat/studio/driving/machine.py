@@ -11,9 +11,9 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.control import FASTEST, Link, Motors, Player, Timeline
 from hydrostat.errors import HydrostatError
-from hydrostat.fabrication import Motor
+from hydrostat.fabrication import KitOptions, find_motor
 from hydrostat.plot import upright
-from hydrostat.robot import Mount, Robot
+from hydrostat.robot import Robot
 from hydrostat.simulation import Equilibrium, Simulation
 from hydrostat.studio.document import Document
 from hydrostat.studio.driving.keyframes import Keyframes
@@ -28,15 +28,15 @@ def kit_speed(robot: Robot, tension: float) -> tuple[float, str]:
         robot: with winches; without, the speed is that of motors in general.
         tension: the most that a cable bears [N].
     """
-    counts = {winch.name: sum(cable.winch == winch.name for cable in robot.cables) for winch in robot.winches}
-    loads = {winch: counts[winch.name] * tension * winch.spool_radius for winch in robot.winches if counts[winch.name]}
-    if not loads:
+    counts = [sum(cable.winch == winch.name for cable in robot.cables) for winch in robot.winches]
+    loads = [many * tension * winch.spool_radius for many, winch in zip(counts, robot.winches, strict=True)]
+    if not any(counts):
         return FASTEST, ""
-    inside = any(winch.mount is Mount.BODY for winch in robot.winches)
-    motor = Motor.choose("auto", loads.values(), inside=inside, winches=len(loads))
-    share = max(1e3 * load / motor.stall_torque for load in loads.values())
+    motor = find_motor(robot, loads, KitOptions())
+    share = 1e3 * max(loads) / motor.stall_torque
     turns = motor.speed / 60 * max(1 - share, _LEAST)
-    return 2 * math.pi * min(winch.spool_radius for winch in loads) * turns, motor.title
+    least = min(winch.spool_radius for winch, many in zip(robot.winches, counts, strict=True) if many)
+    return 2 * math.pi * least * turns, motor.title
 
 
 _LEAST = 0.1

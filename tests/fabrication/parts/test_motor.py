@@ -45,35 +45,15 @@ def test_every_motor_is_stronger_than_the_one_before_and_says_where_its_figures_
         assert (motor.bus != "") == (motor.horn is not None)
 
 
-def test_auto_takes_the_first_that_carries_the_load_for_long():
-    """Oracle: the table, with a margin of 2."""
-    for index, motor in enumerate(MOTORS):
-        assert Motor.choose("auto", [0.0, 1e-3 * motor.rated_torque / 2]) is motor
-        if index + 1 < len(MOTORS):
-            assert Motor.choose("auto", [1.01e-3 * motor.rated_torque / 2]) is MOTORS[index + 1]
-
-
-def test_in_the_body_it_has_to_carry_it_for_seconds():
-    """Oracle: half of stall, with a margin of 2, is a quarter of it."""
-    for index, motor in enumerate(MOTORS):
-        assert Motor.choose("auto", [0.99e-3 * motor.stall_torque / 4], inside=True) is motor
-        if index + 1 < len(MOTORS):
-            assert Motor.choose("auto", [1.01e-3 * motor.stall_torque / 4], inside=True) is MOTORS[index + 1]
-
-
-def test_auto_takes_the_strongest_if_none_carries_it():
-    assert Motor.choose("auto", [2.0]) is MOTORS[-1]
-
-
 def test_a_motor_that_was_named_is_taken():
-    assert Motor.choose("n20", [2.0]) is MOTORS[0]
+    assert Motor.choose("n20") is MOTORS[0]
 
 
 def test_an_unknown_motor_is_refused_with_those_there_are():
     with pytest.raises(
         InputError, match=r'unknown motor "nema"\. Available: auto, n20, xl330, 25d, xc330, sts3215, sts3215-12v'
     ):
-        Motor.choose("nema", [0.1])
+        Motor.choose("nema")
 
 
 @pytest.mark.parametrize("wall", [0.8, 1.2, 1.6, 2.0, 3.1])
@@ -94,17 +74,3 @@ def test_a_thicker_shaft_is_thicker_all_round():
     shaft = MOTORS[-1].shaft
     room: Manifold = Manifold.cube((20, 20, 4)).translate((-10, -10, 2)) - solid_of(shaft.shape(10, 0.2))
     assert solid_of(shaft.shape(10)).min_gap(room, 1.0) == pytest.approx(0.2, abs=0.02)
-
-
-def test_more_winches_than_a_board_bears_get_servos_where_they_carry_it() -> None:
-    n20, xl330, strong = MOTORS
-    assert Motor.choose("auto", [0.01], winches=6) is n20
-    assert Motor.choose("auto", [0.01], winches=7) is xl330
-    assert Motor.choose("auto", [0.01], winches=7, inside=True) is n20
-    assert Motor.choose("auto", [0.1], winches=7) is strong
-
-
-def test_a_motor_of_the_second_table_is_taken_by_its_key_only() -> None:
-    assert Motor.choose("sts3215-12v", [0.1]).volts == 12.0
-    assert Motor.choose("sts3215", [0.1]).volts == 7.4
-    assert all(Motor.choose("auto", [torque]) in MOTORS for torque in (0.01, 0.06, 0.3, 2.0))

@@ -6,20 +6,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from builders import gallery_robot
-from winch_robots import given_demand
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.rigid_parts import RigidParts, rigid_parts
-from hydrostat.robot import Mount, list_gallery
+from hydrostat.robot import list_gallery
 
 BED = (220.0, 220.0, 250.0)
 
 
-def parts_of(name: str, motor: str = "auto", torque: float = 0.02) -> RigidParts:
+def parts_of(name: str, motor: str = "n20") -> RigidParts:
     robot = gallery_robot(name)
-    demand = given_demand(robot, torque)
-    return rigid_parts(robot, demand, motor=motor, options=PartOptions(), bed=BED, holes=12, hole=3.0)
+    return rigid_parts(robot, motor=motor, options=PartOptions(), bed=BED, holes=12, hole=3.0)
 
 
 @pytest.mark.parametrize("name", list_gallery())
@@ -37,8 +35,6 @@ def test_parts_of_the_gallery(name: str, unchecked: None):
     pieces = {piece.name.split(" ")[0] for made in parts.assemblies for piece in made.pieces if piece.printed}
     assert pieces == set(count) - {"grommet"}
     assert parts.problems == ()
-    many = len(robot.winches) > 6 and all(winch.mount is Mount.WORLD for winch in robot.winches)
-    assert parts.motor.key == ("xl330" if many else "n20")
     assert dict(parts.bought)[parts.motor.title] == len(robot.winches)
     assert parts.screws == {title: number for title, number in parts.bought if title != parts.motor.title}
     assert set(parts.leads) == set(parts.seats) == set(range(len(robot.cables)))
@@ -66,12 +62,6 @@ def test_equal_winches_share_a_file_that_names_them():
     assert titles["motor_plate_a"] == ("Motor plate of every winch", 3)
 
 
-def test_the_motor_grows_with_the_demand():
-    """Oracle: with a margin of 2, half of stall in the body (for seconds), the rated torque outside (for long)."""
-    assert [parts_of("letter_s", torque=torque).motor.key for torque in (0.04, 0.06, 0.14)] == ["n20", "xl330", "25d"]
-    assert [parts_of("trunk", torque=torque).motor.key for torque in (0.02, 0.04, 0.06)] == ["n20", "xl330", "25d"]
-
-
 def test_an_unknown_motor_is_refused():
     with pytest.raises(InputError, match="unknown motor"):
         parts_of("letter_s", "stepper")
@@ -90,7 +80,7 @@ def test_the_same_on_every_run():
 def test_it_takes_little_time(name: str, unchecked: None):
     robot = gallery_robot(name)
     begin = time.process_time()
-    made = rigid_parts(robot, given_demand(robot), motor="xl330", options=PartOptions(), bed=BED)
+    made = rigid_parts(robot, motor="xl330", options=PartOptions(), bed=BED)
     assert sum(part.volume for part in made.printed) > 0
     assert time.process_time() - begin < 2.0
 
@@ -100,9 +90,6 @@ def test_what_to_mind_of_the_base_is_told():
     seated = gallery_robot("fish_tail")
     robot = replace(seated, cables=(seated.cables[0], replace(seated.cables[1], sheathed=())))
     bare = replace(robot, pins=robot.pins * 2)
-    told = [
-        rigid_parts(each, given_demand(each), motor="n20", options=PartOptions(), bed=BED).warnings
-        for each in (robot, bare)
-    ]
+    told = [rigid_parts(each, motor="n20", options=PartOptions(), bed=BED).warnings for each in (robot, bare)]
     assert not any("Clamp the end of its tube" in text for text in told[0])
     assert [text for text in told[1] if "Clamp the end of its tube" in text and "C2" in text]

@@ -196,7 +196,7 @@ def kit_choices(page: WindowPage) -> None:
     """Method, motor and paper; the rest behind a door."""
     exporter = page.session.exporter
     given: dict[str, Any] = {}
-    motors = {"auto": "Auto: the robot's, or by strength", **{motor.key: motor.title for motor in ALL_MOTORS}}
+    motors = {"auto": "Auto: the robot's, or the cheapest", **{motor.key: motor.title for motor in ALL_MOTORS}}
     with ui.element("div").classes("export-form"):
         ui.label("Body")
         given["method"] = ui.toggle(METHODS).props("dense no-caps unelevated").props('data-testid="kit-method"')
