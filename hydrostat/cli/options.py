@@ -128,7 +128,7 @@ MotorPort = Annotated[
 MotorOption = Annotated[
     str | None,
     typer.Option(
-        metavar="NAME|auto",
+        metavar="NAME",
         help="Motor model, or auto: the cheapest that fits, is strong enough and not slow.",
         show_default=MotorText("that of robot.toml, else auto"),
     ),

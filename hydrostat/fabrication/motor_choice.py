@@ -20,7 +20,7 @@ class MotorOffer:
 
     Attributes:
         motor: the motor.
-        price: of the motors with boards, drivers, supply and their cables, as used up [USD].
+        price: price of the motors with boards, drivers, supply and their cables, as used up [USD].
         seconds: time of the slowest winch for its full travel [s]; None: it stalls before.
         problem: the first reason why it does not do; empty if it does.
         better: key of another that does and is cheaper, and not slower, weaker or larger; empty if there is none.
@@ -60,10 +60,10 @@ def motor_offers(robot: Robot, torques: Sequence[float], options: KitOptions) ->
             )
         )
     able = [offer for offer in found if not offer.problem]
-    return tuple(_compared(offer, able) for offer in found)
+    return tuple(_compare_offer(offer, able) for offer in found)
 
 
-def _compared(offer: MotorOffer, able: Sequence[MotorOffer]) -> MotorOffer:
+def _compare_offer(offer: MotorOffer, able: Sequence[MotorOffer]) -> MotorOffer:
     better = next((other.motor.key for other in able if other.beats(offer)), "")
     return MotorOffer(**{**vars(offer), "better": "" if offer.problem else better})
 
