@@ -34,6 +34,10 @@ def calibrate(
             metavar="NAMES", help="Also measure these spools with a ruler: winch names separated by commas, or all."
         ),
     ] = "",
+    restart: Annotated[
+        bool,
+        typer.Option("--restart", help="First restart motors that are off by overload or heat, once they are cool."),
+    ] = False,
 ) -> None:
     """Tension each cable and record the motor zero positions.
 
@@ -81,6 +85,10 @@ def calibrate(
     with one_interrupt(f"{kind}: stopped"):
         bus = control.open_bus(port, loaded, truth, tensions)
         try:
+            if restart:
+                names = [motor.winch for motor in calibration.motors]
+                again = control.restart_motors(bus, names, lambda line: print(f"{kind}: {line}", flush=True))
+                print(f"{kind}: restarted: {', '.join(again) or 'none, as no motor was off'}", flush=True)
             found, constants = _take_up(kind, bus, folder / file, calibration, model)
             curves = _measure(bus, folder / file, loaded, chosen, truth if port == control.EMULATED else None)
         finally:

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from hydrostat.control.motors import FASTEST, Motors
     from hydrostat.control.open_bus import EMULATED, add_cable_layers, check_port, open_bus, open_line
     from hydrostat.control.player import Player
+    from hydrostat.control.restart_motors import restart_motors
     from hydrostat.control.spool_curve import SpoolCurve
     from hydrostat.control.take_up import SlackCalibration, find_cable_zeros
     from hydrostat.control.timeline import LONGEST, Key, Timeline
@@ -85,6 +86,7 @@ __all__ = [
     "on_boards",
     "open_bus",
     "open_line",
+    "restart_motors",
     "robot_word",
     "steady",
     "tensions_along",

@@ -124,6 +124,13 @@ class Bus(ABC):
         """
         return ()
 
+    def restart(self, place: int) -> None:  # noqa: B027 - where faults end by themselves there is nothing to do
+        """Restart a motor that switched itself off; its torque is off then, and its count of turns may be lost.
+
+        Raises:
+            HydrostatError: it does not answer.
+        """
+
     @abstractmethod
     def read(self) -> Reading:
         """Return the latest reading; a silent motor keeps its old stamp (HydrostatError: the line itself is gone)."""

@@ -13,6 +13,7 @@ from hydrostat.control.bus import Bus, MotorFacts, Reading, steady
 from hydrostat.control.calibration import Calibration
 from hydrostat.control.guard import TensionGuard, not_judged
 from hydrostat.control.link import Link
+from hydrostat.control.restart_motors import fault_words
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Winch
 
@@ -233,9 +234,9 @@ class BusLink(Link):
             name = self._names[int(ages.argmax())]
             told = f"for {worst:.2f} s" if np.isfinite(worst) else "at all"
             raise HydrostatError(f"the motor of {name} has not answered {told}; look at its power and cable")
-        for name, fault in zip(self._names, reading.faults, strict=True):
+        for index, fault in enumerate(reading.faults):
             if fault:
-                raise HydrostatError(f"the motor of {name} reports: {fault}")
+                raise HydrostatError(fault_words(self._names[index], reading, index))
         if (hot := float(np.nanmax(np.append(reading.temperatures, -np.inf)))) > MAX_TEMPERATURE:
             name = self._names[int(np.nanargmax(reading.temperatures))]
             raise HydrostatError(

@@ -12,7 +12,18 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.control.bus import MotorFacts, Port, Reading
-from hydrostat.control.dynamixel_packets import ALL, PING, READ, STATUS, SYNC_READ, SYNC_WRITE, WRITE, Packet, pack
+from hydrostat.control.dynamixel_packets import (
+    ALL,
+    PING,
+    READ,
+    REBOOT,
+    STATUS,
+    SYNC_READ,
+    SYNC_WRITE,
+    WRITE,
+    Packet,
+    pack,
+)
 from hydrostat.control.servo_bus import ServoBus
 from hydrostat.errors import HydrostatError
 
@@ -65,6 +76,7 @@ FAULTS = {
 PROOF, SOON = 5.0 * pi / 180.0, 0.115
 """Angle that each is asked to turn while its watchdog is tried [rad], and the time that this takes [s]: whoever tries
 may die just then, and a motor whose watchdog is deaf goes on to its goal."""
+BOOT = 0.5  # time until a servo that was rebooted answers [s], assumed
 TRIED = 2
 """Watchdog time while the watchdog is tested [20 ms]: it should let a motor turn by a third of that angle."""
 
@@ -153,6 +165,14 @@ class DynamixelBus(ServoBus):
         }
         with self._lock:
             self._tell_all(PROFILE, values)
+
+    def restart(self, place: int) -> None:
+        """Reboot a servo, which alone ends a hardware error; it counts from within one turn then."""
+        with self._lock:
+            self._send(self._numbers[place], REBOOT)
+            self._answers(1)
+            self._wait(BOOT)
+            self.lost_position = True
 
     def _limit_current(self, number: int, current: float) -> None:
         """Bound the current of a servo [A]; its share of power where it does not measure that."""

@@ -116,13 +116,15 @@ class EmulatedSts(EmulatedServo):
         """Write registers as commanded over the bus; returns the error of the answer."""
         if place + len(data) <= STATE:
             self.table[place : place + len(data)] = data
+            if place == TORQUE and data[0] == 0:
+                self.ails.overloaded = False
             if place == TORQUE and data[0] == 1:
                 self._write_register(GOAL, round(self.counted_angle / TICK))
         return 0
 
     def step(self, now: float, dt: float) -> None:
         """Let time pass, to an instant [s]."""
-        on = bool(self.table[TORQUE]) and not self.ails.hot
+        on = bool(self.table[TORQUE]) and not self.ails.is_off
         goal, rise = self.origin + self._number(GOAL) * TICK, (self.table[RISE] or 1000) * 100 * TICK
         limit = int.from_bytes(self.table[GOAL + 4 : GOAL + 6], "little") * TICK or 6.0
         limit = min(limit, 6.0, sqrt(2 * rise * abs(goal - self.angle)))
@@ -134,7 +136,9 @@ class EmulatedSts(EmulatedServo):
         self.angle += speed * dt
         current = min(self.load(self.angle) / self.constant, STALL) if on else 0.0
         self._write_register(STATE, round(self.counted_angle / TICK))
-        self.table[STATE + 6 : STATE + 8] = bytes([round(10 * self.supply), 85 if self.ails.hot else 35])
+        self.table[STATE + 6 : STATE + 8] = bytes(
+            [round(10 * (3.5 if self.ails.sags else self.supply)), 85 if self.ails.hot else 35]
+        )
         self._write_register(STATE + 13, round(current / AMPERE))
 
     def _number(self, place: int) -> int:
@@ -179,4 +183,4 @@ class EmulatedFeetechChain(EmulatedChain):
 
 
 def _status(servo: EmulatedServo, content: bytes) -> bytes:
-    return pack(servo.number, 0x04 if servo.ails.hot else 0, content)
+    return pack(servo.number, servo.ails.bits, content)

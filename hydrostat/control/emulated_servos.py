@@ -43,12 +43,26 @@ class InjectedFaults:
         stuck: it does not turn.
         deaf_watchdog: its watchdog does not stop it (the 330 series).
         hot: it reports that it is too hot, and its torque is off.
+        overloaded: it reports an overload, and its torque is off, until it is restarted.
+        sags: its supply is below what it allows.
     """
 
     deaf: bool = False
     stuck: bool = False
     deaf_watchdog: bool = False
     hot: bool = False
+    overloaded: bool = False
+    sags: bool = False
+
+    @property
+    def is_off(self) -> bool:
+        """True if the torque is off."""
+        return self.hot or self.overloaded
+
+    @property
+    def bits(self) -> int:
+        """Errors as both makers report them."""
+        return 0x01 * self.sags | 0x04 * self.hot | 0x20 * self.overloaded
 
 
 @dataclass
@@ -131,7 +145,7 @@ class EmulatedServo:
     def step(self, now: float, dt: float) -> None:
         """Let time pass, to an instant [s]."""
         watch = self.get(WATCHDOG, 1)
-        on = bool(self.table[TORQUE]) and not self.ails.hot
+        on = bool(self.table[TORQUE]) and not self.ails.is_off
         if watch > 0 and now - self.heard > 0.02 * watch:
             self.set(WATCHDOG, -1, 1)
         stopped = self.get(WATCHDOG, 1) == -1 and not self.ails.deaf_watchdog
@@ -152,10 +166,11 @@ class EmulatedServo:
 
     def _show(self) -> None:
         model = MODELS[self.model]
-        current = min(self.torque / self.constant, model.stall) if self.table[TORQUE] and not self.ails.hot else 0.0
+        current = min(self.torque / self.constant, model.stall) if self.table[TORQUE] and not self.ails.is_off else 0.0
         self.set(STATE, round(1e3 * current / (1.0 if model.measures else model.stall)), 2)
         self.set(STATE + 6, round(self.counted_angle / TICK), 4)
-        self.table[HARDWARE] = 0x04 if self.ails.hot else 0
+        self.table[HARDWARE] = self.ails.bits
+        self.set(144, 35 if self.ails.sags else 50, 2)
         self.table[146] = 85 if self.ails.hot else 35
 
 
@@ -256,6 +271,7 @@ class EmulatedChain:
         if instruction == WRITE:
             return _status(servo, servo.take(int.from_bytes(content[:2], "little"), content[2:]), b"")
         if instruction == REBOOT:
+            servo.ails.overloaded = False
             servo.begin_anew()
             return _status(servo, 0, b"")
         return _status(servo, 0x02, b"")
@@ -288,5 +304,5 @@ class LiveChain(EmulatedChain):
 
 
 def _status(servo: EmulatedServo, error: int, content: bytes) -> bytes:
-    alert = 0x80 if servo.ails.hot else 0
+    alert = 0x80 if servo.ails.bits else 0
     return pack(servo.number, STATUS, bytes([error | alert]) + content)

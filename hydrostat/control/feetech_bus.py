@@ -154,6 +154,11 @@ class FeetechBus(ServoBus):
         rates = np.clip(np.rint(np.abs(speeds) / TICK), 1, 32767).astype(int).tolist()
         self._go(steps.astype(int).tolist(), rates, self._numbers)
 
+    def restart(self, place: int) -> None:
+        """Switch its torque off, which ends a fault by overload (from memory, tried on none); it keeps its count."""
+        with self._lock:
+            self._set(self._numbers[place], TORQUE, b"\x00", "its torque switch")
+
     def _has_torque(self, number: int) -> bool | None:
         told = self._get(number, TORQUE, 1)
         return None if told is None else told == b"\x01"

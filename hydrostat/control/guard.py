@@ -88,8 +88,23 @@ class TensionGuard:
         self._missed = np.where(missed, np.where(np.isnan(self._missed), now, self._missed), np.nan)
         since = now - self._missed
         for index in np.flatnonzero(np.nan_to_num(since, nan=-1.0) >= limits.seconds).tolist():
+            length, turn = self._slack(contractions, index, felt[index], ways[index]), float(radii[index])
+            by = (
+                "" if np.isnan(length) else f" by about {1e3 * length:.0f} mm ({np.degrees(length / turn):.0f} degrees)"
+            )
             return (
                 f"{self._names[index]}: cable slack or broken, or its motor lost power "
-                f"({max(felt[index], 0.0):.1f} N measured, {model[index]:.1f} N expected)"
+                f"({max(felt[index], 0.0):.1f} N measured, {model[index]:.1f} N expected). Run hydrostat calibrate, "
+                f"which turns its spool{by}. If it feels no pull, tighten the cable at its stopper with a small "
+                "screwdriver"
             )
         return ""
+
+    def _slack(self, contractions: Vector, index: int, felt: float, way: float) -> float:
+        """Length by which a cable that pulls as is felt [N] is longer than in the model [m]; NaN if that is unknown."""
+        less = np.array(contractions, dtype=float)
+        for length in np.arange(5e-4, 0.04, 5e-4).tolist():
+            less[index] = contractions[index] - way * length
+            if way * float(self._tensions(less)[index]) <= max(felt, 0.0) + 0.05:
+                return length
+        return float("nan")

@@ -61,6 +61,12 @@ class JoinedBus(Bus):
         """Return the places of motors of all parts whose torque is off."""
         return tuple(int(places[index]) for bus, places in self._parts for index in bus.find_restarted())
 
+    def restart(self, place: int) -> None:
+        """Restart a motor of one part."""
+        for bus, places in self._parts:
+            if place in places:
+                bus.restart(places.tolist().index(place))
+
     def read(self) -> Reading:
         """Return the latest reading of all motors."""
         told = self._each(lambda bus, _: bus.read())

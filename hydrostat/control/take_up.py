@@ -10,6 +10,7 @@ from hydrostat.arrays import Vector
 from hydrostat.control.bus import Bus, Reading, steady
 from hydrostat.control.calibration import WinchMotor
 from hydrostat.control.model_tensions import WinchPull
+from hydrostat.control.restart_motors import fault_words
 from hydrostat.errors import HydrostatError
 
 
@@ -28,8 +29,11 @@ class TakeUpRules:
         first_release: cable let out at first [m].
         interval: time between two commands [s].
         num_readings: readings of a standing motor at each step.
-        num_passes: measurements of each edge.
-        max_difference: maximum difference of two measurements of an edge [m].
+        num_passes: minimum number of measurements of each edge.
+        max_passes: maximum number of them, where the motor's current is noisy or coarse.
+        precision: standard error of an edge at which measurements end [m].
+        max_difference: maximum difference of the measurements of an edge [m], or as many standard deviations.
+        max_deviations: number of standard deviations.
         max_lag: distance behind its goal at which a motor without load does not follow [m].
         silence: silence after which motors are armed again where they stand [s].
         max_rearmed: maximum number of these times.
@@ -47,7 +51,10 @@ class TakeUpRules:
     interval: float = 0.012
     num_readings: int = 3
     num_passes: int = 2
+    max_passes: int = 12
+    precision: float = 1e-4
     max_difference: float = 8e-4
+    max_deviations: float = 8.0
     max_lag: float = 4e-3
     silence: float = 0.08
     max_rearmed: int = 20
@@ -145,6 +152,22 @@ def find_edge(places: Vector, currents: Vector, model: WinchPull) -> tuple[float
     return best[1:]
 
 
+def _edge_deviation(
+    places: Vector, currents: Vector, model: WinchPull, edge: float, gain: float, floor: float
+) -> float:
+    """Standard deviation of the edge of one fit by what its currents leave [m].
+
+    Near its edge a ramp is taken for straight: the floor has the variance s^2 / n, the ramp extended back to its begin
+    4 s^2 / n.
+    """
+    depth = max(float(places.max()) - edge, 1e-4)
+    slope = gain * model.stiffness(depth)
+    left = currents - floor - gain * model.at(model.taut + np.maximum(places - edge, 0.0))
+    taut = int(np.sum(places > edge))
+    spread = np.sqrt(1 / max(len(places) - taut, 1) + 4 / max(taut, 1))
+    return max(float(left.std() * spread / slope), 1e-6)
+
+
 class _Taker:
     """Motors on a bus while their slack is taken up; places are cable taken in from where each stood at first [m]."""
 
@@ -173,14 +196,16 @@ class _Taker:
         floor = self._free(index)
         self._search(index, floor)
         edges, gains, places, currents, level = [], [], np.zeros(0), np.zeros(0), floor
-        for _ in range(RULES.num_passes):
+        weights = list[float]()
+        while len(edges) < RULES.num_passes or (sum(weights) < RULES.precision**-2 and len(edges) < RULES.max_passes):
             self._let_out(index, floor)
             places, currents = self._measure(index, floor)
             edge, gain, level = find_edge(places, currents, model)
             edges.append(edge)
             gains.append(gain)
-        apart, edge = max(edges) - min(edges), float(np.mean(edges))
-        if apart > RULES.max_difference:
+            weights.append(_edge_deviation(places, currents, model, edge, gain, level) ** -2)
+        apart, edge = max(edges) - min(edges), float(np.average(edges, weights=weights))
+        if apart > max(RULES.max_difference, RULES.max_deviations * max(weights) ** -0.5):
             raise HydrostatError(
                 f"{self._name(index)}: its cable begins to pull {1e3 * apart:.1f} mm apart in two measurements; "
                 "see that it runs freely and that its spool is fast on its motor, then begin again"
@@ -221,7 +246,8 @@ class _Taker:
             if self._goals[index] > self._most:
                 raise HydrostatError(
                     f"{self._name(index)}: no pull is felt after {1e3 * self._most:.0f} mm were taken in; its cable is "
-                    f"broken, off its spool, or its motor turns the other way (turns = {-self._motors[index].turns})"
+                    "broken, off its spool or loose at its stopper (pull it tight there with a small screwdriver), or "
+                    f"its motor turns the other way (turns = {-self._motors[index].turns})"
                 )
             current = self._turn(index, self._goals[index] + RULES.search_speed * RULES.interval)
             if current < floor + RULES.touch_current:
@@ -308,7 +334,7 @@ class _Taker:
         reading, now = self._bus.read(), self._clock()
         for index, (stamp, fault) in enumerate(zip(reading.stamps.tolist(), reading.faults, strict=True)):
             if fault:
-                raise HydrostatError(f"the motor of {self._name(index)} reports: {fault}")
+                raise HydrostatError(fault_words(self._name(index), reading, index))
             if now - stamp > RULES.max_age:
                 raise HydrostatError(f"the motor of {self._name(index)} does not answer; look at its power and cable")
         return reading
