@@ -76,6 +76,7 @@ if TYPE_CHECKING:
         Rod,
         Sensor,
         Winch,
+        fit_winch_bodies,
         get_material,
         list_gallery,
         load_robot,
@@ -181,6 +182,7 @@ __all__ = [
     "find_contacts",
     "find_equilibria",
     "find_modes",
+    "fit_winch_bodies",
     "friction_hysteresis",
     "get_material",
     "identify",
@@ -202,3 +204,4 @@ _DRAWN = ("network", "pose", "reached", "rest", "trajectory")
 
 open_package(__name__)
 register_painters({kind: use_later("hydrostat.plot", f"draw_{kind}") for kind in _DRAWN})
+register_painters({"winches": use_later("hydrostat.fabrication.winch_bodies", "winch_bodies")})

@@ -1,4 +1,4 @@
-"""Registry of functions that draw records: the top package fills it, so that lower rooms need not import `plot`."""
+"""Registry of functions that draw records, and of one that makes parts: lower rooms need not import upper ones."""
 
 import base64
 import html
@@ -22,6 +22,11 @@ def register_painters(painters: dict[str, Painter]) -> None:
 def draw_record(kind: str, *records: object, **options: Any) -> "Figure":
     """Draw records by the function that is registered for this kind of picture, such as "pose"."""
     return _registered[kind](*records, **options)
+
+
+def make_winch_parts(robot: object) -> Any:
+    """Make the parts of the body that are winches, by the function registered as "winches": it knows the motors."""
+    return _registered["winches"](robot)
 
 
 def html_repr(text: str, figure: "Figure") -> str:

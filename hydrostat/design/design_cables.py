@@ -21,7 +21,7 @@ from hydrostat.design.trees.design_trees import design_trees
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.given import check_type
 from hydrostat.progress import Progress, no_progress
-from hydrostat.robot import PinDrive, PoseTarget, Robot
+from hydrostat.robot import PinDrive, PoseTarget, Robot, fit_winch_bodies
 from hydrostat.simulation import BodyPhysics
 
 
@@ -96,7 +96,8 @@ def find_network(
     if not isinstance(robot, Robot):
         raise InputError(f"a network is found for a Robot, such as load_robot gives, not for {robot!r:.60}")
     PinDrive.require_none(robot.drives, "cable design")
-    stated, told = replace(assign_cable_sides(robot), motor=request.motor_for(robot)), progress or no_progress
+    bare = fit_winch_bodies(replace(robot, winches=tuple(replace(winch, body=False) for winch in robot.winches)))
+    stated, told = replace(assign_cable_sides(bare), motor=request.motor_for(robot)), progress or no_progress
     fitted = request.fit_robot(stated)
     if fitted.stuffed:
         check_stuffed(stated)  # told before the search

@@ -237,7 +237,7 @@ def _bending_warnings(plan: KitPlan) -> tuple[str, ...]:
 
 def _part_warnings(plan: KitPlan) -> tuple[str, ...]:
     """Warn of parts, which no file of the kit makes."""
-    if not plan.drawn.body.parts:
+    if not plan.inserts:
         return ()
     names = ", ".join(f"{insert.mark} {insert.name}" for insert in plan.inserts)
     return (f"the kit has no files for {names}: make them to the sizes of lists/inserts.csv",)

@@ -55,7 +55,7 @@ class Insert:
 def find_inserts(robot: Robot) -> tuple[Insert, ...]:
     """Parts and rods of a robot, the parts first; a rod has the mass of the material of its Young's modulus."""
     body = robot.body
-    parts = [_insert_of_part(body, index) for index in range(len(body.parts))]
+    parts = [_insert_of_part(body, index) for index, part in enumerate(body.parts) if not part.winch]
     return (*parts, *(_insert_of_rod(rod, number) for number, rod in enumerate(robot.rods, start=1)))
 
 
@@ -67,12 +67,18 @@ def insert_title(inserts: Iterable[Insert]) -> str:
 
 def filling_volume(body: Body) -> float:
     """Volume of the body without its parts [mm^3]."""
-    return 1e9 * (body.thickness or 1.0) * float(body.mesh.volumes[body.element_materials == 0].sum())
+    return 1e9 * (body.thickness or 1.0) * float(body.mesh.volumes[~_find_made(body)].sum())
 
 
 def displaced_volume(body: Body) -> float:
-    """Volume of all parts of the body [mm^3]."""
-    return 1e9 * (body.thickness or 1.0) * float(body.mesh.volumes[body.element_materials > 0].sum())
+    """Volume of all parts of the body but its winches [mm^3]."""
+    return 1e9 * (body.thickness or 1.0) * float(body.mesh.volumes[_find_made(body)].sum())
+
+
+def _find_made(body: Body) -> np.ndarray:
+    """Mask of the elements of parts, without winches, for which a kit has its own rooms, (elements,)."""
+    made = [index for index, part in enumerate(body.parts, start=1) if not part.winch]
+    return np.isin(body.element_materials, made)
 
 
 def rod_problems(robot: Robot) -> tuple[str, ...]:

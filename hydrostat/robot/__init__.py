@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from hydrostat.robot.sketch_space import SurfaceSketch, inflate_outline, sketch_mesh
     from hydrostat.robot.tables_file import TablesFile
     from hydrostat.robot.winch import Mount, Winch
+    from hydrostat.robot.winch_bodies import check_winch_bodies, fit_winch_bodies
     from hydrostat.robot.write import robot_hash, robot_text, save_robot, with_values
 
 __all__ = [
@@ -77,12 +78,14 @@ __all__ = [
     "TablesFile",
     "Volume",
     "Winch",
+    "check_winch_bodies",
     "closed_mesh",
     "comments",
     "describe_cable_side",
     "describe_filled_holes",
     "direction_of",
     "find_risks",
+    "fit_winch_bodies",
     "gallery_folder",
     "get_material",
     "gravity_along",

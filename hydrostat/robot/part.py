@@ -45,6 +45,7 @@ class BodyPart:
         mesh: closed surface, moved by `at`.
         material: material of the part, or its name in the table; None for a rigid part.
         density: mass density of a rigid part [kg/m^3]; None for others, whose material has one.
+        winch: name of the winch whose motor and housing it is, for `fit_winch_bodies`; empty for others.
 
     Raises:
         InputError: a key that is missing or does not belong to the shape, a material and a density, or neither.
@@ -59,6 +60,7 @@ class BodyPart:
     mesh: ClosedMesh | None = None
     material: Material | None = None
     density: float | None = None
+    winch: str = ""
 
     def __post_init__(self) -> None:
         check_name(self.name)

@@ -30,6 +30,8 @@ def find_part_elements(mesh: Mesh, parts: Sequence[BodyPart]) -> Int[np.ndarray,
                 f'{where}: "{part.name}" holds no element: it lies outside the body or is thinner than an element; '
                 "move it, enlarge it, or take a smaller element_size"
             )
+        if part.winch:
+            held = _find_largest_piece(mesh, held)
         shared = held & (found > 0)
         if shared.any():
             other = parts[found[shared][0] - 1].name
@@ -40,6 +42,14 @@ def find_part_elements(mesh: Mesh, parts: Sequence[BodyPart]) -> Int[np.ndarray,
             raise InputError(f'{where}: rigid "{part.name}" {pieces}')
         found[held] = index + 1
     return found
+
+
+def _find_largest_piece(mesh: Mesh, held: np.ndarray) -> np.ndarray:
+    """Mask of the elements that hang together through facets: a motor cannot be drawn larger until all do."""
+    groups = Mesh(mesh.nodes, mesh.elements[held]).element_groups
+    largest = held.copy()
+    largest[held] = groups == np.bincount(groups).argmax()
+    return largest
 
 
 def _pieces(mesh: Mesh, part: BodyPart, held: np.ndarray) -> str:

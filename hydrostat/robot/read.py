@@ -30,6 +30,7 @@ from hydrostat.robot.rod import Rod
 from hydrostat.robot.sensor import Sensor
 from hydrostat.robot.tables_file import TablesFile
 from hydrostat.robot.winch import Winch
+from hydrostat.robot.winch_bodies import fit_winch_bodies
 
 if TYPE_CHECKING:
     from hydrostat.toml_schema import TomlTable
@@ -122,7 +123,7 @@ class RobotReader(TablesFile):
         contact = None if table.contact is None else self.at("contact", lambda: self._contact(table.contact))
         given = {"name": table.name, "length_unit": self.unit, "face": table.face, "motor": table.motor}
         options = {"gravity": gravity, "contact": contact, **given}
-        return self.at("", lambda: Robot(body=body, poses=poses, **options, **parts))
+        return self.at("", lambda: fit_winch_bodies(Robot(body=body, poses=poses, **options, **parts)))
 
     def _pin(self, entry: Any) -> Pin:
         return Pin(
@@ -165,7 +166,9 @@ class RobotReader(TablesFile):
 
     def _winch(self, entry: Any) -> Winch:
         return Winch(
-            name=entry.name, at=self.point(entry.at), **given_keys(entry, "spool_radius", "travel", "release", "mount")
+            name=entry.name,
+            at=self.point(entry.at),
+            **given_keys(entry, "spool_radius", "travel", "release", "mount", "body"),
         )
 
     def _cable(self, entry: Any) -> Cable:

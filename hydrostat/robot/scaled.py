@@ -15,13 +15,14 @@ from hydrostat.robot.part import BodyPart
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.winch import Winch
+from hydrostat.robot.winch_bodies import fit_winch_bodies
 
 
 def scaled_robot(robot: Robot, factor: float) -> Robot:
     """Scale every length of a robot: body, elements, thickness, pins, winches, cables, obstacles.
 
     Also markers, targets of poses, spools, travel, release, slack and the distance of contact. Materials, stiffnesses,
-    friction and masses stay: they are those of what is bought.
+    friction, masses and motors stay: they are those of what is bought.
 
     Raises:
         InputError: a factor out of its range, an obstacle that is a mesh, or no body of that size.
@@ -53,9 +54,10 @@ def scaled_robot(robot: Robot, factor: float) -> Robot:
         )
 
     contact = robot.contact
-    return replace(
+    own = [part for part in robot.body.parts if not part.winch]
+    scaled = replace(
         robot,
-        body=_scaled_body(robot, factor, tuple(part.with_transform(point, factor) for part in robot.body.parts)),
+        body=_scaled_body(robot, factor, tuple(part.with_transform(point, factor) for part in own)),
         pins=tuple(map(scale_pin, robot.pins)),
         drives=tuple(drive.with_transform(point, length) for drive in robot.drives),
         winches=tuple(_scale_winch(winch, point(winch.at), length) for winch in robot.winches),
@@ -83,6 +85,7 @@ def scaled_robot(robot: Robot, factor: float) -> Robot:
         loads=tuple(replace(load, at=None if load.at is None else point(load.at)) for load in robot.loads),
         contact=None if contact is None else Contact(distance=maybe(contact.distance), friction=contact.friction),
     )
+    return fit_winch_bodies(scaled)
 
 
 def _scale_winch(winch: Winch, at: Point, length: Callable[[float], float]) -> Winch:

@@ -135,6 +135,7 @@ class WinchTable(TomlTable):
     travel: Length | None = None
     release: Length | None = None
     mount: Mount | None = None
+    body: bool | None = None
 
 
 class CableTable(TomlTable):

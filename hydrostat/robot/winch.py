@@ -27,6 +27,7 @@ class Winch:
         spool_radius: spool radius at which contraction, travel and release are measured [m].
         travel: maximum contraction [m].
         release: maximum cable length let out beyond the rest length [m].
+        body: True if motor and housing are a rigid part of the body, see `fit_winch_bodies`.
         mount: `Mount.WORLD` (or its text) fixes `at` in space: there its cables begin.
 
     Raises:
@@ -39,6 +40,7 @@ class Winch:
     travel: float = 0.06
     release: float = 0.0
     mount: Mount = Mount.BODY
+    body: bool = False
 
     def __post_init__(self) -> None:
         check_type(self.name, str, "name must be a text")
@@ -53,3 +55,5 @@ class Winch:
             if value > most:
                 raise InputError(f"{field} must be at most {most:g} m, not {value:g}; in meters: 60 mm is 0.06")
         make_member(self, "mount", Mount)
+        if self.body and self.mount is Mount.WORLD:
+            raise InputError('body = true is for a winch in the body. Remove it, or mount = "world"')

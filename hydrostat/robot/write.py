@@ -163,9 +163,9 @@ class _Writer:
         kind = {"elements": str(body.elements)} if body.elements is not ElementKind.LINEAR else {}
         plane = {"plane": str(body.plane)} if body.plane is not Plane.STRAIN else {}
         given = {"material": self.material(body.material), **volume, **kind, **plane, **inner, **part}
-        if body.parts:
+        if parts := [part for part in body.parts if not part.winch]:
             tables = self._toml.aot()
-            for part in body.parts:
+            for part in parts:
                 table = self._toml.table()
                 table.update(self.part(part))
                 tables.append(table)
@@ -318,7 +318,8 @@ class _Writer:
     def winch(self, winch: Any) -> dict[str, Any]:
         lengths = {"spool_radius": winch.spool_radius, "travel": winch.travel, "release": winch.release or None}
         mount = {"mount": str(winch.mount)} if winch.mount is not Mount.BODY else {}
-        return {"name": winch.name, "at": self.point(winch.at), **_lengths(lengths), **mount}
+        body = {"body": True} if winch.body else {}
+        return {"name": winch.name, "at": self.point(winch.at), **_lengths(lengths), **mount, **body}
 
     def cable(self, cable: Cable, given_name: str) -> dict[str, Any]:
         entry: dict[str, Any] = {"name": given_name} if given_name else {}

@@ -37,7 +37,7 @@ from hydrostat.mechanics import (
     grow_patches,
     rod_points,
 )
-from hydrostat.robot import Body, Obstacle, Plane, Robot, Rod, Volume
+from hydrostat.robot import Body, Obstacle, Plane, Robot, Rod, Volume, check_winch_bodies
 from hydrostat.simulation.load_energies import hung_masses, make_load_energies
 
 
@@ -74,6 +74,7 @@ class BodyPhysics:
             InputError: no robot, or a part of the mesh that no pin holds.
         """
         check_type(robot, Robot, "a simulation is of a Robot, such as load_robot gives")
+        check_winch_bodies(robot)
         body = robot.body
         self._given = body, robot.pins, robot.gravity, robot.contact, robot.obstacles, robot.loads, robot.rods
         self.material, self.thickness = body.material, body.thickness
