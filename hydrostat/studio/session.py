@@ -89,6 +89,7 @@ class Session:
         self._holder: str | None = None
         self._stamp = self.answered = 0.0  # stamps of the last drag, and of that which the present shape answers
         self._complaint = self._unkept = ""
+        self.before = 0  # drags of other rooms that came before the last of this one; 0 where nobody felt it
         self._unsewn: SewnSkin | None = None
         self._show = Show()
         self._lock = RLock()
@@ -333,6 +334,7 @@ class Session:
         with self._lock:
             robot, shape, things = *self._look(), self.current.scene_items()
         head = {"stage": str(self.stage), "stamp": self.answered, "errors": shape.errors, "notes": list(shape.notes)}
+        head["before"] = self.before
         return self._show.moment(robot, shape, things, head, node_values(robot, shape, self.coloring))
 
     def thumbnail(self) -> bytes:

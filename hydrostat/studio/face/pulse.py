@@ -7,6 +7,7 @@ from functools import partial
 from threading import Event, Lock, Thread
 
 from hydrostat.studio.bell import Topic
+from hydrostat.studio.jobs import Slots
 from hydrostat.studio.session import Session, Tone
 from hydrostat.studio.view.picture import Shown
 
@@ -30,9 +31,9 @@ class Pulse:
     compiled, a second thread shows what the pointer changes meanwhile.
     """
 
-    def __init__(self, session: Session, publish: Callable[[Shown], None]) -> None:
-        """Let a session work; `publish` is called in the thread of the pulse."""
-        self._session, self._publish = session, publish
+    def __init__(self, session: Session, publish: Callable[[Shown], None], turns: Slots | None = None) -> None:
+        """Let a session work; `publish` is called in the thread of the pulse. Sessions that share turns take turns."""
+        self._session, self._publish, self._turns = session, publish, turns
         self._wake, self._ended = Event(), False
         self._stale = True
         self._stepping: float | None = None  # since when
@@ -69,7 +70,9 @@ class Pulse:
         self._wake.set()
 
     def _run(self) -> None:
+        more = False
         while not self._ended:
+            took = (more or self._session.waiting) and self._take_turn()
             self._stepping = begun = time.monotonic()
             self._wake.clear()
             more = self._run_guarded(partial(self._session.step, begun))
@@ -77,9 +80,20 @@ class Pulse:
             if self._stale or more:
                 self._stale = False
                 self._run_guarded(self._hand_over)
+            if took and self._turns is not None:
+                self._turns.give()
             self._pause(begun + SHORTEST)
             if not more and not self._stale:
                 self._wake.wait(POLL_INTERVAL)
+
+    def _take_turn(self) -> bool:
+        """Wait for a turn; whether one is to be given back. A wait that can be felt is shown with the picture."""
+        if self._turns is None:
+            return False
+        line, begun = [0], time.monotonic()
+        took = self._turns.wait(lambda: self._ended, lambda before: line.append(before + 1))
+        self._session.before = max(line) if time.monotonic() - begun > LONG else 0
+        return took
 
     def _stand_in(self) -> None:
         """Show what has changed while one step takes long."""

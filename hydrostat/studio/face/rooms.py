@@ -1,5 +1,6 @@
 """`Rooms`: the sessions of one server: the only one of a person, or one for each browser of a class."""
 
+import os
 import re
 import time
 import unicodedata
@@ -42,6 +43,7 @@ class Room:
     session: Session  # the robot and all that can be done with it
     address: str = ""  # of the computer that first asked for it
     name: str = ""  # nickname of the pupil
+    turns: Slots | None = None  # that all rooms share to follow drags; None: there are no others
     stream: Stream = field(init=False)  # to the screens in it
     pulse: Pulse = field(init=False)  # its threads
     seen: float = 0.0  # when somebody came in last, by a clock that only grows [s]
@@ -49,7 +51,7 @@ class Room:
 
     def __post_init__(self) -> None:
         self.stream = Stream(self.session)
-        self.pulse = Pulse(self.session, self.stream.publish)
+        self.pulse = Pulse(self.session, self.stream.publish, self.turns)
 
     @property
     def watch_key(self) -> str:
@@ -77,7 +79,7 @@ class Rooms:
         self.first = None if first is None else (Work(robot=load_robot(first)), text_of(first))  # with its robot.toml
         self.slots = Slots(works)
         self.locked = False  # whether rooms that open are locked
-        self._state = state
+        self._state, self._turns = state, Slots(os.cpu_count() or 1)
         self._lock, self._open = Lock(), False
         self._rooms: dict[str, Room] = {}
         self._only = None if only is None else Room(new_key(), only)
@@ -133,7 +135,7 @@ class Rooms:
             room = self._rooms.get(key)
             if room is None:
                 self._make_way(address)
-                room = self._rooms[key] = Room(key, self._session(key), address)
+                room = self._rooms[key] = Room(key, self._session(key), address, turns=self._turns)
                 self.rename(room, name or "Pupil")
                 if self._open:
                     room.pulse.start()

@@ -8,7 +8,8 @@ from builders import gallery_robot
 
 from hydrostat.project import Work
 from hydrostat.studio.bell import Topic
-from hydrostat.studio.face.pulse import SHORTEST, Pulse
+from hydrostat.studio.face.pulse import LONG, SHORTEST, Pulse
+from hydrostat.studio.jobs import Slots
 from hydrostat.studio.session import Session
 from hydrostat.studio.stage import Hit, Stage, StageName
 from hydrostat.studio.view.picture import Shown
@@ -112,3 +113,20 @@ def test_a_stage_that_stumbles_does_not_end_the_studio(session: Session, caplog:
     pulse.stop()
     assert any("internal error" in note.text for note in session.notes)
     assert "a slip" in caplog.text
+
+
+def test_drags_of_all_rooms_take_turns(session: Session) -> None:
+    """While another room has the only turn nothing is computed here; then the picture says that one came before."""
+    stage, turns = session.current, Slots(1)
+    assert isinstance(stage, Busy)
+    assert turns.wait(lambda: False, print)
+    seen = list[int]()
+    pulse = Pulse(session, lambda _: seen.append(session.before), turns)
+    pulse.start()
+    time.sleep(3 * LONG)
+    assert stage.steps == 1
+    turns.give()
+    assert stage.enough.wait(60.0)
+    pulse.stop()
+    assert set(seen) == {0, 1}
+    assert turns.wait(lambda: True, print), "a turn was not given back"

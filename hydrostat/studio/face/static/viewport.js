@@ -17,11 +17,15 @@ export default /** @type {Component} */ ({
            style="position:absolute;top:14px;left:50%;transform:translateX(-50%);padding:5px 14px;border-radius:14px;
                   font-size:13px;background:#2b2833;color:#fffdfb;opacity:0.92;pointer-events:none">
         {{ met ? "reconnecting ..." : "connecting ..." }}</div>
+      <div v-if="before && connected" data-testid="before"
+           style="position:absolute;bottom:14px;left:50%;transform:translateX(-50%);padding:5px 14px;border-radius:14px;
+                  font-size:13px;background:#2b2833;color:#fffdfb;opacity:0.92;pointer-events:none">
+        {{ before === 1 ? "1 is before you" : before + " are before you" }}</div>
     </div>`,
 
   props: { stream: String, palette: Object, dark: { default: null }, brush: Boolean },
 
-  data: () => ({ connected: true, met: false, failure: "" }),
+  data: () => ({ connected: true, met: false, failure: "", before: 0 }),
 
   mounted() {
     const { root, under, body, over } = this.$refs;
@@ -55,6 +59,8 @@ export default /** @type {Component} */ ({
       if (name === "connected") {
         this.connected = value;
         this.met = this.met || value;
+      } else if (name === "before") {
+        this.before = value ?? 0;
       } else if (name === "failure") {
         this.failure = value;
       } else {

@@ -37,6 +37,7 @@ export class View extends Shown {
     this.overlay = new Overlay(canvases[2], this.slow);
     this.font = getComputedStyle(element).fontFamily || "sans-serif";
     this.dirty = new Set();
+    this.before = 0; // drags of other rooms that come before the next answer
     this.unseen = 0; // frames that came since the last one was painted
     this.pixel = new Uint8Array(4);
     this.probe = new Probe(this);
@@ -85,6 +86,8 @@ export class View extends Shown {
       this.probe.frames += 1;
       this.latest = { head, arrays };
       this.unseen += 1;
+      if (head.before !== this.before) this.tell("before", head.before);
+      this.before = head.before;
       this.mark("frame");
     } else if (head.kind === "note") {
       this.tell("note", head);
