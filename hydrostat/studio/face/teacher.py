@@ -142,7 +142,8 @@ class _TeacherPage:
                 ui.button("Close", on_click=dialog.close).props("flat no-caps")
                 self._stop = ui.button("Stop", on_click=self._class.jobs.stop).props("flat no-caps color=negative")
                 self._pack = ui.button(
-                    "Pack", on_click=lambda: self.act(lambda: self._class.pack(kits=kits.value, pages=pages.value))
+                    "Pack",
+                    on_click=lambda: self.act(lambda: self._class.pack(kits=bool(kits.value), pages=bool(pages.value))),
                 ).props('unelevated no-caps data-testid="pack"')
                 self._download = ui.button("Download", on_click=self._take).props(
                     'unelevated no-caps data-testid="take-zip"'
