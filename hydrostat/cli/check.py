@@ -62,6 +62,10 @@ def check(
     left_out = ["marker workspaces"] * reaches + ["out-of-plane motion"] * (bool(words) and not stuffed)
     if left_out and not thorough:
         print(f"not computed: {' and '.join(left_out)}. Add --thorough. Loads of poses: hydrostat fabricate.")
+    if found.body.has_hysteresis:
+        print(
+            "note: hysteresis: refused by pose, trajectory, share, design, branches and linear models. Remove it for them."
+        )
     _print_judgement(found, curled)
 
 

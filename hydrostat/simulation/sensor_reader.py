@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from hydrostat.arrays import Float, Nodes, Points, Vector
+from hydrostat.errors import InputError
 from hydrostat.geometry import Anchors, Mesh, locate
 from hydrostat.mechanics import ContactForces, rod_points
 from hydrostat.robot import Sensor, SensorKind
@@ -13,6 +14,7 @@ from hydrostat.simulation.simulation import Simulation
 from hydrostat.simulation.time.motion import Motion
 
 Gradients = Float[np.ndarray, "places dim dim"]
+Slopes = Float[np.ndarray, "values moves"]
 _State = tuple[Nodes, Nodes, Nodes, tuple[tuple[ContactForces, bool], ...]]
 """Nodes [m], velocities [m/s], accelerations [m/s^2], and contact forces, with True for those by obstacles."""
 
@@ -55,6 +57,31 @@ class SensorReader:
     def read_vector(self, state: Equilibrium | Motion, *, random: np.random.Generator | None = None) -> Vector:
         """All readings as one vector, in the order of `heads`; arguments as for `read`."""
         return np.concatenate([np.zeros(0), *map(np.atleast_1d, self.read(state, random=random).values())])
+
+    def find_slopes(self, pose: Equilibrium, moves: Float[np.ndarray, "moves nodes dim"]) -> tuple[Slopes, Slopes]:
+        """Slopes of readings about a pose, by central differences: of moves of the nodes, and of such velocities.
+
+        Args:
+            pose: pose about which readings change.
+            moves: displacement of the nodes [m], or their velocity [m/s], for a change of 1.
+
+        Raises:
+            InputError: an accelerometer or a pressure sensor, which read accelerations and contact.
+        """
+        for sensor in self.simulation.robot.sensors:
+            if sensor.kind in (SensorKind.ACCELEROMETER, SensorKind.PRESSURE):
+                raise InputError(f'sensor "{sensor.name}": a linear model has no {sensor.kind} sensor. Remove it.')
+        still, size = np.zeros_like(pose.nodes), 1e-5 * self.simulation.robot.body.mesh.size
+        slopes = np.zeros((2, len(self.heads), len(moves)))
+        for index, move in enumerate(moves):
+            step = size / float(np.abs(move).max())
+            for way in (step, -step):
+                states = (pose.nodes + way * move, still), (pose.nodes, way * move)
+                for row, (nodes, velocities) in enumerate(states):
+                    given: _State = (nodes, velocities, still, ())
+                    read = [np.atleast_1d(function(given)) for function in self._functions]
+                    slopes[row, :, index] += np.concatenate([np.zeros(0), *read]) / (2 * way)
+        return slopes[0], slopes[1]
 
     def _state(self, state: Equilibrium | Motion) -> _State:
         forces = self._contact_forces(state) if self._presses else ()

@@ -12,6 +12,7 @@ from hydrostat.errors import HydrostatWarning
 from hydrostat.given import check_not_negative
 from hydrostat.simulation.equilibrium import Equilibrium
 from hydrostat.simulation.linear_pose import LinearPose
+from hydrostat.simulation.sensor_reader import SensorReader
 from hydrostat.simulation.simulation import Simulation
 
 
@@ -28,7 +29,8 @@ class StateSpace:
         B: input matrix, (states, controls).
         C: output matrix, (outputs, states).
         inputs: name of each winch [m of contraction] and drive [rad or m].
-        outputs: name of each output: displacement of each marker along each axis [m], such as "tip_x".
+        outputs: name of each output: displacement of each marker along each axis [m], such as "tip_x", then with
+            `sensors` the change of each reading, in SI.
         basis: displacement of each degree of freedom in each modal displacement [1/kg^0.5], (dofs, modes).
         masses: mass of each degree of freedom [kg].
     """
@@ -69,7 +71,12 @@ class StateSpace:
 
 
 def linearize(
-    simulation: Simulation, pose: Equilibrium | None = None, *, modes: SupportsIndex = 10, drag: float = 0.0
+    simulation: Simulation,
+    pose: Equilibrium | None = None,
+    *,
+    modes: SupportsIndex = 10,
+    drag: float = 0.0,
+    sensors: bool = False,
 ) -> StateSpace:
     """Linear state space about an equilibrium, from its lowest modes and the static move under each control.
 
@@ -81,9 +88,10 @@ def linearize(
         pose: an equilibrium; that without contractions if left out, with a warning of slack cables, which move nothing.
         modes: number of modes, without the static moves.
         drag: drag force per mass and velocity [1/s], as in `StepOptions`.
+        sensors: True for readings of the robot's sensors as outputs, after the markers.
 
     Raises:
-        InputError: friction, or a number out of its range.
+        InputError: friction, a number out of its range, or with `sensors` an accelerometer or a pressure sensor.
         NotConvergedError: the pose is no stable equilibrium.
     """
     check_not_negative("drag", drag, "1/s")
@@ -106,20 +114,33 @@ def linearize(
         matrix[part, :count], matrix[part, part] = one / time, -one / time
     entry = np.zeros((len(matrix), robot.num_controls))
     entry[count : 2 * count] = basis.T @ linear.inputs
-    anchors, (_, dim) = simulation.marker_anchors, linear.assembly.shape
-    moves = basis.reshape(-1, dim, count)[anchors.stencils]
-    places = np.einsum("pc,pcdm->pdm", anchors.weights, moves).reshape(-1, count)
-    names = [f"{marker.name}_{axis}" for marker in robot.markers for axis in "xyz"[:dim]]
+    names, rows = _outputs(simulation, pose, basis, sensors=sensors)
     return StateSpace(
         pose=pose,
         A=matrix,
         B=entry,
-        C=np.hstack([places, np.zeros((len(places), len(matrix) - count))]),
+        C=np.hstack([rows, np.zeros((len(rows), len(matrix) - 2 * count))]),
         inputs=tuple(part.name for part in (*robot.winches, *robot.drives)),
-        outputs=tuple(names),
+        outputs=names,
         basis=basis,
         masses=linear.masses,
     )
+
+
+def _outputs(
+    simulation: Simulation, pose: Equilibrium, basis: Float[np.ndarray, "dofs modes"], *, sensors: bool
+) -> tuple[tuple[str, ...], Float[np.ndarray, "outputs states"]]:
+    """Names of the outputs, and their rows for modal displacements and velocities."""
+    anchors, (_, dim), count = simulation.marker_anchors, simulation.assembly.shape, basis.shape[1]
+    moves = basis.reshape(-1, dim, count)
+    places = np.einsum("pc,pcdm->pdm", anchors.weights, moves[anchors.stencils]).reshape(-1, count)
+    names = [f"{marker.name}_{axis}" for marker in simulation.robot.markers for axis in "xyz"[:dim]]
+    rows = np.hstack([places, np.zeros_like(places)])
+    if sensors:
+        reader = SensorReader(simulation)
+        slopes = reader.find_slopes(pose, np.moveaxis(moves[: len(pose.nodes)], 2, 0))
+        names, rows = [*names, *reader.heads], np.vstack([rows, np.hstack(slopes)])
+    return tuple(names), rows
 
 
 def _warn_slack(pose: Equilibrium) -> None:

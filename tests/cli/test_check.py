@@ -96,8 +96,10 @@ def test_body_in_space(check: Check, tmp_path: Path) -> None:
     for cells, risks in (((12, 4, 4), 0), ((6, 2, 2), 1)):
         mesh = box_mesh(cells, size=(0.12, 0.04, 0.04))
         (tmp_path / "solid.vtu").write_bytes(write_vtu(mesh, mesh.nodes, {}))
-        (tmp_path / "robot.toml").write_text(SOLID)
+        lossy = SOLID.replace('m^3" }', 'm^3", hysteresis = [{ young = "9 kPa", strain = 0.02 }] }') if risks else SOLID
+        (tmp_path / "robot.toml").write_text(lossy)
         lines = check(tmp_path)
+        assert any(line.startswith("note: hysteresis: refused by pose, ") for line in lines) == bool(risks)
         assert lines[1] == "custom material: 7.68 g, 192 cm³"
         across = cells[1] / np.sqrt(2) ** (1 / 3)
         assert lines[2].startswith(f"thickness 40 to 120 mm ({across:.1f} to {3 * across:.0f} elements across); ")

@@ -120,6 +120,26 @@ def test_pressure_of_a_face(friction: float) -> None:
     assert hs.SensorReader(simulation).read(pose)["pad"] == pytest.approx(force / area, rel=0.02)
 
 
+def test_readings_are_outputs_of_a_state_space() -> None:
+    """Oracle: readings of equilibria next to the pose; the angular velocity of a motion along a mode."""
+    simulation = Simulation(replace(strip_robot(columns=16, rows=4), sensors=(BEND, *OTHERS[:4])))
+    pose = simulation.solve(np.array([0.006, 0.002]))
+    space, reader = hs.linearize(simulation, pose, modes=4, sensors=True), hs.SensorReader(simulation)
+    markers = space.outputs[: -len(reader.heads)]
+    assert markers == hs.linearize(simulation, pose, modes=4).outputs
+    assert space.outputs[len(markers) :] == ("flex", "skin", "string", "tilt", "gyro")
+    for winch, step in enumerate(np.eye(2) * 1e-5):
+        ahead, behind = (reader.read_vector(simulation.solve(pose.contractions + sign * step)) for sign in (1, -1))
+        assert space.gain[len(markers) :, winch] == pytest.approx((ahead - behind) / 2e-5, rel=1e-4, abs=1e-6)
+    first = space.basis[:, 0].reshape(pose.nodes.shape)
+    spun = reader.read(replace(simulation.motion_at_rest(pose), velocities=first))["gyro"]
+    assert spun != 0.0
+    assert space.C[-1, space.basis.shape[1]] == pytest.approx(spun)
+    other = strip(*OTHERS)
+    with pytest.raises(InputError, match='sensor "acc": a linear model has no accelerometer sensor'):
+        hs.linearize(other, other.rest, sensors=True)
+
+
 def test_noise_is_told_and_repeats() -> None:
     simulation = strip(BEND)
     reader, rest = hs.SensorReader(simulation), simulation.rest

@@ -69,7 +69,7 @@ def test_no_energy_is_created_on_closed_paths() -> None:
 
 
 def test_up_and_down_strokes_differ_and_a_bend_is_kept() -> None:
-    """Oracle: without sliders both strokes agree; derivatives by differences of going on."""
+    """Oracle: without sliders both strokes agree; derivatives by differences of going on, up and back."""
     simulation = strip()
     half = simulation.solve([0.01, 0.0])
     whole = simulation.solve([0.02, 0.0], start=half)
@@ -79,9 +79,17 @@ def test_up_and_down_strokes_differ_and_a_bend_is_kept() -> None:
     assert 0 < up < down < top
     assert 0.01 * top < end < 0.5 * top
     step = 1e-5
-    on = simulation.solve([0.02 + step, 0.0], start=whole)
-    change = (on.markers["tip"] - whole.markers["tip"]) / step
-    assert simulation.marker_jacobian(whole)[0, :, 0] == pytest.approx(change, rel=5e-3)
+    for pose, going in ((whole, step), (back, -step)):
+        told = simulation.marker_jacobian(pose)[0, 1, 0]
+        on, turned = (
+            (simulation.solve(np.add(pose.contractions, (way, 0.0)), start=pose).markers["tip"] - pose.markers["tip"])[
+                1
+            ]
+            / way
+            for way in (going, -going)
+        )
+        assert told == pytest.approx(on, rel=3e-4)
+        assert abs(turned / on - 1) > 1e-3  # sliders that slipped stick as the motion turns
     bare = Simulation(strip_robot(columns=8, rows=2))
     again = bare.solve([0.0, 0.0], start=bare.solve([0.02, 0.0]))
     assert abs(again.markers["tip"][1]) < 1e-9
