@@ -63,9 +63,7 @@ def check(
     if left_out and not thorough:
         print(f"not computed: {' and '.join(left_out)}. Add --thorough. Loads of poses: hydrostat fabricate.")
     if found.body.has_hysteresis:
-        print(
-            "note: hysteresis: refused by pose, trajectory, share, design, branches and linear models. Remove it for them."
-        )
+        print("note: hysteresis: refused by pose, trajectory, share, design, branches and linear models.")
     _print_judgement(found, curled)
 
 
