@@ -10,7 +10,7 @@ from hydrostat.errors import InputError
 from hydrostat.units import plural
 
 if TYPE_CHECKING:
-    from hydrostat.robot import Body, Robot, Rod, Sensor
+    from hydrostat.robot import Body, Robot, Rod, Sensor, SkinSheet
 
 
 def check(
@@ -44,6 +44,8 @@ def check(
         print(line)
     for rod in found.rods:
         print(_rod_line(rod))
+    for sheet in found.sheets:
+        print(_sheet_line(found.body, sheet))
     for sensor in found.sensors:
         print(f"sensor {sensor.name}: {sensor.kind}, {_noise_text(sensor)}")
     parts = {"pin": found.pins, "winch": found.winches, "cable": found.cables, "marker": found.markers}
@@ -233,6 +235,14 @@ def _rod_line(rod: "Rod") -> str:
     stretch = f"{axial:.3g} N" if axial < 1000 else f"{1e-3 * axial:.4g} kN"
     bend = f"{1e6 * bending:.3g} N mm²" if bending < 1e-3 else f"{1e6 * bending:.0f} N mm²"
     return f"rod {rod.name}: {1e3 * rod.length:.0f} mm long{thick}, EA {stretch}, EI {bend}"
+
+
+def _sheet_line(body: "Body", sheet: "SkinSheet") -> str:
+    """Material, thickness and covered area of a sheet."""
+    name = sheet.material.name or "custom material"
+    wrinkles = ", wrinkles" if sheet.wrinkles else ""
+    area = 1e4 * sheet.find_area(body.mesh, body.thickness)
+    return f"sheet {sheet.name}: {name}, {1e3 * sheet.thickness:.3g} mm thick, {area:.3g} cm²{wrinkles}"
 
 
 def _noise_text(sensor: "Sensor") -> str:

@@ -57,9 +57,9 @@ def identify(
     """Fit a robot's parameters to measured marker positions.
 
     Parameters: young, poisson, density, hysteresis (scale of its moduli), stiffness (of cables), zero and gain (of
-    winches), routes (points of cables), friction, pins, gravity, rods, frame (of the measurement), force (scale of
-    measured forces). Writes the fitted robot, parameters.csv with 95 % intervals and identified.png. Every fifth of ten
-    or more rows is also predicted by a fit that did not see it. `hydrostat design` takes the interval of the fitted
+    winches), routes (points of cables), friction, pins, gravity, rods, sheets, frame (of the measurement), force (scale
+    of measured forces). Writes the fitted robot, parameters.csv with 95 % intervals and identified.png. Every fifth of
+    ten or more rows is also predicted by a fit that did not see it. `hydrostat design` takes the interval of the fitted
     material as its uncertainty. A correction of the contractions is written if it
     predicts such rows better: correction.json. Friction and hysteresis make strokes up and down differ: measure both,
     and add --in-order.

@@ -33,9 +33,9 @@ def mjcf_text(robot: Robot, *, remarks: Iterable[str] = (), range_share: float =
         range_share: share of the travel of each winch that its controls allow.
 
     Raises:
-        InputError: a drive or a rod, which have no counterpart.
+        InputError: a drive, rod or sheet, which have no counterpart.
     """
-    for what, parts in (("drive", robot.drives), ("rod", robot.rods)):
+    for what, parts in (("drive", robot.drives), ("rod", robot.rods), ("sheet", robot.sheets)):
         if parts:
             raise InputError(f'{what} "{parts[0].name}": not available in MJCF. Remove it.')
     return "\n".join(_MjcfModel(robot).lines(tuple(remarks), range_share)) + "\n"

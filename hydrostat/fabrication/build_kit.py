@@ -236,11 +236,15 @@ def _bending_warnings(plan: KitPlan) -> tuple[str, ...]:
 
 
 def _part_warnings(plan: KitPlan) -> tuple[str, ...]:
-    """Warn of parts, which no file of the kit makes."""
-    if not plan.inserts:
-        return ()
-    names = ", ".join(f"{insert.mark} {insert.name}" for insert in plan.inserts)
-    return (f"the kit has no files for {names}: make them to the sizes of lists/inserts.csv",)
+    """Warn of parts and sheets, which no file of the kit makes."""
+    found = []
+    if plan.inserts:
+        names = ", ".join(f"{insert.mark} {insert.name}" for insert in plan.inserts)
+        found.append(f"the kit has no files for {names}: make them to the sizes of lists/inserts.csv")
+    if sheets := plan.drawn.sheets:
+        names = ", ".join(f'"{sheet.name}"' for sheet in sheets)
+        found.append(f"the kit leaves out sheet {names}: cut and fix it yourself (hydrostat check prints its area)")
+    return tuple(found)
 
 
 def _files(plan: KitPlan, lists: Lists, findings: KitFindings) -> dict[str, bytes]:

@@ -216,6 +216,21 @@ def _with_rods(robot: Robot, values: Values) -> Robot:
     return replace(robot, rods=tuple(rods))
 
 
+def _sheets(robot: Robot) -> list[Parameter]:
+    return [
+        Parameter(name=f"{sheet.name}.young", start=sheet.material.young, spread=0.7, log=True, unit="Pa")
+        for sheet in robot.sheets
+    ]
+
+
+def _with_sheets(robot: Robot, values: Values) -> Robot:
+    sheets = (
+        replace(sheet, material=replace(sheet.material, young=values[f"{sheet.name}.young"], name=""))
+        for sheet in robot.sheets
+    )
+    return replace(robot, sheets=tuple(sheets))
+
+
 def _offsets(robot: Robot) -> list[Parameter]:
     spread = 0.01 * robot.body.mesh.size / MM
     return [Parameter(name=f"{winch.name}.zero", start=0.0, spread=spread, unit="mm") for winch in robot.winches]
@@ -292,6 +307,7 @@ KINDS: dict[str, ParameterKind] = {
     "pins": ParameterKind(parameters=_pins, robot=_with_pins),
     "gravity": ParameterKind(parameters=_gravity, robot=_with_gravity),
     "rods": ParameterKind(parameters=_rods, robot=_with_rods, default=True),
+    "sheets": ParameterKind(parameters=_sheets, robot=_with_sheets, default=True),
     "frame": ParameterKind(
         parameters=_frame,
         places=_move_to_frame,

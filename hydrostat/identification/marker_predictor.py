@@ -317,6 +317,7 @@ def robot_numbers(robot: Robot, gravity: tuple[float, ...] | None) -> dict[str, 
         "gravity": np.zeros(dim) if robot.gravity is None else np.array(robot.gravity),
         "rod_axial": np.array([rod.stiffnesses[0] for rod in robot.rods]),
         "rod_bending": np.array([rod.stiffnesses[1] for rod in robot.rods]),
+        "sheet_young": np.array([sheet.material.young for sheet in robot.sheets]),
     }
 
 
@@ -350,4 +351,5 @@ SLOPES = (
     "gravity",
     "rod_axial",
     "rod_bending",
+    "sheet_young",
 )

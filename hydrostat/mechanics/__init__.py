@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from hydrostat.mechanics.rigid import CarriedWarp, GuideEnergy, RigidBodyDofs, RigidEnergy
     from hydrostat.mechanics.rod_energy import RodEnergy, rod_points
     from hydrostat.mechanics.self_friction import SelfFrictionEnergy
+    from hydrostat.mechanics.sheet_energy import SheetEnergy
     from hydrostat.mechanics.slider_energy import SliderEnergy
     from hydrostat.mechanics.stiffness import Stiffness
     from hydrostat.mechanics.tension_law import TensionLaw
@@ -82,6 +83,7 @@ __all__ = [
     "RodEnergy",
     "RoundOff",
     "SelfFrictionEnergy",
+    "SheetEnergy",
     "SliderEnergy",
     "Stencils",
     "Stiffness",

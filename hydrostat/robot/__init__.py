@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from hydrostat.robot.rod import Rod
     from hydrostat.robot.scaled import scaled_robot
     from hydrostat.robot.sensor import Sensor, SensorKind
+    from hydrostat.robot.sheet import SheetSide, SkinSheet
     from hydrostat.robot.sketch import sketch_robot
     from hydrostat.robot.sketch_space import SurfaceSketch, inflate_outline, sketch_mesh
     from hydrostat.robot.tables_file import TablesFile
@@ -72,6 +73,8 @@ __all__ = [
     "Rod",
     "Sensor",
     "SensorKind",
+    "SheetSide",
+    "SkinSheet",
     "Slider",
     "Source",
     "SurfaceSketch",

@@ -16,6 +16,7 @@ from hydrostat.robot.load import Load
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.pin_drive import PinDrive
 from hydrostat.robot.robot import Robot
+from hydrostat.robot.sheet import SheetSide
 
 
 def sewn_robot(robot: Robot) -> Robot:
@@ -86,6 +87,9 @@ def inflated_robot(robot: Robot, face: Face | str | None = None, *, element_size
         loads=loads,
         drives=tuple(drive for drive in robot.drives if isinstance(drive, PinDrive) or drive.name in scaled),
         sensors=(),  # their faces and the sides to which they bend are those of a flat body
+        sheets=tuple(
+            replace(sheet, on=SheetSide.SKIN) for sheet in robot.sheets if sheet.on is not SheetSide.OUTLINE
+        ),  # its outline is a seam now
         rods=tuple(replace(rod, points=tuple(map(_raise_place, rod.points))) for rod in robot.rods),
     )
 

@@ -22,6 +22,7 @@ from hydrostat.robot.read import RobotReader, read_material
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.rod import Rod
 from hydrostat.robot.sensor import Sensor
+from hydrostat.robot.sheet import SkinSheet
 from hydrostat.robot.winch import Winch
 from hydrostat.robot.write import robot_text
 
@@ -122,12 +123,12 @@ _RECORDS = {
     "obstacle": Obstacle,
     "load": Load,
     "rod": Rod,
+    "sheet": SkinSheet,
     "sensor": Sensor,
 }
-_LISTS = ("pin", "drive", "winch", "cable", "marker", "pose", "obstacle", "load", "rod", "sensor")
+_LISTS = ("pin", "drive", "winch", "cable", "marker", "pose", "obstacle", "load", "rod", "sheet", "sensor")
 _SINGLE = ("body", "contact")
 _ORDER = ("", *_SINGLE, *_LISTS)
-_TOP = ("name", "length_unit", "gravity", "face")
 
 
 def merged_text(text: str, robot: Robot) -> str:
@@ -191,7 +192,7 @@ def _side(text: str, unit: str | None = None) -> _Side:
     for kind in _SINGLE:
         entry = getattr(table, kind)
         means[kind] = [] if entry is None else [_effective(kind, entry, factor)]
-    means[""] = [{key: getattr(table, key) for key in _TOP}]
+    means[""] = [{key: getattr(table, key) for key in ("name", "length_unit", "gravity", "face")}]
     blocks, tail = split_blocks(text)
     return _Side(blocks, tail, tomllib.loads(text, parse_float=Decimal), means)
 

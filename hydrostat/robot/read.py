@@ -22,12 +22,14 @@ from hydrostat.robot.marker import Marker, PoseTarget
 from hydrostat.robot.material import Material
 from hydrostat.robot.material_table import given_keys, inelastic_values, material_of
 from hydrostat.robot.materials import get_material
-from hydrostat.robot.part import BodyPart, PartShape
+from hydrostat.robot.part import BodyPart
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.pin_drive import PinDrive
+from hydrostat.robot.region import PartShape
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.rod import Rod
 from hydrostat.robot.sensor import Sensor
+from hydrostat.robot.sheet import SkinSheet
 from hydrostat.robot.tables_file import TablesFile
 from hydrostat.robot.winch import Winch
 from hydrostat.robot.winch_bodies import fit_winch_bodies
@@ -111,6 +113,10 @@ class RobotReader(TablesFile):
             "obstacles": self.records("obstacle", self._obstacle),
             "loads": self.records("load", self._load),
             "rods": self.records("rod", self._rod),
+            "sheets": tuple(
+                self.at(where := f"sheet[{index}]", partial(self._sheet, where, sheet))
+                for index, sheet in enumerate(table.sheet)
+            ),
             "sensors": self.records("sensor", self._sensor),
         }
         poses: dict[str, PoseTarget] = {}
@@ -257,6 +263,13 @@ class RobotReader(TablesFile):
     def _part(self, where: str, entry: Any) -> BodyPart:
         if entry.rigid == (entry.material is not None):
             raise InputError("give either material or rigid = true")
+        return BodyPart(**self._region(where, entry), **given_keys(entry, "density"))
+
+    def _sheet(self, where: str, entry: Any) -> SkinSheet:
+        return SkinSheet(**self._region(where, entry), **given_keys(entry, "thickness", "on", "wrinkles"))
+
+    def _region(self, where: str, entry: Any) -> dict[str, Any]:
+        """Name, region and material."""
         if (entry.file is not None) != (entry.shape is PartShape.MESH):
             raise InputError('shape = "mesh" needs a file, and no other shape has one')
         given: dict[str, Any] = {key: self.point(getattr(entry, key)) for key in ("at", "to") if getattr(entry, key)}
@@ -268,7 +281,7 @@ class RobotReader(TablesFile):
         if entry.material is not None:
             given["material"] = self.at(f"{where}.material", lambda: read_material(entry.material))
         points = tuple(self.point(point) for point in entry.points)
-        return BodyPart(name=entry.name, shape=entry.shape, points=points, **given, **given_keys(entry, "density"))
+        return {"name": entry.name, "shape": entry.shape, "points": points, **given}
 
     def _closed_mesh(self, key: str, name: str) -> ClosedMesh:
         file = self._file(key, name)

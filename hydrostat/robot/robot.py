@@ -27,6 +27,7 @@ from hydrostat.robot.pin import Pin
 from hydrostat.robot.pin_drive import PinDrive, check_drives
 from hydrostat.robot.rod import Rod, check_rods_inside
 from hydrostat.robot.sensor import Sensor, check_sensors
+from hydrostat.robot.sheet import SkinSheet, check_sheets
 from hydrostat.robot.winch import Mount, Winch
 from hydrostat.units import plural, quote
 
@@ -54,6 +55,7 @@ class Robot:
         obstacles: rigid objects next to the body.
         loads: forces at points of the body, and hung masses.
         rods: elastic rods in the body.
+        sheets: elastic sheets on its skin.
         sensors: sensors in the body; they change nothing of its physics.
 
     Raises:
@@ -76,6 +78,7 @@ class Robot:
     obstacles: tuple[Obstacle, ...] = ()
     loads: tuple[Load, ...] = ()
     rods: tuple[Rod, ...] = ()
+    sheets: tuple[SkinSheet, ...] = ()
     sensors: tuple[Sensor, ...] = ()
     LARGEST_STEP = 4.0  # the spools of cables on one shaft differ by at most so many times
 
@@ -88,9 +91,8 @@ class Robot:
         except InputError as error:
             raise InputError(f"length_unit: {error}") from None
         object.__setattr__(self, "cables", name_cables(self.cables))
-        check_unique("winch", [winch.name for winch in self.winches])
-        check_unique("cable", [cable.name for cable in self.cables])
-        check_unique("marker", [marker.name for marker in self.markers])
+        for kind in ("winch", "cable", "marker", "obstacle", "rod", "sheet", "sensor"):
+            check_unique(kind, [part.name for part in getattr(self, "winches" if kind == "winch" else f"{kind}s")])
         for index, (name, pose) in enumerate(self.poses.items()):
             if name != pose.name:
                 raise InputError(f'pose[{index}].name: a pose called "{pose.name}" is filed under "{name}"')
@@ -258,7 +260,6 @@ class Robot:
                 f"contact.distance of {1e3 * distance:.4g} mm is large beside a body of {1e3 * mesh.size:.4g} mm; "
                 f"it is usually {DISTANCE:.1%} of that"
             )
-        check_unique("obstacle", [obstacle.name for obstacle in self.obstacles])
         skin = mesh.nodes[np.unique(mesh.boundary)]
         for index, obstacle in enumerate(self.obstacles):
             if len(obstacle.at) != mesh.dim:
@@ -312,13 +313,11 @@ class Robot:
     def _check_inner_parts(self) -> None:
         mesh, names = self.body.mesh, [marker.name for marker in self.markers]
         check_loads(self.loads, names, mesh, weightless=self.gravity is None)
-        check_unique("rod", [rod.name for rod in self.rods])
-        check_unique("sensor", [sensor.name for sensor in self.sensors])
+        check_sheets(self.sheets, mesh)
         controls = [*(f"{winch.name}_mm" for winch in self.winches), *(drive.column[0] for drive in self.drives)]
         places = [part.name for part in (*self.markers, *self.obstacles)]
-        check_sensors(
-            self.sensors, mesh, [*controls, *(f"cable_{n}_N" for n in range(1, 1 + len(self.cables)))], places
-        )
+        tensions = (f"cable_{number}_N" for number in range(1, 1 + len(self.cables)))
+        check_sensors(self.sensors, mesh, [*controls, *tensions], places)
         self._check_inside([(key, point) for key, point in self._points() if key.startswith(("load", "rod", "sensor"))])
         check_rods_inside(self.rods, self.body, self._text)
 
@@ -396,5 +395,6 @@ _PARTS = {
     "obstacles": Obstacle,
     "loads": Load,
     "rods": Rod,
+    "sheets": SkinSheet,
     "sensors": Sensor,
 }

@@ -30,9 +30,9 @@ def scaled_robot(robot: Robot, factor: float) -> Robot:
     least, most = 0.01, 100.0  # No robot is made smaller or larger at once than by these factors
     if isinstance(factor, bool) or not isinstance(factor, int | float) or not least <= factor <= most:
         raise InputError(f"the factor must be from {least:g} to {most:g}, not {factor!r}")
-    for each in (*robot.obstacles, *robot.body.parts):
+    for each in (*robot.obstacles, *robot.body.parts, *robot.sheets):
         if each.mesh is not None:
-            kind = "obstacle" if isinstance(each, Obstacle) else "body.part"
+            kind = "obstacle" if isinstance(each, Obstacle) else "body.part" if isinstance(each, BodyPart) else "sheet"
             raise InputError(f'{kind} "{each.name}" has the size of its file; scale that in CAD')
 
     def length(value: float) -> float:
@@ -81,6 +81,7 @@ def scaled_robot(robot: Robot, factor: float) -> Robot:
         rods=tuple(
             replace(rod, points=tuple(map(point, rod.points)), diameter=maybe(rod.diameter)) for rod in robot.rods
         ),
+        sheets=tuple(sheet.with_transform(point, factor) for sheet in robot.sheets),
         sensors=tuple(sensor.with_transform(point, length) for sensor in robot.sensors),
         loads=tuple(replace(load, at=None if load.at is None else point(load.at)) for load in robot.loads),
         contact=None if contact is None else Contact(distance=maybe(contact.distance), friction=contact.friction),

@@ -17,8 +17,9 @@ from hydrostat.robot.contact import ObstacleShape
 from hydrostat.robot.element_kind import ElementKind, Plane, Volume
 from hydrostat.robot.gravity import DIRECTIONS
 from hydrostat.robot.material_schema import AnyMaterial
-from hydrostat.robot.part import PartShape
+from hydrostat.robot.region import PartShape
 from hydrostat.robot.sensor import SensorKind
+from hydrostat.robot.sheet import SheetSide
 from hydrostat.robot.winch import Mount
 from hydrostat.toml_schema import (
     BendingStiffness,
@@ -72,16 +73,21 @@ Gravity = Annotated[
 ]
 
 
-class PartTable(TomlTable):
-    """[[body.part]]."""
+class RegionTable(TomlTable):
+    """Region by its shape."""
 
     name: Name
-    shape: PartShape
+    shape: PartShape | None = None
     at: Coordinates | None = None
     to: Coordinates | None = None
     radius: Number | None = None
     points: Annotated[list[Coordinates], Field(max_length=1000)] = Field([])
     file: Text | None = None
+
+
+class PartTable(RegionTable):
+    """[[body.part]]."""
+
     material: AnyMaterial | None = None
     rigid: bool = False
     density: Density | None = None
@@ -228,6 +234,15 @@ class RodTable(TomlTable):
     bending_stiffness: BendingStiffness | None = None
 
 
+class SheetTable(RegionTable):
+    """[[sheet]]."""
+
+    material: AnyMaterial
+    thickness: Length
+    on: SheetSide | None = None
+    wrinkles: bool | None = None
+
+
 class SensorTable(TomlTable):
     """[[sensor]]."""
 
@@ -262,4 +277,5 @@ class RobotTable(TomlTable):
     obstacle: list[ObstacleTable] = Field([])
     load: list[LoadTable] = Field([])
     rod: list[RodTable] = Field([])
+    sheet: list[SheetTable] = Field([])
     sensor: list[SensorTable] = Field([])

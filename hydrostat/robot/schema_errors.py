@@ -29,6 +29,7 @@ _EXAMPLES = {
     "material": 'material = "polyester fibre"',
     "young": 'young = "30 kPa"',
     "poisson": "poisson = 0.3",
+    "thickness": 'thickness = "40 mm"',
     "density": 'density = "40 kg/m^3"',
     "relaxation": 'relaxation = [{ modulus = "10 kPa", time = "2 s" }]',
     "hysteresis": 'hysteresis = [{ young = "10 kPa", strain = 0.05 }]',

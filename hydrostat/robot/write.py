@@ -26,9 +26,11 @@ from hydrostat.robot.materials import FOAMS, MATERIALS
 from hydrostat.robot.part import BodyPart
 from hydrostat.robot.pin import DEFAULT_STIFFNESS, Pin
 from hydrostat.robot.pin_drive import PinDrive
+from hydrostat.robot.region import PartRegion
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.rod import Rod
 from hydrostat.robot.sensor import Sensor
+from hydrostat.robot.sheet import SheetSide, SkinSheet
 from hydrostat.robot.winch import Mount
 
 
@@ -52,7 +54,7 @@ def save_robot(robot: Robot, folder: str | Path, *, text: str | None = None) -> 
         robot.name,
         *robot.poses,
         *(part.name for part in (*robot.winches, *robot.cables, *robot.markers)),
-        *(part.name for part in (*robot.loads, *robot.rods, *robot.sensors, *robot.drives)),
+        *(part.name for part in (*robot.loads, *robot.rods, *robot.sheets, *robot.sensors, *robot.drives)),
     ):
         check_name(name)
     try:
@@ -84,7 +86,7 @@ def robot_hash(robot: Robot) -> str:
 def _files(robot: Robot) -> dict[str, bytes]:
     """Return the files next to robot.toml: the file of the body, then those of obstacles."""
     files = {robot.body.file: robot.body.content}
-    shapes = (each.mesh for each in (*robot.body.parts, *robot.obstacles))
+    shapes = (each.mesh for each in (*robot.body.parts, *robot.sheets, *robot.obstacles))
     return files | {mesh.file: mesh.content for mesh in shapes if mesh is not None}
 
 
@@ -117,6 +119,7 @@ def robot_text(robot: Robot) -> str:
         "obstacle": map(writer.obstacle, robot.obstacles),
         "load": map(writer.load, robot.loads),
         "rod": map(writer.rod, robot.rods),
+        "sheet": map(writer.sheet, robot.sheets),
         "sensor": map(writer.sensor, robot.sensors),
     }
     for key, entries in groups.items():
@@ -172,8 +175,8 @@ class _Writer:
             given["part"] = tables
         return {str(body.source): body.file, **_lengths(lengths), **given}
 
-    def part(self, part: BodyPart) -> dict[str, Any]:
-        entry: dict[str, Any] = {"name": part.name, "shape": str(part.shape)}
+    def region(self, part: PartRegion) -> dict[str, Any]:
+        entry: dict[str, Any] = {"name": part.name} | ({} if part.shape is None else {"shape": str(part.shape)})
         for key in ("at", "to"):
             if getattr(part, key) is not None:
                 entry[key] = self.point(getattr(part, key))
@@ -183,6 +186,16 @@ class _Writer:
             entry["points"] = self.points(part.points)
         if part.mesh is not None:
             entry["file"] = part.mesh.file
+        return entry
+
+    def sheet(self, sheet: SkinSheet) -> dict[str, Any]:
+        given: dict[str, Any] = {"thickness": units.format_quantity(sheet.thickness, units.LENGTH)}
+        on = {} if sheet.on is SheetSide.SKIN else {"on": str(sheet.on)}
+        wrinkles = {"wrinkles": True} if sheet.wrinkles else {}
+        return {**self.region(sheet), "material": self.material(sheet.material), **given, **on, **wrinkles}
+
+    def part(self, part: BodyPart) -> dict[str, Any]:
+        entry = self.region(part)
         if part.material is not None:
             return {**entry, "material": self.material(part.material)}
         return {**entry, "rigid": True, "density": units.format_quantity(part.density or 0.0, units.DENSITY)}

@@ -1,13 +1,13 @@
 """`BodyPhysics`: physics of a robot's body, independent of its cable network."""
 
 from functools import cached_property
+from itertools import chain
 from typing import Any
 
 import numpy as np
 
 from hydrostat.arrays import Float, Nodes, Points, Vector
 from hydrostat.errors import InputError
-from hydrostat.geometry import locate
 from hydrostat.given import check_type
 from hydrostat.mechanics import (
     PATCH_SIZE,
@@ -28,17 +28,16 @@ from hydrostat.mechanics import (
     QuadraticSolid,
     RigidBodyDofs,
     RigidEnergy,
-    RodEnergy,
     RoundOff,
     SelfFrictionEnergy,
     SliderEnergy,
     Warp,
     WeightEnergy,
     grow_patches,
-    rod_points,
 )
-from hydrostat.robot import Body, Obstacle, Plane, Robot, Rod, Volume, check_winch_bodies
+from hydrostat.robot import Body, Obstacle, Plane, Robot, Volume, check_winch_bodies
 from hydrostat.simulation.load_energies import hung_masses, make_load_energies
+from hydrostat.simulation.reinforcements import make_rod_energy, make_sheet_energies, sheet_masses
 
 
 class BodyPhysics:
@@ -64,6 +63,7 @@ class BodyPhysics:
             disabled.
         obstacles: indices of the energies of the obstacles.
         rods: energy of each rod.
+        sheets: energies of each sheet.
         rest_unknowns: all unknowns at rest [m], (rows, dim): the nodes, then the rows of the moving obstacles.
     """
 
@@ -76,7 +76,7 @@ class BodyPhysics:
         check_type(robot, Robot, "a simulation is of a Robot, such as load_robot gives")
         check_winch_bodies(robot)
         body = robot.body
-        self._given = body, robot.pins, robot.gravity, robot.contact, robot.obstacles, robot.loads, robot.rods
+        self._given = body, *_list_given(robot)
         self.material, self.thickness = body.material, body.thickness
         mesh, thickness, solid = body.mesh, body.thickness or 1.0, ~body.element_foams
         lame = np.where(solid, body.lame()[1], 0.0)
@@ -87,7 +87,8 @@ class BodyPhysics:
         self.elastic = _elastic(robot, self.rest_unknowns, None if patched or thin else lame)
         self.pins = _pins(robot)
         carried = [_obstacle_masses(robot.obstacles[index], carriage) for index, carriage in self.rigid_dofs.items()]
-        own, hung = _masses(robot), hung_masses(robot)
+        self.sheets = [make_sheet_energies(robot, sheet, self.rest_unknowns) for sheet in robot.sheets]
+        own, hung = _masses(robot) + sheet_masses(robot, self.sheets), hung_masses(robot)
         self.masses, self._hung = own + hung, hung
         self.inertias = np.concatenate([self.masses, *carried]) if carried else self.masses
         energies: list[Energy] = [self.elastic, self.pins]
@@ -103,8 +104,8 @@ class BodyPhysics:
         energies += _barriers(body, self.elastic, self.rest_unknowns)
         if robot.gravity is not None:
             energies.append(WeightEnergy(self.rest_unknowns, self._heavy[:, None] * np.array(robot.gravity)))
-        self.rods = [_rod_energy(robot, rod, self.rest_unknowns) for rod in robot.rods]
-        energies += self.rods
+        self.rods = [make_rod_energy(robot, rod, self.rest_unknowns) for rod in robot.rods]
+        energies += [*self.rods, *chain.from_iterable(self.sheets)]
         loads, paths = make_load_energies(robot, self.rest_unknowns)
         self.load_paths = {len(energies) + index: load for index, load in paths.items()}
         energies += loads
@@ -129,8 +130,7 @@ class BodyPhysics:
     def fits(self, robot: Robot) -> bool:
         """Return True if this is the physics of a robot's body: same body, equal pins, gravity, contact and loads."""
         body, *others = self._given
-        given = [robot.pins, robot.gravity, robot.contact, robot.obstacles, robot.loads, robot.rods]
-        return robot.body is body and given == others
+        return robot.body is body and _list_given(robot) == others
 
     def check(self, robot: Robot) -> None:
         """Check that this is the physics of the body of a robot.
@@ -234,12 +234,17 @@ class BodyPhysics:
         scale = float((2 * mu + lame) @ body.mesh.volumes) * (body.thickness or 1.0)
         reach = max(float(np.abs(body.mesh.nodes).max()), body.mesh.size)
         springs = [pin.stiffness for pin in pins]
-        springs += [energy.stiffest for energy in self.rods]
+        springs += [energy.stiffest for energy in (*self.rods, *chain.from_iterable(self.sheets))]
         rigid = np.isin(body.element_materials, [i for i, part in enumerate(body.parts, start=1) if part.is_rigid])
         springs += _spring_rates(body, rigid).tolist()
         lengths = [carriage.length for carriage in self.rigid_dofs.values()]  # of axes, at which A A^T - I pulls
         springs += [2 * _RIGID * body.material.young * length * max(1.0, length / reach) for length in lengths]
         return scale, reach, max(springs, default=0.0), body.mesh.size
+
+
+def _list_given(robot: Robot) -> list[Any]:
+    """All that the physics of a body depend on but the body."""
+    return [robot.pins, robot.gravity, robot.contact, robot.obstacles, robot.loads, robot.rods, robot.sheets]
 
 
 def _spring_rates(body: Body, chosen: np.ndarray) -> Vector:
@@ -354,12 +359,6 @@ def _masses(robot: Robot) -> Float[np.ndarray, " nodes"]:
     elements = robot.body.mesh.elements
     shares = np.repeat(robot.body.element_masses / elements.shape[1], elements.shape[1])
     return np.bincount(elements.ravel(), shares, len(robot.body.mesh.nodes))
-
-
-def _rod_energy(robot: Robot, rod: Rod, rest: Nodes) -> RodEnergy:
-    mesh, (axial, bending) = robot.body.mesh, rod.stiffnesses
-    anchors = locate(mesh, rod_points(mesh, np.array(rod.points)))
-    return RodEnergy(rest, anchors, axial_stiffness=axial, bending_stiffness=bending)
 
 
 def _pins(robot: Robot) -> PinEnergy:

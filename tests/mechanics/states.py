@@ -20,6 +20,7 @@ from hydrostat.mechanics import (
     PinEnergy,
     PressureEnergy,
     RodEnergy,
+    SheetEnergy,
     SliderEnergy,
     TensionLaw,
     WeightEnergy,
@@ -110,6 +111,14 @@ def rod(dim: int, random: np.random.Generator, *, bent: bool) -> State:
     ends[1] = 0.4 * ends[0] + 0.6 * ends[2] + (0.2 * (ends[1] - ends[0]) if bent else 0.0)
     anchors = locate(mesh, rod_points(mesh, ends))
     energy = RodEnergy(mesh.nodes, anchors, axial_stiffness=30.0, bending_stiffness=4e-3)
+    return State(energy, deform(mesh, random), np.zeros(CONTROLS))
+
+
+def sheet(dim: int, random: np.random.Generator, *, on_faces: bool = False, **given: bool) -> State:
+    """A sheet on the skin in space, on the outline or the faces of a flat body."""
+    mesh = rough_mesh(dim, random)
+    facets, width = (mesh.elements, None) if on_faces and dim == 2 else (mesh.boundary, 0.03 if dim == 2 else None)
+    energy = SheetEnergy(mesh.nodes, facets, lame=(11e3, 17e3), thickness=2e-3, width=width, **given)
     return State(energy, deform(mesh, random), np.zeros(CONTROLS))
 
 
@@ -241,6 +250,10 @@ ENERGIES: dict[str, Callable[[int, np.random.Generator], State]] = {
     "controlled moment": lambda dim, random: controlled(dim, random, moment),
     "rod": lambda dim, random: rod(dim, random, bent=False),
     "rod that is bent at rest": lambda dim, random: rod(dim, random, bent=True),
+    "sheet": sheet,
+    "sheet that wrinkles": lambda dim, random: sheet(dim, random, wrinkles=True),
+    "sheet on faces that wrinkles": lambda dim, random: sheet(dim, random, on_faces=True, wrinkles=True),
+    "strip that becomes narrower": lambda dim, random: sheet(dim, random, is_held_across=False),
     "fibres on edges": edge_fibres,
     "fibres in elements": element_fibres,
     "slack cable": lambda dim, random: cable(dim, random, elongation=-0.01),

@@ -75,6 +75,7 @@ class Sensitivity:
         gravity: derivative by each component of gravity [s^2/m], (dim,), with hung masses.
         rod_axial: derivative by EA of each rod [1/N], (rods,).
         rod_bending: derivative by EI of each rod [1/(N m^2)], (rods,).
+        sheet_young: derivative by Young's modulus of each sheet [1/Pa], (sheets,).
     """
 
     contractions: Vector
@@ -95,6 +96,7 @@ class Sensitivity:
     gravity: Vector
     rod_axial: Vector
     rod_bending: Vector
+    sheet_young: Vector
     drives: Vector = field(default_factory=lambda: np.zeros(0))
 
 
@@ -206,6 +208,12 @@ def by_body(body: BodyPhysics, pose: Equilibrium, field: Nodes) -> dict[str, Any
         "gravity": body.heavy_masses @ field,
         "rod_axial": -rods[:, 0],
         "rod_bending": -rods[:, 1],
+        "sheet_young": np.array(
+            [
+                -sum(energy.stiffness_work(pose.nodes, field) for energy in energies) / sheet.material.young
+                for sheet, energies in zip(pose.robot.sheets, body.sheets, strict=True)
+            ]
+        ),
     }
 
 

@@ -374,7 +374,7 @@ def same_physics(first: Robot, second: Robot, mode: Mode) -> bool:
         return True
     if not (same_body(first, second) and first.body == second.body):
         return False
-    if any(getattr(first, name) != getattr(second, name) for name in ("pins", "gravity", "loads", "rods")):
+    if any(getattr(first, name) != getattr(second, name) for name in ("pins", "gravity", "loads", "rods", "sheets")):
         return False
     if mode is Mode.MUSCLES:
         return True
