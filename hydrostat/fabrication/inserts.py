@@ -98,9 +98,10 @@ def _insert_of_part(body: Body, index: int) -> Insert:
     part, own = body.parts[index], body.element_materials == index + 1
     whole, held = 1e3 * body.mesh.nodes, 1e3 * body.mesh.nodes[np.unique(body.mesh.elements[own])]
     low, high = (np.append(end(whole, axis=0)[: part.dim], end(held, axis=0)[part.dim :]) for end in (np.min, np.max))
-    drawn = 1e3 * part.grid(100)  # a part in the plane goes through all of a body in space
-    low[: part.dim] = np.maximum(low[: part.dim], drawn.min(axis=0))
-    high[: part.dim] = np.minimum(high[: part.dim], drawn.max(axis=0))
+    if part.dim:  # a part in the plane goes through all of a body in space
+        drawn = 1e3 * part.grid(100)
+        low[: part.dim] = np.maximum(low[: part.dim], drawn.min(axis=0))
+        high[: part.dim] = np.minimum(high[: part.dim], drawn.max(axis=0))
     sides = [*(high - low).tolist(), *([] if body.thickness is None else [1e3 * body.thickness])]
     material = part.material_in(body.material)
     rigid = f"a stiff material of {material.density:.0f} kg/m^3"

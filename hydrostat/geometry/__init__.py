@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from hydrostat.geometry.crossings import find_crossings
     from hydrostat.geometry.distance_field import DistanceField, Distances
     from hydrostat.geometry.files.drawing_body import Inner
-    from hydrostat.geometry.files.mesh_file import read_mesh
+    from hydrostat.geometry.files.mesh_file import read_labeled_mesh
     from hydrostat.geometry.files.outline_file import OUTLINE_SUFFIXES, read_drawing, read_outline
     from hydrostat.geometry.files.ply_file import write_ply
     from hydrostat.geometry.files.rings import DRAWN_HINT
@@ -71,7 +71,7 @@ __all__ = [
     "locate",
     "nearest_shares",
     "read_drawing",
-    "read_mesh",
+    "read_labeled_mesh",
     "read_outline",
     "read_surface",
     "sides_of",

@@ -1,6 +1,6 @@
 """`Body`: the soft part of a robot, its file, its mesh and its treatment of volumetric locking."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
@@ -20,7 +20,7 @@ from hydrostat.robot.element_kind import ElementKind, Plane, Volume
 from hydrostat.robot.material import Material
 from hydrostat.robot.materials import get_material
 from hydrostat.robot.part import BodyPart
-from hydrostat.robot.part_elements import find_part_elements
+from hydrostat.robot.part_elements import find_part_elements, find_rings
 
 
 class Source(StrEnum):
@@ -58,6 +58,8 @@ class Body:
     marks: tuple[Float[np.ndarray, "_ 2"], ...] = field(
         default=(), compare=False, repr=False
     )  # lines drawn on a flat body [m]
+    # labels of a ready mesh, each with the indices of its linear elements
+    labels: Mapping[str, Int[np.ndarray, " _"]] = field(default_factory=dict, compare=False, repr=False)
     # of a body in space that came as a surface: that surface closed, and what that took
     healing: Healing | None = field(default=None, compare=False, repr=False)
 
@@ -127,7 +129,7 @@ class Body:
         """Index in `materials` of each element (InputError: parts that do not fit, see `find_part_elements`)."""
         if self.mesh.quadratic is not None:
             return np.repeat(self.with_elements(ElementKind.LINEAR).element_materials, 2**self.mesh.dim)
-        found = find_part_elements(self.mesh, self.parts)
+        found = find_part_elements(self.mesh, self.parts, self.labels)
         found.setflags(write=False)
         return found
 
@@ -137,7 +139,7 @@ class Body:
         if self.mesh.dim == 3:
             return tuple(() for _ in self.parts)
         own = [self.mesh.elements[self.element_materials == index + 1] for index in range(len(self.parts))]
-        return tuple(tuple(_rings(Mesh(self.mesh.nodes, elements).boundary)) for elements in own)
+        return tuple(tuple(find_rings(Mesh(self.mesh.nodes, elements).boundary)) for elements in own)
 
     @cached_property
     def element_masses(self) -> Float[np.ndarray, " elements"]:
@@ -227,9 +229,10 @@ class Body:
         The file cannot be read or holds no such mesh).
         """
         from hydrostat.files import read_stranger
-        from hydrostat.geometry import read_mesh
+        from hydrostat.geometry import read_labeled_mesh
 
         _check_lengths(size=size, thickness=thickness)
+        mesh, labels = read_labeled_mesh(path, unit=unit, size=size)
         return Body(
             source=Source.MESH,
             file=path.name,
@@ -238,7 +241,8 @@ class Body:
             size=size,
             thickness=thickness,
             volume=volume,
-            mesh=read_mesh(path, unit=unit, size=size),
+            mesh=mesh,
+            labels=labels,
         )
 
     @staticmethod
@@ -338,21 +342,6 @@ class Body:
             mesh=Mesh(kept["nodes"], kept["elements"]),
             healing=Healing.of_arrays(kept),
         )
-
-
-def _rings(edges: Int[np.ndarray, "edges 2"]) -> Iterator[Int[np.ndarray, " _"]]:
-    """Closed chains of directed edges."""
-    following: dict[int, list[int]] = {}
-    for start, end in edges.tolist():
-        following.setdefault(start, []).append(end)
-    while following:
-        ring = [min(following)]
-        while ring[-1] in following:
-            here = ring[-1]
-            ring.append(following[here].pop())
-            if not following[here]:
-                del following[here]
-        yield np.array(ring[:-1])
 
 
 def _check_lengths(**lengths: float | None) -> None:

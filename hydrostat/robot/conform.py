@@ -26,6 +26,8 @@ def conform(mesh: Mesh, parts: Sequence[BodyPart]) -> Mesh:
     quality = _qualities(nodes, mesh.elements)
     for _ in range(PASSES):
         for part in parts:
+            if part.label is not None:
+                continue  # its border is one of elements already
             for node, place in _candidates(mesh, nodes, part, free):
                 before, touched = nodes[node].copy(), around[node]
                 nodes[node] = place

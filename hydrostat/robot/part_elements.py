@@ -1,20 +1,26 @@
 """`find_part_elements`: elements of a mesh that belong to the parts of a body."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
 from hydrostat.arrays import Float, Int
 from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh, locate
+from hydrostat.given import list_choices
 from hydrostat.robot.part import BodyPart
+from hydrostat.units import quote
 
 
-def find_part_elements(mesh: Mesh, parts: Sequence[BodyPart]) -> Int[np.ndarray, " elements"]:
+def find_part_elements(
+    mesh: Mesh, parts: Sequence[BodyPart], labels: Mapping[str, Int[np.ndarray, " _"]]
+) -> Int[np.ndarray, " elements"]:
     """Number of the part of each element of a linear mesh, from 1; 0 for the body itself.
 
+    `labels` are the labels of its file, each with its elements.
+
     Raises InputError: a part of another dimension, of a name that another has, that holds no element, overlaps, or is
-    rigid but in several pieces.
+    rigid but in several pieces, or a label that the file does not have.
     """
     middles = mesh.nodes[mesh.elements].mean(axis=1)
     found = np.zeros(len(middles), dtype=np.int64)
@@ -24,7 +30,7 @@ def find_part_elements(mesh: Mesh, parts: Sequence[BodyPart]) -> Int[np.ndarray,
             raise InputError(f'{where}.name: there are two of the name "{part.name}"; names must be unique')
         if part.dim > mesh.dim:
             raise InputError(f"{where}: has {part.dim} coordinates, but the body has {mesh.dim}")
-        held = part.holds(middles)
+        held = part.holds(middles) if part.label is None else _find_labeled(where, part.label, labels, len(middles))
         if not held.any():
             raise InputError(
                 f'{where}: "{part.name}" holds no element: it lies outside the body or is thinner than an element; '
@@ -52,6 +58,16 @@ def _find_largest_piece(mesh: Mesh, held: np.ndarray) -> np.ndarray:
     return largest
 
 
+def _find_labeled(where: str, label: str, labels: Mapping[str, Int[np.ndarray, " _"]], count: int) -> np.ndarray:
+    """Mask of the elements of a label (InputError: the file has none of the name)."""
+    if label not in labels:
+        known = list_choices("labels", list(labels), label) if labels else "The file has none, or is no ready mesh."
+        raise InputError(f"{where}.label: unknown label {quote(label)}. {known}")
+    held = np.zeros(count, dtype=bool)
+    held[labels[label]] = True
+    return held
+
+
 def _pieces(mesh: Mesh, part: BodyPart, held: np.ndarray) -> str:
     """Complaint of elements that are not joined through facets, which could move apart or turn; empty if they are."""
     elements = mesh.elements[held]
@@ -62,8 +78,10 @@ def _pieces(mesh: Mesh, part: BodyPart, held: np.ndarray) -> str:
     nodes = [np.unique(elements[groups == group]) for group in range(count)]
     nodes.sort(key=len, reverse=True)
     told = " and ".join(_place(mesh.nodes[one].mean(axis=0)) for one in nodes[:2])
-    grid = part.grid(1000)
-    outside = 0.0 if part.dim < mesh.dim else float((~locate(mesh, grid[part.holds(grid)]).inside).mean())
+    outside = 0.0
+    if part.dim == mesh.dim:
+        grid = part.grid(1000)
+        outside = float((~locate(mesh, grid[part.holds(grid)]).inside).mean())
     if outside < 0.05:
         return (
             f"is in {count} pieces of the mesh, at {told}: it is too thin for its elements. Enlarge it or take a "
@@ -79,3 +97,18 @@ def _pieces(mesh: Mesh, part: BodyPart, held: np.ndarray) -> str:
 def _place(point: Float[np.ndarray, " dim"]) -> str:
     """Place [m] in millimeters."""
     return "[" + ", ".join(f"{1e3 * value:.0f}" for value in point + 0.0) + "] mm"
+
+
+def find_rings(edges: Int[np.ndarray, "edges 2"]) -> Iterator[Int[np.ndarray, " _"]]:
+    """Closed chains of directed edges."""
+    following: dict[int, list[int]] = {}
+    for start, end in edges.tolist():
+        following.setdefault(start, []).append(end)
+    while following:
+        ring = [min(following)]
+        while ring[-1] in following:
+            here = ring[-1]
+            ring.append(following[here].pop())
+            if not following[here]:
+                del following[here]
+        yield np.array(ring[:-1])

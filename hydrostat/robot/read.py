@@ -263,7 +263,7 @@ class RobotReader(TablesFile):
     def _part(self, where: str, entry: Any) -> BodyPart:
         if entry.rigid == (entry.material is not None):
             raise InputError("give either material or rigid = true")
-        return BodyPart(**self._region(where, entry), **given_keys(entry, "density"))
+        return BodyPart(**self._region(where, entry), **given_keys(entry, "density", "label"))
 
     def _sheet(self, where: str, entry: Any) -> SkinSheet:
         return SkinSheet(**self._region(where, entry), **given_keys(entry, "thickness", "on", "wrinkles"))

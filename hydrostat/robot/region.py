@@ -22,6 +22,7 @@ class PartShape(StrEnum):
     CYLINDER = "cylinder"  # the same with flat ends; in space only
     BOX = "box"  # with `at` and `to` as opposite corners
     POLYGON = "polygon"  # what the corners `points` enclose, in the plane
+    CELLS = "cells"  # elements that a mesh file has under `label`; for parts of a ready mesh only
     MESH = "mesh"  # what a closed surface from a file encloses, moved by `at`; in space only
 
 
@@ -37,6 +38,7 @@ class PartRegion:
         radius: radius of a sphere, capsule or cylinder [m].
         points: corners of a polygon [m].
         mesh: closed surface, moved by `at`.
+        label: label of elements in a mesh file; for the shape cells.
 
     Raises:
         InputError: a key that is missing or does not belong to the shape.
@@ -49,16 +51,21 @@ class PartRegion:
     radius: float | None = None
     points: tuple[Point, ...] = ()
     mesh: ClosedMesh | None = None
+    label: str | None = None
 
     def __post_init__(self) -> None:
         check_name(self.name)
         if self.shape is None:
-            if any(getattr(self, key) not in (None, ()) for key in ("at", "to", "radius", "points", "mesh")):
+            if any(getattr(self, key) not in (None, ()) for key in _KEYS):
                 raise InputError("a region needs its shape, such as box")
             return
         make_member(self, "shape", PartShape)
+        if (self.shape is PartShape.CELLS) != bool(self.label):
+            raise InputError('shape = "cells" needs a label, and no other shape has one')
         if self.shape is PartShape.POLYGON:
             self._check_polygon()
+        elif self.shape is PartShape.CELLS:
+            self._check_none("at", "to", "radius", "mesh", "points")
         elif self.points:
             raise InputError(f"a {self.shape} has no points")
         elif self.at is None:
@@ -66,10 +73,14 @@ class PartRegion:
         else:
             self._solid()
 
+    def _check_none(self, *keys: str) -> None:
+        for key in keys:
+            if getattr(self, key) not in (None, ()):
+                what = "a polygon" if self.shape is PartShape.POLYGON else "a region of cells"
+                raise InputError(f"{what} has no {key}")
+
     def _check_polygon(self) -> None:
-        for key in ("at", "to", "radius", "mesh"):
-            if getattr(self, key) is not None:
-                raise InputError(f"a polygon has no {key}")
+        self._check_none("at", "to", "radius", "mesh")
         for index, point in enumerate(self.points):
             check_point(f"points[{index}]", point)
         from shapely import Polygon
@@ -81,8 +92,8 @@ class PartRegion:
 
     @property
     def dim(self) -> int:
-        """Number of coordinates of its region; 0 for all of the body."""
-        if self.shape is None:
+        """Number of coordinates of its region; 0 for all of the body, and for cells."""
+        if self.shape is None or self.shape is PartShape.CELLS:
             return 0
         return len(self.points[0]) if self.at is None else len(self.at)
 
@@ -150,3 +161,6 @@ class PartRegion:
         return Obstacle(
             name=self.name, shape=str(self.shape), at=self.at or (), to=self.to, radius=self.radius, mesh=self.mesh
         )
+
+
+_KEYS = ("at", "to", "radius", "points", "mesh", "label")

@@ -73,6 +73,10 @@ Gravity = Annotated[
 ]
 
 
+def _label(value: object) -> object:
+    return str(value) if isinstance(value, int) and not isinstance(value, bool) else value
+
+
 class RegionTable(TomlTable):
     """Region by its shape."""
 
@@ -88,6 +92,7 @@ class RegionTable(TomlTable):
 class PartTable(RegionTable):
     """[[body.part]]."""
 
+    label: Annotated[str, BeforeValidator(_label)] | None = None
     material: AnyMaterial | None = None
     rigid: bool = False
     density: Density | None = None

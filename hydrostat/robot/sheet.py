@@ -49,6 +49,8 @@ class SkinSheet(PartRegion):
     def __post_init__(self) -> None:
         super().__post_init__()
         make_member(self, "on", SheetSide)
+        if self.label is not None:
+            raise InputError('the shape "cells" is for parts of the body')
         check_positive("thickness", self.thickness, "m")
         check_type(self.wrinkles, bool, "wrinkles must be True or False")
         if isinstance(self.material, str):

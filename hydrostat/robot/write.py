@@ -195,7 +195,7 @@ class _Writer:
         return {**self.region(sheet), "material": self.material(sheet.material), **given, **on, **wrinkles}
 
     def part(self, part: BodyPart) -> dict[str, Any]:
-        entry = self.region(part)
+        entry = self.region(part) | ({} if part.label is None else {"label": part.label})
         if part.material is not None:
             return {**entry, "material": self.material(part.material)}
         return {**entry, "rigid": True, "density": units.format_quantity(part.density or 0.0, units.DENSITY)}

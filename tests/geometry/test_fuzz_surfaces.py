@@ -12,7 +12,7 @@ from geometry.surface_writers import archive, mesh_xml, model_xml, obj, off, ply
 from geometry.test_mesh_file import FORMATS, written
 
 from hydrostat.errors import InputError
-from hydrostat.geometry.files.mesh_file import read_mesh
+from hydrostat.geometry.files.mesh_file import read_labeled_mesh
 from hydrostat.geometry.files.surface_file import read_surface, write_ply
 from hydrostat.geometry.healing.heal import heal
 
@@ -126,7 +126,7 @@ def test_spoiled_meshes(kind: str, tmp_path: Path) -> None:
 
     def read(content: bytes) -> None:
         path.write_bytes(content)
-        read_mesh(path)
+        read_labeled_mesh(path)
 
     content = path.read_bytes()
     read(content)

@@ -1,13 +1,14 @@
 """Mesh files: what meshio, an independent program, writes and reads; what is wrong is told in one line."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh
-from hydrostat.geometry.files.mesh_file import read_mesh
+from hydrostat.geometry.files.mesh_file import read_labeled_mesh
 from hydrostat.geometry.files.vtu_file import write_vtu
 
 _NODES = np.array([[0, 0, 0], [10, 0, 0], [0, 20, 0], [0, 0, 30], [10, 20, 30.5]], dtype=float)
@@ -49,7 +50,7 @@ def written(folder: Path, kind: str) -> Path:
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("kind", FORMATS)
 def test_what_meshio_writes_is_read(kind: str, tmp_path: Path, capsys) -> None:
-    mesh = read_mesh(written(tmp_path, kind), unit=1e-3)
+    mesh = read_labeled_mesh(written(tmp_path, kind), unit=1e-3)[0]
     assert mesh.nodes.shape == (5, 3)
     volumes = np.linalg.det(mesh.nodes[mesh.elements][:, 1:] - mesh.nodes[mesh.elements][:, :1]) / 6
     expected = np.abs(np.linalg.det(_NODES[_TETRAHEDRA][:, 1:] - _NODES[_TETRAHEDRA][:, :1])) / 6
@@ -57,10 +58,94 @@ def test_what_meshio_writes_is_read(kind: str, tmp_path: Path, capsys) -> None:
     np.testing.assert_array_equal(np.sort(mesh.elements), np.sort(_TETRAHEDRA))
 
 
+GMSH = """$MeshFormat
+4.1 0 8
+$EndMeshFormat
+$PhysicalNames
+2
+2 7 "skin"
+3 7 "soft bone"
+$EndPhysicalNames
+$Entities
+1 1 0 2
+1 0 0 0 0
+1 0 0 0 1 1 1 0 1 1
+5 0 0 0 1 1 1 1 7 0
+6 0 0 0 1 1 1 0 1 1
+$EndEntities
+$Nodes
+1 5 1 5
+3 5 0 5
+1
+2
+3
+4
+5
+0 0 0
+10 0 0
+0 20 0
+0 0 30
+10 20 30.5
+$EndNodes
+$Elements
+2 2 1 2
+3 6 4 1
+1 1 2 3 4
+3 5 4 1
+2 2 5 3 4
+$EndElements
+"""
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("kind", ["msh 2.2 bytes", "msh 2.2 text", "vtu zlib", "vtu text"])
+def test_labels_of_elements_are_read(kind: str, tmp_path: Path) -> None:
+    """Of a tetrahedron with 7 and one with 9, by meshio; numbers with a fraction are no labels."""
+    import meshio
+
+    suffix, name, options = FORMATS[kind]
+    cells: Any = [("triangle", _TRIANGLES), ("tetra", _TETRAHEDRA)]
+    tags = [np.array([5, 5], dtype=np.int32), np.array([7, 9], dtype=np.int32)]
+    data: Any = {"gmsh:physical": tags, "gmsh:geometrical": tags}
+    if suffix == ".vtu":
+        data = {"material": tags, "share": [values / 2 for values in tags]}
+    groups = {"bone": np.array([9, 3]), "skin": np.array([7, 2])}
+    mesh = meshio.Mesh(_NODES, cells, cell_data=data, field_data=groups if suffix == ".msh" else {})
+    meshio.write(tmp_path / f"a{suffix}", mesh, file_format=name, **options)
+    array = "physical" if suffix == ".msh" else "material"
+    expected = {f"{array}=7": [0], "7": [0], f"{array}=9": [1], "9": [1]}
+    found = read_labeled_mesh(tmp_path / f"a{suffix}")[1]
+    assert {key: own.tolist() for key, own in found.items()} == expected | ({"bone": [1]} if suffix == ".msh" else {})
+
+
+def test_labels_of_gmsh_are_read(tmp_path: Path) -> None:
+    """Version 4.1 has the groups of an element by its entity; written by hand after Gmsh's manual."""
+    (tmp_path / "a.msh").write_text(GMSH)
+    found = read_labeled_mesh(tmp_path / "a.msh")[1]
+    assert {key: own.tolist() for key, own in found.items()} == {
+        "physical=0": [0], "0": [0], "physical=7": [1], "7": [1], "soft bone": [1]
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ('2 7 "skin"', "2 7 skin", "has a physical name that is not understood"),
+        ("1 1 0 2\n1 0 0", "1 1 0 -2\n1 0 0", "declares 1 entities"),
+        ("5 0 0 0 1 1 1 1 7 0", "5 0 0 0 1 1 1 9000 7 0", "declares 9000 numbers"),
+    ],
+)
+def test_damaged_groups_are_told(old: str, new: str, told: str, tmp_path: Path) -> None:
+    assert old in GMSH
+    (tmp_path / "a.msh").write_text(GMSH.replace(old, new))
+    with pytest.raises(InputError, match=told):
+        read_labeled_mesh(tmp_path / "a.msh")
+
+
 @pytest.mark.parametrize(("kind", "suffix"), [("vtu text", ".vtk"), ("vtk 4.2 text", ".vtu")])
 def test_a_kind_under_the_name_of_the_other_is_read(kind: str, suffix: str, tmp_path: Path) -> None:
     path = written(tmp_path, kind)
-    assert len(read_mesh(path.rename(path.with_suffix(suffix)), unit=1e-3).elements) == len(_TETRAHEDRA)
+    assert len(read_labeled_mesh(path.rename(path.with_suffix(suffix)), unit=1e-3)[0].elements) == len(_TETRAHEDRA)
 
 
 def test_a_block_without_elements_is_passed_over(tmp_path: Path) -> None:
@@ -70,7 +155,7 @@ def test_a_block_without_elements_is_passed_over(tmp_path: Path) -> None:
     blocks, *rest = lines[head].split()
     lines[head : head + 1] = [" ".join([str(int(blocks) + 1), *rest]), "3 1 4 0"]
     path.write_text("\n".join(lines) + "\n")
-    assert len(read_mesh(path, unit=1e-3).elements) == len(_TETRAHEDRA)
+    assert len(read_labeled_mesh(path, unit=1e-3)[0].elements) == len(_TETRAHEDRA)
 
 
 @pytest.mark.parametrize("dim", [2, 3])
@@ -85,7 +170,7 @@ def test_what_is_written_is_read_by_us_and_by_meshio(dim: int, copies: int, tmp_
     moved = nodes + 0.1
     data = {"rest": nodes, 'height & "depth"': np.arange(len(nodes)), "whole": np.full((len(nodes), 3), np.pi)}
     (tmp_path / "a.vtu").write_bytes(write_vtu(mesh, moved, data))
-    again, other = read_mesh(tmp_path / "a.vtu"), meshio.read(tmp_path / "a.vtu")
+    again, other = read_labeled_mesh(tmp_path / "a.vtu")[0], meshio.read(tmp_path / "a.vtu")
     for read, elements in (
         (again.nodes, again.elements),
         (other.points, other.cells_dict[("triangle", "tetra")[dim - 2]]),
@@ -145,7 +230,7 @@ def _vtu(encoding: str, order: str = "LittleEndian", packed: bool = False) -> by
 def test_appended_data_of_vtu(encoding: str, order: str, packed: bool, tmp_path: Path) -> None:
     path = tmp_path / "a.vtu"
     path.write_bytes(_vtu(encoding, order, packed))
-    np.testing.assert_array_equal(read_mesh(path).nodes, _NODES[:4])
+    np.testing.assert_array_equal(read_labeled_mesh(path)[0].nodes, _NODES[:4])
 
 
 _ROBOTS = Path(__file__).parents[3] / "shared" / "robots"
@@ -157,7 +242,7 @@ def test_real_robots_are_read_as_meshio_reads_them(name: str) -> None:
 
     if not (_ROBOTS / name).exists():
         pytest.skip("the robots of SOFA are not here")
-    expected, mesh = meshio.read(_ROBOTS / name), read_mesh(_ROBOTS / name)
+    expected, mesh = meshio.read(_ROBOTS / name), read_labeled_mesh(_ROBOTS / name)[0]
     tetrahedra = expected.cells_dict["tetra"]
     np.testing.assert_array_equal(mesh.nodes, expected.points[np.unique(tetrahedra)])
     np.testing.assert_array_equal(np.sort(np.unique(tetrahedra)[mesh.elements]), np.sort(tetrahedra))
@@ -202,7 +287,7 @@ def test_what_is_wrong_is_told_in_one_line(case: str, tmp_path: Path) -> None:
     name, content, word = _BAD[case]
     (tmp_path / name).write_text(content)
     with pytest.raises(InputError, match=word) as caught:
-        read_mesh(tmp_path / name)
+        read_labeled_mesh(tmp_path / name)[0]
     assert "\n" not in str(caught.value)
 
 
@@ -210,4 +295,4 @@ def test_the_good_ones_are_good(tmp_path: Path) -> None:
     """What the bad cases are made of can be read, with sparse tags, too."""
     for name, content in (("a.vtk", _TEXT), ("a.msh", _MSH)):
         (tmp_path / name).write_text(content)
-        np.testing.assert_array_equal(read_mesh(tmp_path / name).nodes, np.vstack([np.zeros(3), np.eye(3)]))
+        np.testing.assert_array_equal(read_labeled_mesh(tmp_path / name)[0].nodes, np.vstack([np.zeros(3), np.eye(3)]))

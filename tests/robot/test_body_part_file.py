@@ -6,14 +6,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders import box_mesh, mesh_body
+from builders import box_mesh, mesh_body, strip_mesh
 from robot_files import GOOD, edit, load
 
 from hydrostat.errors import InputError
+from hydrostat.fabrication.inserts import find_inserts
 from hydrostat.robot import (
     BodyPart,
     ElementKind,
     Material,
+    Robot,
     find_risks,
     inflated_robot,
     load_robot,
@@ -63,6 +65,57 @@ def test_quadratic_elements_are_kept(tmp_path: Path) -> None:
     assert load_robot(tmp_path / "b") == robot
     assert scaled_robot(robot, 1.5).body.mesh.quadratic is not None
     assert inflated_robot(robot).body.elements is ElementKind.QUADRATIC
+
+
+CELLS = '[[body.part]]\nname = "bone"\nshape = "cells"\nlabel = 3\n' + RIGID
+
+
+def labeled(folder: Path, table: str) -> Robot:
+    """The robot in a ready mesh whose elements right of x = 5 mm have the label 3."""
+    import meshio
+
+    mesh = strip_mesh(12, 8, size=(60.0, 40.0))
+    points = np.pad(mesh.nodes - [30.0, 0.0], ((0, 0), (0, 1)))
+    labels = np.where(points[mesh.elements][:, :, 0].mean(axis=1) > 5.0, 3, 1).astype(np.int32)
+    folder.mkdir(exist_ok=True)
+    meshio.write(folder / "body.vtu", meshio.Mesh(points, [("triangle", mesh.elements)], cell_data={"a": [labels]}))
+    text = edit(GOOD, 'outline = "body.svg"\nelement_size = "12 mm"', 'mesh = "body.vtu"')
+    return load(folder, edit(text, "[[pin]]", f"{table}\n[[pin]]"))
+
+
+def test_labels_of_a_mesh_file_are_parts(tmp_path: Path) -> None:
+    """Oracle: the same region as a box."""
+    robot = labeled(tmp_path / "a", CELLS)
+    box = labeled(tmp_path / "c", BONE.replace("at = [0,", "at = [5,").replace("to = [20,", "to = [40,"))
+    assert (robot.body.element_materials == box.body.element_materials).all()
+    assert 0 < robot.body.element_materials.sum() < len(robot.body.mesh.elements)
+    assert robot.body.mesh.nodes == pytest.approx(box.body.mesh.nodes, abs=1e-9)
+    quadratic = robot.body.with_elements("quadratic")
+    assert (quadratic.element_materials == robot.body.element_materials.repeat(4)).all()
+    save_robot(robot, tmp_path / "b")
+    assert load_robot(tmp_path / "b") == robot
+    assert scaled_robot(robot, 2.0).body.mass == pytest.approx(8 * robot.body.mass)
+    assert find_inserts(robot)[0].sides == pytest.approx((25.0, 40.0, 20.0))
+    assert not [line for line in find_risks(robot) if "bone" in line]
+
+
+@pytest.mark.parametrize(
+    ("table", "told"),
+    [
+        (CELLS.replace("= 3", "= 4"), r'body.part\[0\].label: unknown label "4". Available: a=1, 1, a=3, 3.'),
+        (CELLS.replace("label = 3\n", ""), r'body.part\[0\].shape = "cells" needs a label, and no other shape has one'),
+        (BONE + "label = 3\n", r'body.part\[0\].shape = "cells" needs a label, and no other shape has one'),
+        (CELLS + "at = [0, 0]\n", r"body.part\[0\]: a region of cells has no at"),
+    ],
+)
+def test_what_is_wrong_with_a_label_is_told(table: str, told: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=told):
+        labeled(tmp_path, table)
+
+
+def test_a_label_needs_a_ready_mesh(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r'unknown label "3". The file has none, or is no ready mesh'):
+        load(tmp_path, with_parts(CELLS))
 
 
 def test_a_text_keeps_its_comments(tmp_path: Path) -> None:

@@ -26,7 +26,9 @@ def test_robot_toml_of_its_page_is_read(tmp_path: Path) -> None:
     assert robot.obstacles[0].friction == 0.6
     (tmp_path / "robot.toml").write_text(f"{first}\n{driven}")
     assert load_robot(tmp_path).drives[1].limits == (-0.5, 2.0)
-    lines = [line for line in first.splitlines() if not line.startswith("material")]
+    lines = first.splitlines()
+    lines.remove(next(line for line in lines if line.startswith("material")))
+    assert robot.sheets[0].wrinkles
 
     def read(table: str) -> Material:
         (tmp_path / "robot.toml").write_text("\n".join(lines).replace("[[pin]]", f"{table}\n[[pin]]", 1))

@@ -2,7 +2,7 @@
 
 import re
 from array import array
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import islice
 
 import numpy as np
@@ -18,6 +18,9 @@ class Cells:
     points: Float[np.ndarray, "points 3"]  # places in the file's own unit
     tetrahedra: Int[np.ndarray, "tetrahedra 4"]  # indices of four points each, as declared, not yet checked
     triangles: Int[np.ndarray, "triangles 3"]  # indices of three points each
+    # whole numbers of each tetrahedron and each triangle by the name of their array, and names of some numbers
+    labels: tuple[dict[str, np.ndarray], dict[str, np.ndarray]] = field(default=({}, {}))
+    names: tuple[dict[str, int], dict[str, int]] = field(default=({}, {}))
 
 
 _LONGEST = 10_000  # characters of a word

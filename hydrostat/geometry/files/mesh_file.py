@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from hydrostat.arrays import Int
 from hydrostat.errors import InputError
 from hydrostat.files import read_stranger
 from hydrostat.geometry.files.msh_file import read_msh
@@ -12,8 +13,14 @@ from hydrostat.geometry.files.vtu_file import read_vtu
 from hydrostat.geometry.mesh import Mesh
 
 
-def read_mesh(path: Path, *, unit: float = 1.0, size: float | None = None) -> Mesh:
-    """Mesh of tetrahedra, or of triangles if there are none, from a VTK, VTU or Gmsh file.
+def read_labeled_mesh(
+    path: Path, *, unit: float = 1.0, size: float | None = None
+) -> tuple[Mesh, dict[str, Int[np.ndarray, " _"]]]:
+    """Mesh of tetrahedra, or of triangles if there are none, from a VTK, VTU or Gmsh file, and its labels.
+
+    Labels are physical groups of MSH files and whole numbers in the cell data of VTU files, each with the indices of
+    its elements: "bone" for a group with a name, "physical=3", and "3" if its array is the only one, or that of
+    physical groups.
 
     A coordinate counts `unit` meters, unless the longest side of the bounding box is to be `size` [m]. Raises
     InputError if the file cannot be read or holds neither tetrahedra nor flat triangles.
@@ -26,10 +33,25 @@ def read_mesh(path: Path, *, unit: float = 1.0, size: float | None = None) -> Me
         begin = content[:100].lstrip().lower()
         reader = read_vtu if begin.startswith(b"<") else read_vtk if begin.startswith(b"# vtk") else reader
     cells = reader(content, path.name)
-    for elements, dim in ((cells.tetrahedra, 3), (cells.triangles, 2)):
+    for kind, (elements, dim) in enumerate(((cells.tetrahedra, 3), (cells.triangles, 2))):
         if len(elements):
-            return _simplices(path.name, cells.points, elements, dim, unit, size)
+            mesh = _simplices(path.name, cells.points, elements, dim, unit, size)
+            return mesh, _find_labels(cells.labels[kind], cells.names[kind])
     raise InputError(f"{path.name}: holds neither tetrahedra nor triangles")
+
+
+def _find_labels(arrays: dict[str, np.ndarray], names: dict[str, int]) -> dict[str, Int[np.ndarray, " _"]]:
+    """Elements of each label; arrays with many values, such as numbers of elements, are passed over."""
+    most_labels, found = 1000, {}
+    known = {name: values for name, values in arrays.items() if len(np.unique(values)) <= most_labels}
+    main = next((name for name in ("physical", "gmsh:physical") if name in known), "")
+    for name, values in known.items():
+        for value in np.unique(values).tolist():
+            own = np.flatnonzero(values == value)
+            found[f"{name}={value}"] = own
+            if name == main or len(known) == 1:
+                found[str(value)] = own
+    return found | {name: found[str(tag)] for name, tag in names.items() if str(tag) in found}
 
 
 _READERS = {".vtk": read_vtk, ".vtu": read_vtu, ".msh": read_msh}

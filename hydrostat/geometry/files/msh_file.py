@@ -1,5 +1,6 @@
 """Gmsh's MSH files, versions 2 and 4.1, as text or bytes."""
 
+import re
 from array import array
 
 import numpy as np
@@ -8,6 +9,8 @@ from hydrostat.errors import InputError
 from hydrostat.geometry.files.cursor import Cells, Cursor
 
 _TETRAHEDRON, _TRIANGLE = 4, 2
+_SIMPLICES = ((_TETRAHEDRON, 4), (_TRIANGLE, 3))
+_NAMED = re.compile(rb'(\d+)\s+(-?\d{1,9})\s+"(.*)"')
 _CORNERS = {
     1: 2, 2: 3, 3: 4, 4: 4, 5: 8, 6: 6, 7: 5, 8: 3, 9: 6, 10: 9, 11: 10, 12: 27, 13: 18, 14: 14, 15: 1, 16: 8, 17: 20,
     18: 15, 19: 13, 20: 9, 21: 10, 22: 12, 23: 15, 24: 15, 25: 21, 26: 4, 27: 5, 28: 6, 29: 20, 30: 35, 31: 56,
@@ -24,6 +27,8 @@ def read_msh(content: bytes, name: str) -> Cells:
     cursor = Cursor(content, name)
     old = _head(cursor)
     nodes, found = None, None
+    names: tuple[dict[str, int], dict[str, int]] = ({}, {})
+    groups: dict[tuple[int, int], int] = {}
     while nodes is None or found is None:
         line = cursor.line()
         if line is None:
@@ -32,20 +37,56 @@ def read_msh(content: bytes, name: str) -> Cells:
             nodes = _old_nodes(cursor) if old else _nodes(cursor)
             cursor.seek_after(b"$EndNodes")
         elif line == b"$Elements":
-            found = _old_elements(cursor) if old else _elements(cursor)
+            found = _old_elements(cursor) if old else _elements(cursor, groups)
             cursor.seek_after(b"$EndElements")
+        elif line == b"$PhysicalNames":
+            names = _group_names(cursor)
+            cursor.seek_after(b"$EndPhysicalNames")
+        elif line == b"$Entities":
+            groups = _entity_groups(cursor)
+            cursor.seek_after(b"$EndEntities")
         elif line.startswith(b"$"):
             cursor.seek_after(b"$End" + line[1:50])
     tags, points = nodes
     order = np.argsort(tags, kind="stable")
-    return Cells(
-        points, *(_indices(found[kind], count, tags, order) for kind, count in ((_TETRAHEDRON, 4), (_TRIANGLE, 3)))
-    )
+    rows = [np.concatenate([np.zeros((0, 1 + count), dtype=np.int64), *found[kind]]) for kind, count in _SIMPLICES]
+    tetrahedra, triangles = (_indices(each[:, 1:], tags, order) for each in rows)
+    labels = tuple({"physical": each[:, 0]} for each in rows)
+    return Cells(points, tetrahedra, triangles, labels=(labels[0], labels[1]), names=names)
 
 
-def _indices(found: list[np.ndarray], count: int, tags: np.ndarray, order: np.ndarray) -> np.ndarray:
+def _group_names(cursor: Cursor) -> tuple[dict[str, int], dict[str, int]]:
+    """Tags of the physical groups of volumes and of surfaces by their names."""
+    found: tuple[dict[str, int], dict[str, int]] = ({}, {})
+    for _ in range(_count(cursor)):
+        match = _NAMED.fullmatch(cursor.line() or b"")
+        if match is None:
+            raise cursor.make_damage_error("has a physical name that is not understood")
+        if match[1] in (b"2", b"3"):
+            found[3 - int(match[1])][match[3].decode("utf-8", "replace")] = int(match[2])
+    return found
+
+
+def _entity_groups(cursor: Cursor) -> dict[tuple[int, int], int]:
+    """Tag of the first physical group of each surface and volume of version 4.1, by its dimension and tag."""
+    counts = cursor.numbers(4, "i8").tolist()
+    if min(counts) < 0 or sum(counts) > len(cursor.content):
+        raise cursor.make_damage_error(f"declares {max(counts)} entities")
+    found = {}
+    for dim, count in enumerate(counts):
+        for _ in range(count):
+            tag = int(cursor.numbers(1, "i4")[0])
+            cursor.numbers(6 if dim else 3, "f8")
+            physical = cursor.numbers(int(cursor.numbers(1, "i8")[0]), "i4")
+            if dim:
+                cursor.numbers(int(cursor.numbers(1, "i8")[0]), "i4")
+            if dim > 1 and len(physical):
+                found[dim, tag] = int(physical[0])
+    return found
+
+
+def _indices(wanted: np.ndarray, tags: np.ndarray, order: np.ndarray) -> np.ndarray:
     """Places of nodes among all for their tags; -1 for a tag that no node has."""
-    wanted = np.concatenate([np.zeros((0, count), dtype=np.int64), *found])
     if not len(tags):
         return np.full(wanted.shape, -1)
     place = np.minimum(np.searchsorted(tags[order], wanted), len(tags) - 1)
@@ -92,7 +133,7 @@ def _old_nodes(cursor: Cursor) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _old_elements(cursor: Cursor) -> _Found:
-    """Tags of the nodes of tetrahedra and triangles in version 2."""
+    """Physical group and tags of the nodes of tetrahedra and triangles in version 2."""
     found: _Found = {_TETRAHEDRON: [], _TRIANGLE: []}
     left, blocks = _count(cursor), 0
     if cursor.text:
@@ -106,7 +147,8 @@ def _old_elements(cursor: Cursor) -> _Found:
         width = 1 + tags + _CORNERS[kind]
         rows = cursor.numbers(width * count, "i4").reshape(count, width)
         if kind in found:
-            found[kind].append(rows[:, 1 + tags :].astype(np.int64))
+            first = rows[:, 1 : 1 + min(tags, 1)] if tags else np.zeros((count, 1), dtype=np.int64)
+            found[kind].append(np.hstack([first, rows[:, 1 + tags :]]).astype(np.int64))
         left -= count
     return found
 
@@ -116,20 +158,23 @@ def _old_rows(cursor: Cursor, count: int) -> _Found:
     numbers = cursor.all_numbers(max(cursor.content.find(b"$EndElements", cursor.at), cursor.at), "i8")
     look, at, end = numbers.data, 0, len(numbers)
     places: dict[int, array] = {_TETRAHEDRON: array("q"), _TRIANGLE: array("q")}
+    groups: dict[int, array] = {_TETRAHEDRON: array("q"), _TRIANGLE: array("q")}
     for _ in range(min(count, len(numbers))):
         kind, tags = (look[at + 1], look[at + 2]) if at + 3 <= end else (0, 0)
-        first = at + 3 + tags
+        begin, first = at + 3, at + 3 + tags
         at = first + _CORNERS.get(kind, end + 1)
         if tags < 0 or at > end:
             raise cursor.make_damage_error("has an element that is not whole, or of a kind that is not known")
         if kind in places:
             places[kind].append(first)
+            groups[kind].append(look[begin] if tags else 0)
     if at != end:
         raise cursor.make_damage_error("has elements that do not fit their number")
-    return {
-        kind: [numbers[np.array(some, dtype=np.int64)[:, None] + np.arange(_CORNERS[kind])]]
-        for kind, some in places.items()
-    }
+    found: _Found = {}
+    for kind, some in places.items():
+        nodes = numbers[np.array(some, dtype=np.int64)[:, None] + np.arange(_CORNERS[kind])]
+        found[kind] = [np.column_stack([np.array(groups[kind], dtype=np.int64), nodes])]
+    return found
 
 
 def _blocks(cursor: Cursor) -> int:
@@ -155,16 +200,17 @@ def _nodes(cursor: Cursor) -> tuple[np.ndarray, np.ndarray]:
     return np.concatenate(tags), np.concatenate(places)
 
 
-def _elements(cursor: Cursor) -> _Found:
-    """Tags of the nodes of tetrahedra and triangles in version 4.1."""
+def _elements(cursor: Cursor, groups: dict[tuple[int, int], int]) -> _Found:
+    """Physical group and tags of the nodes of tetrahedra and triangles in version 4.1; 0 for those of no group."""
     found: _Found = {_TETRAHEDRON: [], _TRIANGLE: []}
     blocks = _blocks(cursor)
     for _ in range(blocks):
-        _, _, kind = cursor.numbers(3, "i4").tolist()
+        dim, entity, kind = cursor.numbers(3, "i4").tolist()
         count = int(cursor.numbers(1, "i8")[0])
         if kind not in _CORNERS:
             raise cursor.make_damage_error("has an element of a kind that is not known")
         rows = cursor.numbers(count * (1 + _CORNERS[kind]), "i8").reshape(count, 1 + _CORNERS[kind])
         if kind in found:
-            found[kind].append(rows[:, 1:].astype(np.int64))
+            found[kind].append(rows.astype(np.int64))
+            found[kind][-1][:, 0] = groups.get((dim, entity), 0)  # in place of the number of the element
     return found

@@ -1,6 +1,7 @@
 """Legacy VTK files with unstructured grids, up to version 5.1, as text or big-endian bytes."""
 
 from array import array
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -48,11 +49,18 @@ def read_vtk(content: bytes, name: str) -> Cells:
     return cells_of(points.reshape(-1, 3), starts, corners, types, name)
 
 
-def cells_of(points: np.ndarray, starts: np.ndarray, corners: np.ndarray, types: np.ndarray, name: str) -> Cells:
+def cells_of(
+    points: np.ndarray,
+    starts: np.ndarray,
+    corners: np.ndarray,
+    types: np.ndarray,
+    name: str,
+    data: Mapping[str, np.ndarray] | None = None,
+) -> Cells:
     """Simplices among cells, each of one of VTK's types; InputError, with the file's name, where these do not fit.
 
     Corners are indices of points, of all cells one after the other; `starts` tells where those of each cell begin, and
-    where the last ends.
+    where the last ends; `data` are arrays of whole numbers by name, a number for each cell.
     """
     counts = np.diff(starts)
     if (
@@ -61,11 +69,12 @@ def cells_of(points: np.ndarray, starts: np.ndarray, corners: np.ndarray, types:
         or (len(starts) and not 0 <= starts[0] <= starts[-1] <= len(corners))
     ):
         raise make_damage_error(name, "has cells, types and corners that do not fit each other")
-    chosen = []
+    chosen, labels = [], []
     for kind, count in ((TETRAHEDRON, 4), (TRIANGLE, 3)):
-        first = starts[:-1][(types == kind) & (counts == count)]
-        chosen.append(corners[first[:, None] + np.arange(count)].astype(np.int64))
-    return Cells(points, chosen[0], chosen[1])
+        own = (types == kind) & (counts == count)
+        chosen.append(corners[starts[:-1][own][:, None] + np.arange(count)].astype(np.int64))
+        labels.append({key: values[own] for key, values in (data or {}).items() if len(values) == len(own)})
+    return Cells(points, *chosen, labels=(labels[0], labels[1]))
 
 
 def _head(cursor: Cursor) -> None:

@@ -39,10 +39,13 @@ class _Array:
 
 @dataclass
 class _GridText:
-    """Attributes of the whole file as its XML has them, and the arrays of each piece by name."""
+    """Attributes of the whole file as its XML has them, and the arrays of each piece by name.
+
+    The key of whole numbers of the cells is "CellData" and their name.
+    """
 
     attributes: dict[str, str] = field(default_factory=dict)
-    pieces: list[dict[str, _Array]] = field(default_factory=list)
+    pieces: list[dict[str | tuple[str, str], _Array]] = field(default_factory=list)
 
 
 def read_vtu(content: bytes, name: str) -> Cells:
@@ -58,7 +61,7 @@ def read_vtu(content: bytes, name: str) -> Cells:
     most_pieces = 1000
     if not 0 < len(grid.pieces) <= most_pieces:
         raise make_damage_error(name, f"has no piece, or more than {most_pieces}")
-    points, tetrahedra, triangles, before = [np.zeros((0, 3))], [], [], 0
+    points, found, before = [np.zeros((0, 3))], [], 0
     for piece in grid.pieces:
         if not {"points", "connectivity", "offsets", "types"} <= piece.keys():
             raise make_damage_error(name, "has a piece without points or cells")
@@ -66,12 +69,19 @@ def read_vtu(content: bytes, name: str) -> Cells:
         if len(places) % 3:
             raise make_damage_error(name, "has points without three coordinates")
         arrays = [whole_numbers(reader.values(piece[key])) for key in ("offsets", "connectivity", "types")]
-        cells = cells_of(places.reshape(-1, 3), np.append(0, arrays[0]), arrays[1], arrays[2], name)
+        data = {key[1]: reader.values(array) for key, array in piece.items() if isinstance(key, tuple)}
+        cells = cells_of(places.reshape(-1, 3), np.append(0, arrays[0]), arrays[1], arrays[2], name, data)
         points.append(cells.points)
-        tetrahedra.append(before + cells.tetrahedra)
-        triangles.append(before + cells.triangles)
+        found.append((before + cells.tetrahedra, before + cells.triangles, cells.labels))
         before += len(cells.points)
-    return Cells(np.concatenate(points), np.concatenate(tetrahedra), np.concatenate(triangles))
+    tetrahedra, triangles, labels = zip(*found, strict=True)
+    joined = tuple(
+        {key: np.concatenate([one[key] for one in kind]) for key in kind[0] if all(key in one for one in kind)}
+        for kind in zip(*labels, strict=True)
+    )
+    return Cells(
+        np.concatenate(points), np.concatenate(tetrahedra), np.concatenate(triangles), labels=(joined[0], joined[1])
+    )
 
 
 def _parse(content: bytes, name: str) -> _GridText:
@@ -90,8 +100,8 @@ def _parse(content: bytes, name: str) -> _GridText:
             grid.attributes = attributes
         elif tag == "Piece":
             grid.pieces.append({})
-        elif tag == "DataArray" and grid.pieces and path[-2] in ("Points", "Cells"):
-            now = grid.pieces[-1]["points" if path[-2] == "Points" else attributes.get("Name", "")] = _Array(attributes)
+        elif tag == "DataArray" and grid.pieces and (key := _array_key(path[-2], attributes)):
+            now = grid.pieces[-1][key] = _Array(attributes)
 
     def end(_tag: str) -> None:
         nonlocal now
@@ -116,6 +126,15 @@ def _parse(content: bytes, name: str) -> _GridText:
     if grid.attributes.get("type") != "UnstructuredGrid":
         raise InputError(f"{name}: holds no unstructured grid: save the mesh as an unstructured grid")
     return grid
+
+
+def _array_key(section: str, attributes: dict[str, str]) -> str | tuple[str, str]:
+    """Key of an array of a piece; empty for one that is not read."""
+    name = attributes.get("Name", "")
+    if section == "CellData":
+        is_whole = "Int" in attributes.get("type", "") and attributes.get("NumberOfComponents", "1") == "1"
+        return (section, name) if is_whole else ""
+    return {"Points": "points", "Cells": name}.get(section, "")
 
 
 class _Reader:
