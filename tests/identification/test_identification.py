@@ -288,6 +288,7 @@ def test_unknown_kinds_are_refused() -> None:
         "zero",
         "gain",
         "rods",
+        "sheets",
         "frame",
     ]
 
