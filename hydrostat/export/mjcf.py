@@ -50,6 +50,7 @@ def find_omissions(robot: Robot) -> tuple[str, ...]:
         "stiffness of pins (they are rigid)": any(pin.stiffness < Pin.stiffness for pin in robot.pins),
         "cable friction": any(cable.friction for cable in robot.cables),
         "relaxation": any(material.relaxation for material in materials),
+        "graded stiffness": robot.body.grading is not None,
         "hysteresis": any(material.hysteresis for material in materials),
         "foam laws (replaced by a linear law)": any(material.foam for material in materials),
         "quadratic elements (replaced by linear ones)": robot.body.mesh.quadratic is not None,

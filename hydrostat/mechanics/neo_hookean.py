@@ -35,7 +35,7 @@ class NeoHookean(Energy):
         *,
         mu: float | Vector,
         lame: float | Vector | None,
-        thickness: float = 1.0,
+        thickness: float | Vector = 1.0,
         volumes: Float[np.ndarray, " elements"] | None = None,
         materials: Int[np.ndarray, " elements"] | None = None,
     ) -> None:
@@ -47,7 +47,8 @@ class NeoHookean(Energy):
             mu: shear modulus, one number or one for each element.
             lame: Lame's first parameter, likewise; None where another energy resists a change of volume, such as
                 `PatchVolume`.
-            thickness: thickness of a flat body [m]; leave it out in space.
+            thickness: thickness of a flat body [m], leave it out in space; times a factor of the moduli, if there is
+                one, of each element.
             volumes: volume of each element [m^3], in place of that of the rest shape.
             materials: index of the material of each element, counted from 0, for `parameter_work`; all of one by
                 default.

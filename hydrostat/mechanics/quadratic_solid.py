@@ -38,7 +38,7 @@ class QuadraticSolid(Energy):
         *,
         mu: float | Vector,
         lame: float | Vector | None,
-        thickness: float = 1.0,
+        thickness: float | Vector = 1.0,
         materials: Int[np.ndarray, " elements"] | None = None,
         metrics: Float[np.ndarray, "points dim dim"] | None = None,
     ) -> None:
@@ -49,7 +49,7 @@ class QuadraticSolid(Energy):
             elements: nodes of each element: corners, then middles of edges, which may lie off the straight line.
             mu: shear modulus, one number or one for each element.
             lame: Lame's first parameter, likewise; None where another energy resists a change of volume.
-            thickness: thickness of a flat body [m]; leave it out in space.
+            thickness: as in `NeoHookean`.
             materials: index of the material of each element, counted from 0, for `parameter_work`; all of one by
                 default.
             metrics: A of each point, if tr(F A F^T) stands for tr(F^T F): F is counted from a rest shape that crept.
@@ -62,7 +62,7 @@ class QuadraticSolid(Energy):
         derivatives, weights = _quadrature(dim)
         spans = np.einsum("ecd,qcr->eqdr", nodes[elements], derivatives)
         self._gradients = np.einsum("qcr,eqrd->eqcd", derivatives, np.linalg.inv(spans))
-        self._weights = np.linalg.det(spans) * weights * thickness
+        self._weights = np.linalg.det(spans) * weights * np.reshape(thickness, (-1, 1))
         self._offsets = np.zeros((0, dim + 1, dim, dim))
         if metrics is not None:
             roots = np.linalg.cholesky(metrics).reshape(count, dim + 1, dim, dim)

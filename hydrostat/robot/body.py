@@ -17,6 +17,7 @@ from hydrostat.geometry import Anchors, Healing, Inner, Mesh, Outline, Solid, Th
 from hydrostat.given import check_positive
 from hydrostat.robot.body_cache import Arrays, keep_body
 from hydrostat.robot.element_kind import ElementKind, Plane, Volume
+from hydrostat.robot.grading import Grading
 from hydrostat.robot.material import Material
 from hydrostat.robot.materials import get_material
 from hydrostat.robot.part import BodyPart
@@ -53,6 +54,7 @@ class Body:
     inner: Inner = Inner.HOLES  # meaning of shapes within the outer line of a drawing
     drawing_part: int | None = None  # number of the closed shape of a drawing that is the body; None: 1, the largest
     parts: tuple[BodyPart, ...] = ()  # regions of other materials, or rigid
+    grading: Grading | None = None  # factor of Young's modulus by place; rigid parts keep theirs
     mesh: Mesh = field(compare=False, repr=False)  # nodes and elements
     outline: Outline | None = field(default=None, compare=False, repr=False)  # outline of a flat drawn body
     marks: tuple[Float[np.ndarray, "_ 2"], ...] = field(
@@ -90,6 +92,8 @@ class Body:
         _check_lengths(size=self.size, element_size=self.element_size, thickness=self.thickness)
         if self.parts:
             _ = self.element_materials  # checks the parts
+        if self.grading is not None and self.grading.dim > self.mesh.dim:
+            raise InputError("grading has coordinates in space, but the body is flat")
 
     def with_parts(self, parts: Iterable[BodyPart]) -> "Body":
         """Return the body with these parts in place of its own, its mesh fitted to their borders.
@@ -134,6 +138,16 @@ class Body:
         return found
 
     @cached_property
+    def stiffness_factors(self) -> Float[np.ndarray, " elements"]:
+        """Factor of Young's modulus of each element by the grading; 1 without one."""
+        if self.grading is None:
+            return np.ones(len(self.mesh.elements))
+        if self.mesh.quadratic is not None:
+            return np.repeat(self.with_elements(ElementKind.LINEAR).stiffness_factors, 2**self.mesh.dim)
+        rigid = np.array([False, *(part.is_rigid for part in self.parts)])[self.element_materials]
+        return np.where(rigid, 1.0, self.grading.find_factors(self.mesh.nodes[self.mesh.elements].mean(axis=1)))
+
+    @cached_property
     def part_rings(self) -> tuple[tuple[Int[np.ndarray, " _"], ...], ...]:
         """Nodes along the closed borders of each part of a flat body, the part to the left; empty in space."""
         if self.mesh.dim == 3:
@@ -158,7 +172,7 @@ class Body:
         return float(self.element_masses.sum())
 
     def lame(self) -> tuple[Float[np.ndarray, " elements"], Float[np.ndarray, " elements"]]:
-        """Lame's parameters mu and lambda of each element [Pa]."""
+        """Lame's parameters mu and lambda of the material of each element [Pa], without its grading."""
         mu, lame = np.array([material.lame for material in self.materials])[self.element_materials].T
         return mu, lame
 
@@ -224,10 +238,7 @@ class Body:
         thickness: float | None = None,
         volume: Volume = Volume.ELEMENT,
     ) -> "Body":
-        """Body from a ready mesh, in units of `unit` meters (InputError.
-
-        The file cannot be read or holds no such mesh).
-        """
+        """Body from a ready mesh, in units of `unit` meters (InputError: no file or no such mesh)."""
         from hydrostat.files import read_stranger
         from hydrostat.geometry import read_labeled_mesh
 

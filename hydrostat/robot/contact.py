@@ -1,6 +1,6 @@
 """`Contact` and `Obstacle`: contact of a body with itself and with objects next to it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from functools import cached_property
@@ -9,7 +9,7 @@ import numpy as np
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
-from hydrostat.geometry import DistanceField, Shell, Surface, read_surface
+from hydrostat.geometry import DistanceField, Mesh, Shell, Surface, locate, read_surface
 from hydrostat.given import Point, check_name, check_number, check_point, check_positive
 
 
@@ -325,3 +325,25 @@ _MOMENTS: dict[ObstacleShape, Callable[[Obstacle], Vector]] = {
     ObstacleShape.BOX: _box_moments,
     ObstacleShape.MESH: _mesh_moments,
 }
+
+
+def check_obstacles(obstacles: Iterable[Obstacle], mesh: Mesh, distance: float) -> None:
+    """Reject obstacles that do not fit a body or stand in it, and a large distance of contact [m] (InputError)."""
+    if distance > 0.1 * mesh.size:
+        raise InputError(
+            f"contact.distance of {1e3 * distance:.4g} mm is large beside a body of {1e3 * mesh.size:.4g} mm; "
+            f"it is usually {DISTANCE:.1%} of that"
+        )
+    skin = mesh.nodes[np.unique(mesh.boundary)]
+    for index, obstacle in enumerate(obstacles):
+        if len(obstacle.at) != mesh.dim:
+            raise InputError(f"obstacle[{index}].at has {len(obstacle.at)} entries, but the body has {mesh.dim} axes")
+        gaps = obstacle.field()(skin).values
+        if locate(mesh, obstacle.spine()).inside.any():
+            raise InputError(f'obstacle[{index}]: "{obstacle.name}" stands in the body at rest; move it out')
+        if not gaps.min() > 0:
+            place = ", ".join(f"{1e3 * value:.4g}" for value in skin[int(np.argmin(gaps))])
+            raise InputError(
+                f'obstacle[{index}]: the body at rest stands in "{obstacle.name}", {-1e3 * gaps.min():.3g} mm '
+                f"deep at ({place}) mm; move it away"
+            )

@@ -117,7 +117,7 @@ def _blown_up(body: Body, element_size: float | None) -> Body:
         element_size=element_size or body.element_size or body.mesh.size / 25,
         volume=body.volume,
     )
-    return inflated.with_parts(body.parts).with_elements(body.elements)
+    return replace(inflated, grading=body.grading).with_parts(body.parts).with_elements(body.elements)
 
 
 def _skin(body: Body, places: Points, side: float) -> Vector:

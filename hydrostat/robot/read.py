@@ -15,6 +15,7 @@ from hydrostat.given import list_choices
 from hydrostat.robot.body import Body, Source
 from hydrostat.robot.cable import Cable
 from hydrostat.robot.contact import ClosedMesh, Contact, Obstacle, closed_mesh
+from hydrostat.robot.grading import Grading
 from hydrostat.robot.gravity import gravity_along
 from hydrostat.robot.load import Load
 from hydrostat.robot.load_drive import LoadDrive
@@ -255,6 +256,10 @@ class RobotReader(TablesFile):
             for index, part in enumerate(entry.part)
         )
         body = self.at("", lambda: body.with_parts(parts)) if parts else body
+        if entry.grading is not None:
+            content = read_stranger(self._file("body.grading", entry.grading), name=entry.grading)
+            grading = self.at("body.grading", lambda: Grading(content=content, file=entry.grading))
+            body = self.at("body.grading", lambda: replace(body, grading=grading))
         if entry.plane is not None:
             body = self.at("body.plane", partial(replace, body, plane=entry.plane))
         kind = entry.elements

@@ -1,6 +1,6 @@
 """`Robot`: complete description of a robot, checked when it is created."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Self, TypeVar
 
@@ -10,13 +10,13 @@ from hydrostat import units
 from hydrostat.arrays import Points, Vector
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
-from hydrostat.geometry import locate
 from hydrostat.given import Point, check_type, check_unique, list_choices
 from hydrostat.painters import draw_record, html_repr
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable, given_names, name_cables
 from hydrostat.robot.cable_side import Face
-from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape
+from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape, check_obstacles
+from hydrostat.robot.grading import Grading
 from hydrostat.robot.gravity import check_gravity, gravity_along
 from hydrostat.robot.load import Load, check_loads
 from hydrostat.robot.load_drive import LoadDrive
@@ -104,7 +104,7 @@ class Robot:
             check_gravity(self.gravity, self.body.mesh.dim)
         self._check_pins()
         check_drives(self.drives, (self.pins, self.loads), self.winches, self.cables, self.body.mesh.dim)
-        self._check_contact()
+        check_obstacles(self.obstacles, self.body.mesh, self.contact_distance)
         self._check_markers_and_poses()
         self._check_inner_parts()
         self._check_cables()
@@ -193,6 +193,16 @@ class Robot:
             known = replace(known, **changed, **interval, name="", source="", note="")
         return replace(self, body=replace(self.body, material=known))
 
+    def with_grading(self, factor: Callable[[Points], Vector] | None) -> Self:
+        """Return the same robot with Young's modulus times a function of places at rest [m], (points, dim).
+
+        It is evaluated in the middle of each element, and may give one number for all; None: no grading. Raises
+        InputError: it does not give numbers above 0.
+        """
+        mesh = self.body.with_elements("linear").mesh
+        grading = None if factor is None else Grading.from_function(factor, mesh.nodes[mesh.elements].mean(axis=1))
+        return replace(self, body=replace(self.body, grading=grading))
+
     def __repr__(self) -> str:
         """Return a one-line summary."""
         mesh = self.body.mesh
@@ -251,30 +261,6 @@ class Robot:
             yield from ((f"sensor[{index}].{key}", point) for key, point in sensor.places)
         for index, pose in enumerate(self.poses.values()):
             yield from ((f"pose[{index}].targets.{name}", point) for name, point in pose.targets.items())
-
-    def _check_contact(self) -> None:
-        """Obstacles fit the body, and do not stand in it."""
-        mesh, distance = self.body.mesh, self.contact_distance
-        if distance > 0.1 * mesh.size:
-            raise InputError(
-                f"contact.distance of {1e3 * distance:.4g} mm is large beside a body of {1e3 * mesh.size:.4g} mm; "
-                f"it is usually {DISTANCE:.1%} of that"
-            )
-        skin = mesh.nodes[np.unique(mesh.boundary)]
-        for index, obstacle in enumerate(self.obstacles):
-            if len(obstacle.at) != mesh.dim:
-                raise InputError(
-                    f"obstacle[{index}].at has {len(obstacle.at)} entries, but the body has {mesh.dim} axes"
-                )
-            gaps = obstacle.field()(skin).values
-            if locate(mesh, obstacle.spine()).inside.any():
-                raise InputError(f'obstacle[{index}]: "{obstacle.name}" stands in the body at rest; move it out')
-            if not gaps.min() > 0:
-                place = ", ".join(f"{1e3 * value:.4g}" for value in skin[int(np.argmin(gaps))])
-                raise InputError(
-                    f'obstacle[{index}]: the body at rest stands in "{obstacle.name}", {-1e3 * gaps.min():.3g} mm '
-                    f"deep at ({place}) mm; move it away"
-                )
 
     def _check_pins(self) -> None:
         if not self.pins:

@@ -96,7 +96,8 @@ def _scale_winch(winch: Winch, at: Point, length: Callable[[float], float]) -> W
 
 def _scaled_body(robot: Robot, factor: float, parts: tuple[BodyPart, ...]) -> Body:
     """Return the scaled body with its scaled parts and the same kind of elements."""
-    body = replace(_mesh_scaled(robot, factor), plane=robot.body.plane)
+    grading = None if robot.body.grading is None else robot.body.grading.with_scale(factor)
+    body = replace(_mesh_scaled(robot, factor), plane=robot.body.plane, grading=grading)
     return body.with_parts(parts).with_elements(robot.body.elements)
 
 

@@ -113,6 +113,7 @@ class BodyTable(TomlTable):
     plane: Plane | None = None
     inner: Inner | None = None
     drawing_part: Annotated[int, Field(ge=1)] | None = None
+    grading: Text | None = None
     part: list[PartTable] = Field([])
 
 

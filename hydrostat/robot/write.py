@@ -86,6 +86,8 @@ def robot_hash(robot: Robot) -> str:
 def _files(robot: Robot) -> dict[str, bytes]:
     """Return the files next to robot.toml: the file of the body, then those of obstacles."""
     files = {robot.body.file: robot.body.content}
+    if robot.body.grading is not None:
+        files[robot.body.grading.file] = robot.body.grading.content
     shapes = (each.mesh for each in (*robot.body.parts, *robot.sheets, *robot.obstacles))
     return files | {mesh.file: mesh.content for mesh in shapes if mesh is not None}
 
@@ -165,7 +167,8 @@ class _Writer:
         part = {"drawing_part": body.drawing_part} if body.drawing_part is not None else {}
         kind = {"elements": str(body.elements)} if body.elements is not ElementKind.LINEAR else {}
         plane = {"plane": str(body.plane)} if body.plane is not Plane.STRAIN else {}
-        given = {"material": self.material(body.material), **volume, **kind, **plane, **inner, **part}
+        grading = {} if body.grading is None else {"grading": body.grading.file}
+        given = {"material": self.material(body.material), **volume, **kind, **plane, **inner, **part, **grading}
         if parts := [part for part in body.parts if not part.winch]:
             tables = self._toml.aot()
             for part in parts:

@@ -78,7 +78,7 @@ class BodyPhysics:
         body = robot.body
         self._given = body, *_list_given(robot)
         self.material, self.thickness = body.material, body.thickness
-        mesh, thickness, solid = body.mesh, body.thickness or 1.0, ~body.element_foams
+        mesh, solid = body.mesh, ~body.element_foams
         lame = np.where(solid, body.lame()[1], 0.0)
         self.rigid_dofs = _rigid_dofs(robot, in_time=in_time)
         moving = [carriage.unknowns(*_begin(robot.obstacles[index])) for index, carriage in self.rigid_dofs.items()]
@@ -95,7 +95,7 @@ class BodyPhysics:
         if patched and solid.any():
             elements, kinds = mesh.elements[solid], body.element_materials[solid]
             patches = grow_patches(elements, PATCH_SIZE[mesh.dim], kinds)
-            given = {"lame": lame[solid], "thickness": thickness, "materials": kinds}
+            given = {"lame": lame[solid], "thickness": _depths(body)[solid], "materials": kinds}
             energies.append(PatchVolume(self.rest_unknowns, elements, patches, **given))
         if thin and solid.any():
             energies.append(_plane_stress(self.elastic, self.rest_unknowns, lame))
@@ -247,6 +247,11 @@ def _list_given(robot: Robot) -> list[Any]:
     return [robot.pins, robot.gravity, robot.contact, robot.obstacles, robot.loads, robot.rods, robot.sheets]
 
 
+def _depths(body: Body) -> Vector:
+    """Thickness of each element [m], 1 in space, times the factor of its moduli."""
+    return (body.thickness or 1.0) * body.stiffness_factors
+
+
 def _spring_rates(body: Body, chosen: np.ndarray) -> Vector:
     """Five times the largest stiffness of some elements at a corner [N/m]: as many meet there."""
     mesh, (mu, lame) = body.mesh, body.lame()
@@ -261,11 +266,11 @@ def _elastic(robot: Robot, rest: Nodes, lame: Vector | None) -> NeoHookean | Qua
     """Elastic energy of the body but for foams; without resistance to a change of volume if `lame` is None."""
     body = robot.body
     mesh, mu = body.mesh, np.where(body.element_foams, 0.0, body.lame()[0])
-    kinds = {"thickness": body.thickness or 1.0, "materials": body.element_materials}
+    kinds = {"thickness": _depths(body), "materials": body.element_materials}
     if mesh.quadratic is None:
         return NeoHookean(rest, mesh.elements, mu=mu, lame=lame, **kinds)
     each = slice(None, None, 2**mesh.dim)  # the first part of each quadratic element
-    kinds["materials"] = body.element_materials[each]
+    kinds = {name: values[each] for name, values in kinds.items()}
     squeeze = None if lame is None else lame[each]
     return QuadraticSolid(rest, mesh.quadratic, mu=mu[each], lame=squeeze, **kinds)
 

@@ -39,7 +39,7 @@ def estimate_stiffening(body: Body, nodes: Nodes) -> float:
     if np.abs(strains).max() < UNSTRAINED:
         return 0.0
     squeezes = np.trace(strains, axis1=1, axis2=2)
-    (mu, lame), volumes = body.lame(), mesh.volumes
+    (mu, lame), volumes = np.array(body.lame()) * body.stiffness_factors, mesh.volumes
     if body.plane is Plane.STRESS:
         lame = 2 * mu * lame / (2 * mu + lame)
     stored = float(volumes @ (mu * (strains**2).sum(axis=(1, 2)) + 0.5 * lame * squeezes**2))

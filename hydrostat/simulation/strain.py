@@ -30,12 +30,12 @@ def node_stresses(robot: Robot, nodes: Nodes) -> Vector:
     """
     grid = _operators(robot.body.mesh)
     shape = _Stretch(grid, nodes, robot.body)
-    mu, _ = robot.body.lame()
+    mu = robot.body.lame()[0] * robot.body.stiffness_factors
     stresses = mu * np.sqrt(1.5 * shape.deviation) / shape.volume
     for index, material in enumerate(robot.body.materials):
         own = robot.body.element_materials == index
         if material.foam and own.any():
-            stresses[own] = _foam_stresses(material, shape.squares(own))
+            stresses[own] = robot.body.stiffness_factors[own] * _foam_stresses(material, shape.squares(own))
     return grid.average(stresses)
 
 

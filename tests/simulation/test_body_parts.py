@@ -8,7 +8,7 @@ from builders import FOAM, box_mesh, mesh_body, strip_mesh
 from scipy.spatial.distance import pdist
 
 from hydrostat.mechanics import PATCH_SIZE, NeoHookean, grow_patches
-from hydrostat.robot import BodyPart, Cable, Material, Mount, Pin, Robot, Volume, Winch
+from hydrostat.robot import BodyPart, Cable, FoamTerm, Material, Mount, Pin, Robot, Volume, Winch
 from hydrostat.simulation import Simulation, StepOptions
 
 SOFT = Material(young=30e3, poisson=0.0, density=40.0)
@@ -66,6 +66,36 @@ def test_bars_in_series_have_one_force() -> None:
 
     shorter = 0.1 * (1 - stretch_at(SOFT)) + 0.0875 * (1 - stretch_at(HARD))
     assert shorter == pytest.approx(0.003, rel=2e-3)
+
+
+def test_graded_bars_in_series_have_one_force() -> None:
+    """Young's modulus grows along the bar from once to four times; the rigid plate keeps its own."""
+    free, squeeze = 0.1875, 0.003
+    robot = strip(PLATE).with_grading(lambda points: 1 + 3 * points[:, 0] / free)
+    assert robot.body.stiffness_factors[robot.body.element_materials == 1] == pytest.approx(1.0)
+    found = tension(robot, squeeze)
+    ratios = found / (SOFT.lame[0] * (1 + 3 * np.linspace(0, 1, 1001)) * WIDTH * THICKNESS)
+    stretches = (np.sqrt(ratios**2 + 4) - ratios) / 2
+    assert np.trapezoid(1 - stretches, np.linspace(0, free, 1001)) == pytest.approx(squeeze, rel=2e-3)
+
+
+@pytest.mark.parametrize("kind", ["linear", "quadratic", "stress", "patch", "foam"])
+def test_graded_bars_in_parallel_add_their_forces(kind: str) -> None:
+    """Stiffer towards the sides, twice as stiff in the mean; the adjoint is by all moduli together."""
+    foam = Material(young=30e3, poisson=0.0, density=40.0, foam=(FoamTerm(share=1.0, exponent=2.0),))
+    material = foam if kind == "foam" else SOFT if kind != "patch" else replace(SOFT, poisson=0.3)
+    whole = strip(PLATE)
+    body = replace(whole.body, material=material, **({"plane": "stress"} if kind == "stress" else {}))
+    body = replace(body, volume=Volume.PATCH) if kind == "patch" else body
+    whole = replace(whole, body=body.with_elements("quadratic") if kind == "quadratic" else body)
+    graded = whole.with_grading(lambda points: 1 + 4 * np.abs(points[:, 1]) / WIDTH)
+    if kind != "patch":
+        assert tension(graded, 0.003) == pytest.approx(2 * tension(whole, 0.003), rel=0.01)
+    simulation = Simulation(graded)
+    pose = simulation.solve([0.003])
+    slopes = simulation.adjoint(pose, np.zeros_like(pose.nodes), tensions=np.ones(1))
+    ends = [tension(graded.with_material(young=30e3 * (1 + step)), 0.003) for step in (1e-4, -1e-4)]
+    assert slopes.young * 30e3 == pytest.approx((ends[0] - ends[1]) / 2e-4, rel=1e-5)
 
 
 @pytest.mark.parametrize("dim", [2, 3])
