@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from hydrostat.arrays import Float, Vector
-from hydrostat.geometry import Mesh, locate, read_mesh
+from hydrostat.geometry import Mesh, locate, read_labeled_mesh
 from hydrostat.given import Point
 from hydrostat.robot import Body, Cable, Marker, Material, Mount, Pin, Robot, Source, Winch, gallery_folder, load_robot
 
@@ -167,7 +167,7 @@ def _case(folder: Path) -> dict[str, Any]:
 def _mesh(folder: Path) -> Mesh:
     """The only mesh of a folder."""
     (path,) = (file for file in folder.iterdir() if file.suffix in (".vtk", ".vtu"))
-    return read_mesh(path, unit=MM)
+    return read_labeled_mesh(path, unit=MM)[0]
 
 
 def _robot(case: dict[str, Any], mesh: Mesh, routes: dict[str, Any], mount: Mount, tip: Iterable[float]) -> Robot:

@@ -10,7 +10,6 @@ from builders import box_mesh, mesh_body, strip_mesh
 from robot_files import GOOD, edit, load
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.inserts import find_inserts
 from hydrostat.robot import (
     BodyPart,
     ElementKind,
@@ -95,7 +94,6 @@ def test_labels_of_a_mesh_file_are_parts(tmp_path: Path) -> None:
     save_robot(robot, tmp_path / "b")
     assert load_robot(tmp_path / "b") == robot
     assert scaled_robot(robot, 2.0).body.mass == pytest.approx(8 * robot.body.mass)
-    assert find_inserts(robot)[0].sides == pytest.approx((25.0, 40.0, 20.0))
     assert not [line for line in find_risks(robot) if "bone" in line]
 
 
