@@ -136,7 +136,7 @@ class PatchVolume(Energy):
             elements: all elements of the body.
             patches: index of the patch of each element, counted from 0 without gaps.
             lame: Lame's first parameter, lambda [Pa], one number or one for each element; all of a patch are equal.
-            thickness: as in `NeoHookean`; a factor of the moduli also weighs the mean of its patch.
+            thickness: thickness as of `NeoHookean`; a factor of the moduli also weighs the mean of its patch.
             materials: index of the material of each element, counted from 0, for `parameter_work`; all of one by
                 default.
         """

@@ -49,7 +49,7 @@ class QuadraticSolid(Energy):
             elements: nodes of each element: corners, then middles of edges, which may lie off the straight line.
             mu: shear modulus, one number or one for each element.
             lame: Lame's first parameter, likewise; None where another energy resists a change of volume.
-            thickness: as in `NeoHookean`.
+            thickness: thickness as of `NeoHookean`.
             materials: index of the material of each element, counted from 0, for `parameter_work`; all of one by
                 default.
             metrics: A of each point, if tr(F A F^T) stands for tr(F^T F): F is counted from a rest shape that crept.

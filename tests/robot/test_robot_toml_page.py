@@ -17,6 +17,7 @@ def test_robot_toml_of_its_page_is_read(tmp_path: Path) -> None:
     """Oracle: the numbers of its lines."""
     first, driven, foam, viscous, sliding = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
     (tmp_path / "starfish.svg").write_text((ROOT / "examples" / "starfish" / "starfish.svg").read_text())
+    (tmp_path / "grading.csv").write_text("x_mm,y_mm,factor\n0,0,1\n0,80,2\n")
     (tmp_path / "robot.toml").write_text(first)
     robot = load_robot(tmp_path)
     assert robot.winches[0].travel == pytest.approx(0.06)
@@ -29,6 +30,7 @@ def test_robot_toml_of_its_page_is_read(tmp_path: Path) -> None:
     lines = first.splitlines()
     lines.remove(next(line for line in lines if line.startswith("material")))
     assert robot.sheets[0].wrinkles
+    assert set(robot.body.stiffness_factors) == {1.0, 2.0}
 
     def read(table: str) -> Material:
         (tmp_path / "robot.toml").write_text("\n".join(lines).replace("[[pin]]", f"{table}\n[[pin]]", 1))
