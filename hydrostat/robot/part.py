@@ -14,7 +14,7 @@ RIGID_RATIO = 1e4
 
 @dataclass(frozen=True, kw_only=True)
 class BodyPart(PartRegion):
-    """PartRegion of a body with its own material, such as a soft joint, a bone or a plate.
+    """Region of a body with its own material, such as a soft joint, a bone or a plate.
 
     An element belongs to the part that holds its middle. Nodes near the border are moved onto it, see `conform`.
 

@@ -28,7 +28,7 @@ class PartShape(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class PartRegion:
-    """PartRegion of a body by a simple shape.
+    """Region of a body by a simple shape.
 
     Attributes:
         name: name, unique among its kind.
