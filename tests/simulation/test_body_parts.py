@@ -8,7 +8,7 @@ from builders import FOAM, box_mesh, mesh_body, strip_mesh
 from scipy.spatial.distance import pdist
 
 from hydrostat.mechanics import PATCH_SIZE, NeoHookean, grow_patches
-from hydrostat.robot import BodyPart, Cable, FoamTerm, Material, Mount, Pin, Robot, Volume, Winch
+from hydrostat.robot import BodyPart, Cable, FoamTerm, Material, Mount, Pin, Plane, Robot, Volume, Winch
 from hydrostat.simulation import Simulation, StepOptions
 
 SOFT = Material(young=30e3, poisson=0.0, density=40.0)
@@ -85,7 +85,7 @@ def test_graded_bars_in_parallel_add_their_forces(kind: str) -> None:
     foam = Material(young=30e3, poisson=0.0, density=40.0, foam=(FoamTerm(share=1.0, exponent=2.0),))
     material = foam if kind == "foam" else SOFT if kind != "patch" else replace(SOFT, poisson=0.3)
     whole = strip(PLATE)
-    body = replace(whole.body, material=material, **({"plane": "stress"} if kind == "stress" else {}))
+    body = replace(whole.body, material=material, **({"plane": Plane.STRESS} if kind == "stress" else {}))
     body = replace(body, volume=Volume.PATCH) if kind == "patch" else body
     whole = replace(whole, body=body.with_elements("quadratic") if kind == "quadratic" else body)
     graded = whole.with_grading(lambda points: 1 + 4 * np.abs(points[:, 1]) / WIDTH)
