@@ -17,6 +17,7 @@ from hydrostat.control.feetech_bus import (
     BOUND,
     FULL,
     GOAL,
+    LOW,
     RISE,
     STALL,
     STATE,
@@ -26,6 +27,8 @@ from hydrostat.control.feetech_bus import (
     SumReader,
     pack,
 )
+from hydrostat.control.scs_bus import BOUND as SCS_BOUND
+from hydrostat.control.scs_bus import NUMBER, SCS_STALL, SCS_TICK
 
 
 class EmulatedLine:
@@ -149,10 +152,69 @@ class EmulatedSts(EmulatedServo):
         self.table[place : place + 2] = (abs(value) | (0x8000 if value < 0 else 0)).to_bytes(2, "little")
 
 
+@dataclass
+class EmulatedScs(EmulatedServo):
+    """A servo of the SCS series: words with the high byte first, 300 degrees, load in place of current."""
+
+    model: int = NUMBER
+    supply: float = 6.0  # voltage that it measures [V]
+
+    def __post_init__(self) -> None:
+        self.table = bytearray(80)
+        self.table[0:6] = bytes([3, 10, 0, *self.model.to_bytes(2, "big"), self.number])
+        self.table[LOW : LOW + 4] = bytes([0, 0, 0x03, 0xFF])
+        self.table[VOLTS : VOLTS + 2] = bytes([84, 45])
+        self.table[SCS_BOUND : SCS_BOUND + 2] = FULL.to_bytes(2, "big")
+        self.heard, self.moved = -inf, 0.0
+        self.step(0.0, 1e-3)
+
+    def begin_anew(self) -> None:
+        """Lose power for a moment: its potentiometer forgets nothing."""
+        self.speed = 0.0
+        self.__post_init__()
+
+    @property
+    def most(self) -> float:
+        """Largest torque that its bound allows [N m]."""
+        return self.constant * SCS_STALL * self._word(SCS_BOUND) / FULL
+
+    def take(self, place: int, data: bytes) -> int:
+        """Write registers as commanded over the bus; returns the error of the answer."""
+        if place + len(data) <= STATE:
+            self.table[place : place + len(data)] = data
+            if place == TORQUE and data[0] == 0:
+                self.ails.overloaded = False
+            if place == TORQUE and data[0] == 1:
+                self._write_word(GOAL, round(self.angle / SCS_TICK))
+        return 0
+
+    def step(self, now: float, dt: float) -> None:
+        """Let time pass, to an instant [s]."""
+        on = bool(self.table[TORQUE]) and not self.ails.is_off
+        limit = min(self._word(GOAL + 4) * SCS_TICK or 10.0, 10.0)
+        way = self._word(GOAL) * SCS_TICK - self.angle
+        speed = min(max(way / dt, -limit), limit)
+        if self.ails.stuck or not on or (speed > 0 and self.load(self.angle + speed * dt) > self.most):
+            speed = 0.0
+        self.speed = speed
+        self.angle = min(max(self.angle + speed * dt, 0.0), 1023 * SCS_TICK)
+        share = min(self.load(self.angle) / (self.constant * SCS_STALL), 1.0) if on else 0.0
+        self._write_word(STATE, round(self.angle / SCS_TICK))
+        self._write_word(STATE + 4, round(FULL * abs(share)) | (0x400 if share < 0 else 0))
+        volts = 3.5 if self.ails.sags else self.supply
+        self.table[STATE + 6 : STATE + 8] = bytes([round(10 * volts), 85 if self.ails.hot else 35])
+
+    def _word(self, place: int) -> int:
+        return int.from_bytes(self.table[place : place + 2], "big")
+
+    def _write_word(self, place: int, value: int) -> None:
+        self.table[place : place + 2] = value.to_bytes(2, "big")
+
+
 class EmulatedFeetechChain(EmulatedChain):
     """A port with servos of the STS series at its other end."""
 
-    def __init__(self, servos: Sequence[EmulatedSts]) -> None:
+    def __init__(self, servos: Sequence[EmulatedSts | EmulatedScs]) -> None:
         """Servos that all hear the same line."""
         super().__init__(servos)
         self._reader = SumReader()
@@ -160,6 +222,7 @@ class EmulatedFeetechChain(EmulatedChain):
     def _answers(self, number: int, instruction: int, content: bytes) -> bytes:
         heard = [servo for servo in self.servos if not servo.ails.deaf]
         if instruction == SYNC_READ:
+            heard = [servo for servo in heard if not isinstance(servo, EmulatedScs)]  # these do not know it
             place, size, *numbers = content
             by_number = {servo.number: servo for servo in heard}
             asked = [by_number[each] for each in numbers if each in by_number]

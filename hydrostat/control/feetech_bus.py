@@ -102,6 +102,7 @@ class FeetechBus(ServoBus):
 
     kind: ClassVar[str] = "feetech"
     packets = SumReader
+    tick: ClassVar[float] = TICK
 
     def __init__(self, port: Port, numbers: Sequence[int], **rest: Any) -> None:
         """Servos on a port, by their numbers; the rest is as a `ServoBus` has it."""
@@ -122,10 +123,14 @@ class FeetechBus(ServoBus):
             for number, most in zip(self._numbers, currents.tolist(), strict=True):
                 share = max(1, round(FULL * min(most / STALL, 1.0)))
                 self._set(number, BOUND, share.to_bytes(2, "little"), "its bound of torque")
-            self._stand(all_heard=True)
-            for number in self._numbers:
-                self._set(number, TORQUE, b"\x01", "its torque switch")
-            self._holding = True
+            self._switch_on()
+
+    def _switch_on(self) -> None:
+        """Switch torque on where they stand."""
+        self._stand(all_heard=True)
+        for number in self._numbers:
+            self._set(number, TORQUE, b"\x01", "its torque switch")
+        self._holding = True
 
     def read(self) -> Reading:
         """Return the latest reading of each servo."""
@@ -144,14 +149,10 @@ class FeetechBus(ServoBus):
 
     def write(self, angles: Vector, speeds: Vector) -> None:
         """Send goals and speeds to all at once; none answers."""
-        steps = np.rint(angles / TICK)
+        steps = np.rint(angles / self.tick)
         if beyond := np.flatnonzero((steps < self._low) | (steps > self._high)).tolist():
-            index = beyond[0]
-            raise HydrostatError(
-                f"motor {self._numbers[index]} turns from step {self._low[index]:.0f} to {self._high[index]:.0f} and "
-                f"was asked for {steps[index]:.0f}; set both its limits of angle to 0, so that it counts its turns"
-            )
-        rates = np.clip(np.rint(np.abs(speeds) / TICK), 1, 32767).astype(int).tolist()
+            raise self._tell_beyond(beyond[0], float(steps[beyond[0]]))
+        rates = np.clip(np.rint(np.abs(speeds) / self.tick), 1, 32767).astype(int).tolist()
         self._go(steps.astype(int).tolist(), rates, self._numbers)
 
     def restart(self, place: int) -> None:
@@ -164,7 +165,7 @@ class FeetechBus(ServoBus):
         return None if told is None else told == b"\x01"
 
     def _hold(self, angles: dict[int, float]) -> None:
-        steps = [round(angle / TICK) for angle in angles.values()]
+        steps = [round(angle / self.tick) for angle in angles.values()]
         self._go(steps, [STANDING] * len(steps), tuple(angles))
 
     def _go(self, steps: Sequence[int], rates: Sequence[int], numbers: Sequence[int]) -> None:
@@ -173,6 +174,13 @@ class FeetechBus(ServoBus):
             content += bytes([number, 0, *_magnitude(step), 0, 0, *rate.to_bytes(2, "little")])
         with self._lock:
             self._send(ALL, SYNC_WRITE, content)
+
+    def _tell_beyond(self, index: int, step: float) -> HydrostatError:
+        """Error on a motor that is asked to go beyond its limits of angle."""
+        return HydrostatError(
+            f"motor {self._numbers[index]} turns from step {self._low[index]:.0f} to {self._high[index]:.0f} and "
+            f"was asked for {step:.0f}; set both its limits of angle to 0, so that it counts its turns"
+        )
 
     def _fact(self, index: int, number: int) -> MotorFacts:
         """Who a servo is, its torque off, and the angles that it may go to."""

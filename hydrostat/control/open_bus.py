@@ -15,6 +15,7 @@ from hydrostat.control.feetech_bus import FeetechBus
 from hydrostat.control.firmware_build import robot_word
 from hydrostat.control.firmware_bus import FirmwareBus
 from hydrostat.control.joined_bus import JoinedBus
+from hydrostat.control.scs_bus import ScsBus
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Robot
 from hydrostat.units import plural
@@ -145,6 +146,10 @@ def _feetech(line: Port, _robot: Robot, calibration: Calibration, board: int) ->
     return FeetechBus(line, _numbers(calibration, board))
 
 
+def _scs(line: Port, _robot: Robot, calibration: Calibration, board: int) -> Bus:
+    return ScsBus(line, _numbers(calibration, board))
+
+
 def _firmware(line: Port, robot: Robot, calibration: Calibration, board: int) -> Bus:
     """Motors of one board, whose settings are those of the robot now."""
     counts = [calibration.motors[place].counts for place in calibration.places(board)]
@@ -162,6 +167,7 @@ def _numbers(calibration: Calibration, board: int) -> list[int]:
 _KINDS: dict[str, tuple[Callable[[Port, Robot, Calibration, int], Bus], int]] = {
     "dynamixel": (_dynamixel, 57600),
     "feetech": (_feetech, 1_000_000),
+    "scs": (_scs, 1_000_000),
     "firmware": (_firmware, 250_000),
 }
 """Factory of each kind of bus, called with a line and its board number, and the usual baud rate [bit/s]."""

@@ -5,10 +5,11 @@ import pytest
 
 from hydrostat.control.calibration import WinchMotor
 from hydrostat.control.dynamixel_bus import MODELS, DynamixelBus
-from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedSts
+from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedScs, EmulatedSts
 from hydrostat.control.emulated_servos import EmulatedChain, EmulatedServo, InjectedFaults
 from hydrostat.control.feetech_bus import FeetechBus
 from hydrostat.control.model_tensions import WinchPull
+from hydrostat.control.scs_bus import ScsBus
 from hydrostat.control.take_up import RULES, SlackCalibration, find_cable_zeros, find_edge
 from hydrostat.errors import HydrostatError
 
@@ -76,23 +77,23 @@ def test_ten_hidden_slacks_are_found_to_half_a_millimeter_within_a_minute() -> N
     assert [servo.angle for servo in winches.servos] == pytest.approx(stands, abs=2e-3)
 
 
-@pytest.mark.parametrize("model", [1200, 1060, 777])
+@pytest.mark.parametrize("model", [1200, 1060, 777, 1284])
 def test_zeros_of_each_make_are_repeatable_to_a_third_of_a_millimeter(model: int) -> None:
     """Oracle: the edge of a cable that pulls by 700 N/m, begun from three places with 2 mA of noise."""
     found = []
-    edge = 0.5
-    for seed, start in enumerate((0.0, 0.15, -0.2)):
+    edge, feetech = 2.5, {777: (EmulatedSts, FeetechBus), 1284: (EmulatedScs, ScsBus)}
+    for seed, start in enumerate((2.0, 2.15, 1.8)):
         rng = np.random.default_rng(seed)
-        servo = EmulatedSts(1, angle=start) if model == 777 else EmulatedServo(1, model=model, angle=start)
-        servo.constant = CONSTANT if model == 777 else MODELS[model].torque / MODELS[model].stall
+        make, kind = feetech.get(model, (EmulatedServo, DynamixelBus))
+        servo = make(1, model=model, angle=start)
+        servo.constant = CONSTANT if model in feetech else MODELS[model].torque / MODELS[model].stall
 
         def load(angle: float, servo: EmulatedServo = servo, rng: np.random.Generator = rng) -> float:
             pull = 700.0 * max(RADIUS * (angle - edge), 0.0)
             return RADIUS * pull + servo.constant * (0.01 + 2e-3 * float(rng.normal()))
 
         servo.load = load
-        chain, kind = (EmulatedFeetechChain, FeetechBus) if model == 777 else (EmulatedChain, DynamixelBus)
-        port = chain([servo])
+        port = (EmulatedFeetechChain if model in feetech else EmulatedChain)([servo])
         port.STEP = 4e-3
         bus = kind(port, [1], clock=port.clock, wait=port.wait)
         bus.identify()

@@ -213,6 +213,13 @@ def _list_first_steps(plan: PowerPlan, *, is_measured: bool) -> list[str]:
             "Put 10 uF from RESET to GND (plus to RESET). The board then keeps running when a program opens its port. "
             "Take it out before you flash again.",
         ]
+    alone = []
+    if not plan.servos and len(plan.boards) == 1:
+        pin = BOARDS[plan.boards[0]].button
+        alone = [
+            f"Optional: join a push button to pin {pin} and GND. After hydrostat firmware ROBOT --moves MOVES it starts "
+            "and stops these moves without a computer."
+        ]
     return [
         f"Leave the switch off. Measure the supply behind the fuse: {plan.motor.volts:g} V, plus on the plus lead.",
         *ready,
@@ -222,4 +229,5 @@ def _list_first_steps(plan: PowerPlan, *, is_measured: bool) -> list[str]:
         if is_measured
         else "Keep a hand on the switch and turn it on. Write the zeros of the winches, as under Calibrate.",
         f"Run: hydrostat play ROBOT MOVES --motors {kind}:PORT. Begin with small moves.",
+        *alone,
     ]
