@@ -217,8 +217,8 @@ def _list_first_steps(plan: PowerPlan, *, is_measured: bool) -> list[str]:
     if not plan.servos and len(plan.boards) == 1:
         pin = BOARDS[plan.boards[0]].button
         alone = [
-            f"Optional: join a push button to pin {pin} and GND. After hydrostat firmware ROBOT --moves MOVES it starts "
-            "and stops these moves without a computer."
+            f"Optional: join a push button to pin {pin} and GND. After hydrostat firmware ROBOT --moves MOVES it "
+            "starts and stops these moves without a computer."
         ]
     return [
         f"Leave the switch off. Measure the supply behind the fuse: {plan.motor.volts:g} V, plus on the plus lead.",
