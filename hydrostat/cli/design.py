@@ -231,14 +231,15 @@ def design(
     if made is not None:
         print_kit(made, printed=printed)
     _tell_count(network, request)
-    fits = kit_fits(network) and not (made is not None and made.problems) and not _tell_price(network, spend)
-    _tell_next(network, robot, out, kit=kit, fits=fits, budget=spend)
+    fits = kit_fits(network) and not (made is not None and made.problems)
+    over = is_above_budget(network, spend)
+    _tell_next(network, robot, out, kit=kit, fits=fits, budget=None if over else spend)
     if network.timed_out:
         print(f"time limit of {time_limit} reached: best network so far")
     elif not network.complete:
         print("interrupted: best network so far")
         raise typer.Exit(130)
-    if not fits:
+    if not fits or over:
         print("hydrostat: error: the kit of this network would be rejected", file=sys.stderr)
         raise typer.Exit(1)
 
@@ -273,14 +274,17 @@ def _refuse_budget(request: "DesignRequest", key: str, budget: float | None) -> 
         )
 
 
-def _tell_price(network: "Network", budget: float | None) -> bool:
-    """Print an error if motors, power and cables of a network cost more than a budget; True if they do."""
+def is_above_budget(network: "Network", budget: float | None) -> bool:
+    """Return True, with an error printed, if motors, power and cables of a network cost more than a budget."""
     from hydrostat.design import BuildCost
 
-    price = BuildCost.of_robot(network.robot, network.ik_results).price
-    if budget is None or price <= budget:
+    if budget is None:
         return False
-    print(f"error: motors, power and cables cost {price:.0f} USD, more than the budget of {budget:g} USD")
+    price = BuildCost.of_robot(network.robot, network.ik_results).price
+    if price <= budget:
+        return False
+    words = f"error: motors, power and cables cost {price:.0f} USD, more than the budget of {budget:g} USD"
+    print(f"{words}. Allow {math.ceil(price)} USD, or fewer winches")
     return True
 
 

@@ -2,16 +2,21 @@
 
 import csv
 import json
+import math
 import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import pytest
 from builders import gallery_robot
 from plush import near_the_edge
 
+from hydrostat.cli.design import is_above_budget
 from hydrostat.cli.design_results import designed_tension
+from hydrostat.design import BuildCost, Network
 from hydrostat.errors import InputError
 from hydrostat.fabrication import ALL_MOTORS
 from hydrostat.project import Wishes, Work
@@ -199,3 +204,14 @@ def test_a_budget_below_the_motors_stops_a_design(run: Run, tmp_path: Path) -> N
     )
     assert code == 2
     assert "2 motors with boards and power cost at least 60 USD (sts3215)" in err
+
+
+def test_a_network_above_its_budget_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    """Oracle: its price; the cheapest motor alone would do, and does not fit."""
+    network = cast(Network, SimpleNamespace(robot=gallery_robot("starfish"), ik_results=[]))
+    price = BuildCost.of_robot(network.robot, []).price
+    assert not is_above_budget(network, None)
+    assert not is_above_budget(network, price + 0.01)
+    assert capsys.readouterr().out == ""
+    assert is_above_budget(network, price - 0.01)
+    assert f"Allow {math.ceil(price)} USD, or fewer winches" in capsys.readouterr().out
