@@ -80,14 +80,9 @@ def test_up_and_down_strokes_differ_and_a_bend_is_kept() -> None:
     assert 0.01 * top < end < 0.5 * top
     step = 1e-5
     for pose, going in ((whole, step), (back, -step)):
-        told = simulation.marker_jacobian(pose)[0, 1, 0]
-        on, turned = (
-            (simulation.solve(np.add(pose.contractions, (way, 0.0)), start=pose).markers["tip"] - pose.markers["tip"])[
-                1
-            ]
-            / way
-            for way in (going, -going)
-        )
+        told, height = simulation.marker_jacobian(pose)[0, 1, 0], pose.markers["tip"][1]
+        ends = [(way, simulation.solve([pose.contractions[0] + way, 0.0], start=pose)) for way in (going, -going)]
+        on, turned = ((end.markers["tip"][1] - height) / way for way, end in ends)
         assert told == pytest.approx(on, rel=3e-4)
         assert abs(turned / on - 1) > 1e-3  # sliders that slipped stick as the motion turns
     bare = Simulation(strip_robot(columns=8, rows=2))
