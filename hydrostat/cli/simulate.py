@@ -88,8 +88,6 @@ def simulate(
     if forces and (dynamic or timeout is not None):
         raise InputError(f"--pull: not available with {'--dynamic' if dynamic else '--timeout'}. Remove one of them.")
     driven = moves(loaded, move)
-    if driven and forces:
-        raise InputError("--move: not available with --pull. Remove one of them.")
     if dynamic and jacobian:
         raise InputError("--jacobian: not available with --dynamic. Remove one of them.")
     if not dynamic and (play is not None or duration is not None):

@@ -31,7 +31,7 @@ def solve_pulls(
     Args:
         simulation: the robot.
         pulls: pull by name of a winch [N], at least 0.
-        contractions: contractions of all other winches [m]; 0 by default.
+        contractions: contractions of all other winches [m], and values of drives; 0 by default.
         start: a pose to begin from; the rest pose if left out.
 
     Raises:
@@ -94,10 +94,10 @@ def _search(
     """Pose after the longest part of a step that brings the pulls nearer, and what is still missing [N]."""
     before, halvings = float(np.abs(missing).max()), 8
     for halving in range(halvings):
-        contractions = pose.contractions.copy()
-        contractions[own] += 0.5**halving * step
+        controls = pose.controls.copy()
+        controls[own] += 0.5**halving * step
         try:
-            found = simulation.solve(contractions, start=pose)
+            found = simulation.solve(controls, start=pose)
         except (NotConvergedError, InputError):  # it may take in more cable than there is
             continue
         gap = goal - ratios.T @ found.tensions

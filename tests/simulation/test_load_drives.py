@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from builders import FOAM, box_mesh, mesh_body, strip_robot
 
-from hydrostat.ik import solve_ik
+from hydrostat.ik import solve_ik, solve_pulls
 from hydrostat.mechanics import NewtonOptions
 from hydrostat.robot import Load, LoadDrive, Marker, Pin, Robot
 from hydrostat.simulation import ContractionProfile, Equilibrium, Simulation
@@ -98,6 +98,16 @@ def test_inverse_kinematics_finds_the_force_that_moves_a_marker() -> None:
     assert found.pose.drives["thumb"] == pytest.approx(1.3, abs=1e-3)
     far = solve_ik(simulation, {"tip": simulation.solve({"thumb": 2.5}, strict=False).markers["tip"]})
     assert far.active_limits == ("thumb: at maximum, 2",)
+
+
+def test_winches_pull_while_a_drive_pushes() -> None:
+    """Oracle: the constant loads; more than one step of Newton keeps the drive where it is."""
+    pull = {strip().winches[0].name: 1.5}
+    driven = solve_pulls(Simulation(strip()), pull, {"thumb": 0.6, "wrist": -0.4})
+    fixed = solve_pulls(Simulation(constant(0.6, -0.4)), pull)
+    np.testing.assert_array_equal(driven.drives, [0.6, -0.4])
+    np.testing.assert_allclose(driven.nodes, fixed.nodes, atol=1e-7)
+    assert driven.tensions[0] == pytest.approx(1.5, rel=1e-5)
 
 
 def test_a_profile_moves_a_body_as_the_path_of_a_load_does() -> None:
