@@ -116,7 +116,7 @@ async def run_class(port: int, pupils: int, seconds: float) -> list[Pupil]:
 
 def main() -> None:
     """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--pupils", type=int, nargs="+", default=[1, 10, 30])
     parser.add_argument("--seconds", type=float, default=15.0)
     asked = parser.parse_args()

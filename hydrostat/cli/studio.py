@@ -13,7 +13,7 @@ from hydrostat.version import install_command
 def studio(
     robot: Annotated[
         Path | None,
-        typer.Argument(metavar="[ROBOT]", help="Robot folder, or gallery:NAME.", show_default="show the gallery"),
+        typer.Argument(metavar="[ROBOT]", help="Robot folder, gallery:NAME, or link.", show_default="show the gallery"),
     ] = None,
     port: Annotated[int, typer.Option(metavar="PORT", help="TCP port. 0 = any free port.")] = 0,
     host: Annotated[
@@ -53,7 +53,7 @@ def studio(
         if package == "hydrostat":
             raise
         raise InputError(f"studio: package {package} not found. Install it: {install_command('studio')}") from None
-    from hydrostat.studio import Classroom, Session, state_folder
+    from hydrostat.studio import LINK_MARK, Classroom, Session, state_folder
 
     rooms = rooms or classroom
     if model is not None and (robot is None or rooms):
@@ -63,7 +63,10 @@ def studio(
         served = Rooms(state=state_folder(), first=robot and found_folder(robot))
     else:
         session = Session(state_folder())
-        if robot is not None:
+        if robot is not None and LINK_MARK in str(robot):
+            session.starter.open_link(str(robot))
+            session.go("pose")
+        elif robot is not None:
             session.open_folder(robot, model)
         served = Rooms(session)
 

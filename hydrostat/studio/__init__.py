@@ -26,11 +26,13 @@ if TYPE_CHECKING:
         Proposer,
         held_of,
     )
+    from hydrostat.studio.robot_link import LINK_MARK
     from hydrostat.studio.session import Session
     from hydrostat.studio.stage import Hit
     from hydrostat.studio.starting.shelf import state_folder
 
 __all__ = [
+    "LINK_MARK",
     "STRIDE",
     "Bell",
     "CableMover",

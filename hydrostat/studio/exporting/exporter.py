@@ -11,10 +11,11 @@ from hydrostat.ik import IKOptions, IKResult, solve_ik
 from hydrostat.robot import Face, Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
-from hydrostat.studio.exporting.download import Download, archive, file_name, work_zip
+from hydrostat.studio.exporting.download import Download, archive, file_name, work_files, work_zip
 from hydrostat.studio.exporting.kit_work import KitMade, make_kit
 from hydrostat.studio.exporting.report_work import make_pictures, make_report
 from hydrostat.studio.jobs import Jobs
+from hydrostat.studio.robot_link import pack_robot
 from hydrostat.studio.stage import Stage
 from hydrostat.studio.view.robot_items import diagnostic_items, robot_items
 from hydrostat.studio.view.scene_items import RobotShape, SceneItem, rest_shape
@@ -126,6 +127,13 @@ class Exporter(Stage):
     def robot_zip(self) -> Download:
         """The folder of the robot in one file (InputError: no robot is open)."""
         return work_zip(self._document.work, self._document.text)
+
+    def robot_link(self) -> str:
+        """The robot as the end of a link (InputError: none is open, in space, no drawing, or too large)."""
+        work = self._document.work
+        if work.robot.body.mesh.dim != 2:
+            raise InputError("a link holds flat robots only. Send the .zip")
+        return pack_robot(work_files(work, ""))
 
     def enter(self) -> None:
         """Let a process stand ready, so that work begins at once."""

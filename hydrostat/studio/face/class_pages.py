@@ -91,5 +91,6 @@ button {{ background: var(--accent); color: var(--on); font-weight: 600; cursor:
 </style></head><body><form method="post" action="/join"><h1>hydrostat</h1>
 <label for="name">Nickname, which your class sees</label>
 <input id="name" name="name" maxlength="{most}" required autofocus autocomplete="off">
-<input type="hidden" name="room" value="{key}"><p role="alert">{problem}</p><button>Start</button></form></body></html>
+<input type="hidden" name="room" value="{key}"><p role="alert">{problem}</p><button>Start</button></form>
+<script>document.forms[0].action += location.hash</script></body></html>
 """

@@ -28,8 +28,11 @@ SAFE_HEADERS = {
 """No other page may frame this one or read of it, and it loads nothing from elsewhere. The page needs scripts within
 it and evaluation of templates. A policy of no referrer at all would make browsers hide the origin of our own forms."""
 
-WELCOME = '<!doctype html><meta charset="utf-8"><meta http-equiv="refresh" content="0;url={}"><title>hydrostat</title>'
-"""Goes on to the page. A redirection would not do: after a link of another page it goes without the strict cookie."""
+WELCOME = """<!doctype html><meta charset="utf-8"><title>hydrostat</title>
+<noscript><meta http-equiv="refresh" content="0;url={0}"></noscript>
+<script>location.replace("{0}" + location.hash)</script>"""
+"""Goes on to the page. A redirection would not do: after a link of another page it goes without the strict cookie.
+What stands after "#" goes along."""
 
 
 class Guard:

@@ -89,9 +89,11 @@ def _add_pages(rooms: Rooms, token: str | None, port: int, classroom: Classroom 
     def build(request: Request, room: Room) -> None:
         base = str(request.base_url)
         own = f"room/{room.key}" if rooms.many else ""
-        links = Links(f"{base}{own}{asked}", f"{base}watch/{room.watch_key}{asked}")
+        shared = rooms.many or token
+        work, watch = (f"{base}{own}{asked}", f"{base}watch/{room.watch_key}{asked}") if shared else ("", "")
+        links = Links(work, watch, f"{base}{asked}")
         stream = f"/stream/{room.key}" if rooms.many else "/stream"
-        page = build_window(room.session, stream, links if rooms.many or token else None, room if classroom else None)
+        page = build_window(room.session, stream, links, room if classroom else None)
         ui.context.client.on_delete(page.close)
 
     @ui.page("/", title=TITLE, language="en-US")

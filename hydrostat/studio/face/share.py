@@ -12,18 +12,21 @@ from nicegui import ui
 from hydrostat.errors import InputError
 from hydrostat.studio.face.guard import LOOPBACK
 
+LARGEST_CODE = 2900  # letters in a QR code; 2953 bytes fit
+
 
 @dataclass(frozen=True)
 class Links:
-    """The two addresses of a room."""
+    """The addresses of a room; "" where there is none."""
 
     work: str  # who opens it works in the room
     watch: str  # who opens it sees the robot, and can change nothing; "": there is none
+    home: str = ""  # the studio, which opens a robot in a link
 
     @property
     def are_local(self) -> bool:
         """True if no other computer can open them."""
-        return urlsplit(self.work).netloc.rpartition(":")[0] in LOOPBACK
+        return urlsplit(self.work or self.home).netloc.rpartition(":")[0] in LOOPBACK
 
 
 def find_network_address() -> str:
@@ -47,11 +50,11 @@ def write_qr_text(link: str) -> str:
     return "\n".join(f"\x1b[97;40m{line}\x1b[0m" for line in stream.getvalue().split("\n") if line)
 
 
-def share_dialog(links: Links) -> Callable[[], object]:
-    """Build the dialog with both addresses; returns what opens it."""
+def share_dialog(links: Links, pack: Callable[[], str] | None = None) -> Callable[[], object]:
+    """Build the dialog with both addresses, and the robot in a link if a function packs it; returns what opens it."""
     with ui.dialog() as dialog, ui.card().classes("q-pa-md gap-3").style("width: 520px; max-width: 92vw"):
-        ui.label("Share this room" if links.watch else "Link for pupils").classes("studio-title")
-        if links.are_local:
+        ui.label("Share" if pack is not None else "Link for pupils").classes("studio-title")
+        if links.work and links.are_local:
             hint = "These links open on this computer only. For other computers start with hydrostat studio --class."
             ui.label(hint).classes("studio-hint").props('data-testid="share-local"')
         for words, hint, link, name in (
@@ -69,12 +72,46 @@ def share_dialog(links: Links) -> Callable[[], object]:
                 if links.watch:
                     ui.label(words).classes("studio-section")
                 ui.label(hint).classes("studio-hint")
-                box = ui.input(value=link).props(f'readonly dense outlined aria-label="{words}" data-testid="{name}"')
-                box.classes("w-full studio-figure").on("focus", js_handler="(event) => event.target.select()")
+                _link_box(words, link, name)
                 if link == links.work and not links.are_local:
-                    code = segno.make(link, error="m").svg_inline(scale=4, dark="#2b2833", light="#ffffff")
-                    drawn = ui.html(code, sanitize=False).classes("self-center")
-                    drawn.props(f'role="img" aria-label="{words}, QR code"')
+                    _code(words, link)
+        robot = ui.column().classes("w-full gap-1")
         with ui.row().classes("w-full justify-end"):
             ui.button("Close", on_click=dialog.close).props("flat no-caps")
-    return dialog.open
+
+    def show() -> None:
+        robot.clear()
+        with robot:
+            ui.label("Robot in a link").classes("studio-section")
+            try:
+                link = f"{links.home}{pack() if pack is not None else ''}"
+            except InputError as error:
+                ui.label(str(error)).classes("studio-hint").props('data-testid="share-none"')
+                return
+            hint = "A copy of the robot as it is now. Open it here, or elsewhere by hydrostat studio 'LINK'."
+            ui.label(hint).classes("studio-hint")
+            _link_box("Robot in a link", link, "share-robot")
+            if len(link) <= LARGEST_CODE and not links.are_local:
+                _code("Robot in a link", link)
+
+    return dialog.open if pack is None else lambda: (show(), dialog.open())
+
+
+def _link_box(words: str, link: str, name: str) -> None:
+    """A link to copy. Pages without encryption have no clipboard but this one."""
+    with ui.row().classes("w-full no-wrap items-center gap-1"):
+        box = ui.input(value=link).props(f'readonly dense outlined aria-label="{words}" data-testid="{name}"')
+        box.classes("w-full studio-figure").on("focus", js_handler="(event) => event.target.select()")
+        copy = ui.button(icon="content_copy").props(f'flat round dense aria-label="Copy: {words}"')
+        pick = f"document.querySelector('input[data-testid={name}]').select(); document.execCommand('copy')"
+        copy.tooltip("Copy").on("click", js_handler=f"() => {{ {pick} }}")
+
+
+def _code(words: str, link: str) -> None:
+    """QR code of a link, as large as there is room."""
+    level = "m" if len(link) < 400 else "l"
+    code = segno.make(link, error=level).svg_inline(omitsize=True, dark="#2b2833", light="#ffffff")
+    drawn = ui.html(code, sanitize=False).classes("self-center")
+    drawn.style(f"width: min({160 if len(link) < 400 else 480}px, 100%)").props(
+        f'role="img" aria-label="{words}, QR code"'
+    )

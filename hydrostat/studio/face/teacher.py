@@ -108,18 +108,19 @@ class _TeacherPage:
             async def give() -> None:
                 dialog.close()
                 robot = await run.io_bound(load_robot, gallery_folder(str(chosen.value)))
-                self.act(self.hand_out, Work(robot=robot))
+                if robot is not None:  # else the studio ends
+                    self.act(self.hand_out, Work(robot=robot))
 
             async def brought(event: events.UploadEventArguments) -> None:
                 content = await event.file.read()
                 dialog.close()
                 upload.reset()
                 try:
-                    work, text = await run.io_bound(unpack_robot, event.file.name, content)
+                    found = await run.io_bound(unpack_robot, event.file.name, content)
                 except HydrostatError as error:
                     self.tell(str(error), Tone.BAD)
                 else:
-                    self.act(self.hand_out, work, text)
+                    self.act(self.hand_out, *(found or ()))
 
             upload = ui.upload(label="Or a robot as .zip", max_files=1, max_file_size=20_000_000, auto_upload=True)
             upload.props("accept=.zip flat bordered").classes("w-full").on_upload(brought)

@@ -8,7 +8,7 @@ from typing import Any
 from nicegui import events, ui
 
 from hydrostat.studio.bell import Topic
-from hydrostat.studio.face.dialogs import SaveDialog
+from hydrostat.studio.face.dialogs import SaveDialog, may_leave
 from hydrostat.studio.face.page import HEARTBEAT, Toasts, WindowPage, icon_button
 from hydrostat.studio.face.panels.design_panel import design_panel
 from hydrostat.studio.face.panels.drive_panel import drive_panel
@@ -22,6 +22,7 @@ from hydrostat.studio.face.share import Links, share_dialog
 from hydrostat.studio.face.tour import STAGES, Tour, help_dialog, offer_tour
 from hydrostat.studio.face.view_bar import view_bar
 from hydrostat.studio.face.viewport import Side, Viewport
+from hydrostat.studio.robot_link import LINK_MARK
 from hydrostat.studio.session import Session
 from hydrostat.studio.stage import StageName
 
@@ -132,6 +133,7 @@ def build_window(
     ui.timer(HEARTBEAT, page.beat)
     ui.on("hydrostat_alive", session.hardware.beat)
     ui.timer(0.0, partial(_recall, dark), once=True)
+    ui.timer(0.0, partial(_open_link, page), once=True)
     offer_tour(tour)
     return page
 
@@ -164,7 +166,7 @@ def _header(
         with more.classes("studio-tool").style("margin-left: -10px; width: 22px"), ui.menu():
             _saving_menu(page, ask_save)
         if links is not None:
-            _tool("group_add", "Share this room", share_dialog(links))
+            _tool("group_add", "Share", share_dialog(links, session.exporter.robot_link))
         _tool("dark_mode", "Light or dark", partial(_switch, dark))
         _tool("help_outline", "Help", ask_help)
 
@@ -208,6 +210,20 @@ async def _recall(dark: ui.dark_mode) -> None:
         return
     if kept is not None:
         dark.set_value(kept == "true")
+
+
+async def _open_link(page: WindowPage) -> None:
+    """Open the robot that the address of this window holds, and take it out of the address."""
+    take = "(() => { const held = location.hash; history.replaceState(null, '', location.pathname); return held; })()"
+    try:
+        held = await ui.run_javascript(f"location.hash.startsWith('{LINK_MARK}') ? {take} : ''", timeout=10.0)
+    except TimeoutError:  # the window is gone
+        return
+    if held and await may_leave(page):
+        serial = page.session.document.serial
+        await page.act_slowly(page.session.starter.open_link, str(held))
+        if page.session.document.serial != serial:
+            page.go(StageName.POSE)
 
 
 async def _switch(dark: ui.dark_mode) -> None:

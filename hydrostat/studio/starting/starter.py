@@ -18,6 +18,7 @@ from hydrostat.robot import FILE, GALLERY, gallery_folder, get_material, is_of_g
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
+from hydrostat.studio.robot_link import unpack_robot_link
 from hydrostat.studio.skins import SewnSkin
 from hydrostat.studio.stage import Stage
 from hydrostat.studio.starting.autosave import Autosave
@@ -175,6 +176,10 @@ class Starter(Stage):
         """Open the robot in a .zip, such as Export makes; Save asks for a folder (InputError: there is none in it)."""
         work, text = unpack_robot(name, content)
         self._document.open(work, text=text)
+
+    def open_link(self, link: str) -> None:
+        """Open the robot in a link that Share made (InputError: there is none in it, or it is wrong)."""
+        self.open_zip("the link", unpack_robot_link(link))
 
     def recent(self) -> list[Card]:
         """Robots that were open lately, then those of the working folder; each once, those of one name told apart."""

@@ -367,7 +367,7 @@ def test_a_class_each_with_a_robot_and_who_watches(studio: Studio, window: Open,
         for page in (one, two):
             wait_for_view(page)
         assert one.url != two.url
-        one.get_by_label("Share this room", exact=True).click()
+        one.get_by_label("Share", exact=True).click()
         one.get_by_test_id("share-local").wait_for()
         watcher = window(one.get_by_test_id("share-watch").input_value())
         one.keyboard.press("Escape")
