@@ -1,5 +1,6 @@
 """`hydrostat studio`."""
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -47,7 +48,7 @@ def studio(
     Example: hydrostat studio gallery:starfish --class
     """
     try:
-        from hydrostat.studio import Rooms, find_network_address, serve, write_qr_text
+        from hydrostat.studio import Rooms, find_network_address, serve
     except ModuleNotFoundError as error:
         package = (error.name or "").partition(".")[0]
         if package == "hydrostat":
@@ -56,8 +57,8 @@ def studio(
     from hydrostat.studio import LINK_MARK, Classroom, Session, state_folder
 
     rooms = rooms or classroom
-    if model is not None and (robot is None or rooms):
-        raise InputError("--model: needs its ROBOT, and is not available with --rooms or --class.")
+    if model is not None and (robot is None or rooms or LINK_MARK in str(robot)):
+        raise InputError("--model: needs the folder of its ROBOT, and is not available with --rooms or --class.")
     host = host or (find_network_address() if classroom else "127.0.0.1")
     if rooms:
         served = Rooms(state=state_folder(), first=robot and found_folder(robot))
@@ -70,17 +71,21 @@ def studio(
             session.open_folder(robot, model)
         served = Rooms(session)
 
-    def announce(address: str) -> None:
-        if "/class/" in address:
-            print(f"Teacher: {address}   (keep this link to yourself)", flush=True)
-            return
-        print(f"{'Pupils' if classroom else 'Studio'}: {address}   (Ctrl-C to stop)", flush=True)
-        if classroom:
-            print(write_qr_text(address), flush=True)
-
     try:
         teacher = Classroom(served) if classroom else None
-        serve(served, host=host, port=port, show=browser, classroom=teacher, announce=announce)
+        serve(served, host=host, port=port, show=browser, classroom=teacher, announce=partial(_announce, classroom))
     except KeyboardInterrupt:
         print("Studio ended. It keeps unsaved work for its next start.")
         raise typer.Exit(130) from None
+
+
+def _announce(classroom: bool, address: str) -> None:
+    """Print an address; that of pupils with its QR code."""
+    if "/class/" in address:
+        print(f"Teacher: {address}   (keep this link to yourself)", flush=True)
+        return
+    print(f"{'Pupils' if classroom else 'Studio'}: {address}   (Ctrl-C to stop)", flush=True)
+    if classroom:
+        from hydrostat.studio import write_qr_text
+
+        print(write_qr_text(address), flush=True)

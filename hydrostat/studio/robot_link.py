@@ -56,8 +56,9 @@ def unpack_robot_link(link: str) -> bytes:
         files = json.loads(text) if inflate.eof and len(text) <= MOST_BYTES else None
     except (ValueError, zlib.error, RecursionError):
         files = None
-    is_known = isinstance(files, dict) and len(files) <= MOST_FILES
-    if not is_known or not all(isinstance(content, str) for content in files.values()):
+    if not isinstance(files, dict) or len(files) > MOST_FILES:
+        raise InputError(WRONG)
+    if not all(isinstance(content, str) for content in files.values()):
         raise InputError(WRONG)
     buffer = BytesIO()
     try:
