@@ -9,8 +9,9 @@ import stat
 import sys
 import tempfile
 import threading
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
+from errno import EISDIR
 from hashlib import sha256
 from io import StringIO
 from pathlib import Path
@@ -164,16 +165,34 @@ def _lives(process: int) -> bool:
 
 def replace_file(path: Path, content: bytes) -> Path:
     """Write a file whole or not at all (InputError: it cannot be written)."""
-    part = temporary_path(path)
+    replace_files({path: content})
+    return path
+
+
+def replace_files(contents: Mapping[Path, bytes], *, outdated: Path | None = None) -> None:
+    """Write files, all or none of them, once all are on the disk; the last one comes last.
+
+    The file `outdated` is removed before the first one is replaced. InputError: a file cannot be written.
+    """
+    parts = {
+        path: temporary_path(path.with_name(f"{number}-{path.name}")) for number, path in enumerate(contents, start=1)
+    }
+    path = next(iter(contents), Path())
     try:
-        part.write_bytes(content)
-        os.replace(part, path)
+        for path, part in parts.items():
+            if path.is_dir():
+                raise IsADirectoryError(EISDIR, os.strerror(EISDIR))
+            part.write_bytes(contents[path])
+        if outdated is not None:
+            outdated.unlink(missing_ok=True)
+        for path, part in parts.items():
+            os.replace(part, path)
     except OSError as error:
         raise InputError(f"{path}: cannot be written ({error.strerror})") from None
     finally:
-        with suppress(OSError):
-            part.unlink(missing_ok=True)
-    return path
+        for part in parts.values():
+            with suppress(OSError):
+                part.unlink(missing_ok=True)
 
 
 def csv_text(head: Sequence[str], rows: Iterable[Iterable[str]]) -> bytes:

@@ -12,7 +12,7 @@ from typing import Any
 from hydrostat.errors import InputError
 from hydrostat.fabrication.kit_options import KitOptions, Method
 from hydrostat.fabrication.solids.printed import Printed
-from hydrostat.files import replace_file
+from hydrostat.files import replace_files
 from hydrostat.robot import Robot, robot_hash
 from hydrostat.units import plural
 
@@ -111,21 +111,28 @@ def manifest(
 def write_files(files: Mapping[str, bytes], folder: str | Path) -> list[Path]:
     """Write all files of a kit, by path, the manifest last, into a folder made if need be; returns them sorted.
 
-    What an earlier kit left in the folder and this one has not is removed, unless it was changed since. Raises
-    InputError if the folder or a file cannot be written.
+    An earlier kit stays whole until all files are on the disk. What it left in the folder and this one has not is then
+    removed, unless it was changed since. Raises InputError if the folder or a file cannot be written.
     """
     folder = Path(folder)
     stale = [path for path in _written_before(folder) if path not in files]
+    places = {folder / path: files[path] for path in sorted(files, key=lambda path: (path == MANIFEST, path))}
+    made: list[Path] = []
     try:
-        (folder / MANIFEST).unlink(missing_ok=True)
-        for path in sorted(files):
-            (folder / path).parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
+        for parent in sorted({place.parent for place in places}):
+            made += [above for above in (*reversed(parent.parents), parent) if not above.exists() and above not in made]
+            parent.mkdir(parents=True, exist_ok=True)
+        replace_files(places, outdated=folder / MANIFEST)
+    except (OSError, InputError) as error:
+        for empty in reversed(made):
+            with suppress(OSError):
+                empty.rmdir()
+        if isinstance(error, InputError):
+            raise
         raise InputError(f"{error.filename or folder}: cannot be written ({error.strerror})") from None
     for path in stale:
         _remove(folder / path, folder)
-    last = sorted(files, key=lambda path: (path == MANIFEST, path))
-    return sorted(replace_file(folder / path, files[path]) for path in last)
+    return sorted(places)
 
 
 def _written_before(folder: Path) -> Iterator[str]:

@@ -2,6 +2,8 @@
 
 import hashlib
 import json
+from errno import ENOSPC
+from pathlib import Path
 
 import pytest
 
@@ -62,3 +64,22 @@ def test_a_file_in_the_way_is_said(tmp_path):
     (tmp_path / "parts").write_text("no folder")
     with pytest.raises(InputError, match="parts: cannot be written"):
         write_files(_files(spool="s"), tmp_path)
+
+
+def test_a_full_disk_leaves_the_earlier_kit_or_no_folder(tmp_path, monkeypatch):
+    """Oracle: the bytes that were there before."""
+    write_files(_files(spool="s", lid="l"), tmp_path / "old")
+    before = {name: (tmp_path / "old" / name).read_bytes() for name in _seen(tmp_path / "old")}
+    write = Path.write_bytes
+
+    def fail_on_the_last(path, content):
+        if "manifest" in path.name:
+            raise OSError(ENOSPC, "No space left on device")
+        return write(path, content)
+
+    monkeypatch.setattr(Path, "write_bytes", fail_on_the_last)
+    for folder in ("old", "new"):
+        with pytest.raises(InputError, match=r"manifest.json: cannot be written \(No space left on device\)"):
+            write_files(_files(spool="t"), tmp_path / folder)
+    assert {name: (tmp_path / "old" / name).read_bytes() for name in _seen(tmp_path / "old")} == before
+    assert not (tmp_path / "new").exists()
