@@ -1,5 +1,5 @@
 """`python -m hydrostat`."""
 
-from hydrostat.cli.main import main
+from hydrostat.cli.start import start_program
 
-main()
+start_program()

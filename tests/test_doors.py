@@ -15,7 +15,7 @@ _ROOMS = {
     door.parent.name: set(import_module(f"hydrostat.{door.parent.name}").__all__)
     for door in (_TOP / "hydrostat").glob("*/__init__.py")
 }
-_ENTRANCE = "hydrostat.cli.main"
+_ENTRANCES = {"hydrostat.cli.main", "hydrostat.cli.start"}
 """Where programs start the command line."""
 
 _IMPORT = re.compile(r"^[ \t]*((?:from|import) hydrostat\b[^\n(]*(?:\([^)]*\))?[^\n#]*)", re.MULTILINE)
@@ -61,7 +61,7 @@ def _past_doors(path: Path, text: str) -> list[str]:
     for top, room, name in (module.split(".")[:3] for module in _modules(text) if module.count(".") > 1):
         if room in _ROOMS and room != _home(path) and name not in _ROOMS[room]:
             behind.add(f"{top}.{room}.{name}")
-    places = {module: _TOP / Path(*module.split(".")) for module in behind - {_ENTRANCE}}
+    places = {module: _TOP / Path(*module.split(".")) for module in behind - _ENTRANCES}
     return sorted(module for module, place in places.items() if place.is_dir() or place.with_suffix(".py").is_file())
 
 

@@ -159,6 +159,23 @@ def test_a_command_that_is_interrupted_says_so(begun: Callable[[], object], tmp_
     assert "Wrote" not in printed
 
 
+def test_an_interrupt_while_commands_are_read_is_one_line() -> None:
+    """Oracle: exit code 130 and one line, without a traceback."""
+    code = """
+import builtins, signal
+read = builtins.__import__
+def interrupt(name, *rest):
+    if name == "typer":
+        signal.raise_signal(signal.SIGINT)
+    return read(name, *rest)
+builtins.__import__ = interrupt
+from hydrostat.cli.start import start_program
+start_program()
+"""
+    work = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, preexec_fn=USUAL)
+    assert (work.returncode, work.stderr) == (130, "hydrostat: interrupted; nothing was begun\n")
+
+
 CLOSING = """
 import signal, sys, time
 from pathlib import Path
