@@ -1,6 +1,6 @@
 """Real robots: errors of hydrostat against published measurements of robots that others built.
 
-    python benchmarks/real.py FOLDER [--only emio|opencr|trunk] [--samples N] [--plot FOLDER]
+    python benchmarks/real.py FOLDER [--only emio|opencr|opencr_play|trunk] [--samples N] [--plot FOLDER]
 
 FOLDER holds opencr_v4/ (a tendon continuum robot of three segments with nine tendons; Continuum Robotics Laboratory,
 opencr-mujoco), trunk_payload/ (a vacuum-hose trunk of six motors with hung masses; Stanford ASL, trunk-stack) and emio/
@@ -18,6 +18,7 @@ import argparse
 import csv
 import json
 import time
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +26,7 @@ import numpy as np
 from emio_rods import RodLegs, read_emio
 from emio_solid import SolidLegs
 from machine import machine
-from real_robots import MM, opencr, trunk
+from real_robots import MM, opencr, trunk, with_play
 
 from hydrostat.identification import FittedModel, IdentificationModel, MarkerPredictor, Measurements, fit_model
 
@@ -96,8 +97,8 @@ def covered(fitted: FittedModel, asked: Measurements) -> float:
     return float((away <= 1.96 * np.sqrt(variance + fitted.noise**2))[known].mean())
 
 
-def run_opencr(folder: Path, samples: int, pictures: Path | None) -> None:
-    """OpenCR v4: fitted on train.csv, judged on val.csv."""
+def run_opencr(folder: Path, samples: int, pictures: Path | None, *, play: bool = False) -> None:
+    """OpenCR v4: fitted on train.csv, judged on val.csv; with play, tendons follow all commands of before."""
     facts: dict[str, Any] = json.loads((folder / "robot.json").read_text(encoding="utf-8"))
     model = opencr(
         facts["segment_lengths_mm"],
@@ -109,6 +110,8 @@ def run_opencr(folder: Path, samples: int, pictures: Path | None) -> None:
         Measurements(commands=MM * rows[:, 1:10], markers=("tip",), places=MM * rows[:, None, 10:13])
         for rows in (train, val)
     )
+    if play:
+        model = with_play(model, np.concatenate([known.commands, asked.commands]))
     chosen = np.sort(np.random.default_rng(0).choice(len(train), samples, replace=False))
     fitted, cost = identified(model, known.rows(chosen))
     found, missing = judged(fitted, asked, known, 0)
@@ -118,11 +121,11 @@ def run_opencr(folder: Path, samples: int, pictures: Path | None) -> None:
     if authors.exists():
         tips = numbers(authors)[1][:, -3:]
         print(line("MuJoCo model of the authors", tips, val[:, 10:13], "calibrated on another day"))
-    print(line("hydrostat", found, val[:, 10:13], f"{cost}; {missing} not converged"))
+    print(line("hydrostat, play" if play else "hydrostat", found, val[:, 10:13], f"{cost}; {missing} not converged"))
     print(f"  within 95 % intervals: {100 * covered(fitted, asked):.1f} % of coordinates")
     print_parameters(fitted)
     if pictures:
-        plot(pictures / "opencr.png", val[:, 10:13], found, ("x", "z"))
+        plot(pictures / f"opencr{'_play' if play else ''}.png", val[:, 10:13], found, ("x", "z"))
 
 
 def run_trunk(folder: Path, samples: int, pictures: Path | None) -> None:
@@ -266,6 +269,7 @@ def plot(file: Path, places: np.ndarray, found: np.ndarray, side: tuple[str, str
 RUNS = {
     "emio": (run_emio, "emio", 0),
     "opencr": (run_opencr, "opencr_v4", 90),
+    "opencr_play": (partial(run_opencr, play=True), "opencr_v4", 90),
     "trunk": (run_trunk, "trunk_payload", 200),
 }
 """Function, folder and number of rows that a model is fitted to."""

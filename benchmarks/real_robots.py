@@ -111,6 +111,20 @@ def opencr(lengths: list[float], angles: list[float], radius: float) -> Identifi
     return IdentificationModel(parameters=tuple(parameters), robot=robot, contractions=contractions, places=turned)
 
 
+def with_play(model: IdentificationModel, history: np.ndarray) -> IdentificationModel:
+    """Model in which each tendon follows its motor with a play; the rows of `history` are all commands in order [m]."""
+    places = {row.tobytes(): index for index, row in enumerate(history)}
+
+    def contractions(values: dict[str, float], commands: np.ndarray) -> np.ndarray:
+        followed, half = history.copy(), 0.5 * MM * values["play"]
+        for before, after in pairwise(followed):
+            after[:] = np.clip(before, after - half, after + half)
+        return model.contractions(values, followed[[places[row.tobytes()] for row in commands]])
+
+    play = Parameter(name="play", start=0.2, spread=0.2, unit="mm", low=0.0)
+    return replace(model, parameters=(*model.parameters, play), contractions=contractions)
+
+
 TRUNK_MOTORS = (
     (1, 0.85, 0.40),
     (2, 1.91, 0.48),
