@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 from PIL import Image, ImageDraw, ImageFont, ImageSequence
 
 import hydrostat as hs
-from hydrostat.design import activate, assign_cable_sides, edge_fibres
+from hydrostat.design import activate, assign_cable_sides, edge_fibres, winch_front
 from hydrostat.fabrication import KitOptions
 from hydrostat.geometry import Surface, contour, heal
 from hydrostat.plot import (
@@ -32,6 +32,7 @@ from hydrostat.plot import (
     draw_pose,
     draw_reached,
     draw_trajectory,
+    draw_winch_front,
     save_gif,
     save_png,
 )
@@ -65,6 +66,9 @@ def main() -> None:
     if sys.argv[1:] == ["tendons"]:
         draw_tendons()
         return
+    if sys.argv[1:] == ["winches"]:
+        draw_winches()
+        return
     if sys.argv[1:] == ["film"]:
         record = json.loads((HERE / "demo.json").read_text())
         draw_film(record, HERE / "demo.gif")
@@ -74,11 +78,19 @@ def main() -> None:
     if sys.argv[1:] == ["demo"]:
         return
     draw_tendons()
+    draw_winches()
     draw_dance()
     draw_gallery()
     draw_bodies()
     draw_hand()
     draw_dirt()
+
+
+def draw_winches() -> None:
+    """Error as built over price for other numbers of winches."""
+    robot = hs.load_robot(gallery_folder("letter_s"))
+    network = hs.design_cables(robot, robot.poses.values(), winches=1, cables=2, front=True)
+    save_png(draw_winch_front(winch_front(network)), HERE / "winch_front.png", dpi=110)
 
 
 def draw_demo() -> None:

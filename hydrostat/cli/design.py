@@ -3,6 +3,8 @@
 import math
 import sys
 import time
+from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING, Annotated, Any
@@ -21,9 +23,9 @@ from hydrostat.cli.waiting import one_interrupt, progress_bar, read_robot
 from hydrostat.units import plural
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
-    from hydrostat.design import DesignRequest, DesignStage, Network, SearchRecord
+    from hydrostat.design import DesignRequest, DesignStage, Lift, Network, SearchRecord
     from hydrostat.fabrication import Kit
     from hydrostat.robot import Robot
 
@@ -74,6 +76,12 @@ SteppedSpools = Annotated[
 ]
 TwoWay = Annotated[
     bool, typer.Option("--two-way", help="Let winches pull both ways, by cables wound the other way round.")
+]
+Front = Annotated[
+    bool,
+    typer.Option(
+        "--front", help="Also search with a winch fewer and more, pulling one way and both ways. 3-6 times longer."
+    ),
 ]
 Symmetric = Annotated[str | None, typer.Option(metavar="x|y|z", help="Require mirror symmetry about this axis.")]
 LockWinch = Annotated[list[str] | None, typer.Option(metavar="NAME", help="Keep this winch of the robot. Repeatable.")]
@@ -156,6 +164,7 @@ def design(
     slack: Slack = None,
     stepped_spools: SteppedSpools = False,
     two_way: TwoWay = False,
+    front: Front = False,
     symmetric: Symmetric = None,
     lock_winch: LockWinch = None,
     lock_cable: LockCable = None,
@@ -208,6 +217,7 @@ def design(
         motor=motor,
         stepped=stepped_spools,
         two_way=two_way,
+        front=front,
         symmetric=symmetric,
         lock_winch=lock_winch or [],
         lock_cable=lock_cable or [],
@@ -222,7 +232,7 @@ def design(
     _refuse_budget(request, request.motor_for(source), spend)
     record = open_record(out, source, request, resume=resume)
     with one_interrupt(STOPPING, interrupt=True) as pass_over:
-        network = _search(source, request, record, out)
+        network, lifts = _search(source, request, record, out)
         pass_over()
         printed = print_poses(network, time.perf_counter() - began)
         print(end="", flush=True)
@@ -230,7 +240,7 @@ def design(
         write_record(record, network, out, source, request)
     if made is not None:
         print_kit(made, printed=printed)
-    _tell_count(network, request)
+    _tell_count(network, request, lifts)
     fits = kit_fits(network) and not (made is not None and made.problems)
     over = is_above_budget(network, spend)
     _tell_next(network, robot, out, kit=kit, fits=fits, budget=None if over else spend)
@@ -288,16 +298,25 @@ def is_above_budget(network: "Network", budget: float | None) -> bool:
     return True
 
 
-def _search(source: "Robot", request: "DesignRequest", record: "SearchRecord", out: Path) -> "Network":
-    """Find the network; exit where it is interrupted before the first one."""
-    from hydrostat.design import find_network
+def _search(
+    source: "Robot", request: "DesignRequest", record: "SearchRecord", out: Path
+) -> "tuple[Network, tuple[Lift, ...]]":
+    """Find the network, and changes that lower its error; exit where it is interrupted before the first network."""
+    from hydrostat.design import find_lifts, find_network
 
+    lifts: tuple[Lift, ...] = ()
     with progress_bar() as progress:
         try:
-            return find_network(source, request, progress=progress, watch=_tell_better(), record=record)
+            network = find_network(source, request, progress=progress, watch=_tell_better(), record=record)
         except KeyboardInterrupt:
             print(f"hydrostat: interrupted before the first network; {tell_record(out)}", file=sys.stderr)
             raise typer.Exit(130) from None
+        if network.complete and not request.method.grows_trees and not request.front:
+            progress("Other winches", 0, 1)
+            with suppress(KeyboardInterrupt):
+                lifts = find_lifts(network)
+            progress("Other winches", 1, 1)
+    return replace(network, alternatives=(*network.alternatives, *(lift.network for lift in lifts))), lifts
 
 
 def _write(network: "Network", out: Path, *, kit: bool, budget: float | None) -> "Kit | None":
@@ -332,20 +351,16 @@ def _tell_better() -> "Callable[[DesignStage], None]":
     return tell
 
 
-def _tell_count(network: "Network", request: "DesignRequest") -> None:
-    """Say it if there are fewer than there may be, what would leave less error, and what each number gains if open."""
-    from hydrostat.design import find_lifts
-
+def _tell_count(network: "Network", request: "DesignRequest", lifts: "Iterable[Lift]") -> None:
+    """Print a note if there are fewer than there may be, what lowers the error, and the front of other winches."""
     found, asked = (len(network.robot.winches), len(network.robot.cables)), (request.winches, request.cables)
     if network.complete and isinstance(request.winches, int) and found != asked:
         words = f"{plural(request.winches, 'winch')} and {plural(request.cables, 'cable')}"
         print(f"note: {words} were allowed. The search found no smaller error with more that can be built")
-    if network.complete and not request.method.grows_trees:
-        for lift in find_lifts(network):
-            print(
-                f"note: {lift.words} would leave at most {1e3 * lift.expected_error:.2g} mm as built, by a quick search"
-            )
-    if request.is_open:
+    for lift in lifts:
+        error = 1e3 * lift.network.expected_error
+        print(f"note: {lift.words} would leave at most {error:.2g} mm as built, by a quick search")
+    if request.is_open or request.front or lifts:
         print_front(network)
 
 

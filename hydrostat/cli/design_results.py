@@ -26,11 +26,15 @@ def write_results(network: "Network", folder: Path) -> None:
 
     save_robot(network.robot, folder / "robot")
     for number, other in enumerate(network.alternatives, start=1):
-        winches, cables = len(other.robot.winches), len(other.robot.cables)
-        save_robot(other.robot, folder / "alternatives" / f"{number:02d}_{winches}_winches_{cables}_cables")
+        save_robot(other.robot, alternative_folder(folder, number, other.robot))
     card = score_card(network, version=__version__)
     replace_file(folder / "score.json", (json.dumps(card, indent=2) + "\n").encode())
     write_report(network, folder / "report.html", facts=_facts(network))
+
+
+def alternative_folder(out: Path, number: int, robot: "Robot") -> Path:
+    """Folder of an alternative by its number, from 1."""
+    return out / "alternatives" / f"{number:02d}_{len(robot.winches)}_winches_{len(robot.cables)}_cables"
 
 
 def write_kit(network: "Network", folder: Path, *, budget: float | None) -> "Kit":
@@ -164,23 +168,26 @@ def _print_stuffed(network: "Network") -> None:
 
 
 def print_front(network: "Network") -> None:
-    """Tables of the error: for each number of winches with its effort, and for each number of cables too."""
+    """Tables of the error: for each number of winches with its effort; where the search chose it, of cables too."""
     from rich.console import Console
     from rich.table import Table
 
-    from hydrostat.design import BuildCost, on_front, size_of
+    from hydrostat.design import BuildCost, on_front, size_of, winch_front
 
-    console, best = Console(), network.best_by_winches()
-    if len(best) > 1:
+    console, rows = Console(), winch_front(network)
+    if len(rows) > 1:
         motors = Table(title="best network for each number of winches", title_justify="left")
         work = BuildCost.cable_work(network.robot)
         for name in ("winches", "cables", "as-built error", "motors", work, "price"):
             motors.add_column(name, justify="right")
-        for winches, one in best.items():
-            effort = BuildCost.of_robot(one.robot, one.ik_results)
-            values = (f"{effort.motors} × {effort.motor}", f"{effort.minutes:.0f} min", f"{effort.price:.0f} USD")
-            motors.add_row(str(winches), str(len(one.robot.cables)), f"{1e3 * one.expected_error:.2f} mm", *values)
+        motors.add_column("")
+        for row in rows:
+            cost, error = row.cost, f"{1e3 * row.expected_error:.2f} mm"
+            values = (f"{cost.motors} × {cost.motor}", f"{cost.minutes:.0f} min", f"{cost.price:.0f} USD", row.note)
+            motors.add_row(row.title, str(row.cables), error, *values)
         console.print(motors)
+    if not network.request.is_open:
+        return
     errors = network.best_errors(network.alternatives)
     table = Table(title="expected as-built error by number of winches and cables", title_justify="left")
     for name in ("winches", "cables", "rms error"):

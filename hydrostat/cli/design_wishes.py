@@ -40,6 +40,7 @@ class DesignArguments:
     motor: str | None = None
     stepped: bool = False
     two_way: bool = False
+    front: bool = False
     symmetric: str | None = None
     lock_winch: Sequence[str] = ()
     lock_cable: Sequence[str] = ()
@@ -61,6 +62,7 @@ def parse_request(robot: "Robot", typed: DesignArguments) -> "DesignRequest":
         options=_options(typed, method=method or DesignMethod.ROUTES, open_winches=isinstance(winches, str)),
         warm_start=typed.warm_start,
         stuffed=typed.stuffed,
+        front=typed.front,
         seconds=None if typed.time is None else positive("--time", typed.time, TIME),
         uncertainty=_uncertainty(robot, typed),
         **given,

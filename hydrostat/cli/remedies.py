@@ -7,6 +7,8 @@ from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING
 
+from hydrostat.cli.design_results import alternative_folder
+
 if TYPE_CHECKING:
     from hydrostat.design import Network
     from hydrostat.fabrication import KitOptions
@@ -59,8 +61,8 @@ def design_remedy(network: "Network", source: Path, out: Path) -> str:
         return f"hydrostat check {quote(str(source))}"
     for number, other in enumerate(network.alternatives, start=1):
         if kit_fits(other):
-            name = f"{number:02d}_{len(other.robot.winches)}_winches_{len(other.robot.cables)}_cables"
-            return f"hydrostat fabricate {quote(str(out / 'alternatives' / name))} --out {quote(str(out / 'kit'))}"
+            place = alternative_folder(out, number, other.robot)
+            return f"hydrostat fabricate {quote(str(place))} --out {quote(str(out / 'kit'))}"
     winches, cables = len(network.robot.winches), len(network.robot.cables)
     fewer = f"--winches {max(winches - 1, 1)} --cables {max(cables - 1, 1)}"
     return f"hydrostat design {quote(str(source))} {fewer} --out {quote(str(out))}"

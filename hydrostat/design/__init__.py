@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from hydrostat.design.design_cables import design_cables, find_network
     from hydrostat.design.finding import Diagnostic, Severity, places_in
     from hydrostat.design.first_cable import draw_first_cable
-    from hydrostat.design.lifts import find_lifts
+    from hydrostat.design.lifts import Lift, find_lifts
     from hydrostat.design.muscles.activation import Activation, FibreKind, activate, edge_fibres
     from hydrostat.design.muscles.free_posing import FreePosing
     from hydrostat.design.network import (
@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from hydrostat.design.stuffed_results import StuffedResults
     from hydrostat.design.trees.design_trees import propose_trees
     from hydrostat.design.uncertainty import BuildTolerances
+    from hydrostat.design.winch_front import FrontRow, winch_front
     from hydrostat.design.winch_room import find_no_room
     from hydrostat.design.zone import Zone
 
@@ -61,7 +62,9 @@ __all__ = [
     "Diagnostic",
     "FibreKind",
     "FreePosing",
+    "FrontRow",
     "Layout",
+    "Lift",
     "Network",
     "PricedPath",
     "QuickSearch",
@@ -107,6 +110,7 @@ __all__ = [
     "size_of",
     "turns",
     "violations",
+    "winch_front",
 ]
 
 open_package(__name__)

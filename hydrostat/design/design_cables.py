@@ -9,6 +9,7 @@ from typing import TypedDict, Unpack
 from hydrostat.closed_set import parse_choice
 from hydrostat.design.cable_sides import assign_cable_sides
 from hydrostat.design.constraints import Constraints
+from hydrostat.design.lifts import search_front
 from hydrostat.design.network import Alternative, Network, RouteTrace, size_of
 from hydrostat.design.request import DesignMethod, DesignRequest, RouteOptions, TreeOptions
 from hydrostat.design.routes.design_fewest import design_fewest
@@ -35,6 +36,7 @@ class DesignKeywords(TypedDict, total=False):
     options: RouteOptions | TreeOptions | None
     warm_start: bool
     stuffed: bool
+    front: bool
     seconds: float | None
 
 
@@ -53,9 +55,9 @@ def design_cables(
         poses: poses that the network should reach, all with the same cables.
         progress: called as the work goes on.
         watch: called with each better network that is found on the way, not yet judged as those are that are returned.
-        asked: `winches`, `cables`, `method`, `constraints`, `options`, `warm_start`, `stuffed` and `seconds` of a
-            `DesignRequest`. With `winches="auto"` the alternatives of the network hold the best that was found of every
-            size tried.
+        asked: `winches`, `cables`, `method`, `constraints`, `options`, `warm_start`, `stuffed`, `front` and
+            `seconds` of a `DesignRequest`. With `winches="auto"` the alternatives of the network hold the best that was
+            found of every size tried.
 
     Raises:
         InputError: no pose, a pose of a marker that does not exist, counts, constraints or options that do not fit.
@@ -102,7 +104,11 @@ def find_network(
     if fitted.stuffed:
         check_stuffed(stated)  # told before the search
     found = _search(stated, fitted, told, Better(watch or ignore_stage), record)
-    return replace(evaluate_stuffed(found, progress=told) if fitted.stuffed else found, source=robot)
+    if fitted.stuffed:
+        found = evaluate_stuffed(found, progress=told)
+    if fitted.front and (found.complete or found.timed_out):
+        found = search_front(found, fitted, lambda asked: _search(stated, asked, told, ignore_stage, None))
+    return replace(found, source=robot)
 
 
 def _search(

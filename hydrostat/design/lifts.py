@@ -1,27 +1,28 @@
-"""`find_lifts`: changes of a request that would leave a clearly smaller error, by quick searches."""
+"""`find_lifts`, `search_front`: networks of other numbers of winches, and of winches that pull both ways."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
-from hydrostat.design.network import Network
-from hydrostat.design.request import DesignRequest
+from hydrostat.design.network import Alternative, Network
+from hydrostat.design.request import COUNTS, DesignRequest
+from hydrostat.design.routes.finalists import kit_fits
 from hydrostat.design.routes.quick_search import propose_routes
 from hydrostat.errors import HydrostatError
 
 
 @dataclass(frozen=True, kw_only=True)
 class Lift:
-    """A change of a request."""
+    """A change of a request that lowers the error."""
 
     words: str  # as options of `hydrostat design`
-    expected_error: float  # expected as-built error of a network that a quick search finds with it [m]
+    network: Alternative  # that a quick search finds with it
 
 
 def find_lifts(network: Network) -> tuple[Lift, ...]:
     """Find changes that would leave a clearly smaller error where fewer winches than poses share contractions.
 
-    Tried are one more winch, and winches that pull both ways. A quick search (`propose_routes`) takes as long as
-    half of the whole one; that may find better. Only networks count whose kit would be made.
+    Tried are one more winch, and winches that pull both ways. A quick search (`propose_routes`) takes about as long as
+    the whole one; that may find better. Only networks count whose kit would be made.
     """
     request = network.request
     if not isinstance(request.winches, int) or request.winches >= len(request.poses) or request.warm_start:
@@ -33,8 +34,43 @@ def find_lifts(network: Network) -> tuple[Lift, ...]:
         except HydrostatError:  # such as no room for one more motor
             continue
         if found and found[-1].expected_error < _CLEARLY * network.expected_error:
-            lifts.append(Lift(words=words, expected_error=found[-1].expected_error))
+            best = found[-1]
+            other = Alternative(robot=best.robot, ik_results=best.ik_results, expected_error=best.expected_error)
+            lifts.append(Lift(words=words, network=other))
     return tuple(lifts)
+
+
+def search_front(network: Network, request: DesignRequest, design: Callable[[DesignRequest], Network]) -> Network:
+    """The network with further alternatives: of a winch fewer and more, pulling one way and both ways.
+
+    Each is the result of a whole search (`design`) for the request with other counts. Kept are those whose kit would be
+    made. Stopped (KeyboardInterrupt), the network has those that were found.
+    """
+    found, complete = [], True
+    others = []
+    for asked in _neighbors(request, len(network.robot.winches)):
+        try:
+            other = design(asked)
+        except KeyboardInterrupt:
+            complete = False
+            break
+        except HydrostatError:  # such as no room for one more motor
+            continue
+        others.append(other)
+        if kit_fits(other):
+            found.append(
+                Alternative(robot=other.robot, ik_results=other.ik_results, expected_error=other.expected_error)
+            )
+        if not other.complete and not other.timed_out:
+            complete = False
+            break
+    return replace(
+        network,
+        alternatives=(*network.alternatives, *found),
+        num_evaluated=network.num_evaluated + sum(other.num_evaluated for other in others),
+        seconds=network.seconds + sum(other.seconds for other in others),
+        complete=network.complete and complete,
+    )
 
 
 def _changes(request: DesignRequest, winches: int) -> Iterator[tuple[str, DesignRequest]]:
@@ -43,6 +79,18 @@ def _changes(request: DesignRequest, winches: int) -> Iterator[tuple[str, Design
     yield f"--winches {winches + 1} --cables {cables}", replace(request, winches=winches + 1, cables=cables)
     if not request.constraints.two_way:
         yield "--two-way", replace(request, constraints=replace(request.constraints, two_way=True))
+
+
+def _neighbors(request: DesignRequest, own: int) -> Iterator[DesignRequest]:
+    """Requests for one winch fewer, as many and one more; both ways only where winches are fewer than poses."""
+    limits = request.constraints
+    for winches in range(max(1, own - 1), min(own + 1, int(COUNTS["winches"].most)) + 1):
+        cables = min(request.cables + (winches > own), winches * limits.cables_per_winch)
+        for two_way in (False, True):
+            done = winches == own and two_way == limits.two_way
+            if not done and winches <= cables and (winches < len(request.poses) or not two_way):
+                constraints = replace(limits, two_way=two_way)
+                yield replace(request, winches=winches, cables=cables, constraints=constraints, front=False)
 
 
 _CLEARLY = 0.85  # an error below this multiple of the network's is reported

@@ -143,16 +143,6 @@ class Network:
         found[size_of(self)] = self.expected_error
         return dict(sorted(found.items()))
 
-    def best_by_winches(self) -> "dict[int, Alternative | Network]":
-        """The network of the least error as built for each number of winches, in order; the chosen one for its own."""
-        found: dict[int, Alternative | Network] = {}
-        for other in self.alternatives:
-            count = len(other.robot.winches)
-            if count not in found or other.expected_error < found[count].expected_error:
-                found[count] = other
-        found[len(self.robot.winches)] = self
-        return dict(sorted(found.items()))
-
     @property
     def rest_error(self) -> float:
         """Root of the mean squared marker error over all poses if nothing moved [m]."""

@@ -235,6 +235,8 @@ class DesignRequest:
     seconds: float | None = None
     # finalists of a flat robot are compared on the filled body, their cables on its skin, by commands found there
     stuffed: bool = False
+    # whole searches for a winch fewer and more, and for winches that pull both ways, are alternatives too
+    front: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "poses", tuple(self.poses))
@@ -328,6 +330,8 @@ class DesignRequest:
 
     def _check_trees(self) -> None:
         """Refuse what the thesis's way does not know."""
+        if self.front:
+            raise InputError(f'method "{self.method}" has no front. Use method "routes".')
         if self.seconds is not None:
             raise InputError(f'method "{self.method}" has no time limit. Use method "routes".')
         if self.warm_start or self.winches == AUTO:

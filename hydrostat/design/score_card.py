@@ -9,6 +9,7 @@ from hydrostat.design.build_cost import BuildCost
 from hydrostat.design.corrected_error import expected_corrected_error
 from hydrostat.design.network import Alternative, Network, RouteTrace, TreeTrace
 from hydrostat.design.uncertainty import BuildTolerances
+from hydrostat.design.winch_front import winch_front
 from hydrostat.ik import IKResult
 from hydrostat.robot import Robot, robot_hash
 from hydrostat.simulation import Simulation
@@ -32,7 +33,7 @@ def score_card(network: Network, *, version: str) -> dict[str, Any]:
         "cables": _cables(robot),
         **_trace(network.trace),
         **_stuffed_results(network),
-        "by_winches": [_by_winches(one) for one in network.best_by_winches().values()],
+        "by_winches": [row.as_values for row in winch_front(network)],
         "alternatives": [_alternative(other) for other in network.alternatives],
         "networks_tried": network.num_evaluated,
         "cpu_seconds": network.seconds,
@@ -115,16 +116,6 @@ def _stuffed_results(network: Network) -> dict[str, Any]:
     }
     told = {"face": str(filled.face), "rms_error": filled.rms_error, "rms_error_with_flat_commands": filled.played}
     return {"filled": {**told, "out_of_plane": filled.out, "finalists": filled.finalists, "poses": poses}}
-
-
-def _by_winches(one: Alternative | Network) -> dict[str, Any]:
-    """Return the row of a number of winches: as-built error and effort."""
-    return {
-        "winches": len(one.robot.winches),
-        "cables": len(one.robot.cables),
-        "rms_error_as_built": one.expected_error,
-        "craft": BuildCost.of_robot(one.robot, one.ik_results).as_values,
-    }
 
 
 def _alternative(other: Alternative) -> dict[str, Any]:

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from hydrostat.plot.branch_figure import draw_branches
     from hydrostat.plot.calibration_page import write_calibration_page
     from hydrostat.plot.chart import new_chart, plain_axes, short_number
+    from hydrostat.plot.design_charts import draw_winch_front
     from hydrostat.plot.film import Film, Stop, trajectory_frames, upright
     from hydrostat.plot.frame import Attachments, Frame
     from hydrostat.plot.frame_pictures import FramePictures, Picture
@@ -64,6 +65,7 @@ __all__ = [
     "draw_reached",
     "draw_rest",
     "draw_trajectory",
+    "draw_winch_front",
     "drawing",
     "find_ffmpeg",
     "inline_svg",

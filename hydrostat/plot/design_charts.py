@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from hydrostat.design import Alternative, BuildCost, DesignStage, Network, front
+from hydrostat.design import Alternative, BuildCost, DesignStage, FrontRow, Network, front
 from hydrostat.drawing import Color
 from hydrostat.plot.chart import new_chart
 from hydrostat.plot.labels import HALO
@@ -113,6 +113,34 @@ def draw_front(
     _draw_counts(axes, networks, points)
     _draw_chosen(axes, points[0])
     axes.legend(loc="upper right", fontsize=8, frameon=False, labelcolor=Color.INK, handlelength=1.0)
+    return figure
+
+
+def draw_winch_front(rows: Sequence[FrontRow], *, width: float = WIDTH) -> Figure:
+    """Error as built over the price of motors, power and cables: a dot for each number and kind of winches.
+
+    Its words are the winches and the minutes of work. A filled dot is the best for its price and work, a diamond pulls
+    both ways, a ring marks the chosen one. Width in inches.
+    """
+    figure, axes = new_chart("price [USD]", "error once built [mm rms]", width=width, height=0.45 * width)
+    dots = [(row.cost.price, MILLIMETERS * row.expected_error) for row in rows]
+    counts = sorted({row.winches for row in rows})
+    for row, dot in zip(rows, dots, strict=True):
+        color = Color.WINCHES[counts.index(row.winches) % len(Color.WINCHES)]
+        words = f"{plural(row.winches, 'winch')}{', both ways' * row.two_way}: {row.cost.minutes:.0f} min"
+        axes.plot(
+            *dot, marker="D" if row.two_way else "o", markersize=5.5, color=color if row.is_best else "white",
+            markeredgecolor=color, zorder=4, clip_on=False,
+        )  # fmt: skip
+        left = dot[0] > 0.5 * max(dots)[0]
+        axes.annotate(
+            words, dot, xytext=(-9 if left else 9, 0), textcoords="offset points", fontsize=8, color=Color.INK,
+            ha="right" if left else "left", va="center", gid=HALO, annotation_clip=False,
+        )  # fmt: skip
+        if row.is_chosen:
+            axes.plot(*dot, marker="o", markersize=12, color="none", markeredgecolor=Color.INK, zorder=5, clip_on=False)
+    axes.set_ylim(0.0, 1.15 * max(error for _, error in dots))
+    axes.set_xlim(0.0, 1.1 * max(dots)[0])
     return figure
 
 

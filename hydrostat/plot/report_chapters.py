@@ -1,6 +1,6 @@
 """The stages of a design as chapters of the report, each with its pictures."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -8,16 +8,18 @@ from hydrostat.design import (
     Alternative,
     BuildCost,
     Certificate,
+    FrontRow,
     Network,
     RouteTrace,
     StuffedResults,
     TreeTrace,
+    winch_front,
 )
 from hydrostat.drawing import Html, tag
 from hydrostat.errors import HydrostatError
 from hydrostat.ik import IKResult, find_workspaces, unconstrained_motion
 from hydrostat.plot.activation_figures import draw_activation, draw_candidates, draw_trees
-from hydrostat.plot.design_charts import draw_front, draw_growth, stage_runs
+from hydrostat.plot.design_charts import draw_front, draw_growth, draw_winch_front, stage_runs
 from hydrostat.plot.report_sensitivities import sensitivity_table
 from hydrostat.plot.report_tables import (
     NARROW,
@@ -287,9 +289,14 @@ def alternative_chapters(network: Network) -> list[Chapter]:
         figure = draw_front(others, network, tolerance=network.request.route_options.tolerance, width=CHART)
         note = ", a color for each number of winches"
         parts.append(grid(picture(figure, "front", f"Error against minutes of {work}", note)))
-    if len(best := network.best_by_winches()) > 1:
-        words += " The table has the best network for each number of winches."
-        parts.append(_winch_table(best))
+    if len(rows := winch_front(network)) > 1:
+        words += (
+            " The table has the best network for each number of winches, pulling one way or both ways. A row is no "
+            "better if another has as small an error for as little money and work."
+        )
+        note = ", each with its winches and minutes of work"
+        parts.append(grid(picture(draw_winch_front(rows, width=CHART), "winch-front", "Error against price", note)))
+        parts.append(_winch_table(rows))
     most_alternatives = 12  # so many alternatives have a picture
     shown = [others[index] for index in evenly(len(others), most_alternatives)]
     parts.append(_pictures(network, shown))
@@ -298,16 +305,14 @@ def alternative_chapters(network: Network) -> list[Chapter]:
     return [Chapter("Alternatives", words, parts)]
 
 
-def _winch_table(best: Mapping[int, Alternative | Network]) -> Html:
+def _winch_table(front: Sequence[FrontRow]) -> Html:
     """Table of as-built error and effort by the number of winches."""
+    heads = ("winches", "cables", "error once built [mm]", "motors", f"{front[0].cost.work} [min]", "price [USD]", "")
     rows = []
-    for winches, one in best.items():
-        effort = BuildCost.of_robot(one.robot, one.ik_results)
-        made = (effort.motors, f"{effort.minutes:.0f}", f"{effort.price:.0f}")
-        rows.append((winches, len(one.robot.cables), millimeters(one.expected_error), *made))
-    work = BuildCost.cable_work(next(iter(best.values())).robot)
-    heads = ("winches", "cables", "error once built [mm]", "motors", f"{work} [min]", "price [USD]")
-    return table(heads, rows, numbers=range(len(heads)))
+    for row in front:
+        made = (f"{row.cost.motors} × {row.cost.motor}", f"{row.cost.minutes:.0f}", f"{row.cost.price:.0f}", row.note)
+        rows.append((row.title, row.cables, millimeters(row.expected_error), *made))
+    return table(heads, rows, numbers=range(len(heads) - 1))
 
 
 def evenly(count: int, most: int) -> list[int]:

@@ -22,6 +22,7 @@ from hydrostat.design import (
     Constraints,
     DesignRequest,
     FibreKind,
+    Lift,
     Network,
     RouteOptions,
     SearchRecord,
@@ -100,6 +101,7 @@ OPTIONS = {
     ("--clearance", "7 mm"): {"constraints": replace(PLAIN, clearance=0.007)},
     ("--tension", "12 N"): {"constraints": replace(PLAIN, tension=12.0)},
     ("--slack", "4 mm"): {"constraints": replace(PLAIN, slack=0.004)},
+    ("--front",): {"front": True},
     ("--stepped-spools",): {"constraints": replace(PLAIN, spool_ratio=2.0)},
     ("--symmetric", "y"): {"constraints": replace(PLAIN, mirror="y")},
     ("--lock-winch", "down", "--lock-winch", "up"): {"constraints": replace(PLAIN, locked_winches=("down", "up"))},
@@ -348,6 +350,28 @@ def test_auto_tells_the_error_against_winches_and_cables(
     assert ["1", "1", "45.60 mm", ""] in rows
     assert ["2", "2", f"{1e3 * network.expected_error:.2f} mm", "chosen"] in rows
     assert "by number of winches" not in run("design", strip, "--out", tmp_path / "out")[1]
+
+
+def test_clear_gains_are_printed_and_written_as_alternatives(
+    run: Run, strip: Path, search: Search, no_report: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Oracle: a network by hand; a stop while it is searched keeps the result."""
+    network = plain_network()
+    other = replace(network.alternatives[0], expected_error=0.002)
+    monkeypatch.setattr("hydrostat.design.find_lifts", lambda _: (Lift(words="--two-way", network=other),))
+    code, told, _ = run("design", strip, "--out", tmp_path / "out")
+    assert code == 0
+    assert "note: --two-way would leave at most 2 mm as built, by a quick search" in told
+    assert "best network for each number of winches" in told
+    *_, last = sorted((tmp_path / "out" / "alternatives").iterdir())
+    assert last.name.startswith(f"{len(network.alternatives) + 1:02d}_")
+    assert robot_hash(hs.load_robot(last)) == robot_hash(other.robot)
+
+    def stop(_: Network) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("hydrostat.design.find_lifts", stop)
+    assert run("design", strip, "--out", tmp_path / "out")[0] == 0
 
 
 STARTS = 'method "trees" needs a number of winches and cannot improve a network. Use method "routes".'

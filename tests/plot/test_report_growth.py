@@ -7,10 +7,19 @@ import pytest
 from plot.designs import SCRIPT, grown, hostile_network, plain_network, space_network
 from plot.test_report import Page
 
-from hydrostat.design import Alternative, BuildCost, Certificate, DesignStage, Network, on_front, score_card
+from hydrostat.design import (
+    Alternative,
+    BuildCost,
+    Certificate,
+    DesignStage,
+    Network,
+    on_front,
+    score_card,
+    winch_front,
+)
 from hydrostat.drawing import Color
 from hydrostat.plot import inline_svg
-from hydrostat.plot.design_charts import draw_front, draw_growth, stage_runs
+from hydrostat.plot.design_charts import draw_front, draw_growth, draw_winch_front, stage_runs
 from hydrostat.plot.report import report_text
 from hydrostat.plot.report_chapters import alternative_chapters, certificate_words, evenly
 from hydrostat.plot.robot_figures import draw_stage, stage_frame
@@ -158,6 +167,26 @@ def test_a_row_for_each_number_of_winches() -> None:
     assert all({"motors", "minutes", "price"} <= row["craft"].keys() for row in rows)
     (chapter,) = alternative_chapters(network)
     assert "price [USD]" in "".join(map(str, chapter.parts))
+
+
+def test_winches_that_pull_both_ways_are_a_row_and_a_diamond() -> None:
+    """Oracle: rows by hand. Of two with one price and one effort, the row of the larger error is no better."""
+    one = sized(1, 2, 0.008)
+    turned = replace(one.robot.cables[0], reverse=True)
+    both = replace(one, robot=one.robot.with_network(one.robot.winches, [turned, one.robot.cables[1]]))
+    alternatives = (one, replace(both, expected_error=0.007), replace(both, expected_error=0.0071))
+    rows = winch_front(replace(chosen(), alternatives=alternatives))
+    assert [(row.title, row.expected_error, row.note) for row in rows] == [
+        ("1", 0.008, "no better"),
+        ("1, both ways", 0.007, ""),
+        ("2", 0.006, "chosen"),
+    ]
+    axes = draw_winch_front(rows).axes[0]
+    dots = [line for line in axes.lines if line.get_markersize() == 5.5]
+    assert [dot.get_marker() for dot in dots] == ["o", "D", "o"]
+    assert [dot.get_markerfacecolor() == "white" for dot in dots] == [True, False, False]
+    assert [float(dot.get_ydata()[0]) for dot in dots] == pytest.approx([8.0, 7.0, 6.0])
+    assert [float(dot.get_xdata()[0]) for dot in dots] == [row.cost.price for row in rows]
 
 
 @pytest.mark.parametrize("seed", range(5))

@@ -23,6 +23,7 @@ from hydrostat.design.routes.sketch import draw_lines, sketches
 from hydrostat.design.skin_region import cable_region
 from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.design.winch_room import built_in, limit_torque
+from hydrostat.ik import IKResult
 from hydrostat.robot import Marker, PoseTarget, Robot
 from hydrostat.simulation import BodyPhysics
 
@@ -36,6 +37,7 @@ class RouteProposal:
     expected_error: float  # rms error expected of a robot as it is built [m]
     is_refined: bool  # False for a first sketch, True for the last proposal of a search
     is_buildable: bool  # True if a kit would be made of it; not checked for a first sketch
+    ik_results: tuple[IKResult, ...] = ()  # its results for the poses, of the last proposal
 
 
 def propose_routes(robot: Robot, request: DesignRequest, *, body: BodyPhysics | None = None) -> Iterator[RouteProposal]:
@@ -155,7 +157,7 @@ class QuickSearch:
             if best is None or fits:
                 best = RouteProposal(
                     robot=network.robot, error=network.rms_error, expected_error=network.expected_error,
-                    is_refined=True, is_buildable=fits,
+                    is_refined=True, is_buildable=fits, ik_results=network.ik_results,
                 )  # fmt: skip
             if fits:
                 break

@@ -99,8 +99,8 @@ class SearchRecord:
 
 
 def _identity(robot: Robot, request: DesignRequest) -> dict[str, Any]:
-    """Values by which a record belongs to a search; the time limit may change."""
-    asked = {name: value for name, value in request.as_values().items() if name != "seconds"}
+    """Values by which a record belongs to a search; the time limit may change, and searches after it."""
+    asked = {name: value for name, value in request.as_values().items() if name not in ("seconds", "front")}
     poses = {pose.name: {name: list(at) for name, at in pose.targets.items()} for pose in request.poses}
     return {"version": __version__, "robot": robot_hash(robot), "request": asked | {"poses": poses}}
 
