@@ -1,4 +1,4 @@
-"""Command line: one thin file for each command. The program starts at `start.py`; the door holds what commands share."""
+"""Command line: one thin file for each command. The program starts at `start.py`; the door holds what they share."""
 
 from typing import TYPE_CHECKING
 
