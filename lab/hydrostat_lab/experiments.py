@@ -136,6 +136,8 @@ def _curricula(options: DdpgOptions, layers: str) -> Experiment:
         "a: halved": replace(options, curriculum=Curriculum.HALVE),
         "b: less a tenth": tenth,
         "c: b, critic 0.01": replace(tenth, late_critic_rate=1e-2),
+        "c from the start": replace(tenth, critic_rate=1e-2),
+        "c begun at 8.1 mm": replace(tenth, critic_rate=1e-2, tolerance=0.81),
         "d: current error": replace(options, curriculum=Curriculum.CURRENT),
     }
     return Experiment(
@@ -157,6 +159,11 @@ def _curricula(options: DdpgOptions, layers: str) -> Experiment:
                 text="d masters smaller tolerances than b (F10, proposed)",
                 measure=_finer("d: current error", "b: less a tenth"),
                 unit="mm",
+            ),
+            Claim(
+                text="c begun at 8.1 mm masters it (R83)",
+                measure=lambda ran: ran["c begun at 8.1 mm"].epochs.success.max(axis=0),
+                above=MASTERED,
             ),
         ),
         shown=("success", "tolerance"),

@@ -2,6 +2,8 @@
 
 import csv
 import io
+import os
+import time
 from collections.abc import Sequence
 from dataclasses import replace
 from enum import StrEnum
@@ -66,7 +68,7 @@ def reproduce(
     seeds: Annotated[
         int | None, typer.Option(metavar="N", help="Number of random seeds.", show_default="by --size")
     ] = None,
-    jobs: Annotated[int, typer.Option(metavar="N", help="Number of sampling processes. -1 = one per core.")] = -1,
+    jobs: Annotated[int, typer.Option(metavar="N", help="Number of processes. -1 = one per core.")] = -1,
     epochs: Annotated[
         int | None,
         typer.Option(
@@ -101,6 +103,7 @@ def reproduce(
 
     `list` prints all tables and figures, also those of the README, with the results so far. reproduced.md in DIR sets
     the thesis, the largest runs and those of DIR side by side. Repeat the command to resume it: finished tables stay.
+    `all` leaves out tables that --size minutes cannot tell, and says why.
 
     Example: hydrostat reproduce table-5.1 figure-5.14 --out build/thesis
     """
@@ -111,33 +114,42 @@ def reproduce(
         print("\n".join(catalog.catalog_lines()))
         return
     trials = (*TRIALS, SHARED, POLICIES, GRADIENT)
-    asked = _choose(what, (*THINGS, *trials, *REFERENCE_TABLES))
+    chosen = parse_choice(Size, size, what="--size")
+    asked = _choose(what, (*THINGS, *trials, *REFERENCE_TABLES), chosen)
     if out is None:
         raise InputError("Missing option '--out'. Write a folder, e.g. --out build/thesis.")
     catalog.require_extras(asked)
-    study, bodies = _study(parse_choice(Size, size, what="--size"), sampling, robots, counts, targets, seeds)
+    study, bodies = _study(chosen, sampling, robots, counts, targets, seeds)
     require_folder(out)
     out.mkdir(parents=True, exist_ok=True)
+    began = time.monotonic()
     if tables := [name for name in asked if name in THINGS]:
         _compare(tables, study, bodies, out, jobs)
     if names := [name for name in asked if name in trials]:
         much = HowMuch(size=size, seeds=seeds, goals=targets, epochs=epochs)
         reproduce_trials(names, _robot(bodies[0]), out, much, model=model, jobs=jobs)
     reproduce_reference([name for name in asked if name in REFERENCE_TABLES], out, size=size, seeds=seeds)
-    print(f"Wrote {write_page(out)}")
+    print(f"Wrote {write_page(out)} after {(time.monotonic() - began) / 60:.1f} min on {os.cpu_count()} cores")
 
 
-def _choose(what: "Sequence[str]", there: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the names of tables and figures, of all without those that miss a package (InputError: an unknown one)."""
-    others = tuple(name for name in there if name.startswith("figure-5.13"))
-    if "all" in what and find_spec("gymnasium_robotics") is None:
-        print(f"note: {' and '.join(others)} left out: package gymnasium-robotics not found.")
-        return tuple(name for name in there if name not in others)
-    asked = there if "all" in what else tuple(what)
-    for name in asked:
-        if name not in there:
+def _choose(what: "Sequence[str]", there: tuple[str, ...], size: Size) -> tuple[str, ...]:
+    """Return the names of tables and figures (InputError: an unknown one).
+
+    `all` leaves out those that miss a package, and in the smallest size those that such a run cannot tell.
+    """
+    for name in what:
+        if name not in ("all", *there):
             raise InputError(f'unknown table or figure "{name}". Available: all, {", ".join(there)}.')
-    return asked
+    if "all" not in what:
+        return tuple(what)
+    reasons = {entry.name: entry.dear for entry in catalog.CATALOG["Chang (2018)"] if entry.dear}
+    reasons = reasons if size == Size.MINUTES else {}
+    if find_spec("gymnasium_robotics") is None:
+        missing = "package gymnasium-robotics not found"
+        reasons |= {name: missing for name in there if name.startswith("figure-5.13")}
+    for name, reason in reasons.items():
+        print(f"note: {name} left out: {reason}.")
+    return tuple(name for name in there if name not in reasons)
 
 
 def _compare(asked: "Sequence[str]", study: "Study", bodies: "Sequence[str]", out: Path, jobs: int) -> None:

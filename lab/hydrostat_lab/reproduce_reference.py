@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hydrostat.cli import report_progress
-from hydrostat_lab.trial_tables import drawn_runs, format_interval, judged_claims, trials_missing
+from hydrostat_lab.trial_tables import drawn_runs, format_interval, is_finished, judged_claims, trials_missing
 
 if TYPE_CHECKING:
     from hydrostat_lab.experiments import Ran
@@ -36,7 +36,10 @@ def reproduce_reference(names: Sequence[str], out: Path, *, size: str, seeds: in
 
     many, epochs = _SIZES[size]
     count = many if seeds is None else seeds
+    settings = {"seeds": count, "epochs": epochs}
     for name in names:
+        if is_finished(out / f"{name}.json", settings):
+            continue
         reference = REFERENCES[name]
         print(f"\n{name}: {reference.experiment.title}")
         print(f"{reference.task}, {count} seeds: interquartile means and their 95 % intervals\n{_WORDS}", flush=True)
@@ -44,7 +47,7 @@ def reproduce_reference(names: Sequence[str], out: Path, *, size: str, seeds: in
         for way, ran in run_reference(reference, seeds=count, epochs=epochs, progress=report_progress()):
             print(_line(way, ran), flush=True)
             done[way] = ran
-        kept = judged_claims(reference.experiment, done)
+        kept = {"settings": settings, **judged_claims(reference.experiment, done)}
         replace_file(out / f"{name}.json", (json.dumps(kept, indent=1) + "\n").encode())
         print(f"Wrote {save_png(drawn_runs(reference.experiment, done), out / f'{name}.png')} and {name}.json")
 

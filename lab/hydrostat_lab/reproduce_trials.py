@@ -1,7 +1,7 @@
 """`reproduce_trials`: the thesis's experiments with reinforcement learning, for `hydrostat reproduce`."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -18,9 +18,12 @@ from hydrostat_lab.trial_tables import (
 )
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from hydrostat.learning import LearnedModel
     from hydrostat.robot import Robot
     from hydrostat.simulation import Simulation
+    from hydrostat_lab.experiments import Experiment, Run
     from hydrostat_lab.run_experiment import Judged
 
 TRIALS = (
@@ -72,11 +75,12 @@ def reproduce_trials(
         out: folder for tables and pictures; the model too, if none is given.
         much: size of the runs.
         model: file that `hydrostat learn` wrote.
-        jobs: processes that sample where there is no model.
+        jobs: processes that learn, and that sample where there is no model.
     """
     with trials_missing():
-        import hydrostat_lab.experiments  # noqa: F401
+        from hydrostat_lab.experiments import EXPERIMENTS
     from hydrostat.simulation import Simulation
+    from hydrostat_lab.run_experiment import judge_runs
 
     usual = _SIZES[much.size]
     usual = usual if much.goals is None else usual._replace(goals=much.goals)
@@ -84,53 +88,71 @@ def reproduce_trials(
     usual = usual if much.seeds is None else usual._replace(seeds=much.seeds)
     networks = _networks(robot, out, model, usual.samples, jobs)
     networks.check(robot)
-    simulation = Simulation(robot)
     settings = {**usual._asdict(), "pairs": list(usual.pairs), "samples": networks.card.samples}
     settings |= {"robot": networks.card.physics, "error": networks.card.error}
-    for name in names:
-        if not is_finished(out / f"{name}.json", settings):
-            write = _write_shared if name == SHARED else _policies if name in (POLICIES, GRADIENT) else _try
-            write(name, networks, simulation, out, usual=usual, settings=settings)
+    left = [name for name in names if not is_finished(out / f"{name}.json", settings)]
+    experiments = {name: EXPERIMENTS[name] for name in left if name in TRIALS}
+    wait_for = judge_runs(
+        [run for experiment in experiments.values() for run in experiment.runs.values()],
+        networks,
+        robot,
+        seeds=usual.seeds,
+        epochs=lambda layer: usual.small if layer < _LARGE else usual.large,
+        goals=usual.goals,
+        jobs=jobs,
+    )
+    for name, experiment in experiments.items():
+        _try(name, experiment, wait_for, networks, robot, out, settings=settings)
+    for name in left:
+        if name not in TRIALS:
+            write = _write_shared if name == SHARED else _policies
+            write(name, networks, Simulation(robot), out, usual=usual, settings=settings)
 
 
 def _try(
     name: str,
+    experiment: "Experiment",
+    wait_for: "Callable[[Run], Judged]",
     networks: "LearnedModel",
-    simulation: "Simulation",
+    robot: "Robot",
     out: Path,
     *,
-    usual: "_Trials",
     settings: Mapping[str, object],
 ) -> None:
-    """Run an experiment of the thesis, and judge its claims."""
+    """Tell what an experiment of the thesis gave, and judge its claims."""
     from hydrostat.files import replace_file
     from hydrostat.plot import save_png
-    from hydrostat_lab.experiments import EXPERIMENTS
-    from hydrostat_lab.run_experiment import run_experiment
 
-    experiment, width = EXPERIMENTS[name], 1e3 * simulation.robot.body.mesh.size
+    width = 1e3 * robot.body.mesh.size
     print(f"\n{name}: {experiment.title}")
-    print(f"{simulation.robot.name}, {width:.0f} mm; networks of {networks.card.samples} equilibria;", end=" ")
-    print(f"{usual.seeds} seeds:\ninterquartile means and their 95 % intervals\n{_WORDS}")
-    done: list[Judged] = []
-    for judged in run_experiment(
-        experiment,
-        networks,
-        simulation,
-        seeds=usual.seeds,
-        epochs=lambda layer: usual.small if layer < _LARGE else usual.large,
-        goals=usual.goals,
-        progress=report_progress(),
-    ):
-        print(_line(judged, width), flush=True)
-        done.append(judged)
-    runs = {judged.name: judged.ran for judged in done}
+    print(f"{robot.name}, {width:.0f} mm; networks of {networks.card.samples} equilibria;", end=" ")
+    print(f"{settings['seeds']} seeds:\ninterquartile means and their 95 % intervals\n{_WORDS}")
+    done: dict[str, Judged] = {}
+    for way, run in experiment.runs.items():
+        done[way] = wait_for(run)
+        print(_line(way, done[way], width), flush=True)
+    runs = {way: judged.ran for way, judged in done.items()}
     kept = {"settings": settings, **judged_claims(experiment, runs)}
-    for judged in done:
+    for way, judged in done.items():
         exact = np.where(np.isnan(judged.exact), -1.0, judged.exact)
-        kept["runs"][judged.name]["in the simulator [cm]"] = exact.tolist()
+        kept["runs"][way]["in the simulator [cm]"] = exact.tolist()
     replace_file(out / f"{name}.json", (json.dumps(kept, indent=1) + "\n").encode())
     print(f"Wrote {save_png(drawn_runs(experiment, runs), out / f'{name}.png')} and {name}.json")
+    for way, judged in done.items():
+        if experiment.runs[way].random_start:
+            print(f"Wrote {save_png(_draw_episodes(robot, judged), out / f'{name}-poses.png')}")
+
+
+def _draw_episodes(robot: "Robot", judged: "Judged") -> "Figure":
+    """Starts, targets and reached poses of a few episodes (thesis, Fig 5.12)."""
+    from hydrostat.simulation import Simulation
+    from hydrostat_lab.learning_figures import draw_side_by_side
+
+    simulation = Simulation(robot)
+    return draw_side_by_side(
+        robot,
+        {name: [simulation.solve(row, strict=False).nodes for row in rows] for name, rows in judged.shown.items()},
+    )
 
 
 def _write_shared(
@@ -236,7 +258,7 @@ def _networks(robot: "Robot", out: Path, file: Path | None, samples: int, jobs: 
     return LearnedModel.load(kept)
 
 
-def _line(judged: "Judged", width: float) -> str:
+def _line(way: str, judged: "Judged", width: float) -> str:
     """A run in numbers."""
     from hydrostat_lab.experiments import final
     from hydrostat_lab.verdict import interquartile
@@ -251,7 +273,7 @@ def _line(judged: "Judged", width: float) -> str:
         format_interval(seeds, 2),
     ]
     lost = int(np.isnan(exact).sum())
-    text = f"{judged.name:18}{int(ran.epochs.actions[-1]):8}" + "".join(f"{number:>21}" for number in numbers)
+    text = f"{way:18}{int(ran.epochs.actions[-1]):8}" + "".join(f"{number:>21}" for number in numbers)
     return f"{text}{100 * seeds.mean / width:8.2f}{lost:6}"
 
 
@@ -268,7 +290,7 @@ class _Trials(NamedTuple):
 
 
 _SIZES = {
-    "minutes": _Trials(300, 3, 12, 1, 20, (100, 300), 500),
+    "minutes": _Trials(300, 3, 4, 1, 20, (100, 300), 500),
     "hour": _Trials(1000, 5, 30, 8, 60, (300, 10_000), 24_000),
     "full": _Trials(10_000, 10, 200, 50, 1000, (300, 3_000, 10_000), 48_000),
 }

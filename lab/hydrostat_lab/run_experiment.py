@@ -1,15 +1,18 @@
-"""`run_experiment`: the runs of an experiment with several seeds, and what the simulator makes of the best policies."""
+"""`judge_runs`: runs of experiments with several seeds, and what the simulator makes of the best policies."""
 
-from collections.abc import Callable, Iterator
+import os
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import torch
+from joblib import Parallel, delayed
 
 from hydrostat.learning import LearnedModel, antagonists, verify
 from hydrostat.progress import Progress, no_progress
+from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
-from hydrostat_lab.experiments import Experiment, Ran
+from hydrostat_lab.experiments import Ran, Run
 from hydrostat_lab.hindsight_ddpg import HindsightDdpg
 from hydrostat_lab.policies import Act
 from hydrostat_lab.trials import NetworkReach
@@ -20,14 +23,17 @@ Asked = tuple[torch.Tensor, torch.Tensor]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Judged:
-    """Distances of the best policies of a run in the simulator [cm], after the last action, (seeds, goals).
+    """Result of a run, and what the simulator makes of it.
 
-    NaN where an episode met no equilibrium.
+    Attributes:
+        ran: epochs and distances in the networks.
+        exact: distances of the best policies after the last action [cm], (seeds, goals); NaN without an equilibrium.
+        shown: contractions of starts, targets and last actions of a few episodes [m], for pictures.
     """
 
-    name: str
     ran: Ran
     exact: np.ndarray
+    shown: Mapping[str, np.ndarray]
 
 
 def finger_pairs(model: LearnedModel) -> Groups:
@@ -36,37 +42,77 @@ def finger_pairs(model: LearnedModel) -> Groups:
     return antagonists(model.jacobian(rest).T)
 
 
-def run_experiment(
-    experiment: Experiment,
+def judge_runs(
+    runs: Sequence[Run],
     model: LearnedModel,
-    simulation: Simulation,
+    robot: Robot,
     *,
     seeds: int,
     epochs: Callable[[int], int],
     goals: int,
-    progress: Progress = no_progress,
-) -> Iterator[Judged]:
-    """Learn in the networks of a model, and judge the best policies of each run in the simulator.
+    jobs: int = 1,
+) -> Callable[[Run], Judged]:
+    """Learn in the networks of a model in several processes, and judge the best policies in the simulator.
 
     Args:
-        experiment: experiment to run.
-        model: networks of a robot.
-        simulation: simulation of the same robot.
+        runs: runs to learn, in the order in which they begin; equal ones are learned once.
+        model: networks of the robot.
+        robot: robot of the simulator.
         seeds: number of random starts of each run.
         epochs: epochs of a run, by the width of its widest layer.
         goals: drawn evenly among actions, simulated, and asked for; nothing is learned from them.
-        progress: callback for progress.
+        jobs: processes; -1 for one on each core.
+
+    Returns:
+        A function that waits for the result of one of the runs.
     """
-    groups = finger_pairs(model)
-    for name, run in experiment.runs.items():
-        trials = NetworkReach(model, groups=groups, horizon=run.horizon, random_start=run.random_start)
-        many = epochs(max(run.options.layers))
-        learner = HindsightDdpg(trials, run.options, seeds=seeds, epochs=many)
-        done = learner.learn(progress=lambda at, of, name=name: progress(name, at, of))
-        ran = Ran(run=run, epochs=done, best=learner.test(learner.best, _TESTS))
-        asked = exact_goals(simulation, trials, goals, progress=progress)
-        exact = exact_distances(simulation, trials, learner.best, seeds, asked, progress=progress)
-        yield Judged(name=name, ran=ran, exact=exact)
+    unlike = list(dict.fromkeys(runs))
+    work = Parallel(n_jobs=jobs, return_as="generator", batch_size=1, pre_dispatch="all")
+    parent = os.getpid() if jobs != 1 else None
+    many = [epochs(max(run.options.layers)) for run in unlike]
+    tasks = (
+        delayed(_judge)(run, model, robot, seeds, each, goals, parent) for run, each in zip(unlike, many, strict=True)
+    )
+    coming, found = zip(unlike, work(tasks), strict=True), dict[Run, Judged]()
+
+    def wait_for(run: Run) -> Judged:
+        while run not in found:
+            other, judged = next(coming)
+            found[other] = judged
+        return found[run]
+
+    return wait_for
+
+
+def _judge(
+    run: Run, model: LearnedModel, robot: Robot, seeds: int, epochs: int, goals: int, parent: int | None
+) -> Judged:
+    def watch(_at: int, _of: int) -> None:
+        if parent not in (None, os.getppid()) and os.name == "posix":
+            os._exit(1)  # its parent was killed
+
+    trials = NetworkReach(model, groups=finger_pairs(model), horizon=run.horizon, random_start=run.random_start)
+    simulation, learner = Simulation(robot), HindsightDdpg(trials, run.options, seeds=seeds, epochs=epochs)
+    ran = Ran(run=run, epochs=learner.learn(progress=watch), best=learner.test(learner.best, _TESTS))
+    asked = exact_goals(simulation, trials, goals)
+    exact = exact_distances(simulation, trials, learner.best, seeds, asked)
+    return Judged(ran=ran, exact=exact, shown=_show_episodes(trials, learner.best, seeds, asked))
+
+
+def _show_episodes(trials: NetworkReach, policy: Act, seeds: int, asked: Asked) -> dict[str, np.ndarray]:
+    """Contractions [m] in a few episodes of the first seed, as the networks see them."""
+    draw, shape = torch.Generator().manual_seed(_GOALS), (1, asked[1].shape[1])
+    starts = trials.draw_acts(draw, shape)[1]
+    wanted, _ = trials.draw_acts(draw, shape)
+    seen, goal = (torch.nan_to_num(part).expand(seeds, -1, -1) for part in asked)
+    with torch.no_grad():
+        for _ in range(trials.horizon):
+            acts = policy(seen, goal)
+            seen, _ = trials.act(acts)
+    nothing = torch.zeros_like(trials.contractions(wanted))
+    shown = {"start": nothing if starts is None else trials.contractions(starts), "target": trials.contractions(wanted)}
+    shown["reached"] = trials.contractions(acts)
+    return {name: rows[0, :_SHOWN].double().numpy() for name, rows in shown.items()}
 
 
 def exact_goals(simulation: Simulation, trials: NetworkReach, goals: int, *, progress: Progress = no_progress) -> Asked:
@@ -136,6 +182,9 @@ def _places(simulation: Simulation, taken: torch.Tensor, stage: str, progress: P
             found[one, goal] = simulation.marker_anchors.positions(pose.nodes)
     return torch.tensor(100.0 * found.reshape(*rows.shape[:2], -1), dtype=torch.float32)
 
+
+_SHOWN = 4
+"""Episodes of a picture."""
 
 _TESTS = 300
 """Goals that the best policies are tried on in the networks."""

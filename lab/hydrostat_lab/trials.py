@@ -93,13 +93,14 @@ class NetworkReach(Trials):
 
     def begin(self, draw: torch.Generator, shape: tuple[int, int]) -> Begun:
         """Begin at rest, or anywhere."""
+        goals, starts = self.draw_acts(draw, shape)
+        states = self.rest.expand(*shape, -1) if starts is None else self.reach(starts)
+        return states, states, self.reach(goals)
 
-        def anywhere() -> Tensor:
-            return self.reach(2.0 * torch.rand(*shape, self.actions, generator=draw) - 1.0)
-
-        goals = anywhere()
-        states = anywhere() if self._random else self.rest.expand(*shape, -1)
-        return states, states, goals
+    def draw_acts(self, draw: torch.Generator, shape: tuple[int, int]) -> tuple[Tensor, Tensor | None]:
+        """Draw the actions that lead to goals, and those that lead to starts (None: at rest)."""
+        goals = 2.0 * torch.rand(*shape, self.actions, generator=draw) - 1.0
+        return goals, 2.0 * torch.rand(*shape, self.actions, generator=draw) - 1.0 if self._random else None
 
     def act(self, acts: Tensor) -> tuple[Tensor, Tensor]:
         """Return the marker positions for contractions."""

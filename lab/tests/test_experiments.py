@@ -15,8 +15,9 @@ from hydrostat.robot import Robot  # noqa: E402
 from hydrostat.simulation import Simulation  # noqa: E402
 from hydrostat_lab import experiments as room  # noqa: E402
 from hydrostat_lab import reproduce_trials as command  # noqa: E402
+from hydrostat_lab import run_experiment as runs  # noqa: E402
 from hydrostat_lab.experiments import EXPERIMENTS, Ran, error, final, least, speed  # noqa: E402
-from hydrostat_lab.hindsight_ddpg import Epochs  # noqa: E402
+from hydrostat_lab.hindsight_ddpg import Epochs, HindsightDdpg  # noqa: E402
 from hydrostat_lab.run_experiment import certified_distances, exact_distances, exact_goals, finger_pairs  # noqa: E402
 from hydrostat_lab.trials import NetworkReach  # noqa: E402
 
@@ -132,3 +133,24 @@ def test_an_experiment_writes_its_table_picture_and_verdicts(
     assert len(kept["claims"]) == 2
     assert np.array(kept["runs"]["noise 0.1"]["success"]).shape == (3, 2)
     assert (tmp_path / "table-noise.png").stat().st_size > 10_000
+
+
+def test_equal_runs_are_learned_once_and_episodes_are_shown(
+    model: LearnedModel, robot: Robot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Oracle: counted runs, and the goals that the simulator was asked for."""
+    options = replace(room.SMALL, cycles=1, updates=1, batch=4)
+    run, other = (room.Run(options=options, horizon=2, random_start=start) for start in (True, False))
+    learned = []
+    monkeypatch.setattr(
+        runs, "HindsightDdpg", lambda *given, **more: learned.append(1) or HindsightDdpg(*given, **more)
+    )
+    wait_for = runs.judge_runs([run, other, run], model, robot, seeds=2, epochs=lambda _: 1, goals=5)
+    assert wait_for(other).shown["start"].any() == 0
+    shown = wait_for(run).shown
+    assert len(learned) == 2
+    trials = NetworkReach(model, groups=finger_pairs(model), random_start=True)
+    begun, wanted = exact_goals(Simulation(robot), trials, 5)
+    for name, rows in (("start", begun), ("target", wanted)):
+        reached = np.array([100 * np.ravel(list(Simulation(robot).solve(row).markers.values())) for row in shown[name]])
+        np.testing.assert_allclose(reached, rows[0, :4].numpy(), atol=1.0)

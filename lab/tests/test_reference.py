@@ -112,6 +112,8 @@ def test_its_table_picture_and_verdicts(tmp_path: Path, monkeypatch: pytest.Monk
     assert "sparse ends above 0.9, as published: " in told
     assert {file.name for file in tmp_path.iterdir()} == {"figure-5.13.json", "figure-5.13.png"}
     assert set(command.REFERENCE_TABLES) == set(REFERENCES)
+    command.reproduce_reference(["figure-5.13"], tmp_path, size="minutes", seeds=2)
+    assert "figure-5.13: finished before" in capsys.readouterr().out
 
 
 def test_what_is_missing_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
