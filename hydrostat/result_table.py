@@ -41,6 +41,10 @@ class Tabular:
         rows = zip(*columns.values(), strict=True)
         return replace_file(Path(path), csv_text(list(columns), ([f"{value:.9g}" for value in row] for row in rows)))
 
+    def _repr_html_(self) -> str:
+        """Summary and the first rows, for a notebook."""
+        return table_html(self)
+
 
 @dataclass(frozen=True, eq=False)
 class ResultTable(Tabular):
@@ -72,10 +76,6 @@ class ResultTable(Tabular):
         """Return a one-line summary."""
         rows = len(next(iter(self.numbers.values()), ()))
         return f"<ResultTable of {rows} x {len(self.numbers)}: {', '.join(self.numbers)}>"
-
-    def _repr_html_(self) -> str:
-        """First rows, for a notebook."""
-        return table_html(self)
 
 
 def marker_columns(places: Mapping[str, Any]) -> Columns:

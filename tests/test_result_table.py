@@ -8,9 +8,10 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from builders import gallery_robot
+from builders import gallery_robot, strip_robot
 
 import hydrostat as hs
+from hydrostat.identification import IdentifiedRobot
 
 
 @pytest.fixture(scope="module")
@@ -46,6 +47,33 @@ def test_inverse_kinematics_and_motions_are_tables(simulation: hs.Simulation) ->
     assert table.columns()["contraction_left_m"][-1] == pytest.approx(0.002)
     assert "3 x" in repr(table)
     assert table._repr_html_().count("<tr>") == 4
+
+
+def test_other_results_are_tables_for_notebooks() -> None:
+    """Oracle: their own fields; a kit has a list of its contents."""
+    strip = strip_robot(columns=4, rows=1)
+    simulation = hs.Simulation(strip)
+    pull = {"up": 0.004, "down": 0.001}
+    pose = simulation.solve(pull)
+    branch = hs.continue_branch(simulation, simulation.rest, pull)
+    found = hs.find_equilibria(simulation, pull, count=2)
+    modes, space = hs.find_modes(simulation, count=3), hs.linearize(simulation, pose, modes=2, drag=1.0)
+    measured = hs.Measurements(commands=np.array([[0.004, 0.0]]), markers=("tip",), places=np.array([[[0.1, np.nan]]]))
+    fitted = SimpleNamespace(values={"young": 2e4}, intervals={"young": (1e4, 3e4)})
+    fit = IdentifiedRobot(**dict.fromkeys(IdentifiedRobot.__annotations__, (0,)) | {"fitted": fitted, "robot": strip})
+    kit = hs.Kit(**dict.fromkeys(hs.Kit.__annotations__, ()) | {"robot": strip, "summary": ("a < b",)})
+    for result, name, value in (
+        (branch, "contraction_up_m", 0.004),
+        (found, "energy_J", pose.energy),
+        (modes, "frequency_Hz", modes.frequencies[-1]),
+        (space, "pole_imaginary_1/s", space.poles[-1].imag),
+        (measured, "marker_tip_x_m", 0.1),
+        (fit, "young_high", 3e4),
+    ):
+        assert result.columns()[name][-1] == pytest.approx(value)
+        assert len(repr(result)) < 200
+        assert result._repr_html_().startswith("<div><pre>&lt;")
+    assert kit._repr_html_() == "<pre>&lt;Kit of strip: 0 files, 0 of 0 checks passed&gt;\na &lt; b</pre>"
 
 
 def test_a_dataframe_needs_pandas(simulation: hs.Simulation, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -129,7 +129,7 @@ Time = Annotated[
         "--time",
         "--timeout",
         metavar="TIME",
-        help="Maximum search time. Keeps the best network so far.",
+        help="Maximum search time, without writing the results. Keeps the best network so far.",
         show_default="none",
     ),
 ]

@@ -1,6 +1,7 @@
 """`Kit`: what a robot is built from, as files (R9 to R14, R50 to R57); its manifest, folder and self-check."""
 
 import hashlib
+import html
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -75,6 +76,16 @@ class Kit:
     warnings: tuple[str, ...]
     notes: tuple[str, ...] = ()
     checks: tuple[Check, ...]
+
+    def __repr__(self) -> str:
+        """Return a one-line summary."""
+        passed = sum(check.passed for check in self.checks)
+        return f"<Kit of {self.robot.name}: {len(self.files)} files, {passed} of {len(self.checks)} checks passed>"
+
+    def _repr_html_(self) -> str:
+        """Contents, problems and warnings, for a notebook."""
+        lines = (repr(self), *self.summary, *self.problems, *self.warnings)
+        return f"<pre>{html.escape(chr(10).join(lines))}</pre>"
 
     def write(self, folder: str | Path) -> list[Path]:
         """Write all files into a folder, in place of an earlier kit (InputError: a file cannot be written)."""

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.identification.contraction_map import ContractionMap
 from hydrostat.identification.fit import FittedModel, fit_model
@@ -12,6 +13,7 @@ from hydrostat.identification.fit_contraction_map import fit_contraction_map
 from hydrostat.identification.kinds import KINDS, named_model
 from hydrostat.identification.measurements import Measurements
 from hydrostat.identification.model import IdentificationModel
+from hydrostat.result_table import Columns, Tabular
 from hydrostat.robot import Material, PinDrive, Robot
 from hydrostat.units import MM
 
@@ -20,7 +22,7 @@ UNKNOWN = 0.3
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class IdentifiedRobot:
+class IdentifiedRobot(Tabular):
     """A robot with parameters that were found from measurements.
 
     Attributes:
@@ -46,6 +48,18 @@ class IdentifiedRobot:
     held_out_before: np.ndarray
     held_out_after: np.ndarray
     correction: ContractionMap | None
+
+    def columns(self) -> Columns:
+        """Return value and 95 % interval of each parameter, in one row."""
+        columns = dict[str, Vector]()
+        for name, value in self.fitted.values.items():
+            low, high = self.fitted.intervals[name]
+            columns |= {name: np.array([value]), f"{name}_low": np.array([low]), f"{name}_high": np.array([high])}
+        return columns
+
+    def __repr__(self) -> str:
+        """Return a one-line summary."""
+        return f"<IdentifiedRobot {self.robot.name}: {len(self.fitted.values)} parameters from {len(self.after)} poses>"
 
     @property
     def unknown(self) -> tuple[str, ...]:

@@ -6,10 +6,11 @@ import numpy as np
 
 from hydrostat.arrays import Bool, Float
 from hydrostat.errors import InputError
+from hydrostat.result_table import Columns, Tabular, marker_columns, named_columns
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Measurements:
+class Measurements(Tabular):
     """Rows of measurements of a built robot.
 
     Attributes:
@@ -36,6 +37,17 @@ class Measurements:
     lengths: Float[np.ndarray, "rows pairs"] | None = None
     forces: Float[np.ndarray, "rows winches"] | None = None
     in_order: bool = False
+
+    def columns(self) -> Columns:
+        """Return commands of the winches in their order, and measured places, a row for each pose."""
+        names = [str(number) for number in range(1, 1 + self.commands.shape[1])]
+        columns = named_columns("command", names, self.commands, "m")
+        return columns | marker_columns({name: self.places[:, at] for at, name in enumerate(self.markers)})
+
+    def __repr__(self) -> str:
+        """Return a one-line summary."""
+        rows, winches = self.commands.shape
+        return f"<Measurements: {rows} poses, {winches} winches, {len(self.markers)} markers>"
 
     def __post_init__(self) -> None:
         if self.commands.ndim != 2 or not np.isfinite(self.commands).all():

@@ -20,7 +20,7 @@ from hydrostat.files import clear_unfinished, read_stranger, temporary_path
 from hydrostat.given import path_of
 from hydrostat.learning.sample_plan import SamplePlan
 from hydrostat.learning.sample_shard import REASONS, sample_type
-from hydrostat.result_table import Columns, Tabular, marker_columns, named_columns, table_html
+from hydrostat.result_table import Columns, Tabular, marker_columns, named_columns
 
 FORMAT = 1
 """Version of what lies in a folder of samples."""
@@ -206,10 +206,6 @@ class Samples(Tabular):
         columns = named_columns("contraction", self.facts["winches"], self.contractions, "m")
         columns |= marker_columns({name: self.markers[:, row] for row, name in enumerate(self.facts["markers"])})
         return columns | named_columns("tension", self.facts["cables"], self.tensions, "N")
-
-    def _repr_html_(self) -> str:
-        """Summary and the first rows, for a notebook."""
-        return table_html(self)
 
     def __repr__(self) -> str:
         """Return a description of one line."""

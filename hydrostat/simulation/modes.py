@@ -6,13 +6,14 @@ from typing import SupportsIndex
 import numpy as np
 
 from hydrostat.arrays import Float, Vector
+from hydrostat.result_table import Columns, Tabular
 from hydrostat.simulation.equilibrium import Equilibrium
 from hydrostat.simulation.linear_pose import LinearPose
 from hydrostat.simulation.simulation import Simulation
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Modes:
+class Modes(Tabular):
     """Vibration modes about a pose at fixed controls, by rising frequency.
 
     Attributes:
@@ -24,6 +25,14 @@ class Modes:
     frequencies: Vector
     damping: Vector
     shapes: Float[np.ndarray, "modes nodes dim"]
+
+    def columns(self) -> Columns:
+        """Return frequency and damping ratio, a row for each mode."""
+        return {"frequency_Hz": self.frequencies, "damping_ratio": self.damping}
+
+    def __repr__(self) -> str:
+        """Return a one-line summary."""
+        return f"<{len(self.frequencies)} Modes: {', '.join(f'{value:.3g}' for value in self.frequencies)} Hz>"
 
 
 def find_modes(simulation: Simulation, pose: Equilibrium | None = None, *, count: SupportsIndex = 6) -> Modes:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from hydrostat.arrays import Float, Nodes, Vector
 from hydrostat.errors import HydrostatWarning
 from hydrostat.given import check_not_negative
+from hydrostat.result_table import Columns, Tabular
 from hydrostat.simulation.equilibrium import Equilibrium
 from hydrostat.simulation.linear_pose import LinearPose
 from hydrostat.simulation.sensor_reader import SensorReader
@@ -17,7 +18,7 @@ from hydrostat.simulation.simulation import Simulation
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class StateSpace:
+class StateSpace(Tabular):
     """Linear model dz/dt = A z + B u, y = C z of small motions about a pose.
 
     z holds modal displacements, modal velocities, then those displacements as each Maxwell branch of the material
@@ -43,6 +44,14 @@ class StateSpace:
     outputs: tuple[str, ...]
     basis: Float[np.ndarray, "dofs modes"]
     masses: Vector
+
+    def columns(self) -> Columns:
+        """Return the poles, slowest first."""
+        return {"pole_real_1/s": self.poles.real, "pole_imaginary_1/s": self.poles.imag}
+
+    def __repr__(self) -> str:
+        """Return a one-line summary."""
+        return f"<StateSpace: {len(self.A)} states, inputs {', '.join(self.inputs)}; outputs {', '.join(self.outputs)}>"
 
     @property
     def poles(self) -> NDArray[np.complex128]:

@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from hydrostat.arrays import Vector
+from hydrostat.result_table import Columns, ResultTable, Tabular
 from hydrostat.simulation.equilibrium import Equilibrium
 from hydrostat.units import plural
 
@@ -65,7 +66,7 @@ class CriticalPoint:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Branch:
+class Branch(Tabular):
     """Equilibria along a straight line of contractions.
 
     Attributes:
@@ -85,6 +86,12 @@ class Branch:
     def __repr__(self) -> str:
         """Return a one-line summary."""
         return f"<Branch of {plural(len(self.points), 'pose')}: {self.reason}>"
+
+    def columns(self) -> Columns:
+        """Return share of the way, stability (1 or 0), contractions, markers and tensions, a row for each pose."""
+        shares, stable = zip(*((point.share, float(point.stable)) for point in self.points), strict=True)
+        columns = {"share": np.array(shares), "stable": np.array(stable)}
+        return columns | ResultTable.of(point.pose for point in self.points).columns()
 
     @property
     def reaches_goal(self) -> bool:

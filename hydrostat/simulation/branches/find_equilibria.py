@@ -12,6 +12,7 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.given import check_type
 from hydrostat.progress import Progress
+from hydrostat.result_table import Columns, ResultTable, Tabular
 from hydrostat.robot import PinDrive
 from hydrostat.simulation.branches.loading_paths import Approach, follow_approach, loading_paths_to
 from hydrostat.simulation.equilibrium import Equilibrium, largest_distance
@@ -33,7 +34,7 @@ class FoundPose:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Multistability:
+class Multistability(Tabular):
     """Equilibria of a robot at the same contractions after different loading paths.
 
     Attributes:
@@ -57,6 +58,12 @@ class Multistability:
     def __repr__(self) -> str:
         """Return a one-line summary."""
         return f"<Multistability: {plural(len(self.poses), 'pose')} after {plural(self.starts, 'start')}>"
+
+    def columns(self) -> Columns:
+        """Return energy, number of loading paths, contractions, markers and tensions, a row for each pose."""
+        energies, paths = np.array([[found.pose.energy, len(found.ways)] for found in self.poses]).reshape(-1, 2).T
+        table = ResultTable.of(found.pose for found in self.poses).columns() if self.poses else {}
+        return {"energy_J": energies, "loading_paths": paths} | table
 
     @property
     def unique(self) -> bool:

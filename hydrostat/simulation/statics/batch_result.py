@@ -12,7 +12,7 @@ from hydrostat.arrays import Bool, Float, Nodes, Points, Vector
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.geometry import Anchors
 from hydrostat.mechanics import Reason
-from hydrostat.result_table import Columns, Tabular, marker_columns, named_columns, table_html
+from hydrostat.result_table import Columns, Tabular, marker_columns, named_columns
 from hydrostat.robot import Robot
 from hydrostat.simulation.equilibrium import Equilibrium
 
@@ -81,10 +81,6 @@ class BatchResult(Tabular):
             columns[f"drive_{drive.name}_{drive.unit}"] = values
         columns |= marker_columns({m.name: self.markers[:, row] for row, m in enumerate(robot.markers)})
         return columns | named_columns("tension", [cable.name for cable in robot.cables], self.tensions, "N")
-
-    def _repr_html_(self) -> str:
-        """Summary and the first rows, for a notebook."""
-        return table_html(self)
 
     @property
     def converged(self) -> Bool[np.ndarray, " poses"]:
