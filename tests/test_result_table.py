@@ -5,6 +5,7 @@ import sys
 import warnings
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -49,6 +50,7 @@ def test_inverse_kinematics_and_motions_are_tables(simulation: hs.Simulation) ->
     assert table._repr_html_().count("<tr>") == 4
 
 
+@pytest.mark.usefixtures("unchecked")  # stand-ins
 def test_other_results_are_tables_for_notebooks() -> None:
     """Oracle: their own fields; a kit has a list of its contents."""
     strip = strip_robot(columns=4, rows=1)
@@ -61,7 +63,7 @@ def test_other_results_are_tables_for_notebooks() -> None:
     measured = hs.Measurements(commands=np.array([[0.004, 0.0]]), markers=("tip",), places=np.array([[[0.1, np.nan]]]))
     fitted = SimpleNamespace(values={"young": 2e4}, intervals={"young": (1e4, 3e4)})
     fit = IdentifiedRobot(**dict.fromkeys(IdentifiedRobot.__annotations__, (0,)) | {"fitted": fitted, "robot": strip})
-    kit = hs.Kit(**dict.fromkeys(hs.Kit.__annotations__, ()) | {"robot": strip, "summary": ("a < b",)})
+    kit = hs.Kit(**{**dict[str, Any].fromkeys(hs.Kit.__annotations__, ()), "robot": strip, "summary": ("a < b",)})
     for result, name, value in (
         (branch, "contraction_up_m", 0.004),
         (found, "energy_J", pose.energy),

@@ -226,7 +226,7 @@ def test_a_cable_has_two_points_at_least() -> None:
 def test_values_that_it_never_gives_are_positive() -> None:
     """Oracle: a robot whose file says none of them."""
     robot = strip_robot(columns=2, rows=1)
-    assert min(robot.pins[0].stiffness, robot.cables[0].smoothing, robot.body.thickness) > 0
+    assert min(robot.pins[0].stiffness, robot.cables[0].smoothing, robot.body.thickness or 0.0) > 0
     assert Cable(winch="up", points=((0.0, 0.0), (0.1, 0.0))).stiffness > 0
 
 

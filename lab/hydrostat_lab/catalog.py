@@ -137,6 +137,7 @@ CATALOG = {
                 "c does not master 8.1 mm (R83)",
                 "d masters smaller tolerances than b (F10, proposed)",
             ),
+            dear="2,000 actions with a sparse reward and T=5 master no tolerance; --size hour takes 15,000",
         ),
         CatalogEntry(
             "figure-5.10",

@@ -51,7 +51,8 @@ def judged_claims(experiment: "Experiment", ran: "Mapping[str, Ran]") -> dict[st
     claims = list[dict[str, object]]()
     for claim in experiment.claims:
         values = claim.measure(ran)
-        word = verdict(values, claim.above)
+        actions = max(int(run.epochs.actions[-1]) for run in ran.values())
+        word = f"{verdict(values, claim.above)}, at {actions:,} actions"
         number = f"{format_interval(interquartile(values), 3)} {claim.unit}".rstrip()
         print(f"  {claim.text}: {word}, {number} (claim: above {claim.above:g})")
         claims.append({"claim": claim.text, "verdict": word, "number": number, "seeds": values.tolist()})
