@@ -110,11 +110,11 @@ def reproduce(
     from hydrostat_lab.reproduce_reference import REFERENCE_TABLES, reproduce_reference
     from hydrostat_lab.reproduce_trials import GRADIENT, POLICIES, SHARED, TRIALS, HowMuch, reproduce_trials
 
+    began = time.monotonic()
     if what == ["list"]:
         print("\n".join(catalog.catalog_lines()))
         return
-    trials = (*TRIALS, SHARED, POLICIES, GRADIENT)
-    chosen = parse_choice(Size, size, what="--size")
+    trials, chosen = (*TRIALS, SHARED, POLICIES, GRADIENT), parse_choice(Size, size, what="--size")
     asked = _choose(what, (*THINGS, *trials, *REFERENCE_TABLES), chosen)
     if out is None:
         raise InputError("Missing option '--out'. Write a folder, e.g. --out build/thesis.")
@@ -122,7 +122,6 @@ def reproduce(
     study, bodies = _study(chosen, sampling, robots, counts, targets, seeds)
     require_folder(out)
     out.mkdir(parents=True, exist_ok=True)
-    began = time.monotonic()
     if tables := [name for name in asked if name in THINGS]:
         _compare(tables, study, bodies, out, jobs)
     if names := [name for name in asked if name in trials]:
