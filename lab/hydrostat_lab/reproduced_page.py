@@ -34,7 +34,9 @@ def write_page(folder: Path) -> Path:
         here = read_findings_of(folder, entry)
         for place, (told, new) in enumerate(zip_longest(entry.read_findings(), here)):
             first, found = place == 0, told or Finding(new.claim, "", "not judged")
-            new = new or Finding("", "", "" if files else f"not run{': ' * bool(entry.dear)}{entry.dear}")
+            new = new or Finding(
+                "", "", "" if files else f"not run{': ' * bool(first and entry.dear)}{entry.dear * first}"
+            )
             cells = [f"[{entry.name}](#{_anchor(entry.name)})" if first and files else entry.name * first]
             cells += [found.claim, entry.thesis * first, found.number, found.verdict, new.number, new.verdict]
             lines.append(f"| {' | '.join(cell.replace('|', '/') for cell in cells)} |")
