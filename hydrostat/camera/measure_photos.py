@@ -316,4 +316,5 @@ def _table(robot: Robot, photos: Sequence[Photo], places: Found) -> Measurements
         markers=names,
         places=np.array([[each.get(name, nowhere) for name in names] for each in places]),
         masses=np.array([[photo.masses.get(name, 0.0) for name in names] for photo in photos]),
+        in_order=all(photo.step is not None for photo in photos),
     )

@@ -4,7 +4,7 @@ import csv
 import re
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -37,12 +37,14 @@ class Photo:
         contractions: contraction of winches [m]; others do not contract.
         masses: masses hung at markers [kg].
         loads: other loads, which are in no table.
+        step: number of the pose in a motion, so that equal contractions up and down are two poses; None without one.
     """
 
     file: Path
     contractions: Mapping[str, float]
     masses: Mapping[str, float]
     loads: tuple[Load, ...] = ()
+    step: int | None = None
 
     @property
     def name(self) -> str:
@@ -51,9 +53,9 @@ class Photo:
 
     @property
     def pose(self) -> tuple[object, ...]:
-        """Contractions and loads, which photographs of one pose share."""
+        """Step, contractions and loads, which photographs of one pose share."""
         pulls = sorted((name, value) for name, value in self.contractions.items() if value)
-        return (*pulls, *self.loads_of_pose)
+        return (self.step, *pulls, *self.loads_of_pose)
 
     @property
     def loads_of_pose(self) -> tuple[Load, ...]:
@@ -65,8 +67,10 @@ class Photo:
     def read_all(files: Sequence[Path], robot: Robot, table: Path | None = None) -> "list[Photo]":
         """Photographs with contractions from their names, such as "left=12mm,right=0mm.jpg", or from a table.
 
-        A name may also hold hung masses, such as "tip=100g", and end in a number in brackets, such as " (2)", for more
-        photographs of one pose.
+        A name may also hold hung masses, such as "tip=100g", begin with the number of its step in a motion, such as
+        "03 ", and end in a number in brackets, such as " (2)", for more photographs of one pose.
+
+        Photographs with steps come in their order.
 
         Raises:
             InputError: a photograph without contractions, an unknown winch or marker, or a file that is named twice.
@@ -76,15 +80,18 @@ class Photo:
         names = [file.name for file in files]
         if twice := [name for name in names if names.count(name) > 1]:
             raise InputError(f"{twice[0]}: two photographs have this name. Rename one.")
-        if table is not None:
-            return _with_table(files, robot, table)
-        return [_with_name(file, robot) for file in files]
+        named = [_with_name(file, robot) for file in files] if table is None else _with_table(files, robot, table)
+        return sorted(named, key=lambda photo: photo.step or 0)
+
+
+_POSE_NAME = re.compile(r"\s*(?:(\d{1,9})\s+)?(.*?)\s*(?:\(\d+\))?", re.DOTALL)
 
 
 def _with_name(file: Path, robot: Robot) -> Photo:
-    words = re.sub(r"\s*\(\d+\)$", "", file.stem).strip()
+    number, words = _POSE_NAME.fullmatch(file.stem).groups()  # type: ignore[union-attr]
+    step = None if number is None else int(number)
     if words == "rest":
-        return Photo(file=file, contractions={}, masses={})
+        return Photo(file=file, contractions={}, masses={}, step=step)
     contractions, masses = {}, {}
     for part in words.split(","):
         name, equals, value = (each.strip() for each in part.partition("="))
@@ -94,7 +101,7 @@ def _with_name(file: Path, robot: Robot) -> Photo:
                 "--table."
             )
         _sort(f"{file.name}", name, value, robot, contractions, masses)
-    return Photo(file=file, contractions=contractions, masses=masses)
+    return Photo(file=file, contractions=contractions, masses=masses, step=step)
 
 
 def _example(robot: Robot) -> str:
@@ -122,7 +129,7 @@ def _sort(
 
 
 def _with_table(files: Sequence[Path], robot: Robot, table: Path) -> list[Photo]:
-    """Photographs with the rows of a table: columns photo, left_mm per winch, tip_load_g per marker."""
+    """Photographs with the rows of a table: columns photo, step, left_mm per winch, tip_load_g per marker."""
     try:
         rows = list(csv.reader(StringIO(read_stranger(table, most=10_000_000).decode("utf-8-sig"), newline="")))
     except (UnicodeDecodeError, csv.Error):
@@ -141,23 +148,32 @@ def _with_table(files: Sequence[Path], robot: Robot, table: Path) -> list[Photo]
         name = row[head.index("photo")].strip()
         if name in found:
             raise InputError(f"{where}: {name} has two rows. Keep one.")
-        contractions: dict[str, float] = {}
-        masses: dict[str, float] = {}
-        for column, cell in zip(head, row, strict=True):
-            if column == "photo" or not cell.strip():
-                continue
-            for end, unit in (("_load_g", "g"), ("_mm", "mm")):
-                if column.endswith(end):
-                    _sort(where, column.removesuffix(end), f"{cell.strip()} {unit}", robot, contractions, masses)
-                    break
-            else:
-                raise InputError(f'{where}: unknown column "{column[:60]}". Write WINCH_mm or MARKER_load_g.')
-        found[name] = Photo(file=Path(name), contractions=contractions, masses=masses)
+        found[name] = _with_row(where, name, dict(zip(head, row, strict=True)), robot)
     if missing := [file.name for file in files if file.name not in found]:
         raise InputError(f"{missing[0]}: no row in {table}. Add one with its contractions.")
-    return [
-        Photo(file=file, contractions=found[file.name].contractions, masses=found[file.name].masses) for file in files
-    ]
+    return [replace(found[file.name], file=file) for file in files]
+
+
+def _with_row(where: str, name: str, cells: Mapping[str, str], robot: Robot) -> Photo:
+    """Photograph with the cells of its row by column."""
+    contractions: dict[str, float] = {}
+    masses: dict[str, float] = {}
+    step = None
+    for column, cell in cells.items():
+        if column == "photo" or not cell.strip():
+            continue
+        if column == "step":
+            if re.fullmatch(r"\s*[0-9]{1,9}\s*", cell) is None:
+                raise InputError(f'{where}: step must be a whole number, not "{cell[:60]}"')
+            step = int(cell)
+            continue
+        for end, unit in (("_load_g", "g"), ("_mm", "mm")):
+            if column.endswith(end):
+                _sort(where, column.removesuffix(end), f"{cell.strip()} {unit}", robot, contractions, masses)
+                break
+        else:
+            raise InputError(f'{where}: unknown column "{column[:60]}". Write WINCH_mm, MARKER_load_g or step.')
+    return Photo(file=Path(name), contractions=contractions, masses=masses, step=step)
 
 
 def read_pixels(file: Path) -> tuple[Gray, float | None]:

@@ -41,6 +41,9 @@ def identify(
     in_order: Annotated[
         bool, typer.Option("--in-order", help="The rows are one motion: each pose follows from the one before.")
     ] = False,
+    profile: Annotated[
+        bool, typer.Option("--profile", help="Check the intervals by profile likelihood. Takes several times longer.")
+    ] = False,
     save_material: Annotated[
         str | None,
         typer.Option(metavar="NAME", help="Add the fitted material of the body to your own materials."),
@@ -61,7 +64,8 @@ def identify(
     of measured forces). Writes the fitted robot, parameters.csv with 95 % intervals and identified.png. Every fifth of
     ten or more rows is also predicted by a fit that did not see it. `hydrostat design` takes the interval of the fitted
     material as its uncertainty. A correction of the contractions is written if it
-    predicts such rows better: correction.json. Friction and hysteresis make strokes up and down differ: measure both,
+    predicts such rows better: correction.json. Intervals follow from a linearized model; --profile corrects those that
+    bends and limits make doubtful. Friction and hysteresis make strokes up and down differ: measure both,
     and add --in-order.
     With --suggest, the command prints file names of photographs to take, the most informative first.
 
@@ -74,7 +78,7 @@ def identify(
     if names == ():
         raise InputError('--fit "": name at least one parameter')
     if suggest is not None:
-        if measurements is not None or out is not None or in_order or save_material is not None:
+        if measurements is not None or out is not None or in_order or profile or save_material is not None:
             raise InputError("--suggest: plans measurements and writes nothing. Remove TABLE.csv and options of a fit.")
         _suggest(read_robot(robot), suggest, names, hang or [], tension)
         return
@@ -90,7 +94,7 @@ def identify(
     loaded = read_robot(robot)
     table = replace(read_measurements(measurements, loaded), in_order=in_order)
     began = time.process_time()
-    found = identify_robot(loaded, table, fit=names, progress=ProgressLines())
+    found = identify_robot(loaded, table, fit=names, profile=profile, progress=ProgressLines())
     _write(robot, table, found, out)
     _print_values(found)
     _print_errors(found, table, time.process_time() - began)
@@ -118,11 +122,14 @@ def _suggest(
         tension=most,
     )
     poses = f"{plural(found.candidates, 'pose')} with tensions up to {most:g} N"
-    print(f"Take these photographs, chosen from {poses}. The first show most.")
-    for command, masses in zip(found.commands, found.masses, strict=True):
+    if found.in_order:
+        print(f"Take these photographs in this order, chosen from {poses}. Fit them with --in-order.")
+    else:
+        print(f"Take these photographs, chosen from {poses}. The first show most.")
+    for step, (command, masses) in enumerate(zip(found.commands, found.masses, strict=True), start=1):
         parts = [f"{w.name}={1e3 * pull:g}mm" for w, pull in zip(robot.winches, command, strict=True) if pull]
         parts += [f"{marker}={1e3 * mass:g}g" for marker, mass in zip(found.markers, masses, strict=True) if mass]
-        print(f"  {','.join(parts) or 'rest'}.jpg")
+        print(f"  {f'{step:02d} ' if found.in_order else ''}{','.join(parts) or 'rest'}.jpg")
     hidden = [name for name, share in found.deviations.items() if share > HIDDEN]
     if hidden:
         print(

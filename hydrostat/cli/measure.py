@@ -132,6 +132,8 @@ def _measure_photos(
     found = measure_photos(robot, Photo.read_all(files, robot, table), options)
     replace_file(out, table_text(robot, found))
     print_photos(found)
+    if found.measurements.in_order:
+        print("note: the names have the steps of a motion. Add --in-order to hydrostat identify.")
     if check is not None:
         draw_photos(found, check)
     enough = 3

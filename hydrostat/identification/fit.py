@@ -32,6 +32,9 @@ LEAST_FREE = 0.1
 LEAST_FORCE_NOISE = 0.02
 """Least noise of a force over the largest that was measured; the fit begins with five times that."""
 
+ROBUST = 3.0
+"""Residual beyond which the loss grows linearly, in standard deviations."""
+
 INSEPARABLE = 0.9
 """Correlation of two parameters above which their values are hardly told apart."""
 
@@ -55,6 +58,7 @@ class FittedModel:
             not estimated.
         noise: standard deviation of a measured coordinate or length about the model [m], from the residuals.
         force_noise: the same of a measured force [N]; NaN without forces.
+        ends: low and high ends of the intervals of `numbers` by `profile_intervals`; None: by `interval_covariance`.
         error: root mean square distance between predicted and measured markers of the fitted rows [m].
         num_failed: fitted rows without an equilibrium.
         iterations: evaluations of the model.
@@ -74,6 +78,7 @@ class FittedModel:
     iterations: int
     message: str
     force_noise: float = np.nan
+    ends: Float[np.ndarray, "two parameters"] | None = None
 
     @property
     def interval_covariance(self) -> Float[np.ndarray, "parameters parameters"]:
@@ -86,12 +91,14 @@ class FittedModel:
     def intervals(self) -> dict[str, tuple[float, float]]:
         """Intervals that hold each value with a probability of about 95 %.
 
-        They follow from `interval_covariance` or `build_variance`, whichever is wider, and reach to the value that
-        finer elements would give.
+        They follow from `ends` if profiled, else from `interval_covariance`, or from `build_variance` if that is wider,
+        and reach to the value that finer elements would give.
         """
-        half = 1.96 * np.sqrt(np.maximum(np.diag(self.interval_covariance), self.build_variance))
-        low = self.numbers + np.minimum(self.mesh_shift, 0.0) - half
-        high = self.numbers + np.maximum(self.mesh_shift, 0.0) + half
+        half = 1.96 * np.sqrt(np.diag(self.interval_covariance))
+        low, high = (self.numbers - half, self.numbers + half) if self.ends is None else self.ends
+        half = 1.96 * np.sqrt(self.build_variance)
+        low = np.minimum(low, self.numbers - half) + np.minimum(self.mesh_shift, 0.0)
+        high = np.maximum(high, self.numbers + half) + np.maximum(self.mesh_shift, 0.0)
         return {
             parameter.name: (parameter.from_fitted(one), parameter.from_fitted(other))
             for parameter, one, other in zip(self.model.parameters, low, high, strict=True)
@@ -147,7 +154,7 @@ def fit_model(
     """
     robot = model.robot(model.start)
     _check(robot, measurements)
-    fit = _Fit(model, measurements, noise or 0.02 * robot.body.mesh.size, progress)
+    fit = MarkerFit(model, measurements, noise or 0.02 * robot.body.mesh.size, progress)
     numbers = np.zeros(len(model.parameters))
     limits = np.array([parameter.limits for parameter in model.parameters]).reshape(-1, 2).T
     message, slopes = "", cast("Any", fit.slopes)
@@ -158,7 +165,7 @@ def fit_model(
             jac=slopes,
             bounds=(limits[0], limits[1]),
             loss="soft_l1",
-            f_scale=3.0,
+            f_scale=ROBUST,
             max_nfev=max(evaluations - fit.count, 2),
             ftol=1e-4,
             xtol=1e-4,
@@ -204,7 +211,7 @@ def spread_error(errors: Vector, noise: float, rows: int, *, is_known: bool) -> 
     return 1.0 + rows * max(excess, 0.0)
 
 
-class _Fit:
+class MarkerFit:
     """Residuals and their slopes for `least_squares`, in standard deviations."""
 
     def __init__(
@@ -212,7 +219,7 @@ class _Fit:
         model: IdentificationModel,
         measurements: Measurements,
         noise: float,
-        progress: Callable[[str], None] | None,
+        progress: Callable[[str], None] | None = None,
     ) -> None:
         self._measurements, self._progress = measurements, progress
         self._predictor = MarkerPredictor(model, measurements)

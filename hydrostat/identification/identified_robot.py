@@ -13,6 +13,7 @@ from hydrostat.identification.fit_contraction_map import fit_contraction_map
 from hydrostat.identification.kinds import KINDS, named_model
 from hydrostat.identification.measurements import Measurements
 from hydrostat.identification.model import IdentificationModel
+from hydrostat.identification.profile_intervals import profile_intervals
 from hydrostat.result_table import Columns, Tabular
 from hydrostat.robot import Material, PinDrive, Robot
 from hydrostat.units import MM
@@ -72,6 +73,7 @@ def identify(
     measurements: Measurements,
     *,
     fit: tuple[str, ...] | None = None,
+    profile: bool = False,
     progress: Callable[[str], None] | None = None,
 ) -> IdentifiedRobot:
     """Parameters of a built robot from measurements (Gauss-Newton, exact sensitivities, guesses as a normal prior).
@@ -81,6 +83,7 @@ def identify(
         measurements: rows of contractions and places of markers.
         fit: kinds of parameters, see `KINDS`; those that are fitted by default if left out, with `force` where
             forces were measured.
+        profile: take intervals by profile likelihood where linearized ones are doubtful.
         progress: receives a line after each evaluation.
 
     Raises:
@@ -107,6 +110,7 @@ def identify(
         if measurements.in_order:
             held_before, held_after = held_before[held_out], held_after[held_out]
     fitted = fit_model(model, measurements, progress=progress)
+    fitted = profile_intervals(fitted, measurements, progress=progress) if profile else fitted
     changed, pretension = _robot(model, fitted, robot)
     changed = _with_intervals(changed, fitted)
     return IdentifiedRobot(

@@ -20,6 +20,15 @@ NOISE = 0.01
 IDLE = 0.4
 """Share of the winches that do not contract in a candidate."""
 
+WITH_HISTORY = {"friction", "hysteresis"}
+"""Kinds of parameters that strokes up and down show."""
+
+STROKE = (0.5, 1.0, 0.5, 0.0)
+"""Rows of a stroke, as shares of its largest contractions: up, down and to rest."""
+
+STROKES = 12
+"""Strokes of which the best are chosen; at least as many as are asked for."""
+
 CANDIDATES = 60
 """Poses of which the best are chosen; at least three for each that is asked for."""
 
@@ -35,6 +44,7 @@ class SuggestedMeasurements:
         deviations: standard deviation of each parameter after these measurements, over that of its guess.
         candidates: number of poses they were chosen from.
         noise: assumed standard deviation of a measured coordinate about a good model [m].
+        in_order: True if the rows are one motion, in strokes up and down.
     """
 
     commands: Float[np.ndarray, "rows winches"]
@@ -43,6 +53,7 @@ class SuggestedMeasurements:
     deviations: dict[str, float]
     candidates: int
     noise: float
+    in_order: bool
 
 
 def suggest_measurements(
@@ -55,6 +66,8 @@ def suggest_measurements(
     seed: int = 0,
 ) -> SuggestedMeasurements:
     """Choose poses and hung masses most informative about the parameters (D-optimal, exact sensitivities as assumed).
+
+    If friction or hysteresis is fitted, whole strokes of four rows are chosen (`STROKE`), solved as one motion.
 
     Args:
         robot: robot as it is assumed to be built; all its markers are measured.
@@ -73,39 +86,46 @@ def suggest_measurements(
         raise InputError(f"--suggest {count}: must be 1 or more")
     if masses and robot.gravity is None:
         raise InputError('--hang: the robot has no gravity. Add gravity = "-y" to robot.toml.')
-    model = named_model(robot, fit)
-    commands, hung = _candidates(robot, max(CANDIDATES, 3 * count), masses, np.random.default_rng(seed))
+    model, in_order = named_model(robot, fit), bool(WITH_HISTORY.intersection(fit or ()))
+    if in_order and count < len(STROKE):
+        raise InputError(f"--suggest {count}: a stroke that shows friction takes {len(STROKE)} photographs. Ask more.")
+    shares = np.array(STROKE if in_order else (1.0,))
+    each, tried = len(shares), max(STROKES, count) if in_order else max(CANDIDATES, 3 * count)
+    commands, hung = _candidates(robot, tried, masses, np.random.default_rng(seed))
+    commands, hung = np.kron(commands, shares[:, None]), np.repeat(hung, each, axis=0)
     names = tuple(marker.name for marker in robot.markers)
     places = np.zeros((len(commands), len(names), robot.body.mesh.dim))
-    predictor = MarkerPredictor(model, Measurements(commands=commands, markers=names, places=places, masses=hung))
+    rows = Measurements(commands=commands, markers=names, places=places, masses=hung, in_order=in_order)
+    predictor = MarkerPredictor(model, rows)
     found = predictor.predict(np.zeros(len(model.parameters)), slopes=True)
     assert found.jacobian is not None
-    able = [
-        row
-        for row, pose in enumerate(predictor.poses)
-        if pose is not None
-        and found.has_equilibrium[row]
+    is_able = [
+        pose is not None
+        and has_equilibrium
         and pose.tensions.max(initial=0.0) <= tension
         and not str(find_crossings(robot.body.mesh, pose.nodes))
+        for pose, has_equilibrium in zip(predictor.poses, found.has_equilibrium, strict=True)
     ]
-    if len(able) < count:
+    able = np.flatnonzero(np.reshape(is_able, (-1, each)).all(axis=1))
+    if len(able) < count // each:
         raise InputError(
-            f"--suggest {count}: {len(able)} of {len(commands)} poses tried are within the limits. Ask fewer, or "
-            "allow more tension."
+            f"--suggest {count}: {each * len(able)} of {len(commands)} poses tried are within the limits. "
+            "Ask fewer, or allow more tension."
         )
-    noise = NOISE * robot.body.mesh.size
-    slopes = found.jacobian[able].reshape(len(able), -1, len(model.parameters)) / noise
-    chosen = choose_measurements(slopes, count)
-    information = np.eye(len(model.parameters)) + np.einsum("rci,rcj->ij", slopes[chosen], slopes[chosen])
+    noise, parameters = NOISE * robot.body.mesh.size, len(model.parameters)
+    slopes = found.jacobian.reshape(len(commands) // each, -1, parameters)[able] / noise
+    chosen = choose_measurements(slopes, count // each)
+    information = np.eye(parameters) + np.einsum("rci,rcj->ij", slopes[chosen], slopes[chosen])
     kept = np.sqrt(np.diag(np.linalg.inv(information)))
-    rows = np.array(able)[chosen]
+    taken = (each * able[chosen][:, None] + np.arange(each)).ravel()
     return SuggestedMeasurements(
-        commands=commands[rows],
+        commands=commands[taken],
         markers=names,
-        masses=hung[rows],
+        masses=hung[taken],
         deviations=dict(zip((parameter.name for parameter in model.parameters), kept.tolist(), strict=True)),
-        candidates=len(able),
+        candidates=each * len(able),
         noise=noise,
+        in_order=in_order,
     )
 
 

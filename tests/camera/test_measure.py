@@ -214,6 +214,10 @@ def test_contractions_come_from_names_and_tables(tmp_path: Path) -> None:
     ):
         with pytest.raises(InputError, match=words):
             Photo.read_all([tmp_path / name], robot)
+    table.write_text("photo,step,up_mm\na.jpg,2,12\nb.jpg, 1,12\n")
+    photos = Photo.read_all([tmp_path / "a.jpg", tmp_path / "b.jpg"], robot, table)
+    assert [(photo.name, photo.step) for photo in photos] == [("b.jpg", 1), ("a.jpg", 2)]
+    assert photos[0].pose != photos[1].pose
     with pytest.raises(InputError, match=r"c.jpg: no row in .*photos.csv"):
         Photo.read_all([tmp_path / "c.jpg"], robot, table)
 

@@ -2,7 +2,9 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from hydrostat.camera import Photo
@@ -37,9 +39,31 @@ def test_pulls_are_bounded_by_the_usual_limit_of_designs(
 def test_fit_or_suggest(run: Run, starfish: Path, tmp_path: Path) -> None:
     for arguments, words in (
         ((), "or --suggest N to plan"),
-        (("--suggest", 3, "--out", tmp_path), "Remove TABLE.csv, --out and --in-order"),
+        (("--suggest", 3, "--out", tmp_path), "Remove TABLE.csv and options of a fit"),
         ((tmp_path / "a.csv", "--out", tmp_path / "b", "--hang", "5g"), "need --suggest"),
         (("--suggest", 3, "--hang", "50g"), "has no gravity"),
     ):
         code, _, err = run("identify", starfish, *arguments)
         assert (code, words in err) == (2, True), err
+
+
+def test_steps_keep_equal_poses_apart(run: Run, starfish: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Oracle: the order of the motion, from names that come in another."""
+    stroke = SimpleNamespace(
+        commands=1e-3 * np.outer([10.5, 21, 10.5, 0], [1, 0, 0]),
+        markers=("top",),
+        masses=np.zeros((4, 1)),
+        deviations={"friction": 0.5},
+        candidates=48,
+        noise=1e-3,
+        in_order=True,
+    )
+    monkeypatch.setattr("hydrostat.identification.suggest_measurements", lambda *_, **__: stroke)
+    code, text, _ = run("identify", starfish, "--suggest", 4, "--fit", "friction")
+    assert (code, "in this order" in text) == (0, True)
+    names = [line.strip() for line in text.splitlines() if line.endswith(".jpg")]
+    assert names == ["01 right=10.5mm.jpg", "02 right=21mm.jpg", "03 right=10.5mm.jpg", "04 rest.jpg"]
+    robot = load_robot(starfish)
+    photos = Photo.read_all([Path(name) for name in [*reversed(names), "03 right=10.5mm (2).jpg"]], robot)
+    assert [photo.step for photo in photos] == [1, 2, 3, 3, 4]
+    assert len({photo.pose for photo in photos}) == 4

@@ -9,7 +9,7 @@ import pytest
 from builders import routed_strip
 
 from hydrostat.errors import InputError
-from hydrostat.identification import suggest_measurements
+from hydrostat.identification import MarkerPredictor, Measurements, named_model, suggest_measurements
 from hydrostat.identification.suggest_measurements import choose_measurements
 from hydrostat.robot import Robot
 
@@ -51,3 +51,21 @@ def test_requests_that_cannot_be_met_are_refused() -> None:
         suggest_measurements(replace(strip(), gravity=None), 3, masses=[0.01])
     with pytest.raises(InputError, match="poses tried are within the limits"):
         suggest_measurements(strip(), 40)
+
+
+@pytest.mark.slow
+def test_friction_is_shown_by_strokes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Oracle: places of a motion at two frictions, by differences; a strip with bends."""
+    monkeypatch.setattr(import_module("hydrostat.identification.suggest_measurements"), "STROKES", 3)
+    found = suggest_measurements(strip(), 8, fit=("friction",))
+    assert found.in_order
+    pulls = found.commands[:, 0].reshape(2, 4)
+    assert pulls[0, 1] > 0
+    assert pulls == pytest.approx(np.outer(pulls[:, 1], [0.5, 1.0, 0.5, 0.0]))
+    path = Measurements(commands=found.commands, markers=found.markers, places=np.zeros((8, 2, 2)), in_order=True)
+    model, step = named_model(strip(), ("friction",)), 0.02
+    less, more = (MarkerPredictor(model, path).predict(np.array([s]), slopes=False).places for s in (-step, step))
+    information = 1 + np.sum(((more - less) / (2 * step * found.noise)) ** 2)
+    assert found.deviations["friction"] == pytest.approx(information**-0.5, rel=0.02)
+    with pytest.raises(InputError, match="takes 4 photographs"):
+        suggest_measurements(strip(), 3, fit=("friction",))

@@ -93,6 +93,7 @@ def compare_photographs(report: Report, robot: Robot, files: tuple[PoseFile, ...
             path = folder / Path(file.name).name
             path.write_bytes(file.content)
             photos.append(_read_photo(path, robot, file.contractions))
+        photos.sort(key=lambda photo: photo.step or 0)
         report.progress("Finding tags", 0, 2)
         try:
             found = measure_photos(robot, photos)
@@ -103,14 +104,14 @@ def compare_photographs(report: Report, robot: Robot, files: tuple[PoseFile, ...
             report.progress("Drawing", len(photos) + index, 2 * len(photos))
             path = save_png(draw_photo_overlay(found, index), Path(scratch) / "overlay.png", dpi=70)
             drawn.append(
-                ComparedPhotograph(name=files[index].name, overlay=path.read_bytes(), errors=dict(measured.errors))
+                ComparedPhotograph(name=measured.photo.name, overlay=path.read_bytes(), errors=dict(measured.errors))
             )
     return Comparison(photographs=tuple(drawn), measurements=found.measurements, warnings=tuple(found.warnings))
 
 
 def _read_photo(path: Path, robot: Robot, contractions: Mapping[str, float]) -> Photo:
     """Photograph with the pose that its name holds, or else the given contractions."""
-    if "=" in path.stem or path.stem == "rest":
+    if "=" in path.stem or re.fullmatch(r"(\d+ +)?rest", path.stem):
         return Photo.read_all([path], robot)[0]
     return Photo(file=path, contractions=contractions, masses={})
 

@@ -14,7 +14,7 @@ from hydrostat.units import plural
 
 HINT = (
     "Photographs of the built robot with its printed tags. Each shows the pose on the screen, or the one that its name "
-    "holds, such as left=12mm.jpg."
+    "holds, such as left=12mm.jpg. Begin the names with numbers for a motion: 03 left=12mm.jpg."
 )
 
 
