@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from hydrostat.design.finding import Diagnostic, Severity, places_in
     from hydrostat.design.first_cable import draw_first_cable
     from hydrostat.design.lifts import Lift, find_lifts
+    from hydrostat.design.marker_estimator import MarkerEstimator
     from hydrostat.design.muscles.activation import Activation, FibreKind, activate, edge_fibres
     from hydrostat.design.muscles.free_posing import FreePosing
     from hydrostat.design.network import (
@@ -65,6 +66,7 @@ __all__ = [
     "FrontRow",
     "Layout",
     "Lift",
+    "MarkerEstimator",
     "Network",
     "PricedPath",
     "QuickSearch",

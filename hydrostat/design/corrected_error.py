@@ -7,18 +7,15 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.design.built_error import BuiltErrors, mean_square
-from hydrostat.design.spread import spread_columns
+from hydrostat.design.marker_estimator import NOISE, MarkerEstimator
 from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.errors import NotConvergedError
 from hydrostat.ik import CORRECTION_DAMPING, IKResult, Limits, correct_contractions
 from hydrostat.robot import Robot
-from hydrostat.simulation import Simulation, cable_sensitivities
+from hydrostat.simulation import Simulation
 
 MEASURED = 5
 """Number of markers that are measured in each pose, if it has that many targets."""
-
-NOISE = 5e-4
-"""Standard deviation of each measured coordinate [m]: a ruler or a photo."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -41,8 +38,8 @@ def corrected_errors(
 ) -> CorrectedErrors:
     """Play poses on robots drawn at random, measure markers, correct the contractions once and play again.
 
-    The robots are those of `built_errors` with the same seed. Each pose is corrected by itself, by
-    `hydrostat.ik.correct_contractions`, from the markers of `spread_markers`.
+    The robots are those of `built_errors` with the same seed. The markers of `spread_markers` are measured in all
+    poses, `MarkerEstimator` finds the others, and `hydrostat.ik.correct_contractions` corrects each pose.
 
     Args:
         robot: the robot of the design.
@@ -56,23 +53,27 @@ def corrected_errors(
     """
     model, rest = Simulation(robot), {marker.name: np.array(marker.at) for marker in robot.markers}
     names = [spread_markers({name: rest[name] for name in one.pose_target.targets}, measured) for one in reached]
+    estimator = MarkerEstimator.of(model, reached, uncertainty, noise=noise)
     before, after = [], []
     for number in range(draws):
         built = Simulation(uncertainty.draw(robot, np.random.default_rng([seed, number])))
         chance = np.random.default_rng([seed, number, 1])
-        first, second = [], []
-        for one, chosen in zip(reached, names, strict=True):
-            played = built.solve(one.pose.contractions, strict=False)
-            first.append(mean_square(played, one.pose_target))
-            if played.result.converged:
-                places = {
-                    name: played.markers[name] + noise * chance.standard_normal(rest[name].shape) for name in chosen
-                }
-                contractions = correct_contractions(model, one, places, limits=limits)
-                played = built.solve(contractions, strict=False)
-            second.append(mean_square(played, one.pose_target))
-        before.append(np.sqrt(np.mean(first)))
-        after.append(np.sqrt(np.mean(second)))
+        played = [built.solve(one.pose.contractions, strict=False) for one in reached]
+        seen = [
+            {name: pose.markers[name] + noise * chance.standard_normal(rest[name].shape) for name in chosen}
+            if pose.result.converged
+            else {}
+            for pose, chosen in zip(played, names, strict=True)
+        ]
+        again = [
+            built.solve(correct_contractions(model, one, places, limits=limits), strict=False)
+            if pose.result.converged
+            else pose
+            for one, pose, places in zip(reached, played, estimator.estimate(seen), strict=True)
+        ]
+        for errors, poses in ((before, played), (after, again)):
+            squares = [mean_square(pose, one.pose_target) for pose, one in zip(poses, reached, strict=True)]
+            errors.append(np.sqrt(np.mean(squares)))
     own = float(np.sqrt(np.mean([one.rms_error**2 for one in reached])))
     uncorrected = BuiltErrors(drawn=np.array(before), model=own)
     return CorrectedErrors(drawn=np.array(after), model=own, played=uncorrected)
@@ -92,22 +93,19 @@ def expected_corrected_error(
     and a slack cable does not help. Infinite at a pose that is about to snap.
     """
     rest = {marker.name: np.array(marker.at) for marker in simulation.robot.markers}
-    names, squares = list(rest), []
-    for one in reached:
-        targets = list(one.pose_target.targets)
-        chosen = spread_markers({name: rest[name] for name in targets}, measured)
-        try:
-            sensitivities = cable_sensitivities(simulation, one.pose, [names.index(name) for name in targets])
-        except NotConvergedError:
-            return float("inf")
-        dim = simulation.robot.body.mesh.dim
-        rows = dim * len(targets)
-        columns = spread_columns(simulation, one.pose, sensitivities, uncertainty, rows)
-        jacobian, seen = sensitivities.contractions[:rows], np.repeat([name in chosen for name in targets], dim)
+    names = [spread_markers({name: rest[name] for name in one.pose_target.targets}, measured) for one in reached]
+    try:
+        estimator = MarkerEstimator.of(simulation, reached, uncertainty, noise=noise)
+    except NotConvergedError:
+        return float("inf")
+    gain, squares = estimator.gain(names), []
+    shown = gain @ estimator.known_columns(names)
+    for one, slopes, columns in zip(reached, estimator.sensitivities, estimator.columns, strict=True):
+        jacobian = slopes.contractions[: len(columns)]
         normal = jacobian.T @ jacobian + CORRECTION_DAMPING**2 * np.eye(jacobian.shape[1])
-        back = jacobian @ np.linalg.solve(normal, jacobian.T) * seen
-        left = float(((columns - back @ columns) ** 2).sum()) + noise**2 * float((back**2).sum())
-        squares.append(one.rms_error**2 + left / len(targets))
+        back = jacobian @ np.linalg.solve(normal, jacobian.T) @ columns
+        left = float(((columns - back @ shown) ** 2).sum()) + noise**2 * float(((back @ gain) ** 2).sum())
+        squares.append(one.rms_error**2 + left / len(one.pose_target.targets))
     return float(np.sqrt(np.mean(squares)))
 
 

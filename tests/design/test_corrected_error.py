@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from builders import strip_robot
 
-from hydrostat.design import BuildTolerances, built_errors, corrected_errors
+from hydrostat.design import BuildTolerances, MarkerEstimator, built_errors, corrected_errors
 from hydrostat.design.corrected_error import expected_corrected_error, spread_markers
 from hydrostat.ik import solve_ik
-from hydrostat.robot import PoseTarget
+from hydrostat.robot import Marker, PoseTarget
 from hydrostat.simulation import Simulation
 
 ROBOT = strip_robot(columns=10, rows=3)
@@ -41,6 +41,35 @@ def test_the_expected_error_after_a_correction_is_that_of_many_draws(unchecked: 
     played = built_errors(ROBOT, [reached[0].pose_target], [reached[0].pose.contractions], small, draws=60).drawn
     assert np.sqrt(np.mean(drawn**2)) == pytest.approx(expected, rel=0.2)
     assert expected < 0.5 * np.sqrt(np.mean(played**2))
+
+
+def test_markers_of_all_poses_show_the_others(unchecked: None) -> None:
+    """Oracle: a robot with other holes, played; a marker that is measured nowhere, and one in another pose."""
+    robot = replace(ROBOT, markers=(*ROBOT.markers, Marker(name="middle", at=(0.1, 0.0))))
+    simulation = Simulation(robot)
+    commands = np.array([[0.014, 0.004], [0.003, 0.012]])
+    ends = [simulation.solve(command).markers for command in commands]
+    targets = [{name: tuple(end[name].tolist()) for name in ("tip", "middle")} for end in ends]
+    reached = [solve_ik(simulation, target) for target in targets]
+    small = BuildTolerances(sewing=5e-4, friction=(0.0, 0.0))
+    estimator = MarkerEstimator.of(simulation, reached, small, noise=1e-5)
+    left = []
+    for number in range(6):
+        built = Simulation(small.draw(robot, np.random.default_rng(number)))
+        played = [built.solve(one.pose.contractions).markers for one in reached]
+        found = estimator.estimate([{"tip": played[0]["tip"]}, {"tip": tuple(played[1]["tip"])}])
+        left.append(
+            [
+                [np.linalg.norm(places["middle"] - at["middle"]) for places, at in zip(each, played, strict=True)]
+                for each in (found, [one.pose.markers for one in reached])
+            ]
+        )
+    guessed, model = np.sqrt(np.mean(np.square(left), axis=(0, 2)))
+    assert guessed < 0.5 * model
+    assert np.linalg.norm(found[0]["tip"] - played[0]["tip"]) < 0.3 * np.linalg.norm(
+        reached[0].pose.markers["tip"] - played[0]["tip"]
+    )
+    assert estimator.estimate([{}, {}])[0]["tip"] == pytest.approx(reached[0].pose.markers["tip"])
 
 
 def test_measured_markers_are_far_from_one_another() -> None:
