@@ -15,8 +15,8 @@ routes that are designed for the half-way poses too, `two_way` routes whose winc
 Columns, errors in mm rms over markers and poses: `model`, as designed; `built`, median and 90 % of the draws;
 `corrected`, the same after one round of correction: up to five markers of each pose are measured on the built robot,
 each coordinate to 0.5 mm, and the contractions are solved again in the model for targets moved by what it missed;
-`reachable`, median and 90 % with contractions that were solved on each built robot itself, its friction known, so that
-no correction of contractions does better, with `--reachable`;
+`reachable`, median and 90 % with contractions that were solved on each built robot itself, its friction known: about
+the best that a correction of contractions can do, with `--reachable`;
 `aimed`, 90 % by contractions for targets moved back by the mean miss of 40 other draws, with `--aimed`;
 `mu 0.3`, 90 % with friction 0.3 in all cables, with `--rough`; `held out`, poses that hidden networks reach, solved
 again in the model, with `--held-out`. A second table has `built` of the routes as a share of the better of hand and
