@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrostat.cli.design_results import designed_tension, designed_torque
-from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
+from hydrostat.cli.folders import RobotFolder, require_folder
 from hydrostat.cli.options import Budget, MotorOption, parse_budget, parse_optional, positive
 from hydrostat.cli.waiting import progress_bar, read_robot
 from hydrostat.closed_set import parse_choice
@@ -35,7 +35,10 @@ Force = Annotated[bool, typer.Option("--force", help="Write the kit despite erro
 
 def fabricate(
     robot: RobotFolder,
-    out: OutFolder,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="DIR", help="Output folder (created if missing).", show_default=False),
+    ] = None,
     method: Annotated[
         str | None,
         typer.Option(
@@ -54,7 +57,7 @@ def fabricate(
         str, typer.Option(metavar="LENGTHS", help="Build volume of your 3D printer along x, y and z.")
     ] = "220 x 220 x 250 mm",
     tension: Tension = None,
-    paper: Annotated[str, typer.Option(metavar="a4|letter", help="Paper size of the printed pages.")] = "a4",
+    paper: Annotated[str, typer.Option(metavar="a4|letter|a3", help="Paper size of pattern and tags.")] = "a4",
     seam: Annotated[str, typer.Option(metavar="LENGTH", help="Seam allowance for plush robots.")] = "8 mm",
     line: Annotated[str, typer.Option(metavar="LENGTH", help="Diameter of the braided line used as cable.")] = "0.4 mm",
     clearance: Annotated[
@@ -62,19 +65,25 @@ def fabricate(
     ] = "0.3 mm",
     step: Annotated[bool, typer.Option("--cad", help="Also write printed parts as STEP. Needs the extra cad.")] = False,
     force: Force = False,
+    summary: Annotated[
+        bool, typer.Option("--summary", help="Print difficulty, time, cost and tools. Write nothing.")
+    ] = False,
 ) -> None:
     """Write a build kit: patterns, parts, lists and assembly sheet.
 
-    Start with assembly_sheet.pdf. pattern/ is for a laser cutter, or a printer and scissors. parts/ and mould/ are for
-    a 3D printer. lists/ holds the bill of materials and the cable lengths. tags.pdf holds tags to measure the robot by
-    photographs. manifest.json records the inputs.
+    Start with assembly_sheet.pdf; steps.txt has its words. pattern/ is for a laser cutter, or a printer and scissors.
+    parts/ and mould/ are for a 3D printer. lists/ holds the bill of materials and the cable lengths. tags.pdf holds
+    tags to measure the robot by photographs. manifest.json records the inputs.
 
     Example: hydrostat fabricate gallery:starfish --out build/kit
     """
     from hydrostat import fabrication as kits
     from hydrostat.units import FORCE
 
-    require_folder(out)
+    if out is not None:
+        require_folder(out)
+    elif not summary:
+        raise InputError("missing option --out. Name a folder, or add --summary.")
     kind = parse_choice(kits.MoldKind, mould or "printed", what="--mould")
     options = kits.KitOptions(
         method=None if method is None else parse_choice(kits.Method, method, what="--method"),
@@ -96,6 +105,9 @@ def fabricate(
     options = replace(options, tension=kept or limit, torque=torque, motor=motor or "auto", budget=spend)
     if mould is not None and options.method_for(loaded.body) is not kits.Method.FOAM:
         raise InputError("--mould: needs a foam body. Remove it, or add --method foam.")
+    if out is None or summary:
+        _print_summary(loaded, options)
+        return
     kit = _build_or_report(robot, loaded, options, out)
     kit.write(out)
     _print_motors(loaded, kit, options)
@@ -108,6 +120,20 @@ def fabricate(
         print(f"Cable tension: at most {kept:g} N, the limit of its design or of the studio. Override with --tension")
     seconds = time.perf_counter() - began
     print(f"Wrote {len(kit.files)} files in {seconds:.1f} s. Start with {out / 'assembly_sheet.pdf'}")
+
+
+def _print_summary(robot: "Robot", options: "KitOptions") -> None:
+    """Print what building a robot asks, a heading and its sentences at a time."""
+    from hydrostat.errors import in_words
+    from hydrostat.fabrication import summarize_kit
+
+    with progress_bar() as progress:
+        rows = summarize_kit(robot, options=options, progress=progress)
+    print(f"{robot.name}: {options.method_for(robot.body)} robot")
+    for title, lines in rows:
+        print(f"{title}: {in_words(lines[0])}")
+        for line in lines[1:]:
+            print(f"  {in_words(line)}")
 
 
 def _build_or_report(folder: Path, robot: "Robot", options: "KitOptions", out: Path) -> "Kit":

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
-    from hydrostat.fabrication.build_kit import build_kit, write_kit
+    from hydrostat.fabrication.build_kit import build_kit, summarize_kit, write_kit
     from hydrostat.fabrication.demand import Demand, shaft_torques
     from hydrostat.fabrication.kit import Check, Kit, UnbuildableError
     from hydrostat.fabrication.kit_options import (
@@ -80,6 +80,7 @@ __all__ = [
     "sides_text",
     "skin_of_surface",
     "space_pattern",
+    "summarize_kit",
     "unit_room",
     "winch_marks_of",
     "write_kit",

@@ -22,6 +22,9 @@ from hydrostat.fabrication.patterns.svg_writer import pattern_svg
 from hydrostat.fabrication.print_work import print_work
 from hydrostat.fabrication.refusals import find_refusals
 from hydrostat.fabrication.sheets.assembly_sheet import assembly_sheet
+from hydrostat.fabrication.sheets.sheet_facts import sheet_facts
+from hydrostat.fabrication.sheets.summary import summary_rows
+from hydrostat.fabrication.sheets.text_sheet import sheet_text
 from hydrostat.fabrication.solids.print_files import stl_bytes, three_mf_plates
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.fabrication.solids.step import require_cad, step_bytes
@@ -66,16 +69,9 @@ def build_kit(
         UnbuildableError: the robot cannot be built well (unless `force`).
         InputError: a body that the method cannot make, or an unknown motor.
     """
-    check_type(robot, Robot, "a kit is made of a Robot, such as load_robot gives")
-    check_type(options, (KitOptions, type(None)), "options must be KitOptions(...)")
-    options, tell = options or KitOptions(), _Stages(progress)
-    if (key := options.motor_for(robot)) != "auto":
-        Motor.choose(key)  # a name that is wrong is told before the work
-    if options.step:
-        require_cad()
-    plan = _plan(robot, options, tell)
-    tell("Lists")
-    lists = make_lists(plan)
+    tell = _Stages(progress)
+    plan, lists = _plan_and_lists(robot, options, tell)
+    options = plan.options
     tell("Checks")
     findings = _findings(plan, lists)
     if findings.problems and not options.force:
@@ -106,6 +102,35 @@ def build_kit(
         notes=findings.notes,
         checks=findings.checks,
     )
+
+
+def summarize_kit(
+    robot: Robot, *, options: KitOptions | None = None, progress: Progress | None = None
+) -> tuple[tuple[str, tuple[str, ...]], ...]:
+    """What building a robot asks, as headings with sentences, before its files and checks are made.
+
+    Raises:
+        InputError: a body that the method cannot make, or an unknown motor.
+    """
+    tell = _Stages(progress)
+    plan, lists = _plan_and_lists(robot, options, tell)
+    tell.end()
+    problems = _problems(plan, lists)
+    return (*((("Problems", problems),) if problems else ()), *summary_rows(plan, lists))
+
+
+def _plan_and_lists(robot: Robot, options: KitOptions | None, tell: "_Stages") -> tuple[KitPlan, Lists]:
+    """Parts, body and lists of a robot (TypeError: it is none; InputError: an unknown motor)."""
+    check_type(robot, Robot, "a kit is made of a Robot, such as load_robot gives")
+    check_type(options, (KitOptions, type(None)), "options must be KitOptions(...)")
+    options = options or KitOptions()
+    if (key := options.motor_for(robot)) != "auto":
+        Motor.choose(key)  # a name that is wrong is told before the work
+    if options.step:
+        require_cad()
+    plan = _plan(robot, options, tell)
+    tell("Lists")
+    return plan, make_lists(plan)
 
 
 class _Stages:
@@ -180,18 +205,23 @@ def _findings(plan: KitPlan, lists: Lists) -> KitFindings:
         for check in checks
         if not check.passed
     )
-    large = too_large((*plan.printed, *work.spare), plan.options.mould.bed)
-    known = find_refusals(plan.drawn, plan.demand, options=plan.options)
-    made = (*rigid.problems, *work.problems, *lists.problems)
     return KitFindings(
         checks=checks,
-        problems=tuple(dict.fromkeys((*known, *made, *large, *failed, *_budget_problems(plan, lists)))),
+        problems=tuple(dict.fromkeys((*_problems(plan, lists), *failed))),
         warnings=(
             *(*_cable_warnings(plan), *_bending_warnings(plan), *_part_warnings(plan)),
             *(*work.warnings, *rigid.warnings, *lists.warnings),
         ),
         notes=(*work.notes, *rigid.notes, *plan.demand.far),
     )
+
+
+def _problems(plan: KitPlan, lists: Lists) -> tuple[str, ...]:
+    """Return why a robot cannot be built well, as far as it is known without measuring its files."""
+    large = too_large((*plan.printed, *plan.work.spare), plan.options.mould.bed)
+    known = find_refusals(plan.drawn, plan.demand, options=plan.options)
+    made = (*plan.rigid.problems, *plan.work.problems, *lists.problems)
+    return tuple(dict.fromkeys((*known, *made, *large, *_budget_problems(plan, lists))))
 
 
 def _cable_warnings(plan: KitPlan) -> tuple[str, ...]:
@@ -258,6 +288,7 @@ def _files(plan: KitPlan, lists: Lists, findings: KitFindings) -> dict[str, byte
         **_base_files(name, rigid),
         **{f"lists/{table.name}.csv": table.csv for table in lists.tables},
         "assembly_sheet.pdf": assembly_sheet(plan, lists, findings),
+        "steps.txt": sheet_text(sheet_facts(plan, lists, findings)).encode(),
     }
 
 

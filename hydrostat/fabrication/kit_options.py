@@ -59,6 +59,7 @@ class Paper(StrEnum):
 
     A4 = "a4"
     LETTER = "letter"
+    A3 = "a3"
 
 
 def _check_sizes(options: Any, *, above_zero: tuple[str, ...]) -> None:
@@ -198,7 +199,7 @@ class KitOptions:
         tension: maximum cable tension in its poses [N], for the choice of motors and lines. None: the limit of its
             winches. A designed robot keeps to the limit of its design.
         torque: maximum torque of a winch in its poses [N m], as the tension.
-        paper: paper size of the pages.
+        paper: paper size of the pages; assembly sheets for A3 are of A4.
         step: also write each printed part as STEP; needs the extra `cad`.
         force: True to write a kit that cannot be built well, with the reasons on the sheet.
         pattern: options for the pattern of a plush robot; its `force` is that of the kit.

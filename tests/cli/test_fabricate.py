@@ -42,7 +42,7 @@ def test_a_plush_kit(run: Run, tmp_path: Path, starfish: Path) -> None:
 BAD = {
     ("--method", "clay"): '--method must be one of plush, foam, print, not "clay"',
     ("--mould", "sand"): '--mould must be one of printed, silicone, not "sand"',
-    ("--paper", "a5"): '--paper must be one of a4, letter, not "a5"',
+    ("--paper", "a5"): '--paper must be one of a4, letter, a3, not "a5"',
     (
         "--bed",
         "220 mm",
@@ -77,6 +77,18 @@ def test_a_file_in_the_way_is_said_before_the_work(run: Run, tmp_path: Path, sta
     assert (
         err == f"hydrostat: error: --out {tmp_path / 'file' / 'kit'}: {tmp_path / 'file'} is a file. Name a folder.\n"
     )
+
+
+def test_a_summary_writes_nothing(run: Run, tmp_path: Path) -> None:
+    """Oracle: the listing of the folder; the two holes that `fabricate` refuses."""
+    save_robot(near_the_edge(), tmp_path / "robot")
+    code, out, _ = run("fabricate", tmp_path / "robot", "--summary", "--out", tmp_path / "kit")
+    assert code == 0
+    assert {"Difficulty", "Money", "You must own"} <= {line.partition(":")[0] for line in out.splitlines()}
+    assert out.count("pinhole needs") == 2
+    assert not (tmp_path / "kit").exists()
+    code, _, err = run("fabricate", tmp_path / "robot")
+    assert (code, err) == (2, "hydrostat: error: missing option --out. Name a folder, or add --summary.\n")
 
 
 def test_an_unknown_motor_is_refused(run: Run, tmp_path: Path, starfish: Path) -> None:

@@ -78,10 +78,10 @@ def test_every_part_is_a_file_that_another_program_finds_whole(kit):
         assert mesh.volume > 0, path
 
 
-def test_the_sheet_has_four_pages_for_plush_and_five_for_foam(kit):
+def test_the_sheet_has_five_pages_for_plush_and_six_for_foam(kit):
     """Oracle: pypdf, and the size of A4."""
     pages = pypdf.PdfReader(io.BytesIO(kit.files["assembly_sheet.pdf"])).pages
-    assert len(pages) == (4 if kit.method is Method.PLUSH else 5)
+    assert len(pages) == (5 if kit.method is Method.PLUSH else 6)
     for page in pages:
         assert [float(side) * 25.4 / 72 for side in page.mediabox[2:]] == pytest.approx([210, 297], abs=0.1)
 
@@ -179,7 +179,7 @@ def test_a_stuffed_body_in_space_is_sewn_of_patches():
     assert [check.what for check in kit.checks if not check.passed] == []
     assert any("skin" in check.what for check in kit.checks)
     assert not ezdxf.read(io.StringIO(kit.files["pattern/pattern.dxf"].decode())).audit().errors
-    assert len(pypdf.PdfReader(io.BytesIO(kit.files["assembly_sheet.pdf"])).pages) == 4
+    assert len(pypdf.PdfReader(io.BytesIO(kit.files["assembly_sheet.pdf"])).pages) == 5
 
 
 @pytest.mark.slow

@@ -1,7 +1,6 @@
 """`assembly_sheet`: the pages a person has on the bench while building, with pictures of the very robot."""
 
 import json
-import math
 from collections.abc import Sequence
 from importlib.resources import files
 
@@ -9,10 +8,11 @@ from hydrostat.drawing import Camera, Canvas
 from hydrostat.fabrication.kit_options import Method, Paper
 from hydrostat.fabrication.kit_plan import KitFindings, KitPlan
 from hydrostat.fabrication.lists.lists import Lists
+from hydrostat.fabrication.sheets.bench_words import SURFACES
 from hydrostat.fabrication.sheets.cable_map import flat_map, single_maps, space_map
 from hydrostat.fabrication.sheets.diagrams import skin_scheme, stitch_scheme, stopper_scheme, wiring_scheme
 from hydrostat.fabrication.sheets.facts import PictureFacts, PictureName, SheetData, SheetFacts
-from hydrostat.fabrication.sheets.legible import PrintableText, note_lines
+from hydrostat.fabrication.sheets.legible import PrintableText
 from hydrostat.fabrication.sheets.list_facts import piece_numbers
 from hydrostat.fabrication.sheets.map_layout import best_views, body_solid
 from hydrostat.fabrication.sheets.sheet_facts import sheet_facts, shown_stitches
@@ -20,11 +20,11 @@ from hydrostat.fabrication.sheets.solid_pictures import exploded_picture, portra
 from hydrostat.fabrication.sheets.steps import CableDepths
 from hydrostat.fabrication.winch_marks import winch_marks_of
 
-_TEMPLATES = ("blocks.typ", "overview.typ", "assembly_sheet.typ", "words.typ")
+_TEMPLATES = ("blocks.typ", "assembly_sheet.typ", "overview.typ")
 
 
 def assembly_sheet(plan: KitPlan, lists: Lists, findings: KitFindings) -> bytes:
-    """A PDF: two pages for plush, four for foam, three for a printed body, one of wires; always the same bytes.
+    """A PDF: three pages for plush, five for foam, four for a printed body, one of wires; always the same bytes.
 
     All words of the user reach the template as data, so that none of them is taken for markup.
     """
@@ -35,7 +35,7 @@ def assembly_sheet(plan: KitPlan, lists: Lists, findings: KitFindings) -> bytes:
     source = b"\n".join((room / name).read_bytes() for name in (*_TEMPLATES, pages, "wiring.typ"))
     robot = plan.robot
     views = best_views(robot, body_solid(robot)) if robot.body.mesh.dim == 3 else ()
-    pictures = sheet_pictures(plan, lists, findings, views)
+    pictures = sheet_pictures(plan, lists, views)
     legible = PrintableText(robot)
     words: SheetFacts = legible.facts(sheet_facts(plan, lists, findings, letters=legible.warning))
     data: SheetData = {
@@ -52,9 +52,6 @@ def _picture_facts(canvas: Canvas) -> PictureFacts:
     return {"svg": canvas.svg, "width": canvas.width}
 
 
-_SURFACES = {Method.PLUSH: "cloth", Method.FOAM: "skin", Method.PRINT: "body"}
-"""Surface on which a stopper rests."""
-
 WIDE, HALF = 182.0, 88.0  # widths of a page and of half a page without its margins [mm]; both fit both papers
 
 
@@ -63,25 +60,21 @@ def _shorter(paper: Paper) -> float:
     return 18.0 if paper is Paper.LETTER else 0.0
 
 
-def sheet_pictures(
-    plan: KitPlan, lists: Lists, findings: KitFindings, views: Sequence[Camera]
-) -> dict[PictureName, Canvas]:
+def sheet_pictures(plan: KitPlan, lists: Lists, views: Sequence[Camera]) -> dict[PictureName, Canvas]:
     """Pictures by name, in millimeters of paper; views of a body in space, the best first."""
     robot, stitches, tight = plan.robot, plan.work.stitches, _shorter(plan.options.paper)
-    told = note_lines(findings.problems, (*findings.warnings, *findings.notes), robot)
-    boxed = 4.0 * sum(math.ceil(len(words) / 130) for words in told) + (4.0 if told else 0.0)
     pictures: dict[PictureName, Canvas] = {
         "portrait": portrait(robot, views[0] if views else None, width=44.0, height=32.0)
     }
     if views:
-        pictures["map"] = space_map(robot, width=112.0, height=119.0 - (tight + boxed) / 2, views=views[:1])
+        pictures["map"] = space_map(robot, width=112.0, height=150.0 - tight / 2, views=views[:1])
         pictures["map_both"] = space_map(robot, width=WIDE, height=112.0 - tight / 2, views=views[1:])
     else:
         if plan.method is not Method.PLUSH:
             pictures["map_both"] = flat_map(robot, (), width=WIDE, height=112.0 - tight / 2)
-        pictures["map"] = flat_map(robot, stitches, width=112.0, height=119.0 - (tight + boxed) / 2)
-    pictures["calibration"] = stopper_scheme(cloth=_SURFACES[plan.method], width=HALF, height=26.0)
-    left = 195.0 - tight - boxed - pictures["map"].height
+        pictures["map"] = flat_map(robot, stitches, width=112.0, height=150.0 - tight / 2)
+    pictures["calibration"] = stopper_scheme(cloth=SURFACES[plan.method], width=HALF, height=26.0)
+    left = 238.0 - tight - pictures["map"].height
     if lists.power is not None:
         marks = winch_marks_of(robot)
         mine = tuple(marks[name] for name in lists.power.winches)

@@ -37,6 +37,13 @@ class StepFacts(TypedDict):
     text: str
 
 
+class SummaryFacts(TypedDict):
+    """What building a robot asks in one respect."""
+
+    title: str
+    lines: list[str]  # sentences
+
+
 class WinchFacts(TypedDict):
     """A winch."""
 
@@ -68,9 +75,6 @@ class CheckFacts(TypedDict):
 class MoldFacts(TypedDict):
     """A mould and its fill."""
 
-    silicone: bool  # True if it is cast itself; else it is printed
-    foams: bool  # True if foam is poured into it
-    weighs: str  # mass of the body alone
     undercut: str  # sentences on the surface that does not slide out
     amounts: list[list[str]]  # names and amounts of materials
     ratio: str  # sentence on the mixing ratio
@@ -106,13 +110,16 @@ class SheetFacts(TypedDict):
     flat: bool  # True for a flat body
     kind: str  # kind of robot, in words
     facts: list[str]  # size, number of parts, time and cost, a line each
+    summary: list[SummaryFacts]  # what building it asks
     mind: list[str]  # problems and warnings
     forced: bool  # True if the kit was written despite problems
     bill: TableFacts
     cables: TableFacts | None  # to cut; None without cables
     tubes: TableFacts | None  # to cut; None without tubes
     log: list[str]  # names of the cables to calibrate
-    measured: bool  # True if hydrostat calibrate can measure where they begin to pull
+    calibration: list[str]  # steps that set their zeros
+    safety: list[str]  # hazards
+    checklist: list[str]  # what to look at before the first pose
     winches: list[WinchFacts]
     pieces: list[PieceFacts]
     shown: str  # name of the cable whose stitches are drawn

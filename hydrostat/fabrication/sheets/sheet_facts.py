@@ -3,26 +3,20 @@
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import groupby
 
-from hydrostat.fabrication.kit_options import Method, MoldKind
+from hydrostat.fabrication.kit_options import Method
 from hydrostat.fabrication.kit_plan import KitFindings, KitPlan
 from hydrostat.fabrication.lists.cuts import AT_BODY
 from hydrostat.fabrication.lists.lists import Lists
 from hydrostat.fabrication.lists.table import Align, Table
 from hydrostat.fabrication.moulds.mould import Mold
 from hydrostat.fabrication.patterns.stitches import CableStitches
+from hydrostat.fabrication.sheets.bench_words import list_calibration, list_hazards, list_last_checks
 from hydrostat.fabrication.sheets.facts import MoldFacts, SheetFacts, StepFacts, TableFacts, WinchFacts
-from hydrostat.fabrication.sheets.foam_steps import (
-    body_mass,
-    cure_times,
-    foam_expansion,
-    mold_steps,
-    other_way,
-    skin_steps,
-)
+from hydrostat.fabrication.sheets.foam_steps import cure_times, other_way
 from hydrostat.fabrication.sheets.legible import note_lines, sentence, shorten_text
 from hydrostat.fabrication.sheets.list_facts import bill_facts, cost_text, piece_facts, power_facts, winch_files
-from hydrostat.fabrication.sheets.print_steps import print_steps
-from hydrostat.fabrication.sheets.steps import AssemblyStep, minutes_text, plush_steps
+from hydrostat.fabrication.sheets.steps import AssemblyStep, minutes_text
+from hydrostat.fabrication.sheets.summary import all_steps, summary_rows
 from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.units import plural
 
@@ -42,7 +36,7 @@ _PLACES = {AT_BODY: "body"}  # short names of places for the sheet, which has le
 
 def sheet_facts(plan: KitPlan, lists: Lists, findings: KitFindings, *, letters: str = "") -> SheetFacts:
     """All words and numbers, long ones shortened; `letters`: a sentence on letters that cannot be printed."""
-    steps, mould, stitches = _all_steps(plan, lists), plan.work.mould, shown_stitches(plan)
+    steps, mould, stitches = all_steps(plan, lists), plan.work.mould, shown_stitches(plan)
     told = (*((letters,) if letters else ()), *findings.warnings, *findings.notes)
     return {
         "paper": plan.options.paper.value,
@@ -53,12 +47,15 @@ def sheet_facts(plan: KitPlan, lists: Lists, findings: KitFindings, *, letters: 
         "flat": plan.robot.body.mesh.dim == 2,
         "kind": _KINDS[plan.method],
         "facts": _about(plan, lists, steps),
+        "summary": [{"title": title, "lines": list(lines)} for title, lines in summary_rows(plan, lists)],
         "mind": note_lines(findings.problems, told, plan.robot),
         "forced": bool(findings.problems),
         "bill": bill_facts(lists),
         "cables": _table(lists.cables, _CABLES),
         "log": [f"C{number}" for number in range(1, len(plan.robot.cables) + 1)],
-        "measured": not any(cable.reverse for cable in plan.robot.cables),
+        "calibration": list_calibration(plan),
+        "safety": list_hazards(plan),
+        "checklist": list_last_checks(plan),
         "tubes": _table(lists.tubes, _TUBES),
         "winches": _winches(plan),
         "pieces": piece_facts(plan),
@@ -69,7 +66,7 @@ def sheet_facts(plan: KitPlan, lists: Lists, findings: KitFindings, *, letters: 
             {"what": check.what, "measured": check.measured, "allowed": check.allowed, "passed": check.passed}
             for check in findings.checks
         ],
-        "mould": _mould(plan, mould),
+        "mould": _mould(mould),
         "power": power_facts(lists.power, plan.robot),
         "other_way": list(other_way(mould)) if mould else [],
         "cures": [list(cure) for cure in cure_times(mould)],
@@ -80,17 +77,6 @@ def shown_stitches(plan: KitPlan) -> CableStitches | None:
     """Stitches of the cable that is drawn: of those with the most holes the first."""
     sewn = [stitches for stitches in plan.work.stitches if stitches.passes]
     return max(sewn, key=lambda stitches: (len(stitches.passes), -stitches.cable)) if sewn else None
-
-
-def _all_steps(plan: KitPlan, lists: Lists) -> list[tuple[AssemblyStep, ...]]:
-    """The steps, page by page."""
-    if plan.method is Method.PLUSH:
-        return [plush_steps(plan)]
-    if plan.method is Method.PRINT:
-        return [print_steps(plan)]
-    mould = plan.work.mould
-    before = [mold_steps(plan, lists, mould)] if mould is not None else []
-    return [*before, skin_steps(plan, lists)]
 
 
 def _about(plan: KitPlan, lists: Lists, steps: Iterable[Iterable[AssemblyStep]]) -> list[str]:
@@ -159,7 +145,7 @@ def _step(step: AssemblyStep) -> StepFacts:
     return {"title": step.title, "time": step.time, "text": step.text}
 
 
-def _mould(plan: KitPlan, mould: Mold | None) -> MoldFacts | None:
+def _mould(mould: Mold | None) -> MoldFacts | None:
     """Facts of a mould that are not in its steps."""
     if mould is None:
         return None
@@ -176,9 +162,6 @@ def _mould(plan: KitPlan, mould: Mold | None) -> MoldFacts | None:
         *([["grows to", f"{casting.expansion:.1f} times its volume"]] if casting.expansion > 1 else []),
     ]
     return {
-        "silicone": mould.kind is MoldKind.SILICONE,
-        "foams": foam_expansion(mould),
-        "weighs": f"{body_mass(plan, mould):.0f} g",
         "undercut": _undercut(mould.pull.share),
         "amounts": amounts,
         "ratio": sentence(body.ratio),

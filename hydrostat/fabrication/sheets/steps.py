@@ -119,7 +119,7 @@ def winch_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
             AssemblyStep(
                 "Put the winches together",
                 15 * count,
-                f"Build {plural(count, 'winch')} as drawn on page 1, each with its own files (see "
+                f"Build {plural(count, 'winch')} as drawn on page 2, each with its own files (see "
                 "Parts), and write the mark on it. Turn every motor to its zero before the spool goes on.",
             )
         )

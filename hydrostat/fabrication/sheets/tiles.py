@@ -18,7 +18,7 @@ from hydrostat.fabrication.patterns.shape import Layer, Shape
 from hydrostat.fabrication.patterns.svg_writer import COLORS, shapes_svg
 from hydrostat.fabrication.sheets.legible import legible
 
-PAPERS = {Paper.A4: (210.0, 297.0), Paper.LETTER: (215.9, 279.4)}  # width and height [mm]
+PAPERS = {Paper.A4: (210.0, 297.0), Paper.LETTER: (215.9, 279.4), Paper.A3: (297.0, 420.0)}  # width and height [mm]
 MARGIN = 10.0  # white edge of a printer's pages [mm]
 FOOTER = 14.0  # room below a tile for its name and the bar [mm]
 OVERLAP = 10.0  # overlap of neighboring tiles [mm]

@@ -25,7 +25,10 @@ from hydrostat.fabrication.parts.winch_unit import winch_units
 from hydrostat.fabrication.sheets.assembly_sheet import assembly_sheet
 from hydrostat.fabrication.sheets.legible import legible, note_lines, shorten_text, typeset
 from hydrostat.fabrication.sheets.list_facts import power_facts
+from hydrostat.fabrication.sheets.sheet_facts import sheet_facts
 from hydrostat.fabrication.sheets.steps import plush_steps
+from hydrostat.fabrication.sheets.summary import find_difficulty, summary_rows
+from hydrostat.fabrication.sheets.text_sheet import sheet_text
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import MATERIALS, Mount
 
@@ -69,8 +72,11 @@ def foam_sheet():
     return sheet_of(foam)
 
 
-@pytest.mark.parametrize(("make", "pages"), [(plush, 2), (foam, 4)])
-@pytest.mark.parametrize(("paper", "size"), [(Paper.A4, (595.28, 841.89)), (Paper.LETTER, (612.0, 792.0))])
+@pytest.mark.parametrize(("make", "pages"), [(plush, 3), (foam, 5)])
+@pytest.mark.parametrize(
+    ("paper", "size"),
+    [(Paper.A4, (595.28, 841.89)), (Paper.LETTER, (612.0, 792.0)), (Paper.A3, (595.28, 841.89))],
+)
 def test_pages_and_paper(make, pages, paper, size):
     reader = read(assembly_sheet(*make(paper=paper)))
     assert len(reader.pages) == pages
@@ -203,13 +209,13 @@ def test_names_in_other_alphabets():
 @pytest.mark.parametrize("name", ["octopus " * 40, "x" * 400])
 def test_long_names_are_shortened(name):
     content = assembly_sheet(*plush(name=name))
-    assert len(read(content).pages) == 2
+    assert len(read(content).pages) == 3
     assert shorten_text(name, 60)[:20] in words(content)
     assert shorten_text(name, 60).endswith("…")
     assert len(shorten_text(name, 60)) <= 60
 
 
-@pytest.mark.parametrize(("make", "pages"), [(plush, 4), (foam, 4)])
+@pytest.mark.parametrize(("make", "pages"), [(plush, 5), (foam, 5)])
 @pytest.mark.slow
 def test_a_crowded_sheet_has_no_more_pages_but_of_maps(make, pages):
     long = "The spool of winch “pull 1” takes 71 mm of cable, but its travel asks for 740 mm; " * 4
@@ -235,7 +241,7 @@ def test_warnings_stand_in_a_box_and_problems_say_that_it_was_forced(plush_sheet
     quiet = words(plush_sheet)
     warned = words(assembly_sheet(*plush(warnings=("mind the cat",))))
     forced = words(assembly_sheet(*plush(problems=("the cat sits on it",))))
-    assert "MIND" not in quiet
+    assert "WARNINGS" not in quiet
     assert "Mind the cat." in warned
     assert "cannot be built well" not in warned
     assert "The cat sits on it." in forced
@@ -245,9 +251,9 @@ def test_warnings_stand_in_a_box_and_problems_say_that_it_was_forced(plush_sheet
 @pytest.mark.slow
 def test_nothing_but_the_robot_is_enough():
     given = plush(winch_assembly=None, stopper_assembly=None, printed=(), lists=lists(0, 0), checks=())
-    assert len(read(assembly_sheet(*given)).pages) == 2
+    assert len(read(assembly_sheet(*given)).pages) == 3
     given = foam(winch_assembly=None, stopper_assembly=None, printed=(), lists=lists(0, 0), checks=(), mould=None)
-    assert len(read(assembly_sheet(*given)).pages) == 4
+    assert len(read(assembly_sheet(*given)).pages) == 5
 
 
 def item(what: str, quantity: float, price: Price, specification: str = "", **more: bool) -> Item:
@@ -433,6 +439,52 @@ def test_parts_are_told_with_their_files_and_for_which_winches():
     assert "W2 pull 2: spool_b" in text
 
 
+def test_the_first_page_says_what_building_asks():
+    """Oracle: sums by hand: 8 items of 3 USD, 2 printed pieces a winch and 2 a cable, 2 cables."""
+    rows = dict(summary_rows(plush().plan, lists(2)))
+    assert rows["Money"] == ("About 24 USD used up, 24 USD in whole packs.",)
+    assert rows["To print"][0].startswith("6 pieces, ")
+    assert rows["To sew"] == ("2 cables.",)
+    assert rows["Difficulty"] == ("Easy: one afternoon.",)
+    assert "Screwdrivers" not in " ".join(rows["You must own"])
+    first = " ".join(read(sheet_of(plush)).pages[0].extract_text().split())
+    for title, lines in rows.items():
+        assert f"{title} " in first
+        assert all(line.partition(",")[0] in first for line in lines)
+
+
+@pytest.mark.parametrize(
+    ("robot", "hours", "motor", "level"),
+    [
+        (plush, 5, None, "Medium"),
+        (plush, 5, "25d", "Medium"),
+        (plush, 12, "25d", "Hard"),
+        (foam, 3, "sts3215", "Medium"),
+    ],
+)
+def test_difficulty_counts_hours_foam_and_wires(robot, hours, motor, level):
+    """Oracle: its rule: an afternoon 1, days 2, foam 1, wires 1; hard from 3 on."""
+    given = robot()
+    chosen = [one for one in ALL_MOTORS if one.key == motor]
+    power = power_plan({"pull 1": 40.0}, chosen[0]) if chosen else None
+    told = find_difficulty(given.plan, lists(2, power=power), 60 * hours)
+    assert told.startswith(level.lower())
+
+
+def test_the_words_of_a_sheet_are_a_text():
+    """Oracle: the facts of the same sheet, a line each; a row of a table says its headings."""
+    for make in (plush, foam):
+        given = make()
+        facts = sheet_facts(*given)
+        text = sheet_text(facts).splitlines()
+        steps = [step for page in facts["steps"] for step in page]
+        for number, step in enumerate(steps, start=1):
+            assert f"{number}. {step['title']} ({step['time']}). {step['text']}" in text
+        assert {*facts["safety"], *facts["checklist"]} <= {*text}
+        assert "C1, cut to 250, slack 1.5, spool mark 122" in text
+        assert f"passed: {given.findings.checks[0].what}, 0.004 mm (allowed: 0.1 mm)" in text
+
+
 @pytest.mark.slow
 def test_a_robot_without_cables_has_no_empty_heading():
     for make in (plush, foam):
@@ -455,10 +507,10 @@ def test_a_robot_without_cables_has_no_empty_heading():
             assert heading not in text.replace("all winches", "")
 
 
-def test_a_flat_robot_of_foam_has_its_map_on_page_three():
+def test_a_flat_robot_of_foam_has_its_map_on_page_four():
     """Oracle: hole numbers of the map, read back from the page."""
     given = plush()
     content = assembly_sheet(*changed(given, method=Method.FOAM, stitches=(), mould=None))
-    page = read(content).pages[2].extract_text()
+    page = read(content).pages[3].extract_text()
     assert "Where the cables run" in page
     assert "C2" in page.split("Skin and cables")[0]

@@ -15,6 +15,7 @@ from hydrostat.fabrication.sheets.facts import (
     PowerFacts,
     SheetData,
     StepFacts,
+    SummaryFacts,
     TableFacts,
     WinchFacts,
 )
@@ -26,6 +27,7 @@ RECORDS = {
     "cables": TableFacts,
     "tubes": TableFacts,
     "step": StepFacts,
+    "row": SummaryFacts,
     "winch": WinchFacts,
     "piece": PieceFacts,
     "check": CheckFacts,

@@ -21,7 +21,7 @@ from hydrostat.fabrication.patterns.pattern import Pattern
 from hydrostat.fabrication.patterns.shape import Circle, LaserLine, Layer, PatternPart
 from hydrostat.fabrication.sheets.tiles import Tile, tile_grid, tiled_pdf
 
-SIZES = {Paper.A4: (210.0, 297.0), Paper.LETTER: (215.9, 279.4)}
+SIZES = {Paper.A4: (210.0, 297.0), Paper.LETTER: (215.9, 279.4), Paper.A3: (297.0, 420.0)}
 PIXEL = 25.4 / 300
 
 needs_poppler = pytest.mark.skipif(shutil.which("pdftoppm") is None, reason="pdftoppm of poppler is not installed")

@@ -105,7 +105,7 @@ def test_a_kit_is_the_files_of_the_library_in_one_zip(
 @pytest.mark.slow
 def test_pages_are_pictures_of_the_sheet(kit: tuple[KitMade, Told]) -> None:
     made, _ = kit
-    assert len(made.pages) == 4  # of a robot of plush: the third has small maps, the last the wires
+    assert len(made.pages) == 5  # of a robot of plush: the fourth has small maps, the last the wires
     for page in made.pages:
         with Image.open(io.BytesIO(page)) as picture:
             assert picture.height / picture.width == pytest.approx(297 / 210, abs=0.01)

@@ -1,0 +1,110 @@
+"""`all_steps`, `summary_rows`: the steps of a kit, and what building it asks of a person, on one page."""
+
+from hydrostat.fabrication.kit_options import Method
+from hydrostat.fabrication.kit_plan import KitPlan
+from hydrostat.fabrication.lists.bill import BillGroup
+from hydrostat.fabrication.lists.lists import Lists
+from hydrostat.fabrication.sheets.foam_steps import mold_steps, skin_steps
+from hydrostat.fabrication.sheets.legible import sentence
+from hydrostat.fabrication.sheets.print_steps import print_steps
+from hydrostat.fabrication.sheets.steps import AssemblyStep, minutes_text, plush_steps
+from hydrostat.units import plural
+
+
+def all_steps(plan: KitPlan, lists: Lists) -> list[tuple[AssemblyStep, ...]]:
+    """The steps, page by page."""
+    if plan.method is Method.PLUSH:
+        return [plush_steps(plan)]
+    if plan.method is Method.PRINT:
+        return [print_steps(plan)]
+    mould = plan.work.mould
+    before = [mold_steps(plan, lists, mould)] if mould is not None else []
+    return [*before, skin_steps(plan, lists)]
+
+
+def summary_rows(plan: KitPlan, lists: Lists) -> tuple[tuple[str, tuple[str, ...]], ...]:
+    """Difficulty, time, cost, pieces, holes, the hardest step, tools and optional parts: headings with sentences."""
+    steps = [step for page in all_steps(plan, lists) for step in page]
+    busy, longest = sum(step.minutes for step in steps), max(steps, key=lambda step: step.minutes)
+    mass = sum(part.count * part.mass for part in plan.printed)
+    first = longest.text.partition(". ")[0].removesuffix(".")
+    rows = (
+        ("Difficulty", [find_difficulty(plan, lists, busy)]),
+        ("Work", [f"about {minutes_text(busy)} in {plural(len(steps), 'step')}. No step was timed"]),
+        ("Waiting", [f"{step.title}: {step.wait}" for step in steps if step.wait]),
+        ("Money", _money(lists)),
+        ("To print", [f"{plan.pieces}, {mass:.0f} g"] if plan.printed else []),
+        ("To sew", _sewing(plan)),
+        ("Hardest step", [f"{longest.title}: {minutes_text(longest.minutes)}, the longest. {first}"]),
+        ("You must own", _tools(plan, lists)),
+        ("Optional", _optional(plan)),
+    )
+    return tuple((head, tuple(sentence(words) for words in told)) for head, told in rows if told)
+
+
+def find_difficulty(plan: KitPlan, lists: Lists, minutes: float) -> str:
+    """Easy, medium or hard, by the number of reasons against a first project."""
+    afternoon, days = 4 * 60, 10 * 60
+    reasons = {
+        "several days of work": 2 * (minutes > days),
+        "more work than an afternoon": afternoon < minutes <= days,
+        "foam or silicone to weigh and pour": plan.method is Method.FOAM,
+        "motors to wire pin by pin": lists.power is not None and not lists.power.servos,
+    }
+    level = ("easy", "medium", "medium", "hard", "hard")[sum(reasons.values())]
+    told = [reason for reason, weight in reasons.items() if weight]
+    return f"{level}: {', '.join(told) or 'one afternoon'}"
+
+
+def _money(lists: Lists) -> list[str]:
+    used, packs = lists.cost
+    driven = {BillGroup.WINCHES, BillGroup.CONTROL}
+    drive = sum(row.cost_packs for row in lists.bill.rows if row.is_total and row.group in driven)
+    share = f", {drive:.0f} USD of them motors, boards and power" if drive else ""
+    return [f"about {used:.0f} USD used up, {packs:.0f} USD in whole packs{share}"]
+
+
+def _sewing(plan: KitPlan) -> list[str]:
+    """Number of cables, of holes and length of seams."""
+    count = len(plan.robot.cables)
+    found = [plural(count, "cable")] if count else []
+    if plan.work.cloth is not None:
+        found += [plural(plan.work.holes, "hole")] if count else []
+        found.append(f"{1e-3 * plan.work.cloth.seam:.1f} m of seam")
+    return [", ".join(found)] if found else []
+
+
+def _tools(plan: KitPlan, lists: Lists) -> list[str]:
+    """Tools that the bill does not have."""
+    x, y, z = plan.options.mould.bed
+    tools = [f"3D printer of {x:g} × {y:g} × {z:g} mm, or a print service"] if plan.printed else []
+    if plan.method is Method.PLUSH:
+        tools += [
+            "laser cutter, or paper printer, scissors and an awl",
+            "sewing machine, or a needle and twice the time",
+        ]
+    elif plan.method is Method.FOAM:
+        tools += ["scale that reads 1 g", "gloves and goggles", "egg mixer on a drill", "cups and a sharp knife"]
+    if plan.rigid.units:
+        tools.append("screwdrivers for M2 and M3")
+    if lists.power is not None:
+        tools.append("multimeter" if lists.power.servos else "soldering iron, multimeter")
+        tools.append("computer with USB")
+    return tools
+
+
+def _optional(plan: KitPlan) -> list[str]:
+    """Parts of the kit without which it works."""
+    parts = plan.rigid
+    found = []
+    if parts.grommet is not None:
+        found.append(
+            f"{plural(parts.grommet.count, 'grommet')}: metal eyelets or buttonhole stitch round the holes do too"
+        )
+    if plan.robot.body.marks:
+        found.append("decoration")
+    if parts.base is not None:
+        found.append("printed base: parts/base.svg cut from acrylic does too")
+    if plan.work.spare:
+        found.append("the files in positive/: a mold of silicone alone needs them")
+    return found
