@@ -65,6 +65,10 @@ def fabricate(
     ] = "0.3 mm",
     step: Annotated[bool, typer.Option("--cad", help="Also write printed parts as STEP. Needs the extra cad.")] = False,
     force: Force = False,
+    simple: Annotated[
+        bool,
+        typer.Option("--simple", help="First afternoon: fewest cables, one panel where flat, no grommets. Plush only."),
+    ] = False,
     summary: Annotated[
         bool, typer.Option("--summary", help="Print difficulty, time, cost and tools. Write nothing.")
     ] = False,
@@ -105,6 +109,11 @@ def fabricate(
     options = replace(options, tension=kept or limit, torque=torque, motor=motor or "auto", budget=spend)
     if mould is not None and options.method_for(loaded.body) is not kits.Method.FOAM:
         raise InputError("--mould: needs a foam body. Remove it, or add --method foam.")
+    if simple:
+        from hydrostat.cli.simple_kit import simplify_robot
+        from hydrostat.robot import save_robot
+
+        loaded, options = simplify_robot(loaded, options)
     if out is None or summary:
         _print_summary(loaded, options)
         return
@@ -112,6 +121,9 @@ def fabricate(
     kit.write(out)
     _print_motors(loaded, kit, options)
     print_kit(kit)
+    if simple:
+        save_robot(loaded, out / "robot")
+        print(f"Its robot: {out / 'robot'}. Calibrate and play that one")
     if loaded.markers:
         print("Tags for photographs, with their places: tags.pdf")
     for drive in loaded.drives:

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from hydrostat.design.constraints_file import cable_name, read_constraints, read_uncertainty
     from hydrostat.design.corrected_error import corrected_errors
     from hydrostat.design.design_cables import design_cables, find_network
+    from hydrostat.design.fewer_cables import PosedNetwork, drop_cables
     from hydrostat.design.finding import Diagnostic, Severity, places_in
     from hydrostat.design.first_cable import draw_first_cable
     from hydrostat.design.lifts import Lift, find_lifts
@@ -68,6 +69,7 @@ __all__ = [
     "Lift",
     "MarkerEstimator",
     "Network",
+    "PosedNetwork",
     "PricedPath",
     "QuickSearch",
     "Range",
@@ -91,6 +93,7 @@ __all__ = [
     "corrected_errors",
     "design_cables",
     "draw_first_cable",
+    "drop_cables",
     "edge_fibres",
     "expected_error",
     "find_lifts",

@@ -28,7 +28,6 @@ from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.pattern import Pattern, plush_pattern
 from hydrostat.fabrication.patterns.shape import Circle, PatternPart
 from hydrostat.fabrication.patterns.svg_writer import pattern_svg
-from hydrostat.fabrication.sheets.tiles import tiled_pdf
 from hydrostat.fabrication.solids.construct import sides_text
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Face, Mount, Robot
@@ -152,11 +151,8 @@ def plush_work(robot: Robot, options: KitOptions) -> BodyWork:
         svg, dxf = pattern_svg(pattern), pattern_dxf(pattern)
         checks = patch_checks(robot, pattern, svg, dxf)
     return BodyWork(
-        files={
-            "pattern/pattern.svg": svg,
-            "pattern/pattern.dxf": dxf,
-            f"pattern/pattern_{options.paper}.pdf": tiled_pdf(pattern, options.paper),
-        },
+        files={"pattern/pattern.svg": svg, "pattern/pattern.dxf": dxf},
+        pattern=pattern,
         holes=sum(shape.part is PatternPart.PINHOLE for panel in pattern.panels for shape in panel.shapes),
         stitches=pattern.stitches,
         gusset=bool(pattern.gusset),

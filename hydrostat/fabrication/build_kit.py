@@ -25,6 +25,7 @@ from hydrostat.fabrication.sheets.assembly_sheet import assembly_sheet
 from hydrostat.fabrication.sheets.sheet_facts import sheet_facts
 from hydrostat.fabrication.sheets.summary import summary_rows
 from hydrostat.fabrication.sheets.text_sheet import sheet_text
+from hydrostat.fabrication.sheets.tiles import tiled_pdf
 from hydrostat.fabrication.solids.print_files import stl_bytes, three_mf_plates
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.fabrication.solids.step import require_cad, step_bytes
@@ -182,7 +183,7 @@ def _parts_and_body(
     if options.method_for(robot.body) is Method.PLUSH:
         tell("Pattern")
         work = plush_work(drawn, options)
-        return rigid(work.holes), work
+        return rigid(work.holes if options.parts.grommets else 0), work
     parts = rigid(0)
     if options.method_for(robot.body) is Method.PRINT:
         tell("Body")
@@ -279,9 +280,10 @@ def _part_warnings(plan: KitPlan) -> tuple[str, ...]:
 
 def _files(plan: KitPlan, lists: Lists, findings: KitFindings) -> dict[str, bytes]:
     """Content by path in the kit, without the manifest."""
-    rigid, work, name = plan.rigid, plan.work, plan.robot.name
+    rigid, work, name, paper = plan.rigid, plan.work, plan.robot.name, plan.options.paper
     return {
         **work.files,
+        **({f"pattern/pattern_{paper}.pdf": tiled_pdf(work.pattern, paper)} if work.pattern else {}),
         **_solid_files("parts", name, rigid.printed, plan.options),
         **_solid_files("body" if plan.method is Method.PRINT else "mould", name, work.printed, plan.options),
         **_solid_files("positive", name, work.spare, plan.options),

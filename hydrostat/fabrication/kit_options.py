@@ -131,6 +131,7 @@ class PartOptions:
         bore: inner diameter of the sheath [mm].
         run: distance between the base of winches outside the body and the body [mm].
         spare_wraps: turns of cable that stay on a spool at maximum payout.
+        grommets: True to print a grommet for each pinhole.
 
     Raises:
         InputError: a number out of its range.
@@ -144,6 +145,7 @@ class PartOptions:
     bore: float = 1.0
     run: float = 100.0
     spare_wraps: float = 2.0
+    grommets: bool = True
 
     def __post_init__(self) -> None:
         _check_sizes(self, above_zero=("wall", "cable", "tube", "bore"))
@@ -200,6 +202,7 @@ class KitOptions:
             winches. A designed robot keeps to the limit of its design.
         torque: maximum torque of a winch in its poses [N m], as the tension.
         paper: paper size of the pages; assembly sheets for A3 are of A4.
+        left_out: what a simple version leaves out, for the first page.
         step: also write each printed part as STEP; needs the extra `cad`.
         force: True to write a kit that cannot be built well, with the reasons on the sheet.
         pattern: options for the pattern of a plush robot; its `force` is that of the kit.
@@ -216,6 +219,7 @@ class KitOptions:
     tension: float | None = None
     torque: float | None = None
     paper: Paper = Paper.A4
+    left_out: tuple[str, ...] = ()
     step: bool = False
     force: bool = False
     pattern: PatternOptions = field(default_factory=PatternOptions)

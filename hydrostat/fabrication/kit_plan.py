@@ -11,6 +11,7 @@ from hydrostat.fabrication.kit import Check
 from hydrostat.fabrication.kit_options import KitOptions, Method
 from hydrostat.fabrication.moulds.mould import Mold
 from hydrostat.fabrication.parts.rigid_parts import RigidParts
+from hydrostat.fabrication.patterns.pattern import Pattern
 from hydrostat.fabrication.patterns.stitches import CableStitches
 from hydrostat.fabrication.solids.assembly import PartAssembly
 from hydrostat.fabrication.solids.printed import Printed
@@ -55,6 +56,7 @@ class BodyWork:
     spare: tuple[Printed, ...] = ()  # pieces that are printed only if the body is to be cast in another way
     assemblies: tuple[PartAssembly, ...] = ()  # assemblies of the mold
     holes: int = 0  # pinholes in the cloth, each for a grommet
+    pattern: Pattern | None = None  # pattern of a plush robot
     stitches: tuple[CableStitches, ...] = ()  # stitches of each cable of a plush robot
     gusset: bool = False  # True if strips between front and back make a plush body thick
     cloth: Cloth | None = None  # cloth of a plush robot

@@ -20,7 +20,7 @@ from hydrostat.design import BuildCost, Network
 from hydrostat.errors import InputError
 from hydrostat.fabrication import ALL_MOTORS
 from hydrostat.project import Wishes, Work
-from hydrostat.robot import load_robot, robot_hash, save_robot
+from hydrostat.robot import Marker, Pin, PoseTarget, load_robot, robot_hash, save_robot
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -89,6 +89,29 @@ def test_a_summary_writes_nothing(run: Run, tmp_path: Path) -> None:
     assert not (tmp_path / "kit").exists()
     code, _, err = run("fabricate", tmp_path / "robot")
     assert (code, err) == (2, "hydrostat: error: missing option --out. Name a folder, or add --summary.\n")
+
+
+def test_a_simple_version_is_set_beside_the_full_one(run: Run, tmp_path: Path) -> None:
+    """Oracle: two cables of one winch that pull alike: one and its hole go, and so do grommets."""
+    robot = near_the_edge()
+    bends = zip(robot.cables, (0.01, 0.0), strict=True)
+    posed = replace(
+        robot,
+        pins=(Pin(at=(-0.05, -0.05), radius=0.03),),
+        markers=(Marker(name="tip", at=(0.04, 0.02)),),
+        poses={"up": PoseTarget(name="up", targets={"tip": (0.039, 0.02)})},
+        cables=tuple(replace(cable, points=(cable.points[0], (0.0, y), cable.points[1])) for cable, y in bends),
+    )
+    save_robot(posed, tmp_path / "robot")
+    code, out, _ = run("fabricate", tmp_path / "robot", "--simple", "--summary")
+    assert code == 0
+    said = " ".join(out.replace("│", " ").split())
+    assert "Left out: 1 of 2 cables of the robot file. Printed grommets." in said
+    assert "2 cables, 5 holes, " in said
+    assert "1 cable, 3 holes, " in said
+    assert "Expected as-built error" in said
+    code, _, err = run("fabricate", tmp_path / "robot", "--simple", "--summary", "--method", "foam")
+    assert (code, err) == (2, "hydrostat: error: --simple: needs a plush robot. Remove it, or add --method plush.\n")
 
 
 def test_an_unknown_motor_is_refused(run: Run, tmp_path: Path, starfish: Path) -> None:

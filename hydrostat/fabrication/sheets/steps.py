@@ -276,7 +276,11 @@ def _cables(plan: KitPlan) -> tuple[AssemblyStep, ...]:
     cables = len(plan.robot.cables)
     tubes = sum(len(cable.sheathed) for cable in plan.robot.cables)
     sheaths = "Tie sheaths to the inside of the cloth at both ends, the line in them. " if tubes else ""
-    grommets = " Grommets are optional: sew one behind a hole that frays." if _grommets(plan) else ""
+    grommets = (
+        " Grommets are optional: sew one behind a hole that frays."
+        if _grommets(plan)
+        else " Edge each hole with buttonhole stitch, or set an eyelet of 2 mm: felt frays under a line."
+    )
     return (
         AssemblyStep(
             "Cut cables and sheaths" if tubes else "Cut the cables",

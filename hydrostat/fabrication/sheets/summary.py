@@ -38,6 +38,7 @@ def summary_rows(plan: KitPlan, lists: Lists) -> tuple[tuple[str, tuple[str, ...
         ("Hardest step", [f"{longest.title}: {minutes_text(longest.minutes)}, the longest. {first}"]),
         ("You must own", _tools(plan, lists)),
         ("Optional", _optional(plan)),
+        ("Left out", plan.options.left_out),
     )
     return tuple((head, tuple(sentence(words) for words in told)) for head, told in rows if told)
 
