@@ -66,7 +66,7 @@ def measure(
     sheet: Annotated[
         Path | None, typer.Option("--print", metavar="FILE.pdf", help="Write the board and tags to print.")
     ] = None,
-    paper: Annotated[str, typer.Option(metavar="a4|letter", help="Paper size of the printed pages.")] = "a4",
+    paper: Annotated[str, typer.Option(metavar="a4|letter|a3", help="Paper size of the printed pages.")] = "a4",
 ) -> None:
     """Measure marker positions in photographs or in a film.
 

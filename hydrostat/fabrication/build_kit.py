@@ -108,7 +108,7 @@ def build_kit(
 def summarize_kit(
     robot: Robot, *, options: KitOptions | None = None, progress: Progress | None = None
 ) -> tuple[tuple[str, tuple[str, ...]], ...]:
-    """What building a robot asks, as headings with sentences, before its files and checks are made.
+    """Return what building a robot asks, as headings with sentences, before its files and checks are made.
 
     Raises:
         InputError: a body that the method cannot make, or an unknown motor.

@@ -202,7 +202,7 @@ class KitOptions:
             winches. A designed robot keeps to the limit of its design.
         torque: maximum torque of a winch in its poses [N m], as the tension.
         paper: paper size of the pages; assembly sheets for A3 are of A4.
-        left_out: what a simple version leaves out, for the first page.
+        left_out: parts that a simple version leaves out, for the first page.
         step: also write each printed part as STEP; needs the extra `cad`.
         force: True to write a kit that cannot be built well, with the reasons on the sheet.
         pattern: options for the pattern of a plush robot; its `force` is that of the kit.

@@ -61,7 +61,8 @@ def _climb(peaks: Int[np.ndarray, " nodes"], node: int) -> int:
 def name_tips(mesh: Mesh, tips: Points) -> list[str]:
     """Names of tips [m] by their places about the middle of the body, such as "upper left"; one alone is "tip".
 
-    Twins get numbers from the left. In space the two axes along which the tips are spread most name them.
+    Twins get numbers from the outside, those at the top and the bottom from the left: halves that mirror each other
+    have the same numbers. In space the two axes along which the tips are spread most name them.
     """
     if len(tips) == 1:
         return ["tip"]
@@ -69,9 +70,10 @@ def name_tips(mesh: Mesh, tips: Points) -> list[str]:
     axes = np.sort(np.argsort(-np.ptp(tips, axis=0), kind="stable")[:2])
     eighths = np.round(np.arctan2(*(tips - middle)[:, axes[::-1]].T) / (np.pi / 4)).astype(int) % 8
     names = np.array(_PLACES, dtype=object)[eighths]
-    from_left = np.lexsort((-tips[:, axes[1]], tips[:, axes[0]]))
     for name in set(names.tolist()):
-        twins = from_left[names[from_left] == name]
+        inwards = -1.0 if "right" in name else 1.0
+        order = np.lexsort((-tips[:, axes[1]], inwards * tips[:, axes[0]]))
+        twins = order[names[order] == name]
         if len(twins) > 1:
             names[twins] = [f"{name} {number}" for number in range(1, len(twins) + 1)]
     return names.tolist()

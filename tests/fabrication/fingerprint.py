@@ -99,5 +99,6 @@ _READERS = {
     "stl": _stl,
     "3mf": _three_mf,
     "csv": _table,
+    "txt": lambda content: [line for line in content.decode().splitlines() if line.isupper()],
     "json": _manifest,
 }

@@ -25,7 +25,7 @@ class Seen:
 
 def see_svg(content: bytes) -> Seen:
     """With svgelements; a millimeter is taken from the drawing's physical size, not from its viewBox."""
-    names = {"#000000": "MARK", "#0000ff": "PINHOLE", "#ff0000": "CUT"}
+    names = {"#000000": "MARK", "#008000": "GUIDE", "#0000ff": "PINHOLE", "#ff0000": "CUT"}
     page = SVG.parse(io.BytesIO(content), reify=True, ppi=25.4)  # a pixel of svgelements is 1 mm then
     height = float(page.height)
     circles, lines, closed = ({name: [] for name in names.values()} for _ in range(3))
@@ -44,7 +44,7 @@ def see_svg(content: bytes) -> Seen:
 def see_dxf(content: bytes) -> Seen:
     """With ezdxf."""
     document = ezdxf.read(io.StringIO(content.decode()))
-    names = ("MARK", "PINHOLE", "CUT")
+    names = ("MARK", "GUIDE", "PINHOLE", "CUT")
     circles, lines, closed = ({name: [] for name in names} for _ in range(3))
     for entity in document.modelspace():
         layer = entity.dxf.layer

@@ -153,7 +153,7 @@ def test_a_written_kit_has_the_motor_of_its_robot(tmp_path):
     ("made", "name", "word"),
     [
         (KitOptions, "method", "knit"),
-        (KitOptions, "paper", "a3"),
+        (KitOptions, "paper", "a5"),
         (MoldOptions, "kind", "plaster"),
         (PatternOptions, "corner", "cut"),
     ],

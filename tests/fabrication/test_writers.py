@@ -66,7 +66,7 @@ def test_both_files_show_the_same():
     """Oracle: each other."""
     pattern = plush_pattern(crossed())
     svg, dxf = see_svg(pattern_svg(pattern)), see_dxf(pattern_dxf(pattern))
-    for layer in ("MARK", "PINHOLE", "CUT"):
+    for layer in ("MARK", "GUIDE", "PINHOLE", "CUT"):
         assert len(svg.lines[layer]) == len(dxf.lines[layer])
         assert len(svg.circles[layer]) == len(dxf.circles[layer])
         assert svg.lines[layer] or len(svg.circles[layer])
@@ -80,8 +80,8 @@ def test_svg_has_layers_for_inkscape_and_a_size_in_millimeters():
     page = ElementTree.fromstring(pattern_svg(pattern))
     inkscape = "{http://www.inkscape.org/namespaces/inkscape}"
     layers = [group for group in page if group.get(f"{inkscape}groupmode") == "layer"]
-    assert [group.get(f"{inkscape}label") for group in layers] == ["MARK", "PINHOLE", "CUT"]
-    assert [group.get("stroke") for group in layers] == ["#000000", "#0000ff", "#ff0000"]
+    assert [group.get(f"{inkscape}label") for group in layers] == ["MARK", "GUIDE", "PINHOLE", "CUT"]
+    assert [group.get("stroke") for group in layers] == ["#000000", "#008000", "#0000ff", "#ff0000"]
     width, height = page.get("width"), page.get("height")
     assert f"0 0 {width} {height}".replace("mm", "") == page.get("viewBox")
     assert not page.findall(".//{http://www.w3.org/2000/svg}text")

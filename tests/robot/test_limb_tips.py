@@ -45,3 +45,11 @@ def test_twins_have_numbers_from_the_left() -> None:
     tips = np.array([[0.02, -1.0, 5.0], [-0.02, -1.0, 5.0], [4.0, 0.0, -5.0], [-2.0, 0.0, 0.0]])
     assert name_tips(cube, tips) == ["top 2", "top 1", "lower right", "left"]
     assert name_tips(cube, tips[:1]) == ["tip"]
+
+
+def test_halves_that_mirror_each_other_have_the_same_numbers() -> None:
+    """Oracle: the mirror, by which left and right change places and numbers stay."""
+    cube = box_mesh((1, 1, 1), size=(1e-9, 1e-9, 1e-9))
+    left = np.array([[-3.0, -2.0, 0.0], [-2.0, -2.5, 0.0]])
+    names = name_tips(cube, np.concatenate([left, left * [-1, 1, 1]]))
+    assert names == ["lower left 1", "lower left 2", "lower right 1", "lower right 2"]

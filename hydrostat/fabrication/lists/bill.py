@@ -65,6 +65,7 @@ PRICES = MappingProxyType(
         ),
         "zipper": Price(amount=2.0),
         "needle": Price(amount=5.0, unit="set"),
+        "decoration": Price(amount=3.0, unit="set"),
         "line": Price(
             amount=6.95 / _ANGLER,
             unit="m",

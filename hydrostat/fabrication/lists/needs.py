@@ -11,6 +11,7 @@ from hydrostat.fabrication.lists.cuts import CableCut, SheathCut
 from hydrostat.fabrication.lists.line import FishingLine
 from hydrostat.fabrication.lists.motors import PowerPlan
 from hydrostat.fabrication.solids.printed import Printed
+from hydrostat.units import plural
 
 THREAD = 4.0  # Thread for a length of seam: two threads of a lock stitch, sewn twice. Assumed.
 
@@ -64,6 +65,8 @@ def _plush(plan: KitPlan, cloth: Cloth) -> list[Item]:
     felt = "that a laser may cut: wool, polyester or acrylic, no PVC; 1 to 2 mm"
     filling = plan.robot.body.material.name or "as the robot file says"
     zipper = f"{math.ceil(cloth.zipper / 10) * 10:g} mm or longer"
+    marks = plan.robot.body.marks
+    drawn = f"for {plural(len(marks), 'drawn line')}, such as eyes"
     spool = 100e3  # thread on a spool [mm]
     return [
         _item(BillGroup.BODY, "felt", felt, 1e-6 * cloth.felt, "felt"),
@@ -76,6 +79,7 @@ def _plush(plan: KitPlan, cloth: Cloth) -> list[Item]:
             "thread",
         ),
         _item(BillGroup.BODY, "zipper", zipper, float(cloth.zipper > 0), "zipper"),
+        _item(BillGroup.BODY, "felt scraps and embroidery thread", drawn, float(bool(marks)), "decoration"),
         _NEEDLES,
     ]
 

@@ -100,7 +100,7 @@ def _hole(hole: SkinHole, place: Place, options: PatternOptions) -> tuple[Shape,
         return (Circle(layer=Layer.PINHOLE, part=PatternPart.PINHOLE, center=place, radius=options.pinhole / 2),)
     cross = 2.0
     return tuple(
-        LaserLine(layer=Layer.MARK, part=PatternPart.MARKER, points=((x - dx, y - dy), (x + dx, y + dy)))
+        LaserLine(layer=Layer.GUIDE, part=PatternPart.MARKER, points=((x - dx, y - dy), (x + dx, y + dy)))
         for dx, dy in ((cross, cross), (cross, -cross))
     )
 
@@ -117,7 +117,7 @@ def _cable_lines(own: tuple[tuple[SkinHole, Place], ...], seam: Polygon, options
         drawn = shapely.MultiLineString([part for part in shapely.get_parts(drawn).tolist() if part.length])
         if hole.after is Side.INSIDE:
             drawn = dash_lines(drawn)
-        shapes += trace(drawn, Layer.MARK, PatternPart.CABLE)
+        shapes += trace(drawn, Layer.GUIDE, PatternPart.CABLE)
     return tuple(shapes)
 
 

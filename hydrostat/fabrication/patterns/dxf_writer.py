@@ -13,14 +13,14 @@ if TYPE_CHECKING:
     from ezdxf.document import Drawing
     from ezdxf.layouts.layout import Modelspace
 
-_COLORS = {Layer.MARK: 7, Layer.PINHOLE: 5, Layer.CUT: 1}
-"""By DXF's index of colors: 5 is blue, 1 red, and 7 is black on paper and white on a dark screen."""
+_COLORS = {Layer.MARK: 7, Layer.GUIDE: 3, Layer.PINHOLE: 5, Layer.CUT: 1}
+"""By DXF's index of colors: 5 is blue, 3 green, 1 red, and 7 is black on paper and white on a dark screen."""
 
 _WRITING = Lock()  # dates are switched off for all drawings of a process: one at a time
 
 
 def pattern_dxf(pattern: Pattern) -> bytes:
-    """The bytes of the drawing (R2010, millimeters): layers MARK, PINHOLE and CUT, closed polylines and circles."""
+    """The bytes of the drawing (R2010, millimeters): a layer for each operation, closed polylines and circles."""
     with _WRITING, _without_dates():
         text = StringIO()
         document = pattern_document(pattern)

@@ -1,6 +1,7 @@
 """Labels of a panel: cable numbers, names, the grain of the cloth, each where there is room."""
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 import numpy as np
 import shapely
@@ -189,7 +190,8 @@ class PanelLabels:
             ]
             free = cloth.difference(self._seam)
             best = max(middles, key=lambda middle: round(free.intersection(_letter_box(middle, letter)).area, 3))
-            self._shapes.extend(letter.lines((-best[0], best[1]) if self._mirrored else best))
+            lines = letter.lines((-best[0], best[1]) if self._mirrored else best)
+            self._shapes.extend(replace(line, layer=Layer.MARK) for line in lines)  # the seam hides them
 
     def edge_names(self, upper: str, lower: str) -> None:
         """Write along the edges of a strip what the upper and the lower are sewn to."""
@@ -275,7 +277,7 @@ def _leader(at: Place, way: np.ndarray, gap: float) -> LaserLine:
     length = np.linalg.norm(way)
     ends = [np.add(at, way * (distance / length)) for distance in (gap - 1.5, length - 1.0)]
     points = tuple((float(x), float(y)) for x, y in ends)
-    return LaserLine(layer=Layer.MARK, part=PatternPart.LEADER, points=points)
+    return LaserLine(layer=Layer.GUIDE, part=PatternPart.LEADER, points=points)
 
 
 def _arrow(middle: Place, length: float) -> tuple[LaserLine, ...]:
@@ -287,4 +289,4 @@ def _arrow(middle: Place, length: float) -> tuple[LaserLine, ...]:
         ((x - 2, high - 4), (x, high), (x + 2, high - 4)),
         ((x - 2, low + 4), (x, low), (x + 2, low + 4)),
     )
-    return tuple(LaserLine(layer=Layer.MARK, part=PatternPart.GRAIN, points=points) for points in strokes)
+    return tuple(LaserLine(layer=Layer.GUIDE, part=PatternPart.GRAIN, points=points) for points in strokes)

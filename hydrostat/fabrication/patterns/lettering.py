@@ -24,7 +24,7 @@ class Lettering:
         left, bottom = middle[0] - self.width / 2, middle[1] - self.height / 2
         return tuple(
             LaserLine(
-                layer=Layer.MARK,
+                layer=Layer.GUIDE,
                 part=PatternPart.TEXT,
                 points=tuple((left + self._scale * x, bottom + self._scale * y) for x, y in stroke),
             )

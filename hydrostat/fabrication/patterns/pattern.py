@@ -11,7 +11,14 @@ from shapely import LineString, Polygon
 from hydrostat.errors import InputError
 from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patterns.labels import PanelLabels
-from hydrostat.fabrication.patterns.marks import cable_marks, decoration_marks, marker_marks, seam_marks, winch_marks
+from hydrostat.fabrication.patterns.marks import (
+    cable_marks,
+    crossed_drawings,
+    decoration_marks,
+    marker_marks,
+    seam_marks,
+    winch_marks,
+)
 from hydrostat.fabrication.patterns.opening import Opening, find_opening
 from hydrostat.fabrication.patterns.pinholes import Pinhole, find_pinholes, pinhole_problems
 from hydrostat.fabrication.patterns.shape import LaserLine, Layer, Panel, PatternPart, Place, Shape, trace
@@ -242,8 +249,11 @@ def _back(draft: _PatternDraft, shapes: tuple[Shape, ...]) -> Panel:
 
 
 def _warnings(draft: _PatternDraft, thickness: float, *, gusset: bool) -> tuple[str, ...]:
-    """Warn of the thickness and the opening."""
-    warnings = list(draft.opening.warnings if draft.opening else ())
+    """Warn of the thickness, the opening, and cables in drawn shapes."""
+    warnings = [
+        *(draft.opening.warnings if draft.opening else ()),
+        *crossed_drawings(draft.robot, draft.stitches_on("front")),
+    ]
     stuffed = stuffed_thickness(draft.skin.seam)
     if not gusset and thickness > stuffed:
         warnings.append(

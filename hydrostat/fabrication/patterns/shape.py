@@ -17,6 +17,7 @@ class Layer(StrEnum):
     """An operation of the laser, in the order in which a sheet is worked."""
 
     MARK = "mark"
+    GUIDE = "guide"  # lines and letters for sewing that would show on the toy
     PINHOLE = "pinhole"
     CUT = "cut"
 

@@ -8,7 +8,7 @@ from hydrostat.drawing import NAMESPACE, Html, number, path, shape, tag
 from hydrostat.fabrication.patterns.pattern import Pattern
 from hydrostat.fabrication.patterns.shape import Circle, Layer, Shape
 
-COLORS = {Layer.MARK: "#000000", Layer.PINHOLE: "#0000ff", Layer.CUT: "#ff0000"}
+COLORS = {Layer.MARK: "#000000", Layer.GUIDE: "#008000", Layer.PINHOLE: "#0000ff", Layer.CUT: "#ff0000"}
 """Stroke of each layer: LightBurn and its like tell operations apart by these."""
 
 
@@ -25,7 +25,8 @@ def pattern_svg(pattern: Pattern) -> bytes:
         f'<svg xmlns="{NAMESPACE}" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"'
         f' width="{width}mm" height="{height}mm" viewBox="0 0 {width} {height}">',
         f"<title>{escape(_NOT_XML.sub('', pattern.name))}</title>",
-        "<desc>Black: engrave; a cable runs outside along a solid line, inside along a dashed one. Blue: cut the "
+        "<desc>Black: engrave. Green: guides that show on the right side of the cloth, to be drawn with a pen that "
+        "washes out or left off; a cable runs outside along a solid line, inside along a dashed one. Blue: cut the "
         "pinholes. Red: cut the panels, last. The bar is 100 mm long.</desc>",
         *(line for layer in Layer for line in _layer(pattern, layer)),
         "</svg>",

@@ -72,7 +72,7 @@ def list_hazards(plan: KitPlan) -> list[str]:
 
 
 def list_last_checks(plan: KitPlan) -> list[str]:
-    """What to look at before the first pose."""
+    """List what to look at before the first pose."""
     first = {
         Method.PLUSH: ["The printed bar measured 100 mm", "Needles counted, zipper closed"],
         Method.PRINT: [

@@ -319,12 +319,10 @@ def single_maps(
         return []
     scene = _flat_scene(robot, stitches) if view is None else _space_scene(robot, view)
     count = len(scene.runs(CanvasFrame.fit(scene.box, (0.0, 0.0, 1.0, 1.0))))
-    for columns in (1, 2, 3):
-        room, rows = width / columns, 4 if columns == 3 else -(-count // columns)
-        tall = _CELL_HEAD + 2 * _CELL_MARGIN + Canvas.fit_height(scene.box, room - 2 * _CELL_MARGIN, 1e3)
-        if rows * tall <= height:
-            break
-    tall = min(tall, height / rows)
+    columns, tall = max((_cells(scene, count, each, (width, height)) for each in (1, 2, 3)), key=lambda cell: cell[2])[
+        :2
+    ]
+    room = width / columns
     each = columns * max(int(height / tall), 1)
     pages = []
     for start in range(0, count, each):
@@ -335,6 +333,16 @@ def single_maps(
             _put_cell(canvas, robot, scene, number, (left, top, left + room, top + tall))
         pages.append(canvas)
     return pages
+
+
+def _cells(scene: _Scene, count: int, columns: int, page: tuple[float, float]) -> tuple[int, float, float]:
+    """Columns, height of a cell [mm], and scale of what is drawn in it."""
+    width, height = page
+    rows = min(-(-count // columns), 4) if columns == 3 else -(-count // columns)
+    frame = np.array([2 * _CELL_MARGIN, _CELL_HEAD + 2 * _CELL_MARGIN])
+    across, up = np.ptp(scene.box, axis=0)
+    scale = min((width / columns - frame[0]) / across, (height / rows - frame[1]) / up)
+    return columns, frame[1] + scale * up, scale
 
 
 def _flat_scene(robot: Robot, stitches: Sequence[CableStitches]) -> _Scene:

@@ -38,7 +38,7 @@ class StepFacts(TypedDict):
 
 
 class SummaryFacts(TypedDict):
-    """What building a robot asks in one respect."""
+    """Difficulty, time, cost or another demand of building a robot."""
 
     title: str
     lines: list[str]  # sentences

@@ -195,7 +195,8 @@ def plush_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
             20,
             "Laser pattern/pattern.svg or pattern/pattern.dxf: marks first, then pinholes, edges last. Or print "
             f"pattern/pattern_{plan.options.paper}.pdf at 100 %, check that the bar measures 100 mm, cut by hand and "
-            "punch the pinholes. Keep the grain arrows along the cloth.",
+            "punch the pinholes. Keep the grain arrows along the cloth. Green guides would show on the toy: draw them "
+            "with a pen that washes out, or leave them off and follow the map.",
         ),
         *_decorate(plan.robot),
         *(_cables(plan) if cables else ()),

@@ -31,12 +31,12 @@ def _lines(facts: SheetFacts) -> Iterator[str]:
         amounts = (": ".join(row) for row in facts["mould"]["amounts"])
         yield from _section("The mold", (*amounts, facts["mould"]["ratio"], facts["mould"]["undercut"]))
     steps = [step for page in facts["steps"] for step in page]
-    yield from _numbered("Steps", (f"{step['title']} ({step['time']}). {step['text']}" for step in steps))
+    yield from _number_lines("Steps", (f"{step['title']} ({step['time']}). {step['text']}" for step in steps))
     yield from _section("Cures", (": ".join(row) for row in facts["cures"]))
     yield from _table("Cables, in mm", facts["cables"])
     yield from _table("Tubes, in mm", facts["tubes"])
     yield from _section("Holes", ["Their places, and on which side each cable runs on: lists/stitching.csv"])
-    yield from _numbered("Calibrate", facts["calibration"])
+    yield from _number_lines("Calibrate", facts["calibration"])
     yield from _section("Before the first pose", facts["checklist"])
     power = facts["power"]
     if power is not None:
@@ -44,7 +44,7 @@ def _lines(facts: SheetFacts) -> Iterator[str]:
         yield from _section("Wires", power["warnings"])
         heads = power["heads"]
         yield from _table(power["title"], {"file": "", "heads": heads, "right": [], "rows": power["pins"]})
-        yield from _numbered("First start", power["start"])
+        yield from _number_lines("First start", power["start"])
     told = (
         f"{'passed' if check['passed'] else 'FAILED'}: {check['what']}, {check['measured']} "
         f"(allowed: {check['allowed']})"
@@ -60,7 +60,7 @@ def _section(title: str, lines: Iterable[str]) -> Iterator[str]:
         yield from ("", title.upper(), *found)
 
 
-def _numbered(title: str, lines: Iterable[str]) -> Iterator[str]:
+def _number_lines(title: str, lines: Iterable[str]) -> Iterator[str]:
     return _section(title, (f"{number}. {line}" for number, line in enumerate(lines, start=1)))
 
 

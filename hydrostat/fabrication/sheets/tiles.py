@@ -122,7 +122,7 @@ def _letters(index: int) -> str:
     return (_letters(before - 1) if before else "") + ascii_uppercase[last]
 
 
-_WIDTHS = {Layer.MARK: 0.2, Layer.PINHOLE: 0.3, Layer.CUT: 0.6}
+_WIDTHS = {Layer.MARK: 0.2, Layer.GUIDE: 0.2, Layer.PINHOLE: 0.3, Layer.CUT: 0.6}
 """Widths of the lines [mm]: the width too shows the operation where the printer knows no color."""
 
 
@@ -211,7 +211,7 @@ def _overview(pattern: Pattern, grid: TileGrid, paper: Paper) -> str:
     body = "".join(f"#par[#{_text(sentence)}]" for sentence in said)
     room = f"box(width: {page_width - 2 * MARGIN}mm)"
     lines.append(f"#at({MARGIN}, {MARGIN + 11}, {room}[#set par(spacing: 2mm)\n{body}])")
-    return "\n".join([*lines, *_key(MARGIN + 34), *_map(pattern, grid, MARGIN + 46), *_foot(pattern, grid, "map")])
+    return "\n".join([*lines, *_key(MARGIN + 34), *_map(pattern, grid, MARGIN + 48), *_foot(pattern, grid, "map")])
 
 
 def _left_out(empty: list[str]) -> str:
@@ -231,7 +231,7 @@ def _key(y: float) -> list[str]:
     samples = (
         (f"#stroke_at({{x}}, {y}, 12, 0, width: {_WIDTHS[Layer.CUT]}mm, paint: {red})", "cut", 24.0),
         (f"#at({{x}} + 9, {y} - 1, circle(radius: 1mm, stroke: {_WIDTHS[Layer.PINHOLE]}mm + {blue}))", "pinhole", 30.0),
-        (f"#stroke_at({{x}}, {y}, 12, 0, {thin})", "sewn, or cable outside", 52.0),
+        (f"#stroke_at({{x}}, {y}, 12, 0, {thin})", "seam, or cable outside", 52.0),
         (f"#stroke_at({{x}}, {y}, 12, 0, {thin}, dash: (2mm, 1.3mm))", "cable inside", 37.0),
         (f"#at({{x}}, {y} - 1.5, box(width: 12mm, height: 3mm, stroke: (y: {_WIDTHS[Layer.MARK]}mm)))", "sheath", 0.0),
     )
@@ -240,8 +240,9 @@ def _key(y: float) -> list[str]:
         lines += [sample.format(x=x), f"#at({x + 14}, {y - 1.6}, [{text}])"]
         x += step
     lines.append(
-        f"#at({MARGIN}, {y + 5}, [Letters mark notches that meet; small figures number the holes of a cable in "
-        "stitch order, from 2 on; a ring is its stopper, a large circle its winch.])"
+        f"#at({MARGIN}, {y + 4.5}, [Letters mark notches that meet; small figures number the holes of a cable in "
+        "stitch order, from 2 on; a bar is its stopper, a large circle its winch. #linebreak() "
+        "Green shows on the right side of the cloth: draw it with a pen that washes out.])"
     )
     return lines
 

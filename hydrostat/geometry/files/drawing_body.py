@@ -75,7 +75,9 @@ def drawing_of(
     marks = marks_on(outline, [on.places(line) for line in drawn])
     if inner is Inner.HOLES and details:
         where = point_text(details[0].points[0])
-        told.append(f"a shape at {where} lies in or across another, as in an eye: both are drawn, not cut")
+        told.append(
+            f"a shape at {where} of the drawing lies in or across another, as in an eye: both are drawn, not cut"
+        )
     if marks:
         told.append(f"{plural(len(marks), 'line')} drawn on the body, not cut")
     if open_lines:

@@ -1,5 +1,6 @@
 """Eyes and mouths: holes through a body, or drawn on it. Oracles: areas and places of circles that are drawn."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -8,10 +9,10 @@ import shapely
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication import plush_pattern
-from hydrostat.fabrication.patterns.shape import PatternPart
+from hydrostat.fabrication.patterns.shape import Layer, PatternPart
 from hydrostat.geometry import Inner, read_drawing
 from hydrostat.ik import new_robot
-from hydrostat.robot import load_robot, save_robot, scaled_robot
+from hydrostat.robot import Cable, Robot, Winch, load_robot, save_robot, scaled_robot
 
 HEAD = '<svg xmlns="http://www.w3.org/2000/svg" width="200mm" height="100mm" viewBox="0 0 200 100">'
 BODY = '<ellipse cx="100" cy="50" rx="90" ry="40"/>'
@@ -67,6 +68,39 @@ def test_it_is_kept_in_the_file_and_printed_on_the_front(tmp_path: Path) -> None
     np.testing.assert_allclose(np.mean(eye.points, axis=0), front.on_sheet((-0.06, 0.01)), atol=0.05)
     large = scaled_robot(robot, 2.0)
     np.testing.assert_allclose(large.body.marks[0], 2 * robot.body.marks[0], atol=1e-9)
+
+
+@pytest.fixture
+def fish(tmp_path: Path) -> Robot:
+    (tmp_path / "fish.svg").write_bytes(drawing(BODY, EYE))
+    return new_robot(tmp_path / "fish.svg", inner="drawn")
+
+
+@pytest.mark.parametrize(
+    ("route", "told"),
+    [
+        (((0.0, -0.02), (-0.03, 0.01), (-0.06, 0.01)), r"C1 \(hole 3 and its stopper, at x -60, y 10 mm\)\. Move"),
+        (((-0.04, 0.01), (-0.075, 0.01), (-0.075, -0.01)), r"C1 \(a run outside, at x -\d+, y 10 mm\)\. Move"),
+        (((0.0, -0.02), (-0.03, -0.02), (-0.06, -0.02)), ""),
+    ],
+)
+def test_a_cable_through_an_eye_is_warned_of(fish: Robot, route: tuple[tuple[float, float], ...], told: str) -> None:
+    """Oracle: the eye of 6 mm about [-60, 10]; of three holes the first leads out, the second in."""
+    robot = fish.with_network([Winch(name="pull", at=route[0])], [Cable(winch="pull", points=route)])
+    words = " ".join(f"{text}." for text in plush_pattern(robot).warnings if "drawn shapes" in text)
+    assert re.search(told, words) if told else not words
+
+
+def test_what_would_show_on_the_toy_is_a_layer_of_its_own(fish: Robot) -> None:
+    """Oracle: the seam: what is engraved within it is the drawing, the opening and nothing else."""
+    route = ((0.0, -0.02), (-0.03, -0.02), (-0.06, -0.02))
+    robot = fish.with_network([Winch(name="pull", at=route[0])], [Cable(winch="pull", points=route)])
+    for panel in plush_pattern(robot).panels[:2]:
+        (seam,) = (shapely.Polygon(s.points) for s in panel.shapes if s.part is PatternPart.SEAM)
+        inside = [s for s in panel.shapes if s.layer is Layer.MARK and seam.buffer(-0.5).intersects(s.geometry)]
+        assert {shape.part for shape in inside} <= {PatternPart.DECORATION, PatternPart.OPENING, PatternPart.ZIPPER}
+        letters = [shape.layer for shape in panel.shapes if shape.part is PatternPart.TEXT]
+        assert {*letters} == {Layer.MARK, Layer.GUIDE}  # notches, and names
 
 
 def test_it_follows_a_pose(tmp_path: Path) -> None:
