@@ -32,7 +32,8 @@ _OTHER_MOULD = (
 _MODEL_FIRST = (
     "From a model instead, as the thesis casts a hand (Fig. 4.1): hold the model still in alginate, draw it out, fill "
     "the hole with plaster. Bed that positive to its parting line in clay in place of the first half, press keys into "
-    "the clay; after the first pour take all clay away, spray, and pour the second half."
+    "the clay; after the first pour take all clay away, spray, and pour the second half. For one body alone pour the "
+    "foam straight into the alginate (4.2): it sets in less than 5 min and serves once."
 )
 
 _STIR_FOAM = "Stir with an egg mixer as long as the label says, not longer: it rises at once."

@@ -160,7 +160,8 @@ def _seat_step(robot: Robot) -> AssemblyStep:
         "Screw the cup on its posts, the posts on the plate, the legs under it: screws M3. Push each tube from below "
         f"into its bore, {tubes}, with a drop of glue. Press the end of the body down to the floor of the cup, lines "
         "through its openings, and sew it there through the holes of the cup, round and round. What hangs is hung by "
-        "the legs from a shelf, the seat upside down.",
+        "the legs from a shelf, the seat upside down. For a second core print seat_cup again and sew the core into it: "
+        "to swap them, untie the lines at the spools and undo the screws of the cup.",
     )
 
 
