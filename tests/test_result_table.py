@@ -62,7 +62,9 @@ def test_other_results_are_tables_for_notebooks() -> None:
     modes, space = hs.find_modes(simulation, count=3), hs.linearize(simulation, pose, modes=2, drag=1.0)
     measured = hs.Measurements(commands=np.array([[0.004, 0.0]]), markers=("tip",), places=np.array([[[0.1, np.nan]]]))
     fitted = SimpleNamespace(values={"young": 2e4}, intervals={"young": (1e4, 3e4)})
-    fit = IdentifiedRobot(**dict.fromkeys(IdentifiedRobot.__annotations__, (0,)) | {"fitted": fitted, "robot": strip})
+    fit = IdentifiedRobot(
+        **{**dict[str, Any].fromkeys(IdentifiedRobot.__annotations__, (0,)), "fitted": fitted, "robot": strip}
+    )
     kit = hs.Kit(**{**dict[str, Any].fromkeys(hs.Kit.__annotations__, ()), "robot": strip, "summary": ("a < b",)})
     for result, name, value in (
         (branch, "contraction_up_m", 0.004),

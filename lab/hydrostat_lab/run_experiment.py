@@ -3,6 +3,7 @@
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any, cast
 
 import numpy as np
 import torch
@@ -67,7 +68,8 @@ def judge_runs(
         A function that waits for the result of one of the runs.
     """
     unlike = list(dict.fromkeys(runs))
-    work = Parallel(n_jobs=jobs, return_as="generator", batch_size=1, pre_dispatch="all")
+    options: dict[str, Any] = {"batch_size": 1, "pre_dispatch": "all"}
+    work = Parallel(n_jobs=jobs, return_as="generator", **options)
     parent = os.getpid() if jobs != 1 else None
     many = [epochs(max(run.options.layers)) for run in unlike]
     tasks = (
@@ -78,7 +80,7 @@ def judge_runs(
     def wait_for(run: Run) -> Judged:
         while run not in found:
             other, judged = next(coming)
-            found[other] = judged
+            found[other] = cast(Judged, judged)
         return found[run]
 
     return wait_for
@@ -105,6 +107,7 @@ def _show_episodes(trials: NetworkReach, policy: Act, seeds: int, asked: Asked) 
     starts = trials.draw_acts(draw, shape)[1]
     wanted, _ = trials.draw_acts(draw, shape)
     seen, goal = (torch.nan_to_num(part).expand(seeds, -1, -1) for part in asked)
+    acts = torch.empty(0)
     with torch.no_grad():
         for _ in range(trials.horizon):
             acts = policy(seen, goal)
