@@ -89,6 +89,9 @@ _POSE_NAME = re.compile(r"\s*(?:(\d{1,9})\s+)?(.*?)\s*(?:\(\d+\))?", re.DOTALL)
 
 def _with_name(file: Path, robot: Robot) -> Photo:
     number, words = _POSE_NAME.fullmatch(file.stem).groups()  # type: ignore[union-attr]
+    first = file.stem.partition("=")[0].strip()
+    if any(part.name == first for part in (*robot.winches, *robot.markers)):  # a name that begins with a number
+        number, words = None, f"{number} {words}" if number else words
     step = None if number is None else int(number)
     if words == "rest":
         return Photo(file=file, contractions={}, masses={}, step=step)

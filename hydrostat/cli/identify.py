@@ -63,10 +63,9 @@ def identify(
     winches), routes (points of cables), friction, pins, gravity, rods, sheets, frame (of the measurement), force (scale
     of measured forces). Writes the fitted robot, parameters.csv with 95 % intervals and identified.png. Every fifth of
     ten or more rows is also predicted by a fit that did not see it. `hydrostat design` takes the interval of the fitted
-    material as its uncertainty. A correction of the contractions is written if it
-    predicts such rows better: correction.json. Intervals follow from a linearized model; --profile corrects those that
-    bends and limits make doubtful. Friction and hysteresis make strokes up and down differ: measure both,
-    and add --in-order.
+    material as its uncertainty. A correction of the contractions is written if it predicts such rows better:
+    correction.json. Intervals follow from a linearized model; --profile corrects them where the model is nonlinear or a
+    value is at its limit. Friction and hysteresis make strokes up and down differ: measure both, and add --in-order.
     With --suggest, the command prints file names of photographs to take, the most informative first.
 
     Example: hydrostat identify my_starfish measured.csv --out build/fitted

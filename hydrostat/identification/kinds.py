@@ -225,7 +225,7 @@ def _sheets(robot: Robot) -> list[Parameter]:
 
 def _with_sheets(robot: Robot, values: Values) -> Robot:
     sheets = (
-        replace(sheet, material=replace(sheet.material, young=values[f"{sheet.name}.young"], name=""))
+        replace(sheet, material=replace(sheet.material.with_young(values[f"{sheet.name}.young"]), name=""))
         for sheet in robot.sheets
     )
     return replace(robot, sheets=tuple(sheets))

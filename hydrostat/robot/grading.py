@@ -73,7 +73,7 @@ class Grading:
 
     @cached_property
     def _table(self) -> tuple[Points, Vector]:
-        lines = self.content.decode("utf-8", "replace").split()
+        lines = self.content.decode("utf-8-sig", "replace").replace(" ", "").strip().splitlines()
         head = lines[0].split(",") if lines else []
         if head not in (["x_mm", "y_mm", "factor"], ["x_mm", "y_mm", "z_mm", "factor"]) or len(lines) < 2:
             raise InputError(f"{self.file}: needs the columns x_mm, y_mm, in space z_mm, and factor, and a row")

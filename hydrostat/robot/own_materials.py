@@ -39,7 +39,7 @@ def save_own_material(material: Material) -> Path:
         raise InputError(f"no home folder for your materials. Set {VARIABLE} to the path of a file.")
     check_name(material.name)
     known = own_materials()  # a wrong file stays as it is
-    document = tomlkit.parse(read_text(path) if known else "")
+    document = tomlkit.parse(read_text(path) if path.exists() else "")
     values = {"name": material.name, **material_values(material), "source": material.source}
     entries = document.setdefault("material", tomlkit.aot())
     if (name := material.name.lower()) not in known:

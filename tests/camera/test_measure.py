@@ -214,6 +214,9 @@ def test_contractions_come_from_names_and_tables(tmp_path: Path) -> None:
     ):
         with pytest.raises(InputError, match=words):
             Photo.read_all([tmp_path / name], robot)
+    numbered = replace(robot, winches=(replace(robot.winches[0], name="2 up"),), cables=(), poses={})
+    photo = Photo.read_all([tmp_path / "2 up=12mm.jpg"], numbered)[0]
+    assert (photo.step, dict(photo.contractions)) == (None, {"2 up": 0.012})
     table.write_text("photo,step,up_mm\na.jpg,2,12\nb.jpg, 1,12\n")
     photos = Photo.read_all([tmp_path / "a.jpg", tmp_path / "b.jpg"], robot, table)
     assert [(photo.name, photo.step) for photo in photos] == [("b.jpg", 1), ("a.jpg", 2)]

@@ -21,7 +21,7 @@ from hydrostat.identification.find_faults import Swap, find_slip, find_swaps
 from hydrostat.identification.identified_robot import start_of
 from hydrostat.identification.kinds import KINDS, named_model
 from hydrostat.identification.marker_predictor import MarkerPredictor
-from hydrostat.robot import Cable, Load, Marker, Mount, Pin, Robot, Rod, Slider, Winch
+from hydrostat.robot import Cable, Load, Marker, Material, Mount, Pin, Robot, Rod, SkinSheet, Slider, Winch
 from hydrostat.simulation import Simulation
 
 UPPER = ((0.0083, 0.0137), (0.0587, 0.0161), (0.1129, 0.0147), (0.1833, 0.0143))
@@ -275,6 +275,13 @@ def test_a_table_is_read_and_refused_by_line(tmp_path: Path) -> None:
 def test_impossible_measurements_are_refused(change: dict[str, object], words: str) -> None:
     with pytest.raises(InputError, match=words):
         fit_model(named_model(strip(), ("young",)), replace(measured(strip(), np.full((1, 2), 0.005)), **change))
+
+
+def test_a_sheet_is_fitted_beyond_its_measured_interval() -> None:
+    felt = Material(young=3e4, young_interval=(2.9e4, 3.1e4), poisson=0.3, density=40)
+    robot = replace(strip(), sheets=(SkinSheet(name="felt", thickness=1e-3, material=felt),))
+    fitted = named_model(robot, ("sheets",)).robot({"felt.young": 9e4}).sheets[0].material
+    assert (fitted.young, fitted.young_interval) == (9e4, None)
 
 
 def test_unknown_kinds_are_refused() -> None:

@@ -59,6 +59,12 @@ def test_what_is_wrong_is_told_in_one_line(table: str, told: str, tmp_path: Path
     assert "\n" not in str(caught.value)
 
 
+def test_a_table_of_a_spreadsheet_is_read(tmp_path: Path) -> None:
+    """With the mark of UTF-8, spaces and the ends of lines of Windows."""
+    (tmp_path / "grading.csv").write_bytes(b"\xef\xbb\xbfx_mm, y_mm, factor\r\n0, 0, 3\r\n")
+    assert (load(tmp_path, GRADED).body.stiffness_factors == 3.0).all()
+
+
 def test_a_function_gives_one_number_for_each_point(tmp_path: Path) -> None:
     robot = load(tmp_path, GOOD)
     for wrong in (lambda points: points, lambda points: points[:-1, 0] + 1, lambda _: "stiff", lambda _: -1.0):

@@ -42,7 +42,10 @@ def file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def test_a_material_is_saved_found_and_replaced(file: Path) -> None:
     assert own_materials() == {}
+    file.parent.mkdir()
+    file.write_text("# mine\n")
     save_own_material(FELT)
+    assert file.read_text().startswith("# mine\n")
     file.write_text(file.read_text() + "\n# kept\n")
     save_own_material(replace(FELT, name="foam 2"))
     assert list(own_materials()) == ["gray felt", "foam 2"]
