@@ -86,9 +86,7 @@ def calibrate(
         bus = control.open_bus(port, loaded, truth, tensions)
         try:
             if restart:
-                names = [motor.winch for motor in calibration.motors]
-                again = control.restart_motors(bus, names, lambda line: print(f"{kind}: {line}", flush=True))
-                print(f"{kind}: restarted: {', '.join(again) or 'none, as no motor was off'}", flush=True)
+                calibration = _restart(kind, bus, folder / file, calibration)
             found, constants = _take_up(kind, bus, folder / file, calibration, model)
             curves = _measure(bus, folder / file, loaded, chosen, truth if port == control.EMULATED else None)
         finally:
@@ -104,6 +102,25 @@ def _winch_indices(spools: str, robot: "Robot") -> list[int]:
         if name not in names:
             raise InputError(f'--spools {spools}: unknown winch "{name}". Available: {", ".join(names)}, or all.')
     return [names.index(name) for name in wanted]
+
+
+def _restart(kind: str, bus: "Bus", file: Path, calibration: "Calibration") -> "Calibration":
+    """Restart motors that are off; return the calibration without their zeros, saved before anything is restarted."""
+    from dataclasses import replace
+
+    from hydrostat import control
+
+    motors = [*calibration.motors]
+
+    def forget(places: "Sequence[int]") -> None:
+        for place in places:
+            motors[place] = replace(motors[place], zero=None)
+        control.Calibration(tuple(motors)).write(file.parent, name=file.name)
+
+    names = [motor.winch for motor in motors]
+    again = control.restart_motors(bus, names, lambda line: print(f"{kind}: {line}", flush=True), forget)
+    print(f"{kind}: restarted: {', '.join(again) or 'none, as no motor was off'}", flush=True)
+    return control.Calibration(tuple(motors))
 
 
 def _take_up(

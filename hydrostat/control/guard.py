@@ -89,14 +89,10 @@ class TensionGuard:
         since = now - self._missed
         for index in np.flatnonzero(np.nan_to_num(since, nan=-1.0) >= limits.seconds).tolist():
             length, turn = self._slack(contractions, index, felt[index], ways[index]), float(radii[index])
-            by = (
-                "" if np.isnan(length) else f" by about {1e3 * length:.0f} mm ({np.degrees(length / turn):.0f} degrees)"
-            )
+            by = "" if np.isnan(length) else f" (about {1e3 * length:.0f} mm, {np.degrees(length / turn):.0f} degrees)"
             return (
                 f"{self._names[index]}: cable slack or broken, or its motor lost power "
-                f"({max(felt[index], 0.0):.1f} N measured, {model[index]:.1f} N expected). Run hydrostat calibrate, "
-                f"which turns its spool{by}. If it feels no pull, tighten the cable at its stopper with a small "
-                "screwdriver"
+                f"({max(felt[index], 0.0):.1f} N measured, {model[index]:.1f} N expected). Run hydrostat calibrate{by}"
             )
         return ""
 

@@ -14,9 +14,9 @@ def fault_words(name: str, reading: Reading, index: int) -> str:
     """Sentences on the fault of a motor, by the name of its winch: which, and how to free it."""
     words = f"the motor of {name} reports: {reading.faults[index]}"
     if "voltage" in words:
-        return f"{words} ({reading.volts[index]:.1f} V measured). Charge its battery, or check its supply and leads"
+        words += f" ({reading.volts[index]:.1f} V measured). Charge its battery, or check its supply and leads"
     if _is_off(reading, index):
-        return f"{words}. Free its cable, then run hydrostat calibrate --restart, which waits until the motor is cool"
+        words += ". Free its cable, then run hydrostat calibrate --restart, which waits until the motor is cool"
     return words
 
 
@@ -24,13 +24,15 @@ def restart_motors(
     bus: Bus,
     names: Sequence[str],
     say: Callable[[str], None],
+    forget: Callable[[Sequence[int]], None],
     *,
     clock: Callable[[], float] = steady,
     wait: Callable[[float], None] = time.sleep,
 ) -> tuple[str, ...]:
     """Wait until motors at fault by overload or heat are cool, then restart them; return the names of their winches.
 
-    Nothing turns: identify and arm the motors afterwards. `say` hears how warm they are.
+    Nothing turns: identify and arm the motors afterwards. `say` gets their temperatures, and `forget` the places of the
+    motors before any is restarted: a restarted motor may lose its count of turns, so its old zero is void.
 
     Raises:
         HydrostatError: one stays warm for too long, or at fault.
@@ -47,6 +49,8 @@ def restart_motors(
             raise HydrostatError(f"{words} after {LONGEST / 60:.0f} min. Switch the power off and find what heats it")
         say(f"{words}. Waiting until it is below {COOL:.0f} °C")
         wait(LOOK)
+    if off:
+        forget(off)
     for index in off:
         bus.restart(index)
     reading = bus.read()

@@ -32,8 +32,8 @@ class TakeUpRules:
         num_passes: minimum number of measurements of each edge.
         max_passes: maximum number of them, where the motor's current is noisy or coarse.
         precision: standard error of an edge at which measurements end [m].
-        max_difference: maximum difference of the measurements of an edge [m], or as many standard deviations.
-        max_deviations: number of standard deviations.
+        max_difference: difference of the measurements of an edge that is always allowed [m].
+        max_deviations: allowed change between earlier and later measurements, in its standard deviations.
         max_lag: distance behind its goal at which a motor without load does not follow [m].
         silence: silence after which motors are armed again where they stand [s].
         max_rearmed: maximum number of these times.
@@ -54,7 +54,7 @@ class TakeUpRules:
     max_passes: int = 12
     precision: float = 1e-4
     max_difference: float = 8e-4
-    max_deviations: float = 8.0
+    max_deviations: float = 4.5
     max_lag: float = 4e-3
     silence: float = 0.08
     max_rearmed: int = 20
@@ -152,6 +152,14 @@ def find_edge(places: Vector, currents: Vector, model: WinchPull) -> tuple[float
     return best[1:]
 
 
+def find_change(edges: Vector) -> float:
+    """Largest change of the mean from earlier measurements to later ones, in units of its deviation for deviation 1."""
+    count = len(edges)
+    return max(
+        float(abs(edges[:k].mean() - edges[k:].mean()) / np.sqrt(1 / k + 1 / (count - k))) for k in range(1, count)
+    )
+
+
 def _edge_deviation(
     places: Vector, currents: Vector, model: WinchPull, edge: float, gain: float, floor: float
 ) -> float:
@@ -201,11 +209,17 @@ class _Taker:
             self._let_out(index, floor)
             places, currents = self._measure(index, floor)
             edge, gain, level = find_edge(places, currents, model)
+            if gain <= 0:
+                raise HydrostatError(
+                    f"{self._name(index)}: current does not rise with the pull of the model. Check the motor, its "
+                    "cable and this winch in robot.toml"
+                )
             edges.append(edge)
             gains.append(gain)
             weights.append(_edge_deviation(places, currents, model, edge, gain, level) ** -2)
         apart, edge = max(edges) - min(edges), float(np.average(edges, weights=weights))
-        if apart > max(RULES.max_difference, RULES.max_deviations * max(weights) ** -0.5):
+        change = find_change(np.array(edges)) / float(np.median(weights)) ** -0.5
+        if apart > RULES.max_difference and change > RULES.max_deviations:
             raise HydrostatError(
                 f"{self._name(index)}: its cable begins to pull {1e3 * apart:.1f} mm apart in two measurements; "
                 "see that it runs freely and that its spool is fast on its motor, then begin again"

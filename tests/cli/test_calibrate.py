@@ -9,9 +9,19 @@ import numpy as np
 import pytest
 from own_time import run_in_own_time
 
-from hydrostat.control import CALIBRATION, EMULATED_CALIBRATION, Calibration, add_cable_layers
+from hydrostat.control import (
+    CALIBRATION,
+    EMULATED_CALIBRATION,
+    BusLink,
+    Calibration,
+    WinchPull,
+    add_cable_layers,
+    open_bus,
+)
+from hydrostat.errors import HydrostatError
 from hydrostat.robot import load_robot
 
+PULL = WinchPull(taut=0.0, places=np.array([-1.0, 0.0, 1.0]), pulls=np.array([0.0, 0.0, 100.0]))
 Run = Callable[..., tuple[int, str, str]]
 
 
@@ -64,6 +74,41 @@ def test_ports_that_are_none_leave_nothing(run: Run, copy: Path, port: str, told
     assert told in err
     assert err.count("\n") == 1
     assert sorted(copy.iterdir()) == before
+
+
+def test_a_restarted_motor_has_no_zero_until_it_is_measured(
+    run: Run, copy: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A Dynamixel loses its count of turns. Calibration ends before it is measured: no program may arm it."""
+    robot = load_robot(copy)
+    known = Calibration.usual(robot).assume_zeros()
+    known.write(copy, name=EMULATED_CALIBRATION)
+
+    def open_overloaded(*arguments: object) -> object:
+        bus = open_bus(*arguments)  # type: ignore[arg-type]
+        motor = bus._port.servos[1]  # type: ignore[attr-defined]
+        motor.ails = replace(motor.ails, overloaded=True)
+        return bus
+
+    def end(*_: object) -> None:
+        raise HydrostatError("right: no pull")
+
+    monkeypatch.setattr("hydrostat.control.open_bus", open_overloaded)
+    monkeypatch.setattr("hydrostat.control.find_cable_zeros", end)
+    monkeypatch.setattr("hydrostat.control.WinchPull.of_robot", lambda _: (PULL,) * 3)
+    code, out, err = run("calibrate", copy, "--motors", "emulated", "--restart")
+    assert (code, err) == (1, "hydrostat: error: right: no pull\n")
+    assert f"restarted: {robot.winches[1].name}\n" in out
+    left = Calibration.read(copy, robot, name=EMULATED_CALIBRATION)
+    assert [motor.zero for motor in left.motors] == [0.0, None, 0.0]
+    bus = open_bus("emulated", robot, known, lambda taken: 0 * taken)
+    link = BusLink(bus, robot.winches, left)
+    try:
+        link.identify()
+        with pytest.raises(HydrostatError, match="cannot be armed: first calibrate them"):
+            link.arm()
+    finally:
+        link.close()
 
 
 def test_emulated_motors_keep_a_file_of_their_own(copy: Path) -> None:

@@ -186,19 +186,29 @@ def test_a_busy_computer_only_takes_longer() -> None:
         find_cable_zeros(winches.bus, winches.motors, [straight()], winches.found.append, clock=clock, wait=slow)
 
 
-def test_a_spool_that_slips_is_told() -> None:
-    winches = Winches(np.array([0.002]))
+@pytest.mark.parametrize(("noise", "stiff", "slip"), [(5e-3, 700, 0.8e-3), (5e-3, 500, 1.2e-3)])
+def test_a_spool_that_slips_is_told(noise: float, stiff: float, slip: float) -> None:
+    winches = Winches(np.array([0.002]), noise=noise)
+    winches.pulls[0] = stiff
     torque, felt = winches.servos[0].load, [False, False]
 
     def slips(angle: float) -> float:
-        pull = torque(angle - (0.25 if all(felt) else 0.0)) / CONSTANT
-        felt[0] |= pull > 0.05
-        felt[1] |= felt[0] and pull < 0.02  # when it is let out again
-        return CONSTANT * pull
+        taken = RADIUS * (angle - winches.begin[0]) - 0.002
+        felt[0] |= stiff * taken * RADIUS / CONSTANT > 0.045  # measured once
+        felt[1] |= felt[0] and taken < 0  # let out again
+        return torque(angle - (slip / RADIUS if all(felt) else 0.0))
 
     winches.servos[0].load = slips
-    assert 2 * RULES.max_difference < RADIUS * 0.25
     with pytest.raises(HydrostatError, match="mm apart in two measurements"):
+        winches.take_up()
+
+
+@pytest.mark.parametrize("currents", [np.full(60, 0.1), 0.1 - 5 * np.linspace(-3e-3, 3e-3, 60)])
+def test_a_current_that_does_not_rise_is_told(currents: np.ndarray, monkeypatch: pytest.MonkeyPatch) -> None:
+    winches = Winches(np.array([0.002]))
+    measured = np.linspace(-3e-3, 3e-3, 60), currents
+    monkeypatch.setattr("hydrostat.control.take_up._Taker._measure", lambda *_: measured)
+    with pytest.raises(HydrostatError, match="current does not rise with the pull"):
         winches.take_up()
 
 
