@@ -59,6 +59,8 @@ def studio(
     rooms = rooms or classroom
     if model is not None and (robot is None or rooms or LINK_MARK in str(robot)):
         raise InputError("--model: needs the folder of its ROBOT, and is not available with --rooms or --class.")
+    if rooms and LINK_MARK in str(robot):
+        raise InputError("--rooms, --class: not available with a link. Open it alone and save its robot first.")
     host = host or (find_network_address() if classroom else "127.0.0.1")
     if rooms:
         served = Rooms(state=state_folder(), first=robot and found_folder(robot))

@@ -17,6 +17,7 @@ LINK_MARK = "#robot="
 MOST_LETTERS = 30_000  # no link is longer
 MOST_BYTES = 300_000  # of all files, unpacked
 WRONG = "this link is incomplete or holds no robot. Copy all of it again"
+MOST_PATH = 255  # letters; a zip holds paths of 65,535 bytes
 MOST_FILES = 4  # robot.toml, the drawing, studio.json, and one more
 
 
@@ -58,7 +59,7 @@ def unpack_robot_link(link: str) -> bytes:
         files = None
     if not isinstance(files, dict) or len(files) > MOST_FILES:
         raise InputError(WRONG)
-    if not all(isinstance(content, str) for content in files.values()):
+    if not all(isinstance(content, str) and len(path) <= MOST_PATH for path, content in files.items()):
         raise InputError(WRONG)
     buffer = BytesIO()
     try:

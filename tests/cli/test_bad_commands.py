@@ -24,6 +24,10 @@ OPEN += b'<path fill="none" stroke="red" d="M0 0H60V40"/></svg>'
     ("arguments", "fragments"),
     [
         (("check", "nowhere"), ("nowhere", "no such file")),
+        (
+            ("studio", "http://127.0.0.1/#robot=AAAA", "--rooms"),
+            ("--rooms, --class: not available with a link.",),
+        ),
         (("simulate", "STARFISH", "--contract", "left=12", "--out", "OUT"), ("left=12", "no unit")),
         (
             ("simulate", "STARFISH", "--contract", "left=2mm", "--contract", "left=3mm", "--out", "OUT"),

@@ -62,6 +62,7 @@ def test_a_body_in_space_fits_no_link() -> None:
         (link_of(b"[1]"), "incomplete or holds no robot"),
         (link_of(b'{"robot.toml": 1}'), "incomplete or holds no robot"),
         (link_of(b"[" * 100_000), "incomplete or holds no robot"),
+        (link_of(json.dumps({"a" * 70_000: ""}).encode()), "incomplete or holds no robot"),
         (link_of(json.dumps({"../robot.toml": ""}).encode()), "outside the robot's folder"),
         (link_of(json.dumps({"/etc/robot.toml": ""}).encode()), "outside the robot's folder"),
         (link_of(json.dumps({"readme": ""}).encode()), "no robot.toml found"),

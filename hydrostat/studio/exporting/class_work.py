@@ -25,8 +25,8 @@ class PupilWork:
 
 
 def pack_class(report: Report, works: list[PupilWork], kits: bool, pages: bool) -> Download:
-    """Pack the robots of a class. What cannot be made is told in class.txt."""
-    files, lines, taken = dict[str, bytes](), list[str](), set[str]()
+    """Pack the robots of a class. class.txt lists what is missing; Stop ends kits and pages and keeps the rest."""
+    files, lines, taken, stopped = dict[str, bytes](), list[str](), set[str](), False
     for number, pupil in enumerate(works):
         folder = _folder(pupil.name, taken)
         robot = work_zip(pupil.work, pupil.text)
@@ -34,12 +34,16 @@ def pack_class(report: Report, works: list[PupilWork], kits: bool, pages: bool) 
         lines.append(f"{pupil.name} ({folder}/): {pupil.work.robot.name}")
         for wanted, words, make in ((kits, "kit", _kit), (pages, "page", _page)):
             report.progress(f"{pupil.name}, {words}" if wanted else pupil.name, number, len(works))
-            if not wanted:
+            if not wanted or stopped:
                 continue
             try:
                 name, content = make(report, pupil)
-            except HydrostatError as error:
-                lines.append(f"  no {words}: {in_words(str(error))}")
+            except KeyboardInterrupt:
+                stopped = True
+                lines.append(f"  no {words}, and none for the next pupils: stopped")
+            except Exception as error:  # noqa: BLE001 - of one robot: keep the others
+                told = in_words(str(error)) if isinstance(error, HydrostatError) else repr(error)
+                lines.append(f"  no {words}: {told}")
             else:
                 files[f"{folder}/{name}"] = content
     files["class.txt"] = "\n".join([*lines, ""]).encode()

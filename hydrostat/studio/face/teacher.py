@@ -136,7 +136,7 @@ class _TeacherPage:
                 "studio-hint"
             )
             ui.checkbox("Robots", value=True).props("disable")
-            kits = ui.checkbox("Kits, about 5 s each").props('data-testid="kits"')
+            kits = ui.checkbox("Kits, about 10 s each").props('data-testid="kits"')
             pages = ui.checkbox("Pages to share, up to 20 s each").props('data-testid="pages"')
             self._packing = ui.label().classes("studio-hint").props('role="status" data-testid="packing"')
             with ui.row().classes("w-full justify-end"):

@@ -112,3 +112,20 @@ def test_a_class_takes_all_home(starfish: Robot) -> None:
         ]  # fmt: skip
         assert unpack_robot("bare.zip", made.read(files[0]))[0].robot.name == "bare"
         assert made.read("class/class.txt").decode().count("no kit: the robot has no cables") == 3
+
+
+def test_an_error_or_stop_at_one_robot_loses_no_other(starfish: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
+    ends = iter([ValueError("odd"), KeyboardInterrupt()])
+
+    def end(*_: object) -> None:
+        raise next(ends)
+
+    monkeypatch.setattr("hydrostat.studio.exporting.class_work._kit", end)
+    monkeypatch.setattr("hydrostat.studio.exporting.class_work._page", lambda *_: ("page.html", b""))
+    works = [PupilWork(name, Work(robot=starfish), "", KitOptions()) for name in ("Ada", "Bo", "Cy")]
+    with ZipFile(BytesIO(pack_class(Silent(), works, kits=True, pages=True).content)) as made:
+        told = made.read("class/class.txt").decode()
+        assert sum(name.endswith("starfish.zip") for name in made.namelist()) == 3
+        assert [name for name in made.namelist() if name.endswith(".html")] == ["class/Ada/page.html"]
+    assert "no kit: ValueError('odd')" in told
+    assert told.count("stopped") == 1

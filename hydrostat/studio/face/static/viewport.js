@@ -20,7 +20,7 @@ export default /** @type {Component} */ ({
       <div v-if="before && connected" data-testid="before"
            style="position:absolute;bottom:14px;left:50%;transform:translateX(-50%);padding:5px 14px;border-radius:14px;
                   font-size:13px;background:#2b2833;color:#fffdfb;opacity:0.92;pointer-events:none">
-        {{ before === 1 ? "1 is before you" : before + " are before you" }}</div>
+        {{ before === 1 ? "1 drag is" : before + " drags are" }} ahead of yours</div>
     </div>`,
 
   props: { stream: String, palette: Object, dark: { default: null }, brush: Boolean },
