@@ -195,7 +195,9 @@ def _save_material(name: str, found: "IdentifiedRobot", source: str) -> None:
         print(f'warning: these measurements do not show body.young. "{name}" was not saved.')
         return
     path = save_own_material(replace(material, name=name, source=source))
-    print(f'Wrote {path}. Use it: material = "{name}" in robot.toml')
+    low, high = material.young_interval
+    print(f"Wrote {path}: {1e-3 * material.young:.3g} kPa (95 %: {1e-3 * low:.3g} to {1e-3 * high:.3g} kPa)")
+    print(f'Use it: material = "{name}" in robot.toml')
 
 
 def _print_values(found: "IdentifiedRobot") -> None:

@@ -65,7 +65,8 @@ def test_a_material_is_saved_with_its_interval(run: Run, tmp_path: Path, monkeyp
     low, high = get_material("my felt").young_interval or (0.0, 0.0)
     assert low < 25e3 < high
     assert load_robot(tmp_path / "fitted").body.material == get_material("my felt")
-    assert f'Wrote {tmp_path / "materials.toml"}. Use it: material = "my felt"' in text
+    assert f"Wrote {tmp_path / 'materials.toml'}: " in text
+    assert 'Use it: material = "my felt"' in text
     assert "my felt" in run("materials")[1]
     assert "3 rows of pulls.csv" in run("materials", "my felt")[1]
     for name, told in (("PDMS", "is in the table of materials"), ("a/b", 'has "/" in it')):
