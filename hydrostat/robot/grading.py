@@ -32,9 +32,10 @@ class Grading:
     file: str = FILE
 
     def __post_init__(self) -> None:
-        factors = self._table[1]
-        if not (np.isfinite(factors) & (factors > 0)).all():
-            raise InputError(f"{self.file}: each factor must be finite and above 0")
+        places, factors = self._table
+        if (wrong := np.flatnonzero(~(factors > 0))).size:
+            at = ", ".join(f"{1e3 * value:.4g}" for value in places[wrong[0]])
+            raise InputError(f"{self.file}: each factor must be above 0; at {at} mm it is {factors[wrong[0]]:.4g}")
         if factors.max() > MOST_RATIO * factors.min():
             raise InputError(f"{self.file}: the largest factor is {factors.max() / factors.min():.3g} times the least")
 
@@ -50,6 +51,8 @@ class Grading:
             raise InputError(f"the grading must give one number for each point ({error})") from None
         if factors.shape not in ((), (len(points),)):
             raise InputError(f"the grading must give {len(points)} numbers, one for each point, not {factors.shape}")
+        if not np.isfinite(factors).all():
+            raise InputError("the grading must give finite numbers")
         rows = np.column_stack([1e3 * points, np.broadcast_to(factors, len(points))]).tolist()
         head = ",".join([*(f"{axis}_mm" for axis in "xyz"[: points.shape[1]]), "factor"])
         return Grading(content="\n".join([head, *(",".join(map(repr, row)) for row in rows), ""]).encode())

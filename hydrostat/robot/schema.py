@@ -38,6 +38,7 @@ from hydrostat.toml_schema import (
     Time,
     TomlTable,
     Torque,
+    TrueOrFalse,
 )
 from hydrostat.units import quote
 
@@ -60,7 +61,7 @@ def _format(value: object) -> object:
 Direction = Annotated[str, AfterValidator(_direction)]
 
 
-def _noise_tag(value: object) -> str:
+def _text_tag(value: object) -> str:
     return "<text>" if isinstance(value, str) else "<number>"
 
 
@@ -68,6 +69,7 @@ def _gravity_tag(value: object) -> str:
     return "<direction>" if isinstance(value, str) else "<components>"
 
 
+TextOrNumber = Annotated[Annotated[Text, Tag("<text>")] | Annotated[Number, Tag("<number>")], Discriminator(_text_tag)]
 Gravity = Annotated[
     Annotated[Direction, Tag("<direction>")] | Annotated[Components, Tag("<components>")], Discriminator(_gravity_tag)
 ]
@@ -94,7 +96,7 @@ class PartTable(RegionTable):
 
     label: Annotated[str, BeforeValidator(_label)] | None = None
     material: AnyMaterial | None = None
-    rigid: bool = False
+    rigid: TrueOrFalse = False
     density: Density | None = None
 
 
@@ -134,8 +136,8 @@ class DriveTable(TomlTable):
     at: Coordinates | None = None
     axis: Coordinates | None = None
     slide: Coordinates | None = None
-    min: Text | Number | None = None
-    max: Text | Number | None = None
+    min: TextOrNumber | None = None
+    max: TextOrNumber | None = None
 
 
 class WinchTable(TomlTable):
@@ -147,7 +149,7 @@ class WinchTable(TomlTable):
     travel: Length | None = None
     release: Length | None = None
     mount: Mount | None = None
-    body: bool | None = None
+    body: TrueOrFalse | None = None
 
 
 class CableTable(TomlTable):
@@ -162,7 +164,7 @@ class CableTable(TomlTable):
     sheathed: list[Pair] | None = None
     friction: Number | None = None
     spool_radius: Length | None = None
-    reverse: bool | None = None
+    reverse: TrueOrFalse | None = None
 
 
 class MarkerTable(TomlTable):
@@ -246,7 +248,7 @@ class SheetTable(RegionTable):
     material: AnyMaterial
     thickness: Length
     on: SheetSide | None = None
-    wrinkles: bool | None = None
+    wrinkles: TrueOrFalse | None = None
 
 
 class SensorTable(TomlTable):
@@ -258,9 +260,7 @@ class SensorTable(TomlTable):
     at: Coordinates | None = None
     normal: Coordinates | None = None
     radius: Number | None = None
-    noise: (
-        Annotated[Annotated[Text, Tag("<text>")] | Annotated[Number, Tag("<number>")], Discriminator(_noise_tag)] | None
-    ) = None
+    noise: TextOrNumber | None = None
 
 
 class RobotTable(TomlTable):

@@ -54,7 +54,7 @@ _SENTENCES = {
     "string_type": '{value} is not text; write it in quotes: "..."',
     "string_too_short": "must not be empty",
     "string_too_long": "{value} is too long; at most {max_length} characters are allowed",
-    "bool_type": "{value} is neither true nor false",
+    "bool_type": "{value} is neither true nor false; write one of them without quotes",
     "int_type": "{value} is not a whole number; write for example {example}",
     "list_type": "{value} is not a list; write for example {example}",
     "too_short": "has {actual_length} entries, at least {min_length} are needed",

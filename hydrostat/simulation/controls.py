@@ -6,6 +6,7 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
+from hydrostat.given import list_choices
 from hydrostat.robot import PinDrive, Robot
 from hydrostat.units import plural
 
@@ -29,10 +30,10 @@ def contraction_values(robot: Robot, given: Contractions) -> Vector:
     """
     winches, wanted = (*robot.winches, *robot.drives), given
     if isinstance(given, Mapping):
-        drives = {drive.name for drive in robot.drives}
-        for name in given:
-            if name not in drives:
-                robot.winch(name)
+        known = [part.name for part in winches]
+        if unknown := [name for name in given if name not in known]:
+            kind, kinds = ("winch or drive", "winches or drives") if robot.drives else ("winch", "winches")
+            raise InputError(f'unknown {kind} "{unknown[0]}". {list_choices(kinds, known, unknown[0])}')
         wanted = np.array([given.get(winch.name, 0.0) for winch in winches], dtype=object)
     try:
         values = np.array(wanted, dtype=float)

@@ -52,6 +52,8 @@ def test_limits_are_in_their_own_units(tmp_path: Path) -> None:
         (DRIVEN + SERVO.replace("77.7 deg", "77.7 mm"), r"drive\[0\].max: .*mm.* an angle"),
         (DRIVEN + STAGE.replace('max = "3 mm"\n', ""), r"drive\[0\]: a slide needs its travel"),
         (PRESSED.replace(LOAD, ""), r'drive "thumb" scales no load. Add drive = "thumb" to a \[\[load\]\]'),
+        (GOOD + THUMB.replace('name = "thumb"', "name = 1"), "name: 1 is not text"),
+        (GOOD + THUMB.replace("max = 2", "max = true"), r"drive\[0\].max: true is not a number"),
         (GOOD + LOAD, r'load\[0\].drive: unknown drive "thumb". The robot has no drives of loads.'),
         (DRIVEN + LOAD.replace("thumb", "servo") + SERVO, r'load\[0\].drive: unknown drive "servo". The robot has no'),
         (DRIVEN.replace("servo", "thumb") + LOAD + THUMB, r'pin\[0\].drive: unknown drive "thumb". The robot has no'),

@@ -47,7 +47,7 @@ def test_what_is_written_is_read(tmp_path: Path) -> None:
         ("x_mm,y_mm,factor\n1,2,3\n1,2\n", "grading.csv, line 3: must be 3 numbers, not 1,2"),
         ("x_mm,y_mm,factor\n1,2,a\n", "grading.csv, line 2: must be 3 numbers, not 1,2,a"),
         ("x_mm,y_mm,factor\n1,inf,1\n", "has a number that is not finite"),
-        ("x_mm,y_mm,factor\n1,2,0\n", "each factor must be finite and above 0"),
+        ("x_mm,y_mm,factor\n1,2,0\n", "each factor must be above 0; at 1, 2 mm it is 0"),
         ("x_mm,y_mm,factor\n1,2,1\n1,3,1e6\n", r"the largest factor is 1e\+06 times the least"),
         ("x_mm,y_mm,z_mm,factor\n1,2,3,4\n", "body.grading: grading has coordinates in space, but the body is flat"),
     ],

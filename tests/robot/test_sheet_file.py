@@ -30,6 +30,7 @@ def test_what_is_written_is_read(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("table", "told"),
     [
+        (PATCH.replace("true", "1"), r"sheet\[0\].wrinkles: 1 is neither true nor false; write one of them"),
         (FELT.replace("1 mm", "0 mm"), r"sheet\[0\].thickness must be finite and above 0"),
         (FELT.replace("1 mm", "9 mm"), r"sheet\[0\].thickness of 9 mm is above 6 mm, a tenth of the body"),
         (
