@@ -169,8 +169,12 @@ class Robot:
         return len(self.winches) + len(self.drives)
 
     def with_network(self, winches: Iterable[Winch], cables: Iterable[Cable]) -> Self:
-        """Return the same robot with other winches and cables."""
-        return replace(self, winches=tuple(winches), cables=tuple(cables))
+        """Return the same robot with other winches and cables, the units of winches that are gone out of its body."""
+        kept = tuple(winches)
+        staying = {"", *(winch.name for winch in kept if winch.body)}
+        parts = tuple(part for part in self.body.parts if part.winch in staying)
+        body = self.body if len(parts) == len(self.body.parts) else self.body.with_parts(parts)
+        return replace(self, body=body, winches=kept, cables=tuple(cables))
 
     def with_material(self, material: Material | str | None = None, **changed: float) -> Self:
         """Return the same robot of another material, its mesh kept.

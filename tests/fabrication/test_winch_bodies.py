@@ -108,3 +108,18 @@ def test_what_does_not_fit_is_told_in_one_line(fitted: Robot) -> None:
         Simulation(replace(fitted, winches=tuple(replace(each, body=False) for each in fitted.winches)))
     with pytest.raises(InputError, match="body = true is for a winch in the body"):
         Winch(name="w", at=(0.0, 0.0), mount=Mount.WORLD, body=True)
+
+
+def test_another_network_takes_its_units_out_of_the_body(fitted: Robot) -> None:
+    """Oracle: the body before; the same motors fitted into it by hand."""
+    plain = fitted.with_network([replace(winch, body=False) for winch in fitted.winches], fitted.cables)
+    assert plain.body == gallery_robot("starfish").body
+    staying = [winch for winch in fitted.winches if winch.name != "left"]
+    fewer = fitted.with_network(staying, [cable for cable in fitted.cables if cable.winch != "left"])
+    assert fewer.body is fitted.body
+    Simulation(plain)
+    Simulation(fewer)
+    both = fit_winch_bodies(replace(fitted, winches=tuple(replace(winch, body=True) for winch in fitted.winches)))
+    (part,) = both.with_network(fitted.winches, fitted.cables).body.parts
+    assert part.points == fitted.body.parts[0].points
+    assert part.density == pytest.approx(fitted.body.parts[0].density, rel=0.01)
