@@ -84,3 +84,9 @@ def test_a_motor_beaten_in_everything_is_named() -> None:
     assert offers["25d"].better == "sts3215"
     assert offers["sts3215"].better == ""
     assert motors_price([], Motor.choose("n20")) == 0.0
+
+
+def test_what_is_optional_is_not_priced() -> None:
+    """Oracle: prices of the table, two winches of N20."""
+    items = control_needs(power_plan({"one": 10.0, "two": 10.0}, Motor.choose("n20")))
+    assert not [item.what for item in items if "optional" in item.specification]

@@ -94,7 +94,6 @@ PRICES = MappingProxyType(
         "servo cable": Price(amount=2.0),
         "encoder": Price(amount=5.0),
         "small parts": Price(amount=1.0, unit="set"),
-        "button": Price(amount=0.5),
         "screws": Price(amount=0.08, pack=100.0, source="parts list of a printed robot hand: M3 screws, 8 for 100"),
         "pla": Price(
             amount=19.99, unit="kg", month="2023-05", source="parts list of SCUTTLE mini (D. Malawey): filament, 1 kg"

@@ -191,9 +191,6 @@ def control_needs(plan: PowerPlan | None) -> list[Item]:
     if plan.motor.key == "n20":
         magnets = "magnetic, for micro metal gearmotors with a long shaft, 12 counts a turn"
         parts.append(_item(BillGroup.CONTROL, "encoder", magnets, count, "encoder"))
-    if len(plan.boards) == 1:
-        alone = "optional: starts moves that play without a computer"
-        parts.append(_item(BillGroup.CONTROL, "push button", alone, 1.0, "button"))
     small = "1 of 10 uF from RESET to GND of each board, and 10 kOhm from each PWM pin to GND"
     parts.append(_item(BillGroup.CONTROL, "capacitor and resistors", small, 1.0, "small parts"))
     return [*parts, _item(BillGroup.CONTROL, "motor driver", bridge, count, "driver"), *feed]
