@@ -60,18 +60,20 @@ def _arrange_units(boxes: tuple[UnitBox, ...], seam: BaseGeometry, thickness: fl
 
 
 class _Ways:
-    """All ways to lay one unit."""
+    """All ways to lay one unit; `places` are those that are least outside the seam, and not too deep if they can."""
 
     def __init__(self, places: list[UnitPlace], thickness: float) -> None:
-        self.places = places
-        self._footprints = np.array([place.footprint for place in places])
-        self._depths = np.array([place.depth for place in places])
+        outside = [round(max(place.outside - TOUCHES, 0.0), 3) for place in places]
+        deep = [place.depth > (1 + GIVES) * thickness for place in places]
+        first = min(zip(outside, deep, strict=True))
+        self._all = places
+        self.places = [place for place, *before in zip(places, outside, deep, strict=True) if tuple(before) == first]
+        self._footprints = np.array([place.footprint for place in self.places])
+        self._depths = np.array([place.depth for place in self.places])
         self._thickness = thickness
         self._room = (1 + GIVES) * thickness
-        outside = [round(max(place.outside - TOUCHES, 0.0), 3) for place in places]
         bulges = np.maximum(self._depths - thickness, 0.0).round(3).tolist()
-        self._before = list(zip(outside, (self._depths > self._room).tolist(), strict=True))
-        self._after = list(zip(bulges, range(len(places)), strict=True))
+        self._after = list(zip(bulges, range(len(self.places)), strict=True))
         self._shares: dict[int, tuple[UnitPlace, Vector, Vector]] = {}
         self.alone, _ = self.best([])
 
@@ -84,13 +86,13 @@ class _Ways:
             soft += above
         number = min(
             range(len(self.places)),
-            key=lambda way: (*self._before[way], float(hard[way]), float(soft[way]), *self._after[way]),
+            key=lambda way: (float(hard[way]), float(soft[way]), *self._after[way]),
         )
         return self.places[number], (float(hard[number]), float(soft[number]))
 
     def thinnest(self) -> "_Ways":
         """Those that take the least of the thickness, of those within the seam if there are any."""
-        inside = [place for place in self.places if place.outside <= TOUCHES] or self.places
+        inside = [place for place in self._all if place.outside <= TOUCHES] or self._all
         least = min(place.depth for place in inside)
         return _Ways([place for place in inside if place.depth <= least + 1e-9], self._thickness)
 

@@ -123,16 +123,16 @@ class Housing:
     def _is_blocked(self, post: float) -> bool:
         """Return True if a screw would collide with a screw in the face, or with a motor below the base."""
         mine = self.screw.passage / 2
-        corners = MultiPoint([(x, y) for x in (-post, post) for y in (-post, post)])
         if self.outside:
+            corners = MultiPoint([(x, y) for x in (-post, post) for y in (-post, post)])
             cut = Polygon(self.motor.outline).buffer(self.options.clearance)
             if corners.distance(cut) < mine + self.options.wall:
                 return True
         if self.motor.horn is None:
             return False
-        slots = MultiPoint([(x + side, y) for x, y in self.motor.holes for side in (-self.motor.slot, self.motor.slot)])
+        slots = [(abs(x + side), abs(y)) for x, y in self.motor.holes for side in (-self.motor.slot, self.motor.slot)]
         head = self.motor.screw.head / 2 + self.options.fit
-        return corners.distance(slots) < head + mine + self.options.wall / 2
+        return min(math.dist(slot, (post, post)) for slot in slots) < head + mine + self.options.wall / 2
 
     @cached_property
     def half(self) -> float:
