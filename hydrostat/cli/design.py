@@ -13,7 +13,7 @@ import typer
 
 from hydrostat.cli.check import print_sewing
 from hydrostat.cli.design_record import RECORDS, open_record, tell_record, write_record
-from hydrostat.cli.design_results import STALE, print_front, print_poses, write_kit, write_results
+from hydrostat.cli.design_results import STALE, kit_options, print_front, print_poses, write_kit, write_results
 from hydrostat.cli.design_wishes import DesignArguments, parse_request
 from hydrostat.cli.fabricate import print_kit
 from hydrostat.cli.folders import OutFolder, RobotFolder, folder_of, require_folder, result_folder
@@ -242,7 +242,7 @@ def design(
         print_kit(made, printed=printed)
     _tell_count(network, request, lifts)
     fits = kit_fits(network) and not (made is not None and made.problems)
-    over = is_above_budget(network, spend)
+    over = made is None and fits and is_above_budget(network, spend)
     _tell_next(network, robot, out, kit=kit, fits=fits, budget=None if over else spend)
     if network.timed_out:
         print(f"time limit of {time_limit} reached: best network so far")
@@ -285,17 +285,17 @@ def _refuse_budget(request: "DesignRequest", key: str, budget: float | None) -> 
 
 
 def is_above_budget(network: "Network", budget: float | None) -> bool:
-    """Return True, with an error printed, if motors, power and cables of a network cost more than a budget."""
-    from hydrostat.design import BuildCost
+    """Return True, with the error of `fabricate` printed, if the kit of a network costs more than a budget."""
+    from hydrostat.errors import in_words
+    from hydrostat.fabrication import OVER_BUDGET, summarize_kit
 
     if budget is None:
         return False
-    price = BuildCost.of_robot(network.robot, network.ik_results).price
-    if price <= budget:
-        return False
-    words = f"error: motors, power and cables cost {price:.0f} USD, more than the budget of {budget:g} USD"
-    print(f"{words}. Allow {math.ceil(price)} USD, or fewer winches")
-    return True
+    rows = dict(summarize_kit(network.robot, options=kit_options(network, budget)))
+    told = [problem for problem in rows.get("Problems", ()) if OVER_BUDGET in problem]
+    for problem in told:
+        print(f"error: {in_words(problem)}")
+    return bool(told)
 
 
 def _search(

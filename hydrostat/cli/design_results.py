@@ -3,16 +3,17 @@
 import json
 from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
     from hydrostat.design import Constraints, Network
-    from hydrostat.fabrication import Kit
+    from hydrostat.fabrication import Kit, KitOptions
     from hydrostat.ik import IKResult
     from hydrostat.robot import Robot
 
+_Value = TypeVar("_Value", float, str)
 STALE = r"alternatives/\d+_\d+_winches_\d+_cables"  # folders of alternatives of an earlier design
 
 
@@ -40,13 +41,20 @@ def alternative_folder(out: Path, number: int, robot: "Robot") -> Path:
 def write_kit(network: "Network", folder: Path, *, budget: float | None) -> "Kit":
     """The fabrication kit, with problems listed. Its poses keep to the design's tension."""
     from hydrostat.camera import tag_files
-    from hydrostat.fabrication import KitOptions, build_kit
+    from hydrostat.fabrication import build_kit
 
-    limits, robot = network.constraints, network.robot
-    options = KitOptions(force=True, tension=limits.tension_limit, torque=limits.torque, budget=budget)
+    robot, options = network.robot, kit_options(network, budget)
     kit = build_kit(robot, options=options, added=tag_files(robot, options.paper))
     kit.write(folder)
     return kit
+
+
+def kit_options(network: "Network", budget: float | None) -> "KitOptions":
+    """Options of the kit of a design, which `fabricate` follows too; problems are listed."""
+    from hydrostat.fabrication import KitOptions
+
+    limits = network.constraints
+    return KitOptions(force=True, tension=limits.tension_limit, torque=limits.torque, budget=budget)
 
 
 def designed_tension(robot: "Robot", folder: Path) -> float | None:
@@ -54,17 +62,22 @@ def designed_tension(robot: "Robot", folder: Path) -> float | None:
 
     None for a robot of which neither is. Raises InputError: studio.json is there, and cannot be read.
     """
-    limit = _design_limit(robot, folder, "tension_limit")
+    limit = _design_value(robot, folder, "tension_limit", float)
     return _wished_tension(robot, folder) if limit is None else limit
 
 
 def designed_torque(robot: "Robot", folder: Path) -> float | None:
     """The torque that a design kept [N m], from the score.json next to its folder; None without one."""
-    return _design_limit(robot, folder, "torque_limit")
+    return _design_value(robot, folder, "torque_limit", float)
 
 
-def _design_limit(robot: "Robot", folder: Path, name: str) -> float | None:
-    """A limit of the design that made a robot; None where there is no such design or no such limit."""
+def designed_motor(robot: "Robot", folder: Path) -> str:
+    """Key of the motor that a robot without one was designed for, from the score.json next to its folder; or "auto"."""
+    return _design_value(robot, folder, "motor", str) or "auto" if robot.motor == "auto" else "auto"
+
+
+def _design_value(robot: "Robot", folder: Path, name: str, kind: "type[_Value]") -> "_Value | None":
+    """A value of the design that made a robot; None where there is no such design or no such value."""
     from hydrostat.robot import robot_hash
 
     own = robot_hash(robot)
@@ -72,7 +85,7 @@ def _design_limit(robot: "Robot", folder: Path, name: str) -> float | None:
         try:
             card = json.loads((place / "score.json").read_text(encoding="utf-8"))
             if own in {card["robot"], *(other["robot"] for other in card["alternatives"])}:
-                return None if card[name] is None else float(card[name])
+                return None if card[name] is None else kind(card[name])
         except (OSError, ValueError, KeyError, TypeError):
             continue
     return None

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hydrostat.cli.design_results import designed_tension, designed_torque
+from hydrostat.cli.design_results import designed_motor, designed_tension, designed_torque
 from hydrostat.cli.folders import RobotFolder, require_folder
 from hydrostat.cli.options import Budget, MotorOption, parse_budget, parse_optional, positive
 from hydrostat.cli.waiting import progress_bar, read_robot
@@ -106,7 +106,10 @@ def fabricate(
     loaded = read_robot(robot)
     kept = designed_tension(loaded, robot) if limit is None else None
     torque = designed_torque(loaded, robot)
-    options = replace(options, tension=kept or limit, torque=torque, motor=motor or "auto", budget=spend)
+    planned = designed_motor(loaded, robot) if motor is None else motor
+    options = replace(options, tension=kept or limit, torque=torque, motor=planned, budget=spend)
+    if motor is None and planned != "auto":
+        print(f"note: motor {planned}, that of its design. Override with --motor")
     if mould is not None and options.method_for(loaded.body) is not kits.Method.FOAM:
         raise InputError("--mould: needs a foam body. Remove it, or add --method foam.")
     if simple:

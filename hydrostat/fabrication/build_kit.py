@@ -240,10 +240,10 @@ def _budget_problems(plan: KitPlan, lists: Lists) -> tuple[str, ...]:
     free, options = replace(plan.drawn, motor="auto"), replace(plan.options, motor="auto")
     cheapest = find_motor(free, plan.demand.torques.tolist(), options)
     pulled = pulled_torques(plan.robot, plan.demand.torques.tolist())
-    least = cost + motors_price(pulled, cheapest) - motors_price(pulled, plan.rigid.motor)
+    saved = motors_price(pulled, plan.rigid.motor) - motors_price(pulled, cheapest)
     shares = ", ".join(f"{row.group} {row.cost_packs:.0f}" for row in lists.bill.rows[:-1] if row.is_total)
-    other = f"With --motor {cheapest.key} it costs about {least:.0f} USD"
-    way = other if least < cost else f"No cheaper motor than {plan.rigid.motor.key} does"
+    other = f"With --motor {cheapest.key} it costs about {cost - saved:.0f} USD"
+    way = other if saved > 0 else f"No cheaper motor than {plan.rigid.motor.key} fits"
     return (f"the kit costs {cost:.0f} USD in whole packs ({shares}), {OVER_BUDGET} {budget:g} USD. {way}",)
 
 

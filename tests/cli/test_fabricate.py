@@ -2,7 +2,6 @@
 
 import csv
 import json
-import math
 import re
 from collections.abc import Callable
 from dataclasses import replace
@@ -15,8 +14,8 @@ from builders import gallery_robot
 from plush import near_the_edge
 
 from hydrostat.cli.design import is_above_budget
-from hydrostat.cli.design_results import designed_tension
-from hydrostat.design import BuildCost, Network
+from hydrostat.cli.design_results import designed_motor, designed_tension
+from hydrostat.design import BuildCost, Constraints, Network
 from hydrostat.errors import InputError
 from hydrostat.fabrication import ALL_MOTORS
 from hydrostat.project import Wishes, Work
@@ -146,11 +145,14 @@ def test_check_refuses_with_the_same_sentences(run: Run, tmp_path: Path) -> None
 def test_the_tension_of_its_design_is_beside_a_robot(tmp_path: Path) -> None:
     """Oracles: the score.json of a design and of another robot, for the network and for an alternative."""
     robot = near_the_edge()
-    card = {"robot": robot_hash(robot), "alternatives": [{"robot": "other"}], "tension_limit": 12.5}
+    card = {"robot": robot_hash(robot), "alternatives": [{"robot": "other"}], "tension_limit": 12.5, "motor": "xl330"}
     out = tmp_path / "out"
     (out / "alternatives").mkdir(parents=True)
     (out / "score.json").write_text(json.dumps(card))
     assert designed_tension(robot, out / "robot") == 12.5
+    assert designed_motor(robot, out / "robot") == "xl330"
+    assert designed_motor(replace(robot, motor="n20"), out / "robot") == "auto"
+    assert designed_motor(robot, tmp_path / "alone") == "auto"
     assert designed_tension(robot.with_network(robot.winches, robot.cables[:1]), out / "robot") is None
     assert designed_tension(robot, tmp_path / "alone" / "robot" / "deep") is None
     card |= {"robot": "other", "alternatives": [{"robot": robot_hash(robot)}]}
@@ -241,12 +243,18 @@ def test_a_budget_below_the_motors_stops_a_design(run: Run, tmp_path: Path) -> N
     assert "2 motors with boards and power cost at least 60 USD (sts3215)" in err
 
 
-def test_a_network_above_its_budget_is_told(capsys: pytest.CaptureFixture[str]) -> None:
-    """Oracle: its price; the cheapest motor alone would do, and does not fit."""
-    network = cast(Network, SimpleNamespace(robot=gallery_robot("starfish"), ik_results=[]))
-    price = BuildCost.of_robot(network.robot, []).price
+def test_design_and_fabricate_judge_one_budget(run: Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Oracle: the sentence of `fabricate --summary`, a dollar below the price of the whole kit."""
+    robot = replace(near_the_edge(), poses={})
+    save_robot(robot, tmp_path / "robot")
+    network = cast(Network, SimpleNamespace(robot=robot, constraints=Constraints()))
     assert not is_above_budget(network, None)
-    assert not is_above_budget(network, price + 0.01)
-    assert capsys.readouterr().out == ""
-    assert is_above_budget(network, price - 0.01)
-    assert f"Allow {math.ceil(price)} USD, or fewer winches" in capsys.readouterr().out
+    assert is_above_budget(network, 1.0)
+    said = capsys.readouterr().out
+    (cost,) = (int(each) for each in re.findall(r"costs (\d+) USD in whole packs", said))
+    assert "No cheaper motor than" in said
+    assert said.rstrip().endswith("fits")
+    assert cost > BuildCost.of_robot(robot, []).price + 5  # the body comes on top
+    assert not is_above_budget(network, cost + 1)
+    _, out, _ = run("fabricate", tmp_path / "robot", "--budget", f"{cost - 1}USD", "--summary")
+    assert f"costs {cost} USD in whole packs" in out
