@@ -86,8 +86,8 @@ def _tools(plan: KitPlan, lists: Lists) -> list[str]:
         ]
     elif plan.method is Method.FOAM:
         tools += ["scale that reads 1 g", "gloves and goggles", "egg mixer on a drill", "cups and a sharp knife"]
-    if plan.rigid.units:
-        tools.append("screwdrivers for M2 and M3")
+    if sizes := {title.partition(" ")[0] for title in plan.rigid.screws if "screw" in title}:
+        tools.append(f"screwdriver for {' and '.join(sorted(sizes))} screws")
     if lists.power is not None:
         tools.append("multimeter" if lists.power.servos else "soldering iron, multimeter")
         tools.append("computer with USB")
