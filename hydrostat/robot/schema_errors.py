@@ -17,6 +17,9 @@ REFUSED = {
     "body.relaxation": "it belongs to the material; write " + _VISCOUS,
     "body.hysteresis": "it belongs to the material; write " + _VISCOUS,
     **dict.fromkeys(("body.material.young", "body.material.poisson", "body.material.density"), _NAMED),
+    **dict.fromkeys(
+        ("keep_out", "passive_zone", "winch_zone"), "it belongs in a file for hydrostat design --constraints"
+    ),
     "part": "parts belong to the body; begin each with [[body.part]]",
 }
 """Known keys where they may not stand, and why."""

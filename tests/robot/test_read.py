@@ -35,6 +35,7 @@ LINES = [
         "[body]\ncolor = 1",
         'line 6: body.color: unknown key "color"; allowed here are: outline, surface, mesh',
     ),
+    ("[body]", "[[keep_out]]\n[body]", "line 5: keep_out: it belongs in a file for hydrostat design --constraints"),
     ("[body]", "[boddy]", 'line 5: boddy: unknown key "boddy", did you mean body? allowed here are: format, name'),
     ("radius = 12", "radios = 12", 'line 13: pin[0].radios: unknown key "radios", did you mean radius?'),
     ("travel", "strength", 'line 19: winch[0].strength: unknown key "strength"; allowed here are: name, at, spool_'),

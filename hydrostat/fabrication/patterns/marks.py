@@ -122,7 +122,7 @@ def crossed_drawings(robot: Robot, stitches: Iterable[CableStitches]) -> tuple[s
     words = "; ".join(found)
     return (
         f"cables cross drawn shapes, such as eyes: {words}. Move their points, or design with a [[keep_out]] zone "
-        "there",
+        "there, in a file for --constraints",
     )
 
 
