@@ -188,15 +188,18 @@ def _check_material(name: str, fit: tuple[str, ...] | None) -> None:
 
 
 def _save_material(name: str, found: "IdentifiedRobot", source: str) -> None:
-    from hydrostat.robot import save_own_material
+    from hydrostat.robot import own_materials, save_own_material
 
     material = found.robot.body.material
     if material.young_interval is None:
         print(f'warning: these measurements do not show body.young. "{name}" was not saved.')
         return
+    replaced = name.lower() in own_materials()
     path = save_own_material(replace(material, name=name, source=source))
     low, high = material.young_interval
     print(f"Wrote {path}: {1e-3 * material.young:.3g} kPa (95 %: {1e-3 * low:.3g} to {1e-3 * high:.3g} kPa)")
+    if replaced:
+        print(f'note: it replaces your material "{name}" of before')
     print(f'Use it: material = "{name}" in robot.toml')
 
 
