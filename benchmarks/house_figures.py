@@ -21,6 +21,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parents[1]
 OPENINGS = ("What", "How", "Whether", "Where", "Which", "Of", "That", "As")
+ENTRANCES = ("hydrostat.cli.main", "hydrostat.cli.start")  # programs start there
 """First words that make a docstring lean on the code beside it."""
 
 PARTICIPLE = re.compile(
@@ -71,7 +72,7 @@ def past_doors(tree: Path, folder: str) -> int:
                 continue
             parts = node.module.split(".")
             inside = parts[0] == "hydrostat" and len(parts) > 2 and (package / parts[1]).is_dir()
-            if inside and (len(own) == 1 or own[0] != parts[1]) and node.module != "hydrostat.cli.main":
+            if inside and (len(own) == 1 or own[0] != parts[1]) and node.module not in ENTRANCES:
                 count += len(node.names)
     return count
 
