@@ -1,9 +1,10 @@
-"""`EmulatedFeetechChain`: servos of the STS series that are not there, which behave as badly as real ones."""
+"""`EmulatedFeetechChain`: servos of the STS and SCS series that are not there, which behave as badly as real ones."""
 
 import os
 import select
 import threading
 import time
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -94,8 +95,26 @@ class EmulatedLine:
             self.chain.wait(max(0.0, time.monotonic() - begin - self.chain.now))
 
 
+class _EmulatedFeetech(EmulatedServo, ABC):
+    """Registers and torque switch of servos of both series."""
+
+    def take(self, place: int, data: bytes) -> int:
+        """Write registers as commanded over the bus; returns the error of the answer."""
+        if place + len(data) <= STATE:
+            self.table[place : place + len(data)] = data
+            if place == TORQUE and data[0] == 0:
+                self.ails.overloaded = False
+            if place == TORQUE and data[0] == 1:
+                self._hold_place()
+        return 0
+
+    @abstractmethod
+    def _hold_place(self) -> None:
+        """Take the present place as the goal, as the servo does when its torque is switched on."""
+
+
 @dataclass
-class EmulatedSts(EmulatedServo):
+class EmulatedSts(_EmulatedFeetech):
     """A servo of the STS series; it has no watchdog."""
 
     model: int = 777
@@ -115,15 +134,8 @@ class EmulatedSts(EmulatedServo):
         """Largest torque that its bound allows [N m]."""
         return self.constant * STALL * int.from_bytes(self.table[BOUND : BOUND + 2], "little") / FULL
 
-    def take(self, place: int, data: bytes) -> int:
-        """Write registers as commanded over the bus; returns the error of the answer."""
-        if place + len(data) <= STATE:
-            self.table[place : place + len(data)] = data
-            if place == TORQUE and data[0] == 0:
-                self.ails.overloaded = False
-            if place == TORQUE and data[0] == 1:
-                self._write_register(GOAL, round(self.counted_angle / TICK))
-        return 0
+    def _hold_place(self) -> None:
+        self._write_register(GOAL, round(self.counted_angle / TICK))
 
     def step(self, now: float, dt: float) -> None:
         """Let time pass, to an instant [s]."""
@@ -153,7 +165,7 @@ class EmulatedSts(EmulatedServo):
 
 
 @dataclass
-class EmulatedScs(EmulatedServo):
+class EmulatedScs(_EmulatedFeetech):
     """A servo of the SCS series: words with the high byte first, 300 degrees, load in place of current."""
 
     model: int = NUMBER
@@ -178,15 +190,8 @@ class EmulatedScs(EmulatedServo):
         """Largest torque that its bound allows [N m]."""
         return self.constant * SCS_STALL * self._word(SCS_BOUND) / FULL
 
-    def take(self, place: int, data: bytes) -> int:
-        """Write registers as commanded over the bus; returns the error of the answer."""
-        if place + len(data) <= STATE:
-            self.table[place : place + len(data)] = data
-            if place == TORQUE and data[0] == 0:
-                self.ails.overloaded = False
-            if place == TORQUE and data[0] == 1:
-                self._write_word(GOAL, round(self.angle / SCS_TICK))
-        return 0
+    def _hold_place(self) -> None:
+        self._write_word(GOAL, round(self.angle / SCS_TICK))
 
     def step(self, now: float, dt: float) -> None:
         """Let time pass, to an instant [s]."""
@@ -212,7 +217,7 @@ class EmulatedScs(EmulatedServo):
 
 
 class EmulatedFeetechChain(EmulatedChain):
-    """A port with servos of the STS series at its other end."""
+    """A port with Feetech servos at its other end."""
 
     def __init__(self, servos: Sequence[EmulatedSts | EmulatedScs]) -> None:
         """Servos that all hear the same line."""

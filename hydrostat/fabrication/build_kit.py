@@ -126,7 +126,7 @@ def _plan_and_lists(robot: Robot, options: KitOptions | None, tell: "_Stages") -
     check_type(options, (KitOptions, type(None)), "options must be KitOptions(...)")
     options = options or KitOptions()
     if (key := options.motor_for(robot)) != "auto":
-        Motor.choose(key)  # a name that is wrong is told before the work
+        Motor.choose(key)  # reject an unknown name before the work
     if options.step:
         require_cad()
     plan = _plan(robot, options, tell)

@@ -183,7 +183,7 @@ def _with_intervals(robot: Robot, fitted: FittedModel) -> Robot:
     """Robot whose materials have the interval of Young's modulus, where the measurements show it."""
     gains, intervals = fitted.information_gains, fitted.intervals
 
-    def measured(owner: str, material: Material) -> Material:
+    def add_interval(owner: str, material: Material) -> Material:
         name = f"{owner}.young"
         if gains.get(name, 0.0) < UNKNOWN:
             return material
@@ -191,10 +191,10 @@ def _with_intervals(robot: Robot, fitted: FittedModel) -> Robot:
         return replace(material, young_interval=(min(low, material.young), max(high, material.young)))
 
     parts = tuple(
-        part if part.material is None else replace(part, material=measured(part.name, part.material))
+        part if part.material is None else replace(part, material=add_interval(part.name, part.material))
         for part in robot.body.parts
     )
-    return replace(robot, body=replace(robot.body, material=measured("body", robot.body.material), parts=parts))
+    return replace(robot, body=replace(robot.body, material=add_interval("body", robot.body.material), parts=parts))
 
 
 def _round_number(value: float) -> float:

@@ -88,17 +88,17 @@ def _material(robot: Robot, key: str, spread: float, limits: tuple[float, float]
 
 
 def _with_material(key: str) -> Callable[[Robot, Values], Robot]:
-    def changed(material: Material, value: float) -> Material:
+    def change_material(material: Material, value: float) -> Material:
         return material.with_young(value) if key == "young" else replace(material, **{key: value})
 
     def change(robot: Robot, values: Values) -> Robot:
         parts = tuple(
             part
             if part.material is None
-            else replace(part, material=changed(part.material, values[f"{part.name}.{key}"]))
+            else replace(part, material=change_material(part.material, values[f"{part.name}.{key}"]))
             for part in robot.body.parts
         )
-        material = changed(robot.body.material, values[f"body.{key}"])
+        material = change_material(robot.body.material, values[f"body.{key}"])
         return replace(robot, body=replace(robot.body, material=material, parts=parts))
 
     return change

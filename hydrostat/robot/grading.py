@@ -70,7 +70,7 @@ class Grading:
         return factors[KDTree(places).query(points[:, : self.dim])[1]]
 
     def with_scale(self, scale: float) -> "Grading":
-        """Return the same grading of a body so many times as large."""
+        """Return the same grading of a body whose lengths are multiplied by `scale`."""
         places, factors = self._table
         return Grading.from_function(lambda _: factors, scale * places)
 

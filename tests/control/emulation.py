@@ -30,6 +30,17 @@ def let_pull(servos: Sequence[EmulatedServo], reaches: Sequence[float], zero: fl
         servo.load = spring(servo, reach)
 
 
+def send_goal(link: BusLink, chain: EmulatedChain, goal: float, seconds: float) -> np.ndarray:
+    """Tell two winches a goal [m] 50 times a second; returns where the link says that they are."""
+    end, places = chain.now + seconds, np.zeros(2)
+    while chain.now < end:
+        begin = chain.now
+        link.send(np.full(2, goal), begin, speed=0.05)
+        places = link.read(begin)
+        chain.wait(max(0.0, 0.02 - (chain.now - begin)))
+    return places
+
+
 def spring_guard(
     facts: Sequence[MotorFacts], servos: Sequence[EmulatedServo], reaches: np.ndarray, names: tuple[str, ...]
 ) -> TensionGuard:

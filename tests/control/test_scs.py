@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from emulation import send_goal
 
 from hydrostat.control.bus_link import BusLink, LinkState
 from hydrostat.control.calibration import Calibration, WinchMotor
@@ -38,14 +39,8 @@ class Pair:
         self.link.arm()
 
     def go(self, goal: float, seconds: float) -> np.ndarray:
-        """Tell a goal [m] 50 times a second; returns where the link says that they are."""
-        end, places = self.chain.now + seconds, np.zeros(2)
-        while self.chain.now < end:
-            begin = self.chain.now
-            self.link.send(np.full(2, goal), begin, speed=0.05)
-            places = self.link.read(begin)
-            self.chain.wait(max(0.0, 0.02 - (self.chain.now - begin)))
-        return places
+        """Both winches to a goal [m]; returns their places by the link."""
+        return send_goal(self.link, self.chain, goal, seconds)
 
 
 def test_it_goes_where_it_is_told_with_high_bytes_first() -> None:
