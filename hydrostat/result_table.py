@@ -1,7 +1,7 @@
 """`ResultTable`: columns of numbers with names, for pandas, for spreadsheets and for notebooks."""
 
 import html
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
@@ -92,6 +92,14 @@ def named_columns(kind: str, names: Iterable[str], values: Any, unit: str) -> Co
     return {
         f"{kind}_{name}_{unit}": np.asarray(column, dtype=float) for name, column in zip(names, values.T, strict=True)
     }
+
+
+def control_columns(winches: Sequence[str], drives: Mapping[str, str], values: Any) -> Columns:
+    """Return a column for each winch and drive, (rows, winches and drives); `drives` are units by name."""
+    columns = named_columns("contraction", winches, values[:, : len(winches)], "m")
+    for (name, unit), column in zip(drives.items(), values[:, len(winches) :].T, strict=True):
+        columns[f"drive_{name}_{unit}"] = np.asarray(column, dtype=float)
+    return columns
 
 
 def table_html(table: Tabular, title: str = "") -> str:

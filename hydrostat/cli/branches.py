@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result_folder
-from hydrostat.cli.options import Contract, contractions
+from hydrostat.cli.options import Contract, Moves, contractions, moves
 from hydrostat.cli.waiting import prepare_physics, progress_bar, read_robot
 from hydrostat.errors import InputError
 
@@ -19,6 +19,7 @@ def branches(
     robot: RobotFolder,
     out: OutFolder,
     contract: Contract = None,
+    move: Moves = None,
     starts: Annotated[int, typer.Option(metavar="N", help="Number of loading paths to try.")] = 16,
     seed: Annotated[int, typer.Option(help="Random seed.")] = 0,
 ) -> None:
@@ -33,7 +34,7 @@ def branches(
 
     require_folder(out)
     loaded = read_robot(robot)
-    given = contractions(loaded, contract)
+    given = {**contractions(loaded, contract), **moves(loaded, move)}
     if not any(given.values()):
         raise InputError("--contract: no contraction given. Name a winch and a length, e.g. left=40mm.")
     if starts < 1:
@@ -75,11 +76,11 @@ def _write(
     from hydrostat.robot import robot_hash
     from hydrostat.version import __version__
 
-    winches = [winch.name for winch in simulation.robot.winches]
+    controls = [part.name for part in (*simulation.robot.winches, *simulation.robot.drives)]
     facts = {
         "version": __version__,
         "robot": robot_hash(simulation.robot),
-        "contractions": dict(zip(winches, map(float, found.contractions), strict=True)),
+        "contractions": dict(zip(controls, map(float, found.contractions), strict=True)),
         "report": found.lines(),
         "poses": [_pose_facts(one.pose) | {"ways": list(one.ways)} for one in found.poses],
         "lost": list(found.lost),

@@ -183,6 +183,9 @@ def _key_facts(made: "Trajectory", key: Any) -> dict[str, Any]:
         "name": key.name,
         "time": key.time,
         "contractions": _by_winch(made, key.pose.contractions),
+        "drives": {
+            drive.name: float(value) for drive, value in zip(key.pose.robot.drives, key.pose.drives, strict=True)
+        },
         "errors": dict(key.errors),
         "stray": key.path_deviation,
         "rms_error_from_rest": key.free_error,
@@ -198,6 +201,6 @@ def _key_facts(made: "Trajectory", key: Any) -> dict[str, Any]:
 
 
 def _by_winch(made: "Trajectory", values: Any) -> dict[str, float | None]:
-    """Numbers by winch; None where there is no limit."""
+    """Numbers by winch, without drives; None where there is no limit."""
     finite = [float(value) if abs(value) < float("inf") else None for value in values]
-    return dict(zip(made.winches, finite, strict=True))
+    return dict(zip(made.winches, finite, strict=False))

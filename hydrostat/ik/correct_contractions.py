@@ -13,7 +13,6 @@ from hydrostat.ik.objectives.marker_target import named_targets
 from hydrostat.ik.objectives.pose_regularizer import ClosenessKind, PoseRegularizer
 from hydrostat.ik.search.problem import IKOptions
 from hydrostat.ik.solve_ik import solve_ik
-from hydrostat.robot import PinDrive
 from hydrostat.simulation import Simulation
 
 CORRECTION_DAMPING = 0.35
@@ -29,6 +28,8 @@ def correct_contractions(
     damping: float = CORRECTION_DAMPING,
 ) -> Vector:
     """Return contractions that take back measured marker errors, solved again in the model from the pose played [m].
+
+    Values of drives follow those of the winches.
 
     Play `reached.pose.contractions` on the built robot, measure markers, then play the answer. Each target moves by
     the difference of model and measurement; a marker that is not measured keeps its target. The search stays near the
@@ -55,12 +56,11 @@ def correct_contractions(
             )
         if np.shape(seen[name]) != np.shape(targets[name]) or not np.isfinite(seen[name]).all():
             raise InputError(f'marker "{name}": measured position must be {len(targets[name])} finite numbers [m]')
-    PinDrive.require_none(simulation.robot.drives, "corrections")
     moved = {name: np.subtract(place, reached.pose.markers[name]) for name, place in seen.items()}
     wanted = {name: tuple(np.subtract(to, moved.get(name, 0.0)).tolist()) for name, to in targets.items()}
     near = PoseRegularizer(pose=reached.pose, of=ClosenessKind.CONTRACTIONS, weight=damping)
     found = solve_ik(simulation, wanted, limits=limits, objectives=[near], start=reached.pose, options=_FROM_HERE)
-    return found.pose.contractions
+    return found.pose.controls
 
 
 _FROM_HERE = IKOptions(restarts=0, min_tension=False, hold_free_markers=False)

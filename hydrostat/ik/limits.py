@@ -179,4 +179,21 @@ def limit_by_winch(robot: Robot, given: float | Mapping[str, float] | None, what
     return np.array([above_zero(f"a limit on the {what}", value, unit=unit) for value in values])
 
 
+def limit_by_control(
+    robot: Robot, given: float | Mapping[str, float] | None, usual: Vector, what: str, unit: str
+) -> Vector:
+    """Limit for each winch as by `limit_by_winch`, then for each drive: the one given by name, or the usual one."""
+    drives, named = [drive.name for drive in robot.drives], given if isinstance(given, Mapping) else {}
+    own = given
+    if isinstance(given, Mapping):
+        own = {name: value for name, value in given.items() if name not in drives}
+    values = [
+        above_zero(f"a limit on the {what}", named[name], unit=f"{drive.unit}/{unit.partition('/')[2]}")
+        if (name := drive.name) in named
+        else most
+        for drive, most in zip(robot.drives, usual.tolist(), strict=True)
+    ]
+    return np.append(limit_by_winch(robot, own, what, unit), values)
+
+
 _GROUPS = '[["left", "right"]]'

@@ -8,7 +8,6 @@ import shapely
 
 from hydrostat.arrays import Float, Points, Vector
 from hydrostat.errors import InputError
-from hydrostat.robot import PinDrive, Robot
 from hydrostat.simulation import Simulation, without_contact_friction
 from hydrostat.sobol import draw_sobol
 
@@ -86,7 +85,7 @@ def _direction_text(way: Vector) -> str:
 def find_workspaces(
     simulation: Simulation, *, tension: float | None = None, count: int = 64, threads: int = 2
 ) -> tuple[MarkerWorkspace, ...]:
-    """Compute the workspace of each marker within travel and release of the winches.
+    """Compute the workspace of each marker within travel and release of the winches and limits of the drives.
 
     Poses are solved at contractions spread evenly over what all winches can do, each from rest, so straight along the
     loading path where cables rub. Each stands for a share of the contractions; the Jacobian gives, to first order, what
@@ -101,18 +100,17 @@ def find_workspaces(
         threads: number of threads.
 
     Raises:
-        InputError: a robot with drives, or without markers or winches; no number of poses, or other physics that
+        InputError: a robot without markers, or without winches and drives; no number of poses, or other physics that
             remember the way.
     """
-    PinDrive.require_none(simulation.robot.drives, "workspaces")
     robot = without_contact_friction(simulation.robot)
     if robot is not simulation.robot:
         simulation = Simulation(robot, options=simulation.options)
-    if not robot.winches or not robot.markers:
-        raise InputError("reach is that of markers by winches; the robot needs at least one of each")
+    if not robot.num_controls or not robot.markers:
+        raise InputError("reach is that of markers by winches or drives; the robot needs at least one of each")
     if count < 1:
         raise InputError(f"count must be at least 1, not {count}")
-    low, high = _limits(robot)
+    low, high = robot.control_limits
     shares, half = _tiles(len(low), count)
     found = simulation.solve_batch(low + shares * (high - low), threads=threads)
     derivatives = np.zeros((0, 0, 0, 0)) if found.jacobians is None else found.jacobians
@@ -126,11 +124,6 @@ def find_workspaces(
         _marker_workspace(marker.name, found.markers[held, own], derivatives[:, own], below, above)
         for own, marker in enumerate(robot.markers)
     )
-
-
-def _limits(robot: Robot) -> tuple[Vector, Vector]:
-    """Minimum and maximum contraction of each winch [m]."""
-    return np.array([-winch.release for winch in robot.winches]), np.array([winch.travel for winch in robot.winches])
 
 
 def _tiles(winches: int, count: int) -> tuple[Float[np.ndarray, "poses winches"], float]:

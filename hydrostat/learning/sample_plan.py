@@ -128,9 +128,10 @@ class SamplePlan:
             raise InputError(f"seed must be 0 or more, not {self.seed}")
         if not self.draws:
             raise InputError(f"no sampling strategy. Available: {', '.join(SamplingScheme)}.")
-        PinDrive.require_none(self.robot.drives, "samples")
-        if not self.robot.winches or not self.robot.markers:
-            raise InputError(f"robot {self.robot.name!r} needs at least one winch and one marker")
+        if SamplingScheme.ANTAGONIST in self.draws:
+            PinDrive.require_none(self.robot.drives, "strategy antagonist")
+        if not self.robot.num_controls or not self.robot.markers:
+            raise InputError(f"robot {self.robot.name!r} needs at least one winch or drive, and one marker")
         limited = self.tension is not None and isfinite(self.tension) and self.tension > 0
         if SamplingScheme.TENSION in self.draws and not limited:
             raise InputError("strategy tension needs a maximum cable tension, e.g. 10 N")
@@ -149,10 +150,9 @@ class SamplePlan:
         return self.draws[number % len(self.draws)]
 
     def contractions(self, numbers: range) -> Rows:
-        """Contractions of samples in winch order [m], before any is let out for its tension."""
-        rows = np.zeros((len(numbers), len(self.robot.winches)))
-        low = np.array([-winch.release for winch in self.robot.winches])
-        high = np.array([winch.travel for winch in self.robot.winches])
+        """Contractions of samples in winch order [m], then values of drives, before any is let out for its tension."""
+        rows = np.zeros((len(numbers), self.robot.num_controls))
+        low, high = self.robot.control_limits
         for place, draw in enumerate(self.draws):
             mine = [number for number in numbers if number % len(self.draws) == place]
             if mine:
@@ -162,13 +162,14 @@ class SamplePlan:
 
     def _points(self, place: int, first: int, count: int) -> Float[np.ndarray, "samples dims"]:
         """Some scrambled Sobol points of one of the draws."""
-        size = dimensions(self.draws[place], self.pairs, len(self.robot.winches))
+        size = dimensions(self.draws[place], self.pairs, self.robot.num_controls)
         random = np.random.Generator(np.random.PCG64(np.random.SeedSequence([self.seed, place])))
         return draw_sobol(size, count, random, first=first)
 
     def facts(self) -> dict[str, object]:
         """Facts that determine every byte, for the manifest."""
-        robot = self.robot
+        robot, controls = self.robot, (*self.robot.winches, *self.robot.drives)
+        low, high = robot.control_limits
         return {
             "robot": robot.name,
             "physics": physics_hash(robot),
@@ -181,9 +182,10 @@ class SamplePlan:
             "nodes": self.nodes,
             "tension": self.tension,
             "pairs": [[robot.winches[winch].name for winch in pair] for pair in self.pairs],
-            "winches": [winch.name for winch in robot.winches],
-            "release": [winch.release for winch in robot.winches],
-            "travel": [winch.travel for winch in robot.winches],
+            "winches": [control.name for control in controls],
+            "drives": {drive.name: drive.unit for drive in robot.drives},
+            "release": (-low).tolist(),
+            "travel": high.tolist(),
             "markers": [marker.name for marker in robot.markers],
             "cables": [cable.name for cable in robot.cables],
             "sensors": [head for sensor in robot.sensors for head in sensor.heads(robot.body.mesh.dim)],

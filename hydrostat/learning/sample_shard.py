@@ -19,7 +19,7 @@ def sample_type(plan: SamplePlan) -> np.dtype:
     itself, which it can only without contact; `sensors` are readings with noise.
     """
     robot, dim = plan.robot, plan.robot.body.mesh.dim
-    winches, markers = len(robot.winches), len(robot.markers)
+    winches, markers = robot.num_controls, len(robot.markers)
     columns = [
         ("number", "<i8", ()),
         ("draw", "u1", ()),
@@ -69,7 +69,7 @@ def _fill(row: np.void, simulation: Simulation, contractions: Vector, tension: f
             row[name] = np.nan
     row["contractions"], row["reason"] = contractions, REASONS.index("error")
     pose = _within(simulation, contractions, tension)
-    row["contractions"], row["iterations"] = pose.contractions, pose.result.iterations
+    row["contractions"], row["iterations"] = pose.controls, pose.result.iterations
     row["reason"], row["stable"] = REASONS.index(pose.result.reason), pose.result.stable
     if not pose.result.converged:
         return

@@ -20,7 +20,7 @@ from hydrostat.files import clear_unfinished, read_stranger, temporary_path
 from hydrostat.given import path_of
 from hydrostat.learning.sample_plan import SamplePlan
 from hydrostat.learning.sample_shard import REASONS, sample_type
-from hydrostat.result_table import Columns, Tabular, marker_columns, named_columns
+from hydrostat.result_table import Columns, Tabular, control_columns, marker_columns, named_columns
 
 FORMAT = 1
 """Version of what lies in a folder of samples."""
@@ -111,6 +111,7 @@ def _check_known(path: Path, known: dict[str, Any], facts: dict[str, Any]) -> No
         "contact_friction": 0.0 if known.get("contact") else None,
         "sensors": [],
         "noise": [],
+        "drives": {},
         **known,
     }  # earlier ones do not say it
     differing = [key for key, value in facts.items() if known.get(key) != value and key != "count"]
@@ -172,7 +173,7 @@ class Samples(Tabular):
     Attributes:
         facts: facts of the samples, as in the manifest.
         numbers: numbers of the samples.
-        contractions: [m], (samples, winches).
+        contractions: [m], then values of drives [rad, m or share], (samples, winches and drives).
         markers: positions [m], (samples, markers, dim).
         jacobians: derivatives of the markers with the contractions, (samples, markers, dim, winches).
         tensions: tension of each cable [N], (samples, cables).
@@ -202,8 +203,10 @@ class Samples(Tabular):
         return len(self.contractions)
 
     def columns(self) -> Columns:
-        """Return contractions, markers and tensions as a table, a row for each sample."""
-        columns = named_columns("contraction", self.facts["winches"], self.contractions, "m")
+        """Return contractions, drives, markers and tensions as a table, a row for each sample."""
+        drives: dict[str, str] = self.facts.get("drives", {})
+        winches = [name for name in self.facts["winches"] if name not in drives]
+        columns = control_columns(winches, drives, self.contractions)
         columns |= marker_columns({name: self.markers[:, row] for row, name in enumerate(self.facts["markers"])})
         return columns | named_columns("tension", self.facts["cables"], self.tensions, "N")
 
@@ -213,7 +216,7 @@ class Samples(Tabular):
 
     @property
     def limits(self) -> tuple[Vector, Vector]:
-        """Least and largest contraction of each winch [m]."""
+        """Least and largest contraction of each winch [m], then value of each drive."""
         return -np.array(self.facts["release"], dtype=float), np.array(self.facts["travel"], dtype=float)
 
     def first(self, count: int) -> "Samples":

@@ -45,7 +45,7 @@ def verify(
     if pose is None or not _same(pose.robot, simulation.robot):
         pose = simulation.solve(answer.contractions, strict=False)
     pose, taken = exact_steps(simulation, pose, answer.target, steps, enough=enough)
-    found = model.evaluate(answer.target, pose.contractions, Tier.STEP if taken else answer.tier)
+    found = model.evaluate(answer.target, pose.controls, Tier.STEP if taken else answer.tier)
     certified = _target_distances(answer, pose) if pose.result.converged else None
     return replace(found, certified=certified, reason=pose.result.reason, pose=pose)
 
@@ -75,7 +75,7 @@ def exact_steps(
     tries = 3  # So many updates in a row may find nothing better; each tries shorter steps than the one before
     while taken < steps and tried < tries and _mean_error(pose, goals) > enough:
         reached = tracker.update(target, seconds=1.0)
-        moved = not np.array_equal(reached.pose.contractions, pose.contractions)
+        moved = not np.array_equal(reached.pose.controls, pose.controls)
         pose, taken, tried = reached.pose, taken + moved, 0 if moved else tried + 1
         if not moved and reached.status in (IKStatus.REACHED, IKStatus.LOCAL_OPTIMUM):
             break
@@ -111,7 +111,7 @@ def solve_exactly(
     start = verify(simulation, model, answer)
     begun = start.pose if start.certified is not None else None
     reached = solve_ik(simulation, answer.target, limits=limits, start=begun, options=options)
-    found = model.evaluate(answer.target, reached.pose.contractions, Tier.EXACT)
+    found = model.evaluate(answer.target, reached.pose.controls, Tier.EXACT)
     return replace(found, certified=_target_distances(answer, reached.pose), reason=reached.status, pose=reached.pose)
 
 

@@ -225,4 +225,4 @@ def _number_poses(axes: Axes, heights: Sequence[float]) -> None:
 
 def _share(pose: Equilibrium, goal: Vector) -> float:
     """Share of the way from rest to the goal."""
-    return float(pose.contractions @ goal / (goal @ goal))
+    return float(pose.controls @ goal / (goal @ goal))

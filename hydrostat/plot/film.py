@@ -12,7 +12,7 @@ from hydrostat.ik import IKResult, KeyPose, Trajectory
 from hydrostat.plot.frame import Frame
 from hydrostat.plot.labels import shorten
 from hydrostat.progress import Progress
-from hydrostat.robot import PinDrive, PoseTarget, Robot
+from hydrostat.robot import PoseTarget, Robot
 from hydrostat.simulation import Equilibrium, Simulation
 from hydrostat.units import MILLIMETERS
 
@@ -24,19 +24,17 @@ class Stop:
     """A place where a film goes."""
 
     name: str  # of the pose, or what is done
-    contractions: Vector  # cable taken in by each winch [m]
+    contractions: Vector  # cable taken in by each winch [m], then values of drives
     target: PoseTarget | None = None  # whose targets are shown on the way
     words: str = ""  # shown while the robot stays there
 
     @staticmethod
     def for_poses(reached: Sequence[IKResult]) -> "list[Stop]":
-        """A stop for each pose that inverse kinematics found (InputError: a robot with drives)."""
-        for found in reached:
-            PinDrive.require_none(found.pose.robot.drives, "films")
+        """Return a stop for each pose that inverse kinematics found."""
         return [
             Stop(
                 name=shorten(found.pose_target.name),
-                contractions=found.pose.contractions,
+                contractions=found.pose.controls,
                 target=found.pose_target,
                 words=f"{shorten(found.pose_target.name)}: marker error {MILLIMETERS * found.rms_error:.1f} mm rms",
             )
@@ -45,16 +43,20 @@ class Stop:
 
     @staticmethod
     def for_winches(robot: Robot) -> "list[Stop]":
-        """Each winch in turn taken in by half its travel; less where its cables are too short for that."""
+        """Take in each winch by half its travel, or less for short cables; then move each drive to its farther end."""
         stops = []
         least_left = 0.7  # no winch is taken in so far that less than this share of its shortest cable is left
         for index, winch in enumerate(robot.winches):
             pairs = zip(robot.cables, robot.spool_ratios, strict=True)
             lengths = [cable.length / ratio for cable, ratio in pairs if cable.winch == winch.name and ratio > 0]
-            taken = np.zeros(len(robot.winches))
+            taken = np.zeros(robot.num_controls)
             taken[index] = min([winch.travel / 2, *((1 - least_left) * length for length in lengths)])
             words = f"{shorten(winch.name)} {MILLIMETERS * taken[index]:.0f} mm"
             stops.append(Stop(name=words, contractions=taken, words=words))
+        for index, drive in enumerate(robot.drives, len(robot.winches)):
+            value = max(drive.limits, key=abs)
+            words = f"{shorten(drive.name)} {drive.format_value(value)}"
+            stops.append(Stop(name=words, contractions=value * np.eye(robot.num_controls)[index], words=words))
         return stops
 
 
@@ -94,7 +96,7 @@ class Film:
             raise InputError(f"{seconds:g} s are too short for {ways} ways; at least {least:g} s")
         ends = 1 + np.round((count - 1) * np.arange(ways + 1) / ways).astype(int)
         rest = simulation.solve({})
-        home = Stop(name="rest", contractions=rest.contractions, words="at rest")
+        home = Stop(name="rest", contractions=rest.controls, words="at rest")
         shot = _Shot(simulation, rest, count, progress)
         begin = home
         for stop, frames in zip([*stops, home], np.diff(ends), strict=True):

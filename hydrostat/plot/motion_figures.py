@@ -135,13 +135,16 @@ def _head(figure: Figure, title: str, trajectory: Trajectory) -> None:
 def _charts(figure: Figure, robot: Robot, trajectory: Trajectory, top: float) -> None:
     """Three charts below each other, the first one at `top` [inch]."""
     width, height = figure.get_size_inches()
+    drives = trajectory.poses[0].robot.drives
     rows = (
-        ("taken in [mm]", trajectory.contractions, None),
+        ("taken in [mm]" + ", drives" * bool(drives), trajectory.contractions, None),
         ("speed [mm/s]", trajectory.speeds, trajectory.limits.speed),
         ("acceleration [mm/s\N{SUPERSCRIPT TWO}]", trajectory.accelerations, trajectory.limits.acceleration),
     )
     colors = Color.of_winches(robot.winches)
-    right = 0.5 + 0.068 * max((len(shorten(name)) for name in trajectory.winches), default=0)
+    right = 0.5 + 0.068 * max(
+        (len(shorten(name)) for name in (*trajectory.winches, *(drive.column[0] for drive in drives))), default=0
+    )
     first = None
     for row, (label, values, limits) in enumerate(rows):
         low = top - (row + 1) * CHART + 0.12
@@ -151,16 +154,23 @@ def _charts(figure: Figure, robot: Robot, trajectory: Trajectory, top: float) ->
         first = first or axes
         _chart(axes, label, last=row == 2)
         _events(axes, trajectory)
+        count = len(trajectory.winches)
         for column, name in enumerate(trajectory.winches):
             axes.plot(
                 trajectory.times, MILLIMETERS * values[:, column], color=colors[name], linewidth=1.4,
                 linestyle=DASHES[column // len(Color.WINCHES) % len(DASHES)], label=shorten(name),
             )  # fmt: skip
+        for index, drive in enumerate(drives if row == 0 else (), 1):
+            name, factor = drive.column
+            axes.plot(
+                trajectory.times, factor * values[:, count + index - 1], color=Color.MUTED, linewidth=1.2,
+                linestyle=DASHES[index % len(DASHES)], label=name,
+            )  # fmt: skip
         if limits is not None:
-            _limits(axes, limits)
+            _limits(axes, limits[:count])
         if row == 0:
             _name_keys(axes, trajectory.keyframes, trajectory.seconds)
-        if row == 0 and trajectory.winches:
+        if row == 0 and len(trajectory.contractions[0]):
             axes.legend(
                 loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=7.5, frameon=False, labelcolor=Color.INK,
                 handlelength=1.6, borderaxespad=0.0, labelspacing=0.35,

@@ -168,6 +168,13 @@ class Robot:
         """Number of winches and drives."""
         return len(self.winches) + len(self.drives)
 
+    @property
+    def control_limits(self) -> tuple[Vector, Vector]:
+        """Least and largest contraction of each winch [m], then value of each drive [rad, m or share]."""
+        ranges = [(-winch.release, winch.travel) for winch in self.winches] + [drive.limits for drive in self.drives]
+        low, high = np.array(ranges, dtype=float).reshape(-1, 2).T
+        return low, high
+
     def with_network(self, winches: Iterable[Winch], cables: Iterable[Cable]) -> Self:
         """Return the same robot with other winches and cables, the units of winches that are gone out of its body."""
         kept = tuple(winches)

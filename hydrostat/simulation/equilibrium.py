@@ -13,7 +13,7 @@ from hydrostat.geometry import Mesh, find_crossings
 from hydrostat.mechanics import NewtonResult, pushed_elements
 from hydrostat.named_vector import NamedVector
 from hydrostat.painters import draw_record, html_repr
-from hydrostat.result_table import Columns, Tabular, marker_columns, named_columns
+from hydrostat.result_table import Columns, Tabular, control_columns, marker_columns, named_columns
 from hydrostat.robot import PinDrive, Robot
 from hydrostat.simulation.mesh_error import WORTH_A_NOTE, estimate_stiffening
 from hydrostat.simulation.strain import find_overstrain, node_strains, node_stresses
@@ -182,9 +182,8 @@ def pose_columns(state: Any) -> Columns:
     """Columns of one pose or instant: contractions, drives, markers, tensions."""
     robot: Robot = state.robot
     names = name_values(robot)
-    columns = named_columns("contraction", names["contractions"], np.atleast_2d(state.contractions), "m")
-    for drive, value in zip(robot.drives, state.drives, strict=True):
-        columns[f"drive_{drive.name}_{drive.unit}"] = np.array([float(value)])
+    drives, values = {drive.name: drive.unit for drive in robot.drives}, np.append(state.contractions, state.drives)
+    columns = control_columns(names["contractions"], drives, np.atleast_2d(values))
     columns |= marker_columns({name: np.atleast_2d(place) for name, place in state.markers.items()})
     return columns | named_columns("tension", names["tensions"], np.atleast_2d(state.tensions), "N")
 

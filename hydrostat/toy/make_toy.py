@@ -8,7 +8,7 @@ from hydrostat.control import Calibration, Timeline
 from hydrostat.ik import solve_ik
 from hydrostat.learning import Samples
 from hydrostat.progress import Progress
-from hydrostat.robot import Robot
+from hydrostat.robot import PinDrive, Robot
 from hydrostat.simulation import Simulation
 from hydrostat.toy.learn_shape import learn_shape
 from hydrostat.toy.learned_shape import LearnedShape
@@ -57,9 +57,10 @@ def make_toy(
         progress: function that is called on the way.
 
     Raises:
-        InputError: no sample has a stable equilibrium.
+        InputError: a robot with drives, or no sample has a stable equilibrium.
     """
     robot = simulation.robot
+    PinDrive.require_none(robot.drives, "a page to share")
     flat = robot.body.mesh.dim == 2
     poses = []
     for number, name in enumerate(robot.poses, 1):

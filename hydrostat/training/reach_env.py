@@ -54,7 +54,7 @@ class ReachOptions:
 
 
 class ReachEnv(GoalEnv):
-    """Goal-based environment: actions are contractions, goals are where markers are at contractions drawn at random.
+    """Goal-based environment: actions are contractions and values of drives, goals places of markers at random ones.
 
     Observations hold the contractions (from -1 to 1), where the markers are and where they should be, counted from rest
     in units of the body's size. Goals are reached by an equilibrium each; they are counted with the others.
@@ -92,11 +92,12 @@ class ReachEnv(GoalEnv):
         self.backend = backend or ExactBackend(self.robot)
         self.options, self.render_mode = options or ReachOptions(), render_mode
         robot_ = self.robot
-        if not robot_.winches or not robot_.markers:
-            raise InputError(f"robot {robot_.name!r} needs a winch to be moved by and a marker to be looked at")
+        if not robot_.num_controls or not robot_.markers:
+            raise InputError(
+                f"robot {robot_.name!r} needs a winch or drive to be moved by and a marker to be looked at"
+            )
         self._groups = _groups(robot_, self.options.pairs)
-        self._low = np.array([-winch.release for winch in robot_.winches], dtype=float)
-        self._high = np.array([winch.travel for winch in robot_.winches], dtype=float)
+        self._low, self._high = robot_.control_limits
         names = [marker.name for marker in robot_.markers]
         for name in self.options.markers:
             if name not in names:
@@ -110,7 +111,7 @@ class ReachEnv(GoalEnv):
         self.action_space = spaces.Box(-1.0, 1.0, (many,), np.float32)
         place = spaces.Box(-10.0, 10.0, (coordinates,), np.float64)
         self.observation_space = spaces.Dict(
-            observation=spaces.Box(-1.0, 1.0, (len(robot_.winches),), np.float64),
+            observation=spaces.Box(-1.0, 1.0, (robot_.num_controls,), np.float64),
             achieved_goal=place,
             desired_goal=place,
         )
@@ -279,7 +280,7 @@ def reach_options(given: TaskOptions) -> ReachOptions:
 
 def _groups(robot: Robot, pairs: Sequence[Sequence[str]]) -> tuple[tuple[int, ...], ...]:
     """Winches moved by one number of the action each (InputError: no such winch, one twice, or no pair)."""
-    names = [winch.name for winch in robot.winches]
+    names = [control.name for control in (*robot.winches, *robot.drives)]
     used: list[int] = []
     for pair in pairs:
         for name in pair:

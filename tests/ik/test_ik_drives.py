@@ -5,12 +5,21 @@ import pytest
 from builders import box_mesh, mesh_body
 
 from hydrostat.errors import InputError
-from hydrostat.ik import EquilibriumState, IKStatus, StateJacobian, solve_ik, solve_ik_trajectory
+from hydrostat.ik import (
+    EquilibriumState,
+    IKStatus,
+    StateJacobian,
+    TrajectoryOptions,
+    correct_contractions,
+    solve_ik,
+    solve_ik_trajectory,
+)
 from hydrostat.robot import Cable, Marker, Material, Pin, PinDrive, Robot, Winch
 from hydrostat.simulation import Simulation
 
 SILICONE = Material(young=200e3, poisson=0.3, density=1070.0)
 AXIS = (0.0, 0.01, 0.01)
+COARSE = TrajectoryOptions(rate=4.0)
 
 
 def arm(*, cabled: bool) -> Robot:
@@ -67,7 +76,31 @@ def test_state_jacobian_is_that_of_differences() -> None:
     np.testing.assert_allclose(moves.tensions, tensions, rtol=1e-5, atol=1e-6)
 
 
-def test_trajectories_refuse_drives_in_one_line() -> None:
+def test_a_trajectory_moves_winches_and_drives_within_their_speeds() -> None:
+    """Oracle: forward solves at samples; the slowest control sets the time."""
     simulation = Simulation(arm(cabled=True))
-    with pytest.raises(InputError, match='trajectories move winches only, not drives, such as "servo"'):
-        solve_ik_trajectory(simulation, [{"tip": (0.1, 0.01, 0.02)}])
+    target = simulation.solve(np.array([0.004, -0.5])).markers
+    found = solve_ik_trajectory(simulation, [target], speed={"servo": 0.2, "below": 0.5}, options=COARSE)
+    assert found.keyframes[0].rms_error < 2e-5
+    assert found.peak_speeds[1] == pytest.approx(0.2, rel=1e-6)
+    assert np.abs(found.speeds[:, 1]).max() <= 0.2 + 1e-9
+    middle = len(found.times) // 2
+    pose = simulation.solve(found.contractions[middle])
+    np.testing.assert_allclose(found.poses[middle].markers["tip"], pose.markers["tip"], atol=1e-6)
+    table = found.columns()
+    np.testing.assert_array_equal(table["drive_servo_rad"], found.contractions[:, 1])
+    assert "largest speed of drive servo: 11.46 deg a second" in found.lines()
+    usual = solve_ik_trajectory(simulation, [target], options=COARSE)
+    assert usual.limits.speed.tolist() == [0.05, 1.0]
+    assert usual.limits.acceleration.tolist() == [0.2, 4.0]
+    with pytest.raises(InputError, match=r"drive servo: 62\.45 deg is outside its range"):
+        solve_ik_trajectory(simulation, [simulation.solve([0.0, 1.09])])
+
+
+def test_a_correction_takes_back_an_error_by_drives() -> None:
+    simulation = Simulation(arm(cabled=True))
+    target = simulation.solve(np.array([0.004, -0.5])).markers
+    played = solve_ik(simulation, target)
+    off = simulation.solve(played.pose.controls + np.array([0.0, 0.05])).markers
+    corrected = correct_contractions(simulation, played, off, damping=1e-3)
+    np.testing.assert_allclose(corrected, played.pose.controls - np.array([0.0, 0.05]), atol=5e-3)

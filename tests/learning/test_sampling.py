@@ -24,7 +24,7 @@ from hydrostat.learning import SamplePlan, Samples, SamplingScheme, export_sampl
 from hydrostat.learning.sample_plan import shared_numbers
 from hydrostat.learning.sample_shard import REASONS
 from hydrostat.learning.samples import SampleFolder
-from hydrostat.robot import Sensor, SensorKind
+from hydrostat.robot import Load, LoadDrive, Sensor, SensorKind
 
 pytestmark = pytest.mark.usefixtures("unchecked")
 
@@ -59,6 +59,29 @@ def test_samples_hold_readings_with_noise(tmp_path: Path) -> None:
     assert 0.01 < np.abs(again[0].sensors - clean.sensors).mean() < 0.3  # type: ignore[operator]
     with pytest.raises(InputError, match="another plan"):
         sample_robot(SamplePlan.of_robot(noisy, 5), tmp_path / "clean")
+
+
+def test_samples_move_drives_too(tmp_path: Path) -> None:
+    """Oracle: the simulator, and differences of its tensions."""
+    push = Load(name="push", marker="tip", force=(0.01, -0.02), drive="thumb")
+    drives = (LoadDrive(name="thumb", min=-1.0, max=2.0),)
+    robot = replace(strip_robot(columns=8, rows=2), loads=(push,), drives=drives)
+    samples = Samples.read(sample_robot(SamplePlan.of_robot(robot, 12), tmp_path).path)
+    assert samples.facts["drives"] == {"thumb": "share"}
+    low, high = samples.limits
+    assert (low[-1], high[-1]) == (-1.0, 2.0)
+    shares = samples.columns()["drive_thumb_share"]
+    assert shares.min() < -0.5
+    assert shares.max() > 1.5
+    simulation, row = hs.Simulation(robot), int(np.argmax(samples.tensions.sum(axis=1)))
+    step = np.r_[np.zeros(len(robot.winches)), 1e-4]
+    poses = [simulation.solve(samples.contractions[row] + sign * step) for sign in (0, 1, -1)]
+    np.testing.assert_allclose(samples.markers[row], list(poses[0].markers.values()), atol=1e-12)
+    slopes = (poses[1].tensions - poses[2].tensions) / 2e-4
+    assert samples.tension_jacobians is not None
+    np.testing.assert_allclose(samples.tension_jacobians[row][:, -1], slopes, rtol=1e-4, atol=1e-7)
+    with pytest.raises(InputError, match='"thumb", are not available in strategy antagonist'):
+        SamplePlan(robot=robot, count=2, draws=(SamplingScheme.ANTAGONIST,))
 
 
 def test_a_sample_is_what_the_simulator_finds(plan: SamplePlan, once: Path) -> None:

@@ -13,7 +13,7 @@ from builders import gallery_robot
 from model_cards import model_card
 
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.robot import Sensor, SensorKind
+from hydrostat.robot import Load, LoadDrive, Sensor, SensorKind
 from hydrostat.simulation import SensorReader, Simulation
 
 gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed")
@@ -53,6 +53,19 @@ def test_observations_hold_readings() -> None:
     assert not env.portable
     with pytest.raises(InputError, match="no sensors"):
         ReachEnv(robot, options=ReachOptions(sensors=True))
+
+
+def test_drives_are_actions_too() -> None:
+    """Oracle: the simulator at the share that an action means."""
+    robot = gallery_robot("starfish")
+    push = Load(name="push", marker="left", force=(0.0, -0.3), drive="thumb")
+    env = ReachEnv(replace(robot, loads=(push,), drives=(LoadDrive(name="thumb", min=-1.0, max=2.0),)))
+    env.reset(seed=1)
+    action = np.r_[np.full(len(robot.winches), 0.2), 0.9]
+    assert env.contractions(action)[-1] == pytest.approx(-1.0 + 1.5 * (1 + 1.02 * 0.9))
+    seen, *_ = env.step(action)
+    pose = Simulation(env.robot).solve(env.contractions(action))
+    assert env.rest + env.unit * seen["achieved_goal"] == pytest.approx(np.ravel(list(pose.markers.values())))
 
 
 class Straight(LearnedBackend):

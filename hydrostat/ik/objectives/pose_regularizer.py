@@ -36,7 +36,8 @@ class PoseRegularizer(Objective):
 
     Attributes:
         pose: reference pose.
-        of: quantity to keep: the whole body (root mean square over its nodes), markers, or the contractions.
+        of: quantity to keep: the whole body (root mean square over its nodes), markers, or the contractions; the range
+            of a drive counts as the size of the body.
         weight: weight of this distance relative to a marker's error.
         markers: names of the markers to keep; None for all.
     """
@@ -69,7 +70,9 @@ class PoseRegularizer(Objective):
                 [index for index, name in enumerate(names) if self.markers is None or name in self.markers]
             )
             return _Markers(weight, simulation.marker_anchors, which.astype(int), self.pose.nodes)
-        return _Contractions(weight, self.pose.controls)
+        spans = [high - low for low, high in (drive.limits for drive in simulation.robot.drives)]
+        weights = weight * np.array([1.0] * len(winches) + [mesh.size / (span or 1.0) for span in spans])
+        return _Contractions(weights, self.pose.controls)
 
 
 class _Nodes(Residual):
@@ -98,11 +101,11 @@ class _Markers(Residual):
 
 
 class _Contractions(Residual):
-    def __init__(self, weight: float, contractions: Vector) -> None:
-        self._weight, self._contractions = weight, contractions
+    def __init__(self, weights: Vector, contractions: Vector) -> None:
+        self._weights, self._contractions = weights, contractions
 
     def residual(self, posture: EquilibriumState) -> Rows:
-        return self._weight * (posture.contractions - self._contractions)
+        return self._weights * (posture.contractions - self._contractions)
 
     def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
-        return self._weight * np.eye(len(posture.contractions))
+        return np.diag(self._weights)

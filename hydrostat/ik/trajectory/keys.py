@@ -16,8 +16,9 @@ from hydrostat.ik.objectives.objective import Objective, describe
 from hydrostat.ik.search.problem import IKOptions
 from hydrostat.ik.solve_ik import Targets, as_pose, solve_ik
 from hydrostat.ik.trajectory.poses import follow
-from hydrostat.robot import PoseTarget
+from hydrostat.robot import PinDrive, PoseTarget
 from hydrostat.simulation import Equilibrium, Simulation
+from hydrostat.units import plural
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -158,9 +159,9 @@ class KeySearch:
         # of a way that is followed to contractions found from rest; each is cut into smaller ones as need be
         steps = 20
         shares = np.linspace(0.0, 1.0, steps + 1)
-        contractions = (1 - shares)[:, None] * begin.contractions + shares[:, None] * goal.contractions
+        controls = (1 - shares)[:, None] * begin.controls + shares[:, None] * goal.controls
         try:
-            poses, snaps = follow(self.simulation, begin, shares, contractions, jump=self.jump)
+            poses, snaps = follow(self.simulation, begin, shares, controls, jump=self.jump)
         except NotConvergedError:
             return None
         return None if snaps else poses[-1]
@@ -187,22 +188,24 @@ def check_given(simulation: Simulation, allowed: Bounds, name: str, pose: Equili
     """Reject a pose that inverse kinematics could not have found; its tensions are part of the report instead.
 
     Raises:
-        InputError: a pose of another robot, a contraction out of its range, or equal winches that are not equal.
+        InputError: a pose of another robot, a control out of its range, or equal winches that are not equal.
     """
     _check_own(simulation, name, pose)
     winches = [winch.name for winch in simulation.robot.winches]
     hair = 1e-9  # a contraction may be out of its limits by this much, for rounding [m]
-    for winch, channel, value in zip(winches, allowed.channels, pose.contractions, strict=True):
+    for winch, channel, value in zip(winches, allowed.channels, pose.contractions, strict=False):
         low, high = float(allowed.low[channel]) + 0.0, float(allowed.high[channel])
         if not low - hair <= value <= high + hair:
             raise InputError(
                 f'{name}: the contraction of winch "{winch}" is {value:.6g} m, but its limits are {low:.6g} to '
                 f"{high:.6g} m; give another pose, or widen the limits"
             )
+    if outside := PinDrive.check_values(simulation.robot.drives, pose.drives):
+        raise InputError(f"{name}: {outside[0]}. Give another pose, or widen the range.")
     for channel in range(len(allowed.low)):
-        group = np.flatnonzero(allowed.channels == channel)
+        group = np.flatnonzero(allowed.channels[: len(winches)] == channel)
         values = pose.contractions[group]
-        if np.ptp(values) > hair:
+        if len(values) and np.ptp(values) > hair:
             each = ", ".join(f'"{winches[winch]}" {pose.contractions[winch]:.6g} m' for winch in group)
             raise InputError(
                 f"{name}: winches that should be equal are not equal: {each}; give another pose, or let them differ"
@@ -213,10 +216,10 @@ def _check_own(simulation: Simulation, name: str, pose: Equilibrium) -> None:
     robot = simulation.robot
     shape, count = robot.body.mesh.nodes.shape, len(robot.winches)
     remedy = "solve it with the simulation that is given"
-    if robot.drives:
-        raise InputError(f'trajectories move winches only, not drives, such as "{robot.drives[0].name}"; remove them')
     if pose.nodes.shape != shape or not np.isfinite(pose.nodes).all():
         raise InputError(f"{name}: a pose of this robot has finite nodes, {shape}, not {pose.nodes.shape}; {remedy}")
+    if len(pose.drives) != len(robot.drives):
+        raise InputError(f"{name}: a pose of this robot has {plural(len(robot.drives), 'drive')}; {remedy}")
     if len(pose.contractions) != count or not np.isfinite(pose.contractions).all():
         raise InputError(
             f"{name}: a pose of this robot has {count} finite contractions, not {len(pose.contractions)}; {remedy}"

@@ -60,7 +60,7 @@ def _go(
 
     It is 0 where every step was taken; else it is a snap if it is more than `jump`.
     """
-    if (pose.contractions == goal).all():
+    if (pose.controls == goal).all():
         return pose, 0.0
     predicted = _predict_nodes(simulation, pose, goal)
     iterations = 20  # steps of Newton; near a branch a few are enough
@@ -73,7 +73,7 @@ def _go(
     if found.result.converged and found.result.stable and distance <= jump:
         return found, 0.0
     if halvings:
-        middle, first = _go(simulation, pose, 0.5 * (pose.contractions + goal), jump, halvings - 1)
+        middle, first = _go(simulation, pose, 0.5 * (pose.controls + goal), jump, halvings - 1)
         if not middle.result.converged:
             return middle, first
         end, second = _go(simulation, middle, goal, jump, halvings - 1)
@@ -85,6 +85,6 @@ def _go(
 def _predict_nodes(simulation: Simulation, pose: Equilibrium, goal: Vector) -> Nodes:
     """Node positions predicted to first order."""
     try:
-        return pose.nodes + simulation.jacobian(pose) @ (goal - pose.contractions)
+        return pose.nodes + simulation.jacobian(pose) @ (goal - pose.controls)
     except NotConvergedError:
         return pose.nodes

@@ -67,8 +67,10 @@ def solve_ik_trajectory(
     Args:
         simulation: the robot's physics.
         keyframes: targets, or (time [s], target), or `Keyframe`; a solved pose is a target too.
-        speed: maximum speed of each winch [m/s], or by name.
-        acceleration: maximum acceleration of each winch [m/s^2], or by name; 0.2 by default, none for a linear path.
+        speed: maximum speed of each winch [m/s], or by name of winches and drives; drives that are not named take 1
+            rad/s, 0.05 m/s or a share of 1 a second.
+        acceleration: maximum acceleration of each winch [m/s^2], or by name; 0.2 by default, none for a linear path;
+            of drives four times their usual speed a second.
         limits: other limits of the winches in keyframes; a start and solved poses must keep to all but the tension.
         objectives: objectives in keyframes, in addition to their targets.
         path: quantity that follows a simple path.
@@ -173,19 +175,19 @@ def _course(
     path: PathKind, begin: Equilibrium, found: list[Found], pace: MotionLimits, hold: float, least: float
 ) -> tuple[TimedPath | StraightCourse, list[int]]:
     """Contractions in time, and which of its keys the keyframes are: a hold is one more key."""
-    knots, lengths, arrivals, last, clock = [], [], [], begin.contractions, 0.0
+    knots, lengths, arrivals, last, clock = [], [], [], begin.controls, 0.0
     for number, one in enumerate(found):
-        knots.append(np.array([last, *(pose.contractions for pose in one.knots)]))
+        knots.append(np.array([last, *(pose.controls for pose in one.knots)]))
         time = one.keyframe.time
         lengths.append(np.nan if time is None else time - clock)
         arrivals.append(len(knots))
-        last, clock = one.pose.contractions, 0.0 if time is None else time
+        last, clock = one.pose.controls, 0.0 if time is None else time
         if hold > 0 and number < len(found) - 1:
             knots.append(np.array([last, last]))
             lengths.append(hold)
             clock += hold
     given = np.array(lengths)
-    keys = np.array([begin.contractions, *(leg[-1] for leg in knots)])
+    keys = np.array([begin.controls, *(leg[-1] for leg in knots)])
     if (given <= 0).any():
         raise InputError(f"a keyframe is to be reached before the hold of {hold:g} s in the one before it has ended")
     if path is PathKind.STRAIGHT:
@@ -230,10 +232,10 @@ def _sample_times(times: Vector, rate: float) -> tuple[Vector, np.ndarray]:
 
 
 def _exact(begin: Equilibrium, found: list[Found], hold: float) -> np.ndarray:
-    """Contractions of the keys of a course [m]."""
-    rows = [begin.contractions]
+    """Contractions of the keys of a course [m], then values of drives."""
+    rows = [begin.controls]
     for number, one in enumerate(found):
-        rows += [one.pose.contractions] * (2 if hold > 0 and number < len(found) - 1 else 1)
+        rows += [one.pose.controls] * (2 if hold > 0 and number < len(found) - 1 else 1)
     return np.array(rows)
 
 

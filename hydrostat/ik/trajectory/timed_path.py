@@ -7,7 +7,7 @@ from typing import Self
 import numpy as np
 
 from hydrostat.arrays import Float, Vector
-from hydrostat.ik.limits import limit_by_winch
+from hydrostat.ik.limits import limit_by_control
 from hydrostat.robot import Robot
 
 Keys = Float[np.ndarray, "keys winches"]
@@ -122,20 +122,25 @@ def _inside(above: Peaks, below: Peaks) -> Peaks:
 
 ByWinch = float | Mapping[str, float]  # one number for all winches, or numbers by name
 
+DRIVE_SPEEDS = {"rad": 1.0, "m": 0.05, "share": 1.0}
+"""Usual largest speed of a drive, by its unit [1/s]."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MotionLimits:
-    """Speed and acceleration limits of the winches."""
+    """Speed and acceleration limits of the winches, then of the drives in rad, m or shares."""
 
     speed: Vector  # maximum speed of each contraction [m/s]; infinite without a limit
     acceleration: Vector  # maximum acceleration of each contraction [m/s^2]; infinite without a limit
 
     @classmethod
     def of(cls, robot: Robot, speed: ByWinch | None, acceleration: ByWinch | None) -> Self:
-        """Limits on the winches of a robot (InputError: a winch that it does not have, or a limit not above 0)."""
+        """Limits on the controls of a robot (InputError: a name that it does not have, or a limit not above 0)."""
+        usual = np.array([DRIVE_SPEEDS[drive.unit] for drive in robot.drives])
+        per_second = np.inf if acceleration is None else 4.0
         return cls(
-            speed=limit_by_winch(robot, speed, "speed", "m/s"),
-            acceleration=limit_by_winch(robot, acceleration, "acceleration", "m/s^2"),
+            speed=limit_by_control(robot, speed, usual, "speed", "m/s"),
+            acceleration=limit_by_control(robot, acceleration, per_second * usual, "acceleration", "m/s^2"),
         )
 
     def share(self, speeds: Peaks, accelerations: Peaks) -> Vector:

@@ -12,7 +12,7 @@ from hydrostat.ik.ik_result import IKResult
 from hydrostat.ik.trajectory.poses import BranchJump
 from hydrostat.ik.trajectory.timed_path import MotionLimits, Samples
 from hydrostat.painters import draw_record, html_repr
-from hydrostat.result_table import Columns, Tabular, marker_columns, named_columns
+from hydrostat.result_table import Columns, Tabular, control_columns, marker_columns, named_columns
 from hydrostat.robot import PoseTarget
 from hydrostat.simulation import ContractionProfile, Equilibrium
 from hydrostat.units import plural
@@ -72,11 +72,11 @@ class Trajectory(Tabular):
     Attributes:
         path: quantity that follows a simple path from one keyframe to the next.
         times: times of the samples, from 0 [s].
-        contractions: contractions at each sample [m].
-        speeds: rates of change of the contractions [m/s].
-        accelerations: second derivatives of the contractions [m/s^2]; 0 for a linear path, infinite at its corners.
-        peak_speeds: maximum speed of each winch, between samples too [m/s].
-        peak_accelerations: maximum acceleration of each winch, between samples too [m/s^2].
+        contractions: contractions at each sample [m], in winch order, then values of drives [rad, m or share].
+        speeds: rates of change of these values [1/s].
+        accelerations: their second derivatives [1/s^2]; 0 for a linear path, infinite at its corners.
+        peak_speeds: maximum speed of each winch and drive, between samples too [1/s].
+        peak_accelerations: maximum acceleration of each, between samples too [1/s^2].
         limits: limits on both.
         poses: equilibria, each continued from the one before.
         keyframes: results of the keyframes, without the start.
@@ -102,8 +102,9 @@ class Trajectory(Tabular):
     tension: Vector = field(repr=False)
 
     def columns(self) -> Columns:
-        """Return time, contractions, markers and tensions as a table, a row for each sample."""
-        columns = {"time_s": self.times, **named_columns("contraction", self.winches, self.contractions, "m")}
+        """Return time, contractions, drives, markers and tensions as a table, a row for each sample."""
+        drives = {drive.name: drive.unit for drive in self.poses[0].robot.drives}
+        columns = {"time_s": self.times, **control_columns(self.winches, drives, self.contractions)}
         names = [cable.name for cable in self.poses[0].robot.cables]
         return columns | marker_columns(self.markers) | named_columns("tension", names, self.tensions, "N")
 
@@ -145,12 +146,16 @@ class Trajectory(Tabular):
                 lines.append("acceleration: unlimited at the keyframes, where the speed jumps")
             else:
                 lines.append(self._most("acceleration", self.peak_accelerations, self.limits.acceleration, "mm/s^2"))
+        count = len(self.winches)
+        for drive, most in zip(self.poses[0].robot.drives, self.peak_speeds[count:].tolist(), strict=True):
+            lines.append(f"largest speed of drive {drive.name}: {drive.format_value(most)} a second")
         lines += self._over_tension()
         for snap in self.branch_jumps:
             lines.append(f"at {snap.time:.2f} s the robot snaps through: a node jumps {1e3 * snap.distance:.1f} mm")
         return lines
 
     def _most(self, what: str, most: Vector, limits: Vector, unit: str) -> str:
+        most, limits = most[: len(self.winches)], limits[: len(self.winches)]
         winch = int(np.argmax(most / limits if np.isfinite(limits).any() else most))
         limit = f" of {1e3 * limits[winch]:.4g}" if np.isfinite(limits[winch]) else ""
         return f"largest {what}: {1e3 * most[winch]:.4g}{limit} {unit} ({self.winches[winch]})"

@@ -70,8 +70,8 @@ class Branch(Tabular):
     """Equilibria along a straight line of contractions.
 
     Attributes:
-        begin: contractions at the start [m].
-        goal: contractions at the intended end [m].
+        begin: contractions at the start [m], then values of drives [rad, m or share].
+        goal: those at the intended end.
         points: equilibria in order along the branch.
         critical: folds and bifurcations in the same order.
         reason: reason why the branch ends.
@@ -128,6 +128,12 @@ class Branch(Tabular):
         lines = [f"{self.reason} at {100 * self.points[-1].share:.1f} % of the path ({told})"]
         for point in self.critical:
             taken = self.begin + point.share * (self.goal - self.begin)
-            where = ", ".join(f"{1e3 * value:.2f}" for value in np.round(taken, 9) + 0.0)
-            lines.append(f"{point.kind} at {100 * point.share:.2f} % of the path (contractions {where} mm)")
+            drives = self.points[0].pose.robot.drives
+            count = len(taken) - len(drives)
+            where = ", ".join(f"{1e3 * value:.2f}" for value in np.round(taken[:count], 9) + 0.0)
+            driven = "".join(
+                f", {drive.name} {drive.format_value(value)}"
+                for drive, value in zip(drives, taken[count:].tolist(), strict=True)
+            )
+            lines.append(f"{point.kind} at {100 * point.share:.2f} % of the path (contractions {where} mm{driven})")
         return lines

@@ -8,7 +8,6 @@ import numpy as np
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError
 from hydrostat.mechanics import NewtonResult, Reason
-from hydrostat.robot import PinDrive
 from hydrostat.simulation.branches.bordered import Bordered, PathPoint, Tangent
 from hydrostat.simulation.branches.branch import Branch, BranchPoint, BranchReason, CriticalKind, CriticalPoint
 from hydrostat.simulation.controls import split_controls
@@ -77,7 +76,7 @@ def continue_branch(
     Args:
         simulation: the robot's physics.
         start: an equilibrium to begin from, stable or not.
-        contractions: contractions at the end of the branch [m].
+        contractions: contractions at the end of the branch [m], and values of drives.
         around_folds: go on where stability is lost, along the unstable part; else the branch ends there.
         options: length of the steps.
 
@@ -91,7 +90,6 @@ def continue_branch(
             "one, or compare ways by hs.find_equilibria"
         )
     require_static_obstacles(simulation.robot, "a branch of equilibria")
-    PinDrive.require_none(simulation.robot.drives, "branches of equilibria")
     rest = simulation.robot.body.mesh.nodes
     check_pose(start, rest.shape, len(goal))
     return _Follower(simulation, start, goal, around_folds, options or BranchOptions()).run()

@@ -13,7 +13,6 @@ from hydrostat.errors import InputError
 from hydrostat.given import check_type
 from hydrostat.progress import Progress
 from hydrostat.result_table import Columns, ResultTable, Tabular
-from hydrostat.robot import PinDrive
 from hydrostat.simulation.branches.loading_paths import Approach, follow_approach, loading_paths_to
 from hydrostat.simulation.equilibrium import Equilibrium, largest_distance
 from hydrostat.simulation.simulation import Contractions, Simulation
@@ -38,7 +37,7 @@ class Multistability(Tabular):
     """Equilibria of a robot at the same contractions after different loading paths.
 
     Attributes:
-        contractions: contractions of all the poses [m].
+        contractions: contractions of all the poses [m], then values of drives [rad, m or share].
         poses: distinct equilibria, least energy first.
         lost: description of each loading path without an equilibrium or without a stable one.
         spread: largest distance of each marker between two of the poses [m].
@@ -121,7 +120,7 @@ def find_equilibria(
 
     Args:
         simulation: the robot's physics.
-        contractions: contractions at the end of every loading path [m].
+        contractions: contractions at the end of every loading path [m], and values of drives.
         count: number of loading paths.
         seed: random seed of the loading paths.
         tolerance: poses whose nodes are all within this share of the body's size are one.
@@ -130,7 +129,6 @@ def find_equilibria(
     Raises:
         InputError: contractions that do not fit the robot, or no ways.
     """
-    PinDrive.require_none(simulation.robot.drives, "a search for several equilibria")
     goal = simulation.as_contractions(contractions)
     check_type(count, int, "count must be a whole number of at least 1")
     if count < 1:

@@ -41,7 +41,7 @@ def loading_paths_to(simulation: Simulation, goal: Vector, count: int, seed: int
     drawn come from `seed`.
     """
     robot = simulation.robot
-    low, high = _range(robot)
+    low, high = robot.control_limits
     plain = [
         Approach(name="from rest in one step", stops=(goal,), at_once=True),
         Approach(name="from rest, all winches together", stops=(goal,)),
@@ -65,13 +65,6 @@ def follow_approach(simulation: Simulation, way: Approach) -> Equilibrium:
     for stop in others:
         pose = _in_steps(simulation, pose, stop)
     return pose if way.push is None else _let_go(simulation, pose, way.push, way.reach)
-
-
-def _range(robot: Robot) -> tuple[Vector, Vector]:
-    """Least and largest contraction of each winch [m], and value of each drive [rad or m]."""
-    limits = [(-winch.release, winch.travel) for winch in robot.winches] + [drive.limits for drive in robot.drives]
-    low, high = np.array(limits).reshape(-1, 2).T
-    return low, high
 
 
 def _in_turn(kinds: list[Iterator[Approach]]) -> Iterator[Approach]:
@@ -116,14 +109,14 @@ def _pushes(simulation: Simulation, goal: Vector, random: np.random.Generator) -
 
 def _elsewhere(robot: Robot, goal: Vector, random: np.random.Generator) -> Iterator[Approach]:
     """From contractions anywhere in the range of the winches."""
-    low, high = _range(robot)
+    low, high = robot.control_limits
     while True:
         yield Approach(name="from other contractions", stops=(random.uniform(low, high), goal), at_once=True)
 
 
 def _in_steps(simulation: Simulation, pose: Equilibrium, goal: Vector) -> Equilibrium:
     """From pose to pose in even steps of a small part of a winch's range; no further than it converges."""
-    low, high = _range(simulation.robot)
+    low, high = simulation.robot.control_limits
     begin = pose.controls
     steps = ceil(float((np.abs(goal - begin) / (high - low)).max(initial=0.0)) / _STEP - 1e-9)
     # More steps are not taken, however far beyond its range a winch goes; they are longer then

@@ -12,7 +12,7 @@ from hydrostat.arrays import Bool, Float, Nodes, Points, Vector
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.geometry import Anchors
 from hydrostat.mechanics import Reason
-from hydrostat.result_table import Columns, Tabular, marker_columns, named_columns
+from hydrostat.result_table import Columns, Tabular, control_columns, marker_columns, named_columns
 from hydrostat.robot import Robot
 from hydrostat.simulation.equilibrium import Equilibrium
 
@@ -75,10 +75,9 @@ class BatchResult(Tabular):
 
     def columns(self) -> Columns:
         """Return contractions, drives, markers and tensions as a table, a row for each pose."""
-        robot, count = self.robot, len(self.robot.winches)
-        columns = named_columns("contraction", [w.name for w in robot.winches], self.contractions[:, :count], "m")
-        for drive, values in zip(robot.drives, self.contractions[:, count:].T, strict=True):
-            columns[f"drive_{drive.name}_{drive.unit}"] = values
+        robot = self.robot
+        drives = {drive.name: drive.unit for drive in robot.drives}
+        columns = control_columns([winch.name for winch in robot.winches], drives, self.contractions)
         columns |= marker_columns({m.name: self.markers[:, row] for row, m in enumerate(robot.markers)})
         return columns | named_columns("tension", [cable.name for cable in robot.cables], self.tensions, "N")
 
