@@ -16,7 +16,9 @@ SLOW = "2 Hz"  # frequency of viscosity = "material"
 LARGEST = 10**12  # no number of robot.toml is larger, whether bare or in SI
 
 
-def _quantity(dimension: units.Dimension) -> Callable[[object], float]:
+def quantity_parser(dimension: units.Dimension) -> Callable[[object], float]:
+    """Return the function that reads text with a unit, in SI (ValueError: it is none)."""
+
     def parse(text: object) -> float:
         try:
             value = units.parse_quantity(text, dimension)
@@ -29,10 +31,11 @@ def _quantity(dimension: units.Dimension) -> Callable[[object], float]:
     return parse
 
 
-def _number(value: object) -> Decimal:
+def parse_number(value: object) -> Decimal:
     """Bare number; tomllib hands over int or Decimal."""
     if isinstance(value, bool) or not isinstance(value, int | Decimal):
-        raise ValueError(f"{quote(value)} is not a number")
+        hint = "; write it without quotes and unit" if isinstance(value, str) and value[:1].isdigit() else ""
+        raise ValueError(f"{quote(value)} is not a number{hint}")
     if isinstance(value, Decimal) and not value.is_finite():
         raise ValueError(f"{quote(value)} is not a finite number")
     if abs(value) > LARGEST:
@@ -47,20 +50,20 @@ def _name(value: object) -> object:
         raise ValueError(str(error)) from None
 
 
-Length = Annotated[float, BeforeValidator(_quantity(units.LENGTH))]
-Pressure = Annotated[float, BeforeValidator(_quantity(units.PRESSURE))]
-Mass = Annotated[float, BeforeValidator(_quantity(units.MASS))]
-Density = Annotated[float, BeforeValidator(_quantity(units.DENSITY))]
-Stiffness = Annotated[float, BeforeValidator(_quantity(units.STIFFNESS))]
-Acceleration = Annotated[float, BeforeValidator(_quantity(units.ACCELERATION))]
-Viscosity = Annotated[float, BeforeValidator(_quantity(units.VISCOSITY))]
-Time = Annotated[float, BeforeValidator(_quantity(units.TIME))]
-Force = Annotated[float, BeforeValidator(_quantity(units.FORCE))]
-Torque = Annotated[float, BeforeValidator(_quantity(units.TORQUE))]
-BendingStiffness = Annotated[float, BeforeValidator(_quantity(units.BENDING))]
-Angle = Annotated[float, BeforeValidator(_quantity(units.ANGLE))]
+Length = Annotated[float, BeforeValidator(quantity_parser(units.LENGTH))]
+Pressure = Annotated[float, BeforeValidator(quantity_parser(units.PRESSURE))]
+Mass = Annotated[float, BeforeValidator(quantity_parser(units.MASS))]
+Density = Annotated[float, BeforeValidator(quantity_parser(units.DENSITY))]
+Stiffness = Annotated[float, BeforeValidator(quantity_parser(units.STIFFNESS))]
+Acceleration = Annotated[float, BeforeValidator(quantity_parser(units.ACCELERATION))]
+Viscosity = Annotated[float, BeforeValidator(quantity_parser(units.VISCOSITY))]
+Time = Annotated[float, BeforeValidator(quantity_parser(units.TIME))]
+Force = Annotated[float, BeforeValidator(quantity_parser(units.FORCE))]
+Torque = Annotated[float, BeforeValidator(quantity_parser(units.TORQUE))]
+BendingStiffness = Annotated[float, BeforeValidator(quantity_parser(units.BENDING))]
+Angle = Annotated[float, BeforeValidator(quantity_parser(units.ANGLE))]
 TrueOrFalse = Annotated[bool, Strict()]
-Number = Annotated[Decimal, BeforeValidator(_number)]
+Number = Annotated[Decimal, BeforeValidator(parse_number)]
 Coordinates = Annotated[list[Number], Field(min_length=2, max_length=3)]
 Text = Annotated[str, Field(min_length=1, max_length=200)]
 Name = Annotated[str, BeforeValidator(_name)]
@@ -78,8 +81,8 @@ def _named_viscosity(value: object) -> float | LossFrequency:
     """Viscosity, or "material", or "material at 7 Hz"."""
     material = re.fullmatch(r"material(?: at (.*))?", value) if isinstance(value, str) else None
     if material is None:
-        return _quantity(units.VISCOSITY)(value)
-    return LossFrequency(_quantity(units.FREQUENCY)(material[1] or SLOW))
+        return quantity_parser(units.VISCOSITY)(value)
+    return LossFrequency(quantity_parser(units.FREQUENCY)(material[1] or SLOW))
 
 
 NamedViscosity = Annotated[float | LossFrequency, BeforeValidator(_named_viscosity)]

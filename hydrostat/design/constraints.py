@@ -80,6 +80,8 @@ class Constraints:
     Attributes:
         winch_zones: zones for winches; anywhere in the body if there is none.
         keep_out: zones without cables.
+        drawing_gap: minimum distance of cables from small shapes drawn on a flat body, such as eyes [m]; 0: cables may
+            cross them.
         passive_zones: passive zones: cables run in sheaths here, so that they move nothing.
         mount: place of the winches, in the body or in the world; None: as the robot's own winches are, in the body if
             it has none.
@@ -123,6 +125,7 @@ class Constraints:
 
     winch_zones: tuple[Zone, ...] = ()
     keep_out: tuple[Zone, ...] = ()
+    drawing_gap: float = _limit(0.003, _GAP)
     passive_zones: tuple[Zone, ...] = ()
     mount: Mount | None = None
     built_in: bool = True

@@ -18,7 +18,7 @@ from hydrostat.design.zone import Zone
 from hydrostat.errors import HydrostatWarning, InputError
 from hydrostat.files import read_text
 from hydrostat.robot import Robot, TablesFile
-from hydrostat.toml_schema import Angle, Coordinates, Force, Length, Name, Number, TomlTable, Torque
+from hydrostat.toml_schema import Angle, Force, Length, Name, Number, TomlTable, Torque, parse_number, quantity_parser
 
 Count = Annotated[int, Strict()]
 Choice = Annotated[bool, Strict()]
@@ -34,6 +34,15 @@ def _part(value: object) -> object:
 Part = Annotated[int | str, BeforeValidator(_part)]
 
 
+def _zone_number(value: object) -> Decimal | float:
+    """A bare number in the length unit of the robot, or text such as "35 mm", which becomes meters."""
+    return quantity_parser(units.LENGTH)(value) if isinstance(value, str) else parse_number(value)
+
+
+ZoneNumber = Annotated[Decimal | float, BeforeValidator(_zone_number)]
+Corner = Annotated[list[ZoneNumber], Field(min_length=2, max_length=3)]
+
+
 class Axis(StrEnum):
     """Across a mirror."""
 
@@ -45,10 +54,10 @@ class Axis(StrEnum):
 class ZoneTable(TomlTable):
     """[[winch_zone]], [[keep_out]], [[passive_zone]]."""
 
-    at: Coordinates | None = None
-    radius: Number | None = None
-    box: Annotated[list[Coordinates], Field(min_length=2, max_length=2)] | None = None
-    outline: Annotated[list[Coordinates], Field(min_length=3, max_length=1000)] | None = None
+    at: Corner | None = None
+    radius: ZoneNumber | None = None
+    box: Annotated[list[Corner], Field(min_length=2, max_length=2)] | None = None
+    outline: Annotated[list[Corner], Field(min_length=3, max_length=1000)] | None = None
 
 
 class BuiltTable(TomlTable):
@@ -105,8 +114,8 @@ def read_constraints(path: str | Path, robot: Robot) -> Constraints:
     """Constraints for a robot from a file; what it leaves out is as in `Constraints`.
 
     Keys are the fields of `Constraints`: quantities as text with their unit ("5 mm"), zones as tables [[winch_zone]],
-    [[keep_out]] and [[passive_zone]] in the length unit of the robot's file, cables by name or by
-    number, counted from 1. Keys of older files are read too, with a `HydrostatWarning` that names the present ones.
+    [[keep_out]] and [[passive_zone]] in the length unit of the robot's file or as text with a unit, cables by name or
+    by number, counted from 1. Keys of older files are read too, with a `HydrostatWarning` that names the present ones.
     Raises InputError: one line that names the file, the line, the key, what is wrong and what is allowed.
     """
     path = Path(path)
@@ -179,15 +188,19 @@ class _ConstraintsReader(TablesFile):
 
     def _zone(self, entry: Any) -> Zone:
         zone = Zone(
-            at=None if entry.at is None else self.point(entry.at),
-            radius=None if entry.radius is None else units.scale_up(entry.radius, self.unit, units.LENGTH),
-            box=None if entry.box is None else (self.point(entry.box[0]), self.point(entry.box[1])),
-            outline=tuple(map(self.point, entry.outline or ())),
+            at=None if entry.at is None else self._corner(entry.at),
+            radius=None if entry.radius is None else self._corner([entry.radius])[0],
+            box=None if entry.box is None else (self._corner(entry.box[0]), self._corner(entry.box[1])),
+            outline=tuple(map(self._corner, entry.outline or ())),
         )
         dim = self.robot.body.mesh.dim
         if zone.dim != dim:
             raise InputError(f"wrong dimension of its points ({zone.dim}). Body: {dim}.")
         return zone
+
+    def _corner(self, given: list[Decimal | float]) -> tuple[float, ...]:
+        """Numbers of a zone [m]."""
+        return tuple(self.point([value])[0] if isinstance(value, Decimal) else value for value in given)
 
 
 def cable_name(given: str | int, robot: Robot) -> str:

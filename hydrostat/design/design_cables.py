@@ -9,7 +9,7 @@ from typing import TypedDict, Unpack
 from hydrostat.closed_set import parse_choice
 from hydrostat.design.cable_sides import assign_cable_sides
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.lifts import search_front
+from hydrostat.design.lifts import CROSSING, may_cross, search_front
 from hydrostat.design.network import Alternative, Network, RouteTrace, size_of
 from hydrostat.design.request import DesignMethod, DesignRequest, RouteOptions, TreeOptions
 from hydrostat.design.routes.design_fewest import design_fewest
@@ -103,7 +103,13 @@ def find_network(
     fitted = request.fit_robot(stated)
     if fitted.stuffed:
         check_stuffed(stated)  # told before the search
-    found = _search(stated, fitted, told, Better(watch or ignore_stage), record)
+    try:
+        found = _search(stated, fitted, told, Better(watch or ignore_stage), record)
+    except HydrostatError as error:
+        if fitted.method.grows_trees or fitted.is_open or not may_cross(stated, fitted):
+            raise
+        words = f"{str(error).removesuffix('.')}. Drawn shapes are in the way: {CROSSING} allows crossing."
+        raise HydrostatError(words) from None
     if fitted.stuffed:
         found = evaluate_stuffed(found, progress=told)
     if fitted.front and (found.complete or found.timed_out):

@@ -3,11 +3,13 @@
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
+from hydrostat.design.drawn_shapes import drawn_zones
 from hydrostat.design.network import Alternative, Network
 from hydrostat.design.request import COUNTS, DesignRequest
 from hydrostat.design.routes.finalists import kit_fits
 from hydrostat.design.routes.quick_search import propose_routes
 from hydrostat.errors import HydrostatError
+from hydrostat.robot import Robot
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,23 +23,47 @@ class Lift:
 def find_lifts(network: Network) -> tuple[Lift, ...]:
     """Find changes that would leave a clearly smaller error where fewer winches than poses share contractions.
 
-    Tried are one more winch, and winches that pull both ways. A quick search (`propose_routes`) takes about as long as
-    the whole one; that may find better. Only networks count whose kit would be made.
+    Tried are one more winch, winches that pull both ways, and cables across drawn shapes where the error is large. A
+    quick search (`propose_routes`) takes about as long as the whole one; that may find better. Only networks count
+    whose kit would be made.
     """
-    request = network.request
-    if not isinstance(request.winches, int) or request.winches >= len(request.poses) or request.warm_start:
+    request, lifts = network.request, []
+    if not isinstance(request.winches, int) or request.warm_start:
         return ()
-    lifts = []
-    for words, changed in _changes(request, request.winches):
-        try:
-            found = [one for one in propose_routes(network.source, changed) if one.is_refined and one.is_buildable]
-        except HydrostatError:  # such as no room for one more motor
-            continue
-        if found and found[-1].expected_error < _CLEARLY * network.expected_error:
-            best = found[-1]
-            other = Alternative(robot=best.robot, ik_results=best.ik_results, expected_error=best.expected_error)
-            lifts.append(Lift(words=words, network=other))
+    changes = list(_changes(request, request.winches)) if request.winches < len(request.poses) else []
+    if network.expected_error > _LARGE * network.source.body.mesh.size:
+        changes += [(CROSSING, across) for across in [_across_drawings(network.source, request)] if across]
+    for words, changed in changes:
+        best = _find_quickly(network.source, changed)
+        if best is not None and best.expected_error < _CLEARLY * network.expected_error:
+            lifts.append(Lift(words=words, network=best))
     return tuple(lifts)
+
+
+def may_cross(robot: Robot, request: DesignRequest) -> bool:
+    """True if a quick search finds a network that only drawn shapes are in the way of."""
+    across = _across_drawings(robot, request)
+    return across is not None and _find_quickly(robot, across) is not None
+
+
+def _across_drawings(robot: Robot, request: DesignRequest) -> DesignRequest | None:
+    """The request with cables across drawn shapes; None if nothing is drawn, or they may cross it already."""
+    limits = request.constraints
+    drawn = drawn_zones(robot.body, limits.drawing_gap)
+    zones = tuple(zone for zone in limits.keep_out if zone not in drawn)
+    return replace(request, constraints=replace(limits, drawing_gap=0.0, keep_out=zones)) if drawn else None
+
+
+def _find_quickly(robot: Robot, request: DesignRequest) -> Alternative | None:
+    """The network of a quick search whose kit would be made; None if there is none."""
+    try:
+        found = [one for one in propose_routes(robot, request) if one.is_refined and one.is_buildable]
+    except HydrostatError:  # such as no room for one more motor
+        return None
+    if not found:
+        return None
+    best = found[-1]
+    return Alternative(robot=best.robot, ik_results=best.ik_results, expected_error=best.expected_error)
 
 
 def search_front(network: Network, request: DesignRequest, design: Callable[[DesignRequest], Network]) -> Network:
@@ -93,4 +119,8 @@ def _neighbors(request: DesignRequest, own: int) -> Iterator[DesignRequest]:
                 yield replace(request, winches=winches, cables=cables, constraints=constraints, front=False)
 
 
+CROSSING = 'drawing_gap = "0 mm" in a file for --constraints'
+"""Line that allows cables across drawn shapes."""
+
 _CLEARLY = 0.85  # an error below this multiple of the network's is reported
+_LARGE = 0.01  # share of the body's size above which an error may be due to drawn shapes that cables avoid

@@ -11,6 +11,7 @@ import numpy as np
 
 from hydrostat.closed_set import make_member
 from hydrostat.design.constraints import ROUTES_ONLY, Constraints, Range
+from hydrostat.design.drawn_shapes import drawn_zones
 from hydrostat.design.muscles.activation import FibreKind
 from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.errors import InputError
@@ -291,13 +292,17 @@ class DesignRequest:
             raise InputError("material.hysteresis: not known to designs. Remove it for the design, then add it again.")
         if self.stuffed and robot.body.outline is None:
             raise InputError("filled: only for flat robots with a drawing. Remove it.")
-        trees = self.method.grows_trees  # these keep to no motor
-        constraints = self.constraints if trees else replace(self.constraints, motor=self.motor_for(robot))
+        constraints = self.constraints if self.method.grows_trees else self._fit_constraints(robot)
         return replace(
             self,
             uncertainty=self.uncertainty or BuildTolerances.of(robot.body),
             constraints=_with_own(constraints, robot) if self.warm_start else constraints,
         )
+
+    def _fit_constraints(self, robot: Robot) -> Constraints:
+        """The constraints with the motor of a robot, and zones without cables around its drawn shapes."""
+        zones = (*self.constraints.keep_out, *drawn_zones(robot.body, self.constraints.drawing_gap))
+        return replace(self.constraints, motor=self.motor_for(robot), keep_out=tuple(dict.fromkeys(zones)))
 
     def motor_for(self, robot: Robot) -> str:
         """Key of the motor of the winches: that of the constraints, else that of the robot."""

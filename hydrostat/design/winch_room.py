@@ -11,6 +11,7 @@ from shapely.geometry.base import BaseGeometry
 
 from hydrostat.arrays import Points
 from hydrostat.design.constraints import Constraints
+from hydrostat.design.drawn_shapes import drawn_shapes
 from hydrostat.design.request import DesignRequest
 from hydrostat.design.zone import Zone
 from hydrostat.errors import InputError
@@ -142,7 +143,7 @@ def _flat_zones(robot: Robot, constraints: Constraints, box: Cuboid, winches: in
 
 
 def _find_taken_parts(robot: Robot, around: float) -> BaseGeometry:
-    """Pins, where the body is clamped, and small closed shapes drawn on it, such as eyes, and around these [mm]."""
+    """Pins, where the body is clamped, and small shapes drawn on it, such as eyes, and around these [mm]."""
     parts: list[BaseGeometry] = []
     for pin in robot.pins:
         if pin.box is not None:
@@ -150,10 +151,8 @@ def _find_taken_parts(robot: Robot, around: float) -> BaseGeometry:
             parts.append(shapely.box(left, bottom, right, top))
         elif pin.at is not None:
             parts.append(shapely.Point(1e3 * np.array(pin.at[:2])).buffer(1e3 * pin.radius))
-    closed = [line for line in robot.body.marks if len(line) > 3 and np.linalg.norm(line[0] - line[-1]) < _RULES.closed]
-    small = [line for line in closed if np.ptp(line, axis=0).max() < _RULES.max_eye * robot.body.mesh.size]
-    parts += [shapely.Polygon(1e3 * line).buffer(1e3 * around) for line in small]
-    return shapely.union_all(parts)
+    drawn = shapely.union_all([shape.buffer(around) for shape in drawn_shapes(robot.body)])
+    return shapely.union_all([*parts, affinity.scale(drawn, 1e3, 1e3, origin=(0.0, 0.0))])
 
 
 def _grid(room: BaseGeometry) -> Points:
@@ -350,8 +349,6 @@ class _RoomRules:
         simplification: maximum error of the simplified seam [mm].
         min_area: area below which rooms are left out [mm^2].
         min_hole: area below which holes of a room are left out [mm^2].
-        max_eye: share of the body above which a closed shape drawn on it is no eye.
-        closed: distance of the ends of a closed line [m].
         zone_radius: radius of a zone that stands for a point [m].
         num_balls: number of balls that show where pockets have room.
         precision: precision of the scale.
@@ -363,8 +360,6 @@ class _RoomRules:
     simplification: float = 0.2
     min_area: float = 4.0
     min_hole: float = 100.0
-    max_eye: float = 0.2
-    closed: float = 1e-6
     zone_radius: float = 1e-4
     num_balls: int = 24
     precision: float = 0.02

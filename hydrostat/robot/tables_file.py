@@ -72,7 +72,7 @@ class TablesFile(ABC):
         line = line or find_line(self.text, self.written_key(key))
         where = f"{self.file}{f', line {line}' if line else ''}"
         told = key + message if message.startswith((" ", ":")) else f"{key}: {message}" if key else message
-        longest = 400  # characters of a complaint, its file and line not counted
+        longest = 440  # characters of a complaint, its file and line not counted
         told = told if len(told) <= longest else told[: longest - 3] + "..."
         raise InputError(units.printable(f"{where}: {told}")) from None
 

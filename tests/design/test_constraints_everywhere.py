@@ -34,13 +34,14 @@ MAKING = "it follows from how the robot is made, not from what it should do: it 
 NO_OPTION = {
     **dict.fromkeys(("winch_zones", "keep_out", "passive_zones"), ZONE),
     **dict.fromkeys(("mount", "built_in", "winch_clearance", "winch_gap", "hole_gap", "cable_gap", "max_turn"), MAKING),
+    "drawing_gap": MAKING,
     **dict.fromkeys(("bend_radius", "max_length", "torque", "travel", "release", "spool_radius", "leads"), MAKING),
 }
 """Constraints without an option of the command line, with the reason."""
 
 NO_BOX = dict.fromkeys(
-    ("mount", "built_in", "winch_clearance", "winch_gap", "hole_gap", "cable_gap", "max_turn", "bend_radius",
-     "max_length", "travel", "release", "spool_radius", "leads"),
+    ("mount", "built_in", "winch_clearance", "winch_gap", "hole_gap", "cable_gap", "drawing_gap", "max_turn",
+     "bend_radius", "max_length", "travel", "release", "spool_radius", "leads"),
     MAKING,
 )  # fmt: skip
 """Constraints that the studio does not show, with the reason."""

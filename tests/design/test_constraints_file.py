@@ -26,6 +26,7 @@ winch_clearance = "1.5 cm"
 winch_gap = "30 mm"
 hole_gap = "3 mm"
 cable_gap = "5 mm"
+drawing_gap = "1 mm"
 built_in = false
 max_turn = "60 deg"
 bend_radius = "8 mm"
@@ -73,6 +74,7 @@ MADE = Constraints(
     winch_gap=0.03,
     hole_gap=0.003,
     cable_gap=0.005,
+    drawing_gap=0.001,
     built_in=False,
     max_turn=60.0,
     bend_radius=0.008,
@@ -191,9 +193,10 @@ def test_a_wrong_tolerance_is_one_line(text: str, message: str, file: Path) -> N
 
 
 def test_zones_are_in_the_unit_of_the_robots_file(file: Path) -> None:
-    file.write_text("[[keep_out]]\nat = [3, 0, 1]\nradius = 0.5")
-    zones = read_constraints(file, replace(box_robot(), length_unit="cm")).keep_out
-    assert zones == (Zone(at=(0.03, 0.0, 0.01), radius=0.005),)
+    for zone in ("at = [3, 0, 1]\nradius = 0.5", 'at = ["30 mm", 0, "0.01 m"]\nradius = "5 mm"'):
+        file.write_text(f"[[keep_out]]\n{zone}")
+        zones = read_constraints(file, replace(box_robot(), length_unit="cm")).keep_out
+        assert zones == (Zone(at=(0.03, 0.0, 0.01), radius=0.005),)
 
 
 ERRORS = {

@@ -7,6 +7,7 @@ import numpy as np
 
 from hydrostat.arrays import Bool, Float, Int
 from hydrostat.design.checks.parts import ANGLE, LENGTH, Parts, mm, place
+from hydrostat.design.drawn_shapes import drawn_zones
 from hydrostat.design.polyline import least_along, nearest_shares
 from hydrostat.design.zone import Zone
 from hydrostat.robot import Mount
@@ -35,9 +36,11 @@ def clearance_violations(parts: Parts) -> Iterator[str]:
     segments = _segments(parts)
     yield from _near_the_edge_at_points(parts)
     yield from _near_the_edge(parts, segments)
+    drawn = drawn_zones(parts.robot.body, parts.constraints.drawing_gap)
     for number, zone in enumerate(parts.constraints.keep_out):
         every = np.ones(len(segments.bare), dtype=bool)
-        yield from _through(segments, zone, f"inside keep_out[{number}]", "Reroute it", every)
+        what = "within drawing_gap of a drawn shape" if zone in drawn else f"inside keep_out[{number}]"
+        yield from _through(segments, zone, what, "Reroute it", every)
     for number, zone in enumerate(parts.constraints.passive_zones):
         yield from _through(
             segments, zone, f"no sheath in passive_zones[{number}]", "Sheathe or reroute it", segments.bare
