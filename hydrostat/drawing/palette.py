@@ -80,6 +80,7 @@ class Color:
     STITCH = "#fff1e2"
     MESH = "#a8683e"
     DARK = "#2a2732"
+    SHEET = "#5f87a6"
     LIGHT = "#fffdfb"
 
     WINCHES = ("#0b5fa5", "#00795f", "#a8256f", "#5a3da6", "#7a4a12", "#1787b8", "#5f6d0c", "#8b1b34")

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hydrostat.arrays import Float, Int, Vector
+from hydrostat.arrays import Bool, Float, Int, Vector
 from hydrostat.drawing.camera import Spots
 from hydrostat.drawing.creases import smooth_normals
 from hydrostat.drawing.depth import DepthBuffer, Polyline
@@ -46,6 +46,13 @@ class Render:
         """Silhouette as rings [mm], the widest first."""
         rings = [ring[:-1] for ring in self.buffer.rings(self.colors[..., 3], 0.5, tolerance=0.15)]
         return sorted(rings, key=lambda ring: float(np.prod(np.ptp(ring, axis=0))), reverse=True)
+
+    def with_tint(self, facets: Bool[np.ndarray, " facets"], color: str) -> "Render":
+        """Return the image with some of its facets tinted."""
+        weight = 0.45 * ((self.buffer.owner >= 0) & facets[self.buffer.owner])[..., None]
+        colors = self.colors.copy()
+        colors[..., :3] = (1 - weight) * colors[..., :3] + weight * _shares(color)
+        return Render(colors, self.buffer)
 
     @staticmethod
     def silhouette(spots: Spots, facets: Int[np.ndarray, "facets 3"], *, pixel: float) -> "Render":

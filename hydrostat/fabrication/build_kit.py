@@ -9,6 +9,7 @@ from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.fabrication.body_work import foam_work, plush_work
 from hydrostat.fabrication.checks.solid_checks import solid_checks, spool_checks, too_large
 from hydrostat.fabrication.demand import Demand
+from hydrostat.fabrication.inserts import InsertKind
 from hydrostat.fabrication.kit import MANIFEST, Kit, UnbuildableError, manifest
 from hydrostat.fabrication.kit_options import OVER_BUDGET, KitOptions, Method
 from hydrostat.fabrication.kit_plan import BodyWork, KitFindings, KitPlan
@@ -18,6 +19,7 @@ from hydrostat.fabrication.parts.motor import Motor
 from hydrostat.fabrication.parts.rigid_parts import RigidParts, rigid_parts
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.pattern import cut_sheet
+from hydrostat.fabrication.patterns.sheet_pieces import sheet_pieces
 from hydrostat.fabrication.patterns.svg_writer import pattern_svg
 from hydrostat.fabrication.print_work import print_work
 from hydrostat.fabrication.refusals import find_refusals
@@ -267,15 +269,11 @@ def _bending_warnings(plan: KitPlan) -> tuple[str, ...]:
 
 
 def _part_warnings(plan: KitPlan) -> tuple[str, ...]:
-    """Warn of parts and sheets, which no file of the kit makes."""
-    found = []
-    if plan.inserts:
-        names = ", ".join(f"{insert.mark} {insert.name}" for insert in plan.inserts)
-        found.append(f"the kit has no files for {names}: make them to the sizes of lists/inserts.csv")
-    if sheets := plan.drawn.sheets:
-        names = ", ".join(f'"{sheet.name}"' for sheet in sheets)
-        found.append(f"the kit leaves out sheet {names}: cut and fix it yourself (hydrostat check prints its area)")
-    return tuple(found)
+    """Warn of parts, and of sheets in space, which no file of the kit makes."""
+    flat = plan.drawn.body.mesh.dim == 2
+    made = [insert for insert in plan.inserts if not (flat and insert.kind is InsertKind.SHEET)]
+    names = ", ".join(f"{insert.mark} {insert.name}" for insert in made)
+    return (f"the kit has no files for {names}: make them to the sizes of lists/inserts.csv",) if made else ()
 
 
 def _files(plan: KitPlan, lists: Lists, findings: KitFindings) -> dict[str, bytes]:
@@ -288,6 +286,7 @@ def _files(plan: KitPlan, lists: Lists, findings: KitFindings) -> dict[str, byte
         **_solid_files("body" if plan.method is Method.PRINT else "mould", name, work.printed, plan.options),
         **_solid_files("positive", name, work.spare, plan.options),
         **_base_files(name, rigid),
+        **_sheet_files(plan.drawn),
         **{f"lists/{table.name}.csv": table.csv for table in lists.tables},
         "assembly_sheet.pdf": assembly_sheet(plan, lists, findings),
         "steps.txt": sheet_text(sheet_facts(plan, lists, findings)).encode(),
@@ -315,6 +314,18 @@ def _base_files(name: str, rigid: RigidParts) -> dict[str, bytes]:
     return {"parts/base.svg": pattern_svg(sheet), "parts/base.dxf": pattern_dxf(sheet)}
 
 
+def _sheet_files(robot: Robot) -> dict[str, bytes]:
+    """Cloth of the sheets on the skin of a flat body."""
+    files = {}
+    for number, sheet in enumerate(robot.sheets, start=1):
+        if (pieces := sheet_pieces(robot, sheet)) is not None:
+            files |= {
+                f"pattern/sheet_S{number}.svg": pattern_svg(pieces),
+                f"pattern/sheet_S{number}.dxf": pattern_dxf(pieces),
+            }
+    return files
+
+
 def _cable_summary(plan: KitPlan) -> tuple[str, ...]:
     """Return one line on the side of the cables of a flat robot; empty if the robot does not set it."""
     robot = plan.drawn
@@ -328,7 +339,7 @@ def _insert_summary(plan: KitPlan) -> tuple[str, ...]:
     """Return one line on parts and rods; empty without them."""
     kinds = [insert.kind.value for insert in plan.inserts]
     counts = ", ".join(plural(kinds.count(kind), kind) for kind in dict.fromkeys(kinds))
-    return (f"In the body: {counts} (lists/inserts.csv)",) if kinds else ()
+    return (f"In and on the body: {counts} (lists/inserts.csv)",) if kinds else ()
 
 
 def _summary(plan: KitPlan, lists: Lists) -> tuple[str, ...]:

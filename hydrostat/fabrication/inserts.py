@@ -1,4 +1,4 @@
-"""`find_inserts`: parts of other materials, rigid parts and rods, with the sizes that a maker needs."""
+"""`find_inserts`: parts of other materials, rigid parts, rods and sheets, with the sizes that a maker needs."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from hydrostat.robot import Body, Robot, Rod
+from hydrostat.robot import Body, Robot, Rod, SkinSheet
 
 
 class InsertKind(StrEnum):
@@ -15,19 +15,22 @@ class InsertKind(StrEnum):
     RIGID = "rigid part"
     SOFT = "part of another material"
     ROD = "rod"
+    SHEET = "sheet on the skin"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Insert:
-    """Part or rod in the body; lengths in millimeters."""
+    """Part or rod in the body, or sheet on it; lengths in millimeters."""
 
-    mark: str  # P1, P2, ... for parts, R1, R2, ... for rods
+    mark: str  # P1, P2, ... for parts, R1, R2, ... for rods, S1, S2, ... for sheets
     name: str  # name in robot.toml
     kind: InsertKind
     material: str  # material, or the stiffness or density that it must have
     sides: tuple[float, ...] = ()  # sides of the box about a part
     length: float | None = None  # length of a rod
     diameter: float | None = None  # diameter of a round rod
+    area: float | None = None  # area of a sheet [mm^2]
+    thickness: float | None = None  # thickness of a sheet
     volume: float | None = None  # [mm^3]
     mass: float | None = None  # [g]; None if it is unknown
     places: tuple[tuple[float, ...], ...]  # corners of a rod, or the middle of a part
@@ -35,6 +38,8 @@ class Insert:
     @property
     def size(self) -> str:
         """Size in words."""
+        if self.area is not None:
+            return f"{self.thickness:.3g} mm thick, {1e-2 * self.area:.0f} cm²"
         if self.length is None:
             return " × ".join(f"{side:.0f}" for side in self.sides) + " mm"
         thick = "" if self.diameter is None else f"{self.diameter:.3g} mm thick, "
@@ -53,15 +58,16 @@ class Insert:
 
 
 def find_inserts(robot: Robot) -> tuple[Insert, ...]:
-    """Parts and rods of a robot, the parts first; a rod has the mass of the material of its Young's modulus."""
+    """Parts, rods and sheets of a robot, in this order; a rod has the mass of the material of its Young's modulus."""
     body = robot.body
     parts = [_insert_of_part(body, index) for index, part in enumerate(body.parts) if not part.winch]
-    return (*parts, *(_insert_of_rod(rod, number) for number, rod in enumerate(robot.rods, start=1)))
+    rods = [_insert_of_rod(rod, number) for number, rod in enumerate(robot.rods, start=1)]
+    return (*parts, *rods, *(_insert_of_sheet(body, sheet, n) for n, sheet in enumerate(robot.sheets, start=1)))
 
 
 def insert_title(inserts: Iterable[Insert]) -> str:
     """Title of the step that puts them in."""
-    rods = [insert.kind is InsertKind.ROD for insert in inserts]
+    rods = [insert.kind is InsertKind.ROD for insert in inserts if insert.kind is not InsertKind.SHEET]
     return "Put the rods in" if all(rods) else "Put parts and rods in" if any(rods) else "Put the parts in"
 
 
@@ -149,6 +155,24 @@ def _insert_of_rod(rod: Rod, number: int) -> Insert:
         volume=volume,
         mass=mass,
         places=tuple(tuple(1e3 * value for value in point) for point in rod.points),
+    )
+
+
+def _insert_of_sheet(body: Body, sheet: SkinSheet, number: int) -> Insert:
+    triangles, edges = sheet.find_facets(body.mesh)
+    held = 1e3 * body.mesh.nodes[np.unique(np.concatenate([triangles.ravel(), edges.ravel()]))]
+    area, material = 1e6 * sheet.find_area(body.mesh, body.thickness), sheet.material
+    volume = 1e3 * sheet.thickness * area
+    return Insert(
+        mark=f"S{number}",
+        name=sheet.name,
+        kind=InsertKind.SHEET,
+        material=material.name or f"{1e-6 * material.young:.3g} MPa and {material.density:.0f} kg/m^3",
+        area=area,
+        thickness=1e3 * sheet.thickness,
+        volume=volume,
+        mass=1e-6 * material.density * volume,
+        places=(tuple(((held.min(axis=0) + held.max(axis=0)) / 2).tolist()),),
     )
 
 

@@ -137,6 +137,13 @@ class FlatPane(Pane):
             sheet.area(
                 borders, facecolor=color, edgecolor=Color.mix(Color.INK, Color.FELT, 0.4), linewidth=0.8, zorder=3.25
             )
+        for cover in self.robot.sheets:
+            color = Color.mix(Color.SHEET, Color.PAPER, pale)
+            borders = [MILLIMETERS * nodes[loop] for loop in cover.find_rings(self.robot.body.mesh)]
+            if borders:
+                sheet.area(borders, facecolor=Color.mix(color, fill, 0.45), edgecolor=color, linewidth=0.8, zorder=3.22)
+            if len(rim := cover.find_facets(self.robot.body.mesh)[1]):
+                sheet.segments(MILLIMETERS * nodes[rim], color=color, linewidth=2.4, zorder=3.23)
         for anchors in self.robot.body.mark_anchors:
             sheet.curve(
                 MILLIMETERS * anchors.positions(nodes),
@@ -191,6 +198,11 @@ class SpacePane(Pane):
             held=held.astype(float) if held.any() else None, lines=self._density(sheet) if mesh else 0.0,
             point=sheet.scale,
         )  # fmt: skip
+        for cover in self.robot.sheets:
+            color = Color.mix(Color.SHEET, Color.PAPER, 0.6 * pale)
+            own = np.arange(sum(map(len, facets))) < len(body.boundary)
+            own[: len(body.boundary)] = cover.holds(body.nodes[body.boundary].mean(axis=1))
+            image = image.with_tint(own, color)
         rings = lay_image(sheet, image, self.shift, seam=Color.mix(Color.SEAM, Color.PAPER, 0.6 * pale))
         thickness = MILLIMETERS * float(np.ptp(body.nodes, axis=0).min())
         return self._with_rims(sheet, DrawnBody(rings, (self.camera, self.shift, image, thickness)), things)

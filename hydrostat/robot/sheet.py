@@ -13,6 +13,7 @@ from hydrostat.geometry import Mesh
 from hydrostat.given import check_positive, check_type
 from hydrostat.robot.material import Material
 from hydrostat.robot.materials import get_material
+from hydrostat.robot.part_elements import find_rings
 from hydrostat.robot.region import PartRegion
 
 
@@ -76,6 +77,11 @@ class SkinSheet(PartRegion):
         if not len(triangles) and not len(edges):
             raise InputError("covers no facet of the skin; move or enlarge its region")
         return triangles, edges
+
+    def find_rings(self, mesh: Mesh) -> tuple[Int[np.ndarray, " _"], ...]:
+        """Nodes along the closed borders of the part of a flat body that it covers; empty without faces, in space."""
+        triangles, _ = self.find_facets(mesh)
+        return tuple(find_rings(Mesh(mesh.nodes, triangles).boundary)) if mesh.dim == 2 and len(triangles) else ()
 
     def find_area(self, mesh: Mesh, depth: float | None) -> float:
         """Area that it covers [m^2], on both faces of a flat body of this thickness [m].

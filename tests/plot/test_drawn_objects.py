@@ -1,14 +1,16 @@
 """Objects drawn with the body that holds them. Oracles: their distance fields, their volumes, what hides what."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from builders import box_robot, gallery_robot
+from builders import box_robot, gallery_robot, strip_robot
 
 from hydrostat.plot import draw_portrait
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import SpacePane, object_surface
 from hydrostat.plot.picture_file import figure_pixels
-from hydrostat.robot import Obstacle, rims
+from hydrostat.robot import Obstacle, Robot, SkinSheet, get_material, rims
 from hydrostat.simulation import with_obstacles
 
 AT, TO = (0.01, 0.02, 0.03), (0.05, 0.08, 0.06)
@@ -49,6 +51,23 @@ def test_what_lies_behind_the_body_is_hidden_by_it() -> None:
         changed.append(int((np.abs(drawn - bare).max(axis=2) > 40).sum()))
     assert changed[0] != changed[1]
     assert max(changed) > 20
+
+
+@pytest.mark.parametrize("robot", [box_robot(), strip_robot(columns=8, rows=2)], ids=["space", "flat"])
+def test_a_sheet_is_tinted_where_it_lies(robot: Robot) -> None:
+    """About half of the body's pixels change, those on one side of it."""
+    nodes = robot.body.mesh.nodes
+    low, high = nodes.min(axis=0) - 0.01, nodes.max(axis=0) + 0.01
+    middle = (*(low[:1] + high[:1]) / 2, *high[1:])
+    half = {"shape": "box", "at": tuple(low.tolist()), "to": tuple(float(value) for value in middle)}
+    cover = SkinSheet(name="glove", material=get_material("ecoflex 00-30"), thickness=1e-3, **half)
+    views = [figure_pixels(draw_portrait(one, nodes), dpi=40) for one in (robot, replace(robot, sheets=(cover,)))]
+    changed = np.abs(views[0].astype(int) - views[1]).max(axis=2) > 10
+    body = views[0].min(axis=2) < 245
+    places = [np.argwhere(mask) for mask in (changed, body & ~changed)]
+    assert 0.1 < len(places[0]) / body.sum() < 0.6
+    apart = np.linalg.norm(places[0].mean(axis=0) - places[1].mean(axis=0))
+    assert apart > 0.2 * np.ptp(np.argwhere(body), axis=0).max()
 
 
 @pytest.mark.parametrize("side", [-1.0, 1.0])

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Annotated
 
-from hydrostat.fabrication.inserts import Insert, insert_title
+from hydrostat.fabrication.inserts import Insert, InsertKind, insert_title
 from hydrostat.fabrication.kit import Check
 from hydrostat.fabrication.kit_options import Method
 from hydrostat.fabrication.kit_plan import KitPlan
@@ -142,7 +142,7 @@ class InsertRow:
 
 
 def insert_table(inserts: Iterable[Insert], step: str) -> Table[InsertRow]:
-    """Table of parts and rods, all of which one step puts in."""
+    """Table of parts and rods, all of which one step puts in, and of sheets."""
     rows = [
         InsertRow(
             mark=insert.mark,
@@ -155,17 +155,17 @@ def insert_table(inserts: Iterable[Insert], step: str) -> Table[InsertRow]:
             diameter=insert.diameter,
             volume=None if insert.volume is None else 1e-3 * insert.volume,
             mass=insert.mass,
-            step=step,
+            step=f"Fix sheet {insert.mark}" if insert.kind is InsertKind.SHEET else step,
         )
         for insert in inserts
     ]
     return Table(
         name="inserts",
-        title="Parts and rods in the body",
+        title="Parts, rods and sheets",
         row=InsertRow,
         rows=tuple(rows),
         notes=(
             "Sizes are as drawn, volumes and masses those of the simulated mesh.",
-            "The kit has no file for these parts: print, cut or cast them.",
+            "The kit has files for sheets of flat bodies alone: print, cut or cast the rest.",
         ),
     )

@@ -108,10 +108,13 @@ def _filament(plan: KitPlan) -> Item:
 
 def _insert_item(insert: Insert) -> Item:
     """A part or rod of the body; a rod by its length, a part by its mass."""
-    name = f"{'rod' if insert.kind is InsertKind.ROD else 'part'} {insert.mark} {insert.name}"
+    what = {InsertKind.ROD: "rod", InsertKind.SHEET: "sheet"}.get(insert.kind, "part")
+    name = f"{what} {insert.mark} {insert.name}"
     words = f"{insert.material}, {insert.size}"
     if insert.kind is InsertKind.ROD:
         return _item(BillGroup.BODY, name, words, 1e-3 * (insert.length or 0.0), "wire", insert.mass)
+    if insert.kind is InsertKind.SHEET:
+        return _item(BillGroup.BODY, name, words, 1e-6 * (insert.area or 0.0), "felt", insert.mass)
     kilograms = 1e-3 * (insert.mass or 0.0)
     price = "stiff part" if insert.kind is InsertKind.RIGID else "soft part"
     return _item(BillGroup.BODY, name, words, kilograms, price, insert.mass)

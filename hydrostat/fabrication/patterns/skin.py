@@ -27,7 +27,7 @@ class Skin:
 
 def flat_skin(body: Body, options: PatternOptions) -> Skin:
     """The skin of a flat body (InputError: the body is not flat, or is in several pieces)."""
-    return skin_of(orient(shapely.transform(_silhouette(body), lambda points: 1e3 * points)), options)
+    return skin_of(orient(shapely.transform(silhouette(body), lambda points: 1e3 * points)), options)
 
 
 def skin_of(seam: Polygon, options: PatternOptions) -> Skin:
@@ -49,7 +49,7 @@ def skin_of(seam: Polygon, options: PatternOptions) -> Skin:
     return Skin(seam, cut, slits, tuple(problems), _tight_bays(seam, cut, slits, options))
 
 
-def _silhouette(body: Body) -> Polygon:
+def silhouette(body: Body) -> Polygon:
     """The drawn outline [m], or the boundary of a mesh."""
     if body.mesh.dim != 2:
         raise InputError("a body in space has no flat pattern: draw one for a flat body, or cast this one in a mould")

@@ -203,12 +203,17 @@ def put_run(canvas: Canvas, labels: LabelPlaces, run: CableRun, mark: str) -> No
 def _put_inserts(
     canvas: Canvas, labels: LabelPlaces, robot: Robot, project: Callable[[Float[np.ndarray, "_ _"]], list[Spot]]
 ) -> None:
-    """Parts as grey areas of a flat body, rods as thick grey lines, with their marks where they fit."""
+    """Parts and sheets as grey areas of a flat body, rods as thick grey lines, with their marks where they fit."""
     for rings in robot.body.part_rings:
         ways = [project(1e3 * robot.body.mesh.nodes[ring]) for ring in rings]
         if ways:
             canvas.fill(ways, grey=0.8)
             canvas.line(ways, width=Canvas.THIN, closed=True, grey=0.4)
+    for sheet in robot.sheets:
+        ways = [project(1e3 * robot.body.mesh.nodes[ring]) for ring in sheet.find_rings(robot.body.mesh)]
+        if ways:
+            canvas.fill(ways, grey=0.9)
+            canvas.line(ways, width=Canvas.THIN, closed=True, grey=0.6)
     inserts = find_inserts(robot)
     ways = [project(np.array(insert.places)) for insert in inserts]
     for insert, way in zip(inserts, ways, strict=True):

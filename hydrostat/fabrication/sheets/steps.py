@@ -1,14 +1,14 @@
 """`plush_steps`, and steps that robots of plush and of foam share. Times are estimates; none was measured."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from hydrostat.fabrication.inserts import InsertKind, insert_title
+from hydrostat.fabrication.inserts import Insert, InsertKind, insert_title
 from hydrostat.fabrication.kit_options import Method
 from hydrostat.fabrication.kit_plan import KitPlan
 from hydrostat.fabrication.lists.stitching import SKIN, DepthRow, PointAccess, Stitching
 from hydrostat.fabrication.winch_marks import winch_marks_of
-from hydrostat.robot import Mount, Pin, Robot
+from hydrostat.robot import Mount, Pin, Robot, SheetSide
 from hydrostat.units import plural
 
 
@@ -233,8 +233,26 @@ def _decorate(robot: Robot) -> tuple[AssemblyStep, ...]:
 
 
 def insert_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
+    """Steps that put parts and rods into the body, and sheets on it; none without them."""
+    inserts = [insert for insert in plan.inserts if insert.kind is not InsertKind.SHEET]
+    sheets = [insert for insert in plan.inserts if insert.kind is InsertKind.SHEET]
+    return (*_part_steps(plan, inserts), *(_sheet_step(plan, insert) for insert in sheets))
+
+
+def _sheet_step(plan: KitPlan, insert: Insert) -> AssemblyStep:
+    """Step that fixes a sheet on the skin."""
+    flat = plan.robot.body.mesh.dim == 2
+    sheet = plan.robot.sheets[int(insert.mark[1:]) - 1]
+    faces = "; the face twice, once turned over" if flat and sheet.on is not SheetSide.OUTLINE else ""
+    file = f"by pattern/sheet_{insert.mark}.svg or .dxf, which has no seam allowance{faces}"
+    verb = "Sew" if plan.method is Method.PLUSH else "Glue"
+    fixed = f"{verb} its rim on, so that it can wrinkle" if sheet.wrinkles else f"{verb} it on all over"
+    words = f"Cut {insert.words} {file if flat else 'to the skin by eye'}. {fixed}, {insert.where}. Keep cables free."
+    return AssemblyStep(f"Fix sheet {insert.mark}", 20, words)
+
+
+def _part_steps(plan: KitPlan, inserts: Sequence[Insert]) -> tuple[AssemblyStep, ...]:
     """Step that puts parts and rods into the body; none without them."""
-    inserts = plan.inserts
     if not inserts:
         return ()
     shown = 4  # parts and rods that are named; the list has all

@@ -125,11 +125,13 @@ def _winch(winch: Winch, color: str, mark: str, *, chosen: bool) -> Dot:
 
 
 def _part_items(robot: Robot) -> list[SceneItem]:
-    """Borders of the parts of a flat body."""
+    """Borders of the parts of a flat body, and of its sheets."""
     nodes = robot.body.mesh.nodes
+    covers = [sheet.find_rings(robot.body.mesh) for sheet in robot.sheets]
     return [
-        Strand(points=tuple(map(tuple, nodes[[*loop, loop[0]]].tolist())), stroke=Stroke.DRAWN, color=Color.MUTED)
-        for loops in robot.body.part_rings
+        Strand(points=tuple(map(tuple, nodes[[*loop, loop[0]]].tolist())), stroke=Stroke.DRAWN, color=color)
+        for color, rings in ((Color.MUTED, robot.body.part_rings), (Color.SHEET, covers))
+        for loops in rings
         for loop in loops
     ]
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 from kit_plans import change_plan
+from shapely import Polygon
 from small_inputs import given, square
 from test_bill import needs
 
@@ -13,9 +14,10 @@ from hydrostat.fabrication.kit_options import Method
 from hydrostat.fabrication.kit_plan import Cloth
 from hydrostat.fabrication.lists.lists import insert_table
 from hydrostat.fabrication.lists.needs import filling_mass
+from hydrostat.fabrication.patterns.sheet_pieces import sheet_pieces
 from hydrostat.fabrication.refusals import find_refusals
 from hydrostat.fabrication.sheets.steps import insert_steps
-from hydrostat.robot import BodyPart, Robot, Rod, get_material
+from hydrostat.robot import BodyPart, Robot, Rod, SkinSheet, get_material
 
 BONE = BodyPart(name="bone", shape="box", at=(-0.04, -0.04), to=(0.0, -0.02), density=1200.0)
 PAD = BodyPart(name="pad", shape="box", at=(0.02, -0.04), to=(0.04, -0.02), material=get_material("flexfoam-it x"))
@@ -56,6 +58,31 @@ def test_what_is_put_in_is_bought_listed_and_told() -> None:
     assert "channel" in plush.text
     assert "through the wall" in cast.text
     assert insert_steps(given(square())) == ()
+
+
+def test_a_sheet_on_the_skin_is_cut_and_fixed() -> None:
+    """The left half of the square: two faces of 50 x 100 mm, and 200 mm of its outline, 30 mm wide, cut by elements."""
+    felt = get_material("ecoflex 00-30")
+    half = {"shape": "box", "at": (-0.1, -0.1), "to": (0.0, 0.1)}
+    sheet = SkinSheet(name="glove", material=felt, thickness=1e-3, wrinkles=True, **half)
+    robot = replace(square(), sheets=(sheet,))
+    plan = change_plan(given(robot), method=Method.PLUSH)
+    (row,) = insert_table(plan.inserts, "").rows
+    area = 1e6 * sheet.find_area(robot.body.mesh, robot.body.thickness)
+    assert area == pytest.approx(2 * 50 * 100 + 200 * 30, rel=0.2)
+    assert (row.mark, row.size, row.step) == ("S1", f"1 mm thick, {area / 100:.0f} cm²", "Fix sheet S1")
+    assert row.mass == pytest.approx(1e-6 * felt.density * area, rel=1e-6)
+    assert needs(plan)["sheet S1 glove"].quantity == pytest.approx(1e-6 * area)
+    (step,) = insert_steps(plan)
+    assert "pattern/sheet_S1.svg or .dxf, which has no seam allowance; the face twice, once turned over" in step.text
+    assert "Sew its rim on, so that it can wrinkle, middle at [-19, 0] mm" in step.text
+    pieces = sheet_pieces(robot, sheet)
+    assert pieces is not None
+    areas = [Polygon(line.points).area for line in pieces.panels[0].shapes]
+    assert areas == pytest.approx([50 * 100, 200 * 30])
+    rim = replace(sheet, on="outline", shape="sphere", at=(0.05, 0.05), to=None, radius=0.02)
+    (strip,) = sheet_pieces(robot, rim).panels[0].shapes  # type: ignore[union-attr]
+    assert Polygon(strip.points).area == pytest.approx(40 * 30, rel=1e-3)
 
 
 def _own(robot: Robot) -> tuple[object, object]:
