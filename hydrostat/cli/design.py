@@ -228,6 +228,7 @@ def design(
     source = read_robot(robot)
     request = parse_request(source, typed)
     _refuse_body(source, request)
+    _tell_left_out(source)
     spend = parse_budget(budget)
     _refuse_budget(request, request.motor_for(source), spend)
     record = open_record(out, source, request, resume=resume)
@@ -264,6 +265,16 @@ def _refuse_body(source: "Robot", request: "DesignRequest") -> None:
         raise InputError(f"{reasons[0]}{more}. To design without a kit: built_in = false in a file for --constraints.")
     for reason in reasons:
         print(f"warning: {reason}", file=sys.stderr, flush=True)
+
+
+def _tell_left_out(source: "Robot") -> None:
+    """Print notes of drives and of units that are parts of the body, which a search leaves out."""
+    if source.drives:
+        names = ", ".join(drive.name for drive in source.drives)
+        print(f"note: drives stay at rest in the search: {names}", file=sys.stderr, flush=True)
+    if any(winch.body for winch in source.winches):
+        words = "body = true is left out, since the search places the units itself. Add it to the winches of the result"
+        print(f"note: {words}", file=sys.stderr, flush=True)
 
 
 def _refuse_budget(request: "DesignRequest", key: str, budget: float | None) -> None:

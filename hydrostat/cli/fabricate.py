@@ -129,7 +129,7 @@ def fabricate(
         print(f"Its robot: {out / 'robot'}. Calibrate and play that one")
     if loaded.markers:
         print("Tags for photographs, with their places: tags.pdf")
-    for drive in loaded.drives:
+    for drive in (drive for drive in loaded.drives if drive.unit != "share"):
         print(f"warning: the kit has no servo or stage for drive {drive.name}; add your own")
     if kept is not None:
         print(f"Cable tension: at most {kept:g} N, the limit of its design or of the studio. Override with --tension")

@@ -1,0 +1,34 @@
+"""`fix_drives`, `restore_drives`: a robot whose drives stay at rest while cables are designed."""
+
+from dataclasses import replace
+from typing import TypeVar
+
+import numpy as np
+
+from hydrostat.design.network import Alternative, Network
+from hydrostat.robot import Robot
+
+_One = TypeVar("_One", Network, Alternative)
+
+
+def fix_drives(robot: Robot) -> Robot:
+    """Return the robot with its drives at rest: pins are fixed, loads that a drive scales do not act."""
+    if not robot.drives:
+        return robot
+    pins = tuple(replace(pin, drive=None) for pin in robot.pins)
+    return replace(robot, pins=pins, loads=tuple(load for load in robot.loads if load.drive is None), drives=())
+
+
+def restore_drives(found: Network, robot: Robot) -> Network:
+    """Return a network and its alternatives with the drives, at rest, of the robot that it was designed for."""
+    if not robot.drives:
+        return found
+    others = tuple(_restore(one, robot) for one in found.alternatives)
+    return replace(_restore(found, robot), alternatives=others)
+
+
+def _restore(one: _One, robot: Robot) -> _One:
+    driven = replace(one.robot, pins=robot.pins, loads=robot.loads, drives=robot.drives)
+    still = {"robot": driven, "drives": np.zeros(len(robot.drives))}
+    results = tuple(replace(each, pose=replace(each.pose, **still)) for each in one.ik_results)
+    return replace(one, robot=driven, ik_results=results)
