@@ -371,6 +371,8 @@ def check_contraction(robot: "Robot", name: str, value: float, *, option: str = 
     winches = [each.name for each in robot.winches]
     if name not in winches and name in {each.name for each in robot.markers}:
         raise InputError(f'{option} {name}: "{name}" is a marker. {list_choices("winches", winches)}')
+    if name not in winches and name in {each.name for each in robot.drives}:
+        raise InputError(f'{option} {name}: "{name}" is a drive. Move it by --move. {list_choices("winches", winches)}')
     winch = robot.winch(name)
     if not -winch.release <= value <= winch.travel:
         print(

@@ -331,11 +331,19 @@ def _gravity(entry: Any, dim: int) -> tuple[float, ...] | None:
 
 def _load_drive(entry: Any) -> LoadDrive:
     """Drive that has no place, so that it scales loads."""
-    if not all(isinstance(limit, Decimal) for limit in (entry.min, entry.max)):
-        raise InputError(
-            "give at (pins turn about it), slide (they slide along it), or min and max without unit (it scales loads)"
-        )
-    return LoadDrive(name=entry.name, min=float(entry.min), max=float(entry.max))
+    limits = {"min": entry.min, "max": entry.max}
+    for key, limit in limits.items():
+        if not isinstance(limit, Decimal):
+            said = "is missing" if limit is None else f"is the text {units.quote(limit)}"
+            raise InputError(
+                f"{key} {said}. A share of loads is a number, e.g. {key} = {_SHARES[key]}. "
+                "A drive of pins has at or slide."
+            )
+    return LoadDrive(name=entry.name, **{key: float(limit) for key, limit in limits.items()})
+
+
+_SHARES = {"min": -1, "max": 2}
+"""Shares of loads in an example."""
 
 
 def _drive_value(key: str, text: str, *, turns: bool) -> float:

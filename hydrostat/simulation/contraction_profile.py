@@ -14,7 +14,7 @@ import numpy as np
 from hydrostat.arrays import Float, Vector
 from hydrostat.errors import InputError
 from hydrostat.files import csv_text, read_stranger, replace_file
-from hydrostat.given import check_not_negative
+from hydrostat.given import check_not_negative, list_choices
 from hydrostat.robot import Robot
 from hydrostat.simulation.controls import contraction_values
 from hydrostat.units import quote
@@ -128,7 +128,7 @@ def check_profile(profile: object, robot: Robot) -> None:
 class ProfileTable:
     """CSV of moves: a column `time_s`, and in millimeters one for each winch that moves, `left_mm` or just `left`.
 
-    Drives that slide have such columns too, drives that turn one in degrees, `base_deg`.
+    Drives that slide have such columns too, drives that turn one in degrees, `base_deg`, drives of loads `thumb_share`.
 
     The studio, `hydrostat trajectory`, `hydrostat play` and `hydrostat simulate --play` write and read this table.
 
@@ -174,7 +174,8 @@ class ProfileTable:
             )
         for column in head:
             if column not in (TIME, *names):
-                raise InputError(f"{name}, line 1: unknown {parts} {quote(column)}. Available: {', '.join(names)}.")
+                known = list_choices("winches", [full.removesuffix(MILLIMETERS) for full, _ in columns.values()], column)
+                raise InputError(f"{name}, line 1: unknown {parts} {quote(column)}. {known}")
         lines, times, values = [], [], []
         for line, row in rows[1:]:
             if any(cell.strip() for cell in row):
@@ -232,9 +233,10 @@ def _numbers(
         except ValueError:
             found[column] = math.nan
         if not math.isfinite(found[column]):
-            degrees = column != TIME and columns[column][0].endswith("_deg")
-            unit = "seconds" if column == TIME else "degrees" if degrees else "millimeters"
-            raise InputError(f"{place}, column {column}: write a number of {unit}, not {quote(cell.strip())}")
+            full = column if column == TIME else columns[column][0]
+            wanted = _VALUES[full.rpartition("_")[2]]
+            shown = full.removesuffix(MILLIMETERS)
+            raise InputError(f"{place}, column {shown}: write {wanted}, not {quote(cell.strip())}")
     return found
 
 
@@ -242,6 +244,14 @@ TIME = "time_s"
 """Name of the column of times [s]."""
 
 MILLIMETERS = "_mm"  # ends the head of a column of contractions
+
+_VALUES = {
+    "s": "a number of seconds",
+    "mm": "a number of millimeters",
+    "deg": "a number of degrees",
+    "share": "a share without unit, such as 0.5",
+}
+"""Values of a column by the end of its head."""
 
 
 _MARKS = {

@@ -36,9 +36,12 @@ def contraction_values(robot: Robot, given: Contractions) -> Vector:
             raise InputError(f'unknown {kind} "{unknown[0]}". {list_choices(kinds, known, unknown[0])}')
         wanted = np.array([given.get(winch.name, 0.0) for winch in winches], dtype=object)
     try:
+        kinds = np.array(wanted, dtype=object).ravel()
         values = np.array(wanted, dtype=float)
     except (TypeError, ValueError):
         raise InputError(f"contractions must be numbers [m], not {given!r}") from None
+    if any(isinstance(kind, bool | np.bool_ | str) for kind in kinds):
+        raise InputError(f"contractions must be numbers [m], not {given!r:.60}")
     if values.ndim > 1:
         raise InputError(
             f"contractions must be one number for each of {len(winches)} winches, not an array of {values.shape}; "

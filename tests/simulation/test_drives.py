@@ -147,7 +147,7 @@ def test_values_of_drives_are_written_and_read_in_degrees_and_millimeters(tmp_pa
     with pytest.raises(InputError, match="write a number of degrees, not"):
         ContractionProfile.read(file, robot)
     file.write_text("time_s,servo_rad\n0,1\n")
-    with pytest.raises(InputError, match='unknown winch or drive "servo_rad"'):
+    with pytest.raises(InputError, match='unknown winch or drive "servo_rad".* Did you mean "servo_deg"'):
         ContractionProfile.read(file, robot)
 
 
@@ -171,5 +171,8 @@ def test_wrong_values_are_told_in_one_line() -> None:
         simulation.solve({"servo": 30.0})
     with pytest.raises(InputError, match='drives, such as "servo", are not available in motors'):
         Calibration.usual(simulation.robot).check(simulation.robot)
+    for given in ({"servo": True}, [np.True_]):
+        with pytest.raises(InputError, match="contractions must be numbers"):
+            simulation.solve(given)
     pose = simulation.solve({"servo": 3.2})
     assert pose.warnings == ("drive servo: 183.3 deg is outside its range (-180 deg to 180 deg)",)
