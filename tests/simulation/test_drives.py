@@ -171,7 +171,7 @@ def test_wrong_values_are_told_in_one_line() -> None:
         simulation.solve({"servo": 30.0})
     with pytest.raises(InputError, match='drives, such as "servo", are not available in motors'):
         Calibration.usual(simulation.robot).check(simulation.robot)
-    for given in ({"servo": True}, [np.True_]):
+    for given in ({"servo": True}, [True]):
         with pytest.raises(InputError, match="contractions must be numbers"):
             simulation.solve(given)
     pose = simulation.solve({"servo": 3.2})
