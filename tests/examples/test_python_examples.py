@@ -67,11 +67,17 @@ HELD: dict[str, tuple[str, Callable[[dict[str, Any]], bool]]] = {
     "24_learn_and_certify": ("a fresh solve", lambda names: certificate_differs(names) < 1e-6 and names["left"] < 1e-3),
     "25_motors": ("a step of the clock at 16 mm/s", lambda names: names["error"] < 0.016 / 30),
     "26_torch": ("hidden modulus", lambda names: abs(names["young"] / names["true"] - 1) < 1e-4),
+    "27_policy": ("its environment", lambda names: names["error"] < 3e-3 and policy_differs(names) < 1e-6),
 }
 """Number of each example: its oracle, and whether it holds."""
 
 
-NEEDS = {"20_environment": "gymnasium", "24_learn_and_certify": "torch", "26_torch": "torch"}
+NEEDS = {
+    "20_environment": "gymnasium",
+    "24_learn_and_certify": "torch",
+    "26_torch": "torch",
+    "27_policy": "gymnasium",  # for its oracle
+}
 """Packages of extras that examples need."""
 
 
@@ -94,6 +100,17 @@ def reward_differs(names: dict[str, Any]) -> float:
     markers = np.array(list(Simulation(env.robot).solve(contractions).markers.values()))
     goals = (env.rest + env.unit * seen["desired_goal"]).reshape(markers.shape)
     return float(abs(names["rewards"][-1] + np.linalg.norm(markers - goals, axis=1).mean() / env.options.tolerance))
+
+
+def policy_differs(names: dict[str, Any]) -> float:
+    """Difference of the error from that in the environment that the policy was trained in [m]."""
+    from hydrostat.training import ReachEnv, ReachOptions
+
+    env = ReachEnv(names["robot"], options=ReachOptions(steps=10, incremental=True))
+    seen, told = env.reset(options={"goal": names["goal"].ravel()})
+    for _ in range(10):
+        seen, _, _, _, told = env.step(names["policy"].act(seen))
+    return float(abs(told["distance"] - names["error"]))
 
 
 def certificate_differs(names: dict[str, Any]) -> float:
