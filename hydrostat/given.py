@@ -45,14 +45,19 @@ def check_positive(field: str, value: float, unit: str) -> None:
     """Reject a value that is no number, not finite or not above 0."""
     check_number(field, value, unit)
     if not 0 < value < math.inf:
-        raise InputError(f"{field} must be finite and above 0, not {value:g} {unit}".rstrip())
+        raise InputError(f"{field} must be finite and above 0, not {_with_unit(value, unit)}")
 
 
 def check_not_negative(field: str, value: float, unit: str) -> None:
     """Reject a value that is no number, not finite or below 0."""
     check_number(field, value, unit)
     if not 0 <= value < math.inf:
-        raise InputError(f"{field} must be finite and not negative, not {value:g} {unit}".rstrip())
+        raise InputError(f"{field} must be finite and not negative, not {_with_unit(value, unit)}")
+
+
+def _with_unit(value: float, unit: str) -> str:
+    """Value as people write it: lengths in millimeters."""
+    return f"{1e3 * value:g} mm" if unit == "m" else f"{value:g} {unit}".rstrip()
 
 
 def check_point(field: str, point: Point) -> None:

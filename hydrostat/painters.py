@@ -1,4 +1,4 @@
-"""Registry of functions that draw records, and of one that makes parts: lower rooms need not import upper ones."""
+"""Registry of functions that draw records, and of two that know motors: lower rooms need not import upper ones."""
 
 import base64
 import html
@@ -27,6 +27,11 @@ def draw_record(kind: str, *records: object, **options: Any) -> "Figure":
 def make_winch_parts(robot: object) -> Any:
     """Make the parts of the body that are winches, by the function registered as "winches": it knows the motors."""
     return _registered["winches"](robot)
+
+
+def check_motor(key: str) -> None:
+    """Check that a motor has this key, by the function registered as "motor" (InputError: none has it)."""
+    _registered["motor"](key)
 
 
 def html_repr(text: str, figure: "Figure") -> str:

@@ -1,5 +1,6 @@
 """`hydrostat check`."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -10,7 +11,7 @@ from hydrostat.errors import InputError
 from hydrostat.units import plural
 
 if TYPE_CHECKING:
-    from hydrostat.robot import Body, Robot, Rod, Sensor, SkinSheet
+    from hydrostat.robot import Body, Material, Robot, Rod, Sensor, SkinSheet
 
 
 def check(
@@ -198,7 +199,7 @@ def _body_lines(body: "Body") -> list[str]:
         angle = f"smallest angle {mesh.smallest_angle():.0f}°"
     else:
         angle = f"smallest angle between faces {mesh.dihedral_angles().min():.2g}°"
-    name = material.name or "custom material"
+    name = _material_name(material)
     return [
         f"{name}: {_mass_text(float(body.element_masses[own].sum()))}, {_volume_text(volume)}",
         *(_part_line(body, index) for index in range(len(body.parts))),
@@ -206,6 +207,14 @@ def _body_lines(body: "Body") -> list[str]:
         f"{across} {1e3 * thin:.0f} to {1e3 * thick:.0f} mm ({few:.1f} to {many:.0f} elements across){flat}; {angle}",
         *_plane_lines(body, thick),
     ]
+
+
+def _material_name(material: "Material") -> str:
+    """Name in the table, or in the user's own file, of a material."""
+    from hydrostat.robot import own_materials
+
+    own = (found.name for found in own_materials().values() if replace(found, name="", source="") == material)
+    return material.name or next(own, "custom material")
 
 
 def _plane_lines(body: "Body", thick: float) -> list[str]:
@@ -222,7 +231,7 @@ def _plane_lines(body: "Body", thick: float) -> list[str]:
 def _part_line(body: "Body", index: int) -> str:
     """Material, mass and number of elements of a part."""
     part, own = body.parts[index], body.element_materials == index + 1
-    name = "rigid" if part.material is None else part.material.name or "custom material"
+    name = "rigid" if part.material is None else _material_name(part.material)
     volume = float(body.mesh.volumes[own].sum()) * (body.thickness or 1.0)
     mass = _mass_text(float(body.element_masses[own].sum()))
     return f"part {part.name}: {name}, {mass}, {_volume_text(volume)}, {own.sum()} elements"
@@ -239,7 +248,7 @@ def _rod_line(rod: "Rod") -> str:
 
 def _sheet_line(body: "Body", sheet: "SkinSheet") -> str:
     """Material, thickness and covered area of a sheet."""
-    name = sheet.material.name or "custom material"
+    name = _material_name(sheet.material)
     wrinkles = ", wrinkles" if sheet.wrinkles else ""
     area = 1e4 * sheet.find_area(body.mesh, body.thickness)
     return f"sheet {sheet.name}: {name}, {1e3 * sheet.thickness:.3g} mm thick, {area:.3g} cm²{wrinkles}"

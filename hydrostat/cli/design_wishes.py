@@ -104,10 +104,13 @@ def _read_noting(read: Callable[[Path, "Robot"], _Read], file: Path, robot: "Rob
 def _constraints(robot: "Robot", typed: DesignArguments) -> "Constraints":
     """The constraints of a file, with those of the command line before them."""
     from hydrostat.design import Constraints, read_constraints
+    from hydrostat.fabrication import Motor
 
     constraints = Constraints() if typed.file is None else _read_noting(read_constraints, typed.file, robot)
     if typed.symmetric not in (None, "x", "y", "z"):
         raise InputError(f"--symmetric {typed.symmetric}: unknown axis. Allowed: x, y, z.")
+    if typed.motor not in (None, "auto"):
+        Motor.choose(typed.motor)
     given: dict[str, Any] = {
         **{name: _limit(name, value) for name, value in typed.limits.items()},
         "motor": typed.motor,

@@ -181,7 +181,11 @@ def _check_material(name: str, fit: tuple[str, ...] | None) -> None:
     from hydrostat.robot import MATERIALS, own_materials
 
     own_materials()  # a wrong file is named before the fit
-    if check_name(name).lower() in MATERIALS:
+    try:
+        check_name(name)
+    except InputError as error:
+        raise InputError(f"--save-material: {error}") from None
+    if name.lower() in MATERIALS:
         raise InputError(f'--save-material "{name}": is in the table of materials. Name another one.')
     if fit is not None and "young" not in fit:
         raise InputError("--save-material: the fit leaves Young's modulus out. Add young to --fit.")
@@ -194,13 +198,19 @@ def _save_material(name: str, found: "IdentifiedRobot", source: str) -> None:
     if material.young_interval is None:
         print(f'warning: these measurements do not show body.young. "{name}" was not saved.')
         return
-    replaced = name.lower() in own_materials()
+    replaced = own_materials().get(name.lower())
     path = save_own_material(replace(material, name=name, source=source))
     low, high = material.young_interval
     print(f"Wrote {path}: {1e-3 * material.young:.3g} kPa (95 %: {1e-3 * low:.3g} to {1e-3 * high:.3g} kPa)")
-    if replaced:
-        print(f'note: it replaces your material "{name}" of before')
+    if replaced is not None:
+        print(f'note: it replaces your earlier "{replaced.name}", {1e-3 * replaced.young:.3g} kPa')
+    if high > _WIDE * low:
+        print("warning: the interval of Young's modulus is wide. Measure with forces or hung masses, then fit again.")
     print(f'Use it: material = "{name}" in robot.toml')
+
+
+_WIDE = 2.0
+"""Upper over lower end of an interval that is hardly of use."""
 
 
 def _print_values(found: "IdentifiedRobot") -> None:

@@ -7,6 +7,7 @@ from functools import reduce
 import numpy as np
 
 from hydrostat.errors import InputError
+from hydrostat.given import list_choices
 from hydrostat.identification.model import IdentificationModel, Parameter, Values
 from hydrostat.robot import FOAM_POISSON_LIMIT, Material, Robot
 from hydrostat.units import MM
@@ -47,7 +48,7 @@ def named_model(robot: Robot, kinds: tuple[str, ...] | None = None) -> Identific
         InputError: an unknown kind, or one that this robot has nothing of.
     """
     if unknown := [name for name in kinds or () if name not in KINDS]:
-        raise InputError(f'unknown parameter "{unknown[0]}". Available: {", ".join(KINDS)}.')
+        raise InputError(f'unknown parameter "{unknown[0]}". {list_choices("parameters", [*KINDS], unknown[0])}')
     names = tuple(name for name, kind in KINDS.items() if (kind.default if kinds is None else name in kinds))
     found = {name: KINDS[name].parameters(robot) for name in names}
     all_names = [parameter.name for parameters in found.values() for parameter in parameters]

@@ -304,7 +304,7 @@ def get_material(name: str, law: MaterialLaw | str | None = None) -> Material:
     if material is None:
         from difflib import get_close_matches
 
-        from hydrostat.robot.own_materials import own_materials
+        from hydrostat.robot.own_materials import own_file, own_materials
 
         own = own_materials()
         if name.lower() in own and law is None:
@@ -312,8 +312,8 @@ def get_material(name: str, law: MaterialLaw | str | None = None) -> Material:
         near = get_close_matches(name.lower(), [*MATERIALS, *own], n=1)
         hint = f'did you mean "{near[0]}"? ' if near else ""
         raise InputError(
-            f"unknown material {quote(name)}; {hint}`hydrostat materials` lists all {len(MATERIALS)}; "
-            f"or give its young, poisson and density"
+            f"unknown material {quote(name)}; {hint}`hydrostat materials` lists all {len(MATERIALS) + len(own)}, "
+            f"your own of {own_file()} included; or give its young, poisson and density"
         )
     if law is None or parse_choice(MaterialLaw, law, what="law") is MaterialLaw.NEO_HOOKEAN:
         return material

@@ -22,7 +22,7 @@ VARIABLE = "HYDROSTAT_MATERIALS"
 
 def own_materials() -> dict[str, Material]:
     """Materials of the user's own file by name; none where there is no file (InputError: a file that is wrong)."""
-    path = _own_file()
+    path = own_file()
     return _OwnMaterials(path, read_text(path)).materials() if path is not None and path.exists() else {}
 
 
@@ -34,7 +34,7 @@ def save_own_material(material: Material) -> Path:
     """
     import tomlkit
 
-    path = _own_file()
+    path = own_file()
     if path is None:
         raise InputError(f"no home folder for your materials. Set {VARIABLE} to the path of a file.")
     check_name(material.name)
@@ -55,7 +55,7 @@ def save_own_material(material: Material) -> Path:
     return replace_file(path, tomlkit.dumps(document).encode())
 
 
-def _own_file() -> Path | None:
+def own_file() -> Path | None:
     """Path of the file, which need not exist; None without a home folder."""
     if named := os.environ.get(VARIABLE):
         return Path(named)
@@ -80,8 +80,12 @@ class _OwnMaterials(TablesFile):
 
     def materials(self) -> dict[str, Material]:
         """Materials by name in small letters."""
+        from hydrostat.robot.materials import MATERIALS
+
         found: dict[str, Material] = {}
         for index, entry in enumerate(self.table.material):
+            if entry.name.lower() in MATERIALS:
+                self.fail(f"material[{index}].name", f'"{entry.name}" is in the table of materials; take another name')
             material = self.at(f"material[{index}]", lambda entry=entry: material_of(entry))
             if entry.name.lower() in found:
                 self.fail(f"material[{index}].name", "there are two of this name; names must be unique")

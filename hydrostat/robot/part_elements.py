@@ -25,7 +25,7 @@ def find_part_elements(
     middles = mesh.nodes[mesh.elements].mean(axis=1)
     found = np.zeros(len(middles), dtype=np.int64)
     for index, part in enumerate(parts):
-        where = f"body.part[{index}]"
+        where = f'winch "{part.winch}"' if part.winch else f"body.part[{index}]"
         if part.name in [other.name for other in parts[:index]]:
             raise InputError(f'{where}.name: there are two of the name "{part.name}"; names must be unique')
         if part.dim > mesh.dim:
@@ -41,8 +41,9 @@ def find_part_elements(
         shared = held & (found > 0)
         if shared.any():
             other = parts[found[shared][0] - 1].name
+            what, more = ("its motor", ", or take a smaller motor") if part.winch else (f'"{part.name}"', "")
             raise InputError(
-                f'{where}: "{part.name}" overlaps "{other}" in {int(shared.sum())} elements; move one of them'
+                f'{where}: {what} overlaps "{other}" in {int(shared.sum())} elements; move one of them{more}'
             )
         if part.is_rigid and (pieces := _pieces(mesh, part, held)):
             raise InputError(f'{where}: rigid "{part.name}" {pieces}')

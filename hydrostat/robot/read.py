@@ -130,7 +130,13 @@ class RobotReader(TablesFile):
         contact = None if table.contact is None else self.at("contact", lambda: self._contact(table.contact))
         given = {"name": table.name, "length_unit": self.unit, "face": table.face, "motor": table.motor}
         options = {"gravity": gravity, "contact": contact, **given}
-        return self.at("", lambda: fit_winch_bodies(Robot(body=body, poses=poses, **options, **parts)))
+        robot = self.at("", lambda: Robot(body=body, poses=poses, **options, **parts))
+        try:
+            return fit_winch_bodies(robot)
+        except InputError as error:
+            name, _, told = str(error).removeprefix('winch "').partition('": ')
+            index = next((index for index, winch in enumerate(robot.winches) if winch.name == name), None)
+            self.fail("" if index is None else f"winch[{index}]", str(error) if index is None else told)
 
     def _pin(self, entry: Any) -> Pin:
         return Pin(

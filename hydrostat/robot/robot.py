@@ -11,7 +11,7 @@ from hydrostat.arrays import Points, Vector
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
 from hydrostat.given import Point, check_type, check_unique, list_choices
-from hydrostat.painters import draw_record, html_repr
+from hydrostat.painters import check_motor, draw_record, html_repr
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable, given_names, name_cables
 from hydrostat.robot.cable_side import Face
@@ -236,6 +236,8 @@ class Robot:
             for part in getattr(self, what):
                 check_type(part, kind, f"{what} must be {getattr(kind, '__name__', 'drive')} records")
         check_type(self.motor, str, 'motor must be a key, such as "sts3215"')
+        if self.motor != "auto":
+            check_motor(self.motor)
         check_type(self.poses, Mapping, "poses must be given by name")
         for pose in self.poses.values():
             check_type(pose, PoseTarget, "poses must be Pose records")

@@ -48,7 +48,18 @@ _EXAMPLES = {
     "outline": "outline = [[0, 0], [10, 0], [10, 20]]",
     "locked_cables": "locked_cables = [1, 2]",
     "locked_winches": 'locked_winches = ["left"]',
+    "sheet.name": 'name = "felt"',
+    "sheet.thickness": 'thickness = "0.8 mm"',
+    "load.name": 'name = "push"',
+    "drive.name": 'name = "base"',
+    "marker.name": 'name = "tip"',
+    "pose.name": 'name = "wave"',
+    "rod.name": 'name = "spine"',
+    "obstacle.name": 'name = "ball"',
+    "sensor.name": 'name = "bend"',
+    "body.part.name": 'name = "bone"',
 }
+"""Examples by key, with its table where the key alone says too little."""
 
 
 _SENTENCES = {
@@ -106,7 +117,7 @@ def _message(error: Any, location: tuple[Any, ...], form: type[TomlTable]) -> st
     if kind not in _SENTENCES:
         return error["msg"].removeprefix("Value error, ")
     limits = {name: str(limit).replace("'", "") for name, limit in error.get("ctx", {}).items()}
-    example = _EXAMPLES.get(key) or (f"{key} = 4" if kind == "int_type" else "[0, 0]")
+    example = _EXAMPLES.get(".".join(names)) or _EXAMPLES.get(key) or (f"{key} = 4" if kind == "int_type" else "[0, 0]")
     return _SENTENCES[kind].format(key=quote(key), value=quote(error["input"]), example=example, **limits)
 
 

@@ -174,7 +174,8 @@ class ProfileTable:
             )
         for column in head:
             if column not in (TIME, *names):
-                known = list_choices("winches", [full.removesuffix(MILLIMETERS) for full, _ in columns.values()], column)
+                heads = [full.removesuffix(MILLIMETERS) for full, _ in columns.values()]
+                known = list_choices("winches", heads, column)
                 raise InputError(f"{name}, line 1: unknown {parts} {quote(column)}. {known}")
         lines, times, values = [], [], []
         for line, row in rows[1:]:

@@ -69,7 +69,19 @@ def test_a_material_is_saved_with_its_interval(run: Run, tmp_path: Path, monkeyp
     assert 'Use it: material = "my felt"' in text
     assert "my felt" in run("materials")[1]
     assert "3 rows of pulls.csv" in run("materials", "my felt")[1]
-    for name, told in (("PDMS", "is in the table of materials"), ("a/b", 'has "/" in it')):
+    assert ("the interval of Young's modulus is wide" in text) == (high > 2 * low)
+    assert "my felt: " in run("check", tmp_path / "fitted")[1]
+    assert (
+        'replaces your earlier "my felt", 2'
+        in run("identify", "gallery:starfish", table, *options[:-1], tmp_path / "again", "--save-material", "My felt")[
+            1
+        ]
+    )
+    for name, told in (
+        ("PDMS", "is in the table of materials"),
+        ("a/b", '--save-material: "a/b" has "/" in it'),
+        ("", "--save-material: a name must not be empty"),
+    ):
         code, _, errors = run("identify", "gallery:starfish", table, *options, "--save-material", name)
         assert code == 2
         assert told in errors

@@ -57,7 +57,7 @@ def test_the_distance_is_a_share_of_the_size() -> None:
 @pytest.mark.parametrize(
     ("table", "told"),
     [
-        ('[contact]\ndistance = "-1 mm"', r"line \d+: contact.distance must be finite and above 0, not -0.001 m"),
+        ('[contact]\ndistance = "-1 mm"', r"line \d+: contact.distance must be finite and above 0, not -1 mm"),
         (
             '[contact]\ndistance = "90 mm"',
             r"contact.distance of 90 mm is large beside a body of 279.3 mm; it is usually",

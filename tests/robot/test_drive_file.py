@@ -42,7 +42,10 @@ def test_limits_are_in_their_own_units(tmp_path: Path) -> None:
         (GOOD + SERVO, r'drive\[0\]: moves no pin. Add drive = "servo" to a \[\[pin\]\]'),
         (DRIVEN, r'pin\[0\].drive: unknown drive "servo". The robot has no drives.'),
         (DRIVEN + SERVO + STAGE, r'drive\[1\].name: "servo" is already the name of a drive or winch'),
-        (DRIVEN + SERVO.replace("at = [-20, 0]\n", ""), r'drive\[0\].min is the text "-30 deg". .* A drive of pins has at'),
+        (
+            DRIVEN + SERVO.replace("at = [-20, 0]\n", ""),
+            r'drive\[0\].min is the text "-30 deg". .* A drive of pins has at',
+        ),
         (DRIVEN + STAGE.replace("[0, 1]", "[0, 0]"), r"drive\[0\].slide has no length; give a direction"),
         (DRIVEN + SERVO.replace("[-20, 0]", "[0, 0, 0]\naxis = [0, 0, 0]"), r"drive\[0\].axis has no length"),
         (DRIVEN + SERVO.replace("[-20, 0]", "[0, 0, 0]\naxis = [0, 0, 1]"), r"drive\[0\].at has 3 coordinates, but"),
@@ -58,7 +61,10 @@ def test_limits_are_in_their_own_units(tmp_path: Path) -> None:
         (DRIVEN + LOAD.replace("thumb", "servo") + SERVO, r'load\[0\].drive: unknown drive "servo". The robot has no'),
         (DRIVEN.replace("servo", "thumb") + LOAD + THUMB, r'pin\[0\].drive: unknown drive "thumb". The robot has no'),
         (PRESSED.replace("max = 2", 'max = "2 N"'), r'drive\[0\].max is the text "2 N". A share of loads is a number'),
-        (PRESSED.replace("max = 2", ""), r"drive\[0\].max is missing. .* e.g. max = 2. A drive of pins has at or slide"),
+        (
+            PRESSED.replace("max = 2", ""),
+            r"drive\[0\].max is missing. .* e.g. max = 2. A drive of pins has at or slide",
+        ),
         (PRESSED.replace("max = 2", "max = 200"), r"drive\[0\].max must be a share .* from 0 to 100, not 200"),
         (PRESSED.replace("-0.5", "0.5"), r"drive\[0\].min must be a share of the loads from -100 to 0, not 0.5"),
         (PRESSED.replace('["0 N", "-1 N"]', '["0 N", "-1 N"]\npath = [{ time = "0 s", share = 1 }]'), "drive: .* path"),

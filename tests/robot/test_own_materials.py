@@ -1,5 +1,6 @@
 """A user's own materials. Oracle: the numbers that were written, and the design tolerance that they stand for."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from robot_files import GOOD, edit, load
 from hydrostat.design import BuildTolerances
 from hydrostat.errors import InputError
 from hydrostat.robot import (
+    MATERIALS,
     Material,
     Slider,
     get_material,
@@ -54,7 +56,8 @@ def test_a_material_is_saved_found_and_replaced(file: Path) -> None:
     assert own_materials()["gray felt"].young == 23e3
     assert len(own_materials()) == 2
     assert "# kept" in file.read_text()
-    with pytest.raises(InputError, match='did you mean "gray felt"'):
+    own = rf'did you mean "gray felt".* lists all {len(MATERIALS) + 2}, your own of {re.escape(str(file))} included'
+    with pytest.raises(InputError, match=own):
         get_material("grey felt")
 
 
@@ -94,6 +97,10 @@ def test_designs_take_the_interval(tmp_path: Path) -> None:
         ),
         (2 * '[[material]]\nname = "a"\nyoung = "20 kPa"\npoisson = 0.3\ndensity = "40 kg/m^3"\n', "two of this name"),
         ("[material]\n", "begin each with [[material]]"),
+        (
+            '[[material]]\nname = "PDMS"\nyoung = "20 kPa"\npoisson = 0.3\ndensity = "40 kg/m^3"\n',
+            'line 2: material[0].name: "PDMS" is in the table of materials; take another name',
+        ),
     ],
 )
 def test_wrong_files_are_named(file: Path, text: str, told: str) -> None:

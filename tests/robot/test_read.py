@@ -69,16 +69,16 @@ LINES = [
     ("format = 1", 'format = 1\nlength_unit = "kg"', 'line 3: length_unit: "kg" does not measure a length'),
     ("format = 1", 'format = 1\nlength_unit = "5 mm"', 'line 3: length_unit: unknown unit "5 mm"'),
     # numbers
-    ('"12 mm"', '"0 mm"', "line 7: body.element_size must be finite and above 0, not 0 m"),
-    ('"12 mm"', '"-12 mm"', "line 7: body.element_size must be finite and above 0, not -0.012 m"),
+    ('"12 mm"', '"0 mm"', "line 7: body.element_size must be finite and above 0, not 0 mm"),
+    ('"12 mm"', '"-12 mm"', "line 7: body.element_size must be finite and above 0, not -12 mm"),
     (
         '"12 mm"',
         '"90 mm"',
         "line 7: body.element_size: elements of 90 mm are too large for a body of 60 mm: take 24 mm",
     ),
     ('"12 mm"', '"1 um"', "line 7: body.element_size: elements of 0.001 mm would be", "mm or more"),
-    ('"20 mm"', '"-20 mm"', "line 8: body.thickness must be finite and above 0, not -0.02 m"),
-    ("[body]", '[body]\nsize = "0 mm"', "line 6: body.size must be finite and above 0, not 0 m"),
+    ('"20 mm"', '"-20 mm"', "line 8: body.thickness must be finite and above 0, not -20 mm"),
+    ("[body]", '[body]\nsize = "0 mm"', "line 6: body.size must be finite and above 0, not 0 mm"),
     ("[body]", '[body]\nsize = "1e-300 mm"', "robot.toml, line "),
     ("[body]", '[body]\nsize = "1e11 m"', "line 8: body.element_size: elements of 12 mm would be"),
     (
@@ -100,8 +100,13 @@ LINES = [
     ),
     ('"polyester fibre"', '{ young = "1 kPa", poisson = 0.3, density = "0 kg/m^3" }', "material.density must", "not 0"),
     ('"polyester fibre"', '{ young = "1 kPa", poisson = nan, density = "9 kg/m^3" }', "poisson: NaN is not a finite"),
+<<<<<<< HEAD
     ("radius = 12", "radius = -1", "line 13: pin[0].radius must be finite and not negative, not -0.001 m"),
     ("radius = 12", 'radius = "12 mm"', 'line 13: pin[0].radius: "12 mm" is not a number; write it without quotes'),
+=======
+    ("radius = 12", "radius = -1", "line 13: pin[0].radius must be finite and not negative, not -1 mm"),
+    ("radius = 12", 'radius = "12 mm"', 'line 13: pin[0].radius: "12 mm" is not a number'),
+>>>>>>> a9b31335 (robot: Check motors and own materials, name winches by line)
     ("radius = 12", 'radius = 12\nstiffness = "0 N/m"', "line 14: pin[0].stiffness must be finite and above 0, not 0"),
     ("at = [-20, 5]", "at = [nan, 5]", "line 17: winch[0].at[0]: NaN is not a finite number"),
     ("at = [-20, 5]", "at = [-inf, 5]", "line 17: winch[0].at[0]: -Infinity is not a finite number"),
@@ -121,9 +126,9 @@ LINES = [
     ("at = [-20, 5]", "at = [-20, 5, 0]", "line 17: winch[0].at has 3 coordinates, but the body has 2"),
     ("at = [-20, 5]", "at = 5", "line 17: winch[0].at: 5 is not a list; write for example at = [0, 0]"),
     ("[0, 10]", "[0, 10, 1]", "line 29: cable[0].points[1] has 3 coordinates, but points[0] has 2"),
-    ('travel = "20 mm"', 'travel = "-2 mm"', "line 19: winch[0].travel must be finite and above 0, not -0.002 m"),
+    ('travel = "20 mm"', 'travel = "-2 mm"', "line 19: winch[0].travel must be finite and above 0, not -2 mm"),
     ('travel = "20 mm"', 'mount = "wall"', 'line 19: winch[0].mount: "wall" is not known; allowed are: body or world'),
-    ('travel = "20 mm"', 'release = "-1 mm"', "line 19: winch[0].release must be finite and not negative, not -0.001"),
+    ('travel = "20 mm"', 'release = "-1 mm"', "line 19: winch[0].release must be finite and not negative, not -1 mm"),
     ('winch = "left"', 'winch = "left"\nslack = "-1 m"', "line 29: cable[0].slack must be finite and not negative"),
     ('winch = "left"', 'winch = "left"\nsmoothing = "0 m"', "line 29: cable[0].smoothing must be finite and above 0"),
     ('winch = "left"', 'winch = "left"\nsheathed = [[0, 1.0]]', "cable[0].sheathed[0][1]: 1.0 is not a whole number"),
@@ -142,7 +147,7 @@ LINES = [
     (
         'winch = "left"',
         'winch = "left"\nspool_radius = "0 mm"',
-        "line 29: cable[0].spool_radius must be finite and above 0, not 0 m",
+        "line 29: cable[0].spool_radius must be finite and above 0, not 0 mm",
     ),
     (
         'winch = "left"',

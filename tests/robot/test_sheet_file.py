@@ -35,7 +35,7 @@ def test_what_is_written_is_read(tmp_path: Path) -> None:
         (FELT.replace("1 mm", "9 mm"), r"sheet\[0\].thickness of 9 mm is above 6 mm, a tenth of the body"),
         (
             FELT.replace('thickness = "1 mm"', ""),
-            r'sheet\[0\].thickness: the key "thickness" is missing; write thickness = "40 mm"',
+            r'sheet\[0\].thickness: the key "thickness" is missing; write thickness = "0.8 mm"',
         ),
         (
             FELT.replace(" }", ', viscosity = "2 Pa s" }'),

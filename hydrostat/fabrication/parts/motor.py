@@ -189,6 +189,14 @@ class Motor:
         raise InputError(f'unknown motor "{key}". {known}')
 
 
+def check_motor(key: str) -> None:
+    """Check that a motor has this key (InputError: none has it; the text begins with the key of robot.toml)."""
+    try:
+        Motor.choose(key)
+    except InputError as error:
+        raise InputError(f"motor: {error}") from None
+
+
 def _box_outline(low: Corner, high: Corner) -> tuple[Corner, ...]:
     return low, (high[0], low[1]), high, (low[0], high[1])
 
