@@ -147,7 +147,7 @@ def test_values_of_drives_are_written_and_read_in_degrees_and_millimeters(tmp_pa
     with pytest.raises(InputError, match="write a number of degrees, not"):
         ContractionProfile.read(file, robot)
     file.write_text("time_s,servo_rad\n0,1\n")
-    with pytest.raises(InputError, match='unknown winch or drive "servo_rad".* Did you mean "servo_deg"'):
+    with pytest.raises(InputError, match=r'unknown winch or drive "servo_rad".* Did you mean "servo_deg"'):
         ContractionProfile.read(file, robot)
 
 
