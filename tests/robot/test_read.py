@@ -100,13 +100,8 @@ LINES = [
     ),
     ('"polyester fibre"', '{ young = "1 kPa", poisson = 0.3, density = "0 kg/m^3" }', "material.density must", "not 0"),
     ('"polyester fibre"', '{ young = "1 kPa", poisson = nan, density = "9 kg/m^3" }', "poisson: NaN is not a finite"),
-<<<<<<< HEAD
-    ("radius = 12", "radius = -1", "line 13: pin[0].radius must be finite and not negative, not -0.001 m"),
-    ("radius = 12", 'radius = "12 mm"', 'line 13: pin[0].radius: "12 mm" is not a number; write it without quotes'),
-=======
     ("radius = 12", "radius = -1", "line 13: pin[0].radius must be finite and not negative, not -1 mm"),
-    ("radius = 12", 'radius = "12 mm"', 'line 13: pin[0].radius: "12 mm" is not a number'),
->>>>>>> a9b31335 (robot: Check motors and own materials, name winches by line)
+    ("radius = 12", 'radius = "12 mm"', 'line 13: pin[0].radius: "12 mm" is not a number; write it without quotes'),
     ("radius = 12", 'radius = 12\nstiffness = "0 N/m"', "line 14: pin[0].stiffness must be finite and above 0, not 0"),
     ("at = [-20, 5]", "at = [nan, 5]", "line 17: winch[0].at[0]: NaN is not a finite number"),
     ("at = [-20, 5]", "at = [-inf, 5]", "line 17: winch[0].at[0]: -Infinity is not a finite number"),
