@@ -26,6 +26,8 @@ def materials(
         return
     width = max(map(len, [*MATERIALS, *own]))
     print(f"{'':<{width}}  {'kg/m^3':>7}  {'Young':>9}  {'Poisson':>7}  {'loss':>4}  range")
+    for hidden in [own.pop(name).name for name in {*own} & {*MATERIALS}]:
+        print(f'warning: your material "{hidden}" is not used: the table has one of this name. Rename yours.')
     for material in (*MATERIALS.values(), *own.values()):
         loss = "" if material.loss_factor is None else f"{material.loss_factor:g}"
         end = material.range_text if material.young_interval is None else _interval_text(material)

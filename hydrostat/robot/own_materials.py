@@ -40,7 +40,8 @@ def save_own_material(material: Material) -> Path:
     check_name(material.name)
     known = own_materials()  # a wrong file stays as it is
     document = tomlkit.parse(read_text(path) if path.exists() else "")
-    values = {"name": material.name, **material_values(material), "source": material.source}
+    values = {"name": material.name, **material_values(material)}
+    values |= {"source": material.source} if material.source else {}
     entries = document.setdefault("material", tomlkit.aot())
     if (name := material.name.lower()) not in known:
         entries.append(tomlkit.table())
@@ -80,12 +81,8 @@ class _OwnMaterials(TablesFile):
 
     def materials(self) -> dict[str, Material]:
         """Materials by name in small letters."""
-        from hydrostat.robot.materials import MATERIALS
-
         found: dict[str, Material] = {}
         for index, entry in enumerate(self.table.material):
-            if entry.name.lower() in MATERIALS:
-                self.fail(f"material[{index}].name", f'"{entry.name}" is in the table of materials; take another name')
             material = self.at(f"material[{index}]", lambda entry=entry: material_of(entry))
             if entry.name.lower() in found:
                 self.fail(f"material[{index}].name", "there are two of this name; names must be unique")

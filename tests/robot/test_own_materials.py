@@ -97,10 +97,6 @@ def test_designs_take_the_interval(tmp_path: Path) -> None:
         ),
         (2 * '[[material]]\nname = "a"\nyoung = "20 kPa"\npoisson = 0.3\ndensity = "40 kg/m^3"\n', "two of this name"),
         ("[material]\n", "begin each with [[material]]"),
-        (
-            '[[material]]\nname = "PDMS"\nyoung = "20 kPa"\npoisson = 0.3\ndensity = "40 kg/m^3"\n',
-            'line 2: material[0].name: "PDMS" is in the table of materials; take another name',
-        ),
     ],
 )
 def test_wrong_files_are_named(file: Path, text: str, told: str) -> None:
