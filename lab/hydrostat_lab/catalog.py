@@ -1,5 +1,6 @@
 """`CATALOG`: every table and figure that can be reproduced, what committed runs found, and what it needs."""
 
+import csv
 import re
 from collections.abc import Sequence
 from importlib.util import find_spec
@@ -312,21 +313,40 @@ CATALOG = {
 """Tables and figures by where they stand."""
 
 
+COSTS = ROOT / "lab" / "costs.csv"
+"""Times of runs in the smallest size: name, minutes on an idle machine, what was run."""
+
+
+def read_costs() -> dict[str, str]:
+    """Return minutes of a run in the smallest size by the name of its entry, as text (HydrostatError: no file)."""
+    if not COSTS.is_file():
+        raise HydrostatError("lab/costs.csv not found. Run hydrostat reproduce from a clone.")
+    rows = csv.DictReader(COSTS.read_text(encoding="utf-8").splitlines())
+    return {row["name"]: f"{row['minutes']} min" if row["minutes"] else row["run"] for row in rows}
+
+
 def catalog_lines() -> list[str]:
     """Return the catalog as text: a row for each finding of a table or figure."""
-    lines = []
+    lines, costs = [], read_costs()
     for source, entries in CATALOG.items():
-        lines += ["", source, f"  {'table or figure':36}{'needs':7}{'result so far':16}finding"]
+        lines += ["", source, f"  {'table or figure':36}{'needs':7}{'cost':16}{'result so far':16}finding"]
         for entry in entries:
             for place, found in enumerate(entry.read_findings()):
-                head = f"{entry.name:36}{entry.extra or '-':7}" if place == 0 else " " * 43
+                cost = costs.get(entry.name, "not measured")
+                head = f"{entry.name:36}{entry.extra or '-':7}{cost:16}" if place == 0 else " " * 59
                 word, _, when = found.verdict.partition(", ")
                 number = ", ".join(part for part in (found.number, when) if part)
                 lines.append(f"  {head}{word:16}{found.claim}{': ' * bool(number)}{number}")
     note = (
         "The robot of the thesis was another hand. Largest runs so far; their files are in CATALOG and reproduced.md."
     )
-    return [*lines[1:], "", note, "Sizes: --size minutes, hour or full. `all` runs those of Chang (2018)."]
+    return [
+        *lines[1:],
+        "",
+        note,
+        "Cost: --size minutes on two idle cores (lab/costs.csv). `all` runs those of Chang (2018).",
+        "Sizes: --size minutes, hour or full.",
+    ]
 
 
 def require_extras(names: Sequence[str]) -> None:

@@ -68,6 +68,12 @@ def reproduce(
     seeds: Annotated[
         int | None, typer.Option(metavar="N", help="Number of random seeds.", show_default="by --size")
     ] = None,
+    methods: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME,NAME", help="Learning methods without a step after, e.g. thesis,search.", show_default="all"
+        ),
+    ] = None,
     jobs: Annotated[int, typer.Option(metavar="N", help="Number of processes. -1 = one per core.")] = -1,
     epochs: Annotated[
         int | None,
@@ -118,8 +124,12 @@ def reproduce(
     asked = _choose(what, (*THINGS, *trials, *REFERENCE_TABLES), chosen)
     if out is None:
         raise InputError("Missing option '--out'. Write a folder, e.g. --out build/thesis.")
-    catalog.require_extras(asked)
     study, bodies = _study(chosen, sampling, robots, counts, targets, seeds)
+    if methods is not None:
+        study = replace(study, methods=tuple(name.strip() for name in methods.split(",")))
+        if {"figure-5.3", "figure-5.4"} & {*asked} and not {"thesis", "search"} <= {*study.methods}:
+            raise InputError(f"--methods {methods}: figures 5.3 and 5.4 show thesis and search. Add them.")
+    catalog.require_extras(asked)
     require_folder(out)
     out.mkdir(parents=True, exist_ok=True)
     if tables := [name for name in asked if name in THINGS]:

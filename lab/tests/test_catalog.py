@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat_lab.catalog import CATALOG, ROOT, CatalogEntry, Finding
+from hydrostat_lab.catalog import CATALOG, ROOT, CatalogEntry, Finding, catalog_lines, read_costs
 from hydrostat_lab.reproduced_page import read_findings_of, write_page
 from hydrostat_lab.trial_tables import is_finished
 
@@ -38,6 +38,18 @@ def test_an_unfounded_result_is_found() -> None:
     assert unfounded(entry._replace(line="no such line", ours="")) == ["no such line"]
     with pytest.raises(HydrostatError, match='no row for "T=7 wins"'):
         THESIS["figure-5.8"]._replace(claims=("T=7 wins",)).read_findings()
+
+
+def test_costs_are_those_of_the_whole_run() -> None:
+    """Oracle: the time of `all` that the page of the studies states."""
+    costs = read_costs()
+    assert set(costs) <= {entry.name for entry in ENTRIES}
+    told = re.search(r"It took ([\d.]+) minutes", (ROOT / "lab" / "README.md").read_text(encoding="utf-8"))
+    minutes = [float(cost.removesuffix(" min")) for name, cost in costs.items() if name in THESIS and " min" in cost]
+    assert told is not None
+    assert sum(minutes) == pytest.approx(float(told[1]), abs=0.2)
+    rows = [line for line in catalog_lines() if line.startswith(("  table-", "  figure-"))]
+    assert [row[45:61].strip() for row in rows] == [costs.get(name, "not measured") for name in THESIS]
 
 
 def test_claims_are_those_of_the_experiments() -> None:

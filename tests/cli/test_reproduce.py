@@ -21,6 +21,14 @@ def test_errors_of_the_laboratory_arrive(run: Run, tmp_path: Path) -> None:
     code, _, words = run("reproduce", "table-9", "--out", tmp_path)
     assert code == 2
     assert words.startswith('hydrostat: error: unknown table or figure "table-9". Available: all, table-5.1,')
+    code, _, words = run("reproduce", "figure-5.4", "--methods", "search", "--out", tmp_path)
+    assert (code, words) == (
+        2,
+        "hydrostat: error: --methods search: figures 5.3 and 5.4 show thesis and search. Add them.\n",
+    )
+    code, _, words = run("reproduce", "table-5.1", "--methods", "magic", "--out", tmp_path)
+    assert code == 2
+    assert words.startswith('hydrostat: error: unknown method "magic". Available: constant,')
     code, _, words = run("reproduce", "table-5.1")
     assert code == 2
     assert "Missing option '--out'" in words
