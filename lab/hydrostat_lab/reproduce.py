@@ -42,6 +42,20 @@ class Size(StrEnum):
     FULL = "full"
 
 
+Methods = Annotated[
+    str | None,
+    typer.Option(
+        metavar="NAME,NAME", help="Learning methods without a step after, e.g. thesis,search.", show_default="all"
+    ),
+]
+Epochs = Annotated[
+    int | None,
+    typer.Option(
+        metavar="N", min=1, help="Epochs of 500 actions for reinforcement learning.", show_default="by --size"
+    ),
+]
+
+
 @app.command()
 def reproduce(
     what: Annotated[
@@ -68,19 +82,9 @@ def reproduce(
     seeds: Annotated[
         int | None, typer.Option(metavar="N", help="Number of random seeds.", show_default="by --size")
     ] = None,
-    methods: Annotated[
-        str | None,
-        typer.Option(
-            metavar="NAME,NAME", help="Learning methods without a step after, e.g. thesis,search.", show_default="all"
-        ),
-    ] = None,
+    methods: Methods = None,
     jobs: Annotated[int, typer.Option(metavar="N", help="Number of processes. -1 = one per core.")] = -1,
-    epochs: Annotated[
-        int | None,
-        typer.Option(
-            metavar="N", min=1, help="Epochs of 500 actions for reinforcement learning.", show_default="by --size"
-        ),
-    ] = None,
+    epochs: Epochs = None,
     model: Annotated[
         Path | None,
         typer.Option(
@@ -125,10 +129,7 @@ def reproduce(
     if out is None:
         raise InputError("Missing option '--out'. Write a folder, e.g. --out build/thesis.")
     study, bodies = _study(chosen, sampling, robots, counts, targets, seeds)
-    if methods is not None:
-        study = replace(study, methods=tuple(name.strip() for name in methods.split(",")))
-        if {"figure-5.3", "figure-5.4"} & {*asked} and not {"thesis", "search"} <= {*study.methods}:
-            raise InputError(f"--methods {methods}: figures 5.3 and 5.4 show thesis and search. Add them.")
+    study = study if methods is None else _only(study, methods, asked)
     catalog.require_extras(asked)
     require_folder(out)
     out.mkdir(parents=True, exist_ok=True)
@@ -199,6 +200,14 @@ def _study(
         options=LearnOptions(steps=usual.steps, inverse_steps=usual.inverse_steps),
     )
     return study, list(usual.robots) if robots is None else [name.strip() for name in robots.split(",")]
+
+
+def _only(study: "Study", methods: str, asked: Sequence[str]) -> "Study":
+    """Return the study with some methods (InputError: an unknown one, or a figure shows another)."""
+    study = replace(study, methods=tuple(name.strip() for name in methods.split(",")))
+    if {"figure-5.3", "figure-5.4"} & {*asked} and not {"thesis", "search"} <= {*study.methods}:
+        raise InputError(f"--methods {methods}: figures 5.3 and 5.4 show thesis and search. Add them.")
+    return study
 
 
 def _numbers(text: str) -> list[int]:
