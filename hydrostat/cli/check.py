@@ -125,7 +125,7 @@ def _print_workspaces(robot: "Robot") -> None:
         return
     # nodes of all poses that are tried for the reach; fewest and most poses
     solved, least, most = 30_000, 9, 64
-    tension, count = Constraints().tension_limit, int(min(max(solved / nodes, least), most))
+    tension, count = robot.max_tension or Constraints().tension, int(min(max(solved / nodes, least), most))
     try:
         reaches = find_workspaces(Simulation(robot), tension=tension, count=count)
     except (InputError, NotConvergedError) as error:

@@ -386,9 +386,5 @@ def _tell_next(network: "Network", source: Path, out: Path, *, kit: bool, fits: 
     else:
         spend = "" if budget is None else f" --budget {budget:g}USD"
         print(f"Next: hydrostat fabricate {quote(str(out / 'robot'))}{spend} --out {quote(str(out / 'kit'))}")
-    limits = network.constraints
-    given = f"--tension {limits.tension_limit:.4g}N"
-    if limits.torque is not None:
-        given += f' --torque "{1e3 * limits.torque:.4g} N mm"'
-    print(f"Pose it within its limits: hydrostat pose {quote(str(out / 'robot'))} {given} --out DIR")
+    print(f"Pose it within the limits of its robot.toml: hydrostat pose {quote(str(out / 'robot'))} --out DIR")
     print(f"Open {out / 'report.html'}")

@@ -58,17 +58,19 @@ def kit_options(network: "Network", budget: float | None) -> "KitOptions":
 
 
 def designed_tension(robot: "Robot", folder: Path) -> float | None:
-    """The tension that a design kept [N], from the score.json next to its folder, or from studio.json in it.
+    """The tension that a design kept [N]: that of studio.json, else of the robot; of older designs from score.json.
 
-    None for a robot of which neither is. Raises InputError: studio.json is there, and cannot be read.
+    None for a robot of which none is. Raises InputError: studio.json is there, and cannot be read.
     """
+    if robot.max_tension is not None:
+        return _wished_tension(robot, folder) or robot.max_tension
     limit = _design_value(robot, folder, "tension_limit", float)
     return _wished_tension(robot, folder) if limit is None else limit
 
 
 def designed_torque(robot: "Robot", folder: Path) -> float | None:
-    """The torque that a design kept [N m], from the score.json next to its folder; None without one."""
-    return _design_value(robot, folder, "torque_limit", float)
+    """The torque that a design kept [N m]: that of the robot, of older designs from the score.json next to it."""
+    return robot.max_torque or _design_value(robot, folder, "torque_limit", float)
 
 
 def designed_motor(robot: "Robot", folder: Path) -> str:

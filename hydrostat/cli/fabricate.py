@@ -132,7 +132,7 @@ def fabricate(
     for drive in (drive for drive in loaded.drives if drive.unit != "share"):
         print(f"warning: the kit has no servo or stage for drive {drive.name}; add your own")
     if kept is not None:
-        print(f"Cable tension: at most {kept:g} N, the limit of its design or of the studio. Override with --tension")
+        print(f"Cable tension: at most {kept:g} N, the limit of robot.toml or of the studio. Override with --tension")
     seconds = time.perf_counter() - began
     print(f"Wrote {len(kit.files)} files in {seconds:.1f} s. Start with {out / 'assembly_sheet.pdf'}")
 

@@ -112,7 +112,7 @@ def _suggest(
     from hydrostat.identification import suggest_measurements
     from hydrostat.units import FORCE, MASS
 
-    most = parse_optional("--tension", tension, FORCE) or Constraints().tension_limit
+    most = parse_optional("--tension", tension, FORCE) or robot.max_tension or Constraints().tension
     found = suggest_measurements(
         robot,
         count,

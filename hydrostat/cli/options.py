@@ -70,10 +70,14 @@ Pulls = Annotated[
     ),
 ]
 MostTension = Annotated[
-    str | None, typer.Option(metavar="FORCE", help="Maximum cable tension, e.g. 20N.", show_default="no limit")
+    str | None,
+    typer.Option(metavar="FORCE", help="Maximum cable tension, e.g. 20N.", show_default="that of robot.toml"),
 ]
 MostTorque = Annotated[
-    str | None, typer.Option(metavar="TORQUE", help='Maximum winch torque, e.g. "50 N mm".', show_default="no limit")
+    str | None,
+    typer.Option(
+        metavar="TORQUE", help='Maximum winch torque, e.g. "50 N mm".', show_default="max_torque of robot.toml"
+    ),
 ]
 EqualWinches = Annotated[
     list[str] | None,
@@ -184,8 +188,8 @@ def middle(text: str, dim: int) -> "Vector":
     return place
 
 
-def pose_limits(tension: str | None, torque: str | None, equal: Sequence[str] | None) -> "Limits":
-    """Limits from --tension, --torque and --equal, such as "left,right" (InputError: no such unit, a group of one)."""
+def pose_limits(robot: "Robot", tension: str | None, torque: str | None, equal: Sequence[str] | None) -> "Limits":
+    """Limits from --tension and --torque, else the robot's, and --equal (InputError: no such unit, a group of one)."""
     from hydrostat.ik import Limits
     from hydrostat.units import FORCE, TORQUE
 
@@ -194,8 +198,8 @@ def pose_limits(tension: str | None, torque: str | None, equal: Sequence[str] | 
         if len(names) < 2:
             raise InputError(f'--equal {text}: too few winches. Name at least two, e.g. "left,right".')
     return Limits(
-        tension=parse_optional("--tension", tension, FORCE),
-        torque=parse_optional("--torque", torque, TORQUE),
+        tension=parse_optional("--tension", tension, FORCE) or robot.max_tension,
+        torque=parse_optional("--torque", torque, TORQUE) or robot.max_torque,
         equal=groups,
     )
 

@@ -63,11 +63,11 @@ def pose(
     from hydrostat.units import TIME
 
     require_folder(out)
-    limits, seconds = pose_limits(tension, torque, equal), parse_optional("--timeout", timeout, TIME)
     if restarts is not None and restarts < 0:
         raise InputError(f"--restarts {restarts}: must be 0 or more")
     options = IKOptions() if restarts is None else IKOptions(restarts=restarts)
     loaded = read_robot(robot)
+    limits, seconds = pose_limits(loaded, tension, torque, equal), parse_optional("--timeout", timeout, TIME)
     outline = None if drawing is None else load_target_outline(loaded, drawing)
     wishes = [] if outline is None else [ShapeTarget(outline=outline)]
     asked_for: dict[str, Any] = {"limits": limits, "objectives": wishes, "options": options, "seconds": seconds}

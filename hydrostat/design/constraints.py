@@ -4,7 +4,7 @@
 
 import dataclasses
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from math import inf, isfinite
 from numbers import Integral, Real
@@ -204,6 +204,11 @@ class Constraints:
     def limits(self) -> Limits:
         """Limits on the tension of every cable and the torque of every winch."""
         return Limits(tension=self.tension, torque=self.torque)
+
+    def limit_robot(self, robot: Robot) -> Robot:
+        """The robot with the limits on tension and torque, which its poses keep to."""
+        given = {"max_tension": self.tension_limit, "max_torque": self.torque}
+        return replace(robot, **{name: value and float(f"{value:.4g}") for name, value in given.items()})
 
     def restrict_to_trees(self) -> "Constraints":
         """The constraints that winch trees keep; the others ask nothing."""

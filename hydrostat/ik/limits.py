@@ -16,7 +16,7 @@ from hydrostat.simulation import Simulation, contraction_values
 
 @dataclass(frozen=True, kw_only=True)
 class Limits:
-    """Limits of the winches, in addition to travel and release.
+    """Limits of the winches, in addition to travel and release. Tension and torque are those of the robot if left out.
 
     Attributes:
         contraction: minimum and maximum contraction of a winch [m], instead of -release and travel.
@@ -83,7 +83,7 @@ def bounds(simulation: Simulation, limits: Limits) -> Bounds:
     spread = np.zeros((len(channels), count))
     spread[np.arange(len(channels)), channels] = 1.0
     low, high = _ranges(robot, limits.contraction)
-    largest = limit_by_winch(robot, limits.tension, "tension", "N")
+    largest = limit_by_winch(robot, robot.max_tension if limits.tension is None else limits.tension, "tension", "N")
     reach = np.append(limit_by_winch(robot, limits.rate, "rate", "m/s"), np.full(len(robot.drives), np.inf))
     if limits.rate is not None:
         if limits.interval is None:
@@ -91,7 +91,8 @@ def bounds(simulation: Simulation, limits: Limits) -> Bounds:
         reach = reach * above_zero("interval of limits", limits.interval, unit="s")
     elif limits.interval is not None:
         raise InputError(f"an interval of {describe(limits.interval)} s limits nothing without a rate; give a rate too")
-    tension, torque = largest[simulation.cables.winches], limit_by_winch(robot, limits.torque, "torque", "N m")
+    strongest = robot.max_torque if limits.torque is None else limits.torque
+    tension, torque = largest[simulation.cables.winches], limit_by_winch(robot, strongest, "torque", "N m")
     arms = spool_arms(robot)
     limited, turned = np.isfinite(tension), np.isfinite(torque) & arms.any(axis=1)
     back = turned & (arms < 0).any(axis=1)  # their motors are turned both ways

@@ -112,7 +112,9 @@ class Work:
         try:
             timeline, wishes = read_project_file(_home(folder), [cable.name for cable in robot.cables])
         except InputError:
-            return Work(robot=robot)
+            timeline, wishes = Timeline(), Wishes()
+        if wishes == Wishes() and robot.max_tension is not None:
+            wishes = wishes.with_values(tension=robot.max_tension)
         return Work(robot=robot, timeline=timeline, wishes=wishes)
 
 

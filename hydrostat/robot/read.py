@@ -128,8 +128,8 @@ class RobotReader(TablesFile):
         body = self._body()
         gravity = self.at("", lambda: _gravity(table.gravity, body.mesh.dim))
         contact = None if table.contact is None else self.at("contact", lambda: self._contact(table.contact))
-        given = {"name": table.name, "length_unit": self.unit, "face": table.face, "motor": table.motor}
-        options = {"gravity": gravity, "contact": contact, **given}
+        given = given_keys(table, "name", "face", "motor", "max_tension", "max_torque")
+        options = {"gravity": gravity, "contact": contact, "length_unit": self.unit, **given}
         robot = self.at("", lambda: Robot(body=body, poses=poses, **options, **parts))
         try:
             return fit_winch_bodies(robot)

@@ -11,7 +11,7 @@ from hydrostat.arrays import Points, Vector
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
 from hydrostat.given import Point, check_type, check_unique, list_choices
-from hydrostat.painters import check_motor, draw_record, html_repr
+from hydrostat.painters import draw_record, html_repr
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable, given_names, name_cables
 from hydrostat.robot.cable_side import Face
@@ -28,7 +28,7 @@ from hydrostat.robot.pin_drive import PinDrive, check_drives
 from hydrostat.robot.rod import Rod, check_rods_inside
 from hydrostat.robot.sensor import Sensor, check_sensors
 from hydrostat.robot.sheet import SkinSheet, check_sheets
-from hydrostat.robot.winch import Mount, Winch
+from hydrostat.robot.winch import Mount, Winch, check_drive_limits
 from hydrostat.units import plural, quote
 
 _Part = TypeVar("_Part", Winch, Cable, Marker)
@@ -51,6 +51,8 @@ class Robot:
         gravity: acceleration along each axis of the body [m/s^2], or a word such as "-y"; None: weightless.
         face: side of a flat body on which its cables run, or a word such as "pairs"; None: unspecified.
         motor: key of the motor of its winches, such as "sts3215"; "auto": the weakest that fits.
+        max_tension: maximum cable tension in poses [N], as a design keeps it; None: no limit.
+        max_torque: maximum torque of a winch in poses [N m]; None: no limit.
         contact: self-contact and obstacle contact; None: disabled, so the body passes through itself.
         obstacles: rigid objects next to the body.
         loads: forces at points of the body, and hung masses.
@@ -74,6 +76,8 @@ class Robot:
     gravity: tuple[float, ...] | None = None
     face: Face | None = None
     motor: str = "auto"
+    max_tension: float | None = None
+    max_torque: float | None = None
     contact: Contact | None = None
     obstacles: tuple[Obstacle, ...] = ()
     loads: tuple[Load, ...] = ()
@@ -235,9 +239,7 @@ class Robot:
             check_type(getattr(self, what), (tuple, list), f"{what} must be several, such as () for none")
             for part in getattr(self, what):
                 check_type(part, kind, f"{what} must be {getattr(kind, '__name__', 'drive')} records")
-        check_type(self.motor, str, 'motor must be a key, such as "sts3215"')
-        if self.motor != "auto":
-            check_motor(self.motor)
+        check_drive_limits(self.motor, self.max_tension, self.max_torque)
         check_type(self.poses, Mapping, "poses must be given by name")
         for pose in self.poses.values():
             check_type(pose, PoseTarget, "poses must be Pose records")
@@ -332,9 +334,7 @@ class Robot:
         return np.array([load.force_under(self.gravity, dim) for load in self.loads]).reshape(-1, dim)
 
     def _check_cables(self) -> None:
-        named = [
-            (f"winch[{index}].at", winch.at) for index, winch in enumerate(self.winches) if winch.mount is Mount.BODY
-        ]
+        named = [(f"winch[{i}].at", each.at) for i, each in enumerate(self.winches) if each.mount is Mount.BODY]
         for index, cable in enumerate(self.cables):
             try:
                 winch = self.winch(cable.winch)

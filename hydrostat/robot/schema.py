@@ -272,6 +272,8 @@ class RobotTable(TomlTable):
     gravity: Gravity | None = None
     face: Face | None = None
     motor: Name = "auto"
+    max_tension: Force | None = None
+    max_torque: Torque | None = None
     body: BodyTable
     pin: list[PinTable] = Field([])
     drive: list[DriveTable] = Field([])

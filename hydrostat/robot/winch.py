@@ -8,6 +8,7 @@ from enum import StrEnum
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
 from hydrostat.given import Point, check_not_negative, check_point, check_positive, check_type
+from hydrostat.painters import check_motor
 
 
 class Mount(StrEnum):
@@ -57,3 +58,13 @@ class Winch:
         make_member(self, "mount", Mount)
         if self.body and self.mount is Mount.WORLD:
             raise InputError('body = true is for a winch in the body. Remove it, or mount = "world"')
+
+
+def check_drive_limits(motor: str, tension: float | None, torque: float | None) -> None:
+    """Reject a motor and limits of all winches that cannot be (InputError)."""
+    check_type(motor, str, 'motor must be a key, such as "sts3215"')
+    if motor != "auto":
+        check_motor(motor)
+    for name, limit, unit in (("max_tension", tension, "N"), ("max_torque", torque, "N m")):
+        if limit is not None:
+            check_positive(name, limit, unit)

@@ -108,6 +108,9 @@ def robot_text(robot: Robot) -> str:
         document["face"] = str(robot.face)
     if robot.motor != "auto":
         document["motor"] = robot.motor
+    for key, dimension in (("max_tension", units.FORCE), ("max_torque", units.TORQUE)):
+        if (limit := getattr(robot, key)) is not None:
+            document[key] = units.format_quantity(limit, dimension)
     document["body"] = writer.body(robot.body)
     if robot.contact is not None:
         document["contact"] = writer.contact(robot.contact)

@@ -14,7 +14,7 @@ from builders import gallery_robot
 from plush import near_the_edge
 
 from hydrostat.cli.design import is_above_budget
-from hydrostat.cli.design_results import designed_motor, designed_tension
+from hydrostat.cli.design_results import designed_motor, designed_tension, designed_torque
 from hydrostat.design import BuildCost, Constraints, Network
 from hydrostat.errors import InputError
 from hydrostat.fabrication import ALL_MOTORS
@@ -160,6 +160,8 @@ def test_the_tension_of_its_design_is_beside_a_robot(tmp_path: Path) -> None:
     assert designed_tension(robot, out / "alternatives" / "01") == 12.5
     (out / "score.json").write_text("{")
     assert designed_tension(robot, out / "robot") is None
+    limited = replace(robot, max_tension=4.0, max_torque=0.02)
+    assert (designed_tension(limited, tmp_path / "copy"), designed_torque(limited, tmp_path / "copy")) == (4.0, 0.02)
 
 
 def test_a_robot_of_the_studio_keeps_to_the_limit_that_it_had_there(tmp_path: Path) -> None:
@@ -172,6 +174,11 @@ def test_a_robot_of_the_studio_keeps_to_the_limit_that_it_had_there(tmp_path: Pa
     (tmp_path / "weak" / "studio.json").write_text("{")
     with pytest.raises(InputError, match=r"^studio\.json: .*\. Fix the file, or set the limit with --tension"):
         designed_tension(robot, tmp_path / "weak")
+    save_robot(replace(robot, max_tension=4.0), tmp_path / "designed")
+    opened = Work.open(tmp_path / "designed")
+    assert opened.wishes == Wishes.of(tension=4.0)
+    Work(robot=opened.robot, wishes=Wishes.of(tension=7.5)).save(tmp_path / "designed")
+    assert designed_tension(opened.robot, tmp_path / "designed") == 7.5
     Work(robot=robot.with_network((), ())).save(tmp_path / "bare")
     assert not (tmp_path / "bare" / "studio.json").exists()
 

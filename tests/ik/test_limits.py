@@ -149,6 +149,14 @@ def test_limits_are_limits(unchecked: None) -> None:
         bounds(STRIP, given)
 
 
+def test_limits_left_out_are_those_of_the_robot(unchecked: None) -> None:
+    """Oracle: by hand; a torque of 0.03 N m on spools of 6 mm is 5 N."""
+    simulation = Simulation(replace(strip_robot(), max_tension=3.0, max_torque=0.03))
+    assert bounds(simulation, Limits()).most == pytest.approx([3.0, 3.0, 0.03, 0.03])
+    assert bounds(simulation, Limits(tension=7.0)).most == pytest.approx([7.0, 7.0, 0.03, 0.03])
+    assert bounds(simulation, Limits(torque=0.05)).most == pytest.approx([3.0, 3.0, 0.05, 0.05])
+
+
 def test_a_winch_without_cables_keeps_out_of_it() -> None:
     robot = strip_robot()
     robot = replace(robot, winches=(Winch(name="idle", at=(0.02, 0.0)), *robot.winches))

@@ -48,6 +48,18 @@ def test_the_motor_of_a_file_reads_back(tmp_path: Path) -> None:
     assert load(tmp_path, merged_text(GOOD, robot)).motor == "sts3215"
 
 
+def test_limits_of_a_file_read_back(tmp_path: Path) -> None:
+    """Oracle: the lines of the file, in SI."""
+    lines = 'max_tension = "4.075 N"\nmax_torque = "60 N mm"'
+    robot = load(tmp_path, edit(GOOD, "format = 1", f"format = 1\n{lines}"))
+    assert (robot.max_tension, robot.max_torque) == (4.075, 0.06)
+    again = load(tmp_path, merged_text(GOOD, robot))
+    assert (again.max_tension, again.max_torque) == (4.075, 0.06)
+    assert "max_t" not in robot_text(replace(robot, max_tension=None, max_torque=None))
+    with pytest.raises(InputError, match=r"line 3: max_torque must be finite and above 0, not -1 N m"):
+        load(tmp_path, edit(GOOD, "format = 1", 'format = 1\nmax_torque = "-1 N m"'))
+
+
 def test_what_is_no_face_is_told(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r'face.*"table" is not known; allowed are: front, back, pairs or middle'):
         load(tmp_path, edit(GOOD, "format = 1", 'format = 1\nface = "table"'))

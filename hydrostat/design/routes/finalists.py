@@ -65,7 +65,8 @@ class Finalists:
     def safe_robot(self, layout: Layout) -> Robot:
         """The robot of a layout, coordinates rounded, new winches with travels that are safe."""
         locked = {winch.name for winch in self.constraints.staying(self.robot)[0]}
-        return limit_travels(self._number_winches(layout).robot(digits=DIGITS), locked)
+        robot = self._number_winches(layout).robot(digits=DIGITS)
+        return self.constraints.limit_robot(limit_travels(robot, locked))
 
     def cost(self, network: Alternative) -> float:
         """The error as built, more where little else is in reach [m]."""

@@ -285,7 +285,7 @@ class _TreeDesign:
         for (index, _, lead), points in zip(pulled, laid, strict=True):
             sheathed = ((0, lead),) if lead and self.constraints.leads else ()
             cables.append(Cable(winch=winches[index].name, points=tuple(map(_point, points)), sheathed=sheathed))
-        robot = self.robot.with_network(winches, cables)
+        robot = self.constraints.limit_robot(self.robot.with_network(winches, cables))
         broken = violations(robot, self.constraints, self.region)
         self.rejected["networks that break a limit of winches or holes"] += bool(broken)
         return None if broken else robot
