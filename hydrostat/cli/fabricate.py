@@ -27,7 +27,7 @@ Tension = Annotated[
     typer.Option(
         metavar="FORCE",
         help="Maximum cable tension in its poses.",
-        show_default="limit of its design or of the studio, else none",
+        show_default="that of robot.toml or of the studio, else none",
     ),
 ]
 Force = Annotated[bool, typer.Option("--force", help="Write the kit despite errors. The assembly sheet lists them.")]
