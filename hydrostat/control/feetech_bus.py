@@ -2,7 +2,8 @@
 
 Source: Feetech's own client (ftservo-python-sdk 2.0.1, MIT) for packets and registers from 40 on; its memory table of
 the STS3215 for the bounds of torque and of angle. A packet is header FF FF, number, length, instruction or error,
-parameters, and the complement of the sum of all after the header. Nothing is stuffed, and the sum has 8 bits only.
+parameters, and the complement of the sum of all after the header. Nothing is stuffed, and the sum has 8 bits only, so
+a filler before each packet ends what came damaged before it.
 
 These servos have **no watchdog**: told nothing, they go on to their last goal. A `BusLink` therefore keeps goals so
 close ahead that a dead host leaves them standing soon, and bounds of torque stay in the servo.
@@ -11,7 +12,9 @@ Their torque by current is not told: gears and windings of several kinds answer 
 no guard judges tensions of their cables.
 """
 
-from collections.abc import Sequence
+from collections import deque
+from collections.abc import Iterable, Sequence
+from itertools import accumulate
 from math import pi
 from typing import Any, ClassVar
 
@@ -32,13 +35,24 @@ def pack(number: int, instruction: int, content: bytes = b"") -> bytes:
     return HEADER + inner + bytes([_sum(inner)])
 
 
-def pad_bytes(packet: bytes) -> bytes:
-    """Return the bytes followed by one that does not occur in them, so that no lost byte goes unnoticed.
+def find_filler(sent: Iterable[bytes]) -> bytes:
+    """Return bytes to send before the next packet, so that no earlier one that lost bytes passes its sum.
 
-    If a byte is lost on the way, the first byte after the packet is taken for its sum, and is right exactly where it
-    is the byte that was lost.
+    A packet that was cut short takes the bytes after it for its own. These complete it with a sum that is wrong,
+    wherever it was cut and whichever byte it lost.
     """
-    return packet + bytes([next(value for value in range(256) if value not in packet)])
+    longest = max(map(len, sent), default=0)
+    value = next(value for value in range(255) if all(_is_refused(packet, value) for packet in sent))
+    return bytes([value]) * max(longest, value + 2)  # to its end, also where the filler is taken for the length
+
+
+def _is_refused(packet: bytes, value: int) -> bool:
+    """Return True if a packet without one byte or its end fails its sum when a repeated value follows it."""
+    if value in packet:  # a lost byte, and the value in place of the sum
+        return False
+    cuts = [(packet[2] + value, value), (2 * value, value)]  # sum and number of missing bytes, cut in the head
+    cuts += [(kept, len(packet) - 3 - place) for place, kept in enumerate(accumulate(packet[2:-1]))][1:]
+    return all((kept + missing * value) % 256 != 255 for kept, missing in cuts)
 
 
 class SumReader(PacketReader):
@@ -107,6 +121,7 @@ class FeetechBus(ServoBus):
     def __init__(self, port: Port, numbers: Sequence[int], **rest: Any) -> None:
         """Servos on a port, by their numbers; the rest is as a `ServoBus` has it."""
         super().__init__(port, numbers, **rest)
+        self._sent = deque[bytes](maxlen=3)  # packets of which one may still wait for its end in a servo
         self._low, self._high = np.zeros(len(self._numbers)), np.zeros(len(self._numbers))  # steps they may go to
 
     def identify(self) -> tuple[MotorFacts, ...]:
@@ -245,7 +260,9 @@ class FeetechBus(ServoBus):
         return None
 
     def _send(self, number: int, instruction: int, content: bytes = b"") -> None:
-        self._send_packet(pad_bytes(pack(number, instruction, content)))
+        packet = pack(number, instruction, content)
+        self._send_packet(find_filler(self._sent) + packet)
+        self._sent.append(packet)
 
     def _answers(self, count: int, size: int) -> list[Packet]:
         """Answers of such a size from servos that are ours."""

@@ -64,8 +64,8 @@ def test_a_word_is_sent_as_the_table_says() -> None:
         chain = EmulatedFeetechChain([EmulatedScs(1)])
         chain.towards = lambda data: sent.append(data) or data
         bus(chain, [1], clock=chain.clock, wait=chain.wait)._go([517], [100], [1])
-    assert sent[0].startswith(pack(0xFE, 0x83, bytes([42, 6, 1, 2, 5, 0, 0, 0, 100])))
-    assert sent[1].startswith(pack(0xFE, 0x83, bytes([41, 7, 1, 0, 5, 2, 0, 0, 100, 0])))
+    assert sent[0].endswith(pack(0xFE, 0x83, bytes([42, 6, 1, 2, 5, 0, 0, 0, 100])))
+    assert sent[1].endswith(pack(0xFE, 0x83, bytes([41, 7, 1, 0, 5, 2, 0, 0, 100, 0])))
 
 
 def test_the_turn_ends_and_that_is_told() -> None:
