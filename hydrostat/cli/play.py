@@ -126,7 +126,10 @@ def _play(
         )
     tell, newline = _progress(kind, motors, player, float(profile.times[-1]))
     try:
-        player.run(motors, profile, feedback=None if seen is None else seen.feedback, tell=tell)
+        if seen is None:
+            player.run(motors, profile, tell=tell)
+        else:  # frames have the time of this computer
+            player.run(motors, profile, feedback=seen.feedback, tell=tell, clock=time.monotonic)
     except (KeyboardInterrupt, SystemExit) as stop:
         newline()
         _say(kind, f"stopped at {player.time:.2f} s; motors holding at {_places(motors)}")

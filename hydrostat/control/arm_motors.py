@@ -11,6 +11,7 @@ from hydrostat.control.bus_link import BusLink
 from hydrostat.control.calibration import Calibration
 from hydrostat.control.corrected_link import CorrectedLink
 from hydrostat.control.guard import TensionGuard
+from hydrostat.control.link import Link
 from hydrostat.control.motors import Motors
 from hydrostat.control.open_bus import EMULATED, open_bus
 from hydrostat.identification import ContractionMap
@@ -61,10 +62,11 @@ def arm_motors(
     except BaseException:
         link.close()
         raise
-    if correction is None:
-        return Motors(robot.winches, link, places=places, fastest=link.limits.speed)
-    outer, places = CorrectedLink(link, correction), correction.effective(places)
-    return Motors(robot.winches, outer, places=places, fastest=link.limits.speed)
+    outer: Link = link
+    if correction is not None:
+        outer, places = CorrectedLink(link, correction), correction.effective(places)
+    clock = bus.clock if port == EMULATED else time.monotonic
+    return Motors(robot.winches, outer, places=places, fastest=link.limits.speed, clock=clock)
 
 
 def _follow(correction: ContractionMap, pulls: Pulls) -> Pulls:

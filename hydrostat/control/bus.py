@@ -2,6 +2,7 @@
 
 import time
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf
 from typing import ClassVar, Protocol, runtime_checkable
@@ -92,6 +93,11 @@ class Bus(ABC):
     kind: ClassVar[str]
     lost_position: bool = False
     silence: float = inf
+
+    @property
+    def clock(self) -> Callable[[], float]:
+        """Monotonic clock of its readings, by which motors are watched [s]."""
+        return steady
 
     def mark(self, zeros: Vector | None = None) -> None:  # noqa: B027 - most motors know their angle by themselves
         """Remember that the motors are calibrated, where that can be lost (HydrostatError: it cannot be remembered).

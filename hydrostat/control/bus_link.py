@@ -93,7 +93,7 @@ class BusLink(Link):
         limits: LinkLimits | None = None,
         guard: TensionGuard | None = None,
         log: Callable[[str], None] = lambda _: None,
-        clock: Callable[[], float] = steady,
+        clock: Callable[[], float] | None = None,
     ) -> None:
         """A closed link (InputError: the calibration is of other winches)."""
         if [spool.winch for spool in calibration.motors] != [winch.name for winch in winches]:
@@ -101,15 +101,17 @@ class BusLink(Link):
         self.state, self.why = LinkState.CLOSED, ""
         self.facts: tuple[MotorFacts, ...] = ()
         self.reading: Reading | None = None
-        self._bus, self._calibration, self.guard, self._log, self._clock = bus, calibration, guard, log, clock
+        self._bus, self._calibration, self.guard, self._log = bus, calibration, guard, log
+        self._clock = clock or bus.clock
         self.limits, self._names = limits or LinkLimits(), calibration.labels
         self._low = np.array([-winch.release for winch in winches], dtype=float)
         self._high = np.array([winch.travel for winch in winches], dtype=float)
         self._places = self._goal = np.zeros(len(winches))
         self._speed, self._sent = 0.0, -np.inf
+        self._written = -np.inf  # when the writing of the last goals began [s]
         self._mark, self._waits = np.zeros(len(winches)), np.zeros(len(winches))  # a place [m], time spent there [s]
         self._judged = -np.inf  # time of the last reading while armed [s]
-        self._began = clock()
+        self._began = self._clock()
         self._lock, self._over = threading.RLock(), threading.Event()
         self._watch: threading.Thread | None = None
         self._stops = 0  # how often it was told to stop
@@ -171,10 +173,7 @@ class BusLink(Link):
                 self._speed = 0.0
             rates = max(self._speed, 1e-3) / self._calibration.radii(near)
             with self._stopping():
-                if since > self._bus.silence:  # this computer was late: fired watchdogs refuse goals
-                    with suppress(HydrostatError):  # a silent motor is named by the age of its reading
-                        self._bus.restart_watchdog()
-                self._bus.write(self._calibration.angles(near), rates)
+                self._write(self._calibration.angles(near), rates)
             self._sent = self._clock()
             if self.state is not LinkState.ARMED:  # stopped by another thread, maybe before this was written
                 self._bus.stop()
@@ -285,6 +284,19 @@ class BusLink(Link):
     def _taking(self, reading: Reading) -> Vector:
         """Currents, positive as cable is taken in [A]."""
         return reading.currents * [spool.turns for spool in self._calibration.motors]
+
+    def _write(self, angles: Vector, speeds: Vector) -> None:
+        """Write goals, and again where watchdogs may have fired before: those refuse goals until they are reset.
+
+        Time counts until the goals are written, as a late computer may be held up on the way.
+        """
+        before, self._written = self._written, self._clock()
+        self._bus.write(angles, speeds)
+        if self._clock() - before > self._bus.silence:
+            with suppress(HydrostatError):  # a silent motor is named by the age of its reading
+                self._bus.restart_watchdog()
+            self._written = self._clock()
+            self._bus.write(angles, speeds)
 
     def _must_be_known(self) -> None:
         """Raise what is missing before motors may be armed, whatever went wrong since."""

@@ -280,10 +280,27 @@ class EmulatedChain:
 class LiveChain(EmulatedChain):
     """The same in real time, for programs that run as they would with motors."""
 
-    def __init__(self, servos: Sequence[EmulatedServo]) -> None:
-        """Servos from now on."""
+    def __init__(self, servos: Sequence[EmulatedServo], *, longest: float = 5.0) -> None:
+        """Servos from now on, for which so much time passes at most between two looks at their clock [s].
+
+        Where that is short, and all go by this clock, nothing is late for them on a busy computer.
+        """
         super().__init__(servos)
-        self.now = time.monotonic()
+        self.now = self._time = self._looked = time.monotonic()
+        self._longest = longest
+
+    def clock(self) -> float:
+        """Its time [s]."""
+        looked = time.monotonic()
+        self._time += min(looked - self._looked, self._longest)
+        self._looked = looked
+        return self._time
+
+    def sleep(self, seconds: float) -> None:
+        """Wait until so much of its time has passed."""
+        end = self.clock() + seconds
+        while (left := end - self.clock()) > 0:
+            time.sleep(min(left, self._longest))
 
     def write(self, data: bytes, /) -> int:
         """Send bytes to all servos as they are by now."""
@@ -299,8 +316,7 @@ class LiveChain(EmulatedChain):
         return taken
 
     def _catch_up(self) -> None:
-        self.wait(min(time.monotonic() - self.now, 5.0))
-        self.now = max(self.now, time.monotonic())
+        self.wait(self.clock() - self.now)
 
 
 def _status(servo: EmulatedServo, error: int, content: bytes) -> bytes:

@@ -1,7 +1,8 @@
 """`Motors`: commanded and measured contractions of the winches."""
 
 import math
-from collections.abc import Sequence
+import time
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 
 import numpy as np
@@ -32,6 +33,7 @@ class Motors:
         fastest: largest speed of their cables [m/s].
         link: link to the motors.
         command_timeout: from one `drive` to the next, before they hold for want of commands [s].
+        clock: monotonic clock by which to drive them [s].
     """
 
     def __init__(
@@ -42,6 +44,7 @@ class Motors:
         places: Vector | None = None,
         fastest: float = FASTEST,
         command_timeout: float = SILENCE,
+        clock: Callable[[], float] = time.monotonic,
     ) -> None:
         """Motors that stand still where they are [m], at 0 if that is left out.
 
@@ -53,6 +56,7 @@ class Motors:
         self.places = np.zeros(len(winches)) if places is None else places.copy()
         self.command = self._within(self.places)
         self.link, self.fastest, self.command_timeout = link, fastest, command_timeout
+        self.clock = clock
         self._driven: float | None = None
 
     @property
@@ -118,7 +122,7 @@ class Motors:
             gap = 0.0 if self._driven is None else now - self._driven
             if gap > self.command_timeout:
                 silence = f"told nothing for {gap:.1f} s, longer than {self.command_timeout:g} s"
-                raise HydrostatError(f"the motors were {silence}, and hold; begin again")
+                raise HydrostatError(f"this computer is late: the motors were {silence}, and hold; begin again")
             self.link.send(self.command, now, speed=self.fastest)
             if look:
                 self.places = self._read(now)

@@ -25,8 +25,12 @@ EMULATED = "emulated"
 """Port name that selects emulated servos instead of hardware."""
 
 
+HELD_UP = 0.03
+"""Time that passes at most for emulated servos while this computer is busy with others [s]."""
+
+
 class EmulatedBus(DynamixelBus):
-    """Servos that are not there, in real time; every line says so."""
+    """Servos that are not there, in real time, or slower on a busy computer; every line says so."""
 
     kind = EMULATED
 
@@ -103,7 +107,7 @@ def _make_emulated_bus(calibration: Calibration, tensions: Callable[[Vector], Ve
     servos = [
         EmulatedServo(n, angle=each.angle(0.0), model=_LIKE_A_KIT) for n, each in enumerate(calibration.motors, 1)
     ]
-    chain, known, torques = LiveChain(servos), -1.0, np.zeros(len(servos))
+    chain, known, torques = LiveChain(servos, longest=HELD_UP), -1.0, np.zeros(len(servos))
 
     def load(index: int) -> Callable[[float], float]:
         def torque(_: float) -> float:
@@ -117,7 +121,7 @@ def _make_emulated_bus(calibration: Calibration, tensions: Callable[[Vector], Ve
 
     for index, servo in enumerate(servos):
         servo.load, servo.constant = load(index), MODELS[servo.model].torque / MODELS[servo.model].stall
-    return EmulatedBus(chain, [servo.number for servo in servos])
+    return EmulatedBus(chain, [servo.number for servo in servos], clock=chain.clock, wait=chain.sleep)
 
 
 _LIKE_A_KIT = 1200

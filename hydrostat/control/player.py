@@ -72,57 +72,55 @@ class Player:
         *,
         feedback: MarkerFeedback | None = None,
         tell: Callable[[], None] = lambda: None,
-        clock: Callable[[], float] = time.monotonic,
+        clock: Callable[[], float] | None = None,
         wait: Callable[[float], None] = time.sleep,
     ) -> None:
         """Play contractions in time on motors, in real time; they hold at its end, on any error and when interrupted.
 
         First they go to where the player begins, in a profile from 0 s to its last time. What the player is told
         meanwhile counts at once: its speed, its rounds, to stop. `tell` is called after each command, the clock only
-        runs forward [s], `wait` lets so much time pass [s]. With feedback, commands are corrected by the markers in
-        sight; while it waits for a marker, the playhead stands still.
+        runs forward [s] and is that of the motors if left out, `wait` lets so much time pass [s]. With feedback,
+        commands are corrected by the markers in sight; while it waits for a marker, the playhead stands still.
 
         Raises:
             InputError: a winch cannot take in what it should.
             HydrostatError: of the link; or motors do not get to where they should be.
         """
-        seconds = float(profile.times[-1])
+        seconds, now = float(profile.times[-1]), clock or motors.clock
 
         def drive(contractions: Vector) -> None:
             if beyond := motors.ask(contractions):
                 raise InputError(beyond)
-            motors.drive(clock())
+            motors.drive(now())
             tell()
 
         def arrive(contractions: Vector) -> None:
             latest = (
-                clock()
-                + float(np.abs(contractions - motors.places).max(initial=0.0)) / motors.fastest
-                + ARRIVAL_TIMEOUT
+                now() + float(np.abs(contractions - motors.places).max(initial=0.0)) / motors.fastest + ARRIVAL_TIMEOUT
             )
             drive(contractions)
             while motors.is_moving:
-                if clock() > latest:
+                if now() > latest:
                     raise HydrostatError(f"{_slowest(motors)}; see what holds it")
                 wait(TICK)
                 drive(contractions)
 
         def next_command() -> Vector:
             planned = profile.at(self.time)
-            return planned if feedback is None else feedback.correct(planned, self.time, clock())
+            return planned if feedback is None else feedback.correct(planned, self.time, now())
 
         try:
             self.play(seconds)
             arrive(profile.at(self.time))
             while self.playing:
                 if feedback is not None and feedback.is_waiting:
-                    self._seen = clock()
-                self.advance(clock(), seconds)
+                    self._seen = now()
+                self.advance(now(), seconds)
                 drive(next_command())
                 wait(TICK)
             has_ended = self.time >= seconds  # not where it was stopped on the way
-            until = clock() + (feedback.settle if feedback is not None and has_ended else 0.0)
-            while clock() < until:
+            until = now() + (feedback.settle if feedback is not None and has_ended else 0.0)
+            while now() < until:
                 drive(next_command())
                 wait(TICK)
             arrive(next_command())

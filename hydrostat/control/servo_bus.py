@@ -60,6 +60,11 @@ class ServoBus(Bus):
             faults=("",) * len(self._numbers),
         )
 
+    @property
+    def clock(self) -> Callable[[], float]:
+        """Monotonic clock of its readings, by which motors are watched [s]."""
+        return self._clock
+
     def halt(self) -> None:
         """Last read positions as goals; none if another thread is using the line."""
         if not self._lock.acquire(blocking=False):
@@ -152,8 +157,9 @@ class ServoBus(Bus):
     def _receive(self, count: int, wanted: Callable[[Packet], bool]) -> list[Packet]:
         """So many answers that are wanted, or fewer after the time, by the clock that only runs forward."""
         until, found = self._clock() + self._answer, list[Packet]()
-        while len(found) < count and (left := until - self._clock()) > 0:
-            self._port.timeout = left
+        left = self._answer
+        while len(found) < count and left > 0:
+            self._port.timeout = max(left := until - self._clock(), 0.0)  # 0: a late computer reads what has come
             try:
                 data = self._port.read(1) + self._port.read(getattr(self._port, "in_waiting", 0))
             except (OSError, ValueError, TypeError) as error:

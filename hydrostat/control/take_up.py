@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.control.bus import Bus, Reading, steady
+from hydrostat.control.bus import Bus, Reading
 from hydrostat.control.calibration import WinchMotor
 from hydrostat.control.model_tensions import WinchPull
 from hydrostat.control.restart_motors import fault_words
@@ -101,7 +101,7 @@ def find_cable_zeros(
     found: Callable[[SlackCalibration], None],
     *,
     most: float = 0.04,
-    clock: Callable[[], float] = steady,
+    clock: Callable[[], float] | None = None,
     wait: Callable[[float], None] = time.sleep,
 ) -> tuple[SlackCalibration, ...]:
     """Find the zeros of all motors, one after the other, while the others stand; all stand at their zeros at the end.
@@ -112,14 +112,14 @@ def find_cable_zeros(
         model: simulated tension of each winch: its onset and its rise; its scale is measured.
         found: told of each winch as soon as it is known.
         most: cable that may be taken up or let out at most [m].
-        clock: monotonic clock [s].
+        clock: monotonic clock [s]; that of the bus if left out.
         wait: lets so much time pass [s].
 
     Raises:
         HydrostatError: a cable is not felt, or always; measurements differ; a motor is silent or reports a fault. The
             motors stand.
     """
-    taker = _Taker(bus, motors, most, clock, wait)
+    taker = _Taker(bus, motors, most, clock or bus.clock, wait)
     try:
         taker.begin()
         done = []
@@ -327,8 +327,8 @@ class _Taker:
         self._goals[index] = goal
         angles = np.array([motor.angle(place) for motor, place in zip(self._from, self._goals.tolist(), strict=True)])
         radii = np.array([motor.reach(place) for motor, place in zip(self._from, self._goals.tolist(), strict=True)])
+        self._told = self._clock()  # before: this computer may be held up on the way
         self._bus.write(angles, 2 * RULES.search_speed / radii)
-        self._told = self._clock()
         self._wait(RULES.interval)
         reading = self._read_fresh()
         self._last = float(reading.angles[index])

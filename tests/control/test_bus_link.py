@@ -117,6 +117,22 @@ def test_the_watch_runs_beside_a_busy_program(monkeypatch: pytest.MonkeyPatch) -
     assert threading.active_count() < 50
 
 
+def test_a_computer_held_up_while_it_writes_goals_goes_on() -> None:
+    """Watchdogs fire before the goals arrive and refuse them; motors stood until they were told to have lost power."""
+    rig = Rig()
+    rig.begin()
+    rig.go(0.03, 0.2)
+    write = rig.bus.write
+
+    def write_late(*goals: np.ndarray) -> None:
+        rig.chain.wait(0.11)
+        rig.bus.write = write
+        write(*goals)
+
+    rig.bus.write = write_late
+    assert rig.go(0.01, 1.5) == pytest.approx(0.01, abs=3e-5)
+
+
 def test_a_suspended_computer_finds_its_motors_on_hold() -> None:
     rig = Rig()
     rig.begin()

@@ -2,20 +2,22 @@
 
 import time
 from dataclasses import replace
+from functools import partial
 from math import inf
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from builders import gallery_robot, strip_robot
 
 from hydrostat.arrays import Vector
-from hydrostat.control import EMULATED, Link, Motors, SimulatedLink, arm_motors
+from hydrostat.control import EMULATED, Link, Motors, Player, SimulatedLink, arm_motors
 from hydrostat.control.link import SILENCE
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.identification import ContractionMap
 from hydrostat.robot import Robot, Winch
-from hydrostat.simulation import ProfileTable
+from hydrostat.simulation import ContractionProfile, ProfileTable
 
 WINCHES = (Winch(name="left", at=(0.0, 0.0), travel=0.06, release=0.01), Winch(name="feet", at=(0.0, 0.0), travel=0.04))
 
@@ -191,3 +193,21 @@ def test_armed_motors_follow_a_correction(tmp_path: Path) -> None:
         assert inner[0] == pytest.approx(0.005, abs=3e-4)
     finally:
         motors.link.close()
+
+
+def test_emulated_motors_live_slower_on_a_late_computer(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Each wait takes 0.6 s, longer than all deadlines. Oracle: the end of the table."""
+    now = [0.0]
+
+    def pass_time(seconds: float) -> float:
+        now[0] += seconds
+        return now[0]
+
+    clock = SimpleNamespace(monotonic=partial(pass_time, 1e-4), sleep=partial(pass_time))
+    monkeypatch.setattr("hydrostat.control.emulated_servos.time", clock)
+    motors = arm_motors(tmp_path, gallery_robot("starfish"), EMULATED, lambda taken: 0.0 * taken)
+    ends = np.array([[0.0, 0.0, 0.0], [0.01, 0.0, 0.0]])
+    profile = ContractionProfile(times=np.array([0.0, 1.0]), values=ends)
+    Player().run(motors, profile, wait=lambda _: clock.sleep(0.6))
+    assert motors.places == pytest.approx(ends[1], abs=3e-4)
+    motors.link.close()
