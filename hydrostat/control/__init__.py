@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from hydrostat.control.marker_path import MarkerPath
     from hydrostat.control.model_tensions import TensionLookup, WinchPull, tensions_along, winch_tensions
     from hydrostat.control.motors import FASTEST, Motors
-    from hydrostat.control.open_bus import EMULATED, add_cable_layers, check_port, open_bus, open_line
+    from hydrostat.control.open_bus import EMULATED, add_cable_layers, check_port, open_bus, open_line, servo_ratings
     from hydrostat.control.player import Player
     from hydrostat.control.restart_motors import restart_motors
     from hydrostat.control.spool_curve import SpoolCurve
@@ -88,6 +88,7 @@ __all__ = [
     "open_line",
     "restart_motors",
     "robot_word",
+    "servo_ratings",
     "steady",
     "tensions_along",
     "winch_tensions",

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -11,7 +11,8 @@ from hydrostat.control.bus import Bus, Port
 from hydrostat.control.calibration import Calibration
 from hydrostat.control.dynamixel_bus import MODELS, DynamixelBus
 from hydrostat.control.emulated_servos import EmulatedServo, LiveChain
-from hydrostat.control.feetech_bus import FeetechBus
+from hydrostat.control.feetech_bus import MODELS as FEETECH_MODELS
+from hydrostat.control.feetech_bus import STALL, FeetechBus
 from hydrostat.control.firmware_build import robot_word
 from hydrostat.control.firmware_bus import FirmwareBus
 from hydrostat.control.joined_bus import JoinedBus
@@ -99,6 +100,17 @@ def check_port(text: str) -> None:
         _, at, baud = port.partition("@")
         if at and not baud.isdecimal():
             raise InputError(f"--motors {text}: the baud rate after @ must be a number, such as 57600")
+
+
+def servo_ratings() -> dict[str, Any]:
+    """Ratings of the servos that a page drives: numbers of models, current at stall [A], torque by current [N m/A]."""
+    return {
+        "feetech": {"models": list(FEETECH_MODELS), "stall": STALL},
+        "dynamixel": {
+            number: {"measures": model.measures, "stall": model.stall, "constant": model.torque / model.stall}
+            for number, model in MODELS.items()
+        },
+    }
 
 
 def _make_emulated_bus(calibration: Calibration, tensions: Callable[[Vector], Vector]) -> EmulatedBus:

@@ -2,23 +2,35 @@
 
 from typing import Any
 
-from hydrostat.control import Calibration, LinkLimits, robot_word
+from hydrostat.control import Calibration, LinkLimits, robot_word, servo_ratings
 from hydrostat.fabrication import winch_marks_of
 from hydrostat.robot import Robot
 
 
 def motor_facts(robot: Robot, calibration: Calibration | None) -> dict[str, Any] | None:
-    """Return facts for the page in SI units; None without motors on exactly one board with our firmware."""
-    if calibration is None or calibration.boards != 1 or any(motor.counts is None for motor in calibration.motors):
+    """Return facts for the page in SI units; None without motors on exactly one board or adapter.
+
+    Motors with encoder counts are on a board with our firmware, others are servos. A zero only tells the page whether
+    taut cables are where they were when the robot was calibrated.
+    """
+    if calibration is None or calibration.boards != 1:
+        return None
+    counted = [motor.counts is not None for motor in calibration.motors]
+    if any(counted) and not all(counted):
         return None
     marks = winch_marks_of(robot)
+    if all(counted):
+        kind: dict[str, Any] = {"kind": "firmware", "robot": robot_word(robot, calibration)}
+    else:
+        kind = {"kind": "servos", **servo_ratings()}
     return {
-        "robot": robot_word(robot, calibration),
+        **kind,
         "speed": LinkLimits().speed,
         "motors": [
             {
                 "mark": marks[winch.name],
                 "number": motor.number,
+                "zero": motor.zero,
                 "turns": motor.turns,
                 "radius": motor.radius,
                 "curve": [list(point) for point in motor.curve],

@@ -23,7 +23,21 @@ from hydrostat.toy.motor_facts import motor_facts
 from hydrostat.toy.toy_picture import ToyPicture
 from hydrostat.version import __version__
 
-_MODULES = ("model", "sight", "drawing", "surface", "player", "board", "motors", "page")
+_MODULES = (
+    "model",
+    "sight",
+    "drawing",
+    "surface",
+    "player",
+    "spool",
+    "drive",
+    "board",
+    "dynamixel",
+    "feetech",
+    "servos",
+    "motors",
+    "page",
+)
 """JavaScript of the page, each before those that import it."""
 
 
@@ -57,7 +71,7 @@ def toy_page(
         shape: learned shape of its body.
         poses: poses to play.
         moves: keyframes to play: times [s] and contractions of all winches [m].
-        motors: motors on one board with our firmware, which the page offers to drive.
+        motors: motors on one board or adapter, which the page offers to drive.
 
     Raises:
         InputError: a body with more points on its surface than a browser without extensions draws, or a pose or
@@ -106,7 +120,7 @@ def toy_page(
         "STYLE": _static("toy.css"),
         "SCRIPT_HASH": f"sha256-{digest}",
         "HINT": "Drag the body" if robot.body.mesh.dim == 2 else "Drag the body. Drag beside it to turn the view",
-        "MADE": _made_text(shape),
+        "MADE": _made_text(robot, shape),
         "DATA": text,
         "SCRIPT": script,
     }
@@ -133,7 +147,7 @@ def _view(robot: Robot) -> tuple[Vector, Vector]:
     return up, Camera.three_quarter(nodes, shown, up).axes[2]
 
 
-def _made_text(shape: LearnedShape) -> str:
+def _made_text(robot: Robot, shape: LearnedShape) -> str:
     """Return how the page was made and its error, as HTML."""
     lines = [
         f"Learned from {shape.samples} simulated poses by a network of {shape.network.numbers.size} numbers.",
@@ -142,6 +156,8 @@ def _made_text(shape: LearnedShape) -> str:
         f"In 95 % of them no point is more than {_millimeters(shape.worst)} off.",
         f"Made by hydrostat {__version__}.",
     ]
+    if robot.drives:
+        lines.insert(2, f"Drives stay at 0: {', '.join(drive.name for drive in robot.drives)}.")
     if shape.stopped:
         lines.insert(1, "Training ended early for lack of time.")
     return "".join(f"<p>{html.escape(line)}</p>" for line in lines)

@@ -1,4 +1,4 @@
-"""The page of a toy on Web Serial: a browser whose port is a stand-in for an emulated board. Oracle: that board."""
+"""The page of a toy on Web Serial: a browser whose port is a stand-in for emulated motors. Oracle: these motors."""
 
 import time
 from collections.abc import Callable, Iterator
@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 from emulated_board import BoardMotor, EmulatedBoard
 
-from hydrostat.control import Calibration, robot_word
+from hydrostat.control import Calibration, EmulatedChain, EmulatedServo, robot_word
+from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedSts
 from hydrostat.learning import Perceptrons
 from hydrostat.robot import Robot, gallery_folder, load_robot
 from hydrostat.toy import LearnedShape, toy_page
@@ -23,7 +24,8 @@ if TYPE_CHECKING:
 
 STAND_IN = """
 const port = {
-  async open() {
+  async open({ baudRate }) {
+    window.baud = baudRate;
     this.readable = new ReadableStream({ start: (to) => { this.to = to; } });
     this.writable = new WritableStream({
       write: async (bytes) => {
@@ -46,6 +48,8 @@ Object.defineProperty(navigator, "serial", { value: { requestPort: async () => p
 
 COUNTS = 1000.0
 
+Connect = Callable[..., "Page"]
+
 
 @pytest.fixture(scope="module")
 def robot() -> Robot:
@@ -62,11 +66,15 @@ def motors(robot: Robot) -> Calibration:
 
 @pytest.fixture(scope="module")
 def text(robot: Robot, motors: Calibration) -> str:
-    """A page with motors; its shape, which these tests do not look at, stays at rest."""
+    return _text(robot, motors)
+
+
+def _text(robot: Robot, motors: Calibration, *, forged: float = 1.0) -> str:
+    """A page with motors; its shape, which these tests do not look at, stays at rest. Its ranges may be forged."""
     winches = robot.winches
     shape = LearnedShape(
         low=np.array([-each.release for each in winches]),
-        high=np.array([each.travel for each in winches]),
+        high=np.array([forged * each.travel for each in winches]),
         network=Perceptrons.of_layers([(np.zeros((1, 3)), np.zeros(1))]),
         mean=robot.body.mesh.nodes,
         basis=np.zeros((1, *robot.body.mesh.nodes.shape)),
@@ -93,11 +101,11 @@ def board(robot: Robot, motors: Calibration) -> EmulatedBoard:
 
 
 @pytest.fixture
-def connect(browser: "Browser", text: str, tmp_path: Path) -> "Iterator[Callable[[EmulatedBoard], Page]]":
-    """Open the page with a board behind its port, whose time is that of the clock, and press Connect."""
+def connect(browser: "Browser", text: str, tmp_path: Path) -> "Iterator[Connect]":
+    """Open the page with motors behind its port, whose time is that of the clock, and press Connect."""
     contexts, lost = [], list[bool]()
 
-    def open_page(board: EmulatedBoard) -> "Page":
+    def open_page(board: EmulatedChain, text: str = text, name: str = "Connect") -> "Page":
         clock = [time.monotonic()]
 
         def write(data: list[int]) -> list[int] | None:
@@ -118,7 +126,7 @@ def connect(browser: "Browser", text: str, tmp_path: Path) -> "Iterator[Callable
         page.expose_function("boardWrite", write)
         page.add_init_script(STAND_IN)
         page.goto((tmp_path / "toy.html").as_uri())
-        page.get_by_role("button", name="Connect").click()
+        page.get_by_role("button", name=name).click()
         return page
 
     yield open_page
@@ -148,9 +156,9 @@ def _says(page: "Page", words: str) -> Callable[[], bool]:
     return lambda: words in page.locator("#motors p").inner_text()
 
 
-def _arm(page: "Page", board: EmulatedBoard) -> None:
+def _arm(page: "Page", board: EmulatedChain) -> None:
     _hold(page)
-    _wait(page, lambda: board.state == "armed" and page.locator("#motors .armed").is_visible())
+    _wait(page, lambda: getattr(board, "state", "armed") == "armed" and page.locator("#motors .armed").is_visible())
     page.mouse.up()
 
 
@@ -158,9 +166,7 @@ def _turn(page: "Page", winch: int, millimeters: float) -> None:
     page.locator(".knob input").nth(winch).fill(str(millimeters))
 
 
-def test_the_robot_follows_the_page_and_stops_when_it_is_hidden(
-    connect: "Callable[[EmulatedBoard], Page]", board: EmulatedBoard
-) -> None:
+def test_the_robot_follows_the_page_and_stops_when_it_is_hidden(connect: Connect, board: EmulatedBoard) -> None:
     page = connect(board)
     _hold(page)
     page.wait_for_timeout(250)  # too short a press
@@ -185,9 +191,7 @@ def test_the_robot_follows_the_page_and_stops_when_it_is_hidden(
     assert "page was hidden" in page.locator("#motors p").inner_text()
 
 
-def test_motors_stand_within_a_quarter_second_of_closing(
-    connect: "Callable[[EmulatedBoard], Page]", board: EmulatedBoard
-) -> None:
+def test_motors_stand_within_a_quarter_second_of_closing(connect: Connect, board: EmulatedBoard) -> None:
     page = connect(board)
     _arm(page, board)
     _turn(page, 2, 60.0)
@@ -200,7 +204,7 @@ def test_motors_stand_within_a_quarter_second_of_closing(
     assert board.motors[2].count == before
 
 
-def test_a_board_of_another_robot_is_refused(connect: "Callable[[EmulatedBoard], Page]", board: EmulatedBoard) -> None:
+def test_a_board_of_another_robot_is_refused(connect: Connect, board: EmulatedBoard) -> None:
     board.robot = "starfish.00000000"
     page = connect(board)
     status = page.locator("#motors p")
@@ -209,9 +213,7 @@ def test_a_board_of_another_robot_is_refused(connect: "Callable[[EmulatedBoard],
     assert not page.get_by_role("button", name="Hold to arm").is_visible()
 
 
-def test_a_board_that_is_reset_is_never_armed_on_its_old_zero(
-    connect: "Callable[[EmulatedBoard], Page]", board: EmulatedBoard
-) -> None:
+def test_a_board_that_is_reset_is_never_armed_on_its_old_zero(connect: Connect, board: EmulatedBoard) -> None:
     """Each connection asks for the zero, which the board is not told: `play` would then believe motors.toml."""
     board.marked = False
     page = connect(board)
@@ -249,9 +251,7 @@ def test_a_board_that_is_reset_is_never_armed_on_its_old_zero(
     assert board.state == "off"
 
 
-def test_a_stop_while_arming_counts_and_a_pulled_cable_frees_the_port(
-    connect: "Callable[[EmulatedBoard], Page]", board: EmulatedBoard
-) -> None:
+def test_a_stop_while_arming_counts_and_a_pulled_cable_frees_the_port(connect: Connect, board: EmulatedBoard) -> None:
     page = connect(board)
     page.evaluate("window.stopWhileArming = true")
     _hold(page)
@@ -270,3 +270,101 @@ def test_a_stop_while_arming_counts_and_a_pulled_cable_frees_the_port(
     board.begin_anew()
     page.get_by_role("button", name="Connect").click()
     _arm(page, board)
+
+
+@pytest.fixture
+def servo_page(robot: Robot) -> str:
+    """A page for servos, with contractions of a forged model that go to twice the limits of the winches."""
+    motors = [replace(each, zero=1.0) for each in Calibration.usual(robot).motors]
+    return _text(robot, Calibration(tuple(motors)), forged=2.0)
+
+
+def _servos(kind: str, count: int = 3) -> EmulatedChain:
+    """Servos that stand at their zeros, one of them a turn away."""
+    angles = [1.0, 1.0 + 2 * pi, 1.0, 1.0]
+    if kind == "Feetech":
+        return EmulatedFeetechChain([EmulatedSts(n + 1, angle=angles[n]) for n in range(count)])
+    chain = EmulatedChain([EmulatedServo(n + 1, angle=angles[n]) for n in range(count)])
+    for servo in chain.servos:
+        servo.step(0.0, 1e-3)
+    return chain
+
+
+@pytest.mark.parametrize(("kind", "baud"), [("Dynamixel", 57600), ("Feetech", 1_000_000)])
+def test_servos_follow_within_limits_and_stand_by_themselves(
+    connect: Connect, servo_page: str, kind: str, baud: int
+) -> None:
+    chain = _servos(kind)
+    page = connect(chain, servo_page, f"Connect {kind}")
+    _arm(page, chain)
+    assert page.evaluate("window.baud") == baud
+    first, second, third = chain.servos
+    assert third.most == pytest.approx(0.4 * third.constant, rel=0.01)
+    fastest, farthest = [0.0], [0.0]
+
+    def watch() -> None:
+        told = (
+            first.table[46] + 256 * first.table[47]
+        )  # Feetech's speed [steps/s], more than the emulated servo reaches
+        fastest.append(2 * pi / 4096 * told if kind == "Feetech" else abs(first.speed))
+        farthest.append(first.angle - 1.0)
+
+    chain.watch = watch
+    _turn(page, 0, 110.0)
+    _wait(page, lambda: first.angle - 1.0 > 0.059 / 0.006)
+    page.wait_for_timeout(300)
+    assert max(farthest) * 0.006 == pytest.approx(0.06, abs=3e-4)
+    assert 0.05 < 0.006 * max(fastest) < 0.061
+    assert "W1 0.00 A" in page.locator("#motors output").inner_text()
+    for stop in (lambda: page.keyboard.press("Escape"), lambda: setattr(chain, "gone", True)):
+        if not page.locator("#motors .armed").is_visible():
+            _arm(page, chain)
+        _turn(page, 1, 50.0)
+        start = second.angle
+        _turn(page, 1, 0.0 if start > 3 + 2 * pi else 50.0)
+        _wait(page, lambda start=start: abs(second.angle - start) > 0.5)
+        stop()
+        chain.wait(0.25)
+        before = second.angle
+        assert 0.006 * abs(before - start) < 0.045  # on the way
+        chain.wait(1.0)
+        assert second.angle == pytest.approx(before, abs=2e-3)
+    _wait(page, _says(page, "unplugged"))
+    assert [servo.table[40 if kind == "Feetech" else 64] for servo in chain.servos] == [1, 1, 1]
+
+
+@pytest.mark.parametrize("kind", ["Dynamixel", "Feetech"])
+def test_servos_of_another_robot_or_after_a_reset_are_refused(connect: Connect, servo_page: str, kind: str) -> None:
+    place = 40 if kind == "Feetech" else 64
+    chain = _servos(kind, 4)
+    page = connect(chain, servo_page, f"Connect {kind}")
+    _wait(page, _says(page, "Motor 4 is not in motors.toml"))
+    assert not page.get_by_role("button", name="Set zero").is_visible()
+    chain.servos = chain.servos[:3]
+    chain.servos[2].angle += 1.0  # 6 mm of cable
+    chain.wait(0.01)
+    again, zero = (page.get_by_role("button", name=name) for name in (f"Connect {kind}", "Set zero"))
+    again.click()
+    _wait(page, zero.is_visible)
+    zero.click()
+    _wait(page, _says(page, "W3 is 6.0 mm from its zero"))
+    chain.servos[2].angle -= 1.0
+    chain.wait(0.01)
+    zero.click()
+    _wait(page, page.get_by_role("button", name="Hold to arm").is_visible)
+    chain.servos[1].begin_anew()
+    _hold(page)
+    _wait(page, _says(page, "lost power"))
+    page.mouse.up()
+    assert [servo.table[place] for servo in chain.servos] == [0, 0, 0]
+    chain.servos[1].angle += 2 * pi  # from where its count does not begin after a reset
+    chain.wait(0.01)
+    _arm(page, chain)
+    chain.servos[1].begin_anew()
+    _wait(page, _says(page, "lost power, and its count of turns. Connect again"))
+    assert [servo.table[place] for servo in chain.servos] == [1, 0, 1]
+    again.click()
+    _arm(page, chain)
+    chain.servos[0].ails.hot = True
+    _wait(page, _says(page, "W1 reports a fault"))
+    assert not page.locator("#motors .armed").is_visible()
