@@ -93,7 +93,7 @@ function dot(paper, [x, y], radius, color, edge = "") {
 function winch(paper, place, { color, mark }, unit) {
   dot(paper, place, 9 * unit, color, LIGHT);
   paper.fillStyle = LIGHT;
-  paper.font = `600 ${8 * unit}px system-ui, sans-serif`;
+  paper.font = `600 ${(mark.length > 2 ? 6.5 : 8) * unit}px system-ui, sans-serif`;
   paper.textAlign = "center";
   paper.textBaseline = "middle";
   paper.fillText(mark, place[0], place[1] + 0.5);

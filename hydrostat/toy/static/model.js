@@ -33,33 +33,59 @@ export class Model {
     return inputs.map((value, i) => this.low[i] + ((value + 1) / 2) * (this.high[i] - this.low[i]));
   }
 
-  /** Coordinates of the shape, and their slopes with the inputs if asked: one row for each input. */
-  coordinates(inputs, sloped = false) {
-    const { weights, linear } = this.layers;
+  /** Values of the last hidden layer, and their slopes with the inputs if asked: one row for each input. */
+  hidden(inputs, sloped) {
     let values = Float64Array.from(inputs);
-    let slopes = sloped ? inputs.map((_, i) => inputs.map((_, j) => (i === j ? 1 : 0))) : [];
-    weights.forEach((layer, place) => {
-      const last = place === weights.length - 1;
-      const sums = times(layer.matrix, values, layer.rows, layer.columns, layer.bias);
-      const rises = slopes.map((row) => times(layer.matrix, row, layer.rows, layer.columns));
-      if (last) {
-        values = sums;
-        slopes = rises;
-        return;
+    let slopes = null;
+    for (const { matrix, rows, columns, bias } of this.layers.weights.slice(0, -1)) {
+      const sums = times(matrix, values, rows, columns, bias), rises = new Float64Array(columns);
+      for (let i = 0; i < columns; i++) {
+        const gate = 1 / (1 + Math.exp(-sums[i]));
+        rises[i] = gate * (1 + sums[i] * (1 - gate));
+        sums[i] *= gate;
       }
-      const gates = sums.map((sum) => 1 / (1 + Math.exp(-sum)));
-      values = sums.map((sum, i) => sum * gates[i]);
-      slopes = rises.map((row) => row.map((rise, i) => rise * gates[i] * (1 + sums[i] * (1 - gates[i]))));
-    });
+      values = sums;
+      if (!sloped) continue;
+      slopes = inputs.map((_, k) => {
+        const row = slopes ? times(matrix, slopes[k], rows, columns) : Float64Array.from(matrix.subarray(k * columns, (k + 1) * columns));
+        for (let i = 0; i < columns; i++) row[i] *= rises[i];
+        return row;
+      });
+    }
+    return { values, slopes: slopes ?? inputs.map((_, k) => inputs.map((_, i) => (i === k ? 1 : 0))) };
+  }
+
+  /** Coordinates of the shape. */
+  coordinates(inputs) {
+    const { weights, linear } = this.layers, { matrix, rows, columns, bias } = weights[weights.length - 1];
+    const values = times(matrix, this.hidden(inputs, false).values, rows, columns, bias);
     const straight = times(linear, inputs, this.inputs, this.outputs);
-    values = values.map((value, i) => value + straight[i]);
-    slopes = slopes.map((row, k) => row.map((rise, i) => rise + linear[k * this.outputs + i]));
-    return { values, slopes };
+    return values.map((value, i) => value + straight[i]);
+  }
+
+  /** The last layer and the linear map for some numbers of the points [m] in place of the coordinates. */
+  outlets(indices) {
+    const { weights, linear } = this.layers, { matrix, rows, columns, bias } = weights[weights.length - 1];
+    const length = this.mean.length;
+    const mapped = (numbers, count, constant) => {
+      const found = new Float64Array(count * indices.length);
+      for (let i = 0; i < count; i++) {
+        indices.forEach((index, j) => {
+          let sum = constant ? this.mean[index] : 0;
+          for (let k = 0; k < columns; k++) sum += numbers[i * columns + k] * this.basis[k * length + index];
+          found[i * indices.length + j] = sum;
+        });
+      }
+      return found;
+    };
+    return {
+      count: indices.length, rows, matrix: mapped(matrix, rows, false), bias: mapped(bias, 1, true), linear: mapped(linear, this.inputs, false),
+    };
   }
 
   /** All points of the picture [m] at scaled contractions, one after the other. */
   points(inputs) {
-    const { values } = this.coordinates(inputs);
+    const values = this.coordinates(inputs);
     const found = this.mean.slice();
     const length = found.length;
     for (let k = 0; k < values.length; k++) {
@@ -67,13 +93,6 @@ export class Model {
       const first = k * length;
       for (let i = 0; i < length; i++) found[i] += share * this.basis[first + i];
     }
-    return found;
-  }
-
-  /** Coordinate of one number of the points, for values of the shape's coordinates. */
-  number(index, values, constant) {
-    let found = constant ? this.mean[index] : 0;
-    for (let k = 0; k < values.length; k++) found += values[k] * this.basis[k * this.mean.length + index];
     return found;
   }
 }
@@ -112,7 +131,9 @@ function times(matrix, row, rows, columns, bias = null) {
  *   the body [m]; most steps; weight of winches that stay where they are; points that better stay at a place [m]
  */
 export function reach(model, start, point, target, { size, rounds = 8, still = 1e-3, kept = [] }) {
-  const wish = { start, point, target, size, still, kept };
+  const wishes = [{ point, target, weight: 1 / size }, ...kept.map((each) => ({ ...each, weight: KEPT / size }))];
+  const numbers = wishes.flatMap((wish) => wish.target.map((goal, axis) => ({ goal, weight: wish.weight, index: wish.point * model.dim + axis })));
+  const wish = { start, still, numbers, outlets: model.outlets(numbers.map(({ index }) => index)) };
   const found = descend(model, start, wish, rounds);
   const near = 1e-5, taut = start.map((value, i) => Math.max(value, model.rest[i]));
   if (found.cost < near || taut.every((value, i) => value === start[i])) return found.inputs;
@@ -137,7 +158,7 @@ function descend(model, from, wish, rounds) {
     inputs = next;
     now = found;
     damping = Math.max(damping / 5, 1e-7);
-    if (gain < 1e-12) break;
+    if (gain < 1e-12 + 1e-4 * now.cost) break;
   }
   return { inputs, cost: now.cost };
 }
@@ -145,22 +166,21 @@ function descend(model, from, wish, rounds) {
 const KEPT = 0.2; // weight of points that better stay, beside the one that is dragged
 
 /** Half the squares of what is missed, in sizes of the body, with slope and matrix of normal equations. */
-function miss(model, inputs, { start, point, target, size, still, kept }) {
-  const count = inputs.length;
-  const { values, slopes } = model.coordinates(inputs, true);
-  const matrix = Array.from({ length: count }, (_, i) => Array.from({ length: count }, (_, j) => (i === j ? still * still : 0)));
+function miss(model, inputs, { start, still, numbers, outlets }) {
+  const inner = inputs.length, { count, rows } = outlets;
+  const { values, slopes } = model.hidden(inputs, true);
+  const places = times(outlets.matrix, values, rows, count, outlets.bias), straight = times(outlets.linear, inputs, inner, count);
+  const rises = slopes.map((row) => times(outlets.matrix, row, rows, count));
+  const matrix = Array.from({ length: inner }, (_, i) => Float64Array.from({ length: inner }, (_, j) => (i === j ? still * still : 0)));
   const slope = inputs.map((value, i) => still * still * (value - start[i]));
   let cost = 0.5 * still * still * inputs.reduce((sum, value, i) => sum + (value - start[i]) ** 2, 0);
-  for (const wish of [{ point, target, weight: 1 }, ...kept.map((each) => ({ ...each, weight: KEPT }))]) {
-    for (let axis = 0; axis < model.dim; axis++) {
-      const index = wish.point * model.dim + axis, weight = wish.weight / size;
-      const far = weight * (model.number(index, values, true) - wish.target[axis]);
-      const rises = slopes.map((row) => weight * model.number(index, row, false));
-      cost += 0.5 * far * far;
-      for (let i = 0; i < count; i++) {
-        slope[i] += far * rises[i];
-        for (let j = 0; j < count; j++) matrix[i][j] += rises[i] * rises[j];
-      }
+  for (let k = 0; k < count; k++) {
+    const { goal, weight } = numbers[k], far = weight * (places[k] + straight[k] - goal);
+    cost += 0.5 * far * far;
+    for (let i = 0; i < inner; i++) rises[i][k] = weight * (rises[i][k] + outlets.linear[i * count + k]);
+    for (let i = 0; i < inner; i++) {
+      slope[i] += far * rises[i][k];
+      for (let j = 0; j < inner; j++) matrix[i][j] += rises[i][k] * rises[j][k];
     }
   }
   return { cost, slope, matrix };

@@ -15,12 +15,14 @@ let points = model.points(inputs);
 const sight = new Sight({ dim: data.dim, up: data.up, eye: data.eye, points, size: data.size });
 const body = data.groups.find(([kind]) => kind === "surface");
 const [below, above] = ["below", "above"].map((id) => /** @type {HTMLCanvasElement} */ (document.getElementById(id)));
+below.hidden = !body;
 const surface = body ? new Surface(below, Uint32Array.from(decode(data.faces, Uint32Array)), body[1], body[2]) : null;
 const paper = above.getContext("2d");
 const held = new Map(); // pointers that hold a point or turn the view
 const state = { held: -1, goal: null, ink: "#000", dots: Boolean(surface && !surface.gl) };
 let kept = []; // markers that better stay while another point is dragged
 let asked = false;
+let box = above.getBoundingClientRect(); // where the canvas is on the page
 
 /** Ask for one picture at the next frame of the screen. */
 function redraw() {
@@ -37,7 +39,6 @@ function step(now) {
     inputs = reach(model, inputs, state.held, state.goal, { size: data.size, kept });
     settle();
   }
-  state.ink = getComputedStyle(above).color;
   surface?.paint(sight, points);
   draw(paper, sight, data, points, state);
   if (player.plays) redraw();
@@ -53,8 +54,10 @@ function settle() {
   points = model.points(inputs);
   const taken = model.contractions(inputs);
   knobs.forEach((knob, i) => {
+    const words = `${(1000 * taken[i]).toFixed(1)} mm`;
+    if (knob.value.textContent === words) return; // to write it costs a layout of the page
     knob.slider.value = String(1000 * taken[i]);
-    knob.value.textContent = `${(1000 * taken[i]).toFixed(1)} mm`;
+    knob.value.textContent = words;
   });
 }
 
@@ -64,7 +67,8 @@ function mark(played) {
 }
 
 function resize() {
-  const box = above.getBoundingClientRect(), dense = window.devicePixelRatio || 1;
+  const dense = window.devicePixelRatio || 1;
+  box = above.getBoundingClientRect();
   for (const canvas of [below, above]) {
     canvas.width = Math.round(box.width * dense);
     canvas.height = Math.round(box.height * dense);
@@ -102,7 +106,9 @@ function others(point) {
 }
 
 function press(event) {
-  const box = above.getBoundingClientRect(), [x, y] = [event.clientX - box.left, event.clientY - box.top];
+  box = above.getBoundingClientRect();
+  state.ink = getComputedStyle(above).color;
+  const [x, y] = [event.clientX - box.left, event.clientY - box.top];
   const near = event.pointerType === "touch" ? 44 : 26;
   const point = held.size ? -1 : find(x, y, near);
   above.setPointerCapture(event.pointerId);
@@ -119,8 +125,9 @@ function press(event) {
 }
 
 function drag(event) {
-  const box = above.getBoundingClientRect(), [x, y] = [event.clientX - box.left, event.clientY - box.top];
   const pointer = held.get(event.pointerId);
+  if (!pointer) box = above.getBoundingClientRect(); // which costs a layout where knobs turn
+  const [x, y] = [event.clientX - box.left, event.clientY - box.top];
   if (!pointer) {
     above.style.cursor = find(x, y, 26) >= 0 ? "grab" : data.dim === 3 ? "move" : "default";
     return;

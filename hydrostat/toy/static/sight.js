@@ -50,8 +50,15 @@ export class Sight {
 
   /** Pixels and depth of a point, which begins at a place of an array. */
   see(points, at) {
-    const sums = this.axes.map((axis) => axis.reduce((sum, value, i) => sum + value * (points[at + i] - this.middle[i].middle), 0));
-    return [this.width / 2 + this.scale * sums[0], this.height / 2 - this.scale * sums[1], sums[2] ?? 0];
+    const [right, up, near] = this.axes;
+    let [x, y, depth] = [0, 0, 0];
+    for (let i = 0; i < this.dim; i++) {
+      const far = points[at + i] - this.middle[i].middle;
+      x += right[i] * far;
+      y += up[i] * far;
+      if (near) depth += near[i] * far;
+    }
+    return [this.width / 2 + this.scale * x, this.height / 2 - this.scale * y, depth];
   }
 
   /** Place [m] of pixels, as far away as a point. */

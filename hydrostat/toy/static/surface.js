@@ -42,6 +42,7 @@ export class Surface {
     }
     gl.linkProgram(program);
     gl.useProgram(program);
+    this.uniforms = ["axes", "middle", "scale"].map((name) => gl.getUniformLocation(program, name));
     this.buffers = ["place", "normal"].map((name) => {
       const buffer = gl.createBuffer(), slot = gl.getAttribLocation(program, name);
       gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
@@ -58,17 +59,17 @@ export class Surface {
   paint(sight, points) {
     const gl = this.gl;
     if (!gl) return;
-    const places = Float32Array.from(points.subarray(3 * this.first, 3 * (this.first + this.count)));
+    const places = new Float32Array(points.subarray(3 * this.first, 3 * (this.first + this.count)));
     [places, normalsOf(places, this.faces)].forEach((array, i) => {
       gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers[i]);
       gl.bufferData(gl.ARRAY_BUFFER, array, gl.DYNAMIC_DRAW);
     });
     gl.viewport(0, 0, gl.canvas.width, gl.canvas.height);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    const at = (name) => gl.getUniformLocation(this.program, name);
-    gl.uniformMatrix3fv(at("axes"), false, sight.axes.flat());
-    gl.uniform3fv(at("middle"), sight.middle.map((side) => side.middle));
-    gl.uniform3f(at("scale"), (2 * sight.scale) / sight.width, (2 * sight.scale) / sight.height, 0.4 / sight.size);
+    const [axes, middle, scale] = this.uniforms;
+    gl.uniformMatrix3fv(axes, false, sight.axes.flat());
+    gl.uniform3fv(middle, sight.middle.map((side) => side.middle));
+    gl.uniform3f(scale, (2 * sight.scale) / sight.width, (2 * sight.scale) / sight.height, 0.4 / sight.size);
     gl.drawElements(gl.TRIANGLES, this.faces.length, gl.UNSIGNED_SHORT, 0);
   }
 }
@@ -81,7 +82,8 @@ function normalsOf(places, faces) {
     const x1 = places[b] - places[a], y1 = places[b + 1] - places[a + 1], z1 = places[b + 2] - places[a + 2];
     const x2 = places[c] - places[a], y2 = places[c + 1] - places[a + 1], z2 = places[c + 2] - places[a + 2];
     const x = y1 * z2 - z1 * y2, y = z1 * x2 - x1 * z2, z = x1 * y2 - y1 * x2;
-    for (const at of [a, b, c]) {
+    for (let k = 0; k < 3; k++) {
+      const at = k === 0 ? a : k === 1 ? b : c;
       normals[at] += x;
       normals[at + 1] += y;
       normals[at + 2] += z;
