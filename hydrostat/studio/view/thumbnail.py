@@ -1,5 +1,6 @@
 """`draw_thumbnail`: a robot as a small picture, in milliseconds."""
 
+from collections.abc import Callable
 from io import BytesIO
 
 import numpy as np
@@ -7,7 +8,7 @@ from PIL import Image, ImageDraw
 
 from hydrostat.arrays import Points
 from hydrostat.drawing import Camera, Color
-from hydrostat.plot import FlatSkin
+from hydrostat.plot import Attachments, FlatSkin
 from hydrostat.robot import Robot
 from hydrostat.studio.view.scene_items import RobotShape
 
@@ -20,8 +21,8 @@ def draw_thumbnail(robot: Robot, shape: RobotShape) -> bytes:
     """A robot in a shape on clear ground, so that it stands on light and dark pages, as WebP."""
     sheet = Image.new("RGBA", (_FINE * SIZE[0], _FINE * SIZE[1]), (0, 0, 0, 0))
     pen, rest = ImageDraw.Draw(sheet), robot.body.mesh.nodes
+    view, fit = _look_at(robot)
     if rest.shape[1] == 2:
-        fit = _PictureScale(rest)
         outer, *holes = (
             [tuple(point) for point in fit.place(ring)] for ring in FlatSkin.of(robot.body).shape(shape.nodes)
         )
@@ -29,19 +30,38 @@ def draw_thumbnail(robot: Robot, shape: RobotShape) -> bytes:
         for hole in holes:
             pen.polygon(hole, fill=(0, 0, 0, 0), outline=Color.SEAM, width=2 * _FINE)
     else:
-        _draw_surface(pen, robot, shape.nodes)
+        _draw_surface(pen, robot, view(shape.nodes), fit)
+
+    def draw(points: Points, color: str) -> None:
+        line = [tuple(point) for point in fit.place(view(points)[:, :2])]
+        pen.line(line, fill=color, width=2 * _FINE, joint="curve")
+
+    for anchors in robot.body.mark_anchors:
+        draw(anchors.positions(shape.nodes), Color.INK)
+    colors, attached = Color.of_winches(robot.winches), Attachments(robot)
+    for cable, points in zip(robot.cables, attached.cables(shape.nodes), strict=True):
+        draw(points, colors[cable.winch])
+    places = fit.place(view(attached.winches(shape.nodes))[:, :2])
+    for winch, place in zip(robot.winches, places.tolist(), strict=True):
+        pen.circle(place, 4 * _FINE, fill=colors[winch.name], outline="white", width=_FINE)
     buffer = BytesIO()
     sheet.resize(SIZE, Image.Resampling.BOX).save(buffer, format="WEBP", quality=60, method=0)
     return buffer.getvalue()
 
 
-def _draw_surface(pen: ImageDraw.ImageDraw, robot: Robot, nodes: Points) -> None:
-    """Triangles of a body in space, the far ones first, darker where they turn away."""
-    mesh = robot.body.mesh
+def _look_at(robot: Robot) -> "tuple[Callable[[Points], Points], _PictureScale]":
+    """Points as seen, of a body in space with their depth, and the scale of the picture."""
+    nodes = robot.body.mesh.nodes
+    if nodes.shape[1] == 2:
+        return lambda points: points, _PictureScale(nodes)
     shown = np.array([part.at for part in (*robot.winches, *robot.markers)], dtype=float).reshape(-1, 3)
-    camera = Camera.three_quarter(mesh.nodes, shown, np.array([0.0, 0.0, 1.0]))
-    fit = _PictureScale(camera.see(mesh.nodes)[:, :2])
-    seen = camera.see(nodes)[mesh.boundary]  # (triangles, 3, 3)
+    camera = Camera.three_quarter(nodes, shown, np.array([0.0, 0.0, 1.0]))
+    return camera.see, _PictureScale(camera.see(np.vstack((nodes, shown)))[:, :2])
+
+
+def _draw_surface(pen: ImageDraw.ImageDraw, robot: Robot, nodes: Points, fit: "_PictureScale") -> None:
+    """Triangles of a body in space by their nodes as seen, the far ones first, darker where they turn away."""
+    seen = nodes[robot.body.mesh.boundary]  # (triangles, 3, 3)
     normals = np.cross(seen[:, 1] - seen[:, 0], seen[:, 2] - seen[:, 0])
     lights = normals[:, 2] / np.maximum(np.linalg.norm(normals, axis=1), 1e-30)
     felt = np.array([int(Color.FELT[place : place + 2], 16) for place in (1, 3, 5)])
