@@ -1,8 +1,10 @@
 """`Jobs`: long work in a process of its own, so that dragging stays smooth and work can be stopped."""
 
 import logging
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from math import inf
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
@@ -15,6 +17,7 @@ from hydrostat.studio.work_process import Report, run_work
 
 __all__ = ["JobState", "Jobs", "Report", "Slots"]
 
+LOOK = 1.0  # time from one look at the line of others to the next [s]
 END_TIMEOUT = 5.0  # a process that has told what came of its work is given so long to end [s]
 
 
@@ -28,6 +31,7 @@ class JobState:
     total: int = 0  # of how much; 0: not known
     running: bool = True  # whether it goes on
     stopping: bool = False  # whether it was asked to stop
+    yielded: bool = False  # whether it was asked to stop as its turn was over and others waited
     error: str = ""  # why it failed; "" if it did not
 
 
@@ -64,6 +68,11 @@ class Slots:
                 self._line.remove(turn)
                 self._news.notify_all()
 
+    @property
+    def are_wanted(self) -> bool:
+        """True if work stands in line."""
+        return bool(self._line)
+
     def give(self) -> None:
         """One has ended."""
         with self._news:
@@ -92,6 +101,7 @@ class Jobs:
         self._worker: _Worker | None = None
         self._spare: _Worker | None = None
         self._closed = False
+        self._turn_time = inf  # for which the work may keep others waiting [s]
 
     @property
     def is_running(self) -> bool:
@@ -117,6 +127,7 @@ class Jobs:
         on_part: Callable[[Any], None] | None = None,
         on_done: Callable[[Any], None] | None = None,
         on_end: Callable[[str], None] | None = None,
+        turn: float = inf,
     ) -> None:
         """Run `function(report, *arguments)` in a process of its own (InputError: other work is in progress).
 
@@ -124,7 +135,7 @@ class Jobs:
         has. What it is given and what it returns can be pickled. What comes of it, and why if nothing does, is in
         `state`. In a thread of this process `on_part` is called with each part that it reports, `on_done` with what it
         returns, and in the end `on_end`, whatever came of it, with why nothing did, "" if something did; other work may
-        have begun by then.
+        have begun by then. After its turn [s] it is asked to end with what it has, if others wait for its slot.
         """
         with self._lock:
             if self.is_running:
@@ -132,6 +143,7 @@ class Jobs:
                 raise InputError(f"{self.state.title} is still running. Wait or stop it")
             if self._closed:
                 raise InputError("the studio is closing")
+            self._turn_time = turn
             self._worker, self.state = (self._ready() if self.slots is None else None), JobState(title=title)
         self._bell.ring(Topic.JOB)
         calls = (on_part or _nothing, on_done or _nothing, on_end or _nothing)
@@ -243,7 +255,11 @@ class Jobs:
 
     def _receive(self, pipe: Connection, on_part: Callable[[Any], None], on_done: Callable[[Any], None]) -> str:
         """Hear the process until it says what came of its work; why it failed, or ""."""
+        over = time.monotonic() + self._turn_time
         while True:
+            while not pipe.poll(LOOK):
+                self._end_turn(over)
+            self._end_turn(over)
             kind, *rest = pipe.recv()
             if kind == "progress":
                 self._note(stage=rest[0], done=rest[1], total=rest[2])
@@ -254,6 +270,12 @@ class Jobs:
                 return ""
             else:
                 return rest[0]
+
+    def _end_turn(self, over: float) -> None:
+        """Ask the work to end with what it has if its turn is over and others wait."""
+        if self.slots is not None and self.slots.are_wanted and time.monotonic() > over and not self._given_up():
+            self._note(yielded=True)
+            self.stop()
 
     def _note(self, **changes: Any) -> None:
         with self._lock:

@@ -92,6 +92,19 @@ def test_a_slot_is_given_back_where_no_process_can_be_begun(monkeypatch: pytest.
     assert slots.wait(lambda: True, print)
 
 
+def test_work_ends_with_what_it_has_once_its_turn_is_over_and_others_wait(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("hydrostat.studio.jobs.LOOK", 0.02)
+    slots = Slots(1)
+    first, second = (Heard(Jobs(Bell(), slots)) for _ in range(2))
+    first.jobs.start("Working", works.wait, on_done=first.results.append, on_part=first.part, on_end=first.over, turn=0)
+    assert first.parted.wait(TIMEOUT)
+    assert not first.ended.wait(0.2)  # nobody waits
+    assert second.begin(works.add, 1).end().error == ""
+    assert first.end().yielded
+    assert first.results == ["what there was"]
+    assert not second.end().yielded
+
+
 def test_nothing_is_running_at_first(jobs: Jobs) -> None:
     assert not jobs.is_running
     jobs.stop()

@@ -41,6 +41,7 @@ from hydrostat.studio.view.scene_items import RobotShape, SceneItem, rest_shape
 from hydrostat.units import plural
 
 TITLE = "Designing cables"
+TURN = 60.0  # for which a design may keep other rooms of a class waiting [s]
 
 MODULE = "hydrostat.studio.designing.design_work"
 
@@ -163,7 +164,7 @@ class Designer(Stage):
         )
         self.running, self.has_failed, self.outcome, self._is_taken = True, False, "", False
         ended = partial(self._on_end, request)
-        calls: dict[str, Any] = {"on_part": self._on_better, "on_done": self._on_found, "on_end": ended}
+        calls: dict[str, Any] = {"on_part": self._on_better, "on_done": self._on_found, "on_end": ended, "turn": TURN}
         try:
             self._jobs.start(TITLE, design_work, robot, request, **calls)
         except InputError:
@@ -357,7 +358,7 @@ class Designer(Stage):
         self._shelve(made, is_live=run.is_live)
         best = made[0]
         seconds = time.monotonic() - run.began
-        early = "" if found.complete else "stopped early, best so far: "
+        early = "" if found.complete else f"{self._ending()} early, best so far: "
         self.outcome = (
             f"{early}{network_words(best.robot)}, expected as-built error {format_error(best.expected_error)} "
             f"({plural(found.num_evaluated, 'candidate')}, {seconds:.0f} s)"
@@ -375,13 +376,18 @@ class Designer(Stage):
         self._all = (*made, *others)[:most]
         self._keep()
 
+    def _ending(self) -> str:
+        """Words on why the design has ended."""
+        state = self._jobs.state
+        return "ended for other rooms" if state is not None and state.yielded else "stopped"
+
     def _on_end(self, request: DesignRequest, error: str) -> None:
         """Called in a thread of the jobs, whatever came of it."""
         if self.run is None or self.run.request is not request:
             return  # the next design has begun
         self.has_failed = bool(error)
         if error:
-            self.outcome = "stopped before a network was found" if error == "stopped" else error
+            self.outcome = f"{self._ending()} before a network was found" if error == "stopped" else error
             if self.run.is_live:
                 self._shelve((), is_live=True)
         if self._is_asked_again:
