@@ -127,6 +127,7 @@ def main() -> None:
     warnings.simplefilter("ignore", HydrostatWarning)  # commands print the warnings of a pose
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the dense matrices are small: threads only wait
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # it would look for them in all installed packages
+    setattr(typer.BadParameter.__base__, "show", _print_usage_error)  # noqa: B010 - usage errors in one line, too
     try:
         _run()
     except InputError as error:
@@ -139,6 +140,11 @@ def main() -> None:
         _stop(f"error: {error.filename or 'output'}: {error.strerror or error}", 2)
     except (KeyboardInterrupt, _InterruptError):
         _stop("interrupted; files written so far are complete", 130)
+
+
+def _print_usage_error(error: Any, *_: object) -> None:
+    words = " ".join(error.format_message().split()).rstrip(".")
+    print(f"hydrostat: error: {words}. See {error.ctx.command_path if error.ctx else 'hydrostat'} -h.", file=sys.stderr)
 
 
 def _run() -> None:

@@ -1,7 +1,7 @@
 """Help texts speak plainly: they begin with a verb or a quantity, and leave defaults to the command line."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import click
 import pytest
@@ -78,3 +78,20 @@ def test_all_commands_are_read() -> None:
 )
 def test_a_bad_text_is_found(text: str, fault: str) -> None:
     assert _faults(text) == [fault]
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("studio", "--port", "abc"), "Invalid value for '--port'"),
+        (("studio", "--port", "99999"), "less than or equal to 65535. See hydrostat studio -h."),
+        (("share",), "Missing argument 'ROBOT'. See hydrostat share -h."),
+    ],
+)
+def test_an_error_of_usage_is_one_line(
+    run: Callable[..., tuple[int, str, str]], words: tuple[str, ...], told: str
+) -> None:
+    code, out, err = run(*words)
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert err.startswith("hydrostat: error: ")
+    assert told in err
