@@ -16,7 +16,7 @@ def studio(
         Path | None,
         typer.Argument(metavar="[ROBOT]", help="Robot folder, gallery:NAME, or link.", show_default="show the gallery"),
     ] = None,
-    port: Annotated[int, typer.Option(metavar="PORT", help="TCP port. 0 = any free port.")] = 0,
+    port: Annotated[int, typer.Option(metavar="PORT", min=0, max=65535, help="TCP port. 0 = any free port.")] = 0,
     host: Annotated[
         str | None,
         typer.Option(
@@ -88,6 +88,9 @@ def _announce(classroom: bool, address: str) -> None:
         return
     print(f"{'Pupils' if classroom else 'Studio'}: {address}   (Ctrl-C to stop)", flush=True)
     if classroom:
-        from hydrostat.studio import write_qr_text
+        from hydrostat.studio import Links, write_qr_text
 
-        print(write_qr_text(address), flush=True)
+        if Links(address, "").are_local:
+            print("note: opens on this computer only. Leave out --host for a class.", flush=True)
+        else:
+            print(write_qr_text(address), flush=True)

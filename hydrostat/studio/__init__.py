@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from hydrostat.studio.face.classroom import Classroom
     from hydrostat.studio.face.rooms import Rooms
     from hydrostat.studio.face.serve import serve
-    from hydrostat.studio.face.share import find_network_address, write_qr_text
+    from hydrostat.studio.face.share import Links, find_network_address, write_qr_text
     from hydrostat.studio.jobs import Jobs
     from hydrostat.studio.posing import (
         STRIDE,
@@ -41,6 +41,7 @@ __all__ = [
     "HeldPoint",
     "Hit",
     "Jobs",
+    "Links",
     "Mode",
     "MuscleMover",
     "MusclePulls",

@@ -13,6 +13,7 @@ from hydrostat.errors import InputError
 from hydrostat.studio.face.guard import LOOPBACK
 
 LARGEST_CODE = 2900  # letters in a QR code; 2953 bytes fit
+_SHOW = "Show it, or write it on the board."
 
 
 @dataclass(frozen=True)
@@ -52,15 +53,18 @@ def write_qr_text(link: str) -> str:
 
 def share_dialog(links: Links, pack: Callable[[], str] | None = None) -> Callable[[], object]:
     """Build the dialog with both addresses, and the robot in a link if a function packs it; returns what opens it."""
-    with ui.dialog() as dialog, ui.card().classes("q-pa-md gap-3").style("width: 520px; max-width: 92vw"):
+    with (
+        ui.dialog().props('aria-label="Share"') as dialog,
+        ui.card().classes("q-pa-md gap-3").style("width: 520px; max-width: 92vw"),
+    ):
         ui.label("Share" if pack is not None else "Link for pupils").classes("studio-title")
         if links.work and links.are_local:
-            hint = "These links open on this computer only. For other computers start with hydrostat studio --class."
+            hint = "These links open on this computer only. For others start hydrostat studio --class without --host."
             ui.label(hint).classes("studio-hint").props('data-testid="share-local"')
         for words, hint, link, name in (
             (
                 "Work together",
-                "People with this link can edit everything." if links.watch else "Show it, or write it on the board.",
+                "People with this link can edit everything." if links.watch else "" if links.are_local else _SHOW,
                 links.work,
                 "share-work",
             ),
@@ -71,7 +75,8 @@ def share_dialog(links: Links, pack: Callable[[], str] | None = None) -> Callabl
             with ui.column().classes("w-full gap-1"):
                 if links.watch:
                     ui.label(words).classes("studio-section")
-                ui.label(hint).classes("studio-hint")
+                if hint:
+                    ui.label(hint).classes("studio-hint")
                 _link_box(words, link, name)
                 if link == links.work and not links.are_local:
                     _code(words, link)

@@ -25,13 +25,18 @@ def build_teacher(classroom: Classroom, link: str, pictures: str) -> None:
     _TeacherPage(classroom, link, pictures)
 
 
+def _named_dialog(name: str) -> ui.dialog:
+    """Dialog that a screen reader announces by its name."""
+    return ui.dialog().props(f'aria-label="{name}"')
+
+
 class _TeacherPage:
     def __init__(self, classroom: Classroom, link: str, pictures: str) -> None:
         self._class, self._pictures = classroom, pictures
         dark = dress()
         with ui.header().classes("studio-header"):
             ui.label("hydrostat").classes("studio-brand")
-            self._count = ui.label().classes("class-count").props('data-testid="pupils"')
+            self._count = ui.label().classes("class-count").props('data-testid="pupils" role="heading" aria-level="1"')
             ui.space()
             lock = ui.switch(
                 "Lock", value=classroom.rooms.locked, on_change=lambda event: self._lock(bool(event.value))
@@ -43,12 +48,14 @@ class _TeacherPage:
             ):
                 button = ui.button(words, icon=icon, color=None, on_click=build())
                 button.props["aria-label"] = words
-                button.props(f'flat no-caps dense data-testid="{words.lower().replace(" ", "-")}"')
+                button.props(f'flat no-caps dense data-testid="{words.lower().replace(" ", "-")}"').classes(
+                    "class-tool"
+                )
             show_link = share_dialog(Links(link, ""))
             button = ui.button("Link", icon="qr_code_2", color=None, on_click=show_link)
-            button.props('aria-label="Link" flat no-caps dense data-testid="link"')
+            button.props('aria-label="Link" flat no-caps dense data-testid="link"').classes("class-tool")
             icon_button("dark_mode", "Light or dark", dark.toggle, small=False).classes("studio-tool")
-        with ui.element("main").classes("class-room"):
+        with ui.element("div").classes("class-room"):
             self._hint = ui.label("No pupils yet. Show them the link.").classes("studio-hint")
             self.wall = ui.element("div").classes("class-wall")
             self._toasts = Toasts()
@@ -98,7 +105,7 @@ class _TeacherPage:
         self._class.rooms.rename(room, name)
 
     def _hand_out_dialog(self) -> Callable[[], object]:
-        with ui.dialog() as dialog, ui.card().classes("q-pa-md gap-3 class-dialog"):
+        with _named_dialog("Hand out") as dialog, ui.card().classes("q-pa-md gap-3 class-dialog"):
             ui.label("Hand out a robot").classes("studio-title")
             ui.label("Everybody gets a copy. Undo brings their own robot back. New pupils start with it.").classes(
                 "studio-hint"
@@ -130,7 +137,7 @@ class _TeacherPage:
         return dialog.open
 
     def _pack_dialog(self) -> Callable[[], object]:
-        with ui.dialog() as dialog, ui.card().classes("q-pa-md gap-3 class-dialog"):
+        with _named_dialog("Take home") as dialog, ui.card().classes("q-pa-md gap-3 class-dialog"):
             ui.label("Take home").classes("studio-title")
             ui.label("One .zip with a folder for each pupil. class.txt in it lists what could not be made.").classes(
                 "studio-hint"
@@ -211,7 +218,7 @@ class _PupilCard:
             self._picture.update()
 
     async def _rename(self) -> None:
-        with self._page.wall, ui.dialog() as dialog, ui.card().classes("q-pa-md class-dialog"):
+        with self._page.wall, _named_dialog("Rename") as dialog, ui.card().classes("q-pa-md class-dialog"):
             name = ui.input("Nickname", value=self._room.name).classes("w-full").props("autofocus")
             name.on("keydown.enter", lambda: dialog.submit(name.value))
             with ui.row().classes("w-full justify-end"):

@@ -31,6 +31,9 @@ def drive_panel(page: WindowPage) -> None:
         rest.props("flat dense no-caps").style("color: var(--accent)")
         release_focus(rest).tooltip("Release all cables (R)").mark("drive-rest")
     ui.label("Turn a knob, type a length, or drag a winch in the view down.").classes("studio-hint")
+    if drives := session.document.robot.drives:
+        names = ", ".join(drive.name for drive in drives)
+        ui.label(f"Drives stay at 0 here: {names}. Use hydrostat simulate --move.").classes("studio-hint").mark("still")
     notes = ui.label().classes("studio-hint").style(f"color: {Color.ERROR}; white-space: pre-line").mark("drive-notes")
     box = ui.column().classes("w-full").style("gap: 8px")
     cards: list[_Card] = []
