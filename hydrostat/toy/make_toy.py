@@ -64,7 +64,7 @@ def make_toy(
     flat = robot.body.mesh.dim == 2
     poses = []
     for number, name in enumerate(robot.poses, 1):
-        taken = solve_ik(simulation, robot.pose(name)).pose.contractions
+        taken = solve_ik(simulation, robot.pose(name)).pose.controls
         poses.append(ToyPose(name=name, contractions=tuple(taken.tolist())))
         progress("poses", number, len(robot.poses))
     found = sample_shapes(
@@ -83,7 +83,7 @@ def make_toy(
         seed=seed,
         progress=progress,
     )
-    names = [winch.name for winch in robot.winches]
+    names = [each.name for each in (*robot.winches, *robot.drives)]  # keyframes leave drives at rest
     moves = [
         (key.time, np.array([key.contractions.get(name, 0.0) for name in names]))
         for key in (timeline.keys if timeline else ())

@@ -4,6 +4,7 @@ import base64
 import hashlib
 import html
 import json
+import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,7 +18,7 @@ from hydrostat.control import Calibration
 from hydrostat.drawing import Camera, Color
 from hydrostat.errors import InputError
 from hydrostat.fabrication import winch_marks_of
-from hydrostat.robot import Robot, robot_hash
+from hydrostat.robot import LoadDrive, Robot, robot_hash
 from hydrostat.toy.learned_shape import LearnedShape
 from hydrostat.toy.motor_facts import motor_facts
 from hydrostat.toy.toy_picture import ToyPicture
@@ -47,7 +48,7 @@ class ToyPose:
 
     Attributes:
         name: name on its button.
-        contractions: cable taken in by each winch [m].
+        contractions: cable taken in by each winch [m], then the values of drives.
     """
 
     name: str
@@ -70,12 +71,12 @@ def toy_page(
         robot: robot to show.
         shape: learned shape of its body.
         poses: poses to play.
-        moves: keyframes to play: times [s] and contractions of all winches [m].
+        moves: keyframes to play: times [s] and contractions of all winches [m], then values of drives.
         motors: motors on one board or adapter, which the page offers to drive.
 
     Raises:
         InputError: a body with more points on its surface than a browser without extensions draws, or a pose or
-            keyframe without one finite contraction for each winch.
+            keyframe without one finite number for each winch and drive.
     """
     for pose in poses:
         _check_taken(f'pose "{pose.name}"', pose.contractions, robot)
@@ -86,7 +87,6 @@ def toy_page(
     if len(picture.faces) and int(picture.faces.max()) >= most:
         raise InputError(f"the surface has {int(picture.faces.max()) + 1} nodes. Use a mesh with at most {most}.")
     places = {winch.name: place for place, winch in enumerate(robot.winches)}
-    colors, marks = Color.of_winches(robot.winches), winch_marks_of(robot)
     up, eye = _view(robot)
     facts: dict[str, Any] = {
         "name": robot.name,
@@ -96,10 +96,7 @@ def toy_page(
         "size": robot.body.mesh.size,
         "up": up.tolist(),
         "eye": eye.tolist(),
-        "winches": [
-            {"name": winch.name, "mark": marks[winch.name], "color": colors[winch.name], "low": low, "high": high}
-            for winch, low, high in zip(robot.winches, shape.low.tolist(), shape.high.tolist(), strict=True)
-        ],
+        "winches": _knobs(robot, shape),
         "cables": [places[cable.winch] for cable in robot.cables],
         "markers": [marker.name for marker in robot.markers],
         "poses": [{"name": pose.name, "contractions": list(pose.contractions)} for pose in poses],
@@ -120,19 +117,39 @@ def toy_page(
         "STYLE": _static("toy.css"),
         "SCRIPT_HASH": f"sha256-{digest}",
         "HINT": "Drag the body" if robot.body.mesh.dim == 2 else "Drag the body. Drag beside it to turn the view",
-        "MADE": _made_text(robot, shape),
+        "MADE": _made_text(shape),
         "DATA": text,
         "SCRIPT": script,
     }
     return re.sub(r"@([A-Z_]+)@", lambda found: filled[found[1]], _static("toy.html"))
 
 
+def _knobs(robot: Robot, shape: LearnedShape) -> list[dict[str, Any]]:
+    """Return facts of each winch, then of each drive: what it is called, its color and range, and its unit."""
+    controls = (*robot.winches, *robot.drives)
+    colors = Color.of_winches(controls)
+    marks = winch_marks_of(robot) | {drive.name: f"D{number}" for number, drive in enumerate(robot.drives, 1)}
+    units = [("mm", 1e3)] * len(robot.winches)
+    for drive in robot.drives:
+        lengthwise = ("", 1.0) if isinstance(drive, LoadDrive) else ("mm", 1e3)
+        units.append(("°", math.degrees(1.0)) if drive.turns else lengthwise)
+    return [
+        {"name": each.name, "mark": marks[each.name], "color": colors[each.name], "low": low, "high": high}
+        | {"unit": unit, "factor": factor}
+        for each, low, high, (unit, factor) in zip(
+            controls, shape.low.tolist(), shape.high.tolist(), units, strict=True
+        )
+    ]
+
+
 def _check_taken(name: str, contractions: Sequence[float] | Vector, robot: Robot, time: float = 0.0) -> None:
     """Check contractions [m] and time [s] of a pose."""
-    numbers, wanted = np.asarray(contractions), (len(robot.winches),)
+    numbers, wanted = np.asarray(contractions), (len(robot.winches) + len(robot.drives),)
     if numbers.shape != wanted or not (np.isfinite(numbers).all() and np.isfinite(time)):
         told = ", ".join(f"{number:g}" for number in numbers.ravel().tolist())
-        raise InputError(f"{name}: contractions [{told}]. Give {wanted[0]} finite numbers, one for each winch.")
+        raise InputError(
+            f"{name}: contractions [{told}]. Give {wanted[0]} finite numbers, one for each winch or drive."
+        )
 
 
 def _view(robot: Robot) -> tuple[Vector, Vector]:
@@ -147,7 +164,7 @@ def _view(robot: Robot) -> tuple[Vector, Vector]:
     return up, Camera.three_quarter(nodes, shown, up).axes[2]
 
 
-def _made_text(robot: Robot, shape: LearnedShape) -> str:
+def _made_text(shape: LearnedShape) -> str:
     """Return how the page was made and its error, as HTML."""
     lines = [
         f"Learned from {shape.samples} simulated poses by a network of {shape.network.numbers.size} numbers.",
@@ -156,8 +173,6 @@ def _made_text(robot: Robot, shape: LearnedShape) -> str:
         f"In 95 % of them no point is more than {_millimeters(shape.worst)} off.",
         f"Made by hydrostat {__version__}.",
     ]
-    if robot.drives:
-        lines.insert(2, f"Drives stay at 0: {', '.join(drive.name for drive in robot.drives)}.")
     if shape.stopped:
         lines.insert(1, "Training ended early for lack of time.")
     return "".join(f"<p>{html.escape(line)}</p>" for line in lines)

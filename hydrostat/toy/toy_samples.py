@@ -52,7 +52,7 @@ def sample_shapes(
         raise InputError(f"{count} samples are too few. Use {LEAST} or more.")
     a_file = 16  # poses in one file: what is lost when time is up
     few = 4  # winches whose whole box the samples fill
-    draws = (SamplingScheme.FACES, SamplingScheme.BOX)[: 2 if len(robot.winches) <= few else 1]
+    draws = (SamplingScheme.FACES, SamplingScheme.BOX)[: 2 if len(robot.winches) + len(robot.drives) <= few else 1]
     plan = SamplePlan.of_robot(robot, count, seed=seed, draws=draws, nodes=True, shard=a_file)
     with TemporaryDirectory(prefix="hydrostat-") as folder, warnings.catch_warnings():
         warnings.filterwarnings("ignore", "[0-9]+ tasks", UserWarning)  # joblib: cancelled, as meant

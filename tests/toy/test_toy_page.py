@@ -3,6 +3,7 @@
 import json
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,8 +12,9 @@ import pytest
 from hydrostat.errors import InputError
 from hydrostat.learning import Perceptrons
 from hydrostat.plot import Attachments, FlatSkin
-from hydrostat.robot import Robot, gallery_folder, load_robot
-from hydrostat.toy import LearnedShape, toy_page
+from hydrostat.robot import PinDrive, Robot, gallery_folder, load_robot
+from hydrostat.simulation import Simulation
+from hydrostat.toy import LearnedShape, learn_shape, sample_shapes, toy_page
 from hydrostat.toy.toy_page import ToyPose
 
 if TYPE_CHECKING:
@@ -67,6 +69,22 @@ def test_a_pose_without_finite_contractions_is_refused(starfish: Robot, shape: L
             toy_page(starfish, shape, poses=[ToyPose(name="bent", contractions=wrong)])
         with pytest.raises(InputError, match="keyframe at 2 s"):
             toy_page(starfish, shape, moves=[(2.0, np.array(wrong))])
+
+
+def test_drives_have_knobs_in_their_units(starfish: Robot, open_page: Open) -> None:
+    pins = tuple(replace(pin, drive="servo") for pin in starfish.pins)
+    servo = PinDrive(name="servo", at=(0.0, 0.0), min=-0.5, max=0.5)
+    robot = replace(starfish, pins=pins, drives=(servo,), poses={})
+    shape = learn_shape(sample_shapes(robot, 20, jobs=1), Simulation(robot).rest.nodes, steps=50)
+    text = toy_page(robot, shape, poses=[ToyPose(name="turned", contractions=(0.0, 0.0, 0.0, 0.25))])
+    assert [knob["unit"] for knob in _data(text)["winches"]] == ["mm", "mm", "mm", "°"]
+    page = open_page(text)
+    page.locator(".knob input").nth(3).fill("20")
+    assert page.locator(".knob output").all_inner_texts() == ["0.0 mm", "0.0 mm", "0.0 mm", "20.0 °"]
+    taken, turned = page.evaluate("[toy.model.contractions(toy.shown().inputs), Array.from(toy.shown().points)]")
+    assert taken[3] == pytest.approx(np.radians(20.0), abs=np.radians(0.1))
+    skin = FlatSkin.of(robot.body).shape(shape.nodes(np.array(taken)))[0]
+    assert np.abs(np.reshape(turned, (-1, 2))[: len(skin)] - skin).max() < 1e-4 * robot.body.mesh.size
 
 
 def test_only_the_button_that_was_pressed_is_marked(starfish: Robot, shape: LearnedShape, open_page: Open) -> None:

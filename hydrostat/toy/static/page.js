@@ -54,9 +54,9 @@ function settle() {
   points = model.points(inputs);
   const taken = model.contractions(inputs);
   knobs.forEach((knob, i) => {
-    const words = `${(1000 * taken[i]).toFixed(1)} mm`;
+    const { unit, factor } = data.winches[i], words = unit ? `${(factor * taken[i]).toFixed(1)} ${unit}` : taken[i].toFixed(2);
     if (knob.value.textContent === words) return; // to write it costs a layout of the page
-    knob.slider.value = String(1000 * taken[i]);
+    knob.slider.value = String(factor * taken[i]);
     knob.value.textContent = words;
   });
 }
@@ -185,13 +185,13 @@ const knobs = data.winches.map((winch, i) => {
   row.className = "knob";
   row.style.setProperty("--winch", winch.color);
   name.textContent = winch.name;
-  Object.assign(slider, { type: "range", min: String(1000 * winch.low), max: String(1000 * winch.high), step: "0.1" });
+  Object.assign(slider, { type: "range", min: String(winch.factor * winch.low), max: String(winch.factor * winch.high), step: winch.unit ? "0.1" : "0.01" });
   slider.disabled = !(winch.high > winch.low);
   slider.addEventListener("input", () => {
     player.stop();
     mark(null);
     const taken = model.contractions(inputs);
-    taken[i] = Number(slider.value) / 1000;
+    taken[i] = Number(slider.value) / winch.factor;
     move(model.scaled(taken));
     redraw();
   });
