@@ -135,7 +135,7 @@ def connect(browser: "Browser", text: str, tmp_path: Path) -> "Iterator[Connect]
 
 
 def _wait(page: "Page", truth: Callable[[], bool]) -> None:
-    for _ in range(200):
+    for _ in range(600):
         if truth():
             return
         page.wait_for_timeout(50)

@@ -49,6 +49,7 @@ export class Feetech {
   }
 
   async identify(servos, number) {
+    if (number === servos.numbers[0]) this.spans.clear();
     const told = await servos.get(number, 0, 13), model = told[3] + 256 * told[4];
     if (!this.facts.models.includes(model)) throw new Error(`Motor ${number} is a servo of model ${model}, not an STS3215.`);
     const mode = await servos.get(number, 33, 1);

@@ -41,6 +41,7 @@ export class Servos extends Drive {
       this.send(number, PING);
       await pause(10);
     }
+    await pause(50); // adapters keep answers for a while
     this.mayTurn = false;
     this.ratings = [];
     for (const number of this.numbers) this.ratings.push(await this.speech.identify(this, number));
