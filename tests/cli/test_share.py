@@ -10,7 +10,7 @@ Run = Callable[..., tuple[int, str, str]]
 
 def test_share_writes_one_page_with_its_error(run: Run, starfish: Path, tmp_path: Path) -> None:
     file = tmp_path / "toy.html"
-    code, out, _ = run("share", starfish, "--samples", "24", "--time", "20s", "--out", file)
+    code, out, _ = run("share", starfish, "--samples", "24", "--time", "120s", "--out", file)
     assert code == 0
     assert "in 4 held-out poses" in out
     text = file.read_text(encoding="utf-8")
