@@ -15,6 +15,7 @@ from emulated_board import BoardMotor, EmulatedBoard
 
 from hydrostat.control import Calibration, EmulatedChain, EmulatedServo, robot_word
 from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedSts
+from hydrostat.control.feetech_bus import find_filler
 from hydrostat.learning import Perceptrons
 from hydrostat.robot import Robot, gallery_folder, load_robot
 from hydrostat.toy import LearnedShape, toy_page
@@ -294,10 +295,17 @@ def _servos(kind: str, count: int = 3) -> EmulatedChain:
 def test_servos_follow_within_limits_and_stand_by_themselves(
     connect: Connect, servo_page: str, kind: str, baud: int
 ) -> None:
-    chain = _servos(kind)
+    chain, written = _servos(kind), list[bytes]()
+    chain.towards = lambda data: written.append(data) or data
     page = connect(chain, servo_page, f"Connect {kind}")
     _arm(page, chain)
     assert page.evaluate("window.baud") == baud
+    chain.towards = lambda data: data
+    sent = list[bytes]()
+    for data in written if kind == "Feetech" else ():
+        filler = find_filler(sent[-3:])
+        assert data.startswith(filler + b"\xff\xff")
+        sent.append(data[len(filler) :])
     first, second, third = chain.servos
     assert third.most == pytest.approx(0.4 * third.constant, rel=0.01)
     fastest, farthest = [0.0], [0.0]

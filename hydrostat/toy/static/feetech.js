@@ -13,6 +13,21 @@ function sumOf(bytes) {
   return ~bytes.reduce((sum, byte) => sum + byte, 0) & 255;
 }
 
+/** True if a packet without one byte or its end fails its sum when a repeated value follows, as in feetech_bus.py. */
+function isRefused(packet, value) {
+  if (packet.includes(value)) return false;
+  const cuts = [[packet[2] + value, value], [2 * value, value]];
+  let kept = packet[2];
+  for (let place = 1; place < packet.length - 3; place++) cuts.push([(kept += packet[place + 2]), packet.length - 3 - place]);
+  return cuts.every(([sum, missing]) => (sum + missing * value) % 256 !== 255);
+}
+
+function fillerOf(sent) {
+  let value = 0;
+  while (!sent.every((packet) => isRefused(packet, value))) value++;
+  return new Array(Math.max(...sent.map((packet) => packet.length), 0, value + 2)).fill(value);
+}
+
 export class Feetech {
   baud = 1_000_000;
   torque = 40;
@@ -24,16 +39,19 @@ export class Feetech {
     this.facts = facts.feetech;
     this.spans = new Map(); // steps that each may turn to
     this.rated = 0; // supply of the servos [V]
+    this.sent = []; // packets of which one may still wait for its end in a servo
   }
 
   at(...places) {
     return places;
   }
 
-  /** A packet, and a byte that is not in it: a byte that is lost is noticed then. */
+  /** A packet behind a filler, with which no earlier one that was damaged on the way passes its sum. */
   pack(number, instruction, content) {
     const inner = [number, content.length + 2, instruction, ...content], packet = [0xff, 0xff, ...inner, sumOf(inner)];
-    return [...packet, Array.from({ length: 256 }, (_, i) => i).find((byte) => !packet.includes(byte))];
+    const filler = fillerOf(this.sent);
+    this.sent = [...this.sent.slice(-2), packet];
+    return [...filler, ...packet];
   }
 
   next(bytes) {
