@@ -63,6 +63,11 @@ def calibrate(
     loaded = read_robot(robot)
     if not loaded.winches:
         raise InputError(f"{robot}: no winches. Add winches and cables, or run `hydrostat design`.")
+    if loaded.drives:
+        raise InputError(
+            f"{robot}: drive {loaded.drives[0].name} has no cable that is slack. Calibrate a copy without drives, then "
+            "write a [[motor]] with a zero for each drive in motors.toml."
+        )
     if back := [cable.winch for cable in loaded.cables if cable.reverse]:
         raise InputError(
             f'{robot}: winch "{back[0]}" pulls both ways, so it is never slack. Write its zero in motors.toml.'

@@ -43,6 +43,8 @@ def check(
     print(f"{found.name}: {1e3 * mesh.size:.0f} mm, {mesh.describe()}")
     for line in _body_lines(found.body):
         print(line)
+    for line in _held_parts(found):
+        print(line)
     for rod in found.rods:
         print(_rod_line(rod))
     for sheet in found.sheets:
@@ -59,7 +61,7 @@ def check(
 
         print(f"build: {BuildCost.of_robot(found, ())}; more if poses need stronger motors")
     curled = _print_stuffed(found) if stuffed else _print_out_of_plane(found) if words and thorough else None
-    reaches = bool(found.markers and found.cables)
+    reaches = bool(found.markers and (found.cables or found.drives))
     if reaches and thorough:
         _print_workspaces(found)
     left_out = ["marker workspaces"] * reaches + ["out-of-plane motion"] * (bool(words) and not stuffed)
@@ -235,6 +237,21 @@ def _part_line(body: "Body", index: int) -> str:
     volume = float(body.mesh.volumes[own].sum()) * (body.thickness or 1.0)
     mass = _mass_text(float(body.element_masses[own].sum()))
     return f"part {part.name}: {name}, {mass}, {_volume_text(volume)}, {own.sum()} elements"
+
+
+def _held_parts(robot: "Robot") -> list[str]:
+    """Return a line for each pin on a rigid part, which it holds as a whole."""
+    body, lines = robot.body, []
+    for number, pin in enumerate(robot.pins):
+        held = pin.holds(body.mesh)[body.mesh.elements].any(axis=1)
+        names = [
+            part.name
+            for index, part in enumerate(body.parts, start=1)
+            if part.is_rigid and held[body.element_materials == index].any()
+        ]
+        verb = "holds" if pin.drive is None else f"moves by drive {pin.drive}"
+        lines += [f"pin[{number}] touches rigid part {name} and {verb} all of it" for name in names]
+    return lines
 
 
 def _rod_line(rod: "Rod") -> str:

@@ -77,20 +77,25 @@ def play(
         player.set_speed(speed)
     except InputError as error:
         raise InputError(f"--speed {speed:g}: {error}") from None
-    loaded = read_robot(robot)
+    given = read_robot(robot)
+    if given.drives and camera is not None:
+        raise InputError(f"--camera: not available with drives, such as {given.drives[0].name}. Remove --camera.")
+    loaded, kind = control.motor_stand(given), "simulated" if port is None else port.partition(":")[0]
     if not loaded.winches:
         raise InputError(f"{robot}: no winches. Add winches and cables, or run `hydrostat design`.")
-    table, kind = ProfileTable.open(moves, loaded), "simulated" if port is None else port.partition(":")[0]
+    asked = ProfileTable.open(moves, given)
+    table = control.stand_table(asked, given)
     fastest = control.FASTEST if port is None else control.LinkLimits().speed
     motors = control.Motors(loaded.winches, control.SimulatedLink(np.zeros(len(loaded.winches))), fastest=fastest)
     motors.check(table, speed=speed)  # before anything turns
     if port is not None:
         _check_corrected(motors, control.correct_table(table, folder_of(robot), loaded), speed)
-    pulls = None if port is None else control.tensions_along(loaded, table.profile)
+    pulls, known = (None, None) if port is None else control.stand_tensions(given, asked)
     eye = open_camera(seen_by, loaded, table.profile, partial(_say, kind))
     with one_interrupt(""), eye as seen:  # arming turns motors, too
         if port is not None and pulls is not None:
-            motors = control.arm_motors(folder_of(robot), loaded, port, pulls, log=lambda line: print(line, flush=True))
+            log = partial(print, flush=True)
+            motors = control.arm_motors(folder_of(robot), loaded, port, pulls, known=known, log=log)
         try:
             if seen is not None:
                 require_rest(motors)
@@ -171,7 +176,8 @@ def _progress(
 
 def _places(motors: "Motors") -> str:
     """Contractions of the winches, in words."""
-    return ", ".join(f"{name} {1e3 * taken:z.1f} mm" for name, taken in zip(motors.names, motors.places, strict=True))
+    rows = zip(motors.names, motors.places, motors.units, strict=True)
+    return ", ".join(f"{name} {1e3 * taken:z.1f} {unit}" for name, taken, unit in rows)
 
 
 def _say(kind: str, text: str) -> None:

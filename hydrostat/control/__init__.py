@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from hydrostat.control.bus_link import BusLink, LinkLimits, LinkState
     from hydrostat.control.calibration import CALIBRATION, EMULATED_CALIBRATION, Calibration, WinchMotor
     from hydrostat.control.corrected_link import correct_table
+    from hydrostat.control.driven_pins import motor_stand, stand_table, stand_tensions
     from hydrostat.control.dynamixel_bus import GOAL, TICK, DynamixelBus
     from hydrostat.control.emulated_feetech import EmulatedLine
     from hydrostat.control.emulated_servos import EmulatedChain, EmulatedServo, LiveChain
@@ -82,6 +83,7 @@ __all__ = [
     "find_cable_zeros",
     "flash",
     "flash_command",
+    "motor_stand",
     "not_judged",
     "on_boards",
     "open_bus",
@@ -89,6 +91,8 @@ __all__ = [
     "restart_motors",
     "robot_word",
     "servo_ratings",
+    "stand_table",
+    "stand_tensions",
     "steady",
     "tensions_along",
     "winch_tensions",

@@ -72,12 +72,12 @@ class TensionLookup:
     def __init__(self, robot: Robot, *, near: float = np.inf, most: int = 1000) -> None:
         """Nothing is known yet; further than `near` [m] from all poses nothing ever is; the oldest are forgotten."""
         self._robot, self._near, self._most = robot, near, most
-        self._known: tuple[np.ndarray, np.ndarray] = (np.zeros((0, len(robot.winches))), np.zeros((0, 0)))
+        self._known: tuple[np.ndarray, np.ndarray] = (np.zeros((0, robot.num_controls)), np.zeros((0, 0)))
 
     def add(self, pose: Equilibrium) -> None:
         """Remember a pose; one that is no equilibrium is left out."""
         if pose.result.converged:
-            self.store(pose.contractions, winch_tensions(self._robot, pose.tensions))
+            self.store(pose.controls, winch_tensions(self._robot, pose.tensions))
 
     def store(self, contractions: Vector, pulls: Vector) -> None:
         """Remember what winches pull [N] at contractions [m]."""

@@ -13,6 +13,9 @@ from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Winch
 from hydrostat.simulation import ProfileTable
 
+LEVER = 1e-3 * math.degrees(1.0)
+"""Spool radius [m] at which a degree of a drive that turns counts as a millimeter of a winch."""
+
 FASTEST = 0.15  # largest speed of the cables [m/s] unless told otherwise: brisk for a small motor; knobs feel direct
 SPEEDS = (1e-3, 1.0)  # slowest and fastest that motors may be told to turn [m/s]
 NEAR = 1e-7  # contractions this close [m] are the same
@@ -26,6 +29,7 @@ class Motors:
 
     Attributes:
         names: winch names.
+        units: unit of each for messages: mm, or deg of a drive that turns, a millimeter each.
         low: the least that each can take in [m]; below 0 it lets out.
         high: the most that each can take in [m].
         command: commanded contractions [m].
@@ -51,6 +55,7 @@ class Motors:
         The timeout is infinite where gaps are usual, and the watch of the link itself is enough [s].
         """
         self.names = tuple(winch.name for winch in winches)
+        self.units = tuple("deg" if winch.spool_radius == LEVER else "mm" for winch in winches)
         self.low = np.array([-winch.release for winch in winches], dtype=float)
         self.high = np.array([winch.travel for winch in winches], dtype=float)
         self.places = np.zeros(len(winches)) if places is None else places.copy()
@@ -80,17 +85,19 @@ class Motors:
         if times[0] < 0:
             raise InputError(f"{table.place(0)}, column time_s: times count from 0 s, not from {times[0]:g}")
         for row, winch in np.argwhere((values < self.low - NEAR) | (values > self.high + NEAR)).tolist():
-            low, high = 1e3 * self.low[winch] + 0.0, 1e3 * self.high[winch]
+            low, high, unit = 1e3 * self.low[winch] + 0.0, 1e3 * self.high[winch], self.units[winch]
             raise InputError(
-                f"{table.place(row)}, column {self.names[winch]}: {1e3 * values[row, winch]:g} mm is beyond what the "
-                f"winch can take in, {low:g} to {high:g} mm"
+                f"{table.place(row)}, column {self.names[winch]}: {1e3 * values[row, winch]:g} {unit} is "
+                f"beyond what the winch can take in, {low:g} to {high:g} {unit}"
             )
         speeds = speed * np.abs(np.diff(values, axis=0)) / np.diff(times)[:, None]
         for row, winch in np.argwhere(speeds > self.fastest * (1 + 1e-6)).tolist():
+            unit = self.units[winch]
             slower = math.floor(100 * speed * self.fastest / speeds.max()) / 100
             raise InputError(
-                f"{table.place(row + 1)}, column {self.names[winch]}: moves at {1e3 * speeds[row, winch]:.4g} mm/s, "
-                f"the motors at {1e3 * self.fastest:g} mm/s at most; play it at {slower:g} times its speed or slower"
+                f"{table.place(row + 1)}, column {self.names[winch]}: moves at {1e3 * speeds[row, winch]:.4g} "
+                f"{unit}/s, the motors at {1e3 * self.fastest:g} {unit}/s at most; play it at {slower:g} times its "
+                "speed or slower"
             )
 
     def ask(self, contractions: Vector) -> str:
@@ -101,7 +108,8 @@ class Motors:
             return ""
         index = int(beyond.argmax())
         limit, wanted = 1e3 * self.command[index], 1e3 * contractions[index]
-        return f"{self.names[index]} is at its limit of {limit:.1f} mm and was asked for {wanted:.1f} mm"
+        unit = self.units[index]
+        return f"{self.names[index]} is at its limit of {limit:.1f} {unit} and was asked for {wanted:.1f} {unit}"
 
     def turn(self, name: str, contraction: float) -> None:
         """Command one winch [m], within its limits (InputError: it is no finite number; the command stays)."""

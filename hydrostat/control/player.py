@@ -133,4 +133,5 @@ def _slowest(motors: Motors) -> str:
     """The motor that is farthest from where it should be, in words."""
     index = int(np.abs(motors.command - motors.places).argmax())
     there, wanted = 1e3 * motors.places[index], 1e3 * motors.command[index]
-    return f"{motors.names[index]} stays at {there:.1f} mm and should be at {wanted:.1f} mm"
+    unit = motors.units[index]
+    return f"{motors.names[index]} stays at {there:.1f} {unit} and should be at {wanted:.1f} {unit}"

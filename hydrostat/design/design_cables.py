@@ -9,7 +9,7 @@ from typing import TypedDict, Unpack
 from hydrostat.closed_set import parse_choice
 from hydrostat.design.cable_sides import assign_cable_sides
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.fixed_drives import fix_drives, restore_drives
+from hydrostat.design.fixed_drives import restore_drives
 from hydrostat.design.lifts import CROSSING, may_cross, search_front
 from hydrostat.design.network import Alternative, Network, RouteTrace, size_of
 from hydrostat.design.request import DesignMethod, DesignRequest, RouteOptions, TreeOptions
@@ -23,7 +23,7 @@ from hydrostat.design.trees.design_trees import design_trees
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.given import check_type
 from hydrostat.progress import Progress, no_progress
-from hydrostat.robot import PoseTarget, Robot, fit_winch_bodies
+from hydrostat.robot import PoseTarget, Robot, fit_winch_bodies, fix_drives
 from hydrostat.simulation import BodyPhysics
 
 

@@ -1,4 +1,4 @@
-"""`fix_drives`, `restore_drives`: a robot whose drives stay at rest while cables are designed."""
+"""`restore_drives`: a network of a robot whose drives stayed at rest while its cables were designed."""
 
 from dataclasses import replace
 from typing import TypeVar
@@ -9,14 +9,6 @@ from hydrostat.design.network import Alternative, Network
 from hydrostat.robot import Robot
 
 _One = TypeVar("_One", Network, Alternative)
-
-
-def fix_drives(robot: Robot) -> Robot:
-    """Return the robot with its drives at rest: pins are fixed, loads that a drive scales do not act."""
-    if not robot.drives:
-        return robot
-    pins = tuple(replace(pin, drive=None) for pin in robot.pins)
-    return replace(robot, pins=pins, loads=tuple(load for load in robot.loads if load.drive is None), drives=())
 
 
 def restore_drives(found: Network, robot: Robot) -> Network:

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from hydrostat.robot.cable_side import Face
     from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape, closed_mesh
     from hydrostat.robot.element_kind import ElementKind, Plane, Volume
+    from hydrostat.robot.fixed_drives import fix_drives
     from hydrostat.robot.gravity import DIRECTIONS, direction_of, gravity_along
     from hydrostat.robot.hole_note import describe_filled_holes
     from hydrostat.robot.inflated import describe_cable_side, inflated_robot, sewn_robot, sewn_sides
@@ -89,6 +90,7 @@ __all__ = [
     "direction_of",
     "find_risks",
     "fit_winch_bodies",
+    "fix_drives",
     "gallery_folder",
     "get_material",
     "gravity_along",

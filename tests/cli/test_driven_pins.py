@@ -100,3 +100,21 @@ def test_what_is_wrong_is_told_in_one_line(value: str, told: str, bar: Path, run
     code, _, err = run("simulate", str(bar), "--move", value, "--out", str(bar / "out"))
     assert code != 0
     assert told in err
+
+
+def test_check_names_the_pin_of_a_rigid_part_and_a_rod_too_short(bar: Path, run: Run) -> None:
+    """The pin holds all within 12 mm of x = -30 mm; the part begins there."""
+    part = '[[body.part]]\nname = "horn"\nshape = "box"\nat = [-30, -10]\nto = [-10, 10]\nrigid = true\n'
+    rod = '[[rod]]\nname = "wire"\npoints = [[0, 0], [3, 0]]\ndiameter = "1 mm"\nyoung = "200 GPa"\n'
+    (bar / "robot.toml").write_text(TEXT + part + 'density = "1 g/cm^3"\n' + rod)
+    code, out, _ = run("check", str(bar))
+    assert code == 0, out
+    assert "pin[0] touches rigid part horn and moves by drive servo all of it" in out
+    assert "rod[0] wire: 3 mm long, shorter than an element" in out
+
+
+def test_branches_move_drives(bar: Path, run: Run) -> None:
+    code, out, _ = run("branches", str(bar), "--move", "servo=20deg", "--starts", "2", "--out", str(bar / "out"))
+    assert code == 0, out
+    assert "unique pose on 2 loading paths" in out
+    assert json.loads((bar / "out" / "branches.json").read_text())["contractions"]["servo"] == pytest.approx(0.349066)

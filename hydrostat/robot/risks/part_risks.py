@@ -20,10 +20,11 @@ MOST_CHANGED = 0.2
 
 
 def part_risks(robot: Robot) -> Iterator[str]:
-    """Rigid parts that reach out of the body, parts that the mesh changes, and rods that stick out."""
+    """Rigid parts that reach out of the body, parts that the mesh changes, rods that stick out or are too short."""
     found = list(_judge_parts(robot))
     yield from merge_risks(risk for is_outside, risk in found if is_outside)
     yield from merge_risks(risk for is_outside, risk in found if not is_outside)
+    yield from merge_risks(_short_rods(robot))
     yield from merge_risks(_thick_rods(robot))
 
 
@@ -53,6 +54,15 @@ def _judge_parts(robot: Robot) -> Iterator[tuple[bool, Risk]]:
         if abs(change) > MOST_CHANGED:
             text = f"{100 * change:+.0f} % in volume in the mesh; take a smaller element_size"
             yield False, Risk(name, abs(change), text)
+
+
+def _short_rods(robot: Robot) -> Iterator[Risk]:
+    """Rods that are shorter than the elements."""
+    side = float(np.median(robot.body.mesh.spacings))
+    for index, rod in enumerate(robot.rods):
+        if rod.length < side:
+            text = f"{mm(rod.length)} long, shorter than an element, {mm(side)}; the mesh cannot show its stiffness"
+            yield Risk(f"rod[{index}] {rod.name}", 1 - rod.length / side, f"{text}. Take a smaller element_size")
 
 
 def _thick_rods(robot: Robot) -> Iterator[Risk]:

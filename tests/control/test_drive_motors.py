@@ -1,0 +1,76 @@
+"""Motors of drives. Oracles: angles by hand, the emulated servo's own angle."""
+
+import time
+from dataclasses import replace
+from math import radians
+from pathlib import Path
+
+import numpy as np
+import pytest
+from builders import strip_robot
+
+from hydrostat.control import (
+    EMULATED,
+    Calibration,
+    Motors,
+    SimulatedLink,
+    arm_motors,
+    motor_stand,
+    stand_table,
+    stand_tensions,
+)
+from hydrostat.errors import InputError
+from hydrostat.robot import Load, LoadDrive, PinDrive, Robot
+from hydrostat.simulation import ProfileTable
+
+TABLE = b"time_s,up_mm,base_deg,stage_mm\n0,0,0,0\n1,2,10,-3\n"
+
+
+@pytest.fixture
+def robot() -> Robot:
+    """The strip on a servo and on a stage, with a push that no motor makes."""
+    strip = strip_robot(columns=8, rows=2)
+    servo = PinDrive(name="base", at=(0.0, 0.0), min=-0.5, max=1.0)
+    stage = PinDrive(name="stage", slide=(0.0, 1.0), min=-0.01, max=0.02)
+    other = replace(strip.pins[0], box=((0.199, -1.0), (0.201, 1.0)), drive="stage")
+    return replace(
+        strip,
+        pins=(replace(strip.pins[0], drive="base"), other),
+        loads=(Load(name="push", marker="tip", force=(0.0, -0.1), drive="thumb"),),
+        drives=(LoadDrive(name="thumb", min=0.0, max=1.0), servo, stage),
+    )
+
+
+def test_a_degree_counts_as_a_millimeter(robot: Robot) -> None:
+    stand, table = motor_stand(robot), stand_table(ProfileTable.read(TABLE, robot, name="m.csv"), robot)
+    assert [winch.name for winch in stand.winches] == ["up", "down", "base", "stage"]
+    assert not stand.drives
+    np.testing.assert_allclose(table.profile.values[1], [2e-3, 0.0, 10e-3, -3e-3], rtol=1e-12)
+    motors = Motors(stand.winches, SimulatedLink(np.zeros(4)))
+    np.testing.assert_allclose(1e3 * motors.high[2:], [np.degrees(1.0), 20.0])
+    np.testing.assert_allclose(1e3 * motors.low[2:], [-np.degrees(0.5), -10.0])
+    assert motors.ask(np.array([0.0, 0.0, 0.07, 0.0])) == "base is at its limit of 57.3 deg and was asked for 70.0 deg"
+    angles = Calibration.usual(stand).assume_zeros().angles(table.profile.values[1])
+    assert angles[2] == pytest.approx(radians(10))
+    pushed = ProfileTable.read(b"time_s,thumb_share\n0,0\n1,0.5\n", robot, name="m.csv")
+    with pytest.raises(InputError, match=r"m\.csv, column thumb_share: no motor changes a load"):
+        stand_table(pushed, robot)
+
+
+@pytest.mark.slow
+def test_an_emulated_servo_turns_a_pin(robot: Robot, tmp_path: Path) -> None:
+    table = ProfileTable.read(TABLE, robot, name="m.csv")
+    pulls, known = stand_tensions(robot, table)
+    goal = stand_table(table, robot).profile.values[1]
+    assert pulls(goal)[0] > 0
+    assert np.isnan(known(goal)[2:]).all()
+    motors = arm_motors(tmp_path, motor_stand(robot), EMULATED, pulls, known=known)
+    try:
+        motors.ask(goal)
+        until = time.monotonic() + 5.0
+        while motors.is_moving or not motors.places.any():
+            motors.drive(time.monotonic())
+            assert time.monotonic() < until
+        np.testing.assert_allclose(motors.places, goal, atol=4e-4)
+    finally:
+        motors.link.close()
