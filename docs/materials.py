@@ -94,7 +94,8 @@ limb swing and count n swings until the amplitude has halved. The loss factor is
 HYSTERESIS = """\
 ## Hysteresis
 
-No material has [hysteresis](robot_toml.md#hysteresis) by default. These are values to begin with, as shares of Young's
+No material has [hysteresis](robot_toml.md#hysteresis) by default. `hysteresis = "material"` takes the values of
+this table, in Python `material.with_hysteresis()`; dense foam is no name of it. The sliders are shares of Young's
 modulus. The loss is the part of the work of a stretch from rest to 25 % that does not return on the way back, in closed
 form; the strain kept is the most that a bar keeps when released.
 
@@ -111,12 +112,8 @@ Measure yours: pull a robot half, whole, half and to 0, and compare the markers 
 them differ, too.
 """
 
-SLIDERS = {
-    "polyurethane foam, soft": ((0.4, 0.02), (0.5, 0.1)),
-    "polyurethane foam, dense": ((0.3, 0.02), (0.25, 0.1)),
-    "polyester fibre": ((0.4, 0.02), (0.6, 0.1)),
-}
-"""Share of Young's modulus and strain of each slider."""
+DENSE_FOAM = ((0.3, 0.02), (0.25, 0.1))
+"""Share of Young's modulus and strain of each slider of dense foam, which is no material of the table."""
 
 SQUEEZES = 0.1, 0.25, 0.4, 0.6
 
@@ -151,10 +148,15 @@ def damping_chapter() -> str:
 def hysteresis_chapter() -> str:
     """Chapter on values of hysteresis."""
     rows = []
-    for name, sliders in SLIDERS.items():
+    known = [MATERIALS[name] for name in ("polyurethane foam", "polyester fibre")]
+    shares = {
+        one.name: tuple((slider.young / one.young, slider.strain) for slider in one.with_hysteresis().hysteresis)
+        for one in known
+    }
+    for name, sliders in {**shares, "dense polyurethane foam": DENSE_FOAM}.items():
         loss, kept = hysteresis_loss(sliders, 0.25), sum(share * strain for share, strain in sliders)
-        shares = ", ".join(f"{100 * share:.3g} % at {strain:g}" for share, strain in sliders)
-        rows.append(f"| {name} | {shares} | {100 * loss:.0f} % | {100 * kept:.1f} % |")
+        words = ", ".join(f"{100 * share:.3g} % at {strain:g}" for share, strain in sliders)
+        rows.append(f"| {name} | {words} | {100 * loss:.0f} % | {100 * kept:.1f} % |")
     head = ["| filling | share of Young's modulus, strain | loss at 25 % | strain kept, at most |", "|---|---|---|---|"]
     return HYSTERESIS.format(table="\n".join([*head, *rows]))
 

@@ -241,13 +241,15 @@ def _part_line(body: "Body", index: int) -> str:
 
 def _held_parts(robot: "Robot") -> list[str]:
     """Return a line for each pin on a rigid part, which it holds as a whole."""
+    import numpy as np
+
     body, lines = robot.body, []
     for number, pin in enumerate(robot.pins):
         held = pin.holds(body.mesh)[body.mesh.elements].any(axis=1)
         names = [
             part.name
             for index, part in enumerate(body.parts, start=1)
-            if part.is_rigid and held[body.element_materials == index].any()
+            if part.is_rigid and np.any(held & (body.element_materials == index))
         ]
         verb = "holds" if pin.drive is None else f"moves by drive {pin.drive}"
         lines += [f"pin[{number}] touches rigid part {name} and {verb} all of it" for name in names]

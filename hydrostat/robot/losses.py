@@ -1,4 +1,4 @@
-"""`LOSSES`: loss factor of each named material and its source; what is assumed is called so."""
+"""`LOSSES`: loss factor of each named material and its source; `SLIDERS`: hysteresis. What is assumed is called so."""
 
 from types import MappingProxyType
 
@@ -44,3 +44,8 @@ LOSSES = MappingProxyType(
         "tpu 85a gyroid 20%": _TPU,
     }
 )
+
+SLIDERS = MappingProxyType(
+    {"polyester fibre": ((0.4, 0.02), (0.6, 0.1)), "polyurethane foam": ((0.4, 0.02), (0.5, 0.1))}
+)
+"""Share of Young's modulus and strain of each slider of a material; docs/materials.md has what they rest on."""

@@ -6,6 +6,7 @@ from typing import Self
 
 from hydrostat.errors import InputError
 from hydrostat.given import check_not_negative, check_number, check_positive
+from hydrostat.robot.losses import SLIDERS
 
 SOFTEST = 100.0  # Young's modulus of a material is at least so much [Pa]: less was meant in another unit
 MOST_BRANCHES = 10  # a material has at most this many branches
@@ -173,6 +174,19 @@ class Material:
         if self.loss_factor is None:
             raise InputError("the material has no loss factor. Use a material of the table, or write a viscosity.")
         return replace(self, viscosity=self.loss_factor * self.lame[0] / (2 * math.pi * frequency))
+
+    def with_hysteresis(self) -> Self:
+        """Return the material with the sliders that the table has for its name.
+
+        Raises InputError: the table has none.
+        """
+        if self.name not in SLIDERS:
+            known = ", ".join(SLIDERS)
+            raise InputError(
+                f"no hysteresis is known of {self.name or 'this material'}. Write sliders. Known: {known}."
+            )
+        sliders = tuple(Slider(young=share * self.young, strain=strain) for share, strain in SLIDERS[self.name])
+        return replace(self, hysteresis=sliders)
 
     @property
     def lame(self) -> tuple[float, float]:

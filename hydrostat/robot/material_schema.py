@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from pydantic import Discriminator, Field, Tag
+from pydantic import BeforeValidator, Discriminator, Field, Tag
 
 from hydrostat.robot.element_kind import MaterialLaw
 from hydrostat.robot.material import MOST_BRANCHES, MOST_TERMS
@@ -39,6 +39,11 @@ class FoamTermTable(TomlTable):
 Terms = Annotated[list[FoamTermTable], Field(min_length=1, max_length=MOST_TERMS)]
 
 
+def _named_sliders(value: object) -> object:
+    """Sliders, or "material" for those of the table."""
+    return None if value == "material" else value
+
+
 class NamedMaterialTable(TomlTable):
     """Material by name, with its law and viscosity."""
 
@@ -47,7 +52,7 @@ class NamedMaterialTable(TomlTable):
     terms: Terms | None = None
     viscosity: NamedViscosity | None = None
     relaxation: Branches | None = None
-    hysteresis: Sliders | None = None
+    hysteresis: Annotated[Sliders | None, BeforeValidator(_named_sliders)] = None
 
 
 class MaterialTable(TomlTable):

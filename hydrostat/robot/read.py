@@ -326,6 +326,8 @@ def read_material(entry: Any) -> Material:
     known = get_material(entry.name, None if given.get("foam") else entry.law)
     if isinstance(entry.viscosity, tuple):  # LossFrequency
         given["viscosity"] = known.with_damping(entry.viscosity[0]).viscosity
+    if entry.hysteresis is None and "hysteresis" in entry.model_fields_set:  # "material"
+        given["hysteresis"] = known.with_hysteresis().hysteresis
     return replace(known, **given)
 
 

@@ -10,7 +10,7 @@ from builders import FOAM, gallery_robot, strip_mesh, strip_robot
 from hydrostat.design import DesignRequest
 from hydrostat.errors import InputError
 from hydrostat.mechanics import NeoHookean, SliderEnergy
-from hydrostat.robot import Marker, PoseTarget, Slider, load_robot, save_robot
+from hydrostat.robot import Marker, PoseTarget, Slider, get_material, load_robot, robot_text, save_robot
 from hydrostat.simulation import Simulation, find_modes
 
 SLIDERS = (Slider(young=20e3, strain=0.01), Slider(young=10e3, strain=0.04))
@@ -96,6 +96,18 @@ def test_files_and_bad_input(tmp_path: Path) -> None:
     save_robot(robot, tmp_path)
     assert load_robot(tmp_path).body.material.hysteresis == SLIDERS
     file = tmp_path / "robot.toml"
+    named = replace(robot.body, material=get_material("polyester fibre"))
+    text = robot_text(replace(robot, body=named))
+    plain, asked = 'material = "polyester fibre"', 'material = { name = "polyester fibre", hysteresis = "material" }'
+    assert plain in text
+    (tmp_path / "named").mkdir()
+    save_robot(replace(robot, body=named), tmp_path / "named", text=text)
+    (tmp_path / "named/robot.toml").write_text(text.replace(plain, asked))
+    found = load_robot(tmp_path / "named").body.material
+    assert [(slider.young / found.young, slider.strain) for slider in found.hysteresis] == [(0.4, 0.02), (0.6, 0.1)]
+    (tmp_path / "named/robot.toml").write_text(text.replace(plain, asked.replace("polyester fibre", "pdms")))
+    with pytest.raises(InputError, match=r"no hysteresis is known of pdms\. Write sliders\. Known"):
+        load_robot(tmp_path / "named")
     file.write_text(file.read_text().replace("strain = 0.04", "strain = 4"))
     with pytest.raises(InputError, match=r"hysteresis\[1\].strain must be at most 1, not 4; 0.05 is 5 %"):
         load_robot(tmp_path)
