@@ -13,7 +13,15 @@ import typer
 
 from hydrostat.cli.check import print_sewing
 from hydrostat.cli.design_record import RECORDS, open_record, tell_record, write_record
-from hydrostat.cli.design_results import STALE, kit_options, print_front, print_poses, write_kit, write_results
+from hydrostat.cli.design_results import (
+    STALE,
+    find_over_budget,
+    find_refused_better,
+    print_front,
+    print_poses,
+    write_kit,
+    write_results,
+)
 from hydrostat.cli.design_wishes import DesignArguments, parse_request
 from hydrostat.cli.fabricate import print_kit
 from hydrostat.cli.folders import OutFolder, RobotFolder, folder_of, require_folder, result_folder
@@ -223,6 +231,7 @@ def design(
         lock_cable=lock_cable or [],
     )
     from hydrostat.design import kit_fits
+    from hydrostat.errors import in_words
 
     began = time.perf_counter()
     source = read_robot(robot)
@@ -243,8 +252,10 @@ def design(
         print_kit(made, printed=printed)
     _tell_count(network, request, lifts)
     fits = kit_fits(network) and not (made is not None and made.problems)
-    over = made is None and fits and is_above_budget(network, spend)
-    _tell_next(network, robot, out, kit=kit, fits=fits, budget=None if over else spend)
+    over = find_over_budget(network, spend) if made is None and fits else ()
+    for problem in over:
+        print(f"error: {in_words(problem)}")
+    _tell_next(network, robot, out, kit=kit, fits=fits, budget=spend, over=over)
     if network.timed_out:
         print(f"time limit of {time_limit} reached: best network so far")
     elif not network.complete:
@@ -295,20 +306,6 @@ def _refuse_budget(request: "DesignRequest", key: str, budget: float | None) -> 
         )
 
 
-def is_above_budget(network: "Network", budget: float | None) -> bool:
-    """Return True, with the error of `fabricate` printed, if the kit of a network costs more than a budget."""
-    from hydrostat.errors import in_words
-    from hydrostat.fabrication import OVER_BUDGET, summarize_kit
-
-    if budget is None:
-        return False
-    rows = dict(summarize_kit(network.robot, options=kit_options(network, budget)))
-    told = [problem for problem in rows.get("Problems", ()) if OVER_BUDGET in problem]
-    for problem in told:
-        print(f"error: {in_words(problem)}")
-    return bool(told)
-
-
 def _search(
     source: "Robot", request: "DesignRequest", record: "SearchRecord", out: Path
 ) -> "tuple[Network, tuple[Lift, ...]]":
@@ -357,17 +354,23 @@ def _tell_better() -> "Callable[[DesignStage], None]":
         least = stage.error
         counts = f"{plural(len(stage.robot.winches), 'winch')}, {plural(len(stage.robot.cables), 'cable')}"
         seconds = time.perf_counter() - began
-        print(f"{seconds:5.1f} s: {1e3 * least:.3g} mm expected as built ({counts})", file=sys.stderr, flush=True)
+        print(f"{seconds:5.1f} s: {1e3 * least:.3g} mm so far ({counts}), kit not checked", file=sys.stderr, flush=True)
 
     return tell
 
 
 def _tell_count(network: "Network", request: "DesignRequest", lifts: "Iterable[Lift]") -> None:
     """Print a note if there are fewer than there may be, what lowers the error, and the front of other winches."""
+    from hydrostat.errors import in_words
+
     found, asked = (len(network.robot.winches), len(network.robot.cables)), (request.winches, request.cables)
     if network.complete and isinstance(request.winches, int) and found != asked:
         words = f"{plural(request.winches, 'winch')} and {plural(request.cables, 'cable')}"
         print(f"note: {words} were allowed. The search found no smaller error with more that can be built")
+    if refused := find_refused_better(network):
+        better, reason = refused
+        size = f"{1e3 * better.expected_error:.3g} mm with {plural(len(better.robot.cables), 'cable')}"
+        print(f"note: {size} fell away, its kit would be refused: {in_words(reason)}")
     for lift in lifts:
         error = 1e3 * lift.network.expected_error
         print(f"note: {lift.words} would leave at most {error:.2g} mm as built, by a quick search")
@@ -375,12 +378,14 @@ def _tell_count(network: "Network", request: "DesignRequest", lifts: "Iterable[L
         print_front(network)
 
 
-def _tell_next(network: "Network", source: Path, out: Path, *, kit: bool, fits: bool, budget: float | None) -> None:
+def _tell_next(
+    network: "Network", source: Path, out: Path, *, kit: bool, fits: bool, budget: float | None, over: tuple[str, ...]
+) -> None:
     """Print the locations of the results and the next command."""
     if network.alternatives:
         print(f"Alternatives: {out / 'alternatives'}")
-    if not fits:
-        print(f"Try: {design_remedy(network, source, out)}")
+    if not fits or over:
+        print(f"Try: {design_remedy(network, source, out, budget=budget, over=over)}")
     elif kit:
         print(f"To build it, start with {out / 'kit' / 'assembly_sheet.pdf'}")
     else:

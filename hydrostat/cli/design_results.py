@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
-    from hydrostat.design import Constraints, Network
+    from hydrostat.design import Alternative, Constraints, Network
     from hydrostat.fabrication import Kit, KitOptions
     from hydrostat.ik import IKResult
     from hydrostat.robot import Robot
@@ -55,6 +55,29 @@ def kit_options(network: "Network", budget: float | None) -> "KitOptions":
 
     limits = network.constraints
     return KitOptions(force=True, tension=limits.tension_limit, torque=limits.torque, budget=budget)
+
+
+def find_over_budget(network: "Network", budget: float | None) -> tuple[str, ...]:
+    """The problem of `fabricate` if the kit of a network costs more than a budget [USD]; empty if not."""
+    from hydrostat.fabrication import OVER_BUDGET, summarize_kit
+
+    if budget is None:
+        return ()
+    rows = dict(summarize_kit(network.robot, options=kit_options(network, budget)))
+    return tuple(problem for problem in rows.get("Problems", ()) if OVER_BUDGET in problem)
+
+
+def find_refused_better(network: "Network") -> "tuple[Alternative, str] | None":
+    """The alternative of the least error if its kit would be refused, with the first reason; None if none is better."""
+    from hydrostat.design import kit_fits
+    from hydrostat.fabrication import Demand, find_refusals
+
+    better = [one for one in network.alternatives if one.expected_error < _CLEARLY * network.expected_error]
+    best = min((one for one in better if not kit_fits(one)), key=lambda one: one.expected_error, default=None)
+    return best and (best, find_refusals(best.robot, Demand.of_results(best.robot, best.ik_results))[0])
+
+
+_CLEARLY = 0.9  # a network with so many times the error of the chosen one is clearly better
 
 
 def designed_tension(robot: "Robot", folder: Path) -> float | None:

@@ -7,7 +7,7 @@ from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING
 
-from hydrostat.cli.design_results import alternative_folder
+from hydrostat.cli.design_results import alternative_folder, find_over_budget, kit_options
 
 if TYPE_CHECKING:
     from hydrostat.design import Network
@@ -32,10 +32,7 @@ def kit_remedy(robot: "Robot", folder: Path, out: Path, *, options: "KitOptions"
     if any(MATERIAL_FIX in reason for reason in told):
         return f"hydrostat materials, then edit material in {place}"
     if found := next((reason for reason in told if OVER_BUDGET in reason), ""):
-        budget, fewer = f"--budget {options.budget:g}USD", max(len(robot.winches) - 1, 1)
-        if motor := re.search(r"--motor (\S+)", found):
-            return f"hydrostat fabricate {place} --motor {motor[1]} {budget} --out {kit}"
-        return f"hydrostat design {place} --winches {fewer} {budget} --out {quote(f'{out}_design')}"
+        return _cheaper(robot, found, f"--budget {options.budget:g}USD", place, out)
     known = set(find_refusals(robot, options=options))
     for motor in ("auto", *(each.key for each in ALL_MOTORS)) if known and known >= set(told) else ():
         if motor != options.motor and not find_refusals(robot, options=replace(options, motor=motor)):
@@ -50,22 +47,40 @@ def kit_remedy(robot: "Robot", folder: Path, out: Path, *, options: "KitOptions"
     return f"hydrostat design {place} --winches {winches} --cables {cables} --out {quote(f'{out}_design')}"
 
 
-def design_remedy(network: "Network", source: Path, out: Path) -> str:
+def _cheaper(robot: "Robot", reason: str, budget: str, place: str, out: Path) -> str:
+    """Command that brings a kit within its budget: another motor, fewer winches, or else the budget that it needs."""
+    if motor := re.search(r"--motor (\S+)", reason):
+        return f"hydrostat fabricate {place} --motor {motor[1]} {budget} --out {quote(str(out))}"
+    if (winches := len(robot.winches) - 1) > 0:
+        return f"hydrostat design {place} --winches {winches} --two-way {budget} --out {quote(f'{out}_design')}"
+    price = int(re.findall(r"costs (\d+) USD", reason)[0]) + 1  # it was rounded
+    return f"hydrostat fabricate {place} --budget {price}USD --out {quote(str(out))}"
+
+
+def design_remedy(
+    network: "Network", source: Path, out: Path, *, budget: float | None = None, over: Iterable[str] = ()
+) -> str:
     """Command to continue with if the kit of a design would be rejected: an alternative, or fewer winches.
 
-    It is `hydrostat check` if no kit can be made of the body itself.
+    All keep to the budget [USD], for which `over` are the problems. It is `hydrostat check` if no kit can be made of
+    the body itself, or if fewer winches were what was asked for.
     """
     from hydrostat.design import kit_fits
 
     if body_refusals(network.source):
         return f"hydrostat check {quote(str(source))}"
+    spend = "" if budget is None else f" --budget {budget:g}USD"
     for number, other in enumerate(network.alternatives, start=1):
-        if kit_fits(other):
+        if kit_fits(other) and not find_over_budget(replace(network, robot=other.robot), budget):
             place = alternative_folder(out, number, other.robot)
-            return f"hydrostat fabricate {quote(str(place))} --out {quote(str(out / 'kit'))}"
-    winches, cables = len(network.robot.winches), len(network.robot.cables)
-    fewer = f"--winches {max(winches - 1, 1)} --cables {max(cables - 1, 1)}"
-    return f"hydrostat design {quote(str(source))} {fewer} --out {quote(str(out))}"
+            return f"hydrostat fabricate {quote(str(place))}{spend} --out {quote(str(out / 'kit'))}"
+    if reasons := tuple(over):
+        options = kit_options(network, budget)
+        return kit_remedy(network.robot, out / "robot", out / "kit", options=options, reasons=reasons)
+    winches, cables = max(len(network.robot.winches) - 1, 1), max(len(network.robot.cables) - 1, 1)
+    if (winches, cables) == (network.request.winches, network.request.cables):
+        return f"hydrostat check {quote(str(out / 'robot'))}"
+    return f"hydrostat design {quote(str(source))} --winches {winches} --cables {cables}{spend} --out {quote(str(out))}"
 
 
 def body_refusals(robot: "Robot") -> tuple[str, ...]:

@@ -13,11 +13,17 @@ import pytest
 from builders import gallery_robot
 from plush import near_the_edge
 
-from hydrostat.cli.design import is_above_budget
-from hydrostat.cli.design_results import designed_motor, designed_tension, designed_torque
-from hydrostat.design import BuildCost, Constraints, Network
+from hydrostat.cli.design_results import (
+    designed_motor,
+    designed_tension,
+    designed_torque,
+    find_over_budget,
+    find_refused_better,
+)
+from hydrostat.cli.remedies import design_remedy
+from hydrostat.design import Alternative, BuildCost, Constraints, Network
 from hydrostat.errors import InputError
-from hydrostat.fabrication import ALL_MOTORS
+from hydrostat.fabrication import ALL_MOTORS, Demand, find_refusals
 from hydrostat.project import Wishes, Work
 from hydrostat.robot import Marker, Pin, PoseTarget, load_robot, robot_hash, save_robot
 
@@ -250,18 +256,32 @@ def test_a_budget_below_the_motors_stops_a_design(run: Run, tmp_path: Path) -> N
     assert "2 motors with boards and power cost at least 60 USD (sts3215)" in err
 
 
-def test_design_and_fabricate_judge_one_budget(run: Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_better_network_that_a_kit_refuses_is_named() -> None:
+    """Oracle: errors by hand, and the reasons of `find_refusals` for a robot whose kit is refused."""
+    robot = near_the_edge()
+    others = tuple(Alternative(robot=robot, ik_results=(), expected_error=error) for error in (0.005, 0.004, 0.003))
+    network = cast(Network, SimpleNamespace(alternatives=others, expected_error=0.006))
+    found = find_refused_better(network)
+    assert found is not None
+    assert (found[0], found[1]) == (others[2], find_refusals(robot, Demand.of_results(robot, []))[0])
+    assert find_refused_better(cast(Network, SimpleNamespace(alternatives=others, expected_error=0.0032))) is None
+
+
+def test_design_and_fabricate_judge_one_budget(run: Run, tmp_path: Path) -> None:
     """Oracle: the sentence of `fabricate --summary`, a dollar below the price of the whole kit."""
     robot = replace(near_the_edge(), poses={})
     save_robot(robot, tmp_path / "robot")
-    network = cast(Network, SimpleNamespace(robot=robot, constraints=Constraints()))
-    assert not is_above_budget(network, None)
-    assert is_above_budget(network, 1.0)
-    said = capsys.readouterr().out
+    values = {"robot": robot, "source": robot, "alternatives": (), "constraints": Constraints()}
+    network = cast(Network, SimpleNamespace(**values))
+    assert find_over_budget(network, None) == ()
+    over = find_over_budget(network, 1.0)
+    (said,) = over
     (cost,) = (int(each) for each in re.findall(r"costs (\d+) USD in whole packs", said))
     assert "No cheaper motor than" in said
     assert said.rstrip().endswith("fits")
     assert cost > BuildCost.of_robot(robot, []).price + 5  # the body comes on top
-    assert not is_above_budget(network, cost + 1)
+    assert find_over_budget(network, cost + 1) == ()
+    tried = design_remedy(network, tmp_path / "robot", Path("out"), budget=1.0, over=over)
+    assert tried == f"hydrostat fabricate out/robot --budget {cost + 1}USD --out out/kit"
     _, out, _ = run("fabricate", tmp_path / "robot", "--budget", f"{cost - 1}USD", "--summary")
     assert f"costs {cost} USD in whole packs" in out
