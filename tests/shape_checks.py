@@ -15,9 +15,10 @@ from functools import partial, wraps
 from importlib.abc import MetaPathFinder
 from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
 from importlib.util import cache_from_source, decode_source
-from types import FunctionType, ModuleType
+from types import CodeType, FunctionType, ModuleType
 from typing import Any
 from unittest.mock import patch
+from warnings import catch_warnings, simplefilter
 
 import jaxtyping._decorator
 from beartype import BeartypeConf, beartype
@@ -59,8 +60,15 @@ def checked(function: Callable[..., Any]) -> Callable[..., Any]:
     public.__kwdefaults__ = function.__kwdefaults__
     wraps(function)(public)
     counter = _Counter(function, public)
-    public.__code__ = counter.code
+    _exchange(public, counter.code)
     return public
+
+
+def _exchange(function: FunctionType, code: CodeType) -> None:
+    """Give a function another code object; from Python 3.13 on that of a generator warns."""
+    with catch_warnings():
+        simplefilter("ignore", DeprecationWarning)
+        function.__code__ = code
 
 
 def _count_call(*args: Any, **kwargs: Any) -> Any:
@@ -83,7 +91,7 @@ class _Counter:
             _counting.append(self)
         self.calls += 1
         if self.calls >= CALLS:
-            self._public.__code__ = self._function.__code__
+            _exchange(self._public, self._function.__code__)
         if self.calls > CALLS or config.jaxtyping_disable:
             return self._function(*args, **kwargs)
         if self._checking is None:
@@ -92,7 +100,8 @@ class _Counter:
 
     def begin(self) -> None:
         """Check the first calls again."""
-        self.calls, self._public.__code__ = 0, self.code
+        self.calls = 0
+        _exchange(self._public, self.code)
 
 
 def checked_public(made: Any) -> Any:

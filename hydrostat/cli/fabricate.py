@@ -118,7 +118,7 @@ def fabricate(
 
         loaded, options = simplify_robot(loaded, options)
     if out is None or summary:
-        _print_summary(loaded, options)
+        _print_summary(robot, loaded, options)
         return
     kit = _build_or_report(robot, loaded, options, out)
     kit.write(out)
@@ -137,8 +137,8 @@ def fabricate(
     print(f"Wrote {len(kit.files)} files in {seconds:.1f} s. Start with {out / 'assembly_sheet.pdf'}")
 
 
-def _print_summary(robot: "Robot", options: "KitOptions") -> None:
-    """Print what building a robot asks, a heading and its sentences at a time."""
+def _print_summary(folder: Path, robot: "Robot", options: "KitOptions") -> None:
+    """Print what building a robot asks, a heading and its sentences at a time (InputError: it cannot be built well)."""
     from hydrostat.errors import in_words
     from hydrostat.fabrication import summarize_kit
 
@@ -149,6 +149,8 @@ def _print_summary(robot: "Robot", options: "KitOptions") -> None:
         print(f"{title}: {in_words(lines[0])}")
         for line in lines[1:]:
             print(f"  {in_words(line)}")
+    if (problems := dict(rows).get("Problems")) and not options.force:
+        raise _refusal(folder, problems)
 
 
 def _build_or_report(folder: Path, robot: "Robot", options: "KitOptions", out: Path) -> "Kit":
@@ -165,9 +167,13 @@ def _build_or_report(folder: Path, robot: "Robot", options: "KitOptions", out: P
         for reason in error.reasons:
             print(f"error: {in_words(reason)}")
         print(f"Try: {kit_remedy(robot, folder, out, options=options, reasons=error.reasons)}")
-        count = f"{plural(len(error.reasons), 'problem')} {'prevents' if len(error.reasons) == 1 else 'prevent'}"
-        words = f"{folder}: {count} fabrication. Fix the robot, or add --force to write the kit anyway."
-        raise InputError(words) from None
+        raise _refusal(folder, error.reasons) from None
+
+
+def _refusal(folder: Path, reasons: Collection[str]) -> InputError:
+    """Error of a robot that cannot be built well."""
+    count = f"{plural(len(reasons), 'problem')} {'prevents' if len(reasons) == 1 else 'prevent'}"
+    return InputError(f"{folder}: {count} fabrication. Fix the robot, or add --force to write the kit anyway.")
 
 
 def _print_motors(robot: "Robot", kit: "Kit", options: "KitOptions") -> None:

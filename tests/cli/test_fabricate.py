@@ -87,8 +87,12 @@ def test_a_file_in_the_way_is_said_before_the_work(run: Run, tmp_path: Path, sta
 def test_a_summary_writes_nothing(run: Run, tmp_path: Path) -> None:
     """Oracle: the listing of the folder; the two holes that `fabricate` refuses."""
     save_robot(near_the_edge(), tmp_path / "robot")
-    code, out, _ = run("fabricate", tmp_path / "robot", "--summary", "--out", tmp_path / "kit")
-    assert code == 0
+    code, out, err = run("fabricate", tmp_path / "robot", "--summary", "--out", tmp_path / "kit")
+    assert code == 2
+    assert err.endswith(
+        "robot: 2 problems prevent fabrication. Fix the robot, or add --force to write the kit anyway.\n"
+    )
+    assert run("fabricate", tmp_path / "robot", "--summary", "--force")[0] == 0
     assert {"Difficulty", "Money", "You must own"} <= {line.partition(":")[0] for line in out.splitlines()}
     assert out.count("pinhole needs") == 2
     assert not (tmp_path / "kit").exists()
@@ -108,7 +112,7 @@ def test_a_simple_version_is_set_beside_the_full_one(run: Run, tmp_path: Path) -
         cables=tuple(replace(cable, points=(cable.points[0], (0.0, y), cable.points[1])) for cable, y in bends),
     )
     save_robot(posed, tmp_path / "robot")
-    code, out, _ = run("fabricate", tmp_path / "robot", "--simple", "--summary")
+    code, out, _ = run("fabricate", tmp_path / "robot", "--simple", "--summary", "--force")
     assert code == 0
     said = " ".join(out.replace("│", " ").split())
     assert "Left out: 1 of 2 cables of the robot file. Printed grommets." in said
