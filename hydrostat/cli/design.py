@@ -7,11 +7,12 @@ from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from shlex import quote
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from hydrostat.cli.check import print_sewing
+from hydrostat.cli.design_arguments import DesignArguments, parse_request
 from hydrostat.cli.design_record import RECORDS, open_record, tell_record, write_record
 from hydrostat.cli.design_results import (
     STALE,
@@ -22,10 +23,10 @@ from hydrostat.cli.design_results import (
     write_kit,
     write_results,
 )
-from hydrostat.cli.design_wishes import DesignArguments, parse_request
 from hydrostat.cli.fabricate import print_kit
 from hydrostat.cli.folders import OutFolder, RobotFolder, folder_of, require_folder, result_folder
-from hydrostat.cli.options import Budget, DefaultText, MotorOption, parse_budget
+from hydrostat.cli.options import parse_budget
+from hydrostat.cli.records import take_records
 from hydrostat.cli.remedies import body_refusals, design_remedy
 from hydrostat.cli.waiting import one_interrupt, progress_bar, read_robot
 from hydrostat.units import plural
@@ -41,152 +42,13 @@ _CLEARLY = 0.95  # a network with so many times the error of the last that was t
 STOPPING = "stopping: solving and writing the best network so far ..."  # said when Ctrl-C ends a search
 
 
-def _option(metavar: str | None, words: str, default: str) -> Any:
-    """An option with its help, and the field of a record that has its default."""
-    return typer.Option(metavar=metavar, help=words, show_default=DefaultText(default))
-
-
-Winches = Annotated[
-    str | None,
-    _option("N|auto", "Number of winches, or auto for the fewest that meet the tolerance.", "DesignRequest.winches"),
-]
-Cables = Annotated[int | None, _option("N", "Maximum number of cables in total.", "DesignRequest.cables")]
-Poses = Annotated[
-    list[str] | None, typer.Option(metavar="NAME", help="Pose to design for. Repeatable.", show_default="all")
-]
-Method = Annotated[
-    str | None,
-    _option(
-        "routes|trees|chang2018",
-        "Search method: routes (adjoint-based), trees (muscle fibers, many settings) or chang2018 (one setting).",
-        "DesignRequest.method",
-    ),
-]
-ConstraintsFile = Annotated[
-    Path | None, typer.Option(metavar="FILE.toml", help="Constraints file. Options below override it.")
-]
-CablesPerWinch = Annotated[
-    int | None, _option("N", "Maximum number of cables per winch.", "Constraints.cables_per_winch")
-]
-Clearance = Annotated[str | None, _option("LENGTH", "Minimum distance from cable to edge.", "Constraints.clearance")]
-Depth = Annotated[
-    str | None,
-    typer.Option(
-        metavar="LENGTH",
-        help="Depth of cables under the skin of a 3D body, with winches outside. 0 mm = on the skin.",
-        show_default="anywhere inside",
-    ),
-]
-Tension = Annotated[str | None, _option("FORCE", "Maximum cable tension.", "Constraints.tension")]
-Slack = Annotated[str | None, _option("LENGTH", "Maximum cable slack.", "Constraints.slack")]
-SteppedSpools = Annotated[
-    bool, typer.Option("--stepped-spools", help="Allow cable spools from half to twice the winch spool radius.")
-]
-TwoWay = Annotated[
-    bool, typer.Option("--two-way", help="Let winches pull both ways, by cables wound the other way round.")
-]
-Front = Annotated[
-    bool,
-    typer.Option(
-        "--front", help="Also search with a winch fewer and more, pulling one way and both ways. 3-6 times longer."
-    ),
-]
-Symmetric = Annotated[str | None, typer.Option(metavar="x|y|z", help="Require mirror symmetry about this axis.")]
-LockWinch = Annotated[list[str] | None, typer.Option(metavar="NAME", help="Keep this winch of the robot. Repeatable.")]
-LockCable = Annotated[
-    list[str] | None, typer.Option(metavar="NAME", help="Keep this cable, by name or number from 1. Repeatable.")
-]
-WarmStart = Annotated[bool, typer.Option("--warm-start", help="Warm-start from the robot's own network.")]
-Simplicity = Annotated[
-    float | None,
-    _option(
-        None,
-        "Weight of simplicity in the score: fewer winches, cables and holes. 0 = ignore; 10 = quick to sew.",
-        "RouteOptions.simplicity",
-    ),
-]
-WorkspaceWeight = Annotated[
-    float | None,
-    _option(
-        None,
-        "Weight of workspace size in the score. 0 = ignore; 1 = twice the workspace may cost twice the error.",
-        "RouteOptions.workspace_weight",
-    ),
-]
-Ideal = Annotated[
-    bool,
-    typer.Option(
-        "--ideal",
-        help="Assume a perfect build: no position error of holes and no cable friction.",
-    ),
-]
-Stuffed = Annotated[
-    bool, typer.Option("--stuffed", help="Re-rank the best designs on the stuffed 3D body instead of the flat model.")
-]
-Tolerance = Annotated[
-    str | None,
-    typer.Option(
-        metavar="LENGTH",
-        help="Maximum rms error of each pose, with --winches auto.",
-        show_default="1 % of the body size",
-    ),
-]
-Time = Annotated[
-    str | None,
-    typer.Option(
-        "--time",
-        "--timeout",
-        metavar="TIME",
-        help="Maximum search time, without writing the results. Keeps the best network so far.",
-        show_default="none",
-    ),
-]
-Fibres = Annotated[
-    str | None, _option("edges|elements", "Location of muscles for --method trees.", "TreeOptions.fibres")
-]
-TreeOptionTexts = Annotated[
-    list[str] | None,
-    typer.Option(
-        metavar="NAME=VALUE",
-        help="Setting for --method chang2018: threshold, distance, steps or phi (Chang 2018). Repeatable.",
-    ),
-]
 Resume = Annotated[bool, typer.Option("--resume", help="Continue a search that was stopped: same command, same --out.")]
 WithKit = Annotated[bool, typer.Option("--kit", help="Also write the build kit.")]
 
 
+@take_records
 def design(
-    robot: RobotFolder,
-    out: OutFolder,
-    winches: Winches = None,
-    cables: Cables = None,
-    pose: Poses = None,
-    method: Method = None,
-    constraints: ConstraintsFile = None,
-    cables_per_winch: CablesPerWinch = None,
-    clearance: Clearance = None,
-    depth: Depth = None,
-    tension: Tension = None,
-    motor: MotorOption = None,
-    budget: Budget = None,
-    slack: Slack = None,
-    stepped_spools: SteppedSpools = False,
-    two_way: TwoWay = False,
-    front: Front = False,
-    symmetric: Symmetric = None,
-    lock_winch: LockWinch = None,
-    lock_cable: LockCable = None,
-    warm_start: WarmStart = False,
-    tolerance: Tolerance = None,
-    simplicity: Simplicity = None,
-    workspace_weight: WorkspaceWeight = None,
-    ideal: Ideal = False,
-    stuffed: Stuffed = False,
-    time_limit: Time = None,
-    fibres: Fibres = None,
-    tree_option: TreeOptionTexts = None,
-    kit: WithKit = False,
-    resume: Resume = False,
+    robot: RobotFolder, out: OutFolder, asked: DesignArguments, kit: WithKit = False, resume: Resume = False
 ) -> None:
     """Design the winches and cable routes that reach given poses.
 
@@ -199,46 +61,15 @@ def design(
     Example: hydrostat design gallery:starfish --pose wave --winches 2 --cables 6 --out build/starfish
     """
     require_folder(out)
-    typed = DesignArguments(
-        poses=pose or [],
-        winches=winches,
-        cables=cables,
-        method=method,
-        warm_start=warm_start,
-        tolerance=tolerance,
-        simplicity=simplicity,
-        workspace_weight=workspace_weight,
-        ideal=ideal,
-        stuffed=stuffed,
-        time=time_limit,
-        fibres=fibres,
-        tree_options=tree_option or [],
-        measured=folder_of(robot) / "tolerances.toml",
-        file=constraints,
-        limits={
-            "cables_per_winch": cables_per_winch,
-            "clearance": clearance,
-            "depth": depth,
-            "tension": tension,
-            "slack": slack,
-        },
-        motor=motor,
-        stepped=stepped_spools,
-        two_way=two_way,
-        front=front,
-        symmetric=symmetric,
-        lock_winch=lock_winch or [],
-        lock_cable=lock_cable or [],
-    )
     from hydrostat.design import kit_fits
     from hydrostat.errors import in_words
 
     began = time.perf_counter()
     source = read_robot(robot)
-    request = parse_request(source, typed)
+    request = parse_request(source, asked, measured=folder_of(robot) / "tolerances.toml")
     _refuse_body(source, request)
     _tell_left_out(source)
-    spend = parse_budget(budget)
+    spend = parse_budget(asked.budget)
     _refuse_budget(request, request.motor_for(source), spend)
     record = open_record(out, source, request, resume=resume)
     with one_interrupt(STOPPING, interrupt=True) as pass_over:
@@ -257,7 +88,7 @@ def design(
         print(f"error: {in_words(problem)}")
     _tell_next(network, robot, out, kit=kit, fits=fits, budget=spend, over=over)
     if network.timed_out:
-        print(f"time limit of {time_limit} reached: best network so far")
+        print(f"time limit of {asked.time} reached: best network so far")
     elif not network.complete:
         print("interrupted: best network so far")
         raise typer.Exit(130)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from builders import gallery_robot, strip_robot
 
-from hydrostat.cli.design_wishes import DesignArguments, parse_request
+from hydrostat.cli.design_arguments import DesignArguments, parse_request
 from hydrostat.design import BuildTolerances, DesignMethod, DesignRequest, RouteOptions, TreeOptions
 from hydrostat.project import Wishes
 from hydrostat.robot import PoseTarget, Robot
@@ -27,8 +27,16 @@ def test_nothing_typed_and_nothing_wished_is_what_the_record_says(unchecked: Non
 
 
 def test_the_same_typed_and_wished_is_the_same_request(unchecked: None) -> None:
-    limits = {"tension": "12 N", "clearance": "4 mm", "slack": "3 mm"}
-    typed = DesignArguments(winches="auto", cables=4, tolerance="2 mm", limits=limits, stepped=True, lock_winch=("up",))
+    typed = DesignArguments(
+        winches="auto",
+        cables=4,
+        tolerance="2 mm",
+        tension="12 N",
+        clearance="4 mm",
+        slack="3 mm",
+        stepped_spools=True,
+        lock_winch=["up"],
+    )
     lengths = {"tolerance": 0.002, "clearance": 0.004, "slack": 0.003}
     wishes = Wishes.of(winches=0, cables=4, tension=12.0, stepped=True, kept_winches=("up",), **lengths)
     assert parse_request(robot(), typed) == wished_request(robot(), wishes)
@@ -37,22 +45,22 @@ def test_the_same_typed_and_wished_is_the_same_request(unchecked: None) -> None:
 def test_knobs_of_the_thesis_have_the_same_names_everywhere() -> None:
     starfish = gallery_robot("starfish")
     knobs = {"threshold": 40, "distance": 2.5, "steps": 8, "phi": 0.3}
-    typed = DesignArguments(method="chang2018", tree_options=[f"{name}={value}" for name, value in knobs.items()])
+    typed = DesignArguments(method="chang2018", tree_option=[f"{name}={value}" for name, value in knobs.items()])
     wished = wished_request(starfish, Wishes.of(method=DesignMethod.CHANG2018, **knobs))
     assert wished == parse_request(starfish, typed)
 
 
 def test_measured_tolerances_are_taken_unless_a_file_is_given(tmp_path: Path) -> None:
     measured, given = tmp_path / "tolerances.toml", tmp_path / "limits.toml"
-    assert parse_request(robot(), DesignArguments(measured=measured)).uncertainty is None
+    assert parse_request(robot(), DesignArguments(), measured=measured).uncertainty is None
     measured.write_text("[tolerances]\nyoung = 0.02\n")
     given.write_text("[tolerances]\nyoung = 0.3\n")
     for typed, young in (
-        (DesignArguments(measured=measured), 0.02),
-        (DesignArguments(measured=measured, file=given), 0.3),
+        (DesignArguments(), 0.02),
+        (DesignArguments(constraints=given), 0.3),
     ):
-        uncertainty = parse_request(robot(), typed).uncertainty
+        uncertainty = parse_request(robot(), typed, measured=measured).uncertainty
         assert uncertainty is not None
         assert uncertainty.young == young
-    exact = parse_request(robot(), DesignArguments(measured=measured, ideal=True)).uncertainty
+    exact = parse_request(robot(), DesignArguments(ideal=True), measured=measured).uncertainty
     assert exact == BuildTolerances.none()
