@@ -33,7 +33,7 @@ def simplify_robot(robot: "Robot", options: "KitOptions") -> "tuple[Robot, KitOp
         full, found = drop_cables(
             robot,
             limits=Limits(tension=options.tension, torque=options.torque),
-            progress=lambda done, total: progress("Fewer cables", done, total),
+            progress=progress,
         )
     simple, panel = _one_panel(found)
     cables, winches = (len(robot.cables) - len(simple.cables), len(robot.winches) - len(simple.winches))

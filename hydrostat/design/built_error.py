@@ -1,6 +1,6 @@
 """`built_errors`, `expected_error`: pose errors of a design as it may be built, its commands played open loop."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,7 +45,6 @@ def built_errors(
     *,
     draws: int = 40,
     seed: int = 0,
-    progress: Callable[[int, int], None] | None = None,
 ) -> BuiltErrors:
     """Play the same contractions on robots drawn at random, and measure how far their markers are from the targets.
 
@@ -59,14 +58,11 @@ def built_errors(
         uncertainty: build tolerances.
         draws: number of robots.
         seed: random seed.
-        progress: told how many robots are done, and of how many.
     """
     found = []
     for number in range(draws):
         built = uncertainty.draw(robot, np.random.default_rng([seed, number]))
         found.append(played_error(built, poses, commands))
-        if progress is not None:
-            progress(number + 1, draws)
     return BuiltErrors(drawn=np.array(found), model=played_error(robot, poses, commands))
 
 

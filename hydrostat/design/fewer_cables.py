@@ -1,6 +1,5 @@
 """`drop_cables`: a robot with the fewest cables that still reach its poses, about."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,6 +8,7 @@ from hydrostat.design.built_error import expected_error
 from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.ik import IKOptions, IKResult, Limits, solve_ik
+from hydrostat.progress import Progress, no_progress
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 
@@ -58,7 +58,7 @@ def drop_cables(
     limits: Limits | None = None,
     worse: float = 1.5,
     share: float = 0.02,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Progress = no_progress,
 ) -> tuple[PosedNetwork, PosedNetwork]:
     """Take one cable after another out of a robot, the one that is missed least first; a winch goes with its last one.
 
@@ -70,7 +70,7 @@ def drop_cables(
         limits: limits of its poses.
         worse: largest ratio to the error of the full robot.
         share: error that is allowed anyway, as a share of the body's size.
-        progress: told how many cables are out, and of how many.
+        progress: receives the number of cables that are out.
 
     Raises:
         InputError: the robot has no poses or no cables.
@@ -81,8 +81,7 @@ def drop_cables(
     full = best = PosedNetwork.solve(robot, limits)
     most = max(worse * full.error, share * robot.body.mesh.size)
     while len(best.robot.cables) > 1:
-        if progress is not None:
-            progress(len(robot.cables) - len(best.robot.cables), len(robot.cables) - 1)
+        progress("Fewer cables", len(robot.cables) - len(best.robot.cables), len(robot.cables) - 1)
         trials = [trial for index in range(len(best.robot.cables)) if (trial := _drop(best.robot, index, limits))]
         found = min(trials, key=lambda trial: trial.error, default=full)
         if not trials or found.error > most:

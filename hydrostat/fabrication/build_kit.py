@@ -8,7 +8,7 @@ from pathlib import Path
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.fabrication.body_work import foam_work, plush_work
 from hydrostat.fabrication.checks.solid_checks import solid_checks, spool_checks, too_large
-from hydrostat.fabrication.demand import Demand
+from hydrostat.fabrication.demand import DEMAND_STAGE, Demand
 from hydrostat.fabrication.inserts import InsertKind
 from hydrostat.fabrication.kit import MANIFEST, Kit, UnbuildableError, manifest
 from hydrostat.fabrication.kit_options import OVER_BUDGET, KitOptions, Method
@@ -32,7 +32,7 @@ from hydrostat.fabrication.solids.print_files import stl_bytes, three_mf_plates
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.fabrication.solids.step import require_cad, step_bytes
 from hydrostat.given import check_type, path_of
-from hydrostat.progress import Progress
+from hydrostat.progress import Progress, no_progress
 from hydrostat.robot import Face, Robot, describe_cable_side, sewn_robot, sewn_sides
 from hydrostat.simulation import is_stuffed_motion_fast, solve_stuffed_motion
 from hydrostat.units import plural
@@ -140,30 +140,26 @@ class _Stages:
     """Tells which of the stages has begun."""
 
     def __init__(self, progress: Progress | None) -> None:
-        self._progress = progress
+        self._progress = progress or no_progress
         self._stage = ""
         self._total = 1
 
-    def __call__(self, stage: str) -> None:
-        self.end()
-        self._stage, self._total = stage, 1
-        self.part(0, 1)
-
-    def part(self, done: int, total: int) -> None:
-        """Report the progress of the current stage."""
-        self._total = total
-        if self._progress is not None and self._stage:
-            self._progress(self._stage, done, total)
+    def __call__(self, stage: str, done: int = 0, total: int = 1) -> None:
+        if stage != self._stage:
+            self.end()
+        self._stage, self._total = stage, total
+        self._progress(stage, done, total)
 
     def end(self) -> None:
         """The stage is over."""
-        self.part(self._total, self._total)
+        if self._stage:
+            self._progress(self._stage, self._total, self._total)
 
 
 def _plan(drawn: Robot, options: KitOptions, tell: _Stages) -> KitPlan:
     robot = sewn_robot(drawn) if options.method_for(drawn.body) is Method.PLUSH else drawn
-    tell("Loads in its poses")
-    demand = Demand.find(robot, tension=options.tension, torque=options.torque, progress=tell.part)
+    tell(DEMAND_STAGE)
+    demand = Demand.find(robot, tension=options.tension, torque=options.torque, progress=tell)
     rigid, work = _parts_and_body(drawn, robot, options, demand, tell)
     return KitPlan(drawn=drawn, robot=robot, options=options, demand=demand, rigid=rigid, work=work)
 

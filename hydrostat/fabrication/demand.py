@@ -1,6 +1,6 @@
 """`Demand`: what the poses of a robot ask of its motors and cables."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -8,8 +8,11 @@ import numpy as np
 from hydrostat.arrays import Float, Vector
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.ik import IKOptions, IKResult, Limits, solve_ik, spool_arms
+from hydrostat.progress import Progress, no_progress
 from hydrostat.robot import PoseTarget, Robot, Winch
 from hydrostat.simulation import Equilibrium, Simulation
+
+DEMAND_STAGE = "Loads in its poses"  # as `Demand.find` reports its progress
 
 _ONCE = IKOptions(restarts=0)
 """No restarts: a pose that is better by some micrometers makes no difference to a motor."""
@@ -39,22 +42,21 @@ class Demand:
         *,
         tension: float | None = None,
         torque: float | None = None,
-        progress: Callable[[int, int], None] | None = None,
+        progress: Progress = no_progress,
     ) -> "Demand":
         """Find the loads of a robot's poses by inverse kinematics; without poses, of each winch alone at full travel.
 
         Winches are pulled alone too if no pose could be solved. In poses no cable is pulled with more than the tension
         [N] and no winch with more than the torque [N m], as whoever plays them should keep to them; without these
         winches do all they can. Cables with friction come to each pose
-        straight from rest. `progress` is told how many poses are solved, of how many.
+        straight from rest. `progress` receives the number of poses that are solved.
         """
         if not robot.cables:
             count = len(robot.winches)
             return Demand(poses=(), tensions=np.zeros(0), torques=np.zeros(count), taken=np.zeros((count, 2)))
         work = _PoseLoads(robot, Limits(tension=tension, torque=torque))
         for done, pose in enumerate(robot.poses.values()):
-            if progress is not None:
-                progress(done, len(robot.poses))
+            progress(DEMAND_STAGE, done, len(robot.poses))
             work.reach(pose)
         if not work.solved:
             for winch in robot.winches:

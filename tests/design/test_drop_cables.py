@@ -33,7 +33,7 @@ def test_the_cable_that_never_pulls_goes_and_those_that_bend_it_stay(crowded: Ro
 def test_a_winch_goes_with_its_last_cable_and_one_cable_stays(crowded: Robot) -> None:
     """Oracle: whatever may be lost; names of the winches that cables are of."""
     told: list[tuple[int, int]] = []
-    _, fewer = drop_cables(crowded, worse=1e9, progress=lambda done, total: told.append((done, total)))
+    _, fewer = drop_cables(crowded, worse=1e9, progress=lambda _, done, total: told.append((done, total)))
     assert len(fewer.robot.cables) == len(fewer.robot.winches) == 1
     assert fewer.robot.cables[0].winch == fewer.robot.winches[0].name
     assert told == [(0, 2), (1, 2)]
