@@ -151,7 +151,7 @@ class _Session:
 
     def beat(self) -> None:
         """Keep the motors' watchdog alive."""
-        self.motors.drive(time.monotonic())
+        self.motors.drive(self.motors.clock())
         self._way.observe(self.motors.places)
 
     def go(self, contractions: "Vector", out: Path, *, drawn: bool) -> None:

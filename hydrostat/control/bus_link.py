@@ -150,7 +150,9 @@ class BusLink(Link):
             if self.guard is not None:
                 self.guard.begin()
             self._to(LinkState.ARMED)
-            if self._clock is steady:  # a clock of its own, as tests have, is watched by who moves it
+            # A clock of its own, as emulated motors and tests have, runs on when it is looked at: a watch would make
+            # it run while this program waits for its turn, and a busy computer late. There, `send` keeps the deadline.
+            if self._clock is steady:
                 self.watch()
             if self._stops != stops:  # by another thread, which did not wait for this one
                 raise self._stop_with_error(LinkState.STOPPED, "stopped while they were armed")

@@ -37,26 +37,28 @@ class DriveLoop:
         self._looked, self._exchange = -np.inf, 0.0  # when motors were last read, and how long that took [s]
         self._numbers = {name: index for index, name in enumerate(way.channels.names)}
 
-    def step(self, now: float) -> bool:
-        """Read the input and command the motors, by a clock [s]; return True if the person goes on.
+    def step(self, now: float, motor_time: float | None = None) -> bool:
+        """Read the input by its clock and command the motors by theirs [s]; return True if the person goes on.
 
+        The time of the motors is that of the input if left out; emulated motors have a slower clock on a busy computer.
         What is heard sooner than a tick after motors were read is told without reading them again, which takes as long
         as their answers do on the line.
 
         Raises:
             HydrostatError: of the source, of the motors, or of what solves poses; the motors hold.
         """
+        told = now if motor_time is None else motor_time
         self.wish = wish = self.source.read()
         self.silent = now - wish.stamp > self.source.silence
         if self.silent or wish.hold or wish.over:
             if not self._held:
-                self.motors.drive(now)  # where they are just now, not a tick ago
+                self.motors.drive(told)  # where they are just now, not a tick ago
                 self._values, self._held = self.way.hold_at(self.motors.places), True
         else:
             self._follow(wish)
         self.motors.ask(self.way.contractions)
         look, begin = not now - self._looked < TICK, self._clock()
-        self.motors.drive(now, look=look)
+        self.motors.drive(told, look=look)
         if look:
             self._looked, self._exchange = now, self._clock() - begin
         # Share of sending alone in the time that sending and reading take on a line, approximately
@@ -95,7 +97,7 @@ def drive(
         source: input device.
         seconds: it ends after so long [s].
         tell: called after each command.
-        clock: monotonic clock [s].
+        clock: monotonic clock of the source [s].
 
     Raises:
         HydrostatError: of the source, of the motors, or of what solves poses.
@@ -105,7 +107,7 @@ def drive(
     source.updated = way.updated = news
     try:
         driven, end = DriveLoop(motors, way, source, clock=clock), clock() + seconds
-        while driven.step(clock()) and clock() < end:
+        while driven.step(clock(), motors.clock()) and clock() < end:
             tell(driven)
             time.sleep(driven.pause)
             news.wait(TICK)

@@ -67,7 +67,7 @@ class HeldStill:
 
 def go_there(motors: Motors, contractions: Vector, beat: Callable[[], object]) -> None:
     """Let motors go to contractions [m]; each beat drives them (HydrostatError: they do not get there)."""
-    clock = time.monotonic
+    clock = motors.clock
     motors.ask(contractions)
     latest = clock() + float(np.abs(motors.command - motors.places).max(initial=0.0)) / motors.fastest + ARRIVAL_TIME
     beat()

@@ -148,6 +148,13 @@ def test_it_ends_by_the_person_or_in_time(simulation: hs.Simulation) -> None:
     assert 0.1 <= time.monotonic() - begin < 60.0
 
 
+def test_motors_are_told_by_their_own_clock(simulation: hs.Simulation) -> None:
+    motors, told = motors_of(simulation), []
+    motors.clock, motors.link.send = lambda: 7.0, lambda _, now, **__: told.append(now)
+    drive(motors, WinchMapper(simulation, motors.places, solves=False), Script([DriveWish(stamp=inf, over=True)]))
+    assert told == [7.0]
+
+
 def test_fingertips_come_to_their_targets(simulation: hs.Simulation) -> None:
     """Oracle: a hidden pose, and the simulation at the contractions that are found."""
     hidden = simulation.solve({"left": 0.015, "right": 0.006})
