@@ -11,6 +11,7 @@ import numpy as np
 
 from hydrostat import units
 from hydrostat.arrays import Vector
+from hydrostat.control.motors import LEVER
 from hydrostat.errors import InputError
 from hydrostat.files import read_stranger, replace_file
 from hydrostat.robot import PinDrive, Robot
@@ -181,6 +182,8 @@ class Calibration:
                 raise InputError(f'{file}: winch "{winch}" has more than one [[motor]]; keep one')
         found = Calibration(tuple(by_name.values()))
         found.check(robot)
+        for turning in (winch.name for winch in robot.winches if winch.spool_radius == LEVER):
+            _require_gear(by_name[turning], file)
         return Calibration(tuple(by_name[winch.name] for winch in robot.winches))
 
     @staticmethod
@@ -263,6 +266,16 @@ def _spool(entry: dict[str, Any], file: Path) -> WinchMotor:
         return WinchMotor(**given)
     except InputError as error:
         raise InputError(f"{file}: {error}") from None
+
+
+def _require_gear(motor: WinchMotor, file: Path) -> None:
+    """Refuse the radius of a spool where a motor turns pins: they would turn too far, beyond their limits."""
+    most, ratio = 3.0, LEVER / motor.radius
+    if round(max(ratio, 1 / ratio), 1) > most:
+        raise InputError(
+            f"{file}: [[motor]] of {quote(motor.winch)}: radius {1e3 * motor.radius:g} mm is a gear of {ratio:.2g}:1 "
+            f'for a drive that turns. Write "{1e3 * LEVER:.7f} mm" divided by its gear ratio, from 1/{most:g} to {most:g}'
+        )
 
 
 def _pairs(entries: list[Any]) -> tuple[tuple[float, float], ...]:

@@ -56,6 +56,19 @@ def test_a_degree_counts_as_a_millimeter(robot: Robot) -> None:
         stand_table(pushed, robot)
 
 
+@pytest.mark.parametrize("ratio", [1.0, 3.0, 1 / 3, 57.2957795 / 12, 0.2])
+def test_a_radius_of_a_spool_turns_no_pin(robot: Robot, tmp_path: Path, ratio: float) -> None:
+    stand = motor_stand(robot)
+    motors = Calibration.usual(stand).motors
+    geared = replace(motors[2], radius=round(57.2957795e-3 / ratio, 4))
+    Calibration((*motors[:2], geared, *motors[3:])).write(tmp_path)
+    if 0.3 < ratio < 3.1:
+        assert Calibration.read(tmp_path, stand).motors[2] == geared
+        return
+    with pytest.raises(InputError, match=r'motors\.toml: \[\[motor\]\] of "base": radius .* Write "57\.2957795 mm"'):
+        Calibration.read(tmp_path, stand)
+
+
 @pytest.mark.slow
 def test_an_emulated_servo_turns_a_pin(robot: Robot, tmp_path: Path) -> None:
     table = ProfileTable.read(TABLE, robot, name="m.csv")
