@@ -151,14 +151,18 @@ class Jobs:
 
     def stop(self) -> None:
         """Ask the work to end with what it has; asked again, it is ended at once."""
+        self._ask_to_end(yielded=False)
+
+    def _ask_to_end(self, *, yielded: bool) -> None:
+        """Ask once, whether a person asks or the turn is over; only a person who asks again ends it at once."""
         with self._lock:
             worker, state = self._worker, self.state
-            if state is None or not state.running:
+            if state is None or not state.running or (yielded and state.stopping):
                 return
-            self.state = replace(state, stopping=True)
-            if worker is not None and state.stopping:
+            self.state = replace(state, stopping=True, yielded=yielded)
+            if worker is not None and state.stopping and not state.yielded:
                 worker.process.kill()
-            elif worker is not None and worker.begun:
+            elif worker is not None and worker.begun and not state.stopping:
                 worker.say_stop()
         self._bell.ring(Topic.JOB)
 
@@ -273,9 +277,8 @@ class Jobs:
 
     def _end_turn(self, over: float) -> None:
         """Ask the work to end with what it has if its turn is over and others wait."""
-        if self.slots is not None and self.slots.are_wanted and time.monotonic() > over and not self._given_up():
-            self._note(yielded=True)
-            self.stop()
+        if self.slots is not None and self.slots.are_wanted and time.monotonic() > over:
+            self._ask_to_end(yielded=True)
 
     def _note(self, **changes: Any) -> None:
         with self._lock:

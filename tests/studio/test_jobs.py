@@ -105,6 +105,26 @@ def test_work_ends_with_what_it_has_once_its_turn_is_over_and_others_wait(monkey
     assert not second.end().yielded
 
 
+def test_a_person_who_stops_as_the_turn_ends_keeps_what_there_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The worst moment: a person stops just as the turn is over."""
+    monkeypatch.setattr("hydrostat.studio.jobs.LOOK", 0.02)
+    slots, bell, pressed = Slots(1), Bell(), list[bool]()
+    first, second = Heard(Jobs(bell, slots)), Heard(Jobs(Bell(), slots))
+
+    def press(topic: Topic) -> None:
+        if first.jobs.state is not None and first.jobs.state.yielded and not pressed:
+            pressed.append(True)
+            first.jobs.stop()
+
+    bell.listen(press)
+    first.jobs.start("Working", works.wait, on_done=first.results.append, on_part=first.part, on_end=first.over, turn=0)
+    assert first.parted.wait(TIMEOUT)
+    second.begin(works.add, 1).end()
+    first.end()
+    assert pressed
+    assert first.results == ["what there was"]
+
+
 def test_nothing_is_running_at_first(jobs: Jobs) -> None:
     assert not jobs.is_running
     jobs.stop()
