@@ -274,7 +274,7 @@ def _require_gear(motor: WinchMotor, file: Path) -> None:
     if round(max(ratio, 1 / ratio), 1) > most:
         raise InputError(
             f"{file}: [[motor]] of {quote(motor.winch)}: radius {1e3 * motor.radius:g} mm is a gear of {ratio:.2g}:1 "
-            f'for a drive that turns. Write "{1e3 * LEVER:.7f} mm" divided by its gear ratio, from 1/{most:g} to {most:g}'
+            f'for a drive that turns. Write "{1e3 * LEVER:.7f} mm", divided by its gear ratio of 1/{most:g} to {most:g}'
         )
 
 
