@@ -37,6 +37,7 @@ const port = {
         if (told === null) throw new Error("gone");
         if (told.length) this.to.enqueue(Uint8Array.from(told));
       },
+      close: () => { window.written = (window.written ?? 0) + 1; }, // all that was told has left
     });
   },
   async close() {
@@ -370,6 +371,7 @@ def test_servos_of_another_robot_or_after_a_reset_are_refused(connect: Connect, 
     _arm(page, chain)
     chain.servos[1].begin_anew()
     _wait(page, _says(page, "lost power, and its count of turns. Connect again"))
+    _wait(page, lambda: page.evaluate("window.written") == 2)  # after the first Connect, and now
     assert [servo.table[place] for servo in chain.servos] == [1, 0, 1]
     again.click()
     _arm(page, chain)

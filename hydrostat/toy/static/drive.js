@@ -10,6 +10,7 @@ export const TAUT = "Turn all spools until each cable is just taut. Then set zer
 export class Drive {
   baud = 0;
   unplugged = "The cable is unplugged.";
+  released = Promise.resolve(); // once the port is given back
 
   /**
    * @param {any} facts of the motors, as motor_facts.py writes them: speed [m/s], motors in the order of the winches
@@ -29,6 +30,7 @@ export class Drive {
 
   /** Open a port and ask who is there; motors that are not this robot's are refused. */
   async open(port) {
+    await this.released; // or it would let go of the new port
     this.port = port;
     await port.open({ baudRate: this.baud });
     this.writer = port.writable.getWriter();
@@ -98,11 +100,13 @@ export class Drive {
     if (this.state === "closed") return;
     clearTimeout(this.timer);
     this.change("closed", words);
-    this.release();
+    this.released = this.release();
   }
 
   /** Give the port back, so that it can be opened again. */
   async release() {
+    const late = new Promise((resolve) => { setTimeout(resolve, 100); });
+    await Promise.race([this.writer.close().catch(() => {}), late]); // what stops the motors leaves first
     await this.reader.cancel().catch(() => {});
     this.reader.releaseLock();
     this.writer.releaseLock();
