@@ -1,6 +1,6 @@
 """Real robots: errors of hydrostat against published measurements of robots that others built.
 
-    python benchmarks/real.py FOLDER [--only emio|opencr|opencr_play|trunk] [--samples N] [--plot FOLDER]
+    python benchmarks/real.py FOLDER [--only NAME] [--samples N] [--plot FOLDER]
 
 FOLDER holds opencr_v4/ (a tendon continuum robot of three segments with nine tendons; Continuum Robotics Laboratory,
 opencr-mujoco), trunk_payload/ (a vacuum-hose trunk of six motors with hung masses; Stanford ASL, trunk-stack) and emio/
@@ -18,6 +18,7 @@ import argparse
 import csv
 import json
 import time
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -26,13 +27,14 @@ import numpy as np
 from emio_rods import RodLegs, read_emio
 from emio_solid import SolidLegs
 from machine import machine
-from real_robots import MM, opencr, trunk, with_play
+from real_robots import MM, opencr, trunk, with_hysteresis, with_play
 
 from hydrostat.identification import FittedModel, IdentificationModel, MarkerPredictor, Measurements, fit_model
 
 HEAD = "| {} | mean | median | RMSE | 90 % | rows, parameters, CPU |\n|---|---|---|---|---|---|"
 SKIPPED = 0.5  # head of a block of the trunk that is not scored [s]
 LOADS = (0, 100)  # hung masses of the trunk [g]
+EVERY = 6  # rows of OpenCR's train.csv of which one is in the loading path that a fit with hysteresis follows
 DELAY = 0.012  # motor angles of the trunk lag behind its places, by cross-validation in the fitted blocks [s]
 
 
@@ -71,10 +73,16 @@ def line(what: str, found: np.ndarray, places: np.ndarray, more: str = "") -> st
     )
 
 
-def identified(model: IdentificationModel, measured: Measurements) -> tuple[FittedModel, str]:
+def identified(model: IdentificationModel, measured: Measurements, evaluations: int = 30) -> tuple[FittedModel, str]:
     """Fit, and its rows, parameters and time."""
     began = time.process_time()
-    fitted = fit_model(model, measured, progress=lambda text: print(f"  {text}", end="\r", flush=True))
+    fitted = fit_model(
+        model,
+        measured,
+        evaluations=evaluations,
+        refine=not measured.in_order,
+        progress=lambda text: print(f"  {text}", end="\r", flush=True),
+    )
     seconds = time.process_time() - began
     return fitted, f"{len(measured.commands)}, {len(model.parameters)}, {seconds:.0f} s"
 
@@ -97,8 +105,8 @@ def covered(fitted: FittedModel, asked: Measurements) -> float:
     return float((away <= 1.96 * np.sqrt(variance + fitted.noise**2))[known].mean())
 
 
-def run_opencr(folder: Path, samples: int, pictures: Path | None, *, play: bool = False) -> None:
-    """OpenCR v4: fitted on train.csv, judged on val.csv; with play, tendons follow all commands of before."""
+def run_opencr(folder: Path, samples: int, pictures: Path | None, *, history: str = "") -> None:
+    """OpenCR v4: fitted on train.csv, judged on val.csv; `history` is "play" of tendons or "hysteresis" of the gaps."""
     facts: dict[str, Any] = json.loads((folder / "robot.json").read_text(encoding="utf-8"))
     model = opencr(
         facts["segment_lengths_mm"],
@@ -110,22 +118,28 @@ def run_opencr(folder: Path, samples: int, pictures: Path | None, *, play: bool 
         Measurements(commands=MM * rows[:, 1:10], markers=("tip",), places=MM * rows[:, None, 10:13])
         for rows in (train, val)
     )
-    if play:
+    if history == "play":
         model = with_play(model, np.concatenate([known.commands, asked.commands]))
     chosen = np.sort(np.random.default_rng(0).choice(len(train), samples, replace=False))
     fitted, cost = identified(model, known.rows(chosen))
+    if history == "hysteresis":
+        path = known.rows(np.arange(0, len(train), EVERY))
+        fitted, more = identified(with_hysteresis(model, fitted.values), replace(path, in_order=True), evaluations=10)
+        cost, asked = f"{cost}; then {more}", replace(joined([path, asked]), in_order=True)
     found, missing = judged(fitted, asked, known, 0)
+    found = found[-len(val) :]
     print(HEAD.format("OpenCR v4, val.csv, tip [mm]"))
     print(line("quadratic", ridge(train[:, 1:10], train[:, 10:13], val[:, 1:10]), val[:, 10:13], f"{len(train)}, 165"))
     authors = folder / "val_authors_mujoco.csv"
     if authors.exists():
         tips = numbers(authors)[1][:, -3:]
         print(line("MuJoCo model of the authors", tips, val[:, 10:13], "calibrated on another day"))
-    print(line("hydrostat, play" if play else "hydrostat", found, val[:, 10:13], f"{cost}; {missing} not converged"))
-    print(f"  within 95 % intervals: {100 * covered(fitted, asked):.1f} % of coordinates")
+    print(line(f"hydrostat {history}".strip(), found, val[:, 10:13], f"{cost}; {missing} not converged"))
+    if history != "hysteresis":
+        print(f"  within 95 % intervals: {100 * covered(fitted, asked):.1f} % of coordinates")
     print_parameters(fitted)
     if pictures:
-        plot(pictures / f"opencr{'_play' if play else ''}.png", val[:, 10:13], found, ("x", "z"))
+        plot(pictures / f"opencr{history and '_' + history}.png", val[:, 10:13], found, ("x", "z"))
 
 
 def run_trunk(folder: Path, samples: int, pictures: Path | None) -> None:
@@ -269,7 +283,8 @@ def plot(file: Path, places: np.ndarray, found: np.ndarray, side: tuple[str, str
 RUNS = {
     "emio": (run_emio, "emio", 0),
     "opencr": (run_opencr, "opencr_v4", 90),
-    "opencr_play": (partial(run_opencr, play=True), "opencr_v4", 90),
+    "opencr_play": (partial(run_opencr, history="play"), "opencr_v4", 90),
+    "opencr_hysteresis": (partial(run_opencr, history="hysteresis"), "opencr_v4", 90),
     "trunk": (run_trunk, "trunk_payload", 200),
 }
 """Function, folder and number of rows that a model is fitted to."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from hydrostat.geometry import Mesh
 from hydrostat.identification import IdentificationModel, Parameter
-from hydrostat.robot import Body, BodyPart, Cable, Load, Marker, Material, Mount, Pin, Robot, Rod, Source, Winch
+from hydrostat.robot import Body, BodyPart, Cable, Load, Marker, Material, Mount, Pin, Robot, Rod, Slider, Source, Winch
 
 MM = 1e-3
 SHIFT = 20.0  # slack of every tendon at zero [mm], as a cable's slack is not below 0
@@ -123,6 +123,27 @@ def with_play(model: IdentificationModel, history: np.ndarray) -> Identification
 
     play = Parameter(name="play", start=0.2, spread=0.2, unit="mm", low=0.0)
     return replace(model, parameters=(*model.parameters, play), contractions=contractions)
+
+
+def with_hysteresis(model: IdentificationModel, held: dict[str, float]) -> IdentificationModel:
+    """Model whose gaps keep a part of their bend: one Prandtl element is unknown, all other values are held."""
+    parameters = (
+        Parameter(name="hysteresis", start=5e5, spread=1.0, unit="Pa", log=True),
+        Parameter(name="slip", start=0.008, spread=1.0, log=True),
+    )
+    elastic = model.robot(held)
+
+    def robot(values: dict[str, float]) -> Robot:
+        slider = Slider(young=values["hysteresis"], strain=values["slip"])
+        material = replace(elastic.body.material, hysteresis=(slider,))
+        return replace(elastic, body=replace(elastic.body, material=material))
+
+    return IdentificationModel(
+        parameters=parameters,
+        robot=robot,
+        contractions=lambda _, commands: model.contractions(held, commands),
+        places=lambda _, places: model.places(held, places),
+    )
 
 
 TRUNK_MOTORS = (
