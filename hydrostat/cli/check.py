@@ -1,5 +1,6 @@
 """`hydrostat check`."""
 
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -215,8 +216,13 @@ def _material_name(material: "Material") -> str:
     """Name in the table, or in the user's own file, of a material."""
     from hydrostat.robot import own_materials
 
-    own = (found.name for found in own_materials().values() if replace(found, name="", source="") == material)
-    return material.name or next(own, "custom material")
+    if material.name:
+        return material.name
+    with suppress(InputError):  # a broken file of own materials concerns no other robot
+        for found in own_materials().values():
+            if replace(found, name="", source="") == material:
+                return found.name
+    return "custom material"
 
 
 def _plane_lines(body: "Body", thick: float) -> list[str]:

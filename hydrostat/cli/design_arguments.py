@@ -223,7 +223,24 @@ def _constraints(robot: "Robot", typed: DesignArguments) -> "Constraints":
         "locked_winches": tuple(dict.fromkeys(_winch(name, robot) for name in typed.lock_winch or ())) or None,
         "locked_cables": tuple(dict.fromkeys(_cable(name, robot) for name in typed.lock_cable or ())) or None,
     }
-    return replace(constraints, **{name: value for name, value in given.items() if value is not None})
+    limits = _limits_of(robot, constraints, typed)
+    return replace(constraints, **limits, **{name: value for name, value in given.items() if value is not None})
+
+
+def _limits_of(robot: "Robot", constraints: "Constraints", typed: DesignArguments) -> dict[str, float]:
+    """Limits of robot.toml where no file, option or other motor states another; printed as a note."""
+    usual = type(constraints)()
+    own = {
+        name: value
+        for name, value in (("tension", robot.max_tension), ("torque", robot.max_torque))
+        if value is not None and getattr(constraints, name) == getattr(usual, name)
+    }
+    if typed.motor is not None or typed.tension is not None or not own:
+        return {}
+    words = [f"tension {own['tension']:g} N"] if "tension" in own else []
+    words += [f"torque {1e3 * own['torque']:.4g} N mm"] if "torque" in own else []
+    print(f"note: limits of robot.toml: {', '.join(words)}. --tension or --motor replaces them.")
+    return own
 
 
 def _limit(name: str, value: str | int | None) -> float | int | None:

@@ -9,7 +9,7 @@ from typing import TypedDict, Unpack
 from hydrostat.closed_set import parse_choice
 from hydrostat.design.cable_sides import assign_cable_sides
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.fixed_drives import restore_drives
+from hydrostat.design.fixed_drives import restore_drives, simplify_robot
 from hydrostat.design.lifts import CROSSING, may_cross, search_front
 from hydrostat.design.network import Alternative, Network, RouteTrace, size_of
 from hydrostat.design.request import DesignMethod, DesignRequest, RouteOptions, TreeOptions
@@ -23,7 +23,7 @@ from hydrostat.design.trees.design_trees import design_trees
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.given import check_type
 from hydrostat.progress import Progress, no_progress
-from hydrostat.robot import PoseTarget, Robot, fit_winch_bodies, fix_drives
+from hydrostat.robot import PoseTarget, Robot
 from hydrostat.simulation import BodyPhysics
 
 
@@ -91,7 +91,7 @@ def find_network(
     `watch` receives each better network that is found on the way. `record` keeps the steps of a search for routes, and
     begins with those that it knows; parts with contact have none. The cables of a flat robot that does not say where
     they run are designed to be sewn in pairs (`assign_cable_sides`), and the network's robot says so, and its motor.
-    Drives stay at rest in the search, and come back with the network. Units of winches are no parts of its body.
+    Drives stay at rest in the search, and return with the network. It models no units of winches.
 
     Raises:
         InputError: a request that does not fit the robot.
@@ -99,9 +99,8 @@ def find_network(
     """
     if not isinstance(robot, Robot):
         raise InputError(f"a network is found for a Robot, such as load_robot gives, not for {robot!r:.60}")
-    still = fix_drives(robot)
-    bare = fit_winch_bodies(replace(still, winches=tuple(replace(winch, body=False) for winch in still.winches)))
-    stated, told = replace(assign_cable_sides(bare), motor=request.motor_for(robot)), progress or no_progress
+    simple = simplify_robot(robot)
+    stated, told = replace(assign_cable_sides(simple), motor=request.motor_for(robot)), progress or no_progress
     fitted = request.fit_robot(stated)
     if fitted.stuffed:
         check_stuffed(stated)  # told before the search

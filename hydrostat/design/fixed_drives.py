@@ -1,4 +1,4 @@
-"""`restore_drives`: a network of a robot whose drives stayed at rest while its cables were designed."""
+"""`simplify_robot`, `restore_drives`: a robot as a search of cables takes it, and the network with its drives back."""
 
 from dataclasses import replace
 from typing import TypeVar
@@ -6,17 +6,26 @@ from typing import TypeVar
 import numpy as np
 
 from hydrostat.design.network import Alternative, Network
-from hydrostat.robot import Robot
+from hydrostat.robot import Robot, fit_winch_bodies, fix_drives
 
 _One = TypeVar("_One", Network, Alternative)
 
 
-def restore_drives(found: Network, robot: Robot) -> Network:
+def simplify_robot(robot: Robot) -> Robot:
+    """Return the robot with its drives at rest and without the units of winches in its body."""
+    still = fix_drives(robot)
+    return fit_winch_bodies(replace(still, winches=tuple(replace(winch, body=False) for winch in still.winches)))
+
+
+def restore_drives(found: _One, robot: Robot) -> _One:
     """Return a network and its alternatives with the drives, at rest, of the robot that it was designed for."""
     if not robot.drives:
         return found
-    others = tuple(_restore(one, robot) for one in found.alternatives)
-    return replace(_restore(found, robot), alternatives=others)
+    restored = _restore(found, robot)
+    if isinstance(restored, Network):
+        others = tuple(_restore(one, robot) for one in restored.alternatives)
+        return replace(restored, alternatives=others)
+    return restored
 
 
 def _restore(one: _One, robot: Robot) -> _One:

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 from hydrostat.design.drawn_shapes import drawn_zones
+from hydrostat.design.fixed_drives import restore_drives, simplify_robot
 from hydrostat.design.network import Alternative, Network
 from hydrostat.design.request import COUNTS, DesignRequest
 from hydrostat.design.routes.finalists import kit_fits
@@ -56,14 +57,16 @@ def _across_drawings(robot: Robot, request: DesignRequest) -> DesignRequest | No
 
 def _find_quickly(robot: Robot, request: DesignRequest) -> Alternative | None:
     """The network of a quick search whose kit would be made; None if there is none."""
+    simple = simplify_robot(robot)
     try:
-        found = [one for one in propose_routes(robot, request) if one.is_refined and one.is_buildable]
+        found = [one for one in propose_routes(simple, request) if one.is_refined and one.is_buildable]
     except HydrostatError:  # such as no room for one more motor
         return None
     if not found:
         return None
     best = found[-1]
-    return Alternative(robot=best.robot, ik_results=best.ik_results, expected_error=best.expected_error)
+    taken = Alternative(robot=best.robot, ik_results=best.ik_results, expected_error=best.expected_error)
+    return restore_drives(taken, robot)
 
 
 def search_front(network: Network, request: DesignRequest, design: Callable[[DesignRequest], Network]) -> Network:

@@ -175,7 +175,7 @@ class ProfileTable:
         for column in head:
             if column not in (TIME, *names):
                 heads = [full.removesuffix(MILLIMETERS) for full, _ in columns.values()]
-                known = list_choices("winches", heads, column)
+                known = list_choices("winches and drives" if robot.drives else "winches", heads, column)
                 raise InputError(f"{name}, line 1: unknown {parts} {quote(column)}. {known}")
         lines, times, values = [], [], []
         for line, row in rows[1:]:

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 
+import pytest
 from builders import gallery_robot, strip_robot
 
 from hydrostat.cli.design_arguments import DesignArguments, parse_request
@@ -40,6 +41,17 @@ def test_the_same_typed_and_wished_is_the_same_request(unchecked: None) -> None:
     lengths = {"tolerance": 0.002, "clearance": 0.004, "slack": 0.003}
     wishes = Wishes.of(winches=0, cables=4, tension=12.0, stepped=True, kept_winches=("up",), **lengths)
     assert parse_request(robot(), typed) == wished_request(robot(), wishes)
+
+
+def test_limits_of_the_robot_hold_unless_another_is_typed(capsys: pytest.CaptureFixture) -> None:
+    limited = replace(robot(), max_tension=8.0, max_torque=0.05)
+    own = parse_request(limited, DesignArguments()).constraints
+    assert (own.tension, own.torque) == (8.0, 0.05)
+    assert "limits of robot.toml: tension 8 N, torque 50 N mm" in capsys.readouterr().out
+    typed = parse_request(limited, DesignArguments(tension="12 N")).constraints
+    assert (typed.tension, typed.torque) == (12.0, None)
+    other = parse_request(limited, DesignArguments(motor="sts3215")).constraints
+    assert (other.tension, other.torque) == (20.0, None)
 
 
 def test_knobs_of_the_thesis_have_the_same_names_everywhere() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from builders import strip_robot
 
-from hydrostat.design import RouteOptions, design_cables, score_card
+from hydrostat.design import RouteOptions, design_cables, find_lifts, score_card
 from hydrostat.robot import Load, LoadDrive, PinDrive, PoseTarget
 from hydrostat.simulation import Simulation
 
@@ -30,3 +30,8 @@ def test_drives_stay_at_rest_in_a_search_and_come_back(unchecked: None) -> None:
     again = Simulation(found.robot).solve(reached.pose.controls)
     np.testing.assert_allclose(again.nodes, reached.pose.nodes, atol=1e-8)
     assert score_card(found, version="test")["winches"] == score_card(plain, version="test")["winches"]
+    mirrored = PoseTarget(name="down", targets={"tip": (0.18, -0.02)})
+    both = replace(found, request=replace(found.request, poses=(pose, mirrored)), expected_error=1.0)
+    lifts = find_lifts(both)
+    assert lifts
+    assert all(lift.network.robot.drives == driven.drives for lift in lifts)

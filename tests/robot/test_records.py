@@ -49,7 +49,7 @@ LINE = ((0.0, 0.0), (0.1, 0.0), (0.1, 0.1))
 )
 def test_positive(kind: type, field: str, others: dict, value: float) -> None:
     """Oracle: the message names the field, the value and what is allowed."""
-    with pytest.raises(InputError, match=f"^{field} must be finite and above 0, not "):
+    with pytest.raises(InputError, match=f"^{field} must be finite and above 0, not ({value:g}|{1e3 * value:g} mm)\\b"):
         kind(**{field: value}, **others)
 
 
