@@ -53,6 +53,7 @@ def check(
     for sensor in found.sensors:
         print(f"sensor {sensor.name}: {sensor.kind}, {_noise_text(sensor)}")
     parts = {"pin": found.pins, "winch": found.winches, "cable": found.cables, "marker": found.markers}
+    parts |= {noun: held for noun, held in (("drive", found.drives), ("load", found.loads)) if held}
     counts = ", ".join(plural(len(entries), noun) for noun, entries in parts.items())
     print(f"{counts}, poses: {', '.join(found.poses) or 'none'}")
     if words := describe_cable_side(found):

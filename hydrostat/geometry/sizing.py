@@ -22,7 +22,8 @@ class TooManyNodesError(SurfaceError):
 
 FEWEST, MOST = 10, 200_000  # nodes that may be asked for
 CLOSE = 0.1  # how far the number may be off, as a fraction of it
-_HASTY = 0.15  # the same where a few meshes must do
+_HASTY = 0.15  # the same where a few meshes must do and each takes long
+_LONG = 500  # nodes from which on it does
 
 
 _DENSITY = {2: (1.2, 0.6), 3: (1.6, 1.2)}
@@ -78,7 +79,7 @@ def size_for(
         except InputError as error:
             refused = error
             count = 0 if isinstance(error, SurfaceError) or size**dim > fine * content else 10 * MOST
-        if abs(count / nodes - 1) <= (_HASTY if is_hasty else CLOSE):
+        if abs(count / nodes - 1) <= (_HASTY if is_hasty and nodes >= _LONG else CLOSE):
             return size
         if is_hasty and above and not tried and len(above) == 1:
             size *= 0.8  # walls thinner than the elements were refined: finer ones need less of that

@@ -164,11 +164,11 @@ def test_every_constraint_is_kept(name: str, unchecked: None) -> None:
 
 
 def test_every_constraint_has_a_case() -> None:
-    """But a depth under the skin, which designs of bodies in space keep (`test_skin_region`), and a motor
-    (`test_winch_room`).
+    """But a depth under the skin, which designs of bodies in space keep (`test_skin_region`), a motor
+    (`test_winch_room`), and a distance from drawn shapes (`test_drawn_shapes`).
     """
     asked = {key for _, limits in LIMITS.values() for key in limits}
-    assert asked == set(Constraints.__dataclass_fields__) - {"spool_radius", "depth", "motor"}
+    assert asked == set(Constraints.__dataclass_fields__) - {"spool_radius", "depth", "motor", "drawing_gap"}
 
 
 @pytest.mark.parametrize("name", ["usual", "tension", "mirror, two winches"])

@@ -142,14 +142,15 @@ def test_results_belong_to_the_robot_they_were_made_of(exporter: Exporter) -> No
 
 
 @pytest.mark.slow
-def test_failed_work_says_why(exporter: Exporter) -> None:
+def test_a_refused_kit_says_why(exporter: Exporter) -> None:
     """The motor that robot.toml names reaches the kit of the studio."""
     document = exporter._document
-    document.change("name a motor", robot=replace(document.robot, motor="none such"))
+    document.change("name a motor", robot=replace(document.robot, motor="sts3215"))
     exporter.make_kit()
     finished(exporter)
-    assert exporter.kit is None
-    assert "none such" in exporter.errors[Export.KIT]
+    assert exporter.kit is not None
+    assert exporter.kit.zip is None
+    assert any("smaller motors" in problem for problem in exporter.kit.refused)
 
 
 class Hasty(Jobs):
