@@ -247,7 +247,7 @@ def test_each_constraint_is_kept_or_broken(case: str) -> None:
 
 
 def test_every_constraint_has_a_case() -> None:
-    """But forces, which `pulls` looks at, mirror, what is locked, room for units, skin, drawings: these have their own."""
+    """But forces, which `pulls` looks at, mirror, locks, room for units, skin and drawings: tested elsewhere."""
     tested = {name.split()[0] for name in CASES} | {"hole_gap", "leads"}
     others = {
         "tension",
