@@ -15,7 +15,7 @@ from hydrostat.toy.learned_shape import LearnedShape
 from hydrostat.toy.toy_page import ToyPose, toy_page
 from hydrostat.toy.toy_samples import sample_shapes
 
-_SHARES = (0.6, 0.35)  # of the time, for samples and for training
+_SHARES = (0.2, 0.45, 0.3)  # of the time, for poses, samples and training
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -57,21 +57,23 @@ def make_toy(
         progress: function that is called on the way.
 
     Raises:
-        InputError: a robot with drives, or no sample has a stable equilibrium.
+        InputError: a robot with drives and motors, or no sample has a stable equilibrium.
     """
     robot = simulation.robot
-    PinDrive.require_none(robot.drives, "a page to share")
+    if motors is not None:
+        PinDrive.require_none(robot.drives, "a page that drives motors")
     flat = robot.body.mesh.dim == 2
     poses = []
+    each = seconds and _SHARES[0] * seconds / max(len(robot.poses), 1)
     for number, name in enumerate(robot.poses, 1):
-        taken = solve_ik(simulation, robot.pose(name)).pose.controls
+        taken = solve_ik(simulation, robot.pose(name), seconds=each).pose.controls
         poses.append(ToyPose(name=name, contractions=tuple(taken.tolist())))
         progress("poses", number, len(robot.poses))
     found = sample_shapes(
         robot,
         samples or default_samples(robot),
         seed=seed,
-        seconds=seconds and _SHARES[0] * seconds,
+        seconds=seconds and _SHARES[1] * seconds,
         jobs=jobs,
         progress=progress,
     )
@@ -79,11 +81,11 @@ def make_toy(
         found,
         simulation.rest.nodes,
         steps=6000 if flat else 12_000,
-        seconds=seconds and _SHARES[1] * seconds,
+        seconds=seconds and _SHARES[2] * seconds,
         seed=seed,
         progress=progress,
     )
-    names = [each.name for each in (*robot.winches, *robot.drives)]  # keyframes leave drives at rest
+    names = [control.name for control in (*robot.winches, *robot.drives)]  # keyframes leave drives at rest
     moves = [
         (key.time, np.array([key.contractions.get(name, 0.0) for name in names]))
         for key in (timeline.keys if timeline else ())
