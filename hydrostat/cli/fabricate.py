@@ -132,7 +132,8 @@ def fabricate(
     for drive in (drive for drive in loaded.drives if drive.unit != "share"):
         print(f"warning: the kit has no servo or stage for drive {drive.name}; add your own")
     if kept is not None:
-        print(f"Cable tension: at most {kept:g} N, the limit of robot.toml or of the studio. Override with --tension")
+        where = "robot.toml" if kept == loaded.max_tension else "the studio or of an older design"
+        print(f"Cable tension: at most {kept:g} N, the limit of {where}. Override with --tension")
     seconds = time.perf_counter() - began
     print(f"Wrote {len(kit.files)} files in {seconds:.1f} s. Start with {out / 'assembly_sheet.pdf'}")
 
