@@ -77,7 +77,7 @@ def find_refused_better(network: "Network") -> "tuple[Alternative, str] | None":
     return best and (best, find_refusals(best.robot, Demand.of_results(best.robot, best.ik_results))[0])
 
 
-_CLEARLY = 0.9  # a network with so many times the error of the chosen one is clearly better
+_CLEARLY = 0.9  # a network below this share of the error of the chosen one is clearly better
 
 
 def designed_tension(robot: "Robot", folder: Path) -> float | None:

@@ -53,8 +53,9 @@ def _cheaper(robot: "Robot", reason: str, budget: str, place: str, out: Path) ->
         return f"hydrostat fabricate {place} --motor {motor[1]} {budget} --out {quote(str(out))}"
     if (winches := len(robot.winches) - 1) > 0:
         return f"hydrostat design {place} --winches {winches} --two-way {budget} --out {quote(f'{out}_design')}"
-    price = int(re.findall(r"costs (\d+) USD", reason)[0]) + 1  # it was rounded
-    return f"hydrostat fabricate {place} --budget {price}USD --out {quote(str(out))}"
+    if price := re.search(r"costs (\d+) USD", reason):
+        return f"hydrostat fabricate {place} --budget {int(price[1]) + 1}USD --out {quote(str(out))}"  # it was rounded
+    return f"hydrostat check {place}"
 
 
 def design_remedy(

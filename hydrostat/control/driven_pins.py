@@ -59,12 +59,12 @@ def stand_tensions(robot: Robot, table: ProfileTable) -> tuple[Callable[[Vector]
     pulls = tensions_along(robot, table.profile)
     factors = _factors(robot)
 
-    def padded(values: Vector, pull: float) -> Vector:
+    def append_pull(values: Vector, pull: float) -> Vector:
         controls = np.zeros(robot.num_controls)
         controls[_find_moved(robot)] = values
         return np.append(pulls(controls / np.where(factors, factors, 1.0))[:count], np.full(axes, pull))
 
-    return (lambda values: padded(values, 0.0)), (lambda values: padded(values, np.nan))
+    return (lambda values: append_pull(values, 0.0)), (lambda values: append_pull(values, np.nan))
 
 
 def _factors(robot: Robot) -> Vector:

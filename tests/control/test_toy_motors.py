@@ -198,11 +198,11 @@ def test_the_robot_follows_the_page_and_stops_when_it_is_hidden(connect: Connect
       Object.defineProperty(document, "hidden", { value: true });
       document.dispatchEvent(new Event("visibilitychange"));
     }""")
+    _wait(page, _says(page, "page was hidden"))  # a busy machine may be late by more than the wait below
     page.wait_for_timeout(100)
     before = board.motors[1].count
     board.wait(1.0)
     assert board.motors[1].count - before <= 2
-    assert "page was hidden" in page.locator("#motors p").inner_text()
 
 
 def test_motors_stand_within_a_quarter_second_of_closing(connect: Connect, board: EmulatedBoard) -> None:

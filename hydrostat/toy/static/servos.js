@@ -9,7 +9,7 @@ const PAUSE = 20; // time between a goal and the next reading [ms]
 const RISE = 1; // acceleration of cables [m/s^2]
 const HOTTEST = 75; // warmest that a motor may be [degree C]
 const LAG = 1e-3, STUCK = 0.5; // a motor so far from its goal [m] that stands for so long [s] does not follow
-const STANDING = 3; // speed at which motors come back to where they shall stand [rad/s]
+const STANDING = 3; // speed at which motors return to where they must stand [rad/s]
 const ZERO_TOLERANCE = 3e-3; // cable by which a taut one may differ from its zero in motors.toml [m]
 const LAST_NUMBER = 20; // highest number at which servos of other robots are looked for
 const READ = 2, WRITE = 3, PING = 1, READ_ALL = 0x82, WRITE_ALL = 0x83, EVERY = 0xfe;
