@@ -17,18 +17,20 @@ from hydrostat.painters import register_painters
 from hydrostat.version import __version__
 
 if TYPE_CHECKING:
-    import hydrostat.control
-    import hydrostat.export
-    import hydrostat.grasp
-    import hydrostat.learning
-    import hydrostat.plot
-    import hydrostat.teleop
-    import hydrostat.testing
-    import hydrostat.training  # noqa: F401
-    from hydrostat.design import BuildTolerances, Constraints, Network, RouteOptions, TreeOptions, Zone, design_cables
-    from hydrostat.design import review_robot as check
+    from hydrostat import control as control
+    from hydrostat import export as export
+    from hydrostat import grasp as grasp
+    from hydrostat import learning as learning
+    from hydrostat import plot as plot
+    from hydrostat import teleop as teleop
+    from hydrostat import testing as testing
+    from hydrostat import training as training
+    from hydrostat.design import BuildTolerances, Constraints, Network, RouteOptions, TreeOptions, Zone
+    from hydrostat.design.design_cables import design_cables
+    from hydrostat.design.review_robot import review_robot as check
     from hydrostat.errors import HydrostatError, HydrostatWarning, InputError, NotConvergedError
-    from hydrostat.fabrication import Kit, KitOptions, PatternOptions, UnbuildableError, build_kit, write_kit
+    from hydrostat.fabrication import Kit, KitOptions, PatternOptions, UnbuildableError, write_kit
+    from hydrostat.fabrication.build_kit import build_kit
     from hydrostat.geometry import Mesh
     from hydrostat.identification import Measurements, identify, read_measurements
     from hydrostat.ik import (
@@ -68,6 +70,7 @@ if TYPE_CHECKING:
         LoadDrive,
         Marker,
         Material,
+        Membrane,
         Obstacle,
         Pin,
         PinDrive,
@@ -76,7 +79,6 @@ if TYPE_CHECKING:
         Rod,
         Sensor,
         SheetSide,
-        SkinSheet,
         Winch,
         fit_winch_bodies,
         get_material,
@@ -98,13 +100,13 @@ if TYPE_CHECKING:
         StateSpace,
         StepOptions,
         continue_branch,
-        find_contacts,
         find_equilibria,
         find_modes,
         friction_hysteresis,
         linearize,
-        marker_compliance,
     )
+    from hydrostat.simulation.find_contacts import find_contacts
+    from hydrostat.simulation.marker_compliance import marker_compliance
 
 __all__ = [
     "BatchResult",
@@ -138,6 +140,7 @@ __all__ = [
     "MarkerTarget",
     "Material",
     "Measurements",
+    "Membrane",
     "Mesh",
     "Modes",
     "Motion",
@@ -163,7 +166,6 @@ __all__ = [
     "ShapeTarget",
     "SheetSide",
     "Simulation",
-    "SkinSheet",
     "StateJacobian",
     "StateSpace",
     "StepOptions",

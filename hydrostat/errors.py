@@ -3,16 +3,24 @@
 import re
 from typing import Any
 
+_LONG_WORD = re.compile(r"[^\s/\\]{120,}")
+
 
 class HydrostatError(Exception):
-    """Base of all errors of hydrostat. Its text is one line: place, problem, allowed values, fix."""
+    """Base of all errors of hydrostat. Its text is one line: place, problem, allowed values, fix.
+
+    Words that are longer than the name of a file may be are cut: they come from broken files.
+    """
+
+    def __init__(self, message: str = "") -> None:
+        super().__init__(_LONG_WORD.sub(lambda word: f"{word[0][:40]}...", message))
 
 
 class InputError(HydrostatError):
     """Wrong input: a file, a key, a value or an argument."""
 
 
-GIVE_SIZE = 'give its size by --size 130mm, or size = "130 mm" in [body]'
+GIVE_SIZE = 'give its size, e.g. --size 130mm, or size = "130 mm" in [body]'
 """Remedy for a drawing or surface without a credible size."""
 
 

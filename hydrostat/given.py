@@ -6,8 +6,10 @@ A message about a field begins with the field, which the reader of a file looks 
 import math
 import os
 import unicodedata
+from collections.abc import Mapping
 from numbers import Real
 from pathlib import Path
+from typing import Any, NoReturn
 
 from hydrostat import units
 from hydrostat.errors import InputError
@@ -118,3 +120,18 @@ def list_choices(kind: str, names: list[str], given: str = "") -> str:
         return f"The robot has no {kind}."
     near = get_close_matches(given[:60], names, n=1)
     return f"Available: {', '.join(names)}." + (f" Did you mean {units.quote(near[0])}?" if near else "")
+
+
+class NamedParts(dict[str, Any]):
+    """Parts by name; `parts[name]` raises an InputError that lists the names if there is none.
+
+    Attributes:
+        kind: noun for a part, such as "marker".
+    """
+
+    def __init__(self, kind: str, parts: Mapping[str, Any]) -> None:
+        super().__init__(parts)
+        self.kind = kind
+
+    def __missing__(self, name: object) -> NoReturn:
+        raise InputError(f'unknown {self.kind} "{name}". {list_choices(f"{self.kind}s", list(self), str(name))}')

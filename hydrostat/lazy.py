@@ -20,7 +20,7 @@ from typing import Any
 def open_package(name: str) -> None:
     """Make the imports of a package that stand under `if TYPE_CHECKING:` lazy; call it last in `__init__.py`.
 
-    `import package.room` there lets `package.room` be used without an import.
+    `from package import room as room` there lets `package.room` be used without an import.
     """
     sys.modules[name].__class__ = _LazyPackage
 
@@ -101,18 +101,18 @@ class _LazyPackage(ModuleType):
     @cached_property
     def _homes(self) -> dict[str, tuple[str, str]]:
         """Module of each name, and its name there."""
-        imports = (node for node in self._lazy_imports if isinstance(node, ast.ImportFrom))
-        return {alias.asname or alias.name: (str(node.module), alias.name) for node in imports for alias in node.names}
+        others = (node for node in self._lazy_imports if node.module != self.__name__)
+        return {alias.asname or alias.name: (str(node.module), alias.name) for node in others for alias in node.names}
 
     @cached_property
     def _rooms(self) -> set[str]:
         """Names of the subpackages that load on first access."""
-        imports = (node for node in self._lazy_imports if isinstance(node, ast.Import))
-        return {alias.name.rpartition(".")[2] for node in imports for alias in node.names}
+        return {alias.name for node in self._lazy_imports if node.module == self.__name__ for alias in node.names}
 
     @cached_property
-    def _lazy_imports(self) -> list[ast.stmt]:
-        """Statements under `if TYPE_CHECKING:`."""
+    def _lazy_imports(self) -> list[ast.ImportFrom]:
+        """Imports under `if TYPE_CHECKING:`."""
         with open(str(self.__file__), encoding="utf-8") as file:
             tree = ast.parse(file.read())
-        return [node for block in tree.body if isinstance(block, ast.If) for node in block.body]
+        blocks = [node for block in tree.body if isinstance(block, ast.If) for node in block.body]
+        return [node for node in blocks if isinstance(node, ast.ImportFrom)]

@@ -1,4 +1,4 @@
-// Parts of a boundary that come near one another: the loops of geometry/boundary_tree.py and mechanics/contact.py.
+// Parts of a boundary that come near one another: the loops of geometry/boundary_tree.py and mechanics/self_contact.py.
 //
 // A pair is a node and an edge in the plane, a node and a triangle or two edges in space. Its squared distance is
 // D(x) = min over l of F(x, l), l being where on its features the nearest points lie: F = |c|^2 with c = sum of w(l) x.

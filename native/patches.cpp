@@ -1,4 +1,4 @@
-// Patches of elements that resist a change of volume: the loops of mechanics/patch_volume.py, where they are explained.
+// Patches of elements that resist a change of volume: the loops of mechanics/patch_dilatation.py, where they are explained.
 #include <algorithm>
 #include <cmath>
 #include <vector>

@@ -11,7 +11,7 @@ import ast
 import inspect
 import sys
 from collections.abc import Callable, Sequence
-from functools import partial, wraps
+from functools import cache, partial, wraps
 from importlib.abc import MetaPathFinder
 from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
 from importlib.util import cache_from_source, decode_source
@@ -71,9 +71,19 @@ def _exchange(function: FunctionType, code: CodeType) -> None:
         function.__code__ = code
 
 
-def _count_call(*args: Any, **kwargs: Any) -> Any:
-    counter = "counter"
-    return counter(*args, **kwargs)  # type: ignore[operator]  # the counter of a function replaces this constant
+@cache
+def _count_call(free: int) -> CodeType:
+    """Code that calls a counter, whose place the constant "counter" takes, in a frame with `free` free variables.
+
+    They are named after the end, or a frame has none of them, and ends Python where a traceback asks for its locals.
+    """
+    names = "".join(f"v{number}, " for number in range(free))
+    lines = (f"def make({names}):", " def count(*args, **kwargs):", "  return 'counter'(*args, **kwargs)")
+    space: dict[str, Any] = {}
+    with catch_warnings():
+        simplefilter("ignore", SyntaxWarning)  # a text is not called
+        exec("\n".join([*lines, f"  ({names})", " return count"]), space)
+    return space["make"](*[None] * free).__code__
 
 
 class _Counter:
@@ -83,10 +93,12 @@ class _Counter:
         self._function, self._public = function, public
         self._checking: Callable[..., Any] | None = None
         self.calls = 0
-        constants = tuple(self if constant == "counter" else constant for constant in _count_call.__code__.co_consts)
-        self.code = _count_call.__code__.replace(co_consts=constants, co_freevars=public.__code__.co_freevars)
+        code = _count_call(len(public.__code__.co_freevars))
+        self.code = code.replace(co_consts=tuple(self if each == "counter" else each for each in code.co_consts))
 
     def __call__(self, *args: Any, **kwargs: Any) -> Any:
+        if sys.is_finalizing():  # modules are gone that a check needs
+            return self._function(*args, **kwargs)
         if not self.calls:
             _counting.append(self)
         self.calls += 1

@@ -75,6 +75,32 @@ def test_every_page_is_listed() -> None:
     assert pages - listed == set()
 
 
+def written_names(script: str) -> set[str]:
+    """Names of pictures that a script writes: whole, or as f"studio_{name}.png" with the strings that it holds."""
+    names = set(re.findall(r"\w+\.(?:png|jpg|gif)", script))
+    for start, end in re.findall(r'f"(\w+)\{[^"]*\}(\.png)', script):
+        names |= {start + word + end for word in ["", *re.findall(r'"(\w+)"', script)]}
+    return names
+
+
+def test_every_picture_is_shown_and_has_its_command() -> None:
+    scripts = {
+        path: path.read_text(encoding="utf-8")
+        for room in ("docs", "lab", "benchmarks")
+        for path in (ROOT / room).rglob("*.py")
+    }
+    written = set[str]()
+    for path, text in scripts.items():
+        if f"python {path.relative_to(ROOT)}" in text:
+            written |= written_names(text)
+    pages = "".join(
+        path.read_text(encoding="utf-8") for path in [ROOT / "README.md", *DOCS.rglob("*.md"), *ROOT.glob("lab/*/*.md")]
+    )
+    pictures = {path.name for path in (DOCS / "pictures").iterdir()} - {"demo.json"}
+    assert pictures - written == set()
+    assert pictures - set(re.findall(r"pictures/(\w+\.\w+)", pages)) == set()
+
+
 @pytest.mark.slow
 def test_the_site_builds_without_a_warning(tmp_path: Path) -> None:
     """Pages are read and links followed. None is written but a toy of few poses; examples have tests of their own."""

@@ -145,7 +145,7 @@ MILLIMETERS = {
     "size of a drawing": (lambda _: hs.new_robot("a.svg", size=200), "size must be at most 20 m, not 200; in meters"),
     "design": (
         lambda s: hs.design_cables(s.robot, [hs.PoseTarget(name="far", targets={"left": (100.0, 60.0)})]),
-        "the target of left is 116.4 m away from a body of 0.279 m; targets are in meters",
+        "the target of left is 116.4 m away from a body of 0.279 m. Check its unit",
     ),
 }
 
@@ -224,7 +224,7 @@ ASTRAY = {
         lambda s: hs.design_cables(s.robot, s.robot.poses.values(), constraints="limits.toml"),
         r"constraints must be Constraints\(...\), not 'limits.toml'",
     ),
-    "no file": (lambda _: hs.new_robot(None), "begins from the path of a file"),
+    "no file": (lambda _: hs.new_robot(None), "starts from the path of a file"),
     "a size with a unit": (lambda _: hs.new_robot("a.svg", size="200 mm"), "size must be a number in m, not '200 mm'"),
     "many nodes": (lambda _: hs.new_robot("a.svg", nodes="many"), "nodes must be a whole number, not 'many'"),
 }

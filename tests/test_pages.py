@@ -165,6 +165,7 @@ def test_the_citation_is_of_this_version() -> None:
     assert f'version: "{hs.__version__}"' in text
     assert 'license = "Apache-2.0"' in read("pyproject.toml")
     assert "license: Apache-2.0" in text
+    assert all(f"*hydrostat*, version {hs.__version__}" in read(page) for page in ("README.md", "docs/licenses.md"))
 
 
 def test_benchmarks_on_front_pages_exist() -> None:

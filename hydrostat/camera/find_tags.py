@@ -7,7 +7,7 @@ import numpy as np
 
 from hydrostat.arrays import Float, UInt8
 from hydrostat.camera.tags import CELLS
-from hydrostat.errors import HydrostatError, InputError
+from hydrostat.errors import InputError
 from hydrostat.version import install_command
 
 Gray = UInt8[np.ndarray, "height width"]
@@ -18,11 +18,11 @@ Corners = Float[np.ndarray, "4 2"]
 
 
 def load_opencv() -> Any:
-    """OpenCV, which an extra brings (HydrostatError: it is not installed)."""
+    """OpenCV, which an extra brings (InputError: it is not installed)."""
     try:
         import cv2  # pyright: ignore[reportMissingImports] (an extra)
     except ImportError as error:
-        raise HydrostatError(f"photographs need OpenCV ({error}): {install_command('photos')}") from None
+        raise InputError(f"photographs need OpenCV ({error}): {install_command('photos')}") from None
     return cv2
 
 

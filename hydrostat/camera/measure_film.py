@@ -1,6 +1,6 @@
 """`measure_film`: places of a robot's markers in a film of a fixed camera."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,6 +16,7 @@ from hydrostat.errors import InputError
 from hydrostat.files import csv_text
 from hydrostat.given import check_not_negative, check_positive
 from hydrostat.identification import Measurements
+from hydrostat.progress import Progress, no_progress
 from hydrostat.robot import PinDrive, Robot
 from hydrostat.simulation import ContractionProfile, Simulation
 
@@ -83,7 +84,7 @@ def measure_film(
     film: Path,
     profile: ContractionProfile,
     options: FilmOptions | None = None,
-    progress: Callable[[str], None] | None = None,
+    progress: Progress = no_progress,
 ) -> FilmMeasurements:
     """Measure the places of markers in a film.
 
@@ -94,7 +95,7 @@ def measure_film(
         film: film of a camera that stands still.
         profile: contractions in time.
         options: numbers that the film does not show.
-        progress: receives a line after each frame.
+        progress: callback for progress, after each frame.
 
     Raises:
         InputError: a file that is no film, no board or too few markers in its first frame, a camera that moved, or a
@@ -120,8 +121,7 @@ def measure_film(
             times.append(float(profile.times[0]) + time)
             found.append(places)
         blind += not places
-        if progress:
-            progress(f"{time:.1f} of {seconds:.1f} s")
+        progress("frames", round(time / options.every), round(seconds / options.every))
         if len(times) > MOST_FRAMES:
             raise InputError(f"{film}: more than {MOST_FRAMES} frames. Take fewer by --every.")
     if not times:

@@ -3,9 +3,10 @@
 import json
 import math
 from collections.abc import Iterable, Iterator
+from typing import Any
 
 import numpy as np
-from shapely import box
+from shapely import MultiLineString, Polygon, box
 
 from hydrostat.arrays import Points
 from hydrostat.camera.tags import (
@@ -29,8 +30,8 @@ MARGIN = 12.0
 GAP, NAME = 5.0, 4.0
 """Distance of labels, and height of the name on each [mm]."""
 
-NEXT_TO = 20.0, 3.6
-"""Distances at which two labels of the map would cover one another [mm]."""
+LETTER, LINE = 1.55, 3.4
+"""Width of a letter of a label on the map, with some to spare, and height of its line [mm]."""
 
 OVERHANG = 0.5
 """Share of a label on the body below which it bends or peels."""
@@ -187,7 +188,10 @@ def _map_page(robot: Robot, side: float, paper: tuple[float, float]) -> str:
         "M" + "L".join(f"{x:.3f} {y:.3f}" for x, y in place(line)) for line in _body_lines(robot.body, axes)
     )
     look = 'fill="#ddd" stroke="#ddd"' if mesh.dim == 3 else 'fill="none" stroke="#888"'
-    half, lines, labels = scale * side / 2, [], list[tuple[float, float]]()
+    half, lines = scale * side / 2, []
+    edges = MultiLineString([place(line) for line in _body_lines(robot.body, axes)] if mesh.dim == 2 else [])
+    tags = [place(np.array(marker.at)[axes]) for marker in robot.markers]
+    taken = [box(x - half, y - half, x + half, y + half) for x, y in tags]
     shapes = [f'<path d="{drawn}" {look} stroke-width="0.4" stroke-linecap="round"/>']
     for name, number in marker_tags(robot).items():
         at = next(marker.at for marker in robot.markers if marker.name == name)
@@ -195,12 +199,14 @@ def _map_page(robot: Robot, side: float, paper: tuple[float, float]) -> str:
         square = _square(x - half, y - half, 2 * half)
         shapes.append(f'<path d="{square}" fill="white" stroke="black" stroke-width="0.4"/>')
         shapes.append(f'<path d="M{x - 1} {y}h2M{x} {y - 1}v2" stroke="black" stroke-width="0.3"/>')
-        below = y + half + 0.8
-        while any(abs(x - near) < NEXT_TO[0] and abs(below - down) < NEXT_TO[1] for near, down in labels):
-            below += NEXT_TO[1]
-        labels.append((x, below))
-        text = f"box(fill: white, text(size: 8pt)[#{json.dumps(f'{name} ({number})')}])"
-        lines.append(f"#at({x - 20}, {below}, box(width: 40mm, align(center, {text})))")
+        words = f"{name} ({number})"
+        label = _find_room((x, y), half, LETTER * len(words), [edges, *taken])
+        taken.append(label)
+        left, high, right, low_side = label.bounds
+        if label.distance(box(x - half, y - half, x + half, y + half)) > 2:
+            shapes.append(f'<path d="M{x} {y}L{(left + right) / 2} {(high + low_side) / 2}" stroke="#888" {_THIN}/>')
+        text = f"box(fill: white, text(size: 8pt)[#{json.dumps(words)}])"
+        lines.append(f"#at({(left + right) / 2 - 20}, {high}, box(width: 40mm, align(center, {text})))")
     title = f"{robot.name}: where the tags go"
     seen = "" if mesh.dim == 2 else f" Seen along {'xyz'[3 - sum(axes)]}; labels on the tags state all coordinates."
     note = f"Not to scale. The cross is the marker, the number that of the tag.{seen}"
@@ -212,6 +218,23 @@ def _map_page(robot: Robot, side: float, paper: tuple[float, float]) -> str:
             f"#at({MARGIN}, {MARGIN + 7}, box(width: {paper[0] - 2 * MARGIN}mm)[#{json.dumps(note)}])",
         ]
     )
+
+
+_THIN = 'stroke-width="0.2"'
+
+
+def _find_room(tag: tuple[float, float], half: float, wide: float, others: list[Any]) -> Polygon:
+    """Box for a label [mm] next to a tag, as near as it meets none of others; below it where there is no such box."""
+    x, y = tag
+    boxes = []
+    for apart in np.arange(0.8, 30.0, 1.6).tolist():
+        down, across = half + apart + LINE / 2, half + apart + wide / 2
+        for dx, dy in ((0, down), (0, -down), (across, 0), (-across, 0), (across, down), (-across, down)):
+            middle = x + dx, y + dy
+            boxes.append(box(middle[0] - wide / 2, middle[1] - LINE / 2, middle[0] + wide / 2, middle[1] + LINE / 2))
+            if not any(boxes[-1].intersects(other) for other in others):
+                return boxes[-1]
+    return boxes[0]
 
 
 def _body_lines(body: Body, axes: list[int]) -> list[Points]:

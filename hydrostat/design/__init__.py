@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from hydrostat.design.first_cable import draw_first_cable
     from hydrostat.design.lifts import Lift, find_lifts
     from hydrostat.design.marker_estimator import MarkerEstimator
+    from hydrostat.design.mirror_axis import find_mirror_axis
     from hydrostat.design.muscles.activation import Activation, FibreKind, activate, edge_fibres
     from hydrostat.design.muscles.free_posing import FreePosing
     from hydrostat.design.network import (
@@ -97,6 +98,7 @@ __all__ = [
     "edge_fibres",
     "expected_error",
     "find_lifts",
+    "find_mirror_axis",
     "find_network",
     "find_no_room",
     "front",

@@ -7,34 +7,19 @@ import numpy as np
 
 from hydrostat.design.checks.cables import SAME
 from hydrostat.design.polyline import nearest_shares, turns
-from hydrostat.fabrication import PRICES, KitOptions, Method, find_motor, motors_price, shaft_torques
+from hydrostat.fabrication import PRICES, CableWork, KitOptions, Method, find_motor, motors_price, shaft_torques
 from hydrostat.ik import IKResult
-from hydrostat.robot import Cable, Mount, Robot, sewn_sides
+from hydrostat.robot import Cable, Mount, Robot, sewn_robot, sewn_sides
 from hydrostat.units import plural
 
 SHARP = 60.0  # a turn of more than this [degrees] is called sharp
 
 
 @dataclass(frozen=True, kw_only=True)
-class SewingTimes:
-    """Minutes that the work on cables takes. All are assumed; none was measured.
-
-    A cable with five holes is stitched in ten minutes, as the assembly sheet says of every cable.
-    """
-
-    cut: float = 3.0  # to cut and mark a line or a tube, as on the assembly sheet
-    begin: float = 2.5  # to begin a cable at its winch
-    hole: float = 1.5  # to lead it through a hole, from the one before; at the last with its stopper
-    sheath: float = 2.0  # to tie a tube down at both its ends
-    thread: float = 5.0  # to draw a cable through the hole of a printed body, as on its sheet
-    draw: float = 15.0  # to draw a cable through a cast body by a needle, as on its sheet
-
-
-@dataclass(frozen=True, kw_only=True)
 class BuildCost:
     """Labour and money that a network asks of who builds it."""
 
-    holes: int  # points that cables are led through, that of the stopper included, not where they begin
+    holes: int  # those in the cloth of a flat plush body; else points that cables are led through, but at winches
     crossings: int  # places where cables cross, but beside the winch of both
     sharp_turns: int  # via points at which a cable turns by more than `SHARP` degrees
     sheaths: int  # tubes
@@ -59,17 +44,16 @@ class BuildCost:
         return dict(vars(self))
 
     @staticmethod
-    def of_robot(robot: Robot, reached: Sequence[IKResult], *, times: SewingTimes | None = None) -> "BuildCost":
+    def of_robot(robot: Robot, reached: Sequence[IKResult]) -> "BuildCost":
         """Count what a network takes; an "auto" motor follows from the tensions of the poses that it reaches.
 
         Cables in pairs are sewn twice: all but motors counts for both. Printed and cast bodies have no pairs.
         """
-        cables, twice = robot.cables, _num_sides(robot)
+        plush = KitOptions().method_for(robot.body) is Method.PLUSH
+        cables, work = (sewn_robot(robot) if plush else robot).cables, CableWork.of_robot(robot)
         motors = len({cable.winch for cable in cables})
-        holes = twice * sum(len(cable.points) - 1 for cable in cables)
-        sheaths = twice * sum(len(cable.sheathed) for cable in cables)
-        length = twice * float(sum(cable.length for cable in cables))
-        tube = twice * float(sum(cable.segments[~cable.bare].sum() for cable in cables))
+        length = float(sum(cable.length for cable in cables))
+        tube = float(sum(cable.segments[~cable.bare].sum() for cable in cables))
         price, key = PRICES["line"].amount * length + PRICES["tube"].amount * tube, ""
         if motors:
             rows = [shaft_torques(robot, pose.pose.tensions) for pose in reached]
@@ -80,12 +64,12 @@ class BuildCost:
             price += motors_price(pulled, chosen)
             key = chosen.key
         return BuildCost(
-            holes=holes,
-            crossings=twice * _crossings(robot),
-            sharp_turns=twice * sum(_sharp(cable) for cable in cables),
-            sheaths=sheaths,
+            holes=work.holes,
+            crossings=(len(sewn_sides(robot)) if plush else 1) * _crossings(robot),
+            sharp_turns=sum(_sharp(cable) for cable in cables),
+            sheaths=sum(len(cable.sheathed) for cable in cables),
             length=length,
-            minutes=BuildCost.cable_minutes(robot, times=times),
+            minutes=work.minutes,
             price=price,
             motors=motors,
             motor=key,
@@ -98,19 +82,9 @@ class BuildCost:
         return "sewing" if KitOptions().method_for(robot.body) is Method.PLUSH else "threading"
 
     @staticmethod
-    def cable_minutes(robot: Robot, *, times: SewingTimes | None = None) -> float:
+    def cable_minutes(robot: Robot) -> float:
         """Minutes that it takes to cut the cables and tubes of a robot, and to stitch or thread them [min]."""
-        clock, method = times or SewingTimes(), KitOptions().method_for(robot.body)
-        sheaths = (clock.cut + clock.sheath) * sum(len(cable.sheathed) for cable in robot.cables)
-        if method is not Method.PLUSH:
-            return (clock.cut + (clock.thread if method is Method.PRINT else clock.draw)) * len(robot.cables) + sheaths
-        holes = sum(len(cable.points) - 1 for cable in robot.cables)
-        return _num_sides(robot) * ((clock.cut + clock.begin) * len(robot.cables) + clock.hole * holes + sheaths)
-
-
-def _num_sides(robot: Robot) -> int:
-    """Number of times that each cable is there: two in pairs, which only a plush body has."""
-    return len(sewn_sides(robot)) if KitOptions().method_for(robot.body) is Method.PLUSH else 1
+        return CableWork.of_robot(robot).minutes
 
 
 def front(points: Sequence[tuple[float, float]]) -> list[int]:

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from hydrostat.fabrication import STUFFINGS
-from hydrostat.robot import Face, Robot
+from hydrostat.robot import CableSide, Robot
 
 
 def assign_cable_sides(robot: Robot) -> Robot:
@@ -15,4 +15,4 @@ def assign_cable_sides(robot: Robot) -> Robot:
     if robot.body.mesh.dim != 2 or robot.face is not None:
         return robot
     material = robot.body.material.name
-    return replace(robot, face=Face.PAIRS if not material or material in STUFFINGS else Face.MIDDLE)
+    return replace(robot, face=CableSide.PAIRS if not material or material in STUFFINGS else CableSide.MIDDLE)

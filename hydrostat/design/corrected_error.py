@@ -100,8 +100,8 @@ def expected_corrected_error(
         return float("inf")
     gain, squares = estimator.gain(names), []
     shown = gain @ estimator.known_columns(names)
-    for one, slopes, columns in zip(reached, estimator.sensitivities, estimator.columns, strict=True):
-        jacobian = slopes.contractions[: len(columns)]
+    for one, sensitivity, columns in zip(reached, estimator.sensitivities, estimator.columns, strict=True):
+        jacobian = sensitivity.contractions[: len(columns)]
         normal = jacobian.T @ jacobian + CORRECTION_DAMPING**2 * np.eye(jacobian.shape[1])
         back = jacobian @ np.linalg.solve(normal, jacobian.T) @ columns
         left = float(((columns - back @ shown) ** 2).sum()) + noise**2 * float(((back @ gain) ** 2).sum())

@@ -6,14 +6,14 @@ from typing import TypeVar
 import numpy as np
 
 from hydrostat.design.network import Alternative, Network
-from hydrostat.robot import Robot, fit_winch_bodies, fix_drives
+from hydrostat.robot import Robot, fit_winch_bodies, with_fixed_drives
 
 _One = TypeVar("_One", Network, Alternative)
 
 
 def simplify_robot(robot: Robot) -> Robot:
     """Return the robot with its drives at rest and without the units of winches in its body."""
-    still = fix_drives(robot)
+    still = with_fixed_drives(robot)
     return fit_winch_bodies(replace(still, winches=tuple(replace(winch, body=False) for winch in still.winches)))
 
 

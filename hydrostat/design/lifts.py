@@ -24,16 +24,19 @@ class Lift:
 def find_lifts(network: Network) -> tuple[Lift, ...]:
     """Find changes that would leave a clearly smaller error where fewer winches than poses share contractions.
 
-    Tried are one more winch, winches that pull both ways, and cables across drawn shapes where the error is large. A
-    quick search (`propose_routes`) takes about as long as the whole one; that may find better. Only networks count
-    whose kit would be made.
+    Tried are one more winch, winches that pull both ways, and, where the error is large, cables across drawn shapes
+    or, without such shapes, cables that cross. A quick search (`propose_routes`) takes about as long as the whole one;
+    that may find better. Only networks count whose kit would be made.
     """
     request, lifts = network.request, []
     if not isinstance(request.winches, int) or request.warm_start:
         return ()
     changes = list(_changes(request, request.winches)) if request.winches < len(request.poses) else []
     if network.expected_error > _LARGE * network.source.body.mesh.size:
-        changes += [(CROSSING, across) for across in [_across_drawings(network.source, request)] if across]
+        if across := _across_drawings(network.source, request):
+            changes.append((CROSSING, across))
+        elif request.winches >= len(request.poses) and request.constraints.cable_gap > 0:
+            changes.append((TOUCHING, replace(request, constraints=replace(request.constraints, cable_gap=0.0))))
     for words, changed in changes:
         best = _find_quickly(network.source, changed)
         if best is not None and best.expected_error < _CLEARLY * network.expected_error:
@@ -124,6 +127,9 @@ def _neighbors(request: DesignRequest, own: int) -> Iterator[DesignRequest]:
 
 CROSSING = 'drawing_gap = "0 mm" in a file for --constraints'
 """Line that allows cables across drawn shapes."""
+
+TOUCHING = 'cable_gap = "0 mm" in a file for --constraints (cables may cross)'
+"""Line that allows cables to cross."""
 
 _CLEARLY = 0.85  # an error below this multiple of the network's is reported
 _LARGE = 0.01  # share of the body's size above which an error may be due to drawn shapes that cables avoid

@@ -57,12 +57,14 @@ class MarkerEstimator:
         """
         names, dim = [marker.name for marker in simulation.robot.markers], simulation.robot.body.mesh.dim
         known = [[names.index(name) for name in one.pose_target.targets] for one in reached]
-        slopes = [cable_sensitivities(simulation, one.pose, own) for one, own in zip(reached, known, strict=True)]
-        columns = [
-            spread_columns(simulation, one.pose, slope, uncertainty, dim * len(own))
-            for one, slope, own in zip(reached, slopes, known, strict=True)
+        sensitivities = [
+            cable_sensitivities(simulation, one.pose, own) for one, own in zip(reached, known, strict=True)
         ]
-        return cls(reached=reached, sensitivities=slopes, columns=columns, noise=noise)
+        columns = [
+            spread_columns(simulation, one.pose, sensitivity, uncertainty, dim * len(own))
+            for one, sensitivity, own in zip(reached, sensitivities, known, strict=True)
+        ]
+        return cls(reached=reached, sensitivities=sensitivities, columns=columns, noise=noise)
 
     def estimate(self, measured: Sequence[Mapping[str, Vector | Sequence[float]]]) -> list[dict[str, Vector]]:
         """Positions of all targets of each pose [m], from those of each that were measured [m]."""

@@ -3,7 +3,7 @@
 # Of the thesis (docs/thesis.md): E24
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,7 +15,8 @@ from hydrostat.design.request import DesignRequest
 from hydrostat.design.stuffed_results import StuffedResults
 from hydrostat.ik import IKResult
 from hydrostat.painters import draw_record, html_repr
-from hydrostat.robot import Robot
+from hydrostat.robot import ElementKind, Robot, Volume
+from hydrostat.simulation import Simulation
 from hydrostat.units import plural
 
 
@@ -57,7 +58,7 @@ class Certificate:
     paths: int  # states of the dynamic program that found it: each the best few paths of so many edges that end so
     # the steepest fall of the error along one number of the network, such as a coordinate of a via point, that the
     # limits allow to move [m/m]
-    slope: float
+    descent_rate: float
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -142,6 +143,23 @@ class Network:
             found[size_of(network)] = min(network.expected_error, found.get(size_of(network), float("inf")))
         found[size_of(self)] = self.expected_error
         return dict(sorted(found.items()))
+
+    @property
+    def element_error(self) -> float:
+        """Rms move of the markers on quadratic elements, by the same contractions [m]; infinite where unknown.
+
+        Unknown are bodies in space, and bodies whose elements are quadratic already or whose volume is kept by patches.
+        """
+        body = self.robot.body
+        if body.mesh.dim == 3 or body.elements is not ElementKind.LINEAR or body.volume is not Volume.ELEMENT:
+            return float("inf")
+        finer = Simulation(replace(self.robot, body=body.with_elements(ElementKind.QUADRATIC)))
+        squares = []
+        for one in self.ik_results:
+            pose = finer.solve(one.pose.contractions, strict=False)
+            moved = [pose.markers[name] - one.pose.markers[name] for name in one.pose_target.targets]
+            squares.append(np.mean(np.sum(np.square(moved), axis=1)) if pose.result.converged else np.inf)
+        return float(np.sqrt(np.mean(squares)))
 
     @property
     def rest_error(self) -> float:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrostat.ik import IKOptions, IKResult, Limits, solve_ik
-from hydrostat.robot import Face, PoseTarget, Robot, inflated_robot
+from hydrostat.robot import CableSide, PoseTarget, Robot, inflated_robot
 from hydrostat.simulation import Simulation
 
 
@@ -14,7 +14,7 @@ from hydrostat.simulation import Simulation
 class StuffedResults:
     """A network on the body in space that a flat one becomes once it is filled, cables on its skin."""
 
-    face: Face  # where the cables run
+    face: CableSide  # where the cables run
     reached: tuple[IKResult, ...]  # each pose by contractions found there, its targets in the plane
     played: float  # rms error over markers and poses with the commands of the flat model [m]
     finalists: int  # networks that were compared so, this one among them
@@ -52,7 +52,7 @@ def solve_stuffed(robot: Robot, reached: Sequence[IKResult], *, limits: Limits, 
         squares += [float(np.sum((start.markers[name] - place) ** 2)) for name, place in pose.targets.items()]
         found.append(solve_ik(simulation, pose, limits=limits, options=once).without_factors())
     played = float(np.sqrt(np.mean(squares)))
-    face = robot.face or Face.FRONT
+    face = robot.face or CableSide.FRONT
     return StuffedResults(face=face, reached=tuple(found), played=played, finalists=finalists)
 
 

@@ -76,10 +76,11 @@ def _torque_to_hold(motor: Motor) -> float:
 def find_no_room(robot: Robot) -> str | None:
     """Return why no motor of the kit fits into the body for winches that a design would place; None if one fits.
 
-    A design of one winch may put all of its cables there, and its unit is longer the more cables it holds.
+    None too for a robot that drives alone move. A design of one winch may put all of its cables there,
+    and its unit is longer the more cables it holds.
     """
     constraints, usual = Constraints(motor=robot.motor), DesignRequest.cables
-    if constraints.stand_outside(robot) or not has_known_room(robot.body):
+    if (robot.drives and not robot.winches) or constraints.stand_outside(robot) or not has_known_room(robot.body):
         return None
     return None if winch_room(robot, constraints, usual)[1] is not None else _no_room(robot, constraints, usual, 1)
 

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from xml.sax.saxutils import quoteattr
 
@@ -47,7 +47,9 @@ def find_omissions(robot: Robot) -> tuple[str, ...]:
     found = {
         "contact and obstacles": robot.contact is not None or bool(robot.obstacles),
         "loads": bool(robot.loads),
-        "stiffness of pins (they are rigid)": any(pin.stiffness < Pin.stiffness for pin in robot.pins),
+        "stiffness of pins (they are rigid)": any(
+            pin.stiffness < replace(pin, stiffness=Pin.stiffness).sized_for(robot.body).stiffness for pin in robot.pins
+        ),
         "cable friction": any(cable.friction for cable in robot.cables),
         "relaxation": any(material.relaxation for material in materials),
         "graded stiffness": robot.body.grading is not None,

@@ -55,7 +55,8 @@ class Mesh:
             )
         if elements.size and (elements.min() < 0 or elements.max() >= len(nodes)):
             raise InputError("the mesh names a node that it does not have")
-        bad = np.flatnonzero(~(self.volumes > 0))
+        extent = float(np.abs(nodes).max(initial=0.0))
+        bad = np.flatnonzero(~(self.volumes > 1e-20 * extent**self.dim))
         if bad.size:
             raise InputError(f"{bad.size} mesh elements have no positive volume, the first is number {bad[0]}")
         nodes.setflags(write=False)

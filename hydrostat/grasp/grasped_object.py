@@ -41,7 +41,7 @@ def read_object(text: str, dim: int, *, mass: float, friction: float) -> Obstacl
         )
     if min(sizes) <= 0:
         raise InputError(f'"{text}": sizes must be above 0')
-    known = {"name": "thing", "shape": shape, "mass": mass, "friction": friction}
+    known = {"name": "object", "shape": shape, "mass": mass, "friction": friction}
     if shape == "sphere":
         return Obstacle(**known, at=(0.0,) * dim, radius=0.5 * sizes[0])
     if shape == "box":
@@ -58,23 +58,23 @@ def _from_file(text: str, dim: int, *, mass: float, friction: float) -> Obstacle
     if dim == 2:
         raise InputError(f"{text}: a flat body meets no mesh; use a sphere, which is a disc in the plane, or a box")
     mesh = closed_mesh(read_stranger(text), Path(text).name)
-    return Obstacle(name="thing", shape="mesh", at=tuple(-mesh.masses()[1]), mesh=mesh, mass=mass, friction=friction)
+    return Obstacle(name="object", shape="mesh", at=tuple(-mesh.masses()[1]), mesh=mesh, mass=mass, friction=friction)
 
 
-def move_object(thing: Obstacle, place: Vector) -> Obstacle:
+def move_object(obstacle: Obstacle, place: Vector) -> Obstacle:
     """Return the same object with its center at a position [m]."""
-    shift = np.asarray(place) - thing.frame()[0]
-    ends = (None if end is None else tuple((np.array(end) + shift).tolist()) for end in (thing.at, thing.to))
+    shift = np.asarray(place) - obstacle.frame()[0]
+    ends = (None if end is None else tuple((np.array(end) + shift).tolist()) for end in (obstacle.at, obstacle.to))
     at, to = ends
-    return replace(thing, at=at or (), to=to)
+    return replace(obstacle, at=at or (), to=to)
 
 
-def place_object(robot: Robot, thing: Obstacle, closed: Points) -> Obstacle:
+def place_object(robot: Robot, obstacle: Obstacle, closed: Points) -> Obstacle:
     """Place an object amid the markers of the closed robot, moved out of the body at rest.
 
     Args:
         robot: robot; at rest it must be clear of the object.
-        thing: object at any position.
+        obstacle: object at any position.
         closed: marker positions in the closed pose [m].
 
     Raises:
@@ -85,7 +85,7 @@ def place_object(robot: Robot, thing: Obstacle, closed: Points) -> Obstacle:
     trials = 400
     some = 0.25  # Moves in search of a place, and how far each goes, as a share of what is needed
     for _ in range(trials):
-        tried = move_object(thing, place)
+        tried = move_object(obstacle, place)
         found = tried.field()(skin)
         lacks = np.maximum(room - found.values, 0.0)
         inside = locate(mesh, tried.spine()).inside.any()

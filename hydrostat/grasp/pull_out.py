@@ -104,7 +104,7 @@ class PullOut:
 
 def pull_out(
     robot: Robot,
-    thing: Obstacle,
+    obstacle: Obstacle,
     contractions: Contractions,
     options: PullOptions,
     *,
@@ -117,7 +117,7 @@ def pull_out(
 
     Args:
         robot: robot that grasps the object.
-        thing: object with a mass, at its rest position, clear of the body.
+        obstacle: object with a mass, at its rest position, clear of the body.
         contractions: contractions that close the robot [m].
         options: options of the pull.
         progress: callback for progress.
@@ -126,23 +126,23 @@ def pull_out(
         InputError: an object that stands in the body, has no mass, or is never touched.
         NotConvergedError: the robot could not be closed.
     """
-    if thing.mass is None:
-        raise InputError(f'"{thing.name}" has no mass; give it one, such as 58 g')
-    full = replace(robot, obstacles=(*robot.obstacles, thing))
+    if obstacle.mass is None:
+        raise InputError(f'"{obstacle.name}" has no mass; give it one, such as 58 g')
+    full = replace(robot, obstacles=(*robot.obstacles, obstacle))
     body = BodyPhysics(full)
     carriage = body.rigid_dofs[len(robot.obstacles)]
-    place, axes = thing.frame()
+    place, axes = obstacle.frame()
     unit, dim = options.unit, len(place)
     whole = np.eye(dim)
     held = GuideEnergy(carriage, place=place, axes=axes, along=options.along * whole, turning=options.along)
     closing = Simulation(full, body=body, energies=[held])
     pose = closing.solve(contractions)
     if not obstacle_forces(closing, pose)[-1].any():
-        raise InputError(f'"{thing.name}" is touched by nothing when the robot has closed; put it elsewhere')
+        raise InputError(f'"{obstacle.name}" is touched by nothing when the robot has closed; put it elsewhere')
     straight = np.outer(unit, unit)
     springs = options.along * straight + options.across * (whole - straight)
     rows: list[tuple[float, Equilibrium, Vector, Vector]] = []
-    travel = options.travel or 1.5 * _size(thing)
+    travel = options.travel or 1.5 * _size(obstacle)
     count, reason = max(1, int(np.ceil(travel / options.step))), "object not free at the end of the pull"
     for number in range(count + 1):
         pulled = min(number * options.step, travel)
@@ -163,7 +163,7 @@ def pull_out(
             reason = "object is free"
             break
     if not rows:
-        raise InputError(f'no equilibrium of "{thing.name}" in the grasp before the pull: {reason}')
+        raise InputError(f'no equilibrium of "{obstacle.name}" in the grasp before the pull: {reason}')
     if progress is not None:
         progress("pulling [mm]", round(1e3 * travel), round(1e3 * travel))
     distances, poses, pulls, pushes = zip(*rows, strict=True)
@@ -201,9 +201,9 @@ def _find_settled(simulation: Simulation, contractions: Contractions, pose: Equi
     return None
 
 
-def _size(thing: Obstacle) -> float:
+def _size(obstacle: Obstacle) -> float:
     """Approximate size of an object [m]."""
-    return float(np.sqrt(12 * thing.second_moments().max()))
+    return float(np.sqrt(12 * obstacle.second_moments().max()))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -223,7 +223,7 @@ class PullCase:
 
 def pull_bands(
     robot: Robot,
-    thing: Obstacle,
+    obstacle: Obstacle,
     contractions: Contractions,
     options: PullOptions,
     *,
@@ -233,12 +233,12 @@ def pull_bands(
 
     Args:
         robot: robot that grasps the object.
-        thing: object with its nominal friction and position.
+        obstacle: object with its nominal friction and position.
         contractions: contractions that close the robot [m].
         options: options of the pull.
         progress: callback for progress.
     """
-    cases = list(_cases(robot, thing))
+    cases = list(_cases(robot, obstacle))
     found = []
     for number, (name, other, moved) in enumerate(cases):
         try:
@@ -250,16 +250,16 @@ def pull_bands(
     return tuple(found)
 
 
-def _cases(robot: Robot, thing: Obstacle) -> Iterator[tuple[str, Robot, Obstacle]]:
-    yield "no friction", robot, replace(thing, friction=0.0)
+def _cases(robot: Robot, obstacle: Obstacle) -> Iterator[tuple[str, Robot, Obstacle]]:
+    yield "no friction", robot, replace(obstacle, friction=0.0)
     for friction in FRICTIONS:
-        yield f"friction {friction:g}", robot, replace(thing, friction=friction)
+        yield f"friction {friction:g}", robot, replace(obstacle, friction=friction)
     material = robot.body.material
     for factor in MODULI:
         body = replace(robot.body, material=material.with_young(factor * material.young))
-        yield f"modulus {factor - 1:+.0%}", replace(robot, body=body), thing
-    place = thing.frame()[0]
+        yield f"modulus {factor - 1:+.0%}", replace(robot, body=body), obstacle
+    place = obstacle.frame()[0]
     for axis in range(len(place)):
         for sign in (-1.0, 1.0):
             aside = place + sign * ASIDE * np.eye(len(place))[axis]
-            yield f"{'xyz'[axis]} {1e3 * sign * ASIDE:+.0f} mm", robot, move_object(thing, aside)
+            yield f"{'xyz'[axis]} {1e3 * sign * ASIDE:+.0f} mm", robot, move_object(obstacle, aside)

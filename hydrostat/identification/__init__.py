@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from hydrostat.identification.marker_predictor import MarkerPredictor
     from hydrostat.identification.measurements import Measurements, rms
     from hydrostat.identification.model import IdentificationModel, Parameter
+    from hydrostat.identification.profile_intervals import profile_intervals
     from hydrostat.identification.read import read_measurements
     from hydrostat.identification.suggest_measurements import suggest_measurements
 
@@ -31,6 +32,7 @@ __all__ = [
     "identified_tolerances",
     "identify",
     "named_model",
+    "profile_intervals",
     "read_measurements",
     "rms",
     "suggest_measurements",

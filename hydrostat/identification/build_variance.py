@@ -28,7 +28,9 @@ def estimate_build_variance(
     """
     chosen = choose_rows(measurements)
     rows = measurements.rows(chosen)
-    residuals = Residuals.of(MarkerPredictor(model, rows, deviations=DEVIATIONS).predict(numbers, slopes=True), rows)
-    slopes = residuals.jacobian / np.where(residuals.is_force, noises[1], noises[0])[:, None]
-    information = len(measurements.commands) / len(chosen) * slopes.T @ slopes
+    residuals = Residuals.of(
+        MarkerPredictor(model, rows, deviations=DEVIATIONS).predict(numbers, with_jacobian=True), rows
+    )
+    jacobian = residuals.jacobian / np.where(residuals.is_force, noises[1], noises[0])[:, None]
+    information = len(measurements.commands) / len(chosen) * jacobian.T @ jacobian
     return np.diag(np.linalg.inv(information + np.eye(len(information))))[: len(numbers)]

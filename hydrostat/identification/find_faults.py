@@ -79,19 +79,19 @@ def find_slip(fitted: FittedModel, measurements: Measurements) -> Slip | None:
     robot, count = fitted.model.robot(fitted.values), len(measurements.commands)
     ratios = winch_ratios(robot)
     predictor = MarkerPredictor(fitted.model, measurements, deviations={"slack": MM})
-    residuals = Residuals.of(predictor.predict(fitted.numbers, slopes=True), measurements)
+    residuals = Residuals.of(predictor.predict(fitted.numbers, with_jacobian=True), measurements)
     known = np.isfinite(residuals.errors)
     scales = np.where(residuals.is_force, fitted.force_noise, fitted.noise)[known]
-    slopes = residuals.jacobian[known] / scales[:, None]
+    jacobian = residuals.jacobian[known] / scales[:, None]
     own = len(fitted.numbers)
-    if slopes.shape[1] != own + len(robot.cables):  # slack is fitted
+    if jacobian.shape[1] != own + len(robot.cables):  # slack is fitted
         return None
     prior = np.zeros((own, len(ratios)))
-    base = np.linalg.qr(np.concatenate([slopes[:, :own], np.eye(own)]))[0]
+    base = np.linalg.qr(np.concatenate([jacobian[:, :own], np.eye(own)]))[0]
     errors = _without(base, np.concatenate([residuals.errors[known] / scales, fitted.numbers]))
     best, found = EXPLAINED * float(errors @ errors), None
     for row in range(2, count - 1):
-        after = slopes[:, own:] @ ratios.T * (residuals.rows[known] >= row)[:, None]
+        after = jacobian[:, own:] @ ratios.T * (residuals.rows[known] >= row)[:, None]
         changed = _without(base, np.concatenate([after, prior]))
         squares = np.maximum((changed**2).sum(axis=0), np.finfo(float).tiny)
         along = errors @ changed

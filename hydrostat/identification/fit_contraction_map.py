@@ -24,7 +24,7 @@ PENALTIES = tuple(10.0**power for power in range(-4, 3))
 
 
 def fit_contraction_map(fitted: FittedModel, robot: Robot, measurements: Measurements) -> ContractionMap | None:
-    """Fit a map to the errors that a fitted model leaves, by its exact slopes (ridge regression).
+    """Fit a map to the errors that a fitted model leaves, by its exact Jacobian (ridge regression).
 
     The map is kept only if it predicts rows that it did not see with at most 90 % of the model's error. In each fold
     the penalty is chosen without the rows that are held out.
@@ -52,9 +52,9 @@ def fit_contraction_map(fitted: FittedModel, robot: Robot, measurements: Measure
         seen = [row for place, row in enumerate(known) if place % FOLDS != fold]
         weights = _fit(rows, seen, _choose_penalty(rows, seen))
         for row in (row for place, row in enumerate(known) if place % FOLDS == fold):
-            errors, slopes = rows[row]
+            errors, jacobian = rows[row]
             before.append(errors)
-            after.append(errors + slopes @ weights)
+            after.append(errors + jacobian @ weights)
     dim = measurements.places.shape[2]
     lengths = [rms(np.linalg.norm(np.concatenate(each).reshape(-1, dim), axis=1)) for each in (before, after)]
     if lengths[1] > GAINED * lengths[0]:
@@ -73,13 +73,13 @@ def fit_contraction_map(fitted: FittedModel, robot: Robot, measurements: Measure
 
 
 Rows = list[tuple[np.ndarray, np.ndarray]]
-"""Errors of the measured markers of each row [m], and their slopes by all weights."""
+"""Errors of the measured markers of each row [m], and their Jacobian by all weights."""
 
 
 def _error_rows(fitted: FittedModel, measurements: Measurements, inputs: np.ndarray, travel: Vector) -> Rows:
-    """Predicted less measured coordinates, with the slopes of the markers by the weights of a map."""
+    """Predicted less measured coordinates, with the Jacobian of the markers by the weights of a map."""
     predictor = MarkerPredictor(fitted.model, measurements)
-    places = predictor.predict(fitted.numbers, slopes=False).places
+    places = predictor.predict(fitted.numbers, with_jacobian=False).places
     step, rows = 1e-6, Rows()
     for row, pose in enumerate(predictor.poses):
         whole = np.isfinite(measurements.places[row]).all(axis=1)
@@ -105,9 +105,9 @@ def _error_rows(fitted: FittedModel, measurements: Measurements, inputs: np.ndar
 
 def _fit(rows: Rows, chosen: list[int], penalty: float) -> Vector:
     """Weights with the least squares of errors and a penalty."""
-    errors, slopes = (np.concatenate([rows[row][part] for row in chosen]) for part in (0, 1))
-    size = penalty * float((slopes**2).sum()) / slopes.shape[1]
-    return -np.linalg.solve(slopes.T @ slopes + max(size, 1e-30) * np.eye(slopes.shape[1]), slopes.T @ errors)
+    errors, jacobian = (np.concatenate([rows[row][part] for row in chosen]) for part in (0, 1))
+    size = penalty * float((jacobian**2).sum()) / jacobian.shape[1]
+    return -np.linalg.solve(jacobian.T @ jacobian + max(size, 1e-30) * np.eye(jacobian.shape[1]), jacobian.T @ errors)
 
 
 def _choose_penalty(rows: Rows, chosen: list[int]) -> float:
@@ -118,8 +118,8 @@ def _choose_penalty(rows: Rows, chosen: list[int]) -> float:
         for fold in range(FOLDS):
             weights = _fit(rows, [row for place, row in enumerate(chosen) if place % FOLDS != fold], penalty)
             for row in chosen[fold::FOLDS]:
-                errors, slopes = rows[row]
-                total += float(((errors + slopes @ weights) ** 2).sum())
+                errors, jacobian = rows[row]
+                total += float(((errors + jacobian @ weights) ** 2).sum())
         return total
 
     return min(PENALTIES, key=left_out)

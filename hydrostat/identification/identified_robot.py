@@ -1,6 +1,5 @@
 """`identify`: fitted model of a built robot from measured places of its markers."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,8 +13,9 @@ from hydrostat.identification.kinds import KINDS, named_model
 from hydrostat.identification.measurements import Measurements
 from hydrostat.identification.model import IdentificationModel
 from hydrostat.identification.profile_intervals import profile_intervals
+from hydrostat.progress import Progress, no_progress
 from hydrostat.result_table import Columns, Tabular
-from hydrostat.robot import Material, PinDrive, Robot
+from hydrostat.robot import Material, Pin, Robot, with_fixed_drives
 from hydrostat.units import MM
 
 UNKNOWN = 0.3
@@ -74,9 +74,11 @@ def identify(
     *,
     fit: tuple[str, ...] | None = None,
     profile: bool = False,
-    progress: Callable[[str], None] | None = None,
+    progress: Progress = no_progress,
 ) -> IdentifiedRobot:
     """Parameters of a built robot from measurements (Gauss-Newton, exact sensitivities, guesses as a normal prior).
+
+    Drives are at rest in all measurements.
 
     Args:
         robot: robot as it is assumed to be built.
@@ -84,12 +86,16 @@ def identify(
         fit: kinds of parameters, see `KINDS`; those that are fitted by default if left out, with `force` where
             forces were measured.
         profile: take intervals by profile likelihood where linearized ones are doubtful.
-        progress: receives a line after each evaluation.
+        progress: callback for progress, after each evaluation.
 
     Raises:
-        InputError: a robot with drives, an unknown kind, or measurements that do not fit the robot.
+        InputError: an unknown kind, or measurements that do not fit the robot.
     """
-    PinDrive.require_none(robot.drives, "identification")
+    if robot.drives:
+        found = identify(with_fixed_drives(robot), measurements, fit=fit, profile=profile, progress=progress)
+        pins = (replace(pin, drive=own.drive) for pin, own in zip(found.robot.pins, robot.pins, strict=True))
+        driven = replace(found.robot, pins=tuple(pins), loads=robot.loads, drives=robot.drives)
+        return replace(found, robot=driven)
     if fit is None and measurements.forces is not None:
         fit = (*(name for name, kind in KINDS.items() if kind.default and kind.parameters(robot)), "force")
     model, assumed = named_model(robot, fit), start_of(named_model(robot, ()))
@@ -104,7 +110,7 @@ def identify(
             model,
             measurements.rows(kept),
             refine=False,
-            progress=progress and (lambda line: progress(f"without held-out rows, {line}")),
+            progress=lambda stage, done, total: progress(f"without held-out rows, {stage}", done, total),
         )
         held_before, held_after = _distances(assumed, asked), _distances(part, asked)
         if measurements.in_order:
@@ -151,6 +157,13 @@ def _distances(fitted: FittedModel, measurements: Measurements) -> np.ndarray:
     return np.linalg.norm(found - measurements.places, axis=2)
 
 
+def _name_defaults(robot: Robot, assumed: Robot) -> tuple[Pin, ...]:
+    """Pins of a fitted robot, with a default stiffness where that is the one that was fitted with."""
+    pairs = zip(robot.pins, assumed.pins, strict=True)
+    usual = replace(robot, pins=tuple(own if pin.stiffness == own.stiffness else pin for pin, own in pairs)).pins
+    return tuple(one if one.stiffness == pin.stiffness else pin for one, pin in zip(usual, robot.pins, strict=True))
+
+
 def _robot(model: IdentificationModel, fitted: FittedModel, assumed: Robot) -> tuple[Robot, dict[str, float]]:
     """Robot with the fitted values, and the contraction [m] to add for winches whose pretension it cannot hold."""
     values = {name: _round_number(value) for name, value in fitted.values.items()}
@@ -173,6 +186,7 @@ def _robot(model: IdentificationModel, fitted: FittedModel, assumed: Robot) -> t
         )
         for cable, rest in zip(robot.cables, slack, strict=True)
     )
+    robot = replace(robot, pins=_name_defaults(robot, assumed))
     try:
         return robot.with_network(winches, cables), {name: zeros[name] for name in gains if name in tight}
     except InputError as error:

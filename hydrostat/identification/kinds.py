@@ -57,12 +57,13 @@ def named_model(robot: Robot, kinds: tuple[str, ...] | None = None) -> Identific
     if kinds is not None and (empty := [name for name in names if not found[name]]):
         raise InputError(f'parameter "{empty[0]}": this robot has nothing of the kind; leave it out')
     used = [KINDS[name] for name in names if found[name]]
+    held = replace(robot, pins=tuple(replace(pin, stiffness=float(pin.stiffness)) for pin in robot.pins))
     pulls = [kind.contractions for kind in used if kind.contractions is not None]
     moves = [kind.places for kind in used if kind.places is not None]
     scales = [kind.force_scale for kind in used if kind.force_scale is not None]
     return IdentificationModel(
         parameters=tuple(parameter for name in names for parameter in found[name]),
-        robot=lambda values: reduce(lambda one, kind: kind.robot(one, values) if kind.robot else one, used, robot),
+        robot=lambda values: reduce(lambda one, kind: kind.robot(one, values) if kind.robot else one, used, held),
         contractions=lambda values, commands: reduce(lambda one, pull: pull(robot, values, one), pulls, commands),
         places=lambda values, at: reduce(lambda one, move: move(robot, values, one), moves, at),
         force_scale=scales[0] if scales else lambda _: 1.0,

@@ -1,4 +1,4 @@
-"""`MarkerPredictor`: places of markers and forces of winches for values of the parameters, with exact slopes."""
+"""`MarkerPredictor`: places of markers and forces of winches for values of the parameters, with exact Jacobians."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -26,9 +26,9 @@ class MarkerPrediction:
 
     Attributes:
         places: in the frame of the measurement [m], (rows, markers, dim); NaN where no equilibrium was found.
-        jacobian: slopes by the coordinates of the fit, (rows, markers, dim, parameters); None if not requested.
+        jacobian: derivatives by the coordinates of the fit, (rows, markers, dim, parameters); None if not requested.
         forces: measured forces of the winches [N], (rows, winches); NaN where no equilibrium was found.
-        force_jacobian: their slopes, (rows, winches, parameters), 0 where no force was measured.
+        force_jacobian: their derivatives, (rows, winches, parameters), 0 where no force was measured.
     """
 
     places: Float[np.ndarray, "rows markers dim"]
@@ -53,7 +53,7 @@ class MarkerPredictor:
         Args:
             model: robot and measurement.
             measurements: rows to predict.
-            deviations: standard deviations of each of some `robot_numbers` that are not fitted; slopes by them, in
+            deviations: standard deviations of each of some `robot_numbers` that are not fitted; derivatives by them, in
                 these units, follow those by the parameters, unless a parameter changes them.
         """
         self.model, self.measurements, self._deviations = model, measurements, deviations or {}
@@ -64,25 +64,25 @@ class MarkerPredictor:
         """Last equilibrium of each row; None where none was found."""
         return list(self._poses)
 
-    def predict(self, numbers: Vector, *, slopes: bool) -> MarkerPrediction:
+    def predict(self, numbers: Vector, *, with_jacobian: bool) -> MarkerPrediction:
         """Places at coordinates of the fit, with their Jacobian if requested.
 
         Raises:
-            InputError: values that no robot can have, or that change how many cables, points or parts it has; slopes of
-                a robot with cable friction and hysteresis.
+            InputError: values that no robot can have, or that change how many cables, points or parts it has; the
+                Jacobian of a robot with cable friction and hysteresis.
         """
         values = self.model.values(numbers)
         robot = self.model.robot(values)
-        if slopes and robot.body.has_hysteresis and any(cable.friction for cable in robot.cables):
+        if with_jacobian and robot.body.has_hysteresis and any(cable.friction for cable in robot.cables):
             raise InputError("identification fits cable friction or hysteresis, not both. Remove one of them.")
         contractions = self.model.contractions(values, self.measurements.commands)
         rows, markers = len(contractions), self.measurements.markers
         anchors = _anchors(robot, markers)
         places = np.full((rows, len(markers), robot.body.mesh.dim), np.nan)
-        changes = self._changes(numbers, values, robot) if slopes else []
-        jacobian = np.zeros((*places.shape, len(changes))) if slopes else None
+        changes = self._changes(numbers, values, robot) if with_jacobian else []
+        jacobian = np.zeros((*places.shape, len(changes))) if with_jacobian else None
         forces, scale = np.full(contractions.shape, np.nan), self.model.force_scale(values)
-        force_jacobian = np.zeros((*forces.shape, len(changes))) if slopes else None
+        force_jacobian = np.zeros((*forces.shape, len(changes))) if with_jacobian else None
         network = winch_ratios(robot)
         loaded, loads = np.unique(self.measurements.hung_masses, axis=0, return_inverse=True)
         simulations = [Simulation(_with_masses(robot, markers, masses)) for masses in loaded]
@@ -97,17 +97,17 @@ class MarkerPredictor:
             places[row], forces[row] = self.model.places(values, at), scale * network @ pose.tensions
             if jacobian is not None and force_jacobian is not None:
                 try:
-                    jacobian[row] = self._slopes(simulation, pose, (values, at, anchors), changes, row)
-                    force_jacobian[row] = self._force_slopes(simulation, pose, (network, scale), changes, row)
+                    jacobian[row] = self._marker_jacobian(simulation, pose, (values, at, anchors), changes, row)
+                    force_jacobian[row] = self._force_jacobian(simulation, pose, (network, scale), changes, row)
                 except NotConvergedError:
                     places[row], forces[row], self._poses[row] = np.nan, np.nan, None
         found = MarkerPrediction(places, jacobian, forces, force_jacobian)
         has_history = any(simulation.assembly.has_history for simulation in simulations)
         by_paths = has_history and (follows or robot.body.has_hysteresis)
-        return self._path_slopes(found, numbers) if slopes and by_paths else found
+        return self._difference_paths(found, numbers) if with_jacobian and by_paths else found
 
-    def _path_slopes(self, found: MarkerPrediction, numbers: Vector) -> MarkerPrediction:
-        """Prediction with slopes by the parameters from differences of all rows, each with its own history.
+    def _difference_paths(self, found: MarkerPrediction, numbers: Vector) -> MarkerPrediction:
+        """Prediction with its Jacobian from differences of all rows, each with its own history.
 
         The adjoint holds the history of a pose, which the parameters change as well. It stays where a path of a
         difference fails, and for numbers that are not fitted.
@@ -117,7 +117,7 @@ class MarkerPredictor:
         jacobian, force_jacobian = found.jacobian.copy(), found.force_jacobian.copy()
         for index, unit in enumerate(np.eye(len(numbers))):
             less, more = (
-                MarkerPredictor(self.model, self.measurements).predict(numbers + step * unit, slopes=False)
+                MarkerPredictor(self.model, self.measurements).predict(numbers + step * unit, with_jacobian=False)
                 for step in (-PATH_STEP, PATH_STEP)
             )
             by_place = (more.places - less.places) / (2 * PATH_STEP)
@@ -157,7 +157,7 @@ class MarkerPredictor:
         pose = simulation.solve(contractions, strict=False)
         return pose if pose.result.converged else None
 
-    def _slopes(
+    def _marker_jacobian(
         self,
         simulation: Simulation,
         pose: Equilibrium,
@@ -165,12 +165,12 @@ class MarkerPredictor:
         changes: list["_Change"],
         row: int,
     ) -> np.ndarray:
-        """Slopes of the places of one row, (markers, dim, parameters)."""
+        """Jacobian of the places of one row, (markers, dim, parameters)."""
         values, at, anchors = here
         count, dim = at.shape
         found = np.zeros((count, dim, len(changes)))
         step = 1e-6 * simulation.robot.body.mesh.size
-        turns = np.stack(  # (dim, markers, dim): slopes of the places by each coordinate of the robot's frame
+        turns = np.stack(  # (dim, markers, dim): derivatives of the places by each coordinate of the robot's frame
             [
                 (self.model.places(values, at + step * axis) - self.model.places(values, at - step * axis)) / (2 * step)
                 for axis in np.eye(dim)
@@ -184,15 +184,15 @@ class MarkerPredictor:
             for axis in range(dim):
                 nodes = np.zeros_like(pose.nodes)
                 np.add.at(nodes[:, axis], anchors.stencils[marker], anchors.weights[marker])
-                slopes = simulation.adjoint(pose, nodes)
-                flat = flat_slopes(slopes)
-                by_axis.append([change.through(flat, slopes.contractions, row) for change in changes])
+                sensitivity = simulation.adjoint(pose, nodes)
+                flat = flatten_sensitivity(sensitivity)
+                by_axis.append([change.through(flat, sensitivity.contractions, row) for change in changes])
             found[marker] = turns[:, marker].T @ np.array(by_axis)
         for index, change in enumerate(changes):
             found[:, :, index] += change.direct(pose)
         return found
 
-    def _force_slopes(
+    def _force_jacobian(
         self,
         simulation: Simulation,
         pose: Equilibrium,
@@ -200,14 +200,14 @@ class MarkerPredictor:
         changes: list["_Change"],
         row: int,
     ) -> np.ndarray:
-        """Slopes of the forces of one row, (winches, parameters)."""
+        """Jacobian of the forces of one row, (winches, parameters)."""
         network, scale = here
         found = np.zeros((len(network), len(changes)))
         for winch in np.flatnonzero(np.isfinite(self.measurements.known_forces[row])):
-            slopes = simulation.adjoint(pose, np.zeros_like(pose.nodes), tensions=network[winch])
-            flat, force = flat_slopes(slopes), float(network[winch] @ pose.tensions)
+            sensitivity = simulation.adjoint(pose, np.zeros_like(pose.nodes), tensions=network[winch])
+            flat, force = flatten_sensitivity(sensitivity), float(network[winch] @ pose.tensions)
             found[winch] = [
-                scale * change.through(flat, slopes.contractions, row) + change.force_scale * force
+                scale * change.through(flat, sensitivity.contractions, row) + change.force_scale * force
                 for change in changes
             ]
         return found
@@ -247,14 +247,14 @@ class _Change:
             force_scale=(model.force_scale(values[1]) - model.force_scale(values[0])) / (2 * STEP),
         )
 
-    def through(self, slopes: dict[str, Vector], contractions: Vector, row: int) -> float:
-        """Slope of one coordinate through the equilibrium."""
+    def through(self, sensitivity: dict[str, Vector], contractions: Vector, row: int) -> float:
+        """Derivative of one coordinate through the equilibrium."""
         return float(self.contractions[row] @ contractions) + sum(
-            float(change @ slopes[name][: len(change)]) for name, change in self.numbers.items()
+            float(change @ sensitivity[name][: len(change)]) for name, change in self.numbers.items()
         )
 
     def direct(self, pose: Equilibrium) -> np.ndarray:
-        """Slopes of the places with the nodes held."""
+        """Derivatives of the places with the nodes held."""
         if self.values[0] is self.values[1]:
             return np.zeros(())
         less, more = (
@@ -290,9 +290,9 @@ def _anchors(robot: Robot, names: tuple[str, ...]) -> Anchors:
 
 
 def robot_numbers(robot: Robot, gravity: tuple[float, ...] | None) -> dict[str, Vector]:
-    """Numbers of a robot whose slopes `Sensitivity` knows, each as a flat vector in SI units.
+    """Numbers of a robot whose derivatives `Sensitivity` knows, each as a flat vector in SI units.
 
-    Hung masses count by their weight under `gravity` [m/s^2], as the slope by gravity has them already.
+    Hung masses count by their weight under `gravity` [m/s^2], as the derivative by gravity has them already.
     """
     body = robot.body
     materials = [part.material for part in body.parts]
@@ -321,11 +321,11 @@ def robot_numbers(robot: Robot, gravity: tuple[float, ...] | None) -> dict[str, 
     }
 
 
-def flat_slopes(slopes: Sensitivity) -> dict[str, Vector]:
-    """Slopes by `robot_numbers`, by the same names and as flat."""
+def flatten_sensitivity(sensitivity: Sensitivity) -> dict[str, Vector]:
+    """Derivatives by `robot_numbers`, by the same names and as flat."""
     found = {}
-    for name in SLOPES:
-        value = getattr(slopes, name)
+    for name in SENSITIVITIES:
+        value = getattr(sensitivity, name)
         if name == "routes":
             found[name] = np.concatenate([np.ravel(part) for part in value]) if value else np.zeros(0)
         else:
@@ -333,7 +333,7 @@ def flat_slopes(slopes: Sensitivity) -> dict[str, Vector]:
     return found
 
 
-SLOPES = (
+SENSITIVITIES = (
     "slack",
     "routes",
     "cable_stiffness",

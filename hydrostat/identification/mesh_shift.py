@@ -43,14 +43,14 @@ def estimate_mesh_shift(
         assert robot is not None
         return robot
 
-    found = MarkerPredictor(model, rows).predict(numbers, slopes=True)
-    finer = MarkerPredictor(replace(model, robot=make_finer), rows).predict(numbers, slopes=False)
+    found = MarkerPredictor(model, rows).predict(numbers, with_jacobian=True)
+    finer = MarkerPredictor(replace(model, robot=make_finer), rows).predict(numbers, with_jacobian=False)
     finer = replace(finer, jacobian=found.jacobian, force_jacobian=found.force_jacobian)
     coarse, fine = Residuals.of(found, rows), Residuals.of(finer, rows)
     moved = fine.errors - coarse.errors
     known, scales = np.isfinite(moved), np.where(coarse.is_force, noises[1], noises[0])
-    slopes = (coarse.jacobian / scales[:, None])[known]
-    return -np.linalg.solve(slopes.T @ slopes + np.eye(len(numbers)), slopes.T @ (moved / scales)[known])
+    jacobian = (coarse.jacobian / scales[:, None])[known]
+    return -np.linalg.solve(jacobian.T @ jacobian + np.eye(len(numbers)), jacobian.T @ (moved / scales)[known])
 
 
 def choose_rows(measurements: Measurements) -> np.ndarray:

@@ -66,7 +66,7 @@ class IdentificationModel:
     """A robot and its measurement as functions of the values of its parameters.
 
     All three functions must be smooth. They are differentiated by small changes of the values; the equilibrium, which
-    takes the time, by its adjoint. `robot` may change all that `Sensitivity` has a slope for, and places of markers.
+    takes the time, by its adjoint. `robot` may change all that `Sensitivity` differentiates, and places of markers.
 
     Attributes:
         parameters: the unknown numbers.

@@ -1,6 +1,5 @@
 """`profile_intervals`: intervals of fitted values by profile likelihood, where the linearized ones are doubtful."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, cast
 
@@ -10,6 +9,7 @@ from scipy.optimize import least_squares
 from hydrostat.arrays import Vector
 from hydrostat.identification.fit import ROBUST, FittedModel, MarkerFit
 from hydrostat.identification.measurements import Measurements
+from hydrostat.progress import Progress, no_progress
 
 LEVEL = 1.96
 """Root of the deviance at the ends of an interval: 95 % of a normal distribution."""
@@ -28,7 +28,7 @@ EVALUATIONS = 8
 
 
 def profile_intervals(
-    fitted: FittedModel, measurements: Measurements, *, progress: Callable[[str], None] | None = None
+    fitted: FittedModel, measurements: Measurements, *, progress: Progress = no_progress
 ) -> FittedModel:
     """Return the fit with ends of intervals by profile likelihood, where linearized ones are doubtful.
 
@@ -40,17 +40,15 @@ def profile_intervals(
     Args:
         fitted: fit of these measurements.
         measurements: rows of the fit.
-        progress: receives a line after each parameter.
+        progress: callback for progress, after each parameter.
     """
     deviance = _Deviance(fitted, measurements)
     numbers, deviations = fitted.numbers, np.sqrt(np.diag(fitted.interval_covariance))
     ends = np.stack([numbers - LEVEL * deviations, numbers + LEVEL * deviations])
-    for index, parameter in enumerate(fitted.model.parameters):
+    for index in range(len(numbers)):
         for side, sign in enumerate((-1.0, 1.0)):
             ends[side, index] = deviance.end(index, sign * deviations[index])
-        if progress:
-            low, high = (parameter.from_fitted(end) for end in ends[:, index])
-            progress(f"profile of {parameter.name}: {low:.4g} to {high:.4g} {parameter.unit}".rstrip())
+        progress("intervals by profile likelihood", index + 1, len(numbers))
     return replace(fitted, ends=ends)
 
 
@@ -62,7 +60,7 @@ class _Deviance:
         self._fit.force_noise = fitted.force_noise
         self._covariance = fitted.interval_covariance
         self._limits = np.array([parameter.limits for parameter in fitted.model.parameters]).T
-        pull = fitted.numbers / np.sqrt(1.0 + (fitted.numbers / ROBUST) ** 2)  # slope of the fit's loss by the guesses
+        pull = fitted.numbers / np.sqrt(1.0 + (fitted.numbers / ROBUST) ** 2)  # gradient of the loss by the guesses
         self._middle = fitted.numbers - pull / fitted.spread  # of the guesses: the fit stays the minimum
         self._least = 0.0
         self._least = self._value(fitted.numbers)
@@ -102,7 +100,7 @@ class _Deviance:
         solved = least_squares(
             lambda others: self._residuals(whole(others)),
             start[free],
-            jac=cast("Any", lambda others: self._slopes(whole(others))[:, free]),
+            jac=cast("Any", lambda others: self._jacobian(whole(others))[:, free]),
             bounds=self._limits[:, free],
             loss=cast("Any", self._loss),
             ftol=1e-3,
@@ -120,10 +118,10 @@ class _Deviance:
         residuals[-len(numbers) :] -= self._middle
         return residuals
 
-    def _slopes(self, numbers: Vector) -> np.ndarray:
-        slopes = self._fit.slopes(numbers)
-        slopes[: -len(numbers)] /= np.sqrt(self._fitted.spread)
-        return slopes
+    def _jacobian(self, numbers: Vector) -> np.ndarray:
+        jacobian = self._fit.jacobian(numbers)
+        jacobian[: -len(numbers)] /= np.sqrt(self._fitted.spread)
+        return jacobian
 
     def _loss(self, squares: Vector) -> np.ndarray:
         """Loss of the fit for what was measured, squares for the guesses, with two derivatives."""

@@ -97,7 +97,7 @@ def suggest_measurements(
     places = np.zeros((len(commands), len(names), robot.body.mesh.dim))
     rows = Measurements(commands=commands, markers=names, places=places, masses=hung, in_order=in_order)
     predictor = MarkerPredictor(model, rows)
-    found = predictor.predict(np.zeros(len(model.parameters)), slopes=True)
+    found = predictor.predict(np.zeros(len(model.parameters)), with_jacobian=True)
     assert found.jacobian is not None
     is_able = [
         pose is not None
@@ -113,9 +113,9 @@ def suggest_measurements(
             "Ask fewer, or allow more tension."
         )
     noise, parameters = NOISE * robot.body.mesh.size, len(model.parameters)
-    slopes = found.jacobian.reshape(len(commands) // each, -1, parameters)[able] / noise
-    chosen = choose_measurements(slopes, count // each)
-    information = np.eye(parameters) + np.einsum("rci,rcj->ij", slopes[chosen], slopes[chosen])
+    jacobians = found.jacobian.reshape(len(commands) // each, -1, parameters)[able] / noise
+    chosen = choose_measurements(jacobians, count // each)
+    information = np.eye(parameters) + np.einsum("rci,rcj->ij", jacobians[chosen], jacobians[chosen])
     kept = np.sqrt(np.diag(np.linalg.inv(information)))
     taken = (each * able[chosen][:, None] + np.arange(each)).ravel()
     return SuggestedMeasurements(
@@ -130,20 +130,20 @@ def suggest_measurements(
 
 
 def choose_measurements(
-    slopes: Float[np.ndarray, "candidates coordinates parameters"], count: int
+    jacobians: Float[np.ndarray, "candidates coordinates parameters"], count: int
 ) -> Int[np.ndarray, " count"]:
     """Measurements whose information has the largest determinant: greedy choice, then exchanges (Fedorov 1972).
 
     Args:
-        slopes: slopes of the coordinates of each candidate in standard deviations of the noise, by parameters in
+        jacobians: changes of the coordinates of each candidate in standard deviations of the noise, by parameters in
             standard deviations of their guesses.
         count: measurements to choose, each at most once.
 
     Returns:
         Indices of the candidates, in the order in which a greedy choice takes them.
     """
-    prior = np.eye(slopes.shape[2])
-    alone = np.einsum("rci,rcj->rij", slopes, slopes)
+    prior = np.eye(jacobians.shape[2])
+    alone = np.einsum("rci,rcj->rij", jacobians, jacobians)
     chosen: list[int] = []
     for _ in range(count):
         chosen.append(_best(prior + alone[chosen].sum(axis=0), alone, chosen))

@@ -18,6 +18,7 @@ from hydrostat.robot import (
     SurfaceSketch,
     gallery_folder,
     is_of_gallery,
+    list_gallery,
     load_robot,
     sketch_mesh,
     sketch_robot,
@@ -72,7 +73,7 @@ class NewRobotWish:
 
         if is_of_gallery(source):
             return BegunRobot(_of_gallery(source, self))
-        path = path_of(source, 'a robot begins from the path of a file, or "gallery:NAME"')
+        path = path_of(source, 'a robot starts from the path of a file, or "gallery:NAME"')
         surfaces = (*SURFACE_SUFFIXES, *STEP_SUFFIXES)
         kinds = {OUTLINE_SUFFIXES: _of_drawing, surfaces: _of_surface, MESH_SUFFIXES: _of_mesh}
         for suffixes, make in kinds.items():
@@ -80,12 +81,14 @@ class NewRobotWish:
                 if not path.is_file():
                     raise InputError(f"{source}: there is no such file")
                 return _add_first_pose(run(lambda make=make: make(path, self)))
+        if str(source) in list_gallery():
+            raise InputError(f"{source}: is a robot of the gallery; write gallery:{source}")
         if path.is_dir():
             raise InputError(f"{source}: is a folder; name a file, or copy the folder if it is a robot")
         if path.suffix.lower() in CAD_SUFFIXES:
             raise InputError(f"{source}: this CAD format is not read; export it as STEP, STL or 3MF")
         known = ", ".join(ending for suffixes in kinds for ending in suffixes)
-        raise InputError(f"{source}: cannot be read; a robot begins from gallery:NAME or a file that ends in {known}")
+        raise InputError(f"{source}: cannot be read. Use gallery:NAME or a file that ends in {known}")
 
 
 @dataclass(frozen=True, eq=False)

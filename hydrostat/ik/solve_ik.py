@@ -19,7 +19,7 @@ from hydrostat.ik.objectives.pose_regularizer import ClosenessKind, PoseRegulari
 from hydrostat.ik.search.descend import descend, least_effort
 from hydrostat.ik.search.inverse_search import Descent, InverseSearch, SearchBudget, SearchProgress, reached_pose
 from hydrostat.ik.search.problem import IKOptions, InverseProblem, InverseState
-from hydrostat.mechanics import Reason
+from hydrostat.mechanics import NewtonStatus
 from hydrostat.robot import PoseTarget
 from hydrostat.simulation import (
     Equilibrium,
@@ -141,7 +141,10 @@ def solve_ik(
         seek = least_effort
         if given.rate is None and (start is not None or problem.options.restarts):
             begun, aside = begun if start is None else search.begin(None), begun
-    found = _best(search, seek(search, begun), seek)
+    found = seek(search, begun)
+    nearly = problem.options.restart_error * simulation.robot.body.mesh.size
+    if objectives or not found.within_limits or found.state.error > nearly:  # else a restart would gain too little
+        found = _best(search, found, seek)
     # The answer does not depend on where it begins, unless squares are less than this share from there
     plainly = 0.98
     if aside is not None and found.reason not in _ENDS:  # none is worse than where it began, or than a plain descent
@@ -156,7 +159,7 @@ def solve_ik(
 def _follow_friction(simulation: Simulation, found: IKResult, start: Equilibrium | None) -> IKResult:
     """Solve an answer that was found without obstacle friction again, with friction along its loading path."""
     pose = simulation.solve(found.pose.controls, start=start, strict=False)
-    if pose.result.reason is Reason.TIME_LIMIT:
+    if pose.result.reason is NewtonStatus.TIME_LIMIT:
         found = replace(found, status=IKStatus.TIME_LIMIT)
     elif not pose.result.converged:
         raise not_converged(pose.result, simulation.diagnose(pose))

@@ -18,7 +18,7 @@ from hydrostat.learning.model_card import ModelCard
 from hydrostat.learning.perceptrons import Perceptrons
 from hydrostat.learning.portable_file import PortableFile
 from hydrostat.learning.sample_plan import physics_hash
-from hydrostat.mechanics import Reason
+from hydrostat.mechanics import NewtonStatus
 from hydrostat.robot import PoseTarget, Robot
 from hydrostat.simulation import Equilibrium
 from hydrostat.units import quote
@@ -60,7 +60,7 @@ class LearnedPose:
     errors: Mapping[str, float]
     spread: Mapping[str, float]
     certified: Mapping[str, float] | None = None
-    reason: Reason | IKStatus | None = None
+    reason: NewtonStatus | IKStatus | None = None
     pose: Equilibrium | None = None
 
     def __repr__(self) -> str:

@@ -104,7 +104,7 @@ def _as_lists(value: Any) -> Any:
 
 
 def _parse(name: str, value: Any) -> Any:
-    """Return the value of a field (ValueError: a number out of range, or a list with other things than names)."""
+    """Return the value of a field (ValueError: a number out of range, or a list that does not hold names)."""
     if name == "pairs":
         return tuple(_parse_names(name, group) for group in value)
     if isinstance(value, list):
@@ -117,7 +117,7 @@ def _parse(name: str, value: Any) -> Any:
 def _parse_names(name: str, value: Any) -> tuple[str, ...]:
     """Return a list of names as a tuple (ValueError: it is none)."""
     if not isinstance(value, list) or not all(isinstance(one, str) for one in value):
-        raise ValueError(f'"{name}" holds other things than names')
+        raise ValueError(f'"{name}" does not hold names')
     return tuple(value)
 
 

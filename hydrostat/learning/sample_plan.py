@@ -241,4 +241,5 @@ def physics_hash(robot: Robot) -> str:
     """SHA-256 of all that the poses of a robot depend on, but contact: not of its name, nor of its target poses."""
     bare = replace(robot, name="robot", poses={}, contact=None, sensors=())
     made = b"" if robot.body.content else robot.body.mesh.nodes.tobytes() + robot.body.mesh.elements.tobytes()
-    return hashlib.sha256(robot_hash(bare).encode() + made).hexdigest()
+    sized = [pin.stiffness for pin in robot.pins if pin.is_sized]  # in no robot.toml
+    return hashlib.sha256(robot_hash(bare).encode() + made + np.array(sized).tobytes()).hexdigest()

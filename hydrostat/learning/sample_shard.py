@@ -5,10 +5,10 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.geometry import find_crossings
 from hydrostat.learning.sample_plan import SamplePlan, SamplingScheme, physics_hash
-from hydrostat.mechanics import Reason
+from hydrostat.mechanics import NewtonStatus
 from hydrostat.simulation import Equilibrium, SensorReader, Simulation
 
-REASONS = (*Reason, "error")
+REASONS = (*NewtonStatus, "error")
 """Meaning of the numbers in column `reason`."""
 
 

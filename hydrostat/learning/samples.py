@@ -56,7 +56,7 @@ class SampleFolder:
         except OSError as error:
             raise InputError(f"{path}: cannot be made a folder of samples ({error.strerror})") from None
         if strangers:
-            raise InputError(f"{path}: holds other things, such as {min(strangers)}; name an empty folder")
+            raise InputError(f"{path}: holds other files, such as {min(strangers)}; name an empty folder")
         if present:
             known = read_manifest(path)
             _check_known(path, known, facts)

@@ -174,9 +174,9 @@ def sobolev_loss(
     value, moved = answer(numbers, points, ways)
     loss = ((value - outputs).square() * weights[0]).sum(-1)
     if moved is not None and ways is not None:
-        sloped = derivatives.shape[-2]
+        differentiated = derivatives.shape[-2]
         true = torch.einsum("mbkw,mbcw->mbkc", ways, derivatives)
-        loss = loss + ((moved[..., :sloped] - true).square() * weights[1][:sloped]).sum(-1).mean(-1)
+        loss = loss + ((moved[..., :differentiated] - true).square() * weights[1][:differentiated]).sum(-1).mean(-1)
     return loss.mean(1).sum()
 
 

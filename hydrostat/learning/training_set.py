@@ -32,7 +32,7 @@ class TrainingSet:
     unit: Vector
     inputs: Float[np.ndarray, "samples winches"]
     outputs: Float[np.ndarray, "samples outputs"]
-    jacobians: Float[np.ndarray, "samples sloped winches"]
+    jacobians: Float[np.ndarray, "samples differentiated winches"]
     coordinates: int
     linear: Float[np.ndarray, "rows outputs"]
 
@@ -56,10 +56,10 @@ class TrainingSet:
         unit = np.r_[np.full(coordinates, length), np.full(found.shape[1] - coordinates, force)]
         if like is not None:
             middle, unit = like.middle, like.unit
-        found_slopes = samples.jacobians.reshape(count, coordinates, -1)
+        found_jacobians = samples.jacobians.reshape(count, coordinates, -1)
         if samples.tension_jacobians is not None:
-            found_slopes = np.hstack([found_slopes, samples.tension_jacobians])
-        derivatives = found_slopes * (0.5 * span) / unit[: found_slopes.shape[1], None]
+            found_jacobians = np.hstack([found_jacobians, samples.tension_jacobians])
+        derivatives = found_jacobians * (0.5 * span) / unit[: found_jacobians.shape[1], None]
         outputs = (found - middle) / unit
         return TrainingSet(
             low=low,

@@ -9,88 +9,88 @@ if TYPE_CHECKING:
     from hydrostat.mechanics.cable import CableEnergy, CableSegments
     from hydrostat.mechanics.cable_friction import FrictionCableEnergy
     from hydrostat.mechanics.capstan import ViaPointTurns
-    from hydrostat.mechanics.contact import ContactEnergy
-    from hydrostat.mechanics.controlled_load import ControlledLoad
-    from hydrostat.mechanics.drive_energy import DriveEnergy
+    from hydrostat.mechanics.driven_load_energy import DrivenLoadEnergy
+    from hydrostat.mechanics.driven_pin_energy import DrivenPinEnergy
     from hydrostat.mechanics.energy import ContactForces, Energy, LowRankStiffness, Stencils
-    from hydrostat.mechanics.factorization import Analysis, Backend, Factorization
+    from hydrostat.mechanics.factorization import Backend, Factorization, SymbolicFactorization
+    from hydrostat.mechanics.factorized_hessian import FactorizedHessian
     from hydrostat.mechanics.fibre import FibreEnergy
     from hydrostat.mechanics.foam_solid import FoamLaw, FoamSolid
+    from hydrostat.mechanics.frictional_self_contact import FrictionalSelfContactEnergy
     from hydrostat.mechanics.inertia import SCHEMES, InertiaEnergy
     from hydrostat.mechanics.inversion_barrier import InversionBarrier, pushed_elements
     from hydrostat.mechanics.moment_energy import MomentEnergy
     from hydrostat.mechanics.neo_hookean import NeoHookean
     from hydrostat.mechanics.newton import minimize
     from hydrostat.mechanics.newton_options import NewtonOptions
-    from hydrostat.mechanics.newton_result import NewtonResult, Reason, RoundOff
-    from hydrostat.mechanics.nodal_energies import LoadEnergy, PinEnergy, WeightEnergy
+    from hydrostat.mechanics.newton_result import NewtonResult, NewtonStatus, RoundOff
+    from hydrostat.mechanics.nodal_energies import DeadLoadEnergy, LoadEnergy, PinEnergy
     from hydrostat.mechanics.obstacle import ObstacleEnergy
-    from hydrostat.mechanics.patch_volume import PATCH_SIZE, PatchVolume, grow_patches
+    from hydrostat.mechanics.patch_dilatation import PATCH_SIZE, PatchDilatation, grow_patches
     from hydrostat.mechanics.plane_stress import PlaneStress, solve_thickening
+    from hydrostat.mechanics.prandtl_energy import PrandtlEnergy
     from hydrostat.mechanics.pressure import PressureEnergy
-    from hydrostat.mechanics.quadratic_solid import POINTWISE, QuadraticSolid
-    from hydrostat.mechanics.rigid import CarriedWarp, GuideEnergy, RigidBodyDofs, RigidEnergy
+    from hydrostat.mechanics.quadratic_solid import MAX_POINTWISE_RATIO, QuadraticSolid
+    from hydrostat.mechanics.rigid import GuideEnergy, RigidBodyDofs, RigidBodyWarp, RigidEnergy
     from hydrostat.mechanics.rod_energy import RodEnergy, rod_points
-    from hydrostat.mechanics.self_friction import SelfFrictionEnergy
+    from hydrostat.mechanics.self_contact import SelfContactEnergy
     from hydrostat.mechanics.sheet_energy import SheetEnergy
-    from hydrostat.mechanics.slider_energy import SliderEnergy
-    from hydrostat.mechanics.stiffness import Stiffness
     from hydrostat.mechanics.tension_law import TensionLaw
-    from hydrostat.mechanics.viscous import MaxwellBranches, Metrics
-    from hydrostat.mechanics.warp import Bend, Warp
+    from hydrostat.mechanics.viscous import MaxwellBranches, ViscousMetrics
+    from hydrostat.mechanics.warp import StepMap, Warp
 
 __all__ = [
+    "MAX_POINTWISE_RATIO",
     "PATCH_SIZE",
-    "POINTWISE",
     "SCHEMES",
-    "Analysis",
     "Assembly",
     "Backend",
-    "Bend",
     "CableEnergy",
     "CableSegments",
-    "CarriedWarp",
-    "ContactEnergy",
     "ContactForces",
-    "ControlledLoad",
-    "DriveEnergy",
+    "DeadLoadEnergy",
+    "DrivenLoadEnergy",
+    "DrivenPinEnergy",
     "Energy",
     "Factorization",
+    "FactorizedHessian",
     "FibreEnergy",
     "FoamLaw",
     "FoamSolid",
     "FrictionCableEnergy",
+    "FrictionalSelfContactEnergy",
     "GuideEnergy",
     "InertiaEnergy",
     "InversionBarrier",
     "LoadEnergy",
     "LowRankStiffness",
     "MaxwellBranches",
-    "Metrics",
     "MomentEnergy",
     "NeoHookean",
     "NewtonOptions",
     "NewtonResult",
+    "NewtonStatus",
     "ObstacleEnergy",
-    "PatchVolume",
+    "PatchDilatation",
     "PinEnergy",
     "PlaneStress",
+    "PrandtlEnergy",
     "PressureEnergy",
     "QuadraticSolid",
-    "Reason",
     "RigidBodyDofs",
+    "RigidBodyWarp",
     "RigidEnergy",
     "RodEnergy",
     "RoundOff",
-    "SelfFrictionEnergy",
+    "SelfContactEnergy",
     "SheetEnergy",
-    "SliderEnergy",
     "Stencils",
-    "Stiffness",
+    "StepMap",
+    "SymbolicFactorization",
     "TensionLaw",
     "ViaPointTurns",
+    "ViscousMetrics",
     "Warp",
-    "WeightEnergy",
     "grow_patches",
     "minimize",
     "pushed_elements",

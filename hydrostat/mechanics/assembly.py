@@ -11,8 +11,8 @@ import numpy as np
 from hydrostat.arrays import Float, Nodes, Vector
 from hydrostat.errors import InputError
 from hydrostat.mechanics.energy import Energy, Gaps, LowRankStiffness, ScatterMap
+from hydrostat.mechanics.factorized_hessian import FactorizedHessian
 from hydrostat.mechanics.sparsity import SparsityPattern
-from hydrostat.mechanics.stiffness import Stiffness
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
@@ -63,7 +63,7 @@ class Assembly:
             raise ValueError("the energies must have the stencils of those they replace")
         other = self._like(energies, self.pattern)
         pairs = zip(self.energies, energies, strict=True)
-        if not any(old is not new and (old.quadratic or new.quadratic) for old, new in pairs):
+        if not any(old is not new and (old.has_constant_hessian or new.has_constant_hessian) for old, new in pairs):
             other.__dict__.update({name: value for name, value in self.__dict__.items() if name == "_quadratic"})
         return other
 
@@ -132,9 +132,9 @@ class Assembly:
         """Gaps between parts near one another, of each energy of contact."""
         return [found for energy in self.energies if (found := energy.gaps(nodes)) is not None]
 
-    def least_volume(self, nodes: Nodes) -> float:
+    def min_volume_ratio(self, nodes: Nodes) -> float:
         """J of the element that is squeezed most, at most 1."""
-        return min((energy.least_volume(nodes) for energy in self.energies), default=1.0)
+        return min((energy.min_volume_ratio(nodes) for energy in self.energies), default=1.0)
 
     @property
     def history(self) -> Vector:
@@ -157,11 +157,11 @@ class Assembly:
         """Largest error [N] of the quantities that a minimization holds fixed, such as friction limits."""
         return max((energy.history_residual(nodes, controls) for energy in self.energies), default=0.0)
 
-    def with_corrected_history(self, nodes: Nodes, controls: Vector, stiffness: Stiffness | None) -> "Assembly":
+    def with_corrected_history(self, nodes: Nodes, controls: Vector, stiffness: FactorizedHessian | None) -> "Assembly":
         """Return the sum with these quantities corrected; by Newton's method if the stiffness is given."""
         if stiffness is None:
             return self.with_terms([energy.with_corrected_history(nodes, controls, None) for energy in self.energies])
-        energies, response = [], stiffness.with_coupling(self.coupling(nodes, controls)).solve
+        energies, response = [], stiffness.with_low_rank(self.low_rank_hessian(nodes, controls)).solve
         for energy in self.energies:
             spans = energy.span_columns(nodes)
             compliance = None if spans is None else stiffness.compliance_to(spans)
@@ -210,12 +210,12 @@ class Assembly:
         values = self._values(nodes, controls, projection)
         return csc_array((values, self.pattern.indices, self.pattern.indptr), shape=(self.size, self.size))
 
-    def coupling(self, nodes: Nodes, controls: Vector) -> LowRankStiffness:
+    def low_rank_hessian(self, nodes: Nodes, controls: Vector) -> LowRankStiffness:
         """Springs of all energies together: the part G D G^T of d2E/dx2 that `hessian` leaves out.
 
         Their law is known if one energy alone has any.
         """
-        parts = [part for part in self.couplings(nodes, controls) if part is not None]
+        parts = [part for part in self.low_rank_hessians(nodes, controls) if part is not None]
         if not parts:
             return LowRankStiffness(columns=np.zeros((self.size, 0)), weights=np.zeros((0, 0)))
         if len(parts) == 1:
@@ -227,9 +227,9 @@ class Assembly:
             weights[begin:end, begin:end] = part.weights
         return LowRankStiffness(columns=columns, weights=weights)
 
-    def couplings(self, nodes: Nodes, controls: Vector) -> list[LowRankStiffness | None]:
+    def low_rank_hessians(self, nodes: Nodes, controls: Vector) -> list[LowRankStiffness | None]:
         """Springs of each energy that couple many nodes; None where it has none."""
-        return [energy.coupling(nodes, controls) for energy in self.energies]
+        return [energy.low_rank_hessian(nodes, controls) for energy in self.energies]
 
     def stiffness(
         self,
@@ -240,7 +240,7 @@ class Assembly:
         early: float | None = None,
         shift: float = 0.0,
         damping: float = 0.0,
-    ) -> Stiffness:
+    ) -> FactorizedHessian:
         """Whole Hessian d2E/dx2, factorized.
 
         `projection` is as in `hessian`; `early` is that of energies that project first, if it is another one. `damping`
@@ -252,7 +252,7 @@ class Assembly:
         if shift:
             values[self.pattern.diagonal] += shift * values[self.pattern.diagonal].max()
         factors = self.pattern.analysis.factorize(values)
-        return Stiffness(factors, self.coupling(nodes, controls), token=self.token, source=self)
+        return FactorizedHessian(factors, self.low_rank_hessian(nodes, controls), token=self.token, source=self)
 
     def control_derivative(self, nodes: Nodes, controls: Vector) -> "csc_array":
         """d2E/dx da, sparse, (nodes x dim, controls)."""
@@ -284,7 +284,7 @@ class Assembly:
         data = self._quadratic.copy()
         early = float(projection > 0.0) if early is None else early
         for energy, slots in zip(self.energies, self.pattern.slots, strict=True):
-            if not energy.quadratic:
+            if not energy.has_constant_hessian:
                 share = early if energy.projects_first else projection
                 energy.add_hessian(nodes, controls, share, ScatterMap(slots, self.pattern.strides, data))
         return data
@@ -300,7 +300,7 @@ class Assembly:
         data = np.zeros(int(self.pattern.indptr[-1]))
         rest, idle = np.zeros(self.shape), np.zeros(self.control_count)
         for energy, slots in zip(self.energies, self.pattern.slots, strict=True):
-            if energy.quadratic:
+            if energy.has_constant_hessian:
                 energy.add_hessian(rest, idle, 0.0, ScatterMap(slots, self.pattern.strides, data))
         return data
 

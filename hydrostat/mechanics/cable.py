@@ -109,7 +109,7 @@ class CableEnergy(Energy):
     def control_gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
         return self._pull(nodes, self.ratios * self.law.tangent(self.elongations(nodes, controls)))
 
-    def coupling(self, nodes: Nodes, controls: Vector) -> LowRankStiffness:
+    def low_rank_hessian(self, nodes: Nodes, controls: Vector) -> LowRankStiffness:
         elongations = self.elongations(nodes, controls)
         weights = np.diag(self.law.tangent(elongations))
         return LowRankStiffness(columns=self.columns(nodes), weights=weights, elongations=elongations, law=self.law)

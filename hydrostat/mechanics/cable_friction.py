@@ -144,7 +144,7 @@ class FrictionCableEnergy(Energy):
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
         return self._spans.bends(nodes, self.span_tensions(nodes, controls))
 
-    def coupling(self, nodes: Nodes, controls: Vector) -> LowRankStiffness:
+    def low_rank_hessian(self, nodes: Nodes, controls: Vector) -> LowRankStiffness:
         springs, elongations, law = self.law.springs(self.elongations(nodes, controls))
         columns = self._spans.spring_columns(nodes, springs, len(elongations))
         weights = np.diag(law.tangent(elongations))

@@ -140,7 +140,7 @@ class Energy(ABC):
         controls: index of the control of each term, (terms,); None for an energy without controls.
         supports: index of the support that holds each term, (terms,); None for an energy that nothing outside holds.
         convex: True if every Hessian block is positive semidefinite wherever the energy is defined.
-        quadratic: True if the Hessian is the same for all nodes and controls; then it is assembled once.
+        has_constant_hessian: True if the Hessian is the same for all nodes and controls; then it is assembled once.
         projects_first: True if its whole Hessian is projected first where the sum is indefinite.
         has_history: True if the energy depends on the loading path, as with friction. A solve then follows the path by
             `history_residual`, `with_corrected_history` and `with_advanced_history`, and `history` is kept with the
@@ -155,7 +155,7 @@ class Energy(ABC):
     controls: Int[np.ndarray, " terms"] | None = None
     supports: Int[np.ndarray, " terms"] | None = None
     convex: ClassVar[bool] = True
-    quadratic: ClassVar[bool] = False
+    has_constant_hessian: ClassVar[bool] = False
     projects_first: ClassVar[bool] = False
     has_history: bool = False
     follows_tangent: ClassVar[bool] = False
@@ -172,7 +172,7 @@ class Energy(ABC):
 
     @abstractmethod
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
-        """d2E/dx2 of each term [N/m], (terms, corners x dim, corners x dim), without the part in `coupling`."""
+        """d2E/dx2 of each term [N/m], (terms, corners x dim, corners x dim), without the part in `low_rank_hessian`."""
 
     def projected_hessian(self, nodes: Nodes, controls: Vector, share: float) -> HessianBlocks:
         """Hessian blocks without this share, 0 to 1, of their negative part: projected Newton."""
@@ -191,7 +191,7 @@ class Energy(ABC):
             blocks = self.hessian(nodes, controls)
         native.add_blocks(self.stencils, places.slots, places.strides, blocks, places.data)
 
-    def coupling(self, nodes: Nodes, controls: Vector) -> LowRankStiffness | None:
+    def low_rank_hessian(self, nodes: Nodes, controls: Vector) -> LowRankStiffness | None:
         """Springs that couple many nodes, with the Hessian G D G^T kept in low rank; None for most energies."""
         return None
 
@@ -214,7 +214,7 @@ class Energy(ABC):
         """
         return 1.0
 
-    def least_volume(self, nodes: Nodes) -> float:
+    def min_volume_ratio(self, nodes: Nodes) -> float:
         """J of the element that is squeezed most, at most 1; 1 for an energy without elements."""
         return 1.0
 
@@ -242,7 +242,7 @@ class Energy(ABC):
         """Energy with each support moved by its row of `shifts` [m]; itself if nothing outside holds it."""
         return self
 
-    def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
+    def parameter_derivative(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
         """d(dE/dx . field) / dp for parameters p by name, each as a vector; those of energies with equal names add up.
 
         `mu` and `lame` are Lame's parameters [Pa]; `load` is a factor of all dead loads, `thickness` one of what

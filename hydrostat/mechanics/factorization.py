@@ -1,7 +1,7 @@
-"""`Analysis` and `Factorization`: a symmetric sparse matrix ready to be solved with.
+"""`SymbolicFactorization` and `Factorization`: a symmetric sparse matrix ready to be solved with.
 
 A finite element matrix has one pattern and is factorized thousands of times. So all that follows from the pattern is
-done once, by the `Analysis`:
+done once, by the `SymbolicFactorization`:
 
 1. An order of the nodes in which little fills in, the cheaper of nested dissection (George 1973; `ordering`) and
    SuperLU's minimum degree, by a model of time.
@@ -70,7 +70,7 @@ class Factors(Protocol):
         ...
 
 
-class Analysis:
+class SymbolicFactorization:
     """Symbolic analysis shared by the factorizations of all matrices with one sparsity pattern.
 
     Threads may share it.
@@ -88,7 +88,7 @@ class Analysis:
         *,
         dim: int,
         points: Nodes | None = None,
-        like: "Analysis | None" = None,
+        like: "SymbolicFactorization | None" = None,
         uses: int = FACTORIZATIONS,
         backend: Backend = "auto",
     ) -> None:

@@ -106,7 +106,7 @@ class FoamSolid(Energy):
             volumes: volume that each point stands for [m^3].
             lame: Lame's parameters mu and lambda at rest [Pa].
             terms: share of mu, above 0, and exponent, not 0, of each term.
-            material: index of the material, for `parameter_work`.
+            material: index of the material, for `parameter_derivative`.
             is_free_across: True for plane stress.
         """
         self.stencils = np.ascontiguousarray(stencils)
@@ -164,10 +164,10 @@ class FoamSolid(Energy):
         shape = len(self.stencils), -1, corners * dim  # points of an element are rows of one product
         return np.swapaxes(modes.reshape(shape), 1, 2) @ (weights * stiff).reshape(shape)
 
-    def least_volume(self, nodes: Nodes) -> float:
+    def min_volume_ratio(self, nodes: Nodes) -> float:
         return min(1.0, float(np.linalg.det(np.eye(self._dim) + self._deformation_gradients(nodes)).min(initial=1.0)))
 
-    def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
+    def parameter_derivative(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
         """By mu and lame of the material, and by the thickness."""
         frame, moved = self._frame(nodes), field[self.stencils]
         own = float((self._forces(frame, self.law.stresses(frame.logs)) * moved).sum())

@@ -1,6 +1,6 @@
 """`InversionBarrier`: energy that keeps quadratic elements from inverting away from their points of quadrature."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from itertools import combinations, permutations, product
 from typing import ClassVar, NamedTuple
@@ -44,18 +44,17 @@ class InversionBarrier(Energy):
             elements: nodes of each element: corners, then middles of edges.
             mu: shear modulus of each element [Pa].
             volumes: volume of each element [m^3].
-            materials: index of the material of each element, for `parameter_work`.
+            materials: index of the material of each element, for `parameter_derivative`.
         """
         self.stencils, self.mu, self.materials = np.ascontiguousarray(elements), mu, materials
         self.rest, self._at_rest = nodes, _coefficients(nodes[elements])
         self._volumes = volumes / self._at_rest.shape[1]
-        self._last: tuple[Nodes, Coefficients] = (nodes[:0], self._at_rest)
+        self._last = nodes[:0], self._at_rest, self._find_low(self._at_rest)
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
-        found = self._shares(nodes)
-        if not found.min(initial=1.0) > 0.0:
-            return np.inf
         low = self._low(nodes)
+        if not low.values.min(initial=1.0) > 0.0:
+            return np.inf
         return float(self._stiffness(low) @ -(low.logs**3))
 
     def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
@@ -91,11 +90,11 @@ class InversionBarrier(Energy):
                 places.data,
             )
 
-    def least_volume(self, nodes: Nodes) -> float:
+    def min_volume_ratio(self, nodes: Nodes) -> float:
         """Least coefficient of J, at most 1."""
-        return float(self._shares(nodes).min(initial=1.0))
+        return float(self._shares(nodes)[0].min(initial=1.0))
 
-    def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
+    def parameter_derivative(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
         """By mu of each material, and by the thickness."""
         low = self._low(nodes)
         along = (self._gradients(nodes, low) * field[self.stencils[low.elements]]).sum(axis=(1, 2))
@@ -106,21 +105,27 @@ class InversionBarrier(Energy):
             "thickness": np.array([float(self.mu[low.elements] @ works)]),
         }
 
-    def _shares(self, nodes: Nodes) -> Coefficients:
-        """Coefficients of J; the last ones are kept, as value, forces and Hessian follow one another."""
-        last, kept = self._last
-        if np.array_equal(last, nodes):
-            return kept
-        found = _coefficients(nodes[self.stencils]) / self._at_rest
-        self._last = nodes.copy(), found  # in one assignment, so that threads may share the energy
-        return found
+    def _shares(self, nodes: Nodes) -> tuple[Coefficients, "_Low"]:
+        """Coefficients of J, and the low ones; the last are kept, as value, forces and Hessian follow one another."""
+        last, found, low = self._last
+        if not np.array_equal(last, nodes):
+            found = _coefficients(nodes[self.stencils]) / self._at_rest
+            low = self._find_low(found)
+            self._last = nodes.copy(), found, low  # in one assignment, so that threads may share the energy
+        return found, low
 
     def _low(self, nodes: Nodes) -> "_Low":
         """Coefficients that the barrier pushes."""
-        found = self._shares(nodes)
-        elements, places = np.nonzero(found < FREE)
+        return self._shares(nodes)[1]
+
+    @staticmethod
+    def _find_low(found: Coefficients) -> "_Low":
+        if found.min(initial=FREE) >= FREE:
+            return _NO_LOW
+        elements, places = np.nonzero(~(found >= FREE))
         values = found[elements, places]
-        return _Low(elements, places, values, np.log(values / FREE))
+        with np.errstate(invalid="ignore", divide="ignore"):  # an inverted element has no forces, but infinite energy
+            return _Low(elements, places, values, np.log(values / FREE))
 
     def _stiffness(self, low: "_Low") -> Vector:
         return (self.mu * self._volumes)[low.elements]
@@ -187,48 +192,58 @@ class _Low(NamedTuple):
         return (3 * self.logs**2 - 6 * self.logs) / self.values**2
 
 
+_NO_LOW = _Low(*[np.zeros(0, dtype=np.int64)] * 2, *[np.zeros(0)] * 2)
+
+
 def _coefficients(corners: Float[np.ndarray, "elements corners dim"]) -> Coefficients:
     """Bernstein coefficients of det(dx / d xi), xi in the unit simplex, and d! times the volume of each part."""
     count, _, dim = corners.shape
-    derivatives, mixes = _spans(dim)
-    columns = np.matmul(derivatives, corners).reshape(count, dim + 1, dim, dim)  # by corner, then axis
-    pointed = corners[:, PARTS[dim]]
-    edges = pointed[:, :, 1:] - pointed[:, :, :1]
-    if dim == 2:
-        mixed = _cross(columns[:, :, None, 0], columns[:, None, :, 1])
-        parts = _cross(edges[:, :, 0], edges[:, :, 1])
-    else:
-        normals = np.cross(columns[:, :, None, 0], columns[:, None, :, 1]).reshape(count, -1, dim)
-        mixed = np.matmul(normals, columns[:, :, 2].swapaxes(1, 2))
-        parts = (np.cross(edges[:, :, 0], edges[:, :, 1]) * edges[:, :, 2]).sum(axis=2)
-    return np.concatenate([mixed.reshape(count, -1) @ mixes, parts], axis=1)
+    spans, mixes = _spans(dim)
+    columns = (spans @ corners.transpose(1, 2, 0).reshape(spans.shape[1], -1)).reshape(-1, dim, dim, count)
+    columns = columns.transpose(2, 0, 1, 3)  # axis, corner or part, column, element
+    at_corners, of_parts = columns[:, : dim + 1], columns[:, dim + 1 :]
+    mixed = [at_corners[(slice(None), *_only(place, dim), place)] for place in range(dim)]
+    parts = _determinants([of_parts[:, :, place] for place in range(dim)])
+    return np.concatenate([mixes.T @ _determinants(mixed).reshape(-1, count), parts]).T
 
 
-def _cross(one: np.ndarray, two: np.ndarray) -> np.ndarray:
-    return one[..., 0] * two[..., 1] - one[..., 1] * two[..., 0]
+def _only(place: int, dim: int) -> tuple[slice | None, ...]:
+    """An index that gives a corner an axis of its own, the one at `place` of `dim`."""
+    return tuple(slice(None) if other == place else None for other in range(dim))
+
+
+def _determinants(columns: Sequence[np.ndarray]) -> np.ndarray:
+    """Determinants of matrices, by their columns, each (axes, ...)."""
+    if len(columns) == 2:
+        one, two = columns
+        return one[0] * two[1] - one[1] * two[0]
+    one, two, three = columns
+    terms = [three[axis] * (one[axis - 2] * two[axis - 1] - one[axis - 1] * two[axis - 2]) for axis in range(3)]
+    return terms[0] + terms[1] + terms[2]
 
 
 @cache
 def _spans(dim: int) -> tuple[Float[np.ndarray, "columns corners"], Float[np.ndarray, "mixed coefficients"]]:
-    """Columns of dx / d xi at the corners by the nodes, and each coefficient as a mean of determinants of these.
+    """Columns of dx / d xi at the corners and edges of the parts by the nodes, and each coefficient as a mean.
 
-    A determinant takes its first column from one corner, its second from another, and so on.
+    It is that of determinants, which take their first column from one corner, their second from another, and so on.
     """
     derivatives = shape_gradients(np.eye(dim + 1)).swapaxes(1, 2).reshape(dim * (dim + 1), -1)
+    one = np.eye(derivatives.shape[1])[PARTS[dim]]
+    edges = (one[:, 1:] - one[:, :1]).reshape(-1, derivatives.shape[1])
     mixed = [tuple(sorted(chosen)) for chosen in product(range(dim + 1), repeat=dim)]
     found = sorted(set(mixed))
     mixes = np.array([[float(one == other) for other in found] for one in mixed])
-    return derivatives, mixes / mixes.sum(axis=0)
+    return np.concatenate([derivatives, edges]), mixes / mixes.sum(axis=0)
 
 
 @cache
 def _forms(dim: int) -> np.ndarray:
     """Each coefficient and part as an alternating form of the nodes, (coefficients, corners, ..., corners)."""
-    derivatives, mixes = _spans(dim)
-    axes = derivatives.reshape(dim + 1, dim, -1).swapaxes(0, 1)
+    spans, mixes = _spans(dim)
+    columns = spans.reshape(-1, dim, spans.shape[1]).swapaxes(0, 1)
+    axes, edges = columns[:, : dim + 1], columns[:, dim + 1 :]
     mixes = mixes.reshape(*[dim + 1] * dim, -1)
-    one = np.eye(derivatives.shape[1])[PARTS[dim]]
-    edges = (one[:, 1:] - one[:, :1]).swapaxes(0, 1)
     if dim == 2:
         form, parts = np.einsum("ijm,ic,jd->mcd", mixes, *axes), np.einsum("mc,md->mcd", *edges)
     else:

@@ -19,17 +19,17 @@ def solve_krylov(product: Callable[[Vector], Vector], right: Vector, *, share: f
     size = float(np.linalg.norm(right))
     if size == 0.0:
         return np.zeros_like(right)
-    basis, slopes = [right / size], np.zeros((most + 1, most))
+    basis, hessenberg = [right / size], np.zeros((most + 1, most))
     weights = np.zeros(0)
     for count in range(1, most + 1):
         found = basis[-1] - product(basis[-1])
         for row, known in enumerate(basis):
-            slopes[row, count - 1] = known @ found
-            found = found - slopes[row, count - 1] * known
-        slopes[count, count - 1] = rest = float(np.linalg.norm(found))
+            hessenberg[row, count - 1] = known @ found
+            found = found - hessenberg[row, count - 1] * known
+        hessenberg[count, count - 1] = rest = float(np.linalg.norm(found))
         goal = np.append(size, np.zeros(count))
-        weights = np.linalg.lstsq(slopes[: count + 1, :count], goal)[0]
-        if rest <= 1e-14 * size or np.linalg.norm(slopes[: count + 1, :count] @ weights - goal) <= share * size:
+        weights = np.linalg.lstsq(hessenberg[: count + 1, :count], goal)[0]
+        if rest <= 1e-14 * size or np.linalg.norm(hessenberg[: count + 1, :count] @ weights - goal) <= share * size:
             break
         basis.append(found / rest)
     return weights @ np.array(basis[: len(weights)])

@@ -36,7 +36,7 @@ class MomentEnergy(Energy):
             rest: nodes at rest [m].
             elements: corners of the elements that it turns.
             moment: moment [N m]: one number in the plane, counted from x to y, and one about each axis in space.
-            index: index of the load, for `parameter_work`.
+            index: index of the load, for `parameter_derivative`.
         """
         used, corners = np.unique(elements, return_inverse=True)
         self.stencils = used[None]
@@ -84,7 +84,7 @@ class MomentEnergy(Energy):
         other.size = share * self.size
         return other
 
-    def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
+    def parameter_derivative(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
         straight, turned, square = self._sides(nodes)
         by_angle = (straight * self._turned - turned * self._straight) / square
         work = -float(np.vdot(by_angle, field[self.stencils[0]]))

@@ -46,11 +46,11 @@ class NeoHookean(Energy):
             elements: corners of each element.
             mu: shear modulus, one number or one for each element.
             lame: Lame's first parameter, likewise; None where another energy resists a change of volume, such as
-                `PatchVolume`.
+                `PatchDilatation`.
             thickness: thickness of a flat body [m], leave it out in space; times a factor of the moduli, if there is
                 one, of each element.
             volumes: volume of each element [m^3], in place of that of the rest shape.
-            materials: index of the material of each element, counted from 0, for `parameter_work`; all of one by
+            materials: index of the material of each element, counted from 0, for `parameter_derivative`; all of one by
                 default.
         """
         dim = nodes.shape[1]
@@ -105,10 +105,10 @@ class NeoHookean(Energy):
     def add_hessian(self, nodes: Nodes, controls: Vector, share: float, places: ScatterMap) -> None:
         native.hessian(nodes - self._rest, *self._groups, self._moduli, share, *places)
 
-    def least_volume(self, nodes: Nodes) -> float:
+    def min_volume_ratio(self, nodes: Nodes) -> float:
         return native.least_volume(nodes, self.stencils, self._padded, self._axes)
 
-    def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
+    def parameter_derivative(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
         """By mu and lame of each material, and by the thickness."""
         one, none = np.ones(len(self.stencils)), np.zeros(len(self.stencils))
         shear = self._work(nodes, field, one, none)

@@ -9,12 +9,12 @@ import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics.assembly import Assembly
+from hydrostat.mechanics.factorized_hessian import FactorizedHessian, find_negative_curvature
 from hydrostat.mechanics.newton_options import NewtonOptions
-from hydrostat.mechanics.newton_result import NewtonResult, Reason, RoundOff
+from hydrostat.mechanics.newton_result import NewtonResult, NewtonStatus, RoundOff
 from hydrostat.mechanics.projection import Projection
 from hydrostat.mechanics.sliding_step import StepTrial, find_sliding_step
-from hydrostat.mechanics.stiffness import Stiffness, find_negative_curvature
-from hydrostat.mechanics.warp import Bend
+from hydrostat.mechanics.warp import StepMap
 
 
 def minimize(
@@ -24,8 +24,8 @@ def minimize(
     *,
     round_off: RoundOff,
     options: NewtonOptions,
-    warp: Bend | None = None,
-    stiffness: Stiffness | None = None,
+    warp: StepMap | None = None,
+    stiffness: FactorizedHessian | None = None,
     exact: bool = False,
 ) -> NewtonResult:
     """Projected Newton: nodes of least energy near `start` at fixed controls (R15, R17, R19).
@@ -56,7 +56,7 @@ class _Iterate(NamedTuple):
     nodes: Nodes
     energy: float
     gradient: Vector
-    least_volume: float = 1.0
+    min_volume_ratio: float = 1.0
 
 
 class _EnergyDescent:
@@ -80,7 +80,7 @@ class _EnergyDescent:
         controls: Vector,
         round_off: RoundOff,
         options: NewtonOptions,
-        warp: Bend | None,
+        warp: StepMap | None,
         exact: bool,
     ) -> None:
         self.exact = exact
@@ -90,18 +90,18 @@ class _EnergyDescent:
         self.whole, self.fast, self.is_first = False, False, True
         self.left = np.inf
         self.saddles = 0
-        self.last: Stiffness | None = None
+        self.last: FactorizedHessian | None = None
         self.sharp = False
         self.error = np.inf
 
-    def run(self, start: Nodes, known: Stiffness | None) -> NewtonResult:
+    def run(self, start: Nodes, known: FactorizedHessian | None) -> NewtonResult:
         """Newton from `start` to a reason to stop."""
         assembly = self.assembly.continuing(None if known is None else known.source).with_active_terms(start)
         energy = assembly.value(start, self.controls)
         if not np.isfinite(energy):
             place = _Iterate(assembly, start, energy, np.full(start.size, np.inf))
-            return self._result(place, Reason.BAD_START, 0.0, 0)
-        place = self._evaluate(assembly, start, energy, assembly.least_volume(start))
+            return self._result(place, NewtonStatus.BAD_START, 0.0, 0)
+        place = self._evaluate(assembly, start, energy, assembly.min_volume_ratio(start))
         residual = np.inf
         for iteration in count():
             self.whole = self.options.whole and iteration == 0
@@ -110,19 +110,19 @@ class _EnergyDescent:
             before, residual = residual, float(np.abs(place.gradient).max())
             self.fast = residual < _FAST * before
             if residual <= allowed:
-                found, reason, self.error = self._leave_saddle(place), Reason.CONVERGED, 0.0
+                found, reason, self.error = self._leave_saddle(place), NewtonStatus.CONVERGED, 0.0
             elif iteration == self.options.iterations:
-                found, reason = None, Reason.ITERATION_LIMIT
+                found, reason = None, NewtonStatus.ITERATION_LIMIT
             elif self._late:
-                found, reason = None, Reason.TIME_LIMIT
+                found, reason = None, NewtonStatus.TIME_LIMIT
             else:
                 self.left = residual / scale if scale else np.inf
-                found, reason = self._advance(place, known), Reason.NO_DESCENT
+                found, reason = self._advance(place, known), NewtonStatus.NO_DESCENT
             known = None
             if found is place:
-                return self._result(place, Reason.CONVERGED, allowed, iteration)
+                return self._result(place, NewtonStatus.CONVERGED, allowed, iteration)
             if found is None:
-                return self._result(place, Reason.TIME_LIMIT if self._late else reason, allowed, iteration)
+                return self._result(place, NewtonStatus.TIME_LIMIT if self._late else reason, allowed, iteration)
             place = found
         raise AssertionError("count() never ends")
 
@@ -130,25 +130,25 @@ class _EnergyDescent:
     def _late(self) -> bool:
         return time.monotonic() >= self.options.deadline
 
-    def _evaluate(self, assembly: Assembly, nodes: Nodes, energy: float, least_volume: float) -> _Iterate:
-        return _Iterate(assembly, nodes, energy, assembly.gradient(nodes, self.controls), least_volume)
+    def _evaluate(self, assembly: Assembly, nodes: Nodes, energy: float, min_volume_ratio: float) -> _Iterate:
+        return _Iterate(assembly, nodes, energy, assembly.gradient(nodes, self.controls), min_volume_ratio)
 
     def _try(self, place: _Iterate, step: Vector, *, bent: bool = True) -> StepTrial:
         """Take a step as far as all energies admit it; the energy is infinite where an element is crushed."""
         nodes = self.bend(place.nodes, step) if bent else place.nodes + step.reshape(place.nodes.shape)
-        least = place.assembly.least_volume(nodes)
+        least, floor = place.assembly.min_volume_ratio(nodes), _CRUSHED * place.min_volume_ratio
         lowest, known = place.assembly.values_before_contact(nodes, self.controls)
-        if least < _CRUSHED * place.least_volume or lowest > place.energy + 10 * self.noise.energy:
+        if least < floor or lowest > place.energy + 10 * self.noise.energy:
             return StepTrial(place.assembly, nodes, np.inf, least, 1.0)
         share = place.assembly.largest_step(place.nodes, nodes - place.nodes)
         if share < 1.0:
             nodes, known = place.nodes + share * (nodes - place.nodes), []
-            least = place.assembly.least_volume(nodes)
+            least = place.assembly.min_volume_ratio(nodes)
         assembly = place.assembly.with_active_terms(nodes)
         energy = assembly.value(nodes, self.controls, known)
-        return StepTrial(assembly, nodes, energy if least >= _CRUSHED * place.least_volume else np.inf, least, share)
+        return StepTrial(assembly, nodes, energy if least >= floor else np.inf, least, share)
 
-    def _advance(self, place: _Iterate, known: Stiffness | None) -> _Iterate | None:
+    def _advance(self, place: _Iterate, known: FactorizedHessian | None) -> _Iterate | None:
         """Take one step with the factors of the last one if that pays, else with `known` ones, else with new ones.
 
         None if there is none; the place itself if it is as near to equilibrium as was asked.
@@ -180,7 +180,7 @@ class _EnergyDescent:
         """True if the last step was made with the Hessian itself."""
         return not self.projection.any and not self.damping
 
-    def _slide(self, place: _Iterate, step: Vector, stiffness: Stiffness) -> tuple[Vector, StepTrial]:
+    def _slide(self, place: _Iterate, step: Vector, stiffness: FactorizedHessian) -> tuple[Vector, StepTrial]:
         """Step that slides along the parts that this one meets, with its trial; this one where it meets none."""
         trial = self._try(place, step)
         enough = place.energy + 1e-4 * trial.share * float(place.gradient @ step)
@@ -216,15 +216,15 @@ class _EnergyDescent:
         self.sharp = self.sharp or self.error <= self.options.accuracy
         return self.error <= self.options.accuracy
 
-    def _reuse(self, place: _Iterate, known: Stiffness | None) -> Stiffness | None:
+    def _reuse(self, place: _Iterate, known: FactorizedHessian | None) -> FactorizedHessian | None:
         """Return a known factorization with the current springs; None if the result is not positive definite."""
         if known is None or known.singular or known.token is not self.assembly.token:
             return None
-        springs = place.assembly.coupling(place.nodes, self.controls)
-        stiffness = known.with_coupling(springs)
+        springs = place.assembly.low_rank_hessian(place.nodes, self.controls)
+        stiffness = known.with_low_rank(springs)
         return stiffness if stiffness.definite else None
 
-    def _definite_hessian(self, place: _Iterate) -> Stiffness | None:
+    def _definite_hessian(self, place: _Iterate) -> FactorizedHessian | None:
         """Hessian, or a definite matrix in its place; None where nothing helps: it is not finite, or 0."""
         first = place.assembly.projects_first
         left, self.is_first = self.left if self.is_first else 0.0, False
@@ -279,7 +279,7 @@ class _EnergyDescent:
         straight = step.reshape(nodes.shape)
         return nodes + straight if self.warp is None else self.warp(nodes, straight)
 
-    def _chord(self, place: _Iterate, last: Stiffness) -> _Iterate | None:
+    def _chord(self, place: _Iterate, last: FactorizedHessian) -> _Iterate | None:
         """One more step with the factors of the last one; None if it does not pay."""
         trial = self._try(place, -last.solve(place.gradient))
         if not trial.energy <= place.energy + 10 * self.noise.energy:
@@ -287,10 +287,10 @@ class _EnergyDescent:
         found = self._evaluate(*trial[:4])
         return found if np.abs(found.gradient).max() < _PAYS * np.abs(place.gradient).max() else None
 
-    def _step(self, place: _Iterate, stiffness: Stiffness) -> Vector:
+    def _step(self, place: _Iterate, stiffness: FactorizedHessian) -> Vector:
         """Newton step; if the body alone is stable, it accounts for cables that become slack or taut on the way."""
         if stiffness.body_definite and stiffness.columns.size:
-            springs = stiffness.coupling
+            springs = stiffness.low_rank
             if springs.law is not None and springs.elongations is not None:
                 pulled = stiffness.columns @ springs.law.tension(springs.elongations)
                 step = stiffness.move(pulled - place.gradient, springs)
@@ -328,17 +328,17 @@ class _EnergyDescent:
         self.last = None
         return self._evaluate(*lowest[:4])
 
-    def _stiffness(self, place: _Iterate) -> Stiffness:
+    def _stiffness(self, place: _Iterate) -> FactorizedHessian:
         """Hessian at the end."""
         if self.last is None or not self.sharp:
             self.last, self.sharp = place.assembly.stiffness(place.nodes, self.controls), True
         return self.last
 
-    def _result(self, place: _Iterate, reason: Reason, allowed: float, iterations: int) -> NewtonResult:
-        if reason is not Reason.CONVERGED:
+    def _result(self, place: _Iterate, reason: NewtonStatus, allowed: float, iterations: int) -> NewtonResult:
+        if reason is not NewtonStatus.CONVERGED:
             self.last = None
-        late = reason in (Reason.BAD_START, Reason.TIME_LIMIT)
-        blank = late or (reason is Reason.NO_DESCENT and self.whole)
+        late = reason in (NewtonStatus.BAD_START, NewtonStatus.TIME_LIMIT)
+        blank = late or (reason is NewtonStatus.NO_DESCENT and self.whole)
         stiffness = None if blank else self._stiffness(place)
         return NewtonResult(
             nodes=place.nodes,
@@ -350,7 +350,7 @@ class _EnergyDescent:
             stable=stiffness is not None and stiffness.definite,
             buckled=self.saddles > 0,
             stiffness=stiffness,
-            error=0.0 if self.options.accuracy is None else self.error if reason is Reason.CONVERGED else np.inf,
+            error=0.0 if self.options.accuracy is None else self.error if reason is NewtonStatus.CONVERGED else np.inf,
         )
 
 

@@ -5,10 +5,10 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 from hydrostat.arrays import Nodes
-from hydrostat.mechanics.stiffness import Stiffness
+from hydrostat.mechanics.factorized_hessian import FactorizedHessian
 
 
-class Reason(StrEnum):
+class NewtonStatus(StrEnum):
     """Why a solve ended."""
 
     CONVERGED = "converged"
@@ -52,17 +52,17 @@ class NewtonResult:
     """
 
     nodes: Nodes
-    reason: Reason
+    reason: NewtonStatus
     residual: float
     allowed: float
     energy: float
     iterations: int
     stable: bool
     buckled: bool
-    stiffness: Stiffness | None = field(repr=False)
+    stiffness: FactorizedHessian | None = field(repr=False)
     error: float = 0.0
 
     @property
     def converged(self) -> bool:
         """True if the residual, or with `accuracy` the estimated error, is small enough."""
-        return self.reason is Reason.CONVERGED
+        return self.reason is NewtonStatus.CONVERGED

@@ -1,4 +1,4 @@
-"""`WeightEnergy`, `LoadEnergy`, `PinEnergy`: gravity, loads and boundary conditions, energies of single nodes."""
+"""`DeadLoadEnergy`, `LoadEnergy`, `PinEnergy`: gravity, loads and boundary conditions, energies of single nodes."""
 
 from collections.abc import Mapping
 from copy import copy
@@ -10,10 +10,10 @@ from hydrostat.arrays import Float, Int, Nodes, Points, Vector
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, Stencils
 
 
-class WeightEnergy(Energy):
+class DeadLoadEnergy(Energy):
     """-sum of f . (x - X), with a force f at each node that does not change (E5)."""
 
-    quadratic = True
+    has_constant_hessian = True
 
     def __init__(self, nodes: Nodes, forces: Points) -> None:
         """Forces [N] at each of the `nodes`; the energy is 0 where these are [m]."""
@@ -38,22 +38,22 @@ class WeightEnergy(Energy):
         other.forces = share * self.forces
         return other
 
-    def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
+    def parameter_derivative(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
         work = np.array([float((self.gradient(nodes, np.zeros(0)) * field[self.stencils]).sum())])
         return {"load": work, "thickness": work}
 
 
-class LoadEnergy(WeightEnergy):
-    """`WeightEnergy` of given forces, which do not grow with the thickness of the body."""
+class LoadEnergy(DeadLoadEnergy):
+    """`DeadLoadEnergy` of given forces, which do not grow with the thickness of the body."""
 
-    def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
+    def parameter_derivative(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
         return {}
 
 
 class PinEnergy(Energy):
     """Penalty of boundary conditions: sum of k/2 |y - y_pin|^2 over anchors y = sum of weights x nodes (R29, E10)."""
 
-    quadratic = True
+    has_constant_hessian = True
 
     def __init__(
         self,
@@ -94,7 +94,7 @@ class PinEnergy(Energy):
         other.targets = self.targets + shifts[self.support_of]
         return other
 
-    def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
+    def parameter_derivative(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
         works = (self.gradient(nodes, np.zeros(0)) * field[self.stencils]).sum(axis=(1, 2))
         wholes = np.bincount(self.support_of, self.stiffness)
         return {"support_stiffness": np.bincount(self.support_of, works, len(wholes)) / wholes}

@@ -28,7 +28,7 @@ class ObstacleEnergy(Energy):
     """Barrier between samples of a body's boundary and a rigid obstacle, and Coulomb friction along it.
 
     A term is a sample: a node of the boundary, the middle of an edge, in space of a facet too. Its energy at distance d
-    is W h phi(d^2/h), phi(r) = -(r - 1)^2 ln r below r = 1, with h the square of the distance at which it is felt.
+    is W h^2 phi(d^2/h^2), phi(r) = -(r - 1)^2 ln r below r = 1, with h the distance at which it is felt.
 
     All that an obstacle does is a function of where a sample is in the frame of the obstacle. If that moves, its rows
     among the unknowns belong to the stencil of every sample. With friction its history is the anchors of its

@@ -72,7 +72,7 @@ class ObstacleFriction:
         return float(np.where(sticks, 0.5 * self.springs * lengths**2, slipping).sum())
 
     def forces(self, places: Points) -> Points:
-        """Slope of the energy by the place of each sample [N]."""
+        """Gradient of the energy by the place of each sample [N]."""
         spans, lengths = self.slips(places)
         return self._secants(lengths)[:, None] * spans
 

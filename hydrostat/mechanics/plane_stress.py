@@ -46,10 +46,10 @@ class PlaneStress(Energy):
         x, y = gradients[:, :, 0], gradients[:, :, 1]
         turned = x[:, :, None] * y[:, None, :] - y[:, :, None] * x[:, None, :]
         corners = stencils.shape[1]
-        self._curvatures = np.zeros((len(stencils), corners, 2, corners, 2))  # d2J/dx2, which is constant
-        self._curvatures[:, :, 0, :, 1] = turned
-        self._curvatures[:, :, 1, :, 0] = -turned
-        self._curvatures.shape = len(stencils), 2 * corners, 2 * corners
+        curvatures = np.zeros((len(stencils), corners, 2, corners, 2))  # d2J/dx2, which is constant
+        curvatures[:, :, 0, :, 1] = turned
+        curvatures[:, :, 1, :, 0] = -turned
+        self._curvatures = curvatures.reshape(len(stencils), 2 * corners, 2 * corners)
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
         state = self._state(nodes)
@@ -73,7 +73,7 @@ class PlaneStress(Energy):
         bend = self.volumes * state.pressure / area
         return steep[:, None, None] * flat[:, :, None] * flat[:, None, :] + bend[:, None, None] * self._curvatures
 
-    def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
+    def parameter_derivative(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
         """By mu and lame of each material, and by the thickness."""
         state = self._state(nodes)
         s, log = 1.0 + state.widened, np.log1p(state.change) + 0.5 * np.log1p(state.widened)

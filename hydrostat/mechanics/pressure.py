@@ -71,7 +71,7 @@ class PressureEnergy(Energy):
     def with_load(self, share: float) -> "PressureEnergy":
         return PressureEnergy(self._rest, self.stencils, share * self.pressure, self._thickness)
 
-    def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
+    def parameter_derivative(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
         work = np.array([float((self.gradient(nodes, np.zeros(0)) * field[self.stencils]).sum())])
         return {"load": work, "thickness": work} if self._dim == 2 else {"load": work}
 

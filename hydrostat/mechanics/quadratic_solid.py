@@ -11,7 +11,7 @@ from hydrostat.arrays import Float, Int, Nodes, Vector
 from hydrostat.kernel import native
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, ScatterMap, group_terms
 
-POINTWISE = {2: 8.0, 3: 4.0}
+MAX_POINTWISE_RATIO = {2: 8.0, 3: 4.0}
 """Lambda that counts at each point, at most, over mu, in the plane and in space; the rest counts for the mean volume.
 
 With all of it at each point elements lock, with none they are too soft: `lab/locking/bending.py` and decision 0044.
@@ -25,8 +25,8 @@ class QuadraticSolid(Energy):
     """Compressible Neo-Hookean solid on quadratic simplices: 6 nodes a triangle, 10 a tetrahedron.
 
     Psi(F) = mu/2 tr(F^T F - I) - mu ln J + p/2 (ln J)^2 at 3 or 4 points of quadrature, and (lambda - p)/2 (ln J)^2 of
-    the mean J of the element, with p = min(lambda, c mu), c = `POINTWISE`. Of a homogeneous deformation the sum is that
-    of `NeoHookean`. In the plane this is plane strain.
+    the mean J of the element, with p = min(lambda, c mu), c = `MAX_POINTWISE_RATIO`. Of a homogeneous deformation the
+    sum is that of `NeoHookean`. In the plane this is plane strain.
     """
 
     convex: ClassVar[bool] = False
@@ -50,7 +50,7 @@ class QuadraticSolid(Energy):
             mu: shear modulus, one number or one for each element.
             lame: Lame's first parameter, likewise; None where another energy resists a change of volume.
             thickness: thickness as of `NeoHookean`.
-            materials: index of the material of each element, counted from 0, for `parameter_work`; all of one by
+            materials: index of the material of each element, counted from 0, for `parameter_derivative`; all of one by
                 default.
             metrics: A of each point, if tr(F A F^T) stands for tr(F^T F): F is counted from a rest shape that crept.
         """
@@ -118,13 +118,13 @@ class QuadraticSolid(Energy):
         given = *self._groups, self._moduli, self._packed_offsets
         native.quadratic_hessian(nodes - self._rest, *given, share, *places)
 
-    def least_volume(self, nodes: Nodes) -> float:
+    def min_volume_ratio(self, nodes: Nodes) -> float:
         return native.quadratic_least(nodes - self._rest, *self._groups, self._moduli, self._packed_offsets)
 
-    def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
+    def parameter_derivative(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
         """By mu and lame of each material, and by the thickness."""
         one, none = np.ones(len(self.stencils)), np.zeros(len(self.stencils))
-        most = POINTWISE[nodes.shape[1]]
+        most = MAX_POINTWISE_RATIO[nodes.shape[1]]
         split = self.lame > most * self.mu
         apart = [
             self._work(nodes, field, *moduli) for moduli in ((one, none, none), (none, one, none), (none, none, one))
@@ -170,7 +170,7 @@ class QuadraticSolid(Energy):
     @cached_property
     def _moduli(self) -> Float[np.ndarray, "3 groups 8"]:
         """Mu, and lambda in its two shares."""
-        points = np.minimum(self.lame, POINTWISE[self._rest.shape[1]] * self.mu)
+        points = np.minimum(self.lame, MAX_POINTWISE_RATIO[self._rest.shape[1]] * self.mu)
         return np.stack([group_terms(moduli, float) for moduli in (self.mu, points, self.lame - points)])
 
 

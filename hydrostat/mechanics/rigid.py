@@ -7,7 +7,7 @@ import numpy as np
 
 from hydrostat.arrays import Float, Nodes, Points, Vector
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks
-from hydrostat.mechanics.warp import Bend
+from hydrostat.mechanics.warp import StepMap
 
 Matrix = Float[np.ndarray, "dim dim"]
 
@@ -15,7 +15,7 @@ Matrix = Float[np.ndarray, "dim dim"]
 class RigidBodyDofs(NamedTuple):
     """Unknowns of a moving rigid body: its position, then its axes times a length (affine body).
 
-    A point at u in the frame of the thing is at place + sum of u_k x axis_k. Axes are unknowns of their own, which
+    A point at u in the frame of the obstacle is at place + sum of u_k x axis_k. Axes are unknowns of their own, which
     `RigidEnergy` keeps a rotation; so everything is a polynomial of the unknowns, and their inertia is constant
     (Lan et al. 2022).
 
@@ -85,7 +85,7 @@ class RigidEnergy(Energy):
 class GuideEnergy(Energy):
     """Springs that hold a moving rigid body at a position and in an orientation."""
 
-    quadratic: ClassVar[bool] = True
+    has_constant_hessian: ClassVar[bool] = True
 
     def __init__(self, carriage: RigidBodyDofs, *, place: Vector, axes: Matrix, along: Matrix, turning: float) -> None:
         """Springs to a place [m] and to axes.
@@ -130,10 +130,10 @@ class GuideEnergy(Energy):
         return float(np.abs(self.pull(nodes)).max())
 
 
-class CarriedWarp:
+class RigidBodyWarp:
     """Steps along arcs for a soft body and for rigid bodies, whose axes rotate with the initial spin of the step."""
 
-    def __init__(self, body: Bend, count: int, rigid_dofs: tuple[RigidBodyDofs, ...]) -> None:
+    def __init__(self, body: StepMap, count: int, rigid_dofs: tuple[RigidBodyDofs, ...]) -> None:
         """Take the warp of a soft body, its number of nodes, and the rigid bodies whose rows follow."""
         self._body, self._count, self._rigid_dofs = body, count, rigid_dofs
 

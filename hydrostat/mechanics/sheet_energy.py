@@ -93,7 +93,7 @@ class SheetEnergy(Energy):
         size = self.stencils.shape[1] * nodes.shape[1]
         return (self.volumes[:, None, None, None, None] * blocks).reshape(-1, size, size)
 
-    def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
+    def parameter_derivative(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
         """By the thickness of the body, with which strips grow."""
         return {"thickness": np.array([self.stiffness_work(nodes, field)])} if self._is_strip else {}
 
@@ -111,7 +111,7 @@ class SheetEnergy(Energy):
         ones = np.ones_like(log)
         return solve_thickening(np.expm1(log / free), self.mu * ones, free * self.lame * ones)
 
-    def _slope(self, widened: Vector, free: int) -> Vector:
+    def _derivative(self, widened: Vector, free: int) -> Vector:
         """-dq / d ln J, at least 0."""
         q = 1.0 + widened
         return 2 * q * self.lame / (2 * q * self.mu + free * self.lame)
@@ -145,7 +145,9 @@ class SheetEnergy(Energy):
         inner = q[:, None, None] * (shapes @ inverse @ np.swapaxes(shapes, 1, 2))
         blocks = np.einsum("tab,ij->taibj", geometric, eye) + np.einsum("tab,tij->taibj", inner, flat)
         blocks += np.einsum("t,taj,tbi->taibj", q, duals, duals)
-        return blocks + np.einsum("t,tai,tbj->taibj", self.mu * self._slope(state.widened, self.free), duals, duals)
+        return blocks + np.einsum(
+            "t,tai,tbj->taibj", self.mu * self._derivative(state.widened, self.free), duals, duals
+        )
 
     def _ridges(self, state: "_SheetState") -> tuple[np.ndarray, np.ndarray, "_Ridge"]:
         """Masks of wrinkled and slack facets, and the larger stretch of each; at rest a facet is taut."""
@@ -168,7 +170,7 @@ class SheetEnergy(Energy):
         pull, lean = (np.einsum("tik,tk->ti", state.deformation, way) for way in (ridge.way, other))
         square, q = 1.0 + ridge.strain, 1.0 + ridge.widened
         gap = np.maximum((pull**2).sum(axis=1) - (lean**2).sum(axis=1), 1e-12)
-        steep = self.mu * (q / square**2 + 0.5 * self._slope(ridge.widened, 2) / square**2)
+        steep = self.mu * (q / square**2 + 0.5 * self._derivative(ridge.widened, 2) / square**2)
         steered = lean[:, None, :] * along[:, :, None] + pull[:, None, :] * aside[:, :, None]
         blocks = np.einsum("t,ta,tb,ij->taibj", ridge.stress, along, along, eye)
         blocks += np.einsum("t,ta,tb,ti,tj->taibj", 2 * steep, along, along, pull, pull)

@@ -8,7 +8,7 @@ import numpy as np
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics.assembly import Assembly
 from hydrostat.mechanics.energy import Gaps, LowRankBasis
-from hydrostat.mechanics.stiffness import Stiffness
+from hydrostat.mechanics.factorized_hessian import FactorizedHessian
 from hydrostat.mechanics.tension_law import TensionLaw
 
 
@@ -18,7 +18,7 @@ class StepTrial(NamedTuple):
     assembly: Assembly
     nodes: Nodes
     energy: float
-    least_volume: float
+    min_volume_ratio: float
     share: float
 
 
@@ -30,7 +30,7 @@ class SlidingStep(NamedTuple):
 
 
 def find_sliding_step(
-    attempt: Callable[[Vector], StepTrial], start: Nodes, step: Vector, blocked: StepTrial, stiffness: Stiffness
+    attempt: Callable[[Vector], StepTrial], start: Nodes, step: Vector, blocked: StepTrial, stiffness: FactorizedHessian
 ) -> SlidingStep:
     """Return a step that keeps apart the pairs that a step meets, or the step itself if that is no better.
 

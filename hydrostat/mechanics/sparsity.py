@@ -7,7 +7,7 @@ import numpy as np
 
 from hydrostat.arrays import Int, Nodes
 from hydrostat.mechanics.energy import Stencils
-from hydrostat.mechanics.factorization import FACTORIZATIONS, Analysis
+from hydrostat.mechanics.factorization import FACTORIZATIONS, SymbolicFactorization
 
 AnyStencils = Int[np.ndarray, "_ _"]
 """Stencils of one of several energies, which differ in terms and corners."""
@@ -61,13 +61,15 @@ class SparsityPattern:
         return _merge_rising(self._base.entries, np.sort(np.concatenate([self._base.entries[:0], *keys])))
 
     @cached_property
-    def analysis(self) -> Analysis:
+    def analysis(self) -> SymbolicFactorization:
         """Symbolic analysis shared by the factorizations of all matrices of this pattern."""
         like = None if self._base is None else self._base.analysis
         if like is not None and self._base is not None and len(self.entries) == len(self._base.entries):
             return like
         uses = _USES if self._passing else FACTORIZATIONS
-        return Analysis(self.indptr, self.indices, dim=self.shape[1], points=self.rest, like=like, uses=uses)
+        return SymbolicFactorization(
+            self.indptr, self.indices, dim=self.shape[1], points=self.rest, like=like, uses=uses
+        )
 
     @cached_property
     def indptr(self) -> np.ndarray:

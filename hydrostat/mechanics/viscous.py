@@ -9,7 +9,7 @@ from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks
 from hydrostat.mechanics.neo_hookean import NeoHookean
 from hydrostat.mechanics.quadratic_solid import QuadraticSolid
 
-Metrics = Float[np.ndarray, "branches elements dim dim"]
+ViscousMetrics = Float[np.ndarray, "branches elements dim dim"]
 """Metric A of each branch in each element, or each point of quadratic ones; where a branch is relaxed it is C^-1."""
 
 Matrices = Float[np.ndarray, "elements dim dim"]
@@ -80,11 +80,11 @@ class MaxwellBranches:
     def __len__(self) -> int:
         return len(self.times)
 
-    def relax_fully(self, nodes: Nodes) -> Metrics:
+    def relax_fully(self, nodes: Nodes) -> ViscousMetrics:
         """Return the metrics of fully relaxed branches with the body at `nodes`."""
         return np.repeat(self._inverse(nodes)[None], len(self), axis=0)
 
-    def compute_stored_energy(self, metrics: Metrics, nodes: Nodes) -> float:
+    def compute_stored_energy(self, metrics: ViscousMetrics, nodes: Nodes) -> float:
         """Elastic energy stored in the springs of all branches [J]."""
         total = 0.0
         gradients = self._body.deformation_gradients(nodes) if self.times.any() else np.zeros(0)
@@ -95,7 +95,7 @@ class MaxwellBranches:
                 total += float(0.5 * viscosity / time * (self._body.volumes @ excess))
         return total
 
-    def sound(self, metrics: Metrics, last: Metrics) -> Metrics:
+    def sound(self, metrics: ViscousMetrics, last: ViscousMetrics) -> ViscousMetrics:
         """Metrics that are positive definite: the last ones in elements where an extrapolation is not."""
         bad = np.isnan(roots(metrics.reshape(-1, *metrics.shape[2:]))[:, -1, -1]).reshape(metrics.shape[:2])
         return np.where(bad[:, :, None, None], last, metrics) if bad.any() else metrics
@@ -104,7 +104,7 @@ class MaxwellBranches:
         """Stiffness of all branches together in an implicit step [s], as a shear modulus [Pa]."""
         return float((self.viscosities / (self.times + step)).sum())
 
-    def energy(self, metrics: Metrics, step: float) -> ViscousEnergy | QuadraticSolid:
+    def energy(self, metrics: ViscousMetrics, step: float) -> ViscousEnergy | QuadraticSolid:
         """Potential of an implicit step [s] from these metrics."""
         weights = self.viscosities / (self.times + step)
         mean, modulus = np.tensordot(weights / weights.sum(), metrics, axes=1), float(weights.sum())
@@ -114,7 +114,7 @@ class MaxwellBranches:
             self._nodes, self._body.stencils, volumes=self._body.volumes, metrics=mean, modulus=modulus
         )
 
-    def relax_step(self, metrics: Metrics, nodes: Nodes, step: float) -> Metrics:
+    def relax_step(self, metrics: ViscousMetrics, nodes: Nodes, step: float) -> ViscousMetrics:
         """Metrics after an implicit step [s] that ends at `nodes`."""
         if not len(self):
             return metrics

@@ -7,9 +7,9 @@ import numpy as np
 from hydrostat.arrays import Float, Int, Nodes
 from hydrostat.kernel import native
 from hydrostat.mechanics.energy import Stencils, element_groups
-from hydrostat.mechanics.factorization import Analysis
+from hydrostat.mechanics.factorization import SymbolicFactorization
 
-Bend = Callable[[Nodes, Nodes], Nodes]
+StepMap = Callable[[Nodes, Nodes], Nodes]
 """Map from the unknowns and a step to the unknowns after the step [m]."""
 
 
@@ -30,11 +30,16 @@ class Warp:
         shape_gradients: Float[np.ndarray, "elements corners dim"],
         volumes: Float[np.ndarray, " elements"],
         rest: Nodes,
-        held: Int[np.ndarray, "points corners"],
-        holds: Float[np.ndarray, "points corners"],
+        held: Int[np.ndarray, "points anchors"],
+        holds: Float[np.ndarray, "points anchors"],
     ) -> None:
-        """Elements of the body; and held points, by stencils and weights, that go where the straight step leads."""
+        """Elements of the body and held points, by stencils and weights, that go where the straight step leads.
+
+        Volumes may be weighted: the nodes fit elements of more weight better, such as those of a stiff part.
+        """
         count = len(rest)
+        if not len(held):  # a free body stays where the straight step leads on average
+            held, holds = np.arange(count)[:, None], np.full((count, 1), 1e-4)
         spread = volumes[:, None, None] * (shape_gradients @ shape_gradients.swapaxes(1, 2))
         grips = float(np.einsum("eaa->", spread)) / count * holds[:, :, None] * holds[:, None, :]
         entries = [_entries(stencils, spread, count), _entries(held, grips, count)]
@@ -42,7 +47,7 @@ class Warp:
         data = np.bincount(places, np.concatenate([values for _, values in entries]))
         columns, rows = np.divmod(keys, count)
         indptr = np.searchsorted(columns, np.arange(count + 1)).astype(np.int32)
-        self._factors = Analysis(indptr, rows.astype(np.int32), dim=1, points=rest).factorize(data)
+        self._factors = SymbolicFactorization(indptr, rows.astype(np.int32), dim=1, points=rest).factorize(data)
         self._groups = element_groups(stencils, shape_gradients, volumes)
 
     def __call__(self, nodes: Nodes, step: Nodes) -> Nodes:

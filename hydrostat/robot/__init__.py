@@ -7,17 +7,17 @@ from hydrostat.lazy import open_package
 if TYPE_CHECKING:
     from hydrostat.robot.body import Body, Source
     from hydrostat.robot.cable import Cable
-    from hydrostat.robot.cable_side import Face
+    from hydrostat.robot.cable_side import CableSide
     from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape, closed_mesh
     from hydrostat.robot.element_kind import ElementKind, Plane, Volume
-    from hydrostat.robot.fixed_drives import fix_drives
+    from hydrostat.robot.fixed_drives import with_fixed_drives
     from hydrostat.robot.gravity import DIRECTIONS, direction_of, gravity_along
     from hydrostat.robot.hole_note import describe_filled_holes
     from hydrostat.robot.inflated import describe_cable_side, inflated_robot, sewn_robot, sewn_sides
     from hydrostat.robot.load import Load
     from hydrostat.robot.load_drive import LoadDrive
     from hydrostat.robot.marker import Marker, PoseTarget
-    from hydrostat.robot.material import FOAM_POISSON_LIMIT, FoamTerm, Material, Relaxation, Slider
+    from hydrostat.robot.material import FOAM_POISSON_LIMIT, FoamTerm, Material, PrandtlElement, PronyTerm
     from hydrostat.robot.materials import FOAMS, MATERIALS, get_material
     from hydrostat.robot.merge import comments, lost_comments, merged_text
     from hydrostat.robot.obstacle_lines import obstacle_lines, rims
@@ -27,12 +27,12 @@ if TYPE_CHECKING:
     from hydrostat.robot.pin_drive import PinDrive
     from hydrostat.robot.read import FILE, GALLERY, RobotReader, gallery_folder, is_of_gallery, list_gallery, load_robot
     from hydrostat.robot.risks import SEWN_DEPTH, find_risks, limit_travels
-    from hydrostat.robot.risks.body_risks import LEAST_ACROSS
+    from hydrostat.robot.risks.body_risks import FEW_ELEMENTS, MIN_ELEMENTS_ACROSS
     from hydrostat.robot.robot import Robot
     from hydrostat.robot.rod import Rod
     from hydrostat.robot.scaled import scaled_robot
     from hydrostat.robot.sensor import Sensor, SensorKind
-    from hydrostat.robot.sheet import SheetSide, SkinSheet
+    from hydrostat.robot.sheet import Membrane, SheetSide
     from hydrostat.robot.sketch import sketch_robot
     from hydrostat.robot.sketch_space import SurfaceSketch, inflate_outline, sketch_mesh
     from hydrostat.robot.tables_file import TablesFile
@@ -43,24 +43,26 @@ if TYPE_CHECKING:
 __all__ = [
     "DIRECTIONS",
     "DISTANCE",
+    "FEW_ELEMENTS",
     "FILE",
     "FOAMS",
     "FOAM_POISSON_LIMIT",
     "GALLERY",
-    "LEAST_ACROSS",
     "MATERIALS",
+    "MIN_ELEMENTS_ACROSS",
     "SEWN_DEPTH",
     "Body",
     "BodyPart",
     "Cable",
+    "CableSide",
     "Contact",
     "ElementKind",
-    "Face",
     "FoamTerm",
     "Load",
     "LoadDrive",
     "Marker",
     "Material",
+    "Membrane",
     "Mount",
     "Obstacle",
     "ObstacleShape",
@@ -68,15 +70,14 @@ __all__ = [
     "PinDrive",
     "Plane",
     "PoseTarget",
-    "Relaxation",
+    "PrandtlElement",
+    "PronyTerm",
     "Robot",
     "RobotReader",
     "Rod",
     "Sensor",
     "SensorKind",
     "SheetSide",
-    "SkinSheet",
-    "Slider",
     "Source",
     "SurfaceSketch",
     "TablesFile",
@@ -90,7 +91,6 @@ __all__ = [
     "direction_of",
     "find_risks",
     "fit_winch_bodies",
-    "fix_drives",
     "gallery_folder",
     "get_material",
     "gravity_along",
@@ -114,6 +114,7 @@ __all__ = [
     "sewn_sides",
     "sketch_mesh",
     "sketch_robot",
+    "with_fixed_drives",
     "with_values",
 ]
 

@@ -1,9 +1,9 @@
-"""`Face`: side of a stuffed flat robot on which its cables run: front, back, both or the middle."""
+"""`CableSide`: side of a stuffed flat robot on which its cables run: front, back, both or the middle."""
 
 from enum import StrEnum
 
 
-class Face(StrEnum):
+class CableSide(StrEnum):
     """Side of a flat robot on which its cables run once it is stuffed."""
 
     FRONT = "front"  # sewn on the panel that is looked at
@@ -24,13 +24,18 @@ class Face(StrEnum):
     @property
     def flat(self) -> bool:
         """True if cables there keep a body in its plane, up to fractions of a millimeter (decision 0029)."""
-        return self in (Face.PAIRS, Face.MIDDLE)
+        return self in (CableSide.PAIRS, CableSide.MIDDLE)
 
 
 _WORDS = {
-    Face.FRONT: "on the front",
-    Face.BACK: "on the back",
-    Face.PAIRS: "on both faces, in pairs",
-    Face.MIDDLE: "in the middle",
+    CableSide.FRONT: "on the front",
+    CableSide.BACK: "on the back",
+    CableSide.PAIRS: "on both faces, in pairs",
+    CableSide.MIDDLE: "in the middle",
 }
-_SIDES = {Face.FRONT: ("front",), Face.BACK: ("back",), Face.PAIRS: ("front", "back"), Face.MIDDLE: ()}
+_SIDES = {
+    CableSide.FRONT: ("front",),
+    CableSide.BACK: ("back",),
+    CableSide.PAIRS: ("front", "back"),
+    CableSide.MIDDLE: (),
+}

@@ -55,10 +55,10 @@ def closed_mesh(content: bytes, file: str, *, unit: float = 1e-3) -> ClosedMesh:
     Raises:
         InputError: no surface, an open one, one that is inside out or runs through itself, or too many triangles.
     """
-    from hydrostat.geometry import crossing_pairs  # only here: a robot without such a thing starts sooner
+    from hydrostat.geometry import crossing_pairs  # only here: a robot without one starts sooner
 
     surface = read_surface(content, name=file, unit=unit)
-    most_triangles = 20_000  # No thing may have more
+    most_triangles = 20_000  # No obstacle may have more
     if len(surface.triangles) > most_triangles:
         count = len(surface.triangles)
         raise InputError(f"{file}: has {count} triangles, an obstacle at most {most_triangles}; simplify the surface")
@@ -190,7 +190,7 @@ class Obstacle:
             if self.shape is ObstacleShape.PLANE:
                 raise InputError("a plane has no end, so no mass; remove mass, and it stands still")
             if self.path:
-                raise InputError("a thing with a mass goes where it is pushed, not along a path; remove mass or path")
+                raise InputError("an object with a mass goes where it is pushed, not along a path; remove mass or path")
         before = 0.0
         for instant, place in self.path:
             if not before < instant < np.inf:

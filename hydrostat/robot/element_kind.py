@@ -4,7 +4,7 @@ from enum import StrEnum
 
 
 class Volume(StrEnum):
-    """Measure of volume change: in each element, or averaged over patches of elements (a kind of F-bar).
+    """Measure of volume change: in each element, or averaged over patches of elements (mean dilatation).
 
     Linear elements are too stiff when the material is nearly incompressible (volumetric locking); patches help.
     """

@@ -1,11 +1,11 @@
-"""`fix_drives`: a robot whose drives stay at rest."""
+"""`with_fixed_drives`: a robot whose drives stay at rest."""
 
 from dataclasses import replace
 
 from hydrostat.robot.robot import Robot
 
 
-def fix_drives(robot: Robot) -> Robot:
+def with_fixed_drives(robot: Robot) -> Robot:
     """Return the robot with its drives at rest: pins are fixed, loads that a drive scales do not act."""
     if not robot.drives:
         return robot

@@ -11,7 +11,7 @@ from hydrostat.given import LONGEST_NAME, Point
 from hydrostat.robot.body import Body
 from hydrostat.robot.body_cache import Arrays, keep_body
 from hydrostat.robot.cable import Cable
-from hydrostat.robot.cable_side import Face
+from hydrostat.robot.cable_side import CableSide
 from hydrostat.robot.load import Load
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.pin_drive import PinDrive
@@ -24,15 +24,17 @@ def sewn_robot(robot: Robot) -> Robot:
 
     Both of a pair are as stiff as the one that is drawn. A robot whose cables are no pairs is given back as it is.
     """
-    if robot.face is not Face.PAIRS:
+    if robot.face is not CableSide.PAIRS:
         return robot
-    sewn = tuple(replace(cable, name=side_name(cable, side)) for side in Face.PAIRS.sides for cable in robot.cables)
+    sewn = tuple(
+        replace(cable, name=side_name(cable, side)) for side in CableSide.PAIRS.sides for cable in robot.cables
+    )
     return replace(robot, cables=sewn, face=None)
 
 
 def sewn_sides(robot: Robot) -> tuple[str, ...]:
     """Panels on which the cables of a flat plush robot are sewn: the front where it does not say, or cannot be."""
-    return (robot.face.sides if robot.face else ()) or Face.FRONT.sides
+    return (robot.face.sides if robot.face else ()) or CableSide.FRONT.sides
 
 
 def side_name(cable: Cable, side: str) -> str:
@@ -51,7 +53,7 @@ def describe_cable_side(robot: Robot) -> str:
 _UNSAID = 'side not set: a plush kit uses the front panel. Set face = "pairs" above [body] to use both panels'
 
 
-def inflated_robot(robot: Robot, face: Face | str | None = None, *, element_size: float | None = None) -> Robot:
+def inflated_robot(robot: Robot, face: CableSide | str | None = None, *, element_size: float | None = None) -> Robot:
     """Return the 3D robot of a flat one: its outline inflated to its thickness, its cables on one side.
 
     Winches and markers stay in the plane z = 0; so a cable leaves its winch inside the body and comes to the skin at
@@ -65,7 +67,7 @@ def inflated_robot(robot: Robot, face: Face | str | None = None, *, element_size
     Raises:
         InputError: a robot in space, one without a drawing, or a body too thick for its outline.
     """
-    face = Face(face or robot.face or Face.FRONT)
+    face = CableSide(face or robot.face or CableSide.FRONT)
     body = _blown_up(robot.body, element_size)
     flat = robot.gravity
     loads = tuple(_lift_load(load) for load in robot.loads if load.pressure is None)  # its holes are open now
@@ -131,7 +133,7 @@ def _skin(body: Body, places: Points, side: float) -> Vector:
     return side * low
 
 
-def _lift_cable(cable: Cable, face: Face, body: Body) -> Iterator[Cable]:
+def _lift_cable(cable: Cable, face: CableSide, body: Body) -> Iterator[Cable]:
     """Cable on its face, all but its first point, which is its winch's; twice for pairs."""
     points = np.array(cable.points)
     for name, side in _HEIGHTS[face]:
@@ -142,10 +144,10 @@ def _lift_cable(cable: Cable, face: Face, body: Body) -> Iterator[Cable]:
 
 
 _HEIGHTS = {
-    Face.FRONT: (("", 1.0),),
-    Face.BACK: (("", -1.0),),
-    Face.PAIRS: (("front", 1.0), ("back", -1.0)),
-    Face.MIDDLE: (("", 0.0),),
+    CableSide.FRONT: (("", 1.0),),
+    CableSide.BACK: (("", -1.0),),
+    CableSide.PAIRS: (("front", 1.0), ("back", -1.0)),
+    CableSide.MIDDLE: (("", 0.0),),
 }
 
 

@@ -16,7 +16,7 @@ FOAM_POISSON_LIMIT = 0.45  # Poisson's ratio of a foam law is at most this: foam
 
 
 @dataclass(frozen=True, kw_only=True)
-class Relaxation:
+class PronyTerm:
     """Maxwell branch, one term of a Prony series: spring and dashpot in series, parallel to the elastic material.
 
     After a sudden shear the branch carries modulus * exp(-t / time) of its stress, so the material begins stiffer by
@@ -34,7 +34,7 @@ class Relaxation:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Slider:
+class PrandtlElement:
     """Prandtl element of rate-free hysteresis: spring and slider in series, parallel to the elastic material.
 
     It adds its modulus to the material's until its strain is reached, and then a stress of young x strain that stays
@@ -107,8 +107,8 @@ class Material:
     density: float
     young_interval: tuple[float, float] | None = None
     viscosity: float = 0.0
-    relaxation: tuple[Relaxation, ...] = ()
-    hysteresis: tuple[Slider, ...] = ()
+    relaxation: tuple[PronyTerm, ...] = ()
+    hysteresis: tuple[PrandtlElement, ...] = ()
     foam: tuple[FoamTerm, ...] = ()
     largest_stretch: float | None = None
     largest_squeeze: float | None = None
@@ -185,7 +185,7 @@ class Material:
             raise InputError(
                 f"no hysteresis is known of {self.name or 'this material'}. Write sliders. Known: {known}."
             )
-        sliders = tuple(Slider(young=share * self.young, strain=strain) for share, strain in SLIDERS[self.name])
+        sliders = tuple(PrandtlElement(young=share * self.young, strain=strain) for share, strain in SLIDERS[self.name])
         return replace(self, hysteresis=sliders)
 
     @property

@@ -6,7 +6,7 @@ from typing import Any, TypeVar
 from hydrostat import units
 from hydrostat.errors import InputError
 from hydrostat.robot.element_kind import MaterialLaw
-from hydrostat.robot.material import FoamTerm, Material, Relaxation, Slider
+from hydrostat.robot.material import FoamTerm, Material, PrandtlElement, PronyTerm
 
 _Record = TypeVar("_Record")
 
@@ -30,8 +30,8 @@ def inelastic_values(entry: Any) -> dict[str, Any]:
     """Fields of `Material` for viscosity, relaxation, hysteresis and foam terms, as far as a table has them."""
     given = given_keys(entry, "viscosity")
     for key, make in (
-        ("relaxation", lambda branch: Relaxation(modulus=branch.modulus, time=branch.time)),
-        ("hysteresis", lambda slider: Slider(young=slider.young, strain=float(slider.strain))),
+        ("relaxation", lambda branch: PronyTerm(modulus=branch.modulus, time=branch.time)),
+        ("hysteresis", lambda slider: PrandtlElement(young=slider.young, strain=float(slider.strain))),
         ("terms", lambda term: FoamTerm(share=float(term.share), exponent=float(term.exponent))),
     ):
         if getattr(entry, key) is not None:

@@ -22,7 +22,7 @@ from hydrostat.robot.read import RobotReader, read_material
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.rod import Rod
 from hydrostat.robot.sensor import Sensor
-from hydrostat.robot.sheet import SkinSheet
+from hydrostat.robot.sheet import Membrane
 from hydrostat.robot.winch import Winch
 from hydrostat.robot.write import robot_text
 
@@ -123,7 +123,7 @@ _RECORDS = {
     "obstacle": Obstacle,
     "load": Load,
     "rod": Rod,
-    "sheet": SkinSheet,
+    "sheet": Membrane,
     "sensor": Sensor,
 }
 _LISTS = ("pin", "drive", "winch", "cable", "marker", "pose", "obstacle", "load", "rod", "sheet", "sensor")

@@ -72,11 +72,11 @@ def _box(box: Obstacle, _: Vector, __: float) -> list[Points]:
     return [at + corners[list(pair)] * (to - at) for pair in pairs]
 
 
-def _mesh(thing: Obstacle, _: Vector, __: float) -> list[Points]:
+def _mesh(obstacle: Obstacle, _: Vector, __: float) -> list[Points]:
     """Cuts by three planes through its middle."""
-    assert thing.mesh is not None
-    corners = (thing.mesh.surface.vertices + np.array(thing.at))[thing.mesh.surface.triangles]
-    middle, lines = thing.frame()[0], []
+    assert obstacle.mesh is not None
+    corners = (obstacle.mesh.surface.vertices + np.array(obstacle.at))[obstacle.mesh.surface.triangles]
+    middle, lines = obstacle.frame()[0], []
     for axis in range(3):
         heights = corners[:, :, axis] - middle[axis]
         cut = (heights.min(axis=1) < 0) & (heights.max(axis=1) >= 0)

@@ -123,6 +123,11 @@ class PinDrive:
         first = np.cross(axis, arms)
         return first, np.cross(axis, first)
 
+    def move(self, points: Points, value: float) -> Points:
+        """Return where points at rest are [m] at a value of the drive [rad or m]."""
+        first, second = self.directions(points)
+        return points + (np.sin(value) * first + (1 - np.cos(value)) * second if self.turns else value * first)
+
     @staticmethod
     def require_none(drives: "Sequence[PinDrive | LoadDrive]", what: str) -> None:
         """Reject a robot with drives where only its winches are controls (InputError: it has one)."""

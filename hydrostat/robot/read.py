@@ -30,7 +30,7 @@ from hydrostat.robot.region import PartShape
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.rod import Rod
 from hydrostat.robot.sensor import Sensor
-from hydrostat.robot.sheet import SkinSheet
+from hydrostat.robot.sheet import Membrane
 from hydrostat.robot.tables_file import TablesFile
 from hydrostat.robot.winch import Winch
 from hydrostat.robot.winch_bodies import fit_winch_bodies
@@ -276,8 +276,8 @@ class RobotReader(TablesFile):
             raise InputError("give either material or rigid = true")
         return BodyPart(**self._region(where, entry), **given_keys(entry, "density", "label"))
 
-    def _sheet(self, where: str, entry: Any) -> SkinSheet:
-        return SkinSheet(**self._region(where, entry), **given_keys(entry, "thickness", "on", "wrinkles"))
+    def _sheet(self, where: str, entry: Any) -> Membrane:
+        return Membrane(**self._region(where, entry), **given_keys(entry, "thickness", "on", "wrinkles"))
 
     def _region(self, where: str, entry: Any) -> dict[str, Any]:
         """Name, region and material."""

@@ -10,11 +10,11 @@ from hydrostat import units
 from hydrostat.arrays import Points, Vector
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
-from hydrostat.given import Point, check_type, check_unique, list_choices
+from hydrostat.given import NamedParts, Point, check_type, check_unique, list_choices
 from hydrostat.painters import draw_record, html_repr
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable, given_names, name_cables
-from hydrostat.robot.cable_side import Face
+from hydrostat.robot.cable_side import CableSide
 from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape, check_obstacles
 from hydrostat.robot.grading import Grading
 from hydrostat.robot.gravity import check_gravity, gravity_along
@@ -23,11 +23,11 @@ from hydrostat.robot.load_drive import LoadDrive
 from hydrostat.robot.marker import Marker, PoseTarget
 from hydrostat.robot.material import Material
 from hydrostat.robot.materials import get_material
-from hydrostat.robot.pin import Pin
+from hydrostat.robot.pin import Pin, take_pins
 from hydrostat.robot.pin_drive import PinDrive, check_drives
 from hydrostat.robot.rod import Rod, check_rods_inside
 from hydrostat.robot.sensor import Sensor, check_sensors
-from hydrostat.robot.sheet import SkinSheet, check_sheets
+from hydrostat.robot.sheet import Membrane, check_sheets
 from hydrostat.robot.winch import Mount, Winch, check_drive_limits
 from hydrostat.units import plural, quote
 
@@ -74,7 +74,7 @@ class Robot:
     poses: Mapping[str, PoseTarget]
     length_unit: str = "mm"
     gravity: tuple[float, ...] | None = None
-    face: Face | None = None
+    face: CableSide | None = None
     motor: str = "auto"
     max_tension: float | None = None
     max_torque: float | None = None
@@ -82,7 +82,7 @@ class Robot:
     obstacles: tuple[Obstacle, ...] = ()
     loads: tuple[Load, ...] = ()
     rods: tuple[Rod, ...] = ()
-    sheets: tuple[SkinSheet, ...] = ()
+    sheets: tuple[Membrane, ...] = ()
     sensors: tuple[Sensor, ...] = ()
     LARGEST_STEP = 4.0  # the spools of cables on one shaft differ by at most so many times
 
@@ -106,7 +106,7 @@ class Robot:
             object.__setattr__(self, "gravity", gravity_along(self.gravity, self.body.mesh.dim))
         if self.gravity is not None:
             check_gravity(self.gravity, self.body.mesh.dim)
-        self._check_pins()
+        self._take_pins()
         check_drives(self.drives, (self.pins, self.loads), self.winches, self.cables, self.body.mesh.dim)
         check_obstacles(self.obstacles, self.body.mesh, self.contact_distance)
         self._check_markers_and_poses()
@@ -132,8 +132,6 @@ class Robot:
 
     def pose(self, name: str) -> PoseTarget:
         """Return the target pose of this name (InputError: there is none)."""
-        if name not in self.poses:
-            raise InputError(f'unknown pose "{name}". {list_choices("poses", list(self.poses), name)}')
         return self.poses[name]
 
     @property
@@ -243,6 +241,8 @@ class Robot:
         check_type(self.poses, Mapping, "poses must be given by name")
         for pose in self.poses.values():
             check_type(pose, PoseTarget, "poses must be Pose records")
+        if not isinstance(self.poses, NamedParts):
+            object.__setattr__(self, "poses", NamedParts("pose", self.poses))
         check_type(self.contact, (Contact, type(None)), "contact must be a Contact()")
         check_type(self.gravity, (tuple, list, np.ndarray, str, type(None)), "gravity must be m/s^2 along each axis")
 
@@ -255,7 +255,7 @@ class Robot:
     def _check_face(self) -> None:
         if self.face is None:
             return
-        make_member(self, "face", Face)
+        make_member(self, "face", CableSide)
         if self.body.mesh.dim == 3:
             raise InputError("face is only for flat bodies: in space, cables run where their points are; remove it")
 
@@ -277,24 +277,13 @@ class Robot:
         for index, pose in enumerate(self.poses.values()):
             yield from ((f"pose[{index}].targets.{name}", point) for name, point in pose.targets.items())
 
-    def _check_pins(self) -> None:
-        if not self.pins:
-            if any(map(self._carries, self.obstacles)):
-                return
+    def _take_pins(self) -> None:
+        if self.pins:
+            object.__setattr__(self, "pins", take_pins(self.pins, self.body))
+        elif not any(map(self._carries, self.obstacles)):
             raise InputError(
                 "no [[pin]]: the body is unconstrained. Add a pin with at and radius, or gravity and a ground plane "
                 "([[obstacle]] with shape = plane)."
-            )
-        held = []
-        for index, pin in enumerate(self.pins):
-            try:
-                held.append(pin.anchors(self.body.mesh).positions(self.body.mesh.nodes))
-            except InputError as error:
-                raise InputError(f"pin[{index}]: {error}") from None
-        spread = np.linalg.svd(np.concatenate(held) - np.mean(np.concatenate(held), axis=0), compute_uv=False)
-        if (spread > 1e-6 * self.body.mesh.size).sum() < self.body.mesh.dim - 1:
-            raise InputError(
-                "pin[0]: the pins hold too few nodes, the body can still turn about them; widen a radius or add a pin"
             )
 
     def _carries(self, obstacle: Obstacle) -> bool:
@@ -394,6 +383,6 @@ _PARTS = {
     "obstacles": Obstacle,
     "loads": Load,
     "rods": Rod,
-    "sheets": SkinSheet,
+    "sheets": Membrane,
     "sensors": Sensor,
 }

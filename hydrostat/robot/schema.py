@@ -12,7 +12,7 @@ from pydantic import (
 )
 
 from hydrostat.geometry import Inner
-from hydrostat.robot.cable_side import Face
+from hydrostat.robot.cable_side import CableSide
 from hydrostat.robot.contact import ObstacleShape
 from hydrostat.robot.element_kind import ElementKind, Plane, Volume
 from hydrostat.robot.gravity import DIRECTIONS
@@ -270,7 +270,7 @@ class RobotTable(TomlTable):
     name: Name
     length_unit: Text = "mm"
     gravity: Gravity | None = None
-    face: Face | None = None
+    face: CableSide | None = None
     motor: Name = "auto"
     max_tension: Force | None = None
     max_torque: Torque | None = None

@@ -1,4 +1,4 @@
-"""`SkinSheet`: an elastic sheet on the skin of a body, such as felt, a knitted glove or a layer of fibres."""
+"""`Membrane`: an elastic sheet on the skin of a body, such as felt, a knitted glove or a layer of fibres."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ class SheetSide(StrEnum):
 
 
 @dataclass(frozen=True, kw_only=True)
-class SkinSheet(PartRegion):
+class Membrane(PartRegion):
     """Elastic sheet that sticks to the skin of a body; it resists stretch and shear in its surface, not bending.
 
     It covers the facets of the mesh whose middle is in its region, all of the skin without a shape. It adds no size to
@@ -95,7 +95,7 @@ class SkinSheet(PartRegion):
         return faces if depth is None else 2 * faces + depth * rim
 
 
-def check_sheets(sheets: Iterable[SkinSheet], mesh: Mesh) -> None:
+def check_sheets(sheets: Iterable[Membrane], mesh: Mesh) -> None:
     """Reject sheets that do not fit a body (InputError)."""
     for index, sheet in enumerate(sheets):
         where, most = f"sheet[{index}]", 0.1 * mesh.size

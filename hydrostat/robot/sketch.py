@@ -1,18 +1,29 @@
 """`sketch_robot`: a first robot from nothing but a drawing, to be edited from there."""
 
+from contextlib import suppress
 from functools import partial
 
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
+from hydrostat.errors import InputError
 from hydrostat.geometry import Inner, Outline, read_drawing, size_for, triangulate
 from hydrostat.robot.body import Body
+from hydrostat.robot.element_kind import ElementKind
 from hydrostat.robot.limb_tips import find_limb_tips, measure_geodesics, name_tips
 from hydrostat.robot.marker import Marker, PoseTarget
 from hydrostat.robot.materials import get_material
 from hydrostat.robot.pin import Pin
-from hydrostat.robot.risks.body_risks import LEAST_ACROSS
+from hydrostat.robot.risks.body_risks import LEAST_QUADRATIC, LOCKING_POISSON, MIN_ELEMENTS_ACROSS
 from hydrostat.robot.robot import Robot
+
+SLENDER = 6
+"""A limb with fewer linear elements across bends 5 % too little or worse, whatever its Poisson's ratio."""
+
+
+def is_slender(body: Body) -> bool:
+    """Return True if linear elements bend a limb too little: it has few across, or they lock."""
+    return body.material.poisson >= LOCKING_POISSON or bool(body.measured_thickness.thin_parts(SLENDER))
 
 
 def finer_size(body: Body, most: int) -> float | None:
@@ -20,7 +31,8 @@ def finer_size(body: Body, most: int) -> float | None:
 
     None where they have, where the body is a ready mesh, or where it would have more nodes than `most`.
     """
-    least, dim = LEAST_ACROSS[body.mesh.dim], body.mesh.dim
+    dim = body.mesh.dim
+    least = MIN_ELEMENTS_ACROSS[dim] if body.mesh.quadratic is None else 2 * LEAST_QUADRATIC
     parts = body.measured_thickness.thin_parts(least) if body.element_size else []
     if not parts or body.element_size is None:
         return None
@@ -46,8 +58,9 @@ def sketch_robot(
 ) -> Robot:
     """Robot from the bytes of a drawing (SVG, DXF, PNG, JPG), with sensible numbers where none are given.
 
-    It is held round its deepest point. The tip of each limb is a marker, named by its place ("upper left"), or "tip" if
-    there is one. A pose bends the longest limb sideways; the other tips stay. Everything is meant to be changed.
+    A body with slender limbs gets quadratic elements. It is held round its deepest point. The tip of each limb is a
+    marker, named by its place ("upper left"), or "tip" if there is one. A pose bends the
+    longest limb sideways; the other tips stay. Everything is meant to be changed.
 
     Args:
         content: the drawing.
@@ -56,8 +69,8 @@ def sketch_robot(
         size: longest side of the bounding box [m]; None: as the drawing says, if it does.
         element_size: [m]; None: so that there are about as many nodes as asked for.
         thickness: [m]; None: a seventh of the size.
-        nodes: wanted; None: about 250, or as many as give each limb enough elements across; not used with an element
-            size.
+        nodes: wanted; None: about 250, 500 in quadratic elements, or as many as give each limb enough elements across;
+            not used with an element size.
         material: a name from the table.
         inner: meaning of shapes in the body: holes, or lines drawn on it.
         drawing_part: number of the closed shape that is the body, the largest area is 1; None: chosen.
@@ -70,23 +83,32 @@ def sketch_robot(
 
     drawing = read_drawing(content, name=file, size=size, inner=inner, part=drawing_part)
     outline, drawing_part = drawing.outline, drawing.part if drawing.part > 1 else None
-    length, asked = element_size or _element_size(outline, nodes), bool(element_size or nodes)
-    reading = {"size": size, "inner": inner, "drawing_part": drawing_part}
+    asked, reading = bool(element_size or nodes), {"size": size, "inner": inner, "drawing_part": drawing_part}
     make = partial(Body.from_outline, content, file=file, material=get_material(material), **reading)
+    length = element_size or _element_size(outline, nodes)
     body = make(element_size=length, thickness=thickness or _round(outline.size / 7))
+    kind = ElementKind.QUADRATIC if is_slender(body) else ElementKind.LINEAR
+
+    def refine(length: float) -> Body:
+        return make(element_size=length, thickness=body.thickness or 0.0).with_elements(kind)
+
+    if kind is ElementKind.QUADRATIC:
+        body = refine(element_size or _quadratic_size(outline, nodes))
     most_nodes = 2000  # A sketch gets no more nodes than this for the sake of its thin limbs
     while not asked and (finer := finer_size(body, most_nodes)) is not None:
-        if _round(finer) >= length:
+        if _round(finer) >= (body.element_size or 0.0):
             break
-        length = _round(finer)
-        body = make(element_size=length, thickness=body.thickness or 0.0)
+        body = refine(_round(finer))
+    as_fine = 2**-0.5 if kind is ElementKind.QUADRATIC else 1.0
+    spacing = as_fine * (body.element_size or 0.0)  # of linear elements in place of these
     center = np.array(maximum_inscribed_circle(outline.polygon).coords[0])
     depth = outline.polygon.boundary.distance(ShapelyPoint(center))
-    pin = Pin(at=_point(center), radius=_round(max(0.4 * depth, 1.3 * (body.element_size or 0.0))))
-    away, _ = measure_geodesics(body.mesh, pin.holds(body.mesh))
-    within = body.mesh.nodes[np.setdiff1d(np.arange(len(body.mesh.nodes)), body.mesh.boundary_nodes)]
-    ends = body.mesh.nodes[find_limb_tips(body.mesh, away)]
-    tips = np.array([_inner_tip(within, end, center, 2.5 * (body.element_size or 0.0)) for end in ends])
+    pin = Pin(at=_point(center), radius=_round(max(0.4 * depth, 1.3 * spacing)))
+    corners = body.mesh.elements if body.mesh.quadratic is None else body.mesh.quadratic[:, :3]
+    within = np.setdiff1d(corners, body.mesh.boundary_nodes)
+    insides = body.mesh.nodes[within], body.mesh.nodes[corners].mean(axis=1)
+    ends = find_limb_tips(body.mesh, measure_geodesics(body.mesh, pin.holds(body.mesh))[0])
+    tips = np.array([_inner_tip(insides, body.mesh.nodes[end], center, 2.5 * spacing) for end in ends])
     names = name_tips(body.mesh, tips)
     arms = tips - center
     turned = center + 0.96 * (np.cos(_BEND) * arms[0] + np.sin(_BEND) * np.array([-arms[0, 1], arms[0, 0]]))
@@ -101,10 +123,14 @@ def sketch_robot(
     )
 
 
-def _inner_tip(within: Nodes, end: Vector, center: Vector, near: float) -> Vector:
-    """Inner node about the end of a limb that is farthest from the center."""
-    away = np.linalg.norm(within - end, axis=1)
-    chosen = within[away <= max(near, float(away.min()))]
+def _inner_tip(insides: tuple[Nodes, Nodes], end: Vector, center: Vector, near: float) -> Vector:
+    """Inner node about the end of a limb that is farthest from the center; a middle of an element if none is near."""
+    for within in insides:
+        chosen = within[np.linalg.norm(within - end, axis=1) <= near]
+        if len(chosen):
+            break
+    else:
+        chosen = insides[1]
     return chosen[np.argmax(np.linalg.norm(chosen - center, axis=1))]
 
 
@@ -116,6 +142,15 @@ def _element_size(outline: Outline, nodes: int | None) -> float:
         return _round(float(np.sqrt(outline.area / 215)))
     rim = outline.polygon.length
     return size_for(nodes, lambda trial: triangulate(outline, trial), content=outline.area, rim=rim, dim=2)
+
+
+def _quadratic_size(outline: Outline, nodes: int | None) -> float:
+    """Return the size of quadratic elements [m]: they follow a curved outline less well, so twice the nodes."""
+    if nodes is None:
+        return _round(2**0.5 * _element_size(outline, None))
+    with suppress(InputError):  # a body so thin needs more elements
+        return _element_size(outline, max(nodes // 3, 10))
+    return _element_size(outline, nodes)
 
 
 def _round(length: float) -> float:

@@ -73,7 +73,13 @@ class SurfaceSketch:
         def fill(trial: float) -> Mesh:
             told(f"filling it with elements of {1e3 * trial:.3g} mm" + f", try {len(meshes) + 1}" * bool(meshes))
             most = 1.6 if meshes else 4.0
-            meshes[trial] = tetrahedralize(closed, trial, most_nodes=np.inf if element_size else most * nodes)
+            thin = 0.1  # where as much breaks off a coarser lattice, finer elements there make as many nodes again
+            meshes[trial] = tetrahedralize(
+                closed,
+                trial,
+                most_nodes=np.inf if element_size else most * nodes,
+                most_lost=thin if meshes and trial > min(meshes) else 1.0,
+            )
             return meshes[trial]
 
         length = element_size or size_for(nodes, fill, content=closed.volume, rim=closed.area, dim=3, is_hasty=True)

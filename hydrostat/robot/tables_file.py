@@ -23,7 +23,7 @@ _Record = TypeVar("_Record")
 class TablesFile(ABC):
     """Turns the text of one file into records."""
 
-    kind = "a robot"  # thing that the file describes, in complaints
+    kind = "a robot"  # what the file describes, in complaints
 
     empty: str | None = "the file is empty; begin with format = 1, or run hydrostat new"
     """Complaint of a file without text; None: it may have none."""

@@ -24,13 +24,13 @@ from hydrostat.robot.material import Material
 from hydrostat.robot.material_table import material_values
 from hydrostat.robot.materials import FOAMS, MATERIALS
 from hydrostat.robot.part import BodyPart
-from hydrostat.robot.pin import DEFAULT_STIFFNESS, Pin
+from hydrostat.robot.pin import DefaultStiffness, Pin
 from hydrostat.robot.pin_drive import PinDrive
 from hydrostat.robot.region import PartRegion
 from hydrostat.robot.robot import Robot
 from hydrostat.robot.rod import Rod
 from hydrostat.robot.sensor import Sensor
-from hydrostat.robot.sheet import SheetSide, SkinSheet
+from hydrostat.robot.sheet import Membrane, SheetSide
 from hydrostat.robot.winch import Mount
 
 
@@ -194,7 +194,7 @@ class _Writer:
             entry["file"] = part.mesh.file
         return entry
 
-    def sheet(self, sheet: SkinSheet) -> dict[str, Any]:
+    def sheet(self, sheet: Membrane) -> dict[str, Any]:
         given: dict[str, Any] = {"thickness": units.format_quantity(sheet.thickness, units.LENGTH)}
         on = {} if sheet.on is SheetSide.SKIN else {"on": str(sheet.on)}
         wrinkles = {"wrinkles": True} if sheet.wrinkles else {}
@@ -314,7 +314,7 @@ class _Writer:
         if pin.at is not None:
             entry["at"] = self.point(pin.at)
             entry["radius"] = self.number(pin.radius)
-        if pin.stiffness != DEFAULT_STIFFNESS:
+        if not isinstance(pin.stiffness, DefaultStiffness):
             entry["stiffness"] = units.format_quantity(pin.stiffness, units.STIFFNESS)
         if pin.drive is not None:
             entry["drive"] = pin.drive

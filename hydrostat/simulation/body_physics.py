@@ -12,27 +12,27 @@ from hydrostat.given import check_type
 from hydrostat.mechanics import (
     PATCH_SIZE,
     Assembly,
-    Bend,
-    CarriedWarp,
-    ContactEnergy,
+    DeadLoadEnergy,
     Energy,
     Factorization,
     FoamSolid,
+    FrictionalSelfContactEnergy,
     GuideEnergy,
     InversionBarrier,
     NeoHookean,
     ObstacleEnergy,
-    PatchVolume,
+    PatchDilatation,
     PinEnergy,
     PlaneStress,
+    PrandtlEnergy,
     QuadraticSolid,
     RigidBodyDofs,
+    RigidBodyWarp,
     RigidEnergy,
     RoundOff,
-    SelfFrictionEnergy,
-    SliderEnergy,
+    SelfContactEnergy,
+    StepMap,
     Warp,
-    WeightEnergy,
     grow_patches,
 )
 from hydrostat.robot import Body, Obstacle, Plane, Robot, Volume, check_winch_bodies
@@ -96,14 +96,14 @@ class BodyPhysics:
             elements, kinds = mesh.elements[solid], body.element_materials[solid]
             patches = grow_patches(elements, PATCH_SIZE[mesh.dim], kinds)
             given = {"lame": lame[solid], "thickness": _depths(body)[solid], "materials": kinds}
-            energies.append(PatchVolume(self.rest_unknowns, elements, patches, **given))
+            energies.append(PatchDilatation(self.rest_unknowns, elements, patches, **given))
         if thin and solid.any():
             energies.append(_plane_stress(self.elastic, self.rest_unknowns, lame))
         energies += _foams(robot, self.elastic, self.rest_unknowns)
         energies += _sliders(robot, self.elastic, self.rest_unknowns)
         energies += _barriers(body, self.elastic, self.rest_unknowns)
         if robot.gravity is not None:
-            energies.append(WeightEnergy(self.rest_unknowns, self._heavy[:, None] * np.array(robot.gravity)))
+            energies.append(DeadLoadEnergy(self.rest_unknowns, self._heavy[:, None] * np.array(robot.gravity)))
         self.rods = [make_rod_energy(robot, rod, self.rest_unknowns) for rod in robot.rods]
         energies += [*self.rods, *chain.from_iterable(self.sheets)]
         loads, paths = make_load_energies(robot, self.rest_unknowns)
@@ -111,9 +111,9 @@ class BodyPhysics:
         energies += loads
         self.own_contact = None if robot.contact is None else len(energies)
         if robot.contact is not None:
-            own = ContactEnergy.of(mesh, **_contact_parameters(robot), rest=self.rest_unknowns)
+            own = SelfContactEnergy.of(mesh, **_contact_parameters(robot), rest=self.rest_unknowns)
             rubs = robot.contact.friction
-            energies.append(SelfFrictionEnergy.of(mesh, own, rubs) if rubs else own)
+            energies.append(FrictionalSelfContactEnergy.of(mesh, own, rubs) if rubs else own)
         self.obstacles, self.guides = [], dict[int, Obstacle]()
         for index, obstacle in enumerate(robot.obstacles):
             self.obstacles.append(len(energies))
@@ -196,20 +196,20 @@ class BodyPhysics:
         return [met, GuideEnergy(carriage, place=place, axes=axes, along=stiffness * axes, turning=stiffness)]
 
     @cached_property
-    def warp(self) -> Bend:
+    def warp(self) -> StepMap:
         """Steps along arcs."""
         if not self.rigid_dofs:
             return self._body_warp
-        return CarriedWarp(self._body_warp, len(self._given[0].mesh.nodes), tuple(self.rigid_dofs.values()))
+        return RigidBodyWarp(self._body_warp, len(self._given[0].mesh.nodes), tuple(self.rigid_dofs.values()))
 
     @cached_property
     def _body_warp(self) -> Warp:
-        mesh = self._given[0].mesh
+        mesh, (mu, _) = self._given[0].mesh, self._given[0].lame()
         shape = NeoHookean(mesh.nodes, mesh.elements, mu=0.0, lame=0.0, thickness=self.thickness or 1.0)
         return Warp(
             stencils=shape.stencils,
             shape_gradients=shape.shape_gradients,
-            volumes=shape.volumes,
+            volumes=shape.volumes * (mu / self.material.lame[0]),  # the stiffer a part, the more exactly it turns
             rest=mesh.nodes,
             held=self.pins.stencils,
             holds=self.pins.weights,
@@ -305,7 +305,7 @@ def _foams(robot: Robot, elastic: NeoHookean | QuadraticSolid, rest: Nodes) -> l
     return found
 
 
-def _sliders(robot: Robot, elastic: NeoHookean | QuadraticSolid, rest: Nodes) -> list[SliderEnergy]:
+def _sliders(robot: Robot, elastic: NeoHookean | QuadraticSolid, rest: Nodes) -> list[PrandtlEnergy]:
     """Hysteresis of each material."""
     found, count = [], len(elastic.stencils)
     gradients, volumes = (
@@ -315,7 +315,7 @@ def _sliders(robot: Robot, elastic: NeoHookean | QuadraticSolid, rest: Nodes) ->
         own = elastic.materials == index
         for slider in material.hysteresis if own.any() else ():
             points = {"gradients": gradients[own], "volumes": volumes[own]}
-            found.append(SliderEnergy(rest, elastic.stencils[own], **points, young=slider.young, strain=slider.strain))
+            found.append(PrandtlEnergy(rest, elastic.stencils[own], **points, young=slider.young, strain=slider.strain))
     return found
 
 

@@ -33,7 +33,7 @@ class CableSensitivities:
 def cable_sensitivities(
     simulation: Simulation, pose: Equilibrium, markers: list[int], *, tensions: bool = True
 ) -> CableSensitivities:
-    """Slopes of some markers and of all tensions at an equilibrium, by one adjoint solve for all rows.
+    """Derivatives of some markers and of all tensions at an equilibrium, by one adjoint solve for all rows.
 
     Args:
         simulation: simulation of the robot; cables with friction slip on or stick as for `Simulation.jacobian`.

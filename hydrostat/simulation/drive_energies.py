@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hydrostat.mechanics import DriveEnergy, Energy, PinEnergy
+from hydrostat.mechanics import DrivenPinEnergy, Energy, PinEnergy
 from hydrostat.robot import PinDrive, Robot
 from hydrostat.simulation.body_physics import BodyPhysics
 from hydrostat.simulation.load_energies import driven_loads
@@ -13,7 +13,7 @@ def drive_energies(robot: Robot, body: BodyPhysics) -> list[Energy]:
     return [*pin_drives(robot, body.pins), *driven_loads(robot, body.rest_unknowns)]
 
 
-def pin_drives(robot: Robot, pins: PinEnergy) -> list[DriveEnergy]:
+def pin_drives(robot: Robot, pins: PinEnergy) -> list[DrivenPinEnergy]:
     """Energy of all drives of pins, whose controls follow those of the winches; empty without them."""
     order = {drive.name: index for index, drive in enumerate(robot.drives)}
     owners = np.array([-1 if pin.drive is None else order[pin.drive] for pin in robot.pins], dtype=np.int64)
@@ -27,4 +27,4 @@ def pin_drives(robot: Robot, pins: PinEnergy) -> list[DriveEnergy]:
             first[drives == index], second[drives == index] = drive.directions(places[drives == index])
     turns = np.array([drive.turns for drive in robot.drives])[drives]
     controls = len(robot.winches) + drives
-    return [DriveEnergy(pins, terms=terms, controls=controls, directions=(first, second), turns=turns)]
+    return [DrivenPinEnergy(pins, terms=terms, controls=controls, directions=(first, second), turns=turns)]

@@ -10,6 +10,7 @@ import numpy as np
 from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.errors import HydrostatWarning, InputError
 from hydrostat.geometry import Mesh, find_crossings
+from hydrostat.given import NamedParts
 from hydrostat.mechanics import NewtonResult, pushed_elements
 from hydrostat.named_vector import NamedVector
 from hydrostat.painters import draw_record, html_repr
@@ -54,6 +55,7 @@ class Equilibrium(Tabular):
 
     def __post_init__(self) -> None:
         """Give contractions, tensions and drives their names."""
+        object.__setattr__(self, "markers", NamedParts("marker", self.markers))
         for field_name, parts in name_values(self.robot).items():
             values = getattr(self, field_name)
             if len(values) == len(parts):
@@ -115,6 +117,22 @@ class Equilibrium(Tabular):
     def stresses(self) -> Vector:
         """Von Mises stress at each node [Pa], (nodes,); see `node_stresses`."""
         return node_stresses(self.robot, self.nodes)
+
+    @property
+    def pin_forces(self) -> Points:
+        """Reaction force of each pin on the body [N], (pins, dim); drives have moved those of theirs."""
+        mesh, forces = self.robot.body.mesh, []
+        values = {
+            drive.name: (drive, float(value)) for drive, value in zip(self.robot.drives, self.drives, strict=True)
+        }
+        for pin in self.robot.pins:
+            held = pin.anchors(mesh)
+            places = held.positions(mesh.nodes)
+            if pin.drive is not None:
+                drive, value = values[pin.drive]
+                places = drive.move(places, value) if isinstance(drive, PinDrive) else places
+            forces.append(pin.stiffness * (places - held.positions(self.nodes)).mean(axis=0))
+        return np.array(forces).reshape(-1, mesh.dim)
 
     def plot(self, **options: Any) -> "Figure":
         """Draw it over the ghost of the rest shape, as a Matplotlib figure.

@@ -89,7 +89,7 @@ class LinearPose:
     def reduce_stiffness(self, basis: Float[np.ndarray, "dofs vectors"]) -> Float[np.ndarray, "vectors vectors"]:
         """Stiffness in a basis [1/s^2 at unit modal mass]."""
         state = (self.pose.unknowns, self.pose.controls)
-        springs = self.assembly.coupling(*state)
+        springs = self.assembly.low_rank_hessian(*state)
         along = springs.columns.T @ basis
         reduced = basis.T @ (self.assembly.hessian(*state) @ basis) + along.T @ springs.weights @ along
         return (reduced + reduced.T) / 2

@@ -4,7 +4,7 @@ import numpy as np
 
 from hydrostat.arrays import Float, Nodes
 from hydrostat.geometry import locate
-from hydrostat.mechanics import ControlledLoad, Energy, LoadEnergy, MomentEnergy, PressureEnergy
+from hydrostat.mechanics import DrivenLoadEnergy, Energy, LoadEnergy, MomentEnergy, PressureEnergy
 from hydrostat.robot import Load, Robot
 
 
@@ -25,11 +25,11 @@ def make_load_energies(robot: Robot, rest: Nodes) -> tuple[list[Energy], dict[in
     return energies, paths
 
 
-def driven_loads(robot: Robot, rest: Nodes) -> list[ControlledLoad]:
+def driven_loads(robot: Robot, rest: Nodes) -> list[DrivenLoadEnergy]:
     """Energies of the loads that drives scale, whose controls follow those of the winches."""
     controls = {drive.name: number for number, drive in enumerate(robot.drives, start=len(robot.winches))}
     return [
-        ControlledLoad(_load_energy(robot, rest, index), controls[load.drive])
+        DrivenLoadEnergy(_load_energy(robot, rest, index), controls[load.drive])
         for index, load in enumerate(robot.loads)
         if load.drive is not None
     ]

@@ -28,12 +28,12 @@ def pose_facts(robot: Robot, pose: Equilibrium) -> dict[str, Any]:
 
     Each moving obstacle has its center and its axes.
     """
-    things = {
+    obstacles = {
         name: {"place": place.tolist(), "axes": axes.tolist()}
         for name, (place, axes) in carried_frames(robot, pose.carried).items()
     }
     return {
-        **({"obstacles": things} if things else {}),
+        **({"obstacles": obstacles} if obstacles else {}),
         "robot": robot_hash(robot),
         "contractions": {
             winch.name: float(value) for winch, value in zip(robot.winches, pose.contractions, strict=True)
@@ -43,6 +43,7 @@ def pose_facts(robot: Robot, pose: Equilibrium) -> dict[str, Any]:
         "tensions": [float(tension) for tension in pose.tensions],
         "energy": pose.energy,
         "residual": pose.result.residual,
+        "converged": pose.result.converged,
         "reason": str(pose.result.reason),
         "stable": pose.result.stable,
         "buckled": pose.result.buckled,
@@ -76,6 +77,7 @@ def write_pose(
 ) -> list[Path]:
     """Write pose.json, pose.vtu, cables.vtu and, if wanted, jacobian.npz into a folder; returns their paths.
 
+    Where the solver found no equilibrium, pose.json alone says so: `converged` is false there, and there are no fields.
     pose.vtu has `rest`, `displacement` [m], `strain` and `stress` (von Mises, [Pa]) at each node, cables.vtu the
     `tension` [N], the `winch` (its number) and the `contraction` [m] of each cable.
 
@@ -89,12 +91,12 @@ def write_pose(
     folder.mkdir(parents=True, exist_ok=True)
     robot = simulation.robot
     facts = {**pose_facts(robot, pose), **_sensor_facts(simulation, pose), **(extra or {})}
+    written = [replace_file(folder / "pose.json", (json.dumps(facts, indent=2) + "\n").encode())]
+    if not pose.result.converged:
+        return written
     rest = robot.body.mesh.nodes
     fields = {"rest": rest, "displacement": pose.nodes - rest, "strain": pose.strains, "stress": pose.stresses}
-    written = [
-        replace_file(folder / "pose.json", (json.dumps(facts, indent=2) + "\n").encode()),
-        replace_file(folder / "pose.vtu", write_vtu(robot.body.mesh, pose.nodes, fields)),
-    ]
+    written.append(replace_file(folder / "pose.vtu", write_vtu(robot.body.mesh, pose.nodes, fields)))
     if robot.cables:
         written.append(replace_file(folder / "cables.vtu", _cables_vtu(simulation, pose)))
     if jacobian:
@@ -125,7 +127,7 @@ class MotionTable:
         markers: marker positions [m].
         tensions: cable tensions [N].
         energies: kinetic and potential energy [J].
-        things: center of each moving obstacle [m], by name.
+        obstacles: center of each moving obstacle [m], by name.
         sensors: readings without noise, in SI, in the order of `SensorReader.heads`.
     """
 
@@ -135,7 +137,7 @@ class MotionTable:
     tensions: Float[np.ndarray, "rows cables"]
     energies: Float[np.ndarray, "rows 2"]
     drives: Float[np.ndarray, "rows drives"] = field(default_factory=lambda: np.zeros((0, 0)))
-    things: Mapping[str, Float[np.ndarray, "rows dim"]] = field(default_factory=dict)
+    obstacles: Mapping[str, Float[np.ndarray, "rows dim"]] = field(default_factory=dict)
     sensors: Float[np.ndarray, "rows values"] = field(default_factory=lambda: np.zeros((0, 0)))
 
 
@@ -199,20 +201,20 @@ def _until_stopped(motions: Iterable[Motion]) -> Iterator[Motion | NotConvergedE
 def _row(robot: Robot, motion: Motion) -> tuple:
     markers = np.array(list(motion.markers.values())).reshape(-1, robot.body.mesh.dim)
     frames = carried_frames(robot, None if motion.carried is None else motion.carried[0])
-    things = {name: place for name, (place, _) in frames.items()}
+    obstacles = {name: place for name, (place, _) in frames.items()}
     return (
         motion.time,
         motion.contractions,
         markers,
         motion.tensions,
         (motion.kinetic, motion.potential),
-        things,
+        obstacles,
         motion.drives,
     )
 
 
 def _table(robot: Robot, rows: list[tuple]) -> MotionTable:
-    times, contractions, markers, tensions, energies, things, drives, sensors = zip(*rows, strict=True)
+    times, contractions, markers, tensions, energies, obstacles, drives, sensors = zip(*rows, strict=True)
     return MotionTable(
         times=np.array(times),
         contractions=np.array(contractions).reshape(len(rows), len(robot.winches)),
@@ -220,7 +222,7 @@ def _table(robot: Robot, rows: list[tuple]) -> MotionTable:
         tensions=np.array(tensions).reshape(len(rows), len(robot.cables)),
         energies=np.array(energies),
         drives=np.array(drives).reshape(len(rows), len(robot.drives)),
-        things={name: np.array([row[name] for row in things]) for name in things[0]},
+        obstacles={name: np.array([row[name] for row in obstacles]) for name in obstacles[0]},
         sensors=np.array(sensors),
     )
 
@@ -247,11 +249,11 @@ def _csv(robot: Robot, table: MotionTable) -> bytes:
     head += [drive.column[0] for drive in robot.drives]
     head += [f"{marker.name}_{axis}_mm" for marker in robot.markers for axis in axes]
     head += [f"cable_{index + 1}_N" for index in range(len(robot.cables))] + ["kinetic_J", "potential_J"]
-    head += [f"{name}_{axis}_mm" for name in table.things for axis in axes]
+    head += [f"{name}_{axis}_mm" for name in table.obstacles for axis in axes]
     places = table.markers.reshape(len(table.times), -1)
     driven = table.drives * [drive.column[1] for drive in robot.drives]
     columns = [table.times[:, None], 1e3 * table.contractions, driven, 1e3 * places, table.tensions, table.energies]
-    columns += [1e3 * way for way in table.things.values()]
+    columns += [1e3 * way for way in table.obstacles.values()]
     if table.sensors.shape[1]:
         dim = robot.body.mesh.dim
         head += [name for sensor in robot.sensors for name in sensor.columns(dim)]

@@ -5,7 +5,7 @@ import numpy as np
 from hydrostat.arrays import Float, Nodes
 from hydrostat.geometry import locate
 from hydrostat.mechanics import RodEnergy, SheetEnergy, rod_points
-from hydrostat.robot import Plane, Robot, Rod, SkinSheet
+from hydrostat.robot import Membrane, Plane, Robot, Rod
 
 
 def make_rod_energy(robot: Robot, rod: Rod, rest: Nodes) -> RodEnergy:
@@ -15,7 +15,7 @@ def make_rod_energy(robot: Robot, rod: Rod, rest: Nodes) -> RodEnergy:
     return RodEnergy(rest, anchors, axial_stiffness=axial, bending_stiffness=bending)
 
 
-def make_sheet_energies(robot: Robot, sheet: SkinSheet, rest: Nodes) -> list[SheetEnergy]:
+def make_sheet_energies(robot: Robot, sheet: Membrane, rest: Nodes) -> list[SheetEnergy]:
     """Energies of a sheet on unknowns that are at `rest` [m]: on triangles, and on the outline of a flat body."""
     body, found = robot.body, []
     triangles, edges = sheet.find_facets(body.mesh)

@@ -9,7 +9,7 @@ from hydrostat.arrays import Bool, Float, Int, Nodes, Points
 from hydrostat.geometry import Anchors, Mesh, locate
 from hydrostat.robot import Mount, Robot
 
-RouteSlopes = Float[np.ndarray, "_ dim"]
+RouteGradient = Float[np.ndarray, "_ dim"]
 """A row for each point of one cable; cables differ in how many they have."""
 
 
@@ -117,7 +117,7 @@ class RoutePoints:
         total[..., self.starts, :] -= sensitivities
         return total
 
-    def by_cable(self, rows: Points) -> tuple[RouteSlopes, ...]:
+    def by_cable(self, rows: Points) -> tuple[RouteGradient, ...]:
         """Split rows by cable."""
         return tuple(np.split(rows, np.cumsum(self.counts)[:-1])) if self.counts else ()
 

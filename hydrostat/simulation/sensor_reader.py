@@ -14,7 +14,7 @@ from hydrostat.simulation.simulation import Simulation
 from hydrostat.simulation.time.motion import Motion
 
 Gradients = Float[np.ndarray, "places dim dim"]
-Slopes = Float[np.ndarray, "values moves"]
+Jacobian = Float[np.ndarray, "values moves"]
 _State = tuple[Nodes, Nodes, Nodes, tuple[tuple[ContactForces, bool], ...]]
 """Nodes [m], velocities [m/s], accelerations [m/s^2], and contact forces, with True for those by obstacles."""
 
@@ -58,8 +58,10 @@ class SensorReader:
         """All readings as one vector, in the order of `heads`; arguments as for `read`."""
         return np.concatenate([np.zeros(0), *map(np.atleast_1d, self.read(state, random=random).values())])
 
-    def find_slopes(self, pose: Equilibrium, moves: Float[np.ndarray, "moves nodes dim"]) -> tuple[Slopes, Slopes]:
-        """Slopes of readings about a pose, by central differences: of moves of the nodes, and of such velocities.
+    def find_jacobians(
+        self, pose: Equilibrium, moves: Float[np.ndarray, "moves nodes dim"]
+    ) -> tuple[Jacobian, Jacobian]:
+        """Jacobians of readings about a pose, by central differences: of moves of the nodes, and of such velocities.
 
         Args:
             pose: pose about which readings change.
@@ -72,7 +74,7 @@ class SensorReader:
             if sensor.kind in (SensorKind.ACCELEROMETER, SensorKind.PRESSURE):
                 raise InputError(f'sensor "{sensor.name}": a linear model has no {sensor.kind} sensor. Remove it.')
         still, size = np.zeros_like(pose.nodes), 1e-5 * self.simulation.robot.body.mesh.size
-        slopes = np.zeros((2, len(self.heads), len(moves)))
+        jacobians = np.zeros((2, len(self.heads), len(moves)))
         for index, move in enumerate(moves):
             step = size / float(np.abs(move).max())
             for way in (step, -step):
@@ -80,8 +82,8 @@ class SensorReader:
                 for row, (nodes, velocities) in enumerate(states):
                     given: _State = (nodes, velocities, still, ())
                     read = [np.atleast_1d(function(given)) for function in self._functions]
-                    slopes[row, :, index] += np.concatenate([np.zeros(0), *read]) / (2 * way)
-        return slopes[0], slopes[1]
+                    jacobians[row, :, index] += np.concatenate([np.zeros(0), *read]) / (2 * way)
+        return jacobians[0], jacobians[1]
 
     def _state(self, state: Equilibrium | Motion) -> _State:
         forces = self._contact_forces(state) if self._presses else ()

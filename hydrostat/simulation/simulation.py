@@ -11,7 +11,7 @@ from hydrostat.arrays import Float, Nodes, Vector
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.geometry import Anchors, locate
 from hydrostat.given import check_type
-from hydrostat.mechanics import Assembly, Energy, FrictionCableEnergy, NewtonOptions, NewtonResult, Stiffness
+from hydrostat.mechanics import Assembly, Energy, FactorizedHessian, FrictionCableEnergy, NewtonOptions, NewtonResult
 from hydrostat.robot import Robot
 from hydrostat.simulation.body_physics import BodyPhysics
 from hydrostat.simulation.cable_energies import cable_energy, friction_energy
@@ -223,7 +223,7 @@ class Simulation:
         """Sensitivities of a pose with cable friction: `rows` are by nodes, then by tensions; as for `adjoint`."""
         return friction_sensitivities(self.robot, self.route_points, *self._rubbing(pose), pose, rows)
 
-    def _rubbing(self, pose: Equilibrium) -> tuple[FrictionCableEnergy, Stiffness]:
+    def _rubbing(self, pose: Equilibrium) -> tuple[FrictionCableEnergy, FactorizedHessian]:
         if self.friction is None or self._more or sum(each.has_history for each in self.assembly.energies) > 1:
             raise InputError("derivatives follow the history of cables with friction, and of nothing else beside it")
         return self.friction.with_history(pose.history, pose.nodes, pose.controls), self._regular(pose)
@@ -330,12 +330,12 @@ class Simulation:
             return self.friction.with_history(slips, nodes, contractions).tensions(nodes, contractions)
         return self.cables.tensions(nodes, contractions)
 
-    def stiffness(self, pose: Equilibrium) -> Stiffness:
+    def stiffness(self, pose: Equilibrium) -> FactorizedHessian:
         """Factorized Hessian at a pose; after a solve it may be that of the start of its last step."""
         known = None if self.assembly.has_history else self.stiffness_of(pose)
         return known or self.assembly_at(pose).stiffness(pose.unknowns, pose.controls)
 
-    def _regular(self, pose: Equilibrium) -> Stiffness:
+    def _regular(self, pose: Equilibrium) -> FactorizedHessian:
         if (stiffness := self.stiffness(pose)).singular:
             raise NotConvergedError("no derivative: the Hessian is singular, the pose is about to snap", pose.result)
         return stiffness
@@ -347,7 +347,7 @@ class Simulation:
         known = self.stiffness_of(pose)
         return self.assembly.continuing(None if known is None else known.source).with_active_terms(pose.unknowns)
 
-    def stiffness_of(self, pose: Equilibrium) -> Stiffness | None:
+    def stiffness_of(self, pose: Equilibrium) -> FactorizedHessian | None:
         """Hessian kept with a pose of this simulation; None if it has none, or its nodes were moved."""
         known = pose.result.stiffness
         return known if known is not None and pose.is_unmodified and known.token is self.assembly.token else None
@@ -358,13 +358,13 @@ class Simulation:
         return self.solve(np.zeros(self.robot.num_controls))
 
     @cached_property
-    def rest_stiffness(self) -> Stiffness:
+    def rest_stiffness(self) -> FactorizedHessian:
         """Hessian at the nodes' rest positions."""
         nodes, idle = self.body.rest_unknowns, np.zeros(self.robot.num_controls)
-        near = self.assembly.with_active_terms(nodes)
+        now = self.assembly.with_active_terms(nodes)
         if self._more:
-            return near.stiffness(nodes, idle)
-        return Stiffness(self.body.rest_factors, near.coupling(nodes, idle), token=near.token, source=near)
+            return now.stiffness(nodes, idle)
+        return FactorizedHessian(self.body.rest_factors, now.low_rank_hessian(nodes, idle), token=now.token, source=now)
 
     def with_deadline(self, deadline: float) -> "Simulation":
         """Return the same physics whose solves stop at a time of `time.monotonic` [s]; itself if that is infinite."""

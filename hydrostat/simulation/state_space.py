@@ -96,7 +96,7 @@ def linearize(
         simulation: physics of the robot.
         pose: an equilibrium; that without contractions if left out, with a warning of slack cables, which move nothing.
         modes: number of modes, without the static moves.
-        drag: drag force per mass and velocity [1/s], as in `StepOptions`.
+        drag: mass-proportional (Rayleigh) damping, alpha [1/s], as in `StepOptions`.
         sensors: True for readings of the robot's sensors as outputs, after the markers.
 
     Raises:
@@ -147,8 +147,8 @@ def _outputs(
     rows = np.hstack([places, np.zeros_like(places)])
     if sensors:
         reader = SensorReader(simulation)
-        slopes = reader.find_slopes(pose, np.moveaxis(moves[: len(pose.nodes)], 2, 0))
-        names, rows = [*names, *reader.heads], np.vstack([rows, np.hstack(slopes)])
+        jacobians = reader.find_jacobians(pose, np.moveaxis(moves[: len(pose.nodes)], 2, 0))
+        names, rows = [*names, *reader.heads], np.vstack([rows, np.hstack(jacobians)])
     return tuple(names), rows
 
 

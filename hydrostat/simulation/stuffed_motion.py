@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.robot import Face, Robot, inflated_robot
+from hydrostat.robot import CableSide, Robot, inflated_robot
 from hydrostat.simulation.simulation import Simulation
 
 
@@ -14,7 +14,7 @@ from hydrostat.simulation.simulation import Simulation
 class StuffedMotion:
     """Marker distances between a stuffed robot and its flat model, each the largest over all poses [m]."""
 
-    face: Face  # side on which its cables run
+    face: CableSide  # side on which its cables run
     moved: float  # marker displacement in the flat model [m]
     out: float  # marker distance from the plane [m]
     aside: float  # marker distance from the flat model within the plane [m]
@@ -56,7 +56,11 @@ def is_stuffed_motion_fast(robot: Robot, poses: int) -> bool:
 
 
 def solve_stuffed_motion(
-    robot: Robot, contractions: Sequence[Vector], face: Face | str | None = None, *, element_size: float | None = None
+    robot: Robot,
+    contractions: Sequence[Vector],
+    face: CableSide | str | None = None,
+    *,
+    element_size: float | None = None,
 ) -> StuffedMotion:
     """Play contractions on a flat robot and on the body in space that it becomes (`inflated_robot`), and compare.
 
@@ -70,7 +74,7 @@ def solve_stuffed_motion(
         InputError: a robot in space, one without a drawing, or a body too thick for its outline.
         NotConvergedError: a pose that has no equilibrium.
     """
-    face = Face(face or robot.face or Face.FRONT)
+    face = CableSide(face or robot.face or CableSide.FRONT)
     flat, solid = Simulation(robot), Simulation(inflated_robot(robot, face, element_size=element_size))
     moved, out, aside, tension = 0.0, 0.0, 0.0, 0.0
     for pulled in contractions:

@@ -19,7 +19,8 @@ def check_energy(
     control derivative. Each is tried at several steps and judged by the best, for a wrong derivative agrees at none.
     Further: shapes, symmetry, terms that depend on nothing but their stencil and their control, a value that is never
     NaN, a projected Hessian that is semidefinite and lowers no eigenvalue, the claim of `convex`, and what a solver may
-    ask: couplings with their law, largest force and step, terms that come and go, supports, loads, parameters, history.
+    ask: low-rank Hessians with their law, largest force and step, terms that come and go, supports, loads, parameters,
+    history.
 
     A term of an energy with a part of low rank may depend on the nodes of other terms through it. So there the whole
     Hessian is compared, the blocks of all terms and G D G^T, with the derivative of the whole gradient.
@@ -41,7 +42,7 @@ def check_energy(
     check.gradient()
     check.hessian()
     check.control_gradient()
-    check.coupling()
+    check.low_rank_hessian()
     check.projection()
     check.convexity()
     check_steps(energy, nodes, controls, check.states())
@@ -79,12 +80,12 @@ class _EnergyCheck:
         for share in (0.0, 1.0):
             projected = energy.projected_hessian(self.nodes, self.controls, share)
             self._shape("projection", projected, (terms, corners * dim, corners * dim))
-        if (part := energy.coupling(self.nodes, self.controls)) is not None:
+        if (part := energy.low_rank_hessian(self.nodes, self.controls)) is not None:
             rank = part.columns.shape[-1]
-            self._shape("coupling", part.columns, (self.nodes.size, rank))
-            self._shape("coupling", part.weights, (rank, rank))
+            self._shape("low_rank_hessian", part.columns, (self.nodes.size, rank))
+            self._shape("low_rank_hessian", part.weights, (rank, rank))
             if part.elongations is not None:
-                self._shape("coupling", part.elongations, (rank,))
+                self._shape("low_rank_hessian", part.elongations, (rank,))
         if energy.supports is not None:
             self._shape("supports", energy.supports, (terms,))
         if energy.controls is not None:
@@ -109,7 +110,7 @@ class _EnergyCheck:
         total = np.zeros(self.nodes.shape)
         np.add.at(total, self.energy.stencils, blocks)
         stiffness = float(np.abs(self.energy.hessian(self.nodes, self.controls)).max(initial=0.0))
-        if (part := self.energy.coupling(self.nodes, self.controls)) is not None:
+        if (part := self.energy.low_rank_hessian(self.nodes, self.controls)) is not None:
             diagonal = np.einsum("dr,rs,ds->d", part.columns, part.weights, part.columns)
             stiffness += float(np.abs(diagonal).max(initial=0.0))
         rounding = 64 * np.finfo(float).eps * abs(self.energy.value(self.nodes, self.controls))
@@ -139,7 +140,7 @@ class _EnergyCheck:
         scales[scales == 0.0] = 1.0
         skew = np.abs(hessian - np.swapaxes(hessian, 1, 2)) / scales[:, None, None]
         self._judge("hessian", "[term, row, column] is not symmetric", skew.max(initial=0.0), _place(skew))
-        part = self.energy.coupling(self.nodes, self.controls)
+        part = self.energy.low_rank_hessian(self.nodes, self.controls)
         if part is None:
             self._hessian_of_terms(hessian, scales)
         else:
@@ -213,28 +214,30 @@ class _EnergyCheck:
         worst, index = self._best(error, natural)
         self._judge("control gradient", "[term, corner, axis, control] is not the derivative", worst, index)
 
-    def coupling(self) -> None:
+    def low_rank_hessian(self) -> None:
         """G and D are finite, D is symmetric and positive semidefinite; they derive from elongations and law."""
         for nodes in self.states():
             if not np.isfinite(self.energy.value(nodes, self.controls)):
                 continue
-            part = self.energy.coupling(nodes, self.controls)
+            part = self.energy.low_rank_hessian(nodes, self.controls)
             if part is None:
                 continue
             columns, weights = part.columns, part.weights
             if not (np.isfinite(columns).all() and np.isfinite(weights).all()):
-                raise ConformanceError("coupling", "it is not finite at some positions where the value is")
+                raise ConformanceError("low_rank_hessian", "it is not finite at some positions where the value is")
             scale = _largest(weights) or 1.0
             skew = np.abs(weights - weights.T)
             if _largest(skew) > 1e-9 * scale:
                 error = _largest(skew) / scale
-                raise ConformanceError("coupling", "D is not symmetric", index=_place(skew), relative_error=error)
+                raise ConformanceError(
+                    "low_rank_hessian", "D is not symmetric", index=_place(skew), relative_error=error
+                )
             negative = -float(np.linalg.eigvalsh(weights).min(initial=0.0)) / scale
             if negative > 1e-9:
-                raise ConformanceError("coupling", "D has a negative eigenvalue", relative_error=negative)
+                raise ConformanceError("low_rank_hessian", "D has a negative eigenvalue", relative_error=negative)
             if part.law is not None and part.elongations is not None:
                 check_law(part)
-        part = self.energy.coupling(self.nodes, self.controls)
+        part = self.energy.low_rank_hessian(self.nodes, self.controls)
         if part is not None and part.elongations is not None:
             self._elongations(part.columns)
 
@@ -242,7 +245,7 @@ class _EnergyCheck:
         """G is the derivative of the elongations."""
 
         def elongations(point: np.ndarray) -> np.ndarray:
-            found = self.energy.coupling(point.reshape(self.nodes.shape), self.controls)
+            found = self.energy.low_rank_hessian(point.reshape(self.nodes.shape), self.controls)
             assert found is not None
             assert found.elongations is not None
             return found.elongations
@@ -252,7 +255,7 @@ class _EnergyCheck:
             return np.abs(found - columns.T[:, self.variables]) / (_largest(columns) or 1.0)
 
         worst, place = self._best(error, self.size)
-        self._judge("coupling", "[spring, variable] of G is not the derivative of its elongation", worst, place)
+        self._judge("low_rank_hessian", "[spring, variable] of G is not the derivative of its elongation", worst, place)
 
     def projection(self) -> None:
         """The projected Hessian is the Hessian at share 0, semidefinite at 1, linear between; no eigenvalue falls."""

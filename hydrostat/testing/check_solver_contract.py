@@ -18,16 +18,16 @@ def check_law(part: LowRankStiffness) -> None:
     tangents = np.diag(part.law.tangent(part.elongations))
     miss = _largest(part.weights - tangents) / (_largest(tangents) or 1.0)
     if miss > 1e-9:
-        raise ConformanceError("coupling", "D is not the tangent of its law", relative_error=miss)
+        raise ConformanceError("low_rank_hessian", "D is not the tangent of its law", relative_error=miss)
     for softness in (1e-6, 1.0, 1e3):
         compliance = softness / (_largest(tangents) or 1.0) * np.eye(len(tangents))
         tensions = part.law.solve_slack_complementarity(part.elongations, compliance)
         if tensions is None:
-            raise ConformanceError("coupling", "its law finds no balance on a body that gives way evenly")
+            raise ConformanceError("low_rank_hessian", "its law finds no balance on a body that gives way evenly")
         wanted = part.law.tension(part.elongations - compliance @ tensions)
         off = _largest(wanted - tensions) / (_largest(tensions) or 1.0)
         if off > 1e-6:
-            raise ConformanceError("coupling", "the forces of its law do not balance", relative_error=off)
+            raise ConformanceError("low_rank_hessian", "the forces of its law do not balance", relative_error=off)
 
 
 def check_steps(energy: Energy, nodes: Nodes, controls: Vector, states: Iterable[Nodes]) -> None:
@@ -67,7 +67,7 @@ def check_loads(energy: Energy, nodes: Nodes, controls: Vector) -> None:
     The works of all other parameters must be finite numbers in vectors.
     """
     field = np.random.default_rng(0).standard_normal(nodes.shape)
-    works = energy.parameter_work(nodes, field)
+    works = energy.parameter_derivative(nodes, field)
     for name, work in works.items():
         if not (np.ndim(work) == 1 and np.isfinite(work).all()):
             raise ConformanceError("parameters", f"the work of {name} must be finite numbers in a vector")

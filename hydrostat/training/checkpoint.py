@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+from warnings import catch_warnings
 
 import numpy as np
 
@@ -75,7 +76,7 @@ def restore_checkpoint(model: Any, folder: Path) -> None:
             f"{folder}: holds a pickle, as an earlier version wrote; it could run code and is not read. "
             "Begin again, without --resume"
         )
-    with name_damage(folder):
+    with name_damage(folder), catch_warnings(action="ignore"):  # PyTorch's, about another pickle
         kept = torch.load(folder / WEIGHTS_FILE, weights_only=True)
         model.set_parameters(kept["parameters"], exact_match=True, device="cpu")
         for name in _tensor_names(model):

@@ -15,12 +15,12 @@ from hydrostat.training.manipulation_world import ManipulationWorld
 class _EnvPictures:
     """Pictures in one frame: the body at rest and a quarter more; a copy draws its own, as figures cannot be copied."""
 
-    def __init__(self, robot: Robot, tensions: Vector, *given: Any, things: tuple[Obstacle, ...] = ()) -> None:
-        """Room for the body at rest and for things; colors up to `tensions` [N]. `given` makes a copy."""
+    def __init__(self, robot: Robot, tensions: Vector, *given: Any, obstacles: tuple[Obstacle, ...] = ()) -> None:
+        """Room for the body at rest and for obstacles; colors up to `tensions` [N]. `given` makes a copy."""
         self._robot, self._given = robot, given
         rest = robot.body.mesh.nodes
         middle = 0.5 * (rest.min(axis=0) + rest.max(axis=0))
-        room = Frame(nodes=middle + 1.25 * (rest - middle), tensions=tensions, things=things)
+        room = Frame(nodes=middle + 1.25 * (rest - middle), tensions=tensions, obstacles=obstacles)
         self._pictures = FramePictures(robot, [room], width=640)
 
     def __reduce__(self) -> tuple[type["_EnvPictures"], tuple[Any, ...]]:
@@ -48,16 +48,16 @@ class ReachPictures(_EnvPictures):
 class ManipulationPictures(_EnvPictures):
     """Pictures of a robot with its object."""
 
-    def __init__(self, robot: Robot, thing: Obstacle) -> None:
+    def __init__(self, robot: Robot, obstacle: Obstacle) -> None:
         """Colors up to the tensions at 0.3 of travel."""
         alone = replace(robot, obstacles=())
         taken = np.array([0.3 * winch.travel for winch in robot.winches])
         tensions = Simulation(alone).solve(taken, strict=False).tensions
-        super().__init__(alone, tensions, robot, thing, things=(thing,))
+        super().__init__(alone, tensions, robot, obstacle, obstacles=(obstacle,))
 
     def draw(self, world: ManipulationWorld, words: str) -> Picture:
         """Draw robot and object where they are, with words below the name of the robot."""
-        return self._pictures.draw(Frame.of(world.motion, words=words, things=world.visible_obstacles()))
+        return self._pictures.draw(Frame.of(world.motion, words=words, obstacles=world.visible_obstacles()))
 
 
 class WalkPictures(_EnvPictures):
@@ -77,14 +77,14 @@ class WalkPictures(_EnvPictures):
             tensions=motion.tensions,
             contractions=motion.contractions,
             words=words,
-            things=self._marks(way),
+            obstacles=self._marks(way),
         )
         return self._pictures.draw(frame)
 
     def _marks(self, way: float) -> tuple[Obstacle, ...]:
         """Posts in the ground, one every tenth of the body's size, that go by."""
         mesh = self._robot.body.mesh
-        ground = next(thing for thing in self._robot.obstacles if thing.shape is ObstacleShape.PLANE)
+        ground = next(obstacle for obstacle in self._robot.obstacles if obstacle.shape is ObstacleShape.PLANE)
         gap, middle = 0.1 * mesh.size, 0.5 * (mesh.nodes.min(axis=0) + mesh.nodes.max(axis=0))
         first = np.ceil((middle[0] - 0.7 * mesh.size + way) / gap)
         marks = []

@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import gymnasium
@@ -10,6 +10,7 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
+from hydrostat.given import check_number
 from hydrostat.learning import LearnedModel
 from hydrostat.robot import Contact, Obstacle, Robot, load_robot
 
@@ -32,7 +33,7 @@ class TaskOptions:
         friction: coefficient, of what the task is about.
         actions: meaning of an action: a name that the task knows.
         tied: parts of names: winches whose names have one are moved by one number.
-        thing: object that is moved; the robot's own if None.
+        obstacle: object that is moved; the robot's own if None.
     """
 
     markers: Sequence[str] = ()
@@ -45,7 +46,7 @@ class TaskOptions:
     friction: float | None = None
     actions: str | None = None
     tied: Sequence[str] = ()
-    thing: Obstacle | None = None
+    obstacle: Obstacle | None = None
 
     def select_given(self, *names: str) -> dict[str, Any]:
         """Those of these attributes that are not None, by name."""
@@ -56,6 +57,17 @@ class TaskOptions:
         for name in names:
             if getattr(self, name) not in (None, False, (), []):
                 raise InputError(f"this task has no {name}: leave it out")
+
+
+def check_task(options: Any) -> None:
+    """Reject options of a task whose steps are no count, or whose numbers are none, such as "5 mm" (InputError)."""
+    steps = options.steps
+    if steps is not None and not (isinstance(steps, int | np.integer) and steps >= 1):
+        raise InputError(f"steps must be 1 or more, not {steps!r:.60}")
+    for each in fields(options):
+        value = getattr(options, each.name)
+        if value is not None and each.type in (float, float | None):
+            check_number(each.name, value, "")
 
 
 class GoalEnv(gymnasium.Env, ABC):

@@ -23,7 +23,7 @@ def standing(robot: Robot, friction: float | None) -> Robot:
         InputError: friction below 0, or a ground that does not lie below.
     """
     up = np.eye(robot.body.mesh.dim)[-1]
-    own = [thing for thing in robot.obstacles if thing.shape is ObstacleShape.PLANE]
+    own = [obstacle for obstacle in robot.obstacles if obstacle.shape is ObstacleShape.PLANE]
     for plane in own:
         if not np.allclose(np.array(plane.normal) / np.linalg.norm(plane.normal or ()), up):
             raise InputError(f'robot {robot.name!r} walks on level ground: obstacle "{plane.name}" is not level')
@@ -36,7 +36,7 @@ def standing(robot: Robot, friction: float | None) -> Robot:
     coefficient = FRICTION if coefficient is None else coefficient
     if not 0 <= coefficient < np.inf:
         raise InputError(f"friction must be 0 or more, not {coefficient:g}")
-    rest = [thing for thing in robot.obstacles if thing not in own]
+    rest = [obstacle for obstacle in robot.obstacles if obstacle not in own]
     material = robot.body.material
     if not (material.viscosity or material.relaxation):
         material = replace(material, viscosity=VISCOSITY)
@@ -53,10 +53,11 @@ def standing(robot: Robot, friction: float | None) -> Robot:
 
 def with_friction(robot: Robot, friction: float) -> Robot:
     """A robot on ground with another coefficient of friction."""
-    things = [
-        replace(thing, friction=friction) if thing.shape is ObstacleShape.PLANE else thing for thing in robot.obstacles
+    obstacles = [
+        replace(obstacle, friction=friction) if obstacle.shape is ObstacleShape.PLANE else obstacle
+        for obstacle in robot.obstacles
     ]
-    return replace(robot, obstacles=tuple(things))
+    return replace(robot, obstacles=tuple(obstacles))
 
 
 def tilt(masses: Vector, rest: Nodes, nodes: Nodes) -> float:

@@ -12,7 +12,7 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.robot import Obstacle, Robot
 from hydrostat.training.env_pictures import ManipulationPictures
-from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, finite_numbers, prepare_robot
+from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, check_task, finite_numbers, prepare_robot
 from hydrostat.training.manipulation_world import (
     ManipulationPhysics,
     ManipulationWorld,
@@ -52,8 +52,7 @@ class ManipulationOptions:
     physics: ManipulationPhysics = field(default_factory=ManipulationPhysics)
 
     def __post_init__(self) -> None:
-        if self.steps < 1:
-            raise InputError(f"steps must be 1 or more, not {self.steps}")
+        check_task(self)
         for name in ("tolerance", "travel"):
             value = getattr(self, name)
             if value is not None and not 0 < value < np.inf:
@@ -77,8 +76,8 @@ class ManipulationEnv(GoalEnv):
 
     Attributes:
         options: options of the task.
-        thing: object with its usual properties.
-        world: robot and thing, now.
+        obstacle: object with its usual properties.
+        world: robot and obstacle, now.
     """
 
     cost: ClassVar[str] = "time steps"
@@ -87,7 +86,7 @@ class ManipulationEnv(GoalEnv):
         self,
         robot: Robot | str,
         *,
-        thing: Obstacle | None = None,
+        obstacle: Obstacle | None = None,
         options: ManipulationOptions,
         axis: Sequence[float] = (0.0, 0.0, 1.0),
         contact: bool = False,
@@ -97,7 +96,7 @@ class ManipulationEnv(GoalEnv):
 
         Args:
             robot: itself, its folder, or a name such as gallery:caging_gripper.
-            thing: object that is moved, with a mass; the first obstacle of the robot that has one if left out.
+            obstacle: object that is moved, with a mass; the first obstacle of the robot that has one if left out.
             options: options of the task.
             axis: about which turns count, of any length but 0; of no matter in the plane.
             contact: True for self-contact if robot.toml does not set contact.
@@ -110,18 +109,18 @@ class ManipulationEnv(GoalEnv):
         if not self.robot.winches:
             raise InputError(f"robot {self.robot.name!r} needs a winch to move an object by")
         self.options, self.render_mode = options, render_mode
-        self.thing = _find_object(self.robot, thing)
+        self.obstacle = _find_object(self.robot, obstacle)
         if not np.any(axis):
             raise InputError("the axis of turns must not be 0 along every axis")
         unit = np.array(axis, dtype=float) / np.linalg.norm(axis)
-        self.world = ManipulationWorld(self.robot, self.thing, unit, options.physics)
+        self.world = ManipulationWorld(self.robot, self.obstacle, unit, options.physics)
         self.steps, self.tolerance, self._pictures = options.steps, options.tolerance, None
         self._groups = _group_winches(self.robot, options.tied)
         self._low = np.array([-winch.release for winch in self.robot.winches], dtype=float)
         travel = np.inf if options.travel is None else options.travel
         self._high = np.array([min(winch.travel, travel) for winch in self.robot.winches], dtype=float)
         self._dim, self._size = self.robot.body.mesh.dim, self.robot.body.mesh.size
-        self._usual = self.thing.frame()[0]
+        self._usual = self.obstacle.frame()[0]
         self._goal, self._stuck, self._begun = np.zeros(self.goal_size), False, np.zeros(self.goal_size)
         self.action_space = spaces.Box(-1.0, 1.0, (len(self._groups),), np.float32)
         goal = spaces.Box(-100.0, 100.0, (self.goal_size,), np.float64)
@@ -163,7 +162,7 @@ class ManipulationEnv(GoalEnv):
             start=tuple((options.start * pick(-1, 1, self._dim)).tolist()),
         )
         goal = self.draw_goal(random)
-        return {"goal": goal, **state._asdict()} if is_clear(self.robot, as_drawn(self.thing, state)) else None
+        return {"goal": goal, **state._asdict()} if is_clear(self.robot, as_drawn(self.obstacle, state)) else None
 
     def reset(
         self, *, seed: int | None = None, options: Mapping[str, Any] | None = None
@@ -222,7 +221,7 @@ class ManipulationEnv(GoalEnv):
     def picture(self) -> np.ndarray:
         """Picture of the robot and the object, with dots on it that show its rotation."""
         if self._pictures is None:
-            self._pictures = ManipulationPictures(self.robot, self.thing)
+            self._pictures = ManipulationPictures(self.robot, self.obstacle)
         return self._pictures.draw(self.world, f"{self.words()}, after keyframe {self.taken_steps} of {self.steps}")
 
     def _go(self, contractions: Vector) -> None:
@@ -256,13 +255,13 @@ class ManipulationEnv(GoalEnv):
     def _for_object(cls, robot: Robot | str, given: TaskOptions, options: ManipulationOptions, **more: Any) -> Self:
         """One with an object as the command line asks for it."""
         given.refuse("markers", "pairs", "incremental", "actions")
-        made, thing = prepare_robot(robot), given.thing
-        thing = thing if thing is not None or given.friction is None else _find_object(made, None)
-        return cls(made, thing=_rubbing(thing, given.friction), options=options, contact=given.contact, **more)
+        made, obstacle = prepare_robot(robot), given.obstacle
+        obstacle = obstacle if obstacle is not None or given.friction is None else _find_object(made, None)
+        return cls(made, obstacle=_rubbing(obstacle, given.friction), options=options, contact=given.contact, **more)
 
 
-def _rubbing(thing: Obstacle | None, friction: float | None) -> Obstacle | None:
-    return thing if thing is None or friction is None else replace(thing, friction=friction)
+def _rubbing(obstacle: Obstacle | None, friction: float | None) -> Obstacle | None:
+    return obstacle if obstacle is None or friction is None else replace(obstacle, friction=friction)
 
 
 def _find_object(robot: Robot, given: Obstacle | None) -> Obstacle:
@@ -272,14 +271,16 @@ def _find_object(robot: Robot, given: Obstacle | None) -> Obstacle:
         raise InputError(
             f"robot {robot.name!r} has nothing to move: give an [[obstacle]] a mass, or give an object (--object)"
         )
-    thing = given or free[0]
-    if thing.mass is None:
-        raise InputError(f'"{thing.name}" stands still: give it a mass')
-    if len(thing.at) != robot.body.mesh.dim:
-        raise InputError(f'"{thing.name}" has {len(thing.at)} coordinates, but the body has {robot.body.mesh.dim}')
-    if not is_clear(robot, thing):
-        raise InputError(f'"{thing.name}" begins in the body or touches it: put it elsewhere')
-    return replace(thing, friction=robot.friction_of(thing))
+    obstacle = given or free[0]
+    if obstacle.mass is None:
+        raise InputError(f'"{obstacle.name}" stands still: give it a mass')
+    if len(obstacle.at) != robot.body.mesh.dim:
+        raise InputError(
+            f'"{obstacle.name}" has {len(obstacle.at)} coordinates, but the body has {robot.body.mesh.dim}'
+        )
+    if not is_clear(robot, obstacle):
+        raise InputError(f'"{obstacle.name}" begins in the body or touches it: put it elsewhere')
+    return replace(obstacle, friction=robot.friction_of(obstacle))
 
 
 def _group_winches(robot: Robot, parts: Sequence[str]) -> tuple[tuple[int, ...], ...]:

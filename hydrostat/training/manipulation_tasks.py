@@ -45,14 +45,14 @@ class PushEnv(ManipulationEnv):
         self,
         robot: Robot | str,
         *,
-        thing: Obstacle | None = None,
+        obstacle: Obstacle | None = None,
         options: PushOptions | None = None,
         contact: bool = False,
         render_mode: str | None = None,
     ) -> None:
         """A robot that pushes; arguments and errors as for `ManipulationEnv`."""
         made = options or PushOptions()
-        super().__init__(robot, thing=thing, options=made, contact=contact, render_mode=render_mode)
+        super().__init__(robot, obstacle=obstacle, options=made, contact=contact, render_mode=render_mode)
         self.unit = self._size
 
     @classmethod
@@ -119,7 +119,7 @@ class TwistEnv(ManipulationEnv):
         self,
         robot: Robot | str,
         *,
-        thing: Obstacle | None = None,
+        obstacle: Obstacle | None = None,
         options: TwistOptions | None = None,
         axis: Sequence[float] = (0.0, 0.0, 1.0),
         contact: bool = False,
@@ -128,7 +128,7 @@ class TwistEnv(ManipulationEnv):
         """A robot that turns an object; arguments and errors as for `ManipulationEnv`."""
         made = prepare_robot(robot, contact)
         options = options or TwistOptions(physics=_physics(made))
-        super().__init__(made, thing=thing, options=options, axis=axis, render_mode=render_mode)
+        super().__init__(made, obstacle=obstacle, options=options, axis=axis, render_mode=render_mode)
         self.unit = np.pi
 
     @classmethod

@@ -63,7 +63,7 @@ class ManipulationWorld:
 
     Attributes:
         robot: robot that moves the object, which is among its obstacles.
-        thing: object of this episode.
+        obstacle: object of this episode.
         simulation: simulation of the robot with it.
         motion: present motion of both.
         start: start of the object [m].
@@ -71,24 +71,24 @@ class ManipulationWorld:
         turned: by which angle the object has turned about the axis [rad]; more than a turn is counted on.
     """
 
-    def __init__(self, robot: Robot, thing: Obstacle, axis: Vector, physics: ManipulationPhysics) -> None:
+    def __init__(self, robot: Robot, obstacle: Obstacle, axis: Vector, physics: ManipulationPhysics) -> None:
         """A robot, the object as it usually is, the axis of turns (a unit vector; in the plane (0, 0, 1))."""
-        self._given, self._usual, self._axis, self._physics = robot, thing, axis, physics
+        self._given, self._usual, self._axis, self._physics = robot, obstacle, axis, physics
         self.time_steps = 0
         self.begin(ObjectState())
 
     def begin(self, state: ObjectState) -> None:
         """Begin at rest, with the object in a state."""
-        self.thing = as_drawn(self._usual, state)
+        self.obstacle = as_drawn(self._usual, state)
         others = [each for each in self._given.obstacles if each.name != self._usual.name]
         material = self._given.body.material
         body = replace(
             self._given.body, material=replace(material, viscosity=material.viscosity or self._physics.viscosity)
         )
-        self.robot = replace(self._given, body=body, obstacles=(self.thing, *others))
+        self.robot = replace(self._given, body=body, obstacles=(self.obstacle, *others))
         physics = BodyPhysics(self.robot)
         self._carriage = physics.rigid_dofs[0]
-        self.start, self._begun = self.thing.frame()
+        self.start, self._begun = self.obstacle.frame()
         along = self._physics.hold * np.eye(len(self.start))
         guide = GuideEnergy(self._carriage, place=self.start, axes=self._begun, along=along, turning=0.0)
         held = [guide] if self._physics.hold else []
@@ -139,33 +139,33 @@ class ManipulationWorld:
 
     def visible_obstacles(self) -> tuple[Obstacle, ...]:
         """The object in its place, with dots on it, which show its rotation."""
-        axes, radius = self.axes, self.thing.radius or float(np.sqrt(self.thing.second_moments().max()))
+        axes, radius = self.axes, self.obstacle.radius or float(np.sqrt(self.obstacle.second_moments().max()))
         sides = axes[:1] if len(axes) == 2 else np.concatenate([axes, -axes])
         out = 0.6 if len(axes) == 2 else 0.94
         dots = (self.place + out * radius * sides).tolist()
         made = [Obstacle(name="dot", shape="sphere", at=tuple(dot), radius=0.16 * radius) for dot in dots]
-        return (self.thing.with_frame(self.place, axes), *made)
+        return (self.obstacle.with_frame(self.place, axes), *made)
 
 
-def as_drawn(thing: Obstacle, state: ObjectState) -> Obstacle:
+def as_drawn(obstacle: Obstacle, state: ObjectState) -> Obstacle:
     """An object in a state: its friction, its radius or sides, its place."""
-    middle, factor = thing.frame()[0], state.radius
-    changed = replace(thing, friction=state.friction * (thing.friction or 0.0))
-    if thing.radius is not None:
-        changed = replace(changed, radius=factor * thing.radius)
-    elif thing.to is not None:
-        at, to = (tuple((middle + factor * (np.array(end) - middle)).tolist()) for end in (thing.at, thing.to))
+    middle, factor = obstacle.frame()[0], state.radius
+    changed = replace(obstacle, friction=state.friction * (obstacle.friction or 0.0))
+    if obstacle.radius is not None:
+        changed = replace(changed, radius=factor * obstacle.radius)
+    elif obstacle.to is not None:
+        at, to = (tuple((middle + factor * (np.array(end) - middle)).tolist()) for end in (obstacle.at, obstacle.to))
         changed = replace(changed, at=at, to=to)
     return move_object(changed, middle + np.array(state.start)) if state.start else changed
 
 
-def is_clear(robot: Robot, thing: Obstacle) -> bool:
+def is_clear(robot: Robot, obstacle: Obstacle) -> bool:
     """True if a body at rest leaves half of the contact distance or more to an object, and has none of it inside."""
     from hydrostat.geometry import locate
 
     mesh = robot.body.mesh
-    gaps = thing.field()(mesh.nodes[np.unique(mesh.boundary)]).values
-    return bool(gaps.min() > 0.5 * robot.contact_distance) and not locate(mesh, thing.spine()).inside.any()
+    gaps = obstacle.field()(mesh.nodes[np.unique(mesh.boundary)]).values
+    return bool(gaps.min() > 0.5 * robot.contact_distance) and not locate(mesh, obstacle.spine()).inside.any()
 
 
 def angle_about(axes: Points, begun: Points, axis: Vector) -> float:

@@ -9,10 +9,11 @@ from gymnasium import spaces
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
+from hydrostat.given import check_type
 from hydrostat.learning import LearnedModel
 from hydrostat.robot import PoseTarget, Robot
 from hydrostat.training.backends import Backend, ExactBackend, LearnedBackend, MixedBackend
-from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, finite_numbers, prepare_robot
+from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, check_task, finite_numbers, prepare_robot
 from hydrostat.units import quote
 
 BEYOND = 1.02
@@ -45,10 +46,9 @@ class ReachOptions:
     sensors: bool = False
 
     def __post_init__(self) -> None:
-        if isinstance(self.markers, str):
-            raise InputError(f'markers must be a list of names, such as ["{self.markers}"]')
-        if self.steps < 1:
-            raise InputError(f"steps must be 1 or more, not {self.steps}")
+        for name, wanted in (("markers", 'a list of names, such as ["tip"]'), ("pairs", "a list of pairs of winches")):
+            check_type(getattr(self, name), (tuple, list), f"{name} must be {wanted}")
+        check_task(self)
         if not 0 < self.tolerance < np.inf:
             raise InputError(f"tolerance must be above 0 m, not {self.tolerance:g}")
 
@@ -186,7 +186,7 @@ class ReachEnv(GoalEnv):
     @classmethod
     def for_task(cls, robot: Robot | str, given: TaskOptions) -> Self:
         """Reach as the command line asks for it."""
-        given.refuse("friction", "actions", "tied", "thing")
+        given.refuse("friction", "actions", "tied", "obstacle")
         return cls(robot, options=reach_options(given), contact=given.contact)
 
     @property
@@ -347,7 +347,7 @@ class HysteresisEnv(ReachEnv):
     @classmethod
     def for_task(cls, robot: Robot | str, given: TaskOptions) -> Self:
         """Reach as the command line asks for it."""
-        given.refuse("actions", "tied", "thing")
+        given.refuse("actions", "tied", "obstacle")
         more = given.select_given("friction", "contact")
         return cls(robot, options=reach_options(given), **more)
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from hydrostat.errors import HydrostatError
+from hydrostat.errors import InputError
 from hydrostat.training.env_copies import EnvCopies, RemoteEnvCopies
 from hydrostat.training.goal_env import GoalEnv
 from hydrostat.version import install_command
@@ -13,7 +13,7 @@ from hydrostat.version import install_command
 try:
     from stable_baselines3.common.vec_env import VecEnv
 except ModuleNotFoundError as error:
-    raise HydrostatError(f"training needs {error.name}; install it: {install_command('rl')}") from None
+    raise InputError(f"training needs {error.name}; install it: {install_command('rl')}") from None
 
 
 class SideBySide(VecEnv):

@@ -30,8 +30,8 @@ TASKS: Mapping[str, Task] = {
     "reach-with-hysteresis": Task(
         "hydrostat/ReachWithHysteresis-v0", HysteresisEnv, "the same with cables that rub, from a pose at random"
     ),
-    "push": Task("hydrostat/Push-v0", PushEnv, "push a free thing to a place"),
-    "twist": Task("hydrostat/Twist-v0", TwistEnv, "turn a free thing by keyframes"),
+    "push": Task("hydrostat/Push-v0", PushEnv, "push a free object to a place"),
+    "twist": Task("hydrostat/Twist-v0", TwistEnv, "turn a free object by keyframes"),
     "walk": Task("hydrostat/Walk-v0", WalkEnv, "go a way along the ground, held by nothing"),
 }
 """By their names on the command line."""

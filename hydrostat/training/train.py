@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.errors import HydrostatError, InputError
+from hydrostat.errors import InputError
 from hydrostat.files import replace_file
 from hydrostat.progress import Progress, no_progress
 from hydrostat.simulation import ContractionProfile
@@ -179,7 +179,7 @@ def train(
         The model of stable-baselines3 and the curve.
 
     Raises:
-        HydrostatError: stable-baselines3 is not there, or sb3-contrib where the method is of it.
+        InputError: stable-baselines3 is not there, or sb3-contrib where the method is of it.
         InputError: there is no checkpoint to go on from, or one of other options; more processes than episodes.
     """
     if not 1 <= processes <= options.num_envs:
@@ -237,7 +237,7 @@ def begun_curve(out: Path, options: TrainOptions, *, resume: bool) -> list[Curve
 
 @contextmanager
 def _copies(env: GoalEnv, options: TrainOptions, processes: int) -> Iterator[Any]:
-    """Episodes side by side, until no more are needed (HydrostatError: stable-baselines3 is not installed)."""
+    """Episodes side by side, until no more are needed (InputError: stable-baselines3 is not installed)."""
     from hydrostat.training.side_by_side import SideBySide
 
     copies = SideBySide(env, options.num_envs, processes=processes)
@@ -291,7 +291,7 @@ def _learner(env: GoalEnv, copies: Any, options: TrainOptions) -> Any:
 
 
 def _algorithm(method: TrainMethod) -> Any:
-    """The class that learns by a method (HydrostatError: its library is not installed)."""
+    """The class that learns by a method (InputError: its library is not installed)."""
     try:
         if method is TrainMethod.TQC:
             from sb3_contrib import TQC
@@ -299,7 +299,7 @@ def _algorithm(method: TrainMethod) -> Any:
             return TQC
         import stable_baselines3
     except ModuleNotFoundError as error:
-        raise HydrostatError(f"training needs {error.name}; install it: {install_command('rl')}") from None
+        raise InputError(f"training needs {error.name}; install it: {install_command('rl')}") from None
     return getattr(stable_baselines3, method.name)
 
 

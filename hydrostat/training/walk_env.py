@@ -13,7 +13,7 @@ from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.robot import ObstacleShape, Robot
 from hydrostat.simulation import Motion, Simulation, StepOptions
-from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, finite_numbers, prepare_robot
+from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, check_task, finite_numbers, prepare_robot
 from hydrostat.training.ground import standing, tilt, with_friction
 
 FASTEST, SLOWEST = 0.3, 2.0
@@ -121,8 +121,7 @@ class WalkOptions:
         make_member(self, "actions", WalkActions)
         if self.incremental and self.actions is WalkActions.GAIT:
             raise InputError("a gait is not incremental: have contractions as actions, or leave it out")
-        if self.steps is not None and self.steps < 1:
-            raise InputError(f"steps must be 1 or more, not {self.steps}")
+        check_task(self)
         if not 0 <= self.spread < 1:
             raise InputError(f"spread must be from 0 to below 1, not {self.spread:g}")
         for name in ("speed", "tolerance"):
@@ -175,7 +174,7 @@ class WalkEnv(GoalEnv):
         count, marks = len(self.robot.winches), len(self.robot.markers)
         if not count or not marks:
             raise InputError(f"robot {self.robot.name!r} needs a winch to be moved by and a marker to be looked at")
-        planes = [thing for thing in self.robot.obstacles if thing.shape is ObstacleShape.PLANE]
+        planes = [obstacle for obstacle in self.robot.obstacles if obstacle.shape is ObstacleShape.PLANE]
         self.friction = planes[0].friction or 0.0
         self.most = 0.5 * min(winch.travel for winch in self.robot.winches)
         mesh, by_gait = self.robot.body.mesh, self.options.actions is WalkActions.GAIT
@@ -238,7 +237,7 @@ class WalkEnv(GoalEnv):
     @classmethod
     def for_task(cls, robot: Robot | str, given: TaskOptions) -> Self:
         """Walk as the command line asks for it."""
-        given.refuse("markers", "pairs", "contact", "tied", "thing")
+        given.refuse("markers", "pairs", "contact", "tied", "obstacle")
         options = WalkOptions(**given.select_given("actions", "steps", "incremental", "tolerance", "shaped"))
         return cls(robot, friction=given.friction, options=options)
 

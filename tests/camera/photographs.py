@@ -4,7 +4,7 @@ It shares only the drawing of tags with the package; rays, distortion and poses 
 """
 
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, lru_cache
 
 import cv2
 import numpy as np
@@ -21,13 +21,13 @@ PER_CELL = 24  # pixels of a tag's cell in its picture
 
 @dataclass(frozen=True)
 class Camera:
-    """A pinhole camera above the plane z = 0, with two terms of radial distortion."""
+    """A pinhole camera above the plane z = 0, with terms of radial distortion."""
 
     width: int = 1280
     height: int = 960
     focal: float = 1150.0
     center: tuple[float, float] = (655.0, 470.0)
-    distortion: tuple[float, float] = (0.06, -0.09)
+    distortion: tuple[float, ...] = (0.06, -0.09)
     rotation: np.ndarray = None  # type: ignore[assignment]
     position: np.ndarray = None  # type: ignore[assignment]
 
@@ -47,23 +47,26 @@ class Camera:
         seen = (np.atleast_2d(points) - self.position) @ self.rotation.T
         x = seen[:, :2] / seen[:, 2:]
         r2 = (x**2).sum(axis=1, keepdims=True)
-        k1, k2 = self.distortion
-        return self.focal * x * (1 + k1 * r2 + k2 * r2**2) + np.array(self.center)
+        return self.focal * x * _stretch(r2, self.distortion) + np.array(self.center)
 
     def rays(self, over: int) -> tuple[np.ndarray, np.ndarray]:
         """Directions of all pixels in the frame of the camera, x and y at z = 1, each pixel cut into over x over."""
         return _rays(self.width, self.height, over, self.focal, self.center, self.distortion)
 
 
-@cache
+def _stretch(r2: np.ndarray, distortion: tuple[float, ...]) -> np.ndarray:
+    """Radius in the picture over that without distortion, by the square of the latter."""
+    return np.polynomial.polynomial.polyval(r2, (1.0, *distortion))
+
+
+@lru_cache(maxsize=8)
 def _rays(width, height, over, focal, center, distortion) -> tuple[np.ndarray, np.ndarray]:
     u = ((np.arange(width * over) + 0.5) / over - 0.5 - center[0]) / focal
     v = ((np.arange(height * over) + 0.5) / over - 0.5 - center[1]) / focal
     x, y = (each.astype(np.float32) for each in np.meshgrid(u, v))
-    k1, k2 = distortion
     radius = np.sqrt(x**2 + y**2)
     table = np.linspace(0.0, 1.6 * float(radius.max()), 4000)  # radius without distortion, by that with it
-    bent = 1 + k1 * table**2 + k2 * table**4
+    bent = _stretch(table**2, distortion)
     factor = np.interp(radius, table * bent, 1 / bent).astype(np.float32)
     return x * factor, y * factor
 
@@ -93,6 +96,7 @@ def tag_plane(number: int, center, side: float, turn: float = 0.0, tilt: np.ndar
     return Plane(0.05 + 0.8 * picture, np.ones_like(picture), corner, x * unit, -y * unit)
 
 
+@cache
 def board_plane(sheet: int = 0, move=(0.0, 0.0, 0.0), clutter: int | None = 0) -> Plane:
     """A sheet of the board, on a cluttered table or alone; move: x, y [m] and turn [degrees]."""
     unit = SIDE / 8 / 12  # whole pixels for each cell and pitch

@@ -91,7 +91,8 @@ def test_shapes_in_the_way_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("hydrostat.design.lifts.propose_routes", propose)
     assert [lift.words for lift in find_lifts(large)] == [CROSSING]
     assert find_lifts(replace(large, expected_error=0.009 * eyes.body.mesh.size)) == ()
-    assert find_lifts(replace(large, source=plain.source)) == ()
+    crossing = replace(request, constraints=replace(request.constraints, cable_gap=0.0))
+    assert find_lifts(replace(large, source=plain.source, request=crossing)) == ()
     monkeypatch.setattr(sys.modules[find_network.__module__], "_search", fail)
     with pytest.raises(HydrostatError, match=r"no network\. Drawn shapes are in the way: drawing_gap"):
         find_network(eyes, request)

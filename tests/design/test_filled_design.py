@@ -21,7 +21,7 @@ from hydrostat.design.stuffed_results import solve_stuffed
 from hydrostat.errors import InputError
 from hydrostat.ik import IKResult, Limits, solve_ik
 from hydrostat.progress import no_progress
-from hydrostat.robot import Face, Robot, get_material, inflated_robot
+from hydrostat.robot import CableSide, Robot, get_material, inflated_robot
 from hydrostat.simulation import Simulation
 
 
@@ -52,12 +52,12 @@ def network(robot: Robot, reached: tuple[IKResult, ...], *others: Alternative) -
 
 def test_new_networks_run_where_a_builder_would_want_them() -> None:
     starfish, trunk = gallery_robot("starfish"), gallery_robot("trunk")
-    assert assign_cable_sides(starfish).face is Face.PAIRS
+    assert assign_cable_sides(starfish).face is CableSide.PAIRS
     assert assign_cable_sides(trunk) is trunk
-    front = replace(starfish, face=Face.FRONT)
+    front = replace(starfish, face=CableSide.FRONT)
     assert assign_cable_sides(front) is front
     foam = replace(starfish, body=replace(starfish.body, material=get_material("flexfoam-it x")))
-    assert assign_cable_sides(foam).face is Face.MIDDLE
+    assert assign_cable_sides(foam).face is CableSide.MIDDLE
 
 
 def test_craft_of_pairs_is_sewn_twice_by_the_same_motors() -> None:
@@ -75,7 +75,7 @@ def test_commands_are_found_on_the_filled_body(robot: Robot, reached: tuple[IKRe
     """Oracle: statics of the inflated robot at both commands; its own are no worse than those of the flat model."""
     filled = solve_stuffed(robot, reached, limits=Limits(tension=20.0))
     solid = Simulation(inflated_robot(robot, "pairs"))
-    assert filled.face is Face.PAIRS
+    assert filled.face is CableSide.PAIRS
     squares = {"flat": [], "own": []}
     for flat, own in zip(reached, filled.reached, strict=True):
         for name, pose in (("flat", flat), ("own", own)):

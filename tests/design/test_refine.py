@@ -170,8 +170,8 @@ def test_the_slope_falls_towards_an_optimum(unchecked: None) -> None:
     region = Region.of_body(evaluator.source.body, evaluator.constraints.clearance)
     ended = refine(evaluator, region, start, RefineOptions(iterations=60, effort=0.0, progress=1e-7))
     before, after = certify(proposals(evaluator), start), certify(proposals(evaluator), ended)
-    assert before.slope > 0.02
-    assert after.slope < 0.5 * before.slope
+    assert before.descent_rate > 0.02
+    assert after.descent_rate < 0.5 * before.descent_rate
 
 
 def test_what_one_more_cable_promises_comes_true(unchecked: None) -> None:

@@ -33,7 +33,7 @@ def test_a_grown_network_as_json() -> None:
     assert constraints["mount"] == "world"
     assert [stage["rms_error"] for stage in read["stages"]] == [0.03 / number for number in range(1, 12)]
     assert [stage["cables"] for stage in read["stages"]] == [1] * 5 + [2] * 6
-    assert read["certificate"] == {"further": 0.0021, "paths": 12345, "slope": 0.0123}
+    assert read["certificate"] == {"further": 0.0021, "paths": 12345, "descent_rate": 0.0123}
     assert [other["rms_error"] for other in read["alternatives"]] == [0.0345, 0.0456]
     assert [other["robot"] for other in read["alternatives"]] == [
         robot_hash(other.robot) for other in network.alternatives

@@ -172,7 +172,9 @@ def test_a_design_on_the_skin_is_sewn_as_it_was_simulated(depth: float, unchecke
         (number, point) for number, cable in enumerate(robot.cables, 1) for point in range(2, len(cable.points) + 1)
     }
     assert found == every
-    assert max(hole.depth for hole in holes if not hole.in_seam) <= 1e3 * (depth + STITCH) + 0.5
+    outside = [hole.depth for hole in holes if not hole.in_seam]
+    assert outside or depth > 0  # 3 mm deep, all holes of this design lie in seams
+    assert max(outside, default=0.0) <= 1e3 * (depth + STITCH) + 0.5
 
 
 def test_the_judgement_knows_the_layer() -> None:

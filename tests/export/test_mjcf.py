@@ -51,8 +51,11 @@ def test_parts_without_counterpart_are_rejected_or_listed() -> None:
     rubbing = replace(robot, cables=tuple(replace(cable, friction=0.2) for cable in robot.cables))
     assert find_omissions(robot) == ()
     assert find_omissions(rubbing) == ("cable friction",)
-    soft = replace(robot, pins=tuple(replace(pin, stiffness=1.0) for pin in robot.pins))
-    assert find_omissions(soft) == ("stiffness of pins (they are rigid)",)
+    for young, stiffness in ((30e3, 1.0), (30e6, 200e3)):
+        pins = tuple(replace(pin, stiffness=stiffness) for pin in robot.pins)
+        assert find_omissions(replace(robot.with_material(young=young), pins=pins)) == (
+            "stiffness of pins (they are rigid)",
+        )
     assert "did not settle" in MjcfError(share=None, num_poses=3).describe()
 
 

@@ -58,6 +58,9 @@ STROKE = 'fill="none" stroke="black"'
         f"<rect {FULL} {STROKE}/>",
         f'<rect id="background" {FULL} fill="#888"/>',
         f'<g style="clip-path:url(#p)"><rect {FULL} fill="snow"/></g><clipPath id="p"><rect {FULL}/></clipPath>',
+        f'<rect {FULL} rx="6" fill="white"/>',
+        '<circle cx="45" cy="45" r="45" fill="white"/>',
+        f'<rect {FULL} fill="url(#g)"/>',
         f'<rect width="89" height="89" x=".5" y=".5" {STROKE}/><rect x="3" y="3" width="84" height="84" {STROKE}/>'
         f'<rect x="50" y="72" width="37" height="15" {STROKE}/>',
     ],
@@ -94,6 +97,7 @@ def test_a_ground_is_no_body(ground: str) -> None:
             1600,
             0,
         ),
+        (f'<polyline points="10,10 80,10 80,60 10,60 10,10.9" stroke-width="2" {STROKE}/>', 3500, 0),
         (f'<mask id="c"><rect {WINDOW} fill="#D9D9D9"/></mask><rect mask="url(#c)" {FULL}/>', 1600, 0),
         (f'<mask id="c"><rect {WINDOW} fill="black"/></mask><rect mask="url(#c)" {FULL}/>', 8100, 0),
         (f'<rect {FULL} fill="#fff"/><path d="{FISH}" fill="white" stroke="black"/>', AREA, 0),
@@ -225,6 +229,18 @@ def test_one_good_outline_is_enough(content: bytes) -> None:
     outline = read_drawing(content, name="a.dxf").outline
     assert outline.size == pytest.approx(0.13)
     assert 1e6 * outline.area == pytest.approx(130 * 50 + 0.5 * 130 * 25)
+
+
+@pytest.mark.parametrize("layer", ["FRAME", "0"])
+def test_a_bar_in_a_frame_with_a_title_block_is_the_body(layer: str) -> None:
+    """A rectangle was a hole of the sheet. Oracle: its side."""
+
+    def draw(space: Modelspace, _: object) -> None:
+        for left, low, right, high in ((-100, -100, 320, 197), (140, -100, 320, -64), (0, 0, 80, 30)):
+            corners = [(left, low), (right, low), (right, high), (left, high)]
+            space.add_lwpolyline(corners, close=True, dxfattribs={"layer": layer if left < 0 else "0"})
+
+    assert 1e3 * read_drawing(dxf(draw), name="a.dxf").outline.size == pytest.approx(80.0)
 
 
 def test_old_and_bare_dxf() -> None:

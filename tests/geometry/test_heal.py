@@ -153,6 +153,17 @@ def test_a_large_hole_is_closed_about_flat() -> None:
     assert healing.largest_distance < _FINE / 2
 
 
+def test_the_volume_of_a_tube_without_ends_is_as_if_they_were_closed() -> None:
+    """Oracle: half the base times the height of a prism; one fan about the middle of both borders gives two thirds."""
+    around, height = 0.01 * np.exp(2j * np.pi * np.arange(24) / 24), 0.1
+    rings = [np.column_stack([around.real, around.imag, np.full(24, z)]) for z in np.linspace(0.0, height, 11)]
+    one = np.arange(240)
+    other = np.where(one % 24 == 23, one - 23, one + 1)
+    sides = np.concatenate([np.stack([one, other, other + 24], axis=1), np.stack([one, other + 24, one + 24], axis=1)])
+    healing = _healed(Surface(np.concatenate(rings), sides))
+    assert healing.volume_before == pytest.approx(12 * 0.01**2 * np.sin(np.pi / 12) * height, rel=1e-6)
+
+
 @pytest.mark.slow
 def test_overlapping_spheres_are_united() -> None:
     """Oracle: closed form of what two spheres share. The input counts it twice."""

@@ -132,3 +132,10 @@ def test_groups_are_connected_components(count: int, joins: int) -> None:
     pairs = np.random.default_rng(count + joins).integers(0, count, (2, joins))
     graph = coo_array((np.ones(joins), pairs), shape=(count, count))
     np.testing.assert_array_equal(joined_groups(pairs, count), connected_components(graph, directed=False)[1])
+
+
+def test_an_element_of_denormal_height_has_no_volume() -> None:
+    """A height of 5e-312: its volume is above 0, and no number can be divided by the area of its sides."""
+    nodes = np.array([[0.0, 0.0, 0.0], [10.0, 0.0, 0.0], [0.0, 20.0, 0.0], [0.0, 0.0, 5e-312]])
+    with pytest.raises(InputError, match="no positive volume"):
+        Mesh(nodes, np.array([[0, 1, 2, 3]]))

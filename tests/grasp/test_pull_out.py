@@ -1,4 +1,4 @@
-"""A thing pulled out of a grasp. Oracles: balance of forces, other steps, more and less friction."""
+"""An object pulled out of a grasp. Oracles: balance of forces, other steps, more and less friction."""
 
 from dataclasses import replace
 from functools import cache
@@ -29,7 +29,7 @@ def pulled(step: float = 2e-3) -> PullOut:
     return pull_out(curler(distance=1e-3), PUCK, CURLED, options)
 
 
-def test_the_thing_is_held_and_comes_free() -> None:
+def test_the_object_is_held_and_comes_free() -> None:
     pull = pulled()
     assert pull.peak > 0.05
     assert pull.released
@@ -37,7 +37,7 @@ def test_the_thing_is_held_and_comes_free() -> None:
     assert pull.forces[-1] == pytest.approx(0.0, abs=1e-3 * pull.peak)
 
 
-def test_forces_on_the_thing_balance() -> None:
+def test_forces_on_the_object_balance() -> None:
     """What pulls it and what the robot does to it, to a millionth of a newton; nothing else acts along the pull."""
     pull = pulled()
     assert np.abs(pull.forces + pull.contact[:, 0]).max() < 1e-6
@@ -64,7 +64,7 @@ def test_neither_springs_nor_distance_matter(
 
 
 @pytest.mark.slow
-def test_a_case_for_each_thing_that_nobody_knows_well() -> None:
+def test_a_case_for_each_quantity_that_nobody_knows_well() -> None:
     options = PullOptions(direction=(1.0, 0.0), step=8e-3)
     cases = pull_bands(curler(distance=1e-3), PUCK, CURLED, options)
     assert [case.name for case in cases] == [
@@ -86,16 +86,16 @@ def test_a_case_for_each_thing_that_nobody_knows_well() -> None:
 
 
 @pytest.mark.parametrize(
-    ("thing", "words"),
+    ("obstacle", "words"),
     [
         (replace(PUCK, mass=None), "has no mass; give it one"),
         (replace(PUCK, at=(0.1, 0.0)), "stands in the body|the body at rest stands in"),
         (replace(PUCK, at=(0.0, 0.5)), "is touched by nothing when the robot has closed"),
     ],
 )
-def test_what_cannot_be_pulled_is_told(thing: Obstacle, words: str) -> None:
+def test_what_cannot_be_pulled_is_told(obstacle: Obstacle, words: str) -> None:
     with pytest.raises(InputError, match=words):
-        pull_out(curler(), thing, CURLED, PullOptions(direction=(1.0, 0.0)))
+        pull_out(curler(), obstacle, CURLED, PullOptions(direction=(1.0, 0.0)))
 
 
 @pytest.mark.parametrize("wrong", [{"direction": (0.0, 0.0)}, {"direction": (1.0, 0.0), "step": 0.0}])
@@ -104,7 +104,7 @@ def test_a_wrong_pull_is_told(wrong: dict) -> None:
         PullOptions(**wrong)
 
 
-def test_things_are_read_from_words() -> None:
+def test_objects_are_read_from_words() -> None:
     known = {"mass": 0.058, "friction": 0.5}
     assert read_object("sphere:65mm", 3, **known).radius == pytest.approx(0.0325)
     assert read_object("box:4cm,40mm,60mm", 3, **known).to == pytest.approx((0.02, 0.02, 0.03))

@@ -74,7 +74,7 @@ def test_a_slack_cable_has_a_wide_side() -> None:
     predictor = MarkerPredictor(model, at_rest)
 
     def deviance(number: float) -> float:
-        errors = (predictor.predict(np.array([number]), slopes=False).places - at_rest.places) / 3e-4
+        errors = (predictor.predict(np.array([number]), with_jacobian=False).places - at_rest.places) / 3e-4
         return float(np.sum(18 * (np.sqrt(1 + errors**2 / 9) - 1)) + (number - middle) ** 2)
 
     number = fitted.numbers[0]

@@ -64,7 +64,9 @@ def test_friction_is_shown_by_strokes(monkeypatch: pytest.MonkeyPatch) -> None:
     assert pulls == pytest.approx(np.outer(pulls[:, 1], [0.5, 1.0, 0.5, 0.0]))
     path = Measurements(commands=found.commands, markers=found.markers, places=np.zeros((8, 2, 2)), in_order=True)
     model, step = named_model(strip(), ("friction",)), 0.02
-    less, more = (MarkerPredictor(model, path).predict(np.array([s]), slopes=False).places for s in (-step, step))
+    less, more = (
+        MarkerPredictor(model, path).predict(np.array([s]), with_jacobian=False).places for s in (-step, step)
+    )
     information = 1 + np.sum(((more - less) / (2 * step * found.noise)) ** 2)
     assert found.deviations["friction"] == pytest.approx(information**-0.5, rel=0.02)
     with pytest.raises(InputError, match="takes 4 photographs"):

@@ -8,7 +8,7 @@ import pytest
 from wishes import BENT, FLAT, PLANE
 
 from hydrostat.ik.objectives.marker_target import MarkerTarget
-from hydrostat.ik.objectives.objective import EquilibriumState, Objective, Residual, Rows, Slopes, StateJacobian
+from hydrostat.ik.objectives.objective import EquilibriumState, Jacobian, Objective, Residual, Rows, StateJacobian
 from hydrostat.simulation import Simulation
 from hydrostat.testing import ConformanceError, check_objective
 
@@ -30,7 +30,7 @@ class Wrapped(Residual):
     def residual(self, posture: EquilibriumState) -> Rows:
         return self.term.residual(posture)
 
-    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
+    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Jacobian:
         return self.term.jacobian(posture, moves)
 
     def errors(self, posture: EquilibriumState) -> Mapping[str, float]:
@@ -40,7 +40,7 @@ class Wrapped(Residual):
 class SlopeOff(Wrapped):
     """One entry of its largest row is 0.01 % too large."""
 
-    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
+    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Jacobian:
         slopes = super().jacobian(posture, moves).copy()
         slopes[np.abs(slopes[:, 0]).argmax(), 0] *= 1.0001
         return slopes
@@ -49,14 +49,14 @@ class SlopeOff(Wrapped):
 class SlopesOfNodesAlone(Wrapped):
     """As if the places of the shape were not pulled at by the body."""
 
-    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
+    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Jacobian:
         slopes = super().jacobian(posture, moves).copy()
         slopes[-100:] = 0.0
         return slopes
 
 
 class SlopesTurned(Wrapped):
-    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
+    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Jacobian:
         return super().jacobian(posture, moves).T
 
 
@@ -85,7 +85,7 @@ class ErrorOfNothing(Wrapped):
     def residual(self, posture: EquilibriumState) -> Rows:
         return np.zeros(3)
 
-    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
+    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Jacobian:
         return np.zeros((3, 2))
 
 

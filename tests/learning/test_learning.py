@@ -29,7 +29,7 @@ from hydrostat.learning import (
 from hydrostat.learning.learned_model import Tier
 from hydrostat.learning.training_set import linear_map
 from hydrostat.learning.verify import exact_steps
-from hydrostat.mechanics import Reason
+from hydrostat.mechanics import NewtonStatus
 from hydrostat.robot import Robot
 
 pytestmark = pytest.mark.usefixtures("unchecked")
@@ -108,7 +108,7 @@ def test_answers_rolled_out_in_the_simulator(model: LearnedModel, samples: Sampl
             errors[name].append(answer.error)
             assert (answer.contractions >= model.low).all()
             assert (answer.contractions <= model.high).all()
-        assert answers["search"].reason is Reason.CONVERGED
+        assert answers["search"].reason is NewtonStatus.CONVERGED
         assert answers["exact"].reason is IKStatus.REACHED
         assert answers["step"].error <= answers["search"].error
     means = {name: np.mean(values) for name, values in errors.items()}

@@ -53,8 +53,8 @@ def test_the_kernel_is_what_was_trained() -> None:
         assert moved[:, place].mean(0).T.numpy() == pytest.approx(slopes, abs=1e-12)
 
 
-@pytest.mark.parametrize("sloped", [4, 6])
-def test_gradients_of_the_loss(sloped: int) -> None:
+@pytest.mark.parametrize("differentiated", [4, 6])
+def test_gradients_of_the_loss(differentiated: int) -> None:
     """Oracle: central differences of the loss along random ways, values, slopes and tensions together."""
     torch = pytest.importorskip("torch")
     from hydrostat.learning.train import loss_weights, sobolev_loss, tensors_of
@@ -62,7 +62,10 @@ def test_gradients_of_the_loss(sloped: int) -> None:
     draw = np.random.default_rng(3)
     some = networks((3, 8, 8, 6), 2)
     points, ways = torch.tensor(draw.normal(size=(2, 5, 3))), torch.tensor(draw.normal(size=(2, 5, 2, 3)))
-    outputs, slopes = torch.tensor(draw.normal(size=(2, 5, 6))), torch.tensor(draw.normal(size=(2, 5, sloped, 3)))
+    outputs, slopes = (
+        torch.tensor(draw.normal(size=(2, 5, 6))),
+        torch.tensor(draw.normal(size=(2, 5, differentiated, 3))),
+    )
 
     def loss(numbers: np.ndarray, *, graph: bool = False) -> "tuple[torch.Tensor, list[torch.Tensor]]":
         parts = tensors_of(Perceptrons(sizes=some.sizes, numbers=numbers), torch.float64)

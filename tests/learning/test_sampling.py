@@ -342,7 +342,7 @@ def test_a_folder_of_something_else_is_refused(plan: SamplePlan, once: Path, tmp
     with pytest.raises(InputError, match="another plan: seed is 3, asked for 4"):
         sample_robot(replace(plan, seed=4), once)
     (tmp_path / "letter.txt").write_text("dear")
-    with pytest.raises(InputError, match=r"holds other things, such as letter.txt"):
+    with pytest.raises(InputError, match=r"holds other files, such as letter.txt"):
         sample_robot(plan, tmp_path)
     with pytest.raises(InputError, match=r"samples.json: there is no such file"):
         Samples.read(tmp_path)

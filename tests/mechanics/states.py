@@ -10,20 +10,20 @@ from hydrostat.geometry import Mesh, locate
 from hydrostat.mechanics import (
     CableEnergy,
     CableSegments,
-    ControlledLoad,
-    DriveEnergy,
+    DeadLoadEnergy,
+    DrivenLoadEnergy,
+    DrivenPinEnergy,
     Energy,
     FibreEnergy,
     FoamSolid,
     MomentEnergy,
     NeoHookean,
     PinEnergy,
+    PrandtlEnergy,
     PressureEnergy,
     RodEnergy,
     SheetEnergy,
-    SliderEnergy,
     TensionLaw,
-    WeightEnergy,
     rod_points,
 )
 
@@ -100,7 +100,7 @@ def sliders(dim: int, random: np.random.Generator) -> State:
     mesh = rough_mesh(dim, random)
     shape = NeoHookean(mesh.nodes, mesh.elements, mu=0.0, lame=0.0, thickness=0.03 if dim == 2 else 1.0)
     points = {"gradients": shape.shape_gradients[:, None], "volumes": shape.volumes[:, None]}
-    energy = SliderEnergy(mesh.nodes, mesh.elements, **points, young=11e3, strain=0.2)
+    energy = PrandtlEnergy(mesh.nodes, mesh.elements, **points, young=11e3, strain=0.2)
     before = energy.with_advanced_history(deform(mesh, random), np.zeros(0))
     return State(before, deform(mesh, random), np.zeros(CONTROLS))
 
@@ -193,13 +193,13 @@ def drives(dim: int, random: np.random.Generator) -> State:
     first, second = random.uniform(-0.1, 0.1, (2, 3, dim))
     turns = np.array([True, True, False])
     terms, controls = np.array([0, 2, 3]), np.array([1, 1, 2])
-    energy = DriveEnergy(state.energy, terms=terms, controls=controls, directions=(first, second), turns=turns)
+    energy = DrivenPinEnergy(state.energy, terms=terms, controls=controls, directions=(first, second), turns=turns)
     return State(energy, state.nodes, random.uniform(-1.5, 1.5, CONTROLS))
 
 
 def weight(dim: int, random: np.random.Generator) -> State:
     mesh = rough_mesh(dim, random)
-    energy = WeightEnergy(mesh.nodes, random.standard_normal(mesh.nodes.shape))
+    energy = DeadLoadEnergy(mesh.nodes, random.standard_normal(mesh.nodes.shape))
     return State(energy, deform(mesh, random), np.zeros(CONTROLS))
 
 
@@ -218,7 +218,7 @@ def moment(dim: int, random: np.random.Generator) -> State:
 def controlled(dim: int, random: np.random.Generator, of: Callable[[int, np.random.Generator], State]) -> State:
     """A load of which a control lets a share act."""
     state = of(dim, random)
-    return State(ControlledLoad(state.energy, 1), state.nodes, random.uniform(-1.5, 1.5, CONTROLS))
+    return State(DrivenLoadEnergy(state.energy, 1), state.nodes, random.uniform(-1.5, 1.5, CONTROLS))
 
 
 def edge_fibres(dim: int, random: np.random.Generator) -> State:

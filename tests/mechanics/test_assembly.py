@@ -5,7 +5,7 @@ import pytest
 from states import CONTROLS, LAW, deform, rough_mesh
 
 from hydrostat.geometry import locate
-from hydrostat.mechanics import Assembly, CableEnergy, CableSegments, NeoHookean, PinEnergy, WeightEnergy
+from hydrostat.mechanics import Assembly, CableEnergy, CableSegments, DeadLoadEnergy, NeoHookean, PinEnergy
 from hydrostat.mechanics.energy import nearest_semidefinite
 from hydrostat.mechanics.sparsity import SparsityPattern
 
@@ -70,9 +70,9 @@ def test_the_sum_is_that_of_plain_loops(dim: int, seed: int) -> None:
     assert assembly.gradient(nodes, controls) == pytest.approx(gradient, abs=1e-12 * np.abs(gradient).max())
     assert found.toarray() == pytest.approx(hessian, abs=1e-12 * np.abs(hessian).max())
     assert found.has_sorted_indices
-    springs = assembly.coupling(nodes, controls)
+    springs = assembly.low_rank_hessian(nodes, controls)
     columns, weights = springs.columns, springs.weights
-    parts = assembly.couplings(nodes, controls)
+    parts = assembly.low_rank_hessians(nodes, controls)
     assert [part is None for part in parts] == [True, True, False, False]
     expected = sum(part.columns @ part.weights @ part.columns.T for part in parts if part is not None)
     assert np.linalg.matrix_rank(expected) == 2
@@ -106,7 +106,7 @@ def test_without_controls_the_control_derivative_is_empty() -> None:
 def test_the_stiffness_solves_with_the_whole_hessian(dim: int, shift: float) -> None:
     """Oracle: a dense solve with blocks, part of low rank and shift, a fraction of the largest diagonal entry."""
     assembly, nodes, controls = energies(dim, 0)
-    springs = assembly.coupling(nodes, controls)
+    springs = assembly.low_rank_hessian(nodes, controls)
     columns, weights = springs.columns, springs.weights
     matrix = assembly.hessian(nodes, controls, projection=0.5).toarray()
     matrix += shift * matrix.diagonal().max() * np.eye(len(matrix)) + columns @ weights @ columns.T
@@ -130,7 +130,7 @@ def test_other_energies_on_the_same_stencils() -> None:
     assert (found.hessian(nodes, controls).toarray() == fresh.hessian(nodes, controls).toarray()).all()
     assert (assembly.hessian(nodes, controls).toarray() == before).all()
     with pytest.raises(ValueError, match="stencils"):
-        assembly.with_energies([WeightEnergy(nodes, nodes), pins, *cables])
+        assembly.with_energies([DeadLoadEnergy(nodes, nodes), pins, *cables])
 
 
 def test_the_value_is_infinite_where_one_energy_is() -> None:

@@ -9,7 +9,7 @@ from loads import Rollers, outward_areas
 from scipy.optimize import root_scalar
 
 from hydrostat.geometry import Mesh
-from hydrostat.mechanics import Assembly, NeoHookean, NewtonOptions, NewtonResult, RoundOff, WeightEnergy, minimize
+from hydrostat.mechanics import Assembly, DeadLoadEnergy, NeoHookean, NewtonOptions, NewtonResult, RoundOff, minimize
 
 MU, LAME = 11e3, 17e3
 SIDES = (0.1, 0.06, 0.04)
@@ -66,7 +66,7 @@ def equilibrium(tractions: tuple[float, float, float]) -> tuple[Mesh, NewtonResu
     sides = [np.flatnonzero(held[:, axis]) for axis in range(3)]
     energies = [
         NeoHookean(mesh.nodes, mesh.elements, mu=MU, lame=LAME),
-        WeightEnergy(mesh.nodes, areas * tractions),
+        DeadLoadEnergy(mesh.nodes, areas * tractions),
         *[Rollers(sides[axis], axis, GROUND * held[sides[axis], axis]) for axis in range(3)],
     ]
     result = minimize(

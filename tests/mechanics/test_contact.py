@@ -12,12 +12,12 @@ from hydrostat.geometry import DistanceField, Pairs
 from hydrostat.kernel import native
 from hydrostat.mechanics import (
     Assembly,
-    ContactEnergy,
     NeoHookean,
     NewtonOptions,
     ObstacleEnergy,
     PinEnergy,
     RoundOff,
+    SelfContactEnergy,
     minimize,
 )
 from hydrostat.simulation import Equilibrium, Simulation
@@ -32,9 +32,9 @@ def closed(dim: int) -> Equilibrium:
     return Simulation(fork_robot(dim)).solve({"up": 0.012, "down": 0.01})
 
 
-def own(dim: int) -> ContactEnergy:
+def own(dim: int) -> SelfContactEnergy:
     robot = fork_robot(dim)
-    return ContactEnergy.of(
+    return SelfContactEnergy.of(
         robot.body.mesh, distance=DISTANCE, young=robot.body.material.young, thickness=robot.body.thickness
     )
 
@@ -81,9 +81,9 @@ def test_forces_balance(dim: int) -> None:
 def test_nothing_is_felt_at_rest(dim: int) -> None:
     """Not even in a slot narrower than the distance, nor between parts of one mesh that lie near."""
     mesh = fork_robot(dim).body.mesh
-    energy = ContactEnergy.of(mesh, distance=0.05, young=3e4).with_active_terms(mesh.nodes)
+    energy = SelfContactEnergy.of(mesh, distance=0.05, young=3e4).with_active_terms(mesh.nodes)
     assert energy.watch is not None
-    energy = ContactEnergy(energy.skin, energy.watch.pairs)
+    energy = SelfContactEnergy(energy.skin, energy.watch.pairs)
     assert len(energy.stencils) > 100
     assert energy.value(mesh.nodes, IDLE) == 0.0
     assert not energy.gradient(mesh.nodes, IDLE).any()
@@ -108,7 +108,7 @@ def test_parallel_edges_have_a_hessian() -> None:
     """Two edges side by side, whose nearest points are not certain: the block is the slope of the forces."""
     rest = np.array([[0, 0, 0], [0.01, 0, 0], [0, 0.1, 0], [0.01, 0.1, 0]])
     skin = replace(own(3).skin, rest=rest, areas=np.ones(4))
-    pair = ContactEnergy(skin, Pairs(np.array([[0, 1, 2, 3]]), np.array([True])))
+    pair = SelfContactEnergy(skin, Pairs(np.array([[0, 1, 2, 3]]), np.array([True])))
     for turn in (0.0, 1e-7, 1e-3):
         nodes = np.array([[0, 0, 0], [0.01, 0, 0], [0.001, 4e-4, 0], [0.012, 4e-4, turn]])
         block, slopes, step = pair.hessian(nodes, IDLE)[0], np.empty((12, 12)), 1e-9
@@ -125,7 +125,7 @@ def test_blocks_to_eight_digits(kind: str) -> None:
     dim = 2 if kind == "node and edge" else 3
     rest, random = 9.0 * np.eye(dim + 1, dim), np.random.default_rng(3)
     skin = replace(own(dim).skin, rest=rest, areas=np.ones(dim + 1), distance=1.0)
-    pair = ContactEnergy(skin, Pairs(np.arange(dim + 1)[None], np.array([kind == "edges"])))
+    pair = SelfContactEnergy(skin, Pairs(np.arange(dim + 1)[None], np.array([kind == "edges"])))
     felt = 0
     while felt < 20:
         nodes = random.uniform(-1, 1, (dim + 1, dim))

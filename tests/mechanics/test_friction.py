@@ -173,7 +173,7 @@ def test_without_limits_it_is_a_cable_without_friction(dim: int) -> None:
     for part in ("gradient", "hessian", "control_gradient"):
         ours, theirs = getattr(energy, part)(nodes, controls), getattr(plain, part)(nodes, controls)
         assert np.abs(ours - theirs).max() < 1e-11 * np.abs(theirs).max()
-    one, other = energy.coupling(nodes, controls), plain.coupling(nodes, controls)
+    one, other = energy.low_rank_hessian(nodes, controls), plain.low_rank_hessian(nodes, controls)
     assert one.law is not None
     assert other.law is not None
     for further in (-0.02, -1e-4, 1e-4, 0.02):

@@ -33,7 +33,7 @@ for share in (0.0, 1.0):
 bent = mesh.to_quadratic()
 curved = QuadraticSolid(bent.nodes, bent.quadratic, mu=3e4, lame=1e6)
 moved = bent.nodes + 0.02 * np.ptp(bent.nodes, axis=0).min() / 4 * random.uniform(-1, 1, bent.nodes.shape)
-found += [np.array([curved.value(moved, none), curved.least_volume(moved)]), curved.gradient(moved, none)]
+found += [np.array([curved.value(moved, none), curved.min_volume_ratio(moved)]), curved.gradient(moved, none)]
 found += [curved.projected_hessian(moved, none, share) for share in (0.0, 1.0)]
 factors = assembly.pattern.analysis.factorize(assembly.hessian(mesh.nodes, none).data)
 for sides in (1, 4, 7, 12, 20):

@@ -14,8 +14,8 @@ from hydrostat.mechanics import (
     NeoHookean,
     NewtonOptions,
     NewtonResult,
+    NewtonStatus,
     PinEnergy,
-    Reason,
     RoundOff,
     TensionLaw,
     minimize,
@@ -73,7 +73,7 @@ def strip(pin: type[PinEnergy] = PinEnergy) -> Assembly:
 
 def dense(assembly: Assembly, nodes: np.ndarray, controls: np.ndarray) -> np.ndarray:
     """The whole Hessian, part of low rank included."""
-    springs = assembly.coupling(nodes, controls)
+    springs = assembly.low_rank_hessian(nodes, controls)
     columns, weights = springs.columns, springs.weights
     return assembly.hessian(nodes, controls).toarray() + columns @ weights @ columns.T
 
@@ -97,7 +97,7 @@ def solve(
 def test_it_converges_to_a_minimum_and_says_so() -> None:
     result = solve(0.03)
     assembly, controls = strip(), np.array([0.03])
-    assert result.reason is Reason.CONVERGED
+    assert result.reason is NewtonStatus.CONVERGED
     assert result.converged
     assert result.stable
     assert np.linalg.eigvalsh(dense(assembly, result.nodes, controls))[0] > 0
@@ -175,14 +175,14 @@ def test_a_node_that_nothing_holds_stays_and_the_rest_arrives() -> None:
 @pytest.mark.parametrize("iterations", [0, 1, 3])
 def test_the_iteration_limit_is_kept_and_named(iterations: int) -> None:
     result = solve(0.03, iterations=iterations)
-    assert result.reason is Reason.ITERATION_LIMIT
+    assert result.reason is NewtonStatus.ITERATION_LIMIT
     assert result.iterations == iterations
     assert np.isfinite(result.nodes).all()
 
 
 def test_an_inverted_start_is_named() -> None:
     result = solve(0.03, start=MESH.nodes * [1, -1])
-    assert result.reason is Reason.BAD_START
+    assert result.reason is NewtonStatus.BAD_START
     assert (result.nodes == MESH.nodes * [1, -1]).all()
 
 
@@ -190,15 +190,15 @@ def test_no_descent_is_named_not_hidden() -> None:
     """A gradient that lies: Newton stops where it is and says that no step helps."""
     assembly = strip(Uphill)
     result = solve(0.03, assembly=assembly, start=MESH.nodes + np.array([0.01, 0.0]))
-    assert result.reason in (Reason.NO_DESCENT, Reason.ITERATION_LIMIT)
+    assert result.reason in (NewtonStatus.NO_DESCENT, NewtonStatus.ITERATION_LIMIT)
     assert not result.converged
     assert np.isfinite(result.nodes).all()
-    assert solve(0.03, halvings=0).reason is Reason.NO_DESCENT
+    assert solve(0.03, halvings=0).reason is NewtonStatus.NO_DESCENT
 
 
 def test_a_hessian_that_is_not_a_number_ends_without_one() -> None:
     result = solve(0.03, assembly=strip(NotANumber))
-    assert result.reason is Reason.NO_DESCENT
+    assert result.reason is NewtonStatus.NO_DESCENT
     assert np.isfinite(result.nodes).all()
 
 
@@ -229,7 +229,7 @@ def test_no_step_leaves_less_than_a_fifth_of_the_element_squeezed_most(contracti
 def test_a_first_step_that_would_crush_an_element_is_refused_at_no_cost() -> None:
     """A contraction of two thirds of the strip: cut short the step is taken, whole it is not."""
     refused, cut = (solve(0.2, whole=whole, iterations=1) for whole in (True, False))
-    assert refused.reason is Reason.NO_DESCENT
+    assert refused.reason is NewtonStatus.NO_DESCENT
     assert refused.iterations == 0
     assert refused.stiffness is None
     assert (refused.nodes == MESH.nodes).all()

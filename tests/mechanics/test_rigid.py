@@ -1,4 +1,4 @@
-"""Rigid things that move, and friction along them. Oracles: differences (`check_energy`), rotations, force balance."""
+"""Rigid objects that move, and friction along them. Oracles: differences (`check_energy`), rotations, force balance."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ from builders import box_mesh, strip_mesh
 
 from hydrostat.geometry import DistanceField, Mesh
 from hydrostat.mechanics import ObstacleEnergy
-from hydrostat.mechanics.rigid import CarriedWarp, GuideEnergy, RigidBodyDofs, RigidEnergy
+from hydrostat.mechanics.rigid import GuideEnergy, RigidBodyDofs, RigidBodyWarp, RigidEnergy
 from hydrostat.testing import check_energy
 
 IDLE = np.zeros(1)
@@ -17,7 +17,7 @@ def meshes(dim: int) -> Mesh:
 
 
 def scene(dim: int, *, up: float = 0.0) -> tuple[Mesh, RigidBodyDofs, np.ndarray]:
-    """A body, and a thing that leans on the middle of its upper side, turned and a little strained."""
+    """A body, and an object that leans on the middle of its upper side, turned and a little strained."""
     mesh, random = meshes(dim), np.random.default_rng(0)
     carriage = RigidBodyDofs(len(mesh.nodes), 0.03, dim)
     at = mesh.nodes.mean(axis=0)
@@ -36,7 +36,7 @@ def shapes(dim: int) -> dict[str, tuple[DistanceField, float]]:
 
 
 def met(dim: int, shape: str, friction: float) -> tuple[ObstacleEnergy, np.ndarray]:
-    """Energy of a thing that moves, and unknowns at which it is felt."""
+    """Energy of an object that moves, and unknowns at which it is felt."""
     field, up = shapes(dim)[shape]
     mesh, carriage, unknowns = scene(dim, up=up)
     thickness = 0.03 if dim == 2 else None
@@ -78,7 +78,7 @@ def test_what_keeps_it_rigid_and_what_guides_it(dim: int) -> None:
 
 
 @pytest.mark.parametrize("dim", [2, 3])
-def test_body_and_thing_push_each_other_equally(dim: int) -> None:
+def test_body_and_object_push_each_other_equally(dim: int) -> None:
     energy, unknowns = met(dim, "box", 0.5)
     energy = energy.with_history(energy.history + 1e-3, unknowns, IDLE)
     forces = np.zeros_like(unknowns)
@@ -91,7 +91,7 @@ def test_body_and_thing_push_each_other_equally(dim: int) -> None:
 
 @pytest.mark.parametrize("dim", [2, 3])
 def test_energy_does_not_care_how_both_lie_in_the_world(dim: int) -> None:
-    """Turned and moved together, body and thing feel the same, friction included."""
+    """Turned and moved together, body and object feel the same, friction included."""
     energy, unknowns = met(dim, "box", 0.5)
     energy = energy.with_history(energy.history + 1e-3, unknowns, IDLE)
     turn = np.linalg.qr(np.random.default_rng(3).normal(size=(dim, dim)))[0]
@@ -104,7 +104,7 @@ def test_energy_does_not_care_how_both_lie_in_the_world(dim: int) -> None:
 def test_axes_follow_a_turn_and_stay_a_rotation(dim: int) -> None:
     """Half a turn in one step: the step begins as asked, and ends without strain."""
     _, carriage, unknowns = scene(dim)
-    warp = CarriedWarp(lambda nodes, step: nodes + step, carriage.row, (carriage,))
+    warp = RigidBodyWarp(lambda nodes, step: nodes + step, carriage.row, (carriage,))
     spin = np.zeros((dim, dim))
     spin[0, 1], spin[1, 0] = -np.pi / 2, np.pi / 2
     step = np.zeros_like(unknowns)

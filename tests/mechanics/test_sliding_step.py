@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.sparse import csc_array
 
-from hydrostat.mechanics import Analysis, Stiffness
+from hydrostat.mechanics import FactorizedHessian, SymbolicFactorization
 from hydrostat.mechanics.energy import Gaps, LowRankStiffness
 from hydrostat.mechanics.projection import Projection
 from hydrostat.mechanics.sliding_step import StepTrial, find_sliding_step
@@ -33,11 +33,11 @@ def attempt(step: np.ndarray) -> StepTrial:
     return StepTrial(Wall(1.0), nodes, energy, 1.0, share)  # pyright: ignore[reportArgumentType]
 
 
-def spring() -> Stiffness:
+def spring() -> FactorizedHessian:
     indptr, indices = np.array([0, 2, 4], np.int32), np.array([0, 1, 0, 1], np.int32)
     assert csc_array((np.ones(4), indices, indptr), shape=(2, 2)).nnz == 4
-    factors = Analysis(indptr, indices, dim=2).factorize(np.array([1.0, 0.0, 0.0, 1.0]))
-    return Stiffness(factors, LowRankStiffness(columns=np.zeros((2, 0)), weights=np.zeros((0, 0))))
+    factors = SymbolicFactorization(indptr, indices, dim=2).factorize(np.array([1.0, 0.0, 0.0, 1.0]))
+    return FactorizedHessian(factors, LowRankStiffness(columns=np.zeros((2, 0)), weights=np.zeros((0, 0))))
 
 
 def test_a_step_slides_along_a_wall() -> None:

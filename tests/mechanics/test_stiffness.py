@@ -1,11 +1,11 @@
-"""`Stiffness`: a factorized body with cables of low rank. Oracle: the same matrix, dense, by numpy."""
+"""`FactorizedHessian`: a factorized body with cables of low rank. Oracle: the same matrix, dense, by numpy."""
 
 import numpy as np
 import pytest
 from builders import strip_mesh
 from scipy.sparse import csc_array
 
-from hydrostat.mechanics import Analysis, Stiffness
+from hydrostat.mechanics import FactorizedHessian, SymbolicFactorization
 from hydrostat.mechanics.energy import LowRankStiffness
 from hydrostat.mechanics.tension_law import TensionLaw
 
@@ -27,12 +27,12 @@ def body(shift: float, seed: int = 0) -> np.ndarray:
     return matrix + (shift - least) * np.eye(SIZE)
 
 
-def made(matrix: np.ndarray, columns: np.ndarray, weights: np.ndarray) -> Stiffness:
+def made(matrix: np.ndarray, columns: np.ndarray, weights: np.ndarray) -> FactorizedHessian:
     pattern = csc_array(np.ones_like(matrix) * (body(1.0) != 0))
     pattern.sort_indices()
     values = matrix.T[pattern.T.toarray() != 0]
-    analysis = Analysis(pattern.indptr, pattern.indices, dim=2, points=MESH.nodes)
-    return Stiffness(analysis.factorize(values), LowRankStiffness(columns=columns, weights=weights))
+    analysis = SymbolicFactorization(pattern.indptr, pattern.indices, dim=2, points=MESH.nodes)
+    return FactorizedHessian(analysis.factorize(values), LowRankStiffness(columns=columns, weights=weights))
 
 
 def weights_of(kind: str, random: np.random.Generator) -> np.ndarray:
@@ -120,7 +120,7 @@ def test_springs_that_came_since_count_whole() -> None:
     random = np.random.default_rng(6)
     matrix, columns = body(0.5), random.standard_normal((SIZE, RANK + 2))
     found = made(matrix, columns[:, :RANK], np.eye(RANK))
-    other = found.with_coupling(LowRankStiffness(columns=columns, weights=2.0 * np.eye(RANK + 2)))
+    other = found.with_low_rank(LowRankStiffness(columns=columns, weights=2.0 * np.eye(RANK + 2)))
     right = random.standard_normal(SIZE)
     expected = np.linalg.solve(matrix + 2.0 * columns @ columns.T, right)
     assert other.solve(right) == pytest.approx(expected, abs=1e-9 * np.abs(expected).max())

@@ -18,7 +18,7 @@ def made(mesh: Mesh, held: list[int]) -> Warp:
         shape_gradients=body.shape_gradients,
         volumes=body.volumes,
         rest=mesh.nodes,
-        held=(np.array(held)[:, None] + np.arange(count)) % len(mesh.nodes),
+        held=(np.array(held, dtype=int)[:, None] + np.arange(count)) % len(mesh.nodes),
         holds=np.tile(np.eye(count)[0], (len(held), 1)),
     )
 
@@ -46,6 +46,15 @@ def test_a_rigid_spin_becomes_a_rotation(dim: int, angle: float, deformed: bool)
     found = made(mesh, [2])(nodes, (nodes - center) @ turn.T)
     expected = (nodes - center) @ expm(turn).T + center
     assert np.abs(found - expected).max() < 1e-11 * np.ptp(nodes)
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_a_free_body_turns_about_its_middle(dim: int) -> None:
+    """Held nowhere, so its middle goes where the straight step leads it."""
+    nodes, turn = block(dim).nodes, spin(dim, np.random.default_rng(dim), 0.3)
+    middle, drift = nodes.mean(axis=0), 0.02
+    found = made(block(dim), [])(nodes, (nodes - middle) @ turn.T + drift)
+    assert np.abs(found - ((nodes - middle) @ expm(turn).T + middle + drift)).max() < 1e-6 * np.ptp(nodes)
 
 
 @pytest.mark.parametrize("dim", [2, 3])

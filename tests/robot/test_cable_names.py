@@ -33,6 +33,7 @@ NAMED = st.lists(
 )
 
 
+@settings(deadline=None)  # computers may be busy
 @given(entries=NAMED)
 def test_names_are_unique_and_lasting(entries: list[tuple[str, str]]) -> None:
     """Oracle: what names are for: no two alike, given ones stay, and dropping the usual ones changes nothing."""
@@ -49,6 +50,7 @@ def test_names_are_unique_and_lasting(entries: list[tuple[str, str]]) -> None:
         assert old.name or check_name(new.name) == new.name
 
 
+@settings(deadline=None)
 @given(winches=st.lists(st.sampled_from(["left", "right"]), max_size=9))
 def test_made_up(winches: list[str]) -> None:
     """Oracle: counted by hand: a winch and which of its cables it is; none of them counts as given."""

@@ -9,7 +9,7 @@ from robot_files import GOOD, edit, load
 from hydrostat.errors import InputError
 from hydrostat.given import LONGEST_NAME
 from hydrostat.robot import (
-    Face,
+    CableSide,
     Robot,
     describe_cable_side,
     gallery_folder,
@@ -21,8 +21,8 @@ from hydrostat.robot import (
 from hydrostat.robot.merge import merged_text
 
 
-@pytest.mark.parametrize("face", list(Face))
-def test_a_file_says_it_and_reads_back(face: Face, tmp_path: Path) -> None:
+@pytest.mark.parametrize("face", list(CableSide))
+def test_a_file_says_it_and_reads_back(face: CableSide, tmp_path: Path) -> None:
     robot = load(tmp_path, edit(GOOD, "format = 1", f'format = 1\nface = "{face}"'))
     assert robot.face is face
     assert f'face = "{face}"' in robot_text(robot).splitlines()
@@ -34,9 +34,9 @@ def test_an_old_file_says_nothing_and_keeps_its_comments_when_it_learns_to(tmp_p
     robot = load(tmp_path)
     assert robot.face is None
     assert "face" not in robot_text(robot)
-    text = merged_text(GOOD, replace(robot, face=Face.PAIRS))
+    text = merged_text(GOOD, replace(robot, face=CableSide.PAIRS))
     assert text.startswith("# A robot that is good in every line.")
-    assert load(tmp_path, text).face is Face.PAIRS
+    assert load(tmp_path, text).face is CableSide.PAIRS
 
 
 def test_the_motor_of_a_file_reads_back(tmp_path: Path) -> None:
@@ -66,7 +66,7 @@ def test_what_is_no_face_is_told(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"face stands at the top|stands at the top of the file"):
         load(tmp_path, edit(GOOD, "[body]", '[body]\nface = "pairs"'))
     with pytest.raises(InputError, match="face is only for flat bodies"):
-        replace(load_robot(gallery_folder("trunk")), face=Face.PAIRS)
+        replace(load_robot(gallery_folder("trunk")), face=CableSide.PAIRS)
 
 
 @pytest.fixture(scope="module")
@@ -76,7 +76,7 @@ def starfish() -> Robot:
 
 def test_pairs_are_sewn_twice(starfish: Robot) -> None:
     """Oracle: twice the cables, twice the length on each winch, the same points; C1 and C6 are a pair of five."""
-    sewn = sewn_robot(replace(starfish, face=Face.PAIRS))
+    sewn = sewn_robot(replace(starfish, face=CableSide.PAIRS))
     assert len(sewn.cables) == 2 * len(starfish.cables)
     assert [cable.name for cable in sewn.cables[:1] + sewn.cables[5:6]] == ["right 1 front", "right 1 back"]
     assert all(one.points == other.points for one, other in zip(sewn.cables[:5], sewn.cables[5:], strict=True))
@@ -85,19 +85,19 @@ def test_pairs_are_sewn_twice(starfish: Robot) -> None:
             sum(cable.length for cable in robot.cables if cable.winch == winch.name) for robot in (sewn, starfish)
         ]
         assert lengths[0] == pytest.approx(2 * lengths[1])
-    for face in (None, Face.FRONT, Face.BACK, Face.MIDDLE):
+    for face in (None, CableSide.FRONT, CableSide.BACK, CableSide.MIDDLE):
         alone = replace(starfish, face=face)
         assert sewn_robot(alone) is alone
 
 
 def test_a_long_name_gets_no_side(starfish: Robot) -> None:
     long = replace(starfish.cables[0], name="c" * LONGEST_NAME)
-    names = [cable.name for cable in sewn_robot(replace(starfish, cables=(long,), face=Face.PAIRS)).cables]
+    names = [cable.name for cable in sewn_robot(replace(starfish, cables=(long,), face=CableSide.PAIRS)).cables]
     assert names == ["right 1", "right 2"]
 
 
 def test_it_is_told_in_words(starfish: Robot) -> None:
-    assert describe_cable_side(replace(starfish, face=Face.PAIRS)) == "on both faces, in pairs"
+    assert describe_cable_side(replace(starfish, face=CableSide.PAIRS)) == "on both faces, in pairs"
     assert describe_cable_side(starfish).startswith("side not set: a plush kit uses the front panel")
     assert (
         describe_cable_side(starfish.with_network((), ()))

@@ -42,13 +42,16 @@ def block(sides: tuple[float, float, float] = (40, 60, 100), triangles: np.ndarr
     return stl(CORNERS * sides, triangles)
 
 
-def thing(content: bytes, **given: object) -> Obstacle:
+def mesh_object(content: bytes, **given: object) -> Obstacle:
     known = {"at": (0.2, 0.1, 0.0), "mass": 0.1}
-    return Obstacle(name="thing", shape="mesh", mesh=closed_mesh(content, "thing.stl"), **(known | given))
+    return Obstacle(name="object", shape="mesh", mesh=closed_mesh(content, "object.stl"), **(known | given))
 
 
 def test_a_block_is_a_box() -> None:
-    made, box = thing(block()), Obstacle(name="box", shape="box", at=(0.2, 0.1, 0.0), to=(0.24, 0.16, 0.1), mass=0.1)
+    made, box = (
+        mesh_object(block()),
+        Obstacle(name="box", shape="box", at=(0.2, 0.1, 0.0), to=(0.24, 0.16, 0.1), mass=0.1),
+    )
     points = np.random.default_rng(0).uniform((0.15, 0.05, -0.05), (0.3, 0.2, 0.15), (2000, 3))
     one, other = made.field()(points), box.field()(points)
     outside = (other.values > 1e-4) & (other.values < 0.02)
@@ -61,7 +64,7 @@ def test_a_block_is_a_box() -> None:
 
 
 def test_in_its_own_frame_it_is_the_same() -> None:
-    made = thing(block())
+    made = mesh_object(block())
     place, axes = made.frame()
     points = np.random.default_rng(1).uniform(-0.05, 0.05, (500, 3))
     here, there = made.to_own_frame().field()(points), made.field()(place + points @ axes)
@@ -71,7 +74,7 @@ def test_in_its_own_frame_it_is_the_same() -> None:
 
 
 def test_slopes_of_the_distance() -> None:
-    field = thing(block()).field()
+    field = mesh_object(block()).field()
     points = np.random.default_rng(2).uniform((0.19, 0.09, -0.01), (0.25, 0.17, 0.11), (300, 3))
     found = field(points)
     outside = (found.values > 1e-3) & (found.values < 0.02)
@@ -85,7 +88,7 @@ def test_slopes_of_the_distance() -> None:
 
 
 def test_it_can_be_sent_to_other_processes() -> None:
-    made = thing(block())
+    made = mesh_object(block())
     points = np.array([[0.25, 0.13, 0.05]])
     before = made.field()(points).values
     assert pickle.loads(pickle.dumps(made)).field()(points).values == before
@@ -95,14 +98,14 @@ def test_it_can_be_sent_to_other_processes() -> None:
 
 
 def test_what_is_written_is_read(tmp_path: Path) -> None:
-    made = thing(block(), at=(0.3, 0.0, 0.0), friction=0.4)
+    made = mesh_object(block(), at=(0.3, 0.0, 0.0), friction=0.4)
     robot = replace(gallery_robot("caging_gripper"), contact=Contact(), obstacles=(made,))
     save_robot(robot, tmp_path / "gripper")
-    assert (tmp_path / "gripper" / "thing.stl").read_bytes() == block()
+    assert (tmp_path / "gripper" / "object.stl").read_bytes() == block()
     again = load_robot(tmp_path / "gripper")
     assert again.obstacles == robot.obstacles
     assert robot_hash(again) == robot_hash(robot)
-    other = replace(robot, obstacles=(thing(block((40, 60, 90)), at=(0.3, 0.0, 0.0), friction=0.4),))
+    other = replace(robot, obstacles=(mesh_object(block((40, 60, 90)), at=(0.3, 0.0, 0.0), friction=0.4),))
     assert robot_hash(other) != robot_hash(robot)
 
 
@@ -111,35 +114,35 @@ def two_blocks(apart: float) -> bytes:
     return stl(np.vstack([40 * CORNERS, 40 * (CORNERS + apart)]), np.vstack([SIDES, SIDES + 8]))
 
 
-def test_a_thing_may_have_parts() -> None:
-    assert closed_mesh(two_blocks(1.2), "thing.stl").surface.volume == pytest.approx(2 * 0.04**3)
+def test_an_object_may_have_parts() -> None:
+    assert closed_mesh(two_blocks(1.2), "object.stl").surface.volume == pytest.approx(2 * 0.04**3)
 
 
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        (block(triangles=SIDES[:-1]), "thing.stl: is not closed"),
-        (block(triangles=SIDES[:, ::-1]), "thing.stl: is inside out"),
+        (block(triangles=SIDES[:-1]), "object.stl: is not closed"),
+        (block(triangles=SIDES[:, ::-1]), "object.stl: is inside out"),
         (block(triangles=np.vstack([SIDES[:-1], SIDES[-1:, ::-1]])), "do not all turn the same way"),
-        (two_blocks(0.5), r"thing.stl: runs through itself, for instance at \(.*\) mm; mend it first$"),
-        (b"solid nothing", "thing.stl"),
-        (b"", "thing.stl: the file is empty"),
+        (two_blocks(0.5), r"object.stl: runs through itself, for instance at \(.*\) mm; mend it first$"),
+        (b"solid nothing", "object.stl"),
+        (b"", "object.stl: the file is empty"),
     ],
 )
 def test_what_is_no_closed_surface_is_told(content: bytes, words: str) -> None:
     with pytest.raises(InputError, match=words):
-        closed_mesh(content, "thing.stl")
+        closed_mesh(content, "object.stl")
 
 
 def test_a_flat_body_meets_no_mesh() -> None:
     with pytest.raises(InputError, match="a flat body meets no mesh"):
-        thing(block(), at=(0.0, 0.0))
+        mesh_object(block(), at=(0.0, 0.0))
 
 
 def test_its_rims_are_drawn() -> None:
     from hydrostat.robot import rims
 
-    lines = rims(thing(block(), at=(0.3, 0.0, 0.0)), gallery_robot("caging_gripper"))
+    lines = rims(mesh_object(block(), at=(0.3, 0.0, 0.0)), gallery_robot("caging_gripper"))
     corners = np.concatenate(lines)
     assert corners.min(axis=0) == pytest.approx((0.3, 0, 0), abs=1e-6)
     assert corners.max(axis=0) == pytest.approx((0.34, 0.06, 0.1), abs=1e-6)

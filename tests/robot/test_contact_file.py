@@ -78,7 +78,7 @@ def test_the_distance_is_a_share_of_the_size() -> None:
         ),
         (
             f"{BALL}mass = '5 g'\npath = [{{ time = '1 s', at = [910, 0] }}]",
-            r"obstacle\[0\]: a thing with a mass goes where",
+            r"obstacle\[0\]: an object with a mass goes where",
         ),
         (
             f"{BALL}path = [{{ time = '0 s', at = [910, 0] }}]",
@@ -136,14 +136,14 @@ def test_second_moments_and_frames(shape: str, dim: int) -> None:
         pytest.skip("a flat body meets no cylinder")
     sizes = {"sphere": {"radius": 0.03}, "box": {"to": (0.1, 0.08, 0.07)[:dim]}}
     rod = {"to": (0.1, 0.05, 0.02)[:dim], "radius": 0.03}
-    thing = Obstacle(name="thing", shape=shape, at=(0.01,) * dim, mass=1.0, **sizes.get(shape, rod))
-    place, axes = thing.frame()
+    obstacle = Obstacle(name="object", shape=shape, at=(0.01,) * dim, mass=1.0, **sizes.get(shape, rod))
+    place, axes = obstacle.frame()
     points = np.random.default_rng(0).uniform(-0.12, 0.12, (400_000, dim))
-    distances = thing.to_own_frame().field()(points).values
-    assert np.allclose(thing.field()(place + points[:1000] @ axes).values, distances[:1000], atol=1e-12)
+    distances = obstacle.to_own_frame().field()(points).values
+    assert np.allclose(obstacle.field()(place + points[:1000] @ axes).values, distances[:1000], atol=1e-12)
     assert axes @ axes.T == pytest.approx(np.eye(dim), abs=1e-12)
     if shape != "box":
         turned = axes @ np.linalg.qr(np.random.default_rng(1).normal(size=(dim, dim)))[0]
-        there = thing.with_frame(place + 0.1, turned)
+        there = obstacle.with_frame(place + 0.1, turned)
         assert np.allclose(there.field()(place + 0.1 + points[:1000] @ turned).values, distances[:1000], atol=1e-9)
-    assert (points[distances < 0] ** 2).mean(axis=0) == pytest.approx(thing.second_moments(), rel=0.03)
+    assert (points[distances < 0] ** 2).mean(axis=0) == pytest.approx(obstacle.second_moments(), rel=0.03)

@@ -5,7 +5,7 @@ import pytest
 from builders import strip_robot
 
 from hydrostat.errors import InputError
-from hydrostat.robot import Face, Robot, gallery_folder, inflated_robot, load_robot
+from hydrostat.robot import CableSide, Robot, gallery_folder, inflated_robot, load_robot
 
 
 @pytest.fixture(scope="module")
@@ -40,7 +40,7 @@ def test_cables_lie_on_the_skin(pairs: Robot) -> None:
 
 @pytest.mark.parametrize(("face", "least", "most"), [("back", -1.0, -0.002), ("middle", 0.0, 0.0)])
 def test_each_face_has_its_side(starfish: Robot, face: str, least: float, most: float) -> None:
-    filled = inflated_robot(starfish, Face(face))
+    filled = inflated_robot(starfish, CableSide(face))
     heights = np.concatenate([np.array(cable.points)[1:, 2] for cable in filled.cables])
     assert least <= heights.min()
     assert heights.max() <= most

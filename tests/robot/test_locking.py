@@ -15,7 +15,7 @@ from flexure import curvature
 from scipy.sparse.linalg import splu
 
 from hydrostat.geometry import Mesh
-from hydrostat.mechanics import PATCH_SIZE, Assembly, Energy, NeoHookean, PatchVolume, grow_patches
+from hydrostat.mechanics import PATCH_SIZE, Assembly, Energy, NeoHookean, PatchDilatation, grow_patches
 from hydrostat.robot import Cable, Pin, Robot, Volume, Winch
 from hydrostat.robot.risks.body_risks import LOCKING
 from hydrostat.simulation import BodyPhysics, Simulation
@@ -124,7 +124,9 @@ def bar(rows: int, poisson: float, volume: Volume) -> float:
     patches = volume is Volume.PATCH
     energies: list[Energy] = [NeoHookean(mesh.nodes, mesh.elements, mu=mu, lame=0.0 if patches else lame)]
     if patches:
-        energies.append(PatchVolume(mesh.nodes, mesh.elements, grow_patches(mesh.elements, PATCH_SIZE[3]), lame=lame))
+        energies.append(
+            PatchDilatation(mesh.nodes, mesh.elements, grow_patches(mesh.elements, PATCH_SIZE[3]), lame=lame)
+        )
     hessian = Assembly(energies, rest=mesh.nodes, control_count=0).hessian(mesh.nodes, np.zeros(0))
     x, y, z = (mesh.nodes - [0.0, HEIGHT / 2, HEIGHT / 2]).T
     exact = np.column_stack([-x * y, (x**2 + poisson * (y**2 - z**2)) / 2, poisson * y * z]).ravel()

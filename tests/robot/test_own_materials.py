@@ -13,7 +13,7 @@ from hydrostat.errors import InputError
 from hydrostat.robot import (
     MATERIALS,
     Material,
-    Slider,
+    PrandtlElement,
     get_material,
     load_robot,
     merged_text,
@@ -30,7 +30,7 @@ FELT = Material(
     young_interval=(20e3, 25e3),
     poisson=0.3,
     density=40,
-    hysteresis=(Slider(young=4e3, strain=0.02),),
+    hysteresis=(PrandtlElement(young=4e3, strain=0.02),),
     source="hydrostat identify, 10 rows of seen.csv",
 )
 

@@ -12,21 +12,25 @@ from shapely import Point as ShapelyPoint
 from shapely import Polygon, unary_union
 
 from hydrostat.errors import InputError
+from hydrostat.learning import physics_hash
 from hydrostat.robot import (
     Body,
+    BodyPart,
     Cable,
+    Load,
     Marker,
     Material,
     Mount,
     Pin,
     PoseTarget,
-    Relaxation,
+    PronyTerm,
     Robot,
     Source,
     Volume,
     Winch,
     get_material,
 )
+from hydrostat.simulation import Simulation
 
 INF, NAN = float("inf"), float("nan")
 LINE = ((0.0, 0.0), (0.1, 0.0), (0.1, 0.1))
@@ -43,8 +47,8 @@ LINE = ((0.0, 0.0), (0.1, 0.0), (0.1, 0.1))
         (Cable, "stiffness", {"winch": "w", "points": LINE}),
         (Cable, "smoothing", {"winch": "w", "points": LINE}),
         (Pin, "stiffness", {"at": (0.0, 0.0)}),
-        (Relaxation, "modulus", {"time": 1.0}),
-        (Relaxation, "time", {"modulus": 1.0}),
+        (PronyTerm, "modulus", {"time": 1.0}),
+        (PronyTerm, "time", {"modulus": 1.0}),
     ],
 )
 def test_positive(kind: type, field: str, others: dict, value: float) -> None:
@@ -103,7 +107,7 @@ def test_what_is_no_place_is_told_in_one_line(point: Any, unchecked: None) -> No
         (lambda: Material(young=1.0, poisson=-0.01, density=1.0), "poisson must be at least 0"),
         (lambda: Material(young=1.0, poisson=NAN, density=1.0), "poisson must be at least 0"),
         (
-            lambda: replace(FOAM, relaxation=(Relaxation(modulus=1.0, time=1.0),) * 11),
+            lambda: replace(FOAM, relaxation=(PronyTerm(modulus=1.0, time=1.0),) * 11),
             "relaxation must have at most 10 branches, not 11",
         ),
         (lambda: Cable(winch="w", points=LINE, friction=-0.01), "friction must be at least 0 and at most 2, not -0.01"),
@@ -178,7 +182,7 @@ def test_parts_fit(changes: dict, message: str) -> None:
 
 
 def test_texts_of_a_closed_set(unchecked: None) -> None:
-    """Oracle: a text gives the thing itself that it names, any other one line that says what there is."""
+    """Oracle: a text gives the obstacle itself that it names, any other one line that says what there is."""
     body, winch = strip_robot(columns=4, rows=2).body, Winch(name="w", at=(0.0, 0.0), mount="world")  # type: ignore[arg-type]
     given: dict[str, Any] = {"volume": "patch", "source": "mesh", "material": "Flexfoam-it X"}
     named = replace(body, **given)
@@ -230,7 +234,7 @@ def test_world_winch_and_its_cable() -> None:
         Pin(at=(0.0, 0.0)),
         Marker(name="m", at=(0.0, 0.0)),
         POSE,
-        Relaxation(modulus=1.0, time=1.0),
+        PronyTerm(modulus=1.0, time=1.0),
     ],
     ids=lambda record: type(record).__name__,
 )
@@ -314,12 +318,12 @@ def test_limits_are_allowed() -> None:
     robot = replace(strip_robot(columns=2, rows=1), gravity=(-1000.0, 1000.0))
     assert robot.gravity == (-1000.0, 1000.0)
     assert [Cable(winch="w", points=LINE, friction=value).friction for value in (0.0, 2.0)] == [0.0, 2.0]
-    assert len(replace(FOAM, relaxation=(Relaxation(modulus=1.0, time=1.0),) * 10).relaxation) == 10
+    assert len(replace(FOAM, relaxation=(PronyTerm(modulus=1.0, time=1.0),) * 10).relaxation) == 10
 
 
 def test_elastic() -> None:
     """Oracle: the material before it was given a viscosity and a branch; its elastic numbers do not change."""
-    viscous = replace(FOAM, viscosity=3.0, relaxation=(Relaxation(modulus=1.0, time=1.0),))
+    viscous = replace(FOAM, viscosity=3.0, relaxation=(PronyTerm(modulus=1.0, time=1.0),))
     assert viscous != FOAM
     assert viscous.elastic == FOAM
     assert viscous.lame == FOAM.lame
@@ -365,3 +369,53 @@ def test_bodies_compare_by_what_they_are_made_of() -> None:
     assert isinstance(body, Body)
     assert body.source is Source.MESH
     assert isinstance(strip_robot(columns=2, rows=1), Robot)
+
+
+def test_a_pin_of_default_stiffness_holds_stiff_bodies() -> None:
+    """Oracle: the same bar clamped by a pin that is a thousand times as stiff, under the same load."""
+
+    def tip(young: float, **given: float) -> tuple[Robot, float]:
+        robot = box_robot().with_material(young=young)
+        pins = tuple(replace(pin, **given) for pin in robot.pins)
+        load = Load(name="down", marker="tip", force=(0.0, 0.0, -1e-5 * young))
+        held = replace(robot, pins=pins, loads=(load,))
+        return held, float(Simulation(held).solve({}).markers["tip"][2])
+
+    for young in (30e3, 60e3, 1e6, 12e6):
+        robot, found = tip(young)
+        clamped = tip(young, stiffness=1e3 * robot.pins[0].stiffness)[1]
+        assert found - 0.02 == pytest.approx(clamped - 0.02, rel=0.02)
+    assert tip(12e6, stiffness=1e5)[1] - 0.02 < 1.5 * (clamped - 0.02)  # as soft as in plush
+
+
+def test_a_pin_of_default_stiffness_follows_the_body_and_a_given_one_does_not() -> None:
+    strip = strip_robot()
+    assert strip.pins[0].stiffness == 100e3  # plush
+    stiff = strip.with_material(young=12e6)
+    held, thickness = 5, strip.body.thickness or 0.0
+    assert stiff.pins[0].stiffness == pytest.approx(100 * held * 12e6 * thickness, rel=1e-2)
+    assert stiff.with_material(young=30e3).pins == strip.pins
+    assert (strip.pins[0].is_sized, stiff.pins[0].is_sized) == (False, True)
+    given = replace(strip, pins=(replace(strip.pins[0], stiffness=100e3),))
+    assert given.with_material(young=12e6).pins == given.pins
+
+
+def test_a_pin_of_default_stiffness_is_sized_by_the_parts_at_its_nodes() -> None:
+    strip = strip_robot()
+    steel, (pin,) = replace(strip.body.material, young=2e11), strip.pins
+    left, right = strip.body.mesh.nodes[:, 0].min(), strip.body.mesh.nodes[:, 0].max()
+    held = strip.body.mesh.nodes[pin.holds(strip.body.mesh), 0].mean() - left
+    assert held < 0.3 * (right - left)
+    for low, high, is_sized in ((0.7, 2.0, False), (-1.0, 0.3, True)):
+        x = left + np.array([low, high]) * (right - left)
+        part = BodyPart(name="insert", shape="box", at=(x[0], -1.0), to=(x[1], 1.0), material=steel)
+        assert replace(strip, body=strip.body.with_parts([part])).pins[0].is_sized is is_sized
+
+
+def test_the_physics_hash_knows_the_pins_that_a_body_sized(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Their stiffness is in no robot.toml; plush keeps the default, and its hash."""
+    plush, stiff = strip_robot(), strip_robot().with_material(young=12e6)
+    before = physics_hash(plush), physics_hash(stiff)
+    monkeypatch.setattr("hydrostat.robot.pin._RIGID", 50)
+    assert physics_hash(strip_robot()) == before[0]
+    assert physics_hash(strip_robot().with_material(young=12e6)) != before[1]

@@ -1,8 +1,10 @@
 """Robots from drawings that are no SVG: saved and read again, with what was left out told by the command."""
 
 import io
+from math import cos, pi, sin
 from pathlib import Path
 
+import numpy as np
 import pytest
 from PIL import Image, ImageDraw
 
@@ -52,3 +54,17 @@ def test_picture_without_size() -> None:
     """Oracle: the message asks for it."""
     with pytest.raises(OutlineError, match=r"bar.png: a picture has no physical size: give the longest side"):
         sketch_robot(bar_png(), file="bar.png", name="bar")
+
+
+def test_each_thin_arm_has_a_marker_at_its_own_tip() -> None:
+    """Eight arms that taper to 3 mm, too thin for nodes inside: markers are within 12 mm of the tips as drawn."""
+    turns = [(cos(pi * (k + 0.5) / 4), sin(pi * (k + 0.5) / 4)) for k in range(8)]
+    profile = [(34.0, -9.5), (85.0, -5.0), (112.0, -1.5), (112.0, 1.5), (85.0, 5.0), (34.0, 9.5)]
+    corners = " L ".join(f"{130 + r * x - w * y:.1f},{130 + r * y + w * x:.1f}" for x, y in turns for r, w in profile)
+    head = '<svg xmlns="http://www.w3.org/2000/svg" width="260mm" height="260mm" viewBox="0 0 260 260">'
+    svg = f'{head}<path d="M {corners} Z"/></svg>'
+    robot = sketch_robot(svg.encode(), file="octopus.svg", name="octopus")
+    spots = np.array([marker.at for marker in robot.markers])
+    away = np.linalg.norm(spots[:, None] - 0.112 * np.array(turns), axis=2)
+    assert sorted(away.argmin(axis=1)) == list(range(8))
+    assert away.min(axis=1).max() < 0.012

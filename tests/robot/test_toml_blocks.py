@@ -3,7 +3,7 @@
 import tomllib
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hydrostat.robot import gallery_folder, list_gallery
@@ -78,6 +78,7 @@ LINES = st.lists(
 )
 
 
+@settings(deadline=None)
 @given(LINES, st.booleans())
 def test_any_lines_are_kept(lines: list[str], ended: bool) -> None:
     text = "\n".join(lines) + ("\n" if ended else "")

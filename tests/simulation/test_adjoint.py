@@ -231,10 +231,14 @@ def test_by_contractions_and_cables(loss: Loss) -> None:
 def test_by_routes(loss: Loss) -> None:
     slopes, found = loss.slopes().routes, loss.by_routes(1e-5)
     assert [part.shape for part in slopes] == [part.shape for part in found]
-    assert agree(np.concatenate(slopes), np.concatenate(found))
+    rounding = 5e-6 if loss.robot.body.parts else 1e-6  # forces of rigid parts are rounded to more
+    assert agree(np.concatenate(slopes), np.concatenate(found), within=rounding)
 
 
 def test_by_body_and_pins(loss: Loss) -> None:
+    """A pin that is left to its default follows the body, so here it has a stiffness of its own."""
+    given = replace(loss.robot.pins[0], stiffness=float(loss.robot.pins[0].stiffness))
+    loss = Loss(replace(loss.robot, pins=(given,)), loss.contractions)
     slopes, robot = loss.slopes(), loss.robot
     assert slopes.young == pytest.approx(loss.by_material("young", 300.0), rel=1e-6)
     assert slopes.poisson == pytest.approx(loss.by_material("poisson", 1e-3), rel=1e-5)
@@ -402,11 +406,11 @@ def test_the_page_on_derivatives_is_true(monkeypatch: pytest.MonkeyPatch) -> Non
     exec(plain, names)
     jacobian = names["simulation"].jacobian(names["pose"])
     expected = np.einsum("ndw,nd->w", jacobian, names["nodes"])
-    assert names["slopes"].contractions == pytest.approx(expected, rel=1e-8)
+    assert names["sensitivity"].contractions == pytest.approx(expected, rel=1e-8)
     pytest.importorskip("torch", exc_type=ImportError)
     exec(bridged, names)
     assert names["contractions"].grad.numpy() == pytest.approx(expected, rel=1e-6)
-    assert names["routes"][1].grad.numpy() == pytest.approx(names["slopes"].routes[1], rel=1e-5, abs=1e-9)
+    assert names["routes"][1].grad.numpy() == pytest.approx(names["sensitivity"].routes[1], rel=1e-5, abs=1e-9)
 
 
 def test_by_gravity_and_stiffness_of_rods(unchecked: None) -> None:

@@ -16,7 +16,20 @@ from touching import fork_robot
 from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh, find_crossings
 from hydrostat.mechanics import Assembly, NeoHookean, QuadraticSolid
-from hydrostat.robot import Cable, ElementKind, Material, Pin, Relaxation, Robot, Volume, Winch
+from hydrostat.robot import (
+    Cable,
+    ElementKind,
+    Load,
+    Marker,
+    Material,
+    Pin,
+    PronyTerm,
+    Robot,
+    Volume,
+    Winch,
+    robot_text,
+    sketch_robot,
+)
 from hydrostat.simulation import ContractionProfile, Simulation
 from hydrostat.simulation.mesh_error import estimate_stiffening
 
@@ -143,7 +156,7 @@ def test_the_jacobian_is_the_derivative(make) -> None:
 def test_motion_comes_to_rest_where_statics_is() -> None:
     """Oracle: the static pose, for a viscous body with a Maxwell branch."""
     robot = strip_robot(columns=8, rows=2)
-    branch = Relaxation(modulus=5e3, time=0.05)
+    branch = PronyTerm(modulus=5e3, time=0.05)
     material = Material(young=30e3, poisson=0.45, density=40.0, viscosity=100.0, relaxation=(branch,))
     simulation = Simulation(replace(robot, body=replace(robot.body, material=material).with_elements("quadratic")))
     goal = np.array([0.01, 0.0])
@@ -177,3 +190,30 @@ def test_the_note_of_linear_elements_is_a_lower_bound(dim: int, poisson: float) 
     assert estimate_stiffening(body, body.mesh.nodes + noise) == 0.0  # rounding has no excess
     assert exact.notes == ()
     assert 'elements = "quadratic"' in "".join(pose.notes) or excess < 0.3
+
+
+@pytest.mark.parametrize("asked", [{}, {"nodes": 200}], ids=str)
+def test_a_slender_sketch_bends_right(asked: dict[str, float]) -> None:
+    """Oracle: Timoshenko's deflection. Linear elements with these corners bend 0.29 of it."""
+    length, height, poisson = 0.2, 0.012, 0.49
+    drawing = (
+        '<svg xmlns="http://www.w3.org/2000/svg" width="200mm" height="12mm" viewBox="0 0 200 12">'
+        '<rect width="200" height="12"/></svg>'
+    )
+    sketch = sketch_robot(drawing.encode(), file="bar.svg", name="bar", material="ecoflex 00-30", **asked)
+    assert sketch.body.elements == "quadratic"
+    assert len(sketch.body.mesh.nodes) < 500
+    assert 'elements = "quadratic"' in robot_text(sketch)
+    young = sketch.body.material.young / (1 - poisson**2)
+    inertia = (sketch.body.thickness or 0.0) * height**3 / 12
+    force, shear = 6e-3 * young * inertia / length**2, young * (1 - poisson) / 2
+    wanted = force * length**3 / (3 * young * inertia)
+    wanted += force * length / (5 / 6 * shear * height * (sketch.body.thickness or 0.0))
+    held = replace(
+        sketch,
+        pins=(Pin(box=((-0.101, -0.01), (-0.0999, 0.01)), stiffness=1e7),),
+        markers=(Marker(name="tip", at=(0.0999, 0.0)),),
+        loads=(Load(name="push", marker="tip", force=(0.0, -force)),),
+        poses={},
+    )
+    assert -Simulation(held).solve({}).markers["tip"][1] == pytest.approx(wanted, rel=0.02)

@@ -136,7 +136,7 @@ def test_moduli_by_element_are_those_of_one_energy_a_material(dim: int) -> None:
     whole = NeoHookean(mesh.nodes, mesh.elements, mu=mu[kinds], lame=lame[kinds], materials=kinds)
     parts = [NeoHookean(mesh.nodes, mesh.elements[kinds == kind], mu=mu[kind], lame=lame[kind]) for kind in range(3)]
     assert whole.value(nodes, none) == pytest.approx(sum(part.value(nodes, none) for part in parts), rel=1e-12)
-    work = whole.parameter_work(nodes, field)
+    work = whole.parameter_derivative(nodes, field)
     for kind, part in enumerate(parts):
         own = kinds == kind
         assert np.allclose(whole.gradient(nodes, none)[own], part.gradient(nodes, none), rtol=1e-12)
@@ -144,7 +144,7 @@ def test_moduli_by_element_are_those_of_one_energy_a_material(dim: int) -> None:
             one, other = (energy.projected_hessian(nodes, none, share) for energy in (whole, part))
             assert np.allclose(one[own], other, rtol=1e-12, atol=1e-9 * np.abs(other).max())
         for name in ("mu", "lame"):
-            assert work[name][kind] == pytest.approx(part.parameter_work(nodes, field)[name][0], rel=1e-10)
+            assert work[name][kind] == pytest.approx(part.parameter_derivative(nodes, field)[name][0], rel=1e-10)
 
 
 def test_parts_have_their_mass_in_motion() -> None:

@@ -28,7 +28,7 @@ def column(rows: int = 3) -> Robot:
 
 def hessian(simulation: Simulation, nodes: np.ndarray, contractions: np.ndarray) -> np.ndarray:
     """Dense, with the part of low rank."""
-    springs = simulation.assembly.coupling(nodes, contractions)
+    springs = simulation.assembly.low_rank_hessian(nodes, contractions)
     columns, weights = springs.columns, springs.weights
     return simulation.assembly.hessian(nodes, contractions).toarray() + columns @ weights @ columns.T
 

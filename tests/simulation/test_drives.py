@@ -75,6 +75,9 @@ def test_a_turned_and_a_sunken_clamp_bend_a_bar_as_eulers_beam() -> None:
     both = work + rigidity * (6 * sunk**2 / LENGTH**3 - 6 * angle * sunk / LENGTH**2)
     pose = simulation.solve({"servo": angle, "stage": sunk})
     assert pose.energy == pytest.approx(both, rel=0.01)
+    force = rigidity * (6 * angle / LENGTH**2 - 12 * sunk / LENGTH**3)  # of the clamp that turns, upwards
+    assert pose.pin_forces[:, 2] == pytest.approx([-force, force], rel=0.02)
+    assert pose.pin_forces.sum(axis=0) == pytest.approx(np.zeros(3), abs=1e-8)
     sag = angle * LENGTH / 8 + sunk / 2
     assert HEIGHT / 2 - pose.markers["mid"][2] == pytest.approx(sag, rel=0.01)
 

@@ -11,7 +11,7 @@ from builders import FOAM, box_mesh, box_robot, mesh_body, strip_mesh, strip_rob
 
 import hydrostat as hs
 from hydrostat.mechanics import SCHEMES
-from hydrostat.robot import Body, Material, Pin, Relaxation, Robot, Volume
+from hydrostat.robot import Body, Material, Pin, PronyTerm, Robot, Volume
 
 GRAVITY = 9.80665
 LOOSE = 1e-13
@@ -48,7 +48,7 @@ def steps(
 def viscous_strip() -> hs.Simulation:
     """Cable-driven, viscous, under gravity."""
     robot = replace(strip_robot(columns=8, rows=2), gravity=(0.0, -GRAVITY))
-    return hs.Simulation(with_material(robot, viscosity=50.0, relaxation=(Relaxation(modulus=1e4, time=0.05),)))
+    return hs.Simulation(with_material(robot, viscosity=50.0, relaxation=(PronyTerm(modulus=1e4, time=0.05),)))
 
 
 @pytest.mark.parametrize("dim", [2, 3])
@@ -176,7 +176,7 @@ def test_it_settles_to_the_statics_at_any_step(make: object) -> None:
     """Oracle: `solve`, for places and tensions, and two time steps beside each other."""
     robot = make()
     robot = replace(robot, gravity=(0.0, -GRAVITY, 0.0)[: robot.body.mesh.dim])
-    robot = with_material(robot, viscosity=300.0, relaxation=(Relaxation(modulus=1e4, time=0.02),))
+    robot = with_material(robot, viscosity=300.0, relaxation=(PronyTerm(modulus=1e4, time=0.02),))
     simulation = hs.Simulation(robot)
     goal = np.array([0.012, 0.0])
     pose = simulation.solve(goal)
@@ -224,7 +224,7 @@ def stress(simulation: hs.Simulation, motion: hs.Motion) -> float:
 def test_a_sudden_shear_relaxes_as_a_zener_solid() -> None:
     """Oracle: closed form at small strain, after an even ramp; second order in the step."""
     modulus, time, strain, ramp = 2e4, 0.1, 1e-3, 0.05
-    simulation = sheared(relaxation=(Relaxation(modulus=modulus, time=time),))
+    simulation = sheared(relaxation=(PronyTerm(modulus=modulus, time=time),))
     carried = modulus * time / ramp * (1 - exp(-ramp / time))
     worst = []
     for count in (2, 4, 8):
@@ -254,7 +254,7 @@ def test_an_even_shear_feels_the_viscosity() -> None:
 def test_a_cycle_has_a_loop_unless_it_is_slow_or_fast() -> None:
     """Oracle: closed form of the area, pi strain^2 G'', G'' = mu_1 w tau / (1 + w^2 tau^2), at small strain."""
     modulus, time, strain, count = 2e4, 0.1, 1e-3, 40
-    simulation = sheared(relaxation=(Relaxation(modulus=modulus, time=time),))
+    simulation = sheared(relaxation=(PronyTerm(modulus=modulus, time=time),))
     areas = []
     for pace in (0.03, 1.0, 30.0):
         period = 2 * pi * time / pace
@@ -278,7 +278,7 @@ def test_a_hanging_body_creeps_as_a_zener_solid() -> None:
     Without lateral contraction branch and body are the same operator, so this holds for any shape.
     """
     young, modulus, time = 30e3, 2e4, 10.0
-    material = Material(young=young, poisson=0.0, density=5, relaxation=(Relaxation(modulus=modulus, time=time),))
+    material = Material(young=young, poisson=0.0, density=5, relaxation=(PronyTerm(modulus=modulus, time=time),))
     body = mesh_body(strip_mesh(4, 2), material=material)
     simulation = held(body, (Pin(box=((-0.001, -1.0), (0.001, 1.0)), stiffness=1e8),), (0.1, 0.0))
     mu = young / 2
@@ -308,8 +308,8 @@ def test_a_step_that_fails_is_cut_in_two(viscous_strip: hs.Simulation) -> None:
     """Oracle: shorter steps, asked for by hand."""
     start = viscous_strip.motion_at_rest()
     whole = viscous_strip.step(start, {"up": 0.02}, 0.04)
-    assert whole.result.iterations > 8
-    hasty = hs.Simulation(viscous_strip.robot, options=hs.NewtonOptions(iterations=4))
+    assert whole.result.iterations > 6  # in two stages
+    hasty = hs.Simulation(viscous_strip.robot, options=hs.NewtonOptions(iterations=3))
     with pytest.raises(hs.NotConvergedError, match="iteration limit"):
         hasty.step(start, {"up": 0.02}, 0.04, options=hs.StepOptions(halvings=0))
     cut = hasty.step(start, {"up": 0.02}, 0.04)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hydrostat.robot import Face, gallery_folder, inflated_robot, load_robot
+from hydrostat.robot import CableSide, gallery_folder, inflated_robot, load_robot
 from hydrostat.simulation import Simulation, solve_stuffed_motion
 
 ROBOT = load_robot(gallery_folder("starfish"))
@@ -16,14 +16,14 @@ PULLED = np.array([0.0, 0.02, 0.01])
 def test_cables_on_both_faces_or_between_them_keep_a_body_flat(face: str, unchecked: None) -> None:
     found = solve_stuffed_motion(ROBOT, [PULLED], face)
     assert 0.0 <= found.out <= 1e-3
-    assert found.face is Face(face)
+    assert found.face is CableSide(face)
     assert found.warning is None
 
 
 def test_one_face_curls_it_and_the_most_of_all_poses_is_told(unchecked: None) -> None:
     found = solve_stuffed_motion(ROBOT, [0.5 * PULLED, PULLED], "front")
     assert 1e-2 <= found.out <= 0.1
-    assert found.face is Face.FRONT
+    assert found.face is CableSide.FRONT
     assert f"cables on the front: they bend the stuffed body {1e3 * found.out:.0f} mm out" in (found.warning or "")
     assert replace(found, out=0.2 * found.moved).warning is None
     flat, solid = Simulation(ROBOT).solve(PULLED), Simulation(inflated_robot(ROBOT, "front")).solve(PULLED)

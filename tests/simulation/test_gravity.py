@@ -42,6 +42,7 @@ def test_the_pins_carry_the_weight(name: str, pull: float) -> None:
     assert bool(pose.tensions.any()) == (pull > 0)
     scale = max(float(np.linalg.norm(weight)), float(pose.tensions.max()))
     assert forces.sum(axis=0) == pytest.approx(-weight, abs=1e-8 * scale)
+    assert pose.pin_forces.sum(axis=0) == pytest.approx(-weight, abs=1e-8 * scale)
     moments = np.einsum("pi,pj->ij", places, forces) + np.outer(middle, weight)
     assert np.abs(moments - moments.T).max() < 1e-8 * scale * robot.body.mesh.size
 

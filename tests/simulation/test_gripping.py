@@ -10,7 +10,7 @@ from builders import FOAM, box_mesh, box_robot, mesh_body, strip_mesh, strip_rob
 import hydrostat as hs
 from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh
-from hydrostat.mechanics import GuideEnergy, RigidBodyDofs, WeightEnergy
+from hydrostat.mechanics import DeadLoadEnergy, GuideEnergy, RigidBodyDofs
 from hydrostat.robot import Contact, Marker, Obstacle, Pin, Robot
 from hydrostat.simulation import (
     BodyPhysics,
@@ -135,7 +135,7 @@ def test_a_belt_round_a_drum_is_the_capstan() -> None:
     )
     forces = np.zeros_like(nodes)
     forces[loaded, 0] = 1.0 / loaded.sum()
-    simulation = Simulation(belt, energies=[WeightEnergy(nodes, forces)])
+    simulation = Simulation(belt, energies=[DeadLoadEnergy(nodes, forces)])
     pose, reaction = simulation.solve({}), np.zeros_like(nodes)
     simulation.body.pins.add_gradient(pose.nodes, np.zeros(0), reaction)
     assert 1.0 / np.linalg.norm(reaction.sum(axis=0)) == pytest.approx(np.exp(friction * angle), rel=0.02)
@@ -194,7 +194,7 @@ def test_it_flies_as_newton_says() -> None:
 
 @pytest.mark.parametrize("dim", [2, 3])
 def test_slopes_with_an_obstacle_that_moves(dim: int) -> None:
-    """How the nodes move with the winches while a thing gives way. Oracle: central differences."""
+    """How the nodes move with the winches while an object gives way. Oracle: central differences."""
     if dim == 2:
         robot, at = strip_robot(columns=12, rows=3), (0.14, 0.055)
     else:

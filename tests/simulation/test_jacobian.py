@@ -55,7 +55,7 @@ def test_the_projected_hessian_would_give_another_answer() -> None:
     """The check can fail, and why E16 asks for the full Hessian."""
     simulation = Simulation(strip_robot())
     pose = simulation.solve(np.array([0.06, 0.0]))
-    springs = simulation.assembly.coupling(pose.nodes, pose.contractions)
+    springs = simulation.assembly.low_rank_hessian(pose.nodes, pose.contractions)
     columns, weights = springs.columns, springs.weights
     projected = simulation.assembly.hessian(pose.nodes, pose.contractions, projection=1.0).toarray()
     projected += columns @ weights @ columns.T

@@ -14,7 +14,7 @@ import pytest
 from builders import box_robot, strip_robot
 
 from hydrostat.errors import InputError
-from hydrostat.mechanics import NewtonOptions, Reason
+from hydrostat.mechanics import NewtonOptions, NewtonStatus
 from hydrostat.simulation import BatchResult, Equilibrium, Simulation
 from hydrostat.simulation.statics import batch_result as room
 
@@ -90,7 +90,7 @@ def test_a_pose_that_is_not_found_leaves_nan_and_its_reason(simulation: Simulati
     hasty = Simulation(simulation.robot, options=NewtonOptions(iterations=7), body=simulation.body)
     found = hasty.solve_batch(goals, nodes=True)
     assert found.converged.tolist() == [True, True, False]
-    assert found.reasons[2] not in (None, Reason.CONVERGED)
+    assert found.reasons[2] not in (None, NewtonStatus.CONVERGED)
     assert found.errors[:2] == ("", "")
     assert found.errors[2].startswith(str(found.reasons[2]))
     assert found.jacobians is not None

@@ -8,10 +8,10 @@ from builders import FOAM, mesh_body, strip_mesh, strip_robot
 from scipy.linalg import expm
 
 from hydrostat.errors import HydrostatWarning, InputError
-from hydrostat.robot import Material, Pin, Relaxation, Robot
+from hydrostat.robot import Material, Pin, PronyTerm, Robot
 from hydrostat.simulation import Simulation, find_modes, linearize
 
-VISCOUS = replace(FOAM, viscosity=40.0, relaxation=(Relaxation(modulus=4e3, time=0.03),))
+VISCOUS = replace(FOAM, viscosity=40.0, relaxation=(PronyTerm(modulus=4e3, time=0.03),))
 
 
 def cantilever(material: Material) -> Robot:

@@ -61,8 +61,8 @@ def guided(obstacle: Obstacle, way: float) -> np.ndarray:
     return pose.markers["top"]
 
 
-@pytest.mark.parametrize(("obstacle", "thing"), [(DISC, DISC), (PRESS, BLOCK)])
-def test_the_body_settles_where_statics_puts_it(obstacle: Obstacle, thing: Obstacle) -> None:
+@pytest.mark.parametrize(("obstacle", "other"), [(DISC, DISC), (PRESS, BLOCK)])
+def test_the_body_settles_where_statics_puts_it(obstacle: Obstacle, other: Obstacle) -> None:
     way, options = 0.006, StepOptions(scheme="euler", drag=40.0)
     simulation = Simulation(pressed(down(obstacle, way), viscosity=300.0))
     motion = list(simulation.play(NONE, 1.2, 0.04, options=options))[-1]
@@ -70,14 +70,14 @@ def test_the_body_settles_where_statics_puts_it(obstacle: Obstacle, thing: Obsta
     place, axes = carried_frames(simulation.robot, motion.carried[0])[obstacle.name]
     assert place - obstacle.at == pytest.approx((0.0, -way), abs=1e-5)  # its springs give way by less
     assert axes == pytest.approx(np.eye(2), abs=1e-5)
-    assert motion.markers["top"] == pytest.approx(guided(thing, way), abs=1.5e-5)  # springs again
+    assert motion.markers["top"] == pytest.approx(guided(other, way), abs=1.5e-5)  # springs again
     assert motion.markers["top"][1] < 0.013
 
 
 def test_a_file_tells_where_it_is(tmp_path: Path) -> None:
     simulation = Simulation(pressed(down(DISC, 0.006), viscosity=300.0))
     _, table, _ = write_motion(simulation.robot, simulation.play(NONE, 0.2, 0.1), tmp_path)
-    assert 1e3 * table.things["disc"] == pytest.approx(np.array([[80, 37], [80, 34], [80, 31]]), abs=0.01)
+    assert 1e3 * table.obstacles["disc"] == pytest.approx(np.array([[80, 37], [80, 34], [80, 31]]), abs=0.01)
     assert (tmp_path / "motion.csv").read_text().splitlines()[0].endswith("disc_x_mm,disc_y_mm")
 
 

@@ -11,11 +11,11 @@ from hydrostat.errors import InputError
 from hydrostat.ik import solve_ik
 from hydrostat.mechanics import (
     Assembly,
+    DeadLoadEnergy,
     Energy,
+    FrictionalSelfContactEnergy,
     FrictionCableEnergy,
     ObstacleEnergy,
-    SelfFrictionEnergy,
-    WeightEnergy,
 )
 from hydrostat.simulation import ContractionProfile, Simulation
 from hydrostat.testing import check_energy
@@ -142,14 +142,14 @@ def test_an_energy_says_how_patient_its_corrections_are(patience: int, fits: boo
 def test_contact_friction_is_more_patient_than_cables() -> None:
     """Oracle: decision 0031, where eight corrections are too few for a grasp."""
     assert FrictionCableEnergy.max_stalled_corrections == 8
-    assert min(ObstacleEnergy.max_stalled_corrections, SelfFrictionEnergy.max_stalled_corrections) == 40
+    assert min(ObstacleEnergy.max_stalled_corrections, FrictionalSelfContactEnergy.max_stalled_corrections) == 40
 
 
 def test_the_adjoint_counts_the_controls_of_all_energies() -> None:
     """Oracle: the Jacobian; the density of a robot without weight moves nothing, whatever hangs at its tip."""
     forces = np.zeros_like(NODES)
     forces[TIP] = [0.0, -0.01]
-    simulation = Simulation(ROBOT, energies=[toys()["magnet"], WeightEnergy(NODES, forces)])
+    simulation = Simulation(ROBOT, energies=[toys()["magnet"], DeadLoadEnergy(NODES, forces)])
     pose, cotangent = simulation.solve(PULL), np.random.default_rng(0).standard_normal(NODES.shape)
     slopes = simulation.adjoint(pose, cotangent)
     expected = np.einsum("nd,ndw->w", cotangent, simulation.jacobian(pose))

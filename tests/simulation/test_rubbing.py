@@ -13,14 +13,14 @@ from hydrostat.geometry import Mesh
 from hydrostat.ik import solve_ik
 from hydrostat.mechanics import (
     Assembly,
-    ContactEnergy,
+    FactorizedHessian,
+    FrictionalSelfContactEnergy,
     NeoHookean,
     NewtonOptions,
     NewtonResult,
     PinEnergy,
     RoundOff,
-    SelfFrictionEnergy,
-    Stiffness,
+    SelfContactEnergy,
     minimize,
 )
 from hydrostat.robot import Contact
@@ -74,13 +74,13 @@ class Pressed:
             stiffness=np.full(len(held), 1e5),
             supports=np.repeat([0, 1], [len(low), len(high)]),
         )
-        contact = ContactEnergy.of(mesh, distance=DISTANCE, young=YOUNG, thickness=0.02 if self.dim == 2 else None)
+        contact = SelfContactEnergy.of(mesh, distance=DISTANCE, young=YOUNG, thickness=0.02 if self.dim == 2 else None)
         body = NeoHookean(
             mesh.nodes, mesh.elements, mu=YOUNG / 2.6, lame=YOUNG, thickness=0.02 if self.dim == 2 else 1.0
         )
-        rubbing = SelfFrictionEnergy.of(mesh, contact, FRICTION)
+        rubbing = FrictionalSelfContactEnergy.of(mesh, contact, FRICTION)
         grip = replace(rubbing.clasp.grip, springs=self.springs * rubbing.clasp.grip.springs)
-        rubbing = SelfFrictionEnergy(contact, rubbing.clasp.with_grip(grip))
+        rubbing = FrictionalSelfContactEnergy(contact, rubbing.clasp.with_grip(grip))
         self.assembly = Assembly([body, self.pins, rubbing], rest=mesh.nodes, control_count=0)
         self.nodes, self.at = mesh.nodes, np.zeros(self.dim)
 
@@ -90,7 +90,7 @@ class Pressed:
         body, _, rubbing = self.assembly.energies
         start = self.assembly.with_active_terms(self.nodes).with_energies([body, pins, rubbing])
 
-        def relax(assembly: Assembly, nodes: Nodes, known: Stiffness | None, tolerance: float) -> NewtonResult:
+        def relax(assembly: Assembly, nodes: Nodes, known: FactorizedHessian | None, tolerance: float) -> NewtonResult:
             noise, options = RoundOff(force=1e-11, energy=1e-16), NewtonOptions(tolerance=max(tolerance, 1e-9))
             return minimize(assembly, nodes, IDLE, round_off=noise, options=options)
 
@@ -121,9 +121,9 @@ class Pressed:
         return blocks
 
     @property
-    def rubbing(self) -> SelfFrictionEnergy:
+    def rubbing(self) -> FrictionalSelfContactEnergy:
         energy = self.assembly.with_active_terms(self.nodes).energies[2]
-        assert isinstance(energy, SelfFrictionEnergy)
+        assert isinstance(energy, FrictionalSelfContactEnergy)
         return energy
 
 
@@ -137,7 +137,7 @@ def test_derivatives_and_balance_of_forces(dim: int) -> None:
     grip = energy.clasp.grip
     lengths = grip.slips(energy.clasp.places(nodes))[1]
     limits = grip.springs * lengths * np.where(np.arange(len(lengths)) % 2, 2.0, 0.5)
-    energy = SelfFrictionEnergy(energy.contact, energy.clasp.with_grip(replace(grip, limits=limits)))
+    energy = FrictionalSelfContactEnergy(energy.contact, energy.clasp.with_grip(replace(grip, limits=limits)))
     check_energy(energy, nodes, IDLE)
     forces = energy.clasp.forces(nodes)
     assert np.abs(forces.sum(axis=0)).max() < 1e-12 * np.abs(forces).sum()

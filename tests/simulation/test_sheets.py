@@ -9,7 +9,7 @@ from builders import box_mesh, mesh_body, strip_mesh
 from scipy.optimize import minimize
 
 from hydrostat.mechanics import SheetEnergy
-from hydrostat.robot import Load, Marker, Material, Pin, Robot, SkinSheet
+from hydrostat.robot import Load, Marker, Material, Membrane, Pin, Robot
 from hydrostat.simulation import Simulation
 
 LENGTH, WIDTH, THICKNESS = 0.1, 0.01, 1e-4
@@ -68,7 +68,7 @@ def bar(dim: int, count: int, gravity: tuple[float, ...], *, kind: str = "quadra
         poses={},
         gravity=gravity,
         sheets=(
-            SkinSheet(
+            Membrane(
                 name="skin", material=SKIN, thickness=THICKNESS, shape="box", at=(1e-6, *low), to=(LENGTH - 1e-6, *far)
             ),
         ),

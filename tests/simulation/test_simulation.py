@@ -7,7 +7,7 @@ import pytest
 from builders import box_robot, strip_robot
 
 from hydrostat.errors import InputError, NotConvergedError
-from hydrostat.mechanics import NewtonOptions, Reason
+from hydrostat.mechanics import NewtonOptions, NewtonStatus
 from hydrostat.robot import Mount, Robot
 from hydrostat.simulation import Equilibrium, Simulation
 
@@ -160,7 +160,7 @@ def test_a_solve_that_stops_early_raises_or_says_why() -> None:
         simulation.solve(PULL)
     assert not caught.value.result.converged  # type: ignore[attr-defined]
     pose = simulation.solve(PULL, strict=False)
-    assert pose.result.reason is Reason.ITERATION_LIMIT
+    assert pose.result.reason is NewtonStatus.ITERATION_LIMIT
     assert np.isfinite(pose.nodes).all()
 
 

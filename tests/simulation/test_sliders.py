@@ -9,11 +9,11 @@ from builders import FOAM, gallery_robot, strip_mesh, strip_robot
 
 from hydrostat.design import DesignRequest
 from hydrostat.errors import InputError
-from hydrostat.mechanics import NeoHookean, SliderEnergy
-from hydrostat.robot import Marker, PoseTarget, Slider, get_material, load_robot, robot_text, save_robot
+from hydrostat.mechanics import NeoHookean, PrandtlEnergy
+from hydrostat.robot import Marker, PoseTarget, PrandtlElement, get_material, load_robot, robot_text, save_robot
 from hydrostat.simulation import Simulation, find_modes
 
-SLIDERS = (Slider(young=20e3, strain=0.01), Slider(young=10e3, strain=0.04))
+SLIDERS = (PrandtlElement(young=20e3, strain=0.01), PrandtlElement(young=10e3, strain=0.04))
 NONE = np.zeros(0)
 
 
@@ -22,12 +22,12 @@ def strip() -> Simulation:
     return Simulation(replace(robot, body=replace(robot.body, material=replace(FOAM, hysteresis=SLIDERS))))
 
 
-def sliders() -> list[SliderEnergy]:
+def sliders() -> list[PrandtlEnergy]:
     mesh = strip_mesh(2, 1)
     solid = NeoHookean(mesh.nodes, mesh.elements, mu=0.0, lame=0.0, thickness=0.03)
     points = {"gradients": solid.shape_gradients[:, None], "volumes": solid.volumes[:, None]}
     kinds = [{"young": each.young, "strain": each.strain} for each in SLIDERS]
-    return [SliderEnergy(mesh.nodes, mesh.elements, **points, **kind) for kind in kinds]
+    return [PrandtlEnergy(mesh.nodes, mesh.elements, **points, **kind) for kind in kinds]
 
 
 def test_a_stretched_bar_draws_the_loop_of_iwan() -> None:

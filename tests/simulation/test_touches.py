@@ -7,7 +7,7 @@ import pytest
 from builders import box_mesh, mesh_body, strip_mesh
 from touching import fork_robot
 
-from hydrostat.mechanics import ContactEnergy
+from hydrostat.mechanics import SelfContactEnergy
 from hydrostat.robot import Contact, Obstacle, Pin, Robot
 from hydrostat.simulation import ContactPatch, Simulation, find_contacts, obstacle_forces
 
@@ -21,9 +21,9 @@ def test_prongs_press_each_other(dim: int) -> None:
     pose = simulation.solve(CLOSED)
     found = find_contacts(simulation, pose)
     assert found
-    contact = next(each for each in simulation.assembly.energies if isinstance(each, ContactEnergy)).with_active_terms(
-        pose.nodes
-    )
+    contact = next(
+        each for each in simulation.assembly.energies if isinstance(each, SelfContactEnergy)
+    ).with_active_terms(pose.nodes)
     forces = np.zeros_like(pose.nodes)
     contact.add_gradient(pose.nodes, np.zeros(0), forces)
     upper = simulation.robot.body.mesh.nodes[:, 1] > 0

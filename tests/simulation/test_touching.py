@@ -11,7 +11,7 @@ from touching import DISTANCE, fork_robot
 from hydrostat.errors import InputError
 from hydrostat.geometry import BoundaryTree, find_crossings
 from hydrostat.ik import solve_ik
-from hydrostat.mechanics import Assembly, ContactEnergy, NewtonOptions
+from hydrostat.mechanics import Assembly, NewtonOptions, SelfContactEnergy
 from hydrostat.robot import Contact, Obstacle, PoseTarget, Robot
 from hydrostat.simulation import Simulation
 
@@ -29,7 +29,7 @@ def test_prongs_meet_and_do_not_cross(dim: int) -> None:
     pose = touching.solve(PULLED)
     assert crossings(touching.robot, pose.nodes) == 0
     assert np.abs(touching.forces(pose.nodes, pose.contractions)).max() <= pose.result.allowed
-    energy = next(each for each in touching.assembly.energies if isinstance(each, ContactEnergy)).with_active_terms(
+    energy = next(each for each in touching.assembly.energies if isinstance(each, SelfContactEnergy)).with_active_terms(
         pose.nodes
     )
     squared, begins = energy.skin.compute_squared_distances(pose.nodes, energy.pairs), energy.skin.begins(energy.pairs)
@@ -49,7 +49,7 @@ def test_random_contractions(dim: int) -> None:
         assert crossings(robot, pose.nodes) == 0
         if dim == 3:
             assert not crosses(robot, pose.nodes)
-        energy = next(each for each in touching.assembly.energies if isinstance(each, ContactEnergy))
+        energy = next(each for each in touching.assembly.energies if isinstance(each, SelfContactEnergy))
         if energy.with_active_terms(pose.nodes).value(pose.nodes, contractions) == 0.0 and not crossings(
             robot, other.nodes
         ):

@@ -48,7 +48,7 @@ class Independent:
             gradient[self.dofs] += self.barrier.gradient(met, self.mesh, skin)
             if np.abs(gradient).max() < 1e-7:
                 return nodes
-            springs = self.assembly.coupling(nodes, controls)
+            springs = self.assembly.low_rank_hessian(nodes, controls)
             hessian = self.assembly.hessian(nodes, controls, projection=1.0).toarray()
             hessian += springs.columns @ springs.weights @ springs.columns.T
             psd = ipctk.PSDProjectionMethod.CLAMP

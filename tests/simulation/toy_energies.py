@@ -108,7 +108,7 @@ class YieldingTie(Energy):
     While a step is sought the slip p is held; then it follows, as friction does.
     """
 
-    quadratic: ClassVar[bool] = True
+    has_constant_hessian: ClassVar[bool] = True
     has_history: ClassVar[bool] = True
 
     def __init__(self, rest: np.ndarray, node: int, *, stiffness: float, limit: float) -> None:

@@ -144,18 +144,18 @@ def test_each_episode_has_a_thing_of_its_own(robot: Robot) -> None:
         off = np.array([each[name] for each in drawn]) - 1
         assert 0.5 * most < np.abs(off).max() <= most
     env.reset(options=drawn[0])
-    thing = env.world.thing
-    assert thing.friction == pytest.approx(0.5 * drawn[0]["friction"])
-    assert thing.radius == pytest.approx(0.015 * drawn[0]["radius"])
-    assert np.subtract(thing.at, BALL.at) == pytest.approx(drawn[0]["start"])
+    obstacle = env.world.obstacle
+    assert obstacle.friction == pytest.approx(0.5 * drawn[0]["friction"])
+    assert obstacle.radius == pytest.approx(0.015 * drawn[0]["radius"])
+    assert np.subtract(obstacle.at, BALL.at) == pytest.approx(drawn[0]["start"])
     env.reset(options={"goal": [0.5]})
-    assert env.world.thing == BALL
+    assert env.world.obstacle == BALL
     env.reset(seed=5)
-    first = env.world.thing
+    first = env.world.obstacle
     env.reset()
-    assert env.world.thing != first
+    assert env.world.obstacle != first
     env.reset(seed=5)
-    assert env.world.thing == first
+    assert env.world.obstacle == first
     other = TwistEnv(robot, options=env.options)
     env.step(np.array([0.0, 0.0]))
     other.go_on(env.get_state())
@@ -163,7 +163,7 @@ def test_each_episode_has_a_thing_of_its_own(robot: Robot) -> None:
     assert (other.equilibria, other.uncounted) == (1, 0)
     for each in (env, other):
         each.reset()
-    assert other.world.thing == env.world.thing != first
+    assert other.world.obstacle == env.world.obstacle != first
 
 
 def test_a_gripper_turns_its_disc() -> None:
@@ -191,9 +191,9 @@ def test_a_gripper_turns_its_disc() -> None:
 @pytest.mark.parametrize(
     ("given", "told"),
     [
-        ({"thing": replace(BALL, mass=None)}, '"ball" stands still: give it a mass'),
-        ({"thing": replace(BALL, at=(0.12, 0.0))}, '"ball" begins in the body or touches it'),
-        ({"thing": replace(BALL, at=(0.12, 0.0, 0.1))}, '"ball" has 3 coordinates, but the body has 2'),
+        ({"obstacle": replace(BALL, mass=None)}, '"ball" stands still: give it a mass'),
+        ({"obstacle": replace(BALL, at=(0.12, 0.0))}, '"ball" begins in the body or touches it'),
+        ({"obstacle": replace(BALL, at=(0.12, 0.0, 0.1))}, '"ball" has 3 coordinates, but the body has 2'),
         ({"options": TwistOptions(tied=("u", "up"))}, "a winch is tied to others once only"),
         ({"options": TwistOptions(tied=("left",))}, 'no winch name contains "left". Available: up, down'),
         ({"axis": (0, 0, 0)}, "the axis of turns must not be 0"),
@@ -213,5 +213,5 @@ def test_tasks_say_what_they_do_not_have(robot: Robot) -> None:
         TwistOptions(turn=(-1.0, 1.0))
     with pytest.raises(InputError, match="friction is drawn within a share"):
         PushOptions(friction=1.0)
-    made = TwistEnv.for_task(robot, TaskOptions(thing=replace(BALL, radius=0.01), friction=0.7, steps=7))
-    assert (made.thing.radius, made.thing.friction, made.steps, made.cost) == (0.01, 0.7, 7, "time steps")
+    made = TwistEnv.for_task(robot, TaskOptions(obstacle=replace(BALL, radius=0.01), friction=0.7, steps=7))
+    assert (made.obstacle.radius, made.obstacle.friction, made.steps, made.cost) == (0.01, 0.7, 7, "time steps")

@@ -188,11 +188,15 @@ def test_markers_that_are_not_asked_for_are_not_looked_at() -> None:
     assert env.reset(seed=0)[0]["desired_goal"].shape == (2,)
 
 
+@pytest.mark.usefixtures("unchecked")
 @pytest.mark.parametrize(
     ("options", "told"),
     [
         ({"steps": 0}, "steps must be 1 or more"),
         ({"tolerance": 0.0}, "tolerance must be above 0"),
+        ({"steps": 1.5}, "steps must be 1 or more, not 1.5"),
+        ({"tolerance": "5 mm"}, "tolerance must be a number, not '5 mm'"),
+        ({"markers": "top"}, 'markers must be a list of names, such as ."tip"., not .top.'),
         ({"markers": ["nose"]}, 'unknown marker "nose"'),
         ({"pairs": [["a", "b"]]}, 'unknown winch "a"'),
         ({"pairs": [["left"]]}, "a pair has two winches"),

@@ -212,10 +212,12 @@ def test_the_gallery_s_puppy_is_put_on_the_ground() -> None:
     made = standing(robot, 0.4)
     low = robot.body.mesh.nodes[:, 1].min()
     assert (made.pins, made.gravity, made.body.material.viscosity) == ((), (0.0, -9.80665), 400.0)
-    assert [(thing.at, thing.friction) for thing in made.obstacles] == [((0.0, pytest.approx(low - 1e-3)), 0.4)]
+    assert [(obstacle.at, obstacle.friction) for obstacle in made.obstacles] == [
+        ((0.0, pytest.approx(low - 1e-3)), 0.4)
+    ]
     assert physics_hash(made) != physics_hash(robot)  # it can be written, as policies are kept with what they are of
     own = standing(slab(), None)  # what robot.toml says stays
-    assert [(thing.name, thing.friction) for thing in own.obstacles] == [("table", 0.6)]
+    assert [(obstacle.name, obstacle.friction) for obstacle in own.obstacles] == [("table", 0.6)]
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Optimality of a cable network: the gain of one more cable, and the slope left along moves that are allowed."""
+"""Optimality of a cable network: the gain of one more cable, and the descent left along moves that are allowed."""
 
 from dataclasses import replace
 
@@ -26,11 +26,13 @@ def certify(proposals: Proposals, trial: Trial) -> Certificate:
     return Certificate(
         further=float(np.sqrt(max(trial.error**2 - 2 * gain, 0.0))),
         paths=len(proposals.graph.edges) * 2 * proposals.options.max_edges,
-        slope=_slope(model.matrix, model.right, model.rows[model.left <= RULES.holding_margin], trial.error),
+        descent_rate=_descent_rate(
+            model.matrix, model.right, model.rows[model.left <= RULES.holding_margin], trial.error
+        ),
     )
 
 
-def _slope(matrix: np.ndarray, right: Vector, limits: np.ndarray, error: float) -> float:
+def _descent_rate(matrix: np.ndarray, right: Vector, limits: np.ndarray, error: float) -> float:
     """The steepest fall of the error along a number that limits which hold allow [m/m] (Karush, Kuhn and Tucker)."""
     if error == 0.0:
         return 0.0

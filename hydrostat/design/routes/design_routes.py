@@ -226,7 +226,7 @@ class RouteSearch:
 
         screened: list[Trial] = []  # reversed cables gain by refinement only: they are screened by themselves
         for back in (False, True):
-            own = [layout for layout in drawn if any(route.ratio < 0 for route in layout.routes) == back]
+            own = [each for each in drawn if each.routes and any(route.ratio < 0 for route in each.routes) == back]
             screened += screen_sketches(growth, own, found=note, count=self.options.starts + RULES.spare_sketches)
         screened.sort(key=lambda trial: trial.cost)
         self.progress("Drawing networks", count, count)

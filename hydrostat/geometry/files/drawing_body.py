@@ -123,7 +123,8 @@ def choose_body(shapes: Shapes, part: int | None, name: str) -> tuple[DrawnLine,
     candidates = [line for line in closed if line not in shapes.grounds]
     if part is None and shapes.doubtful is not None:
         inside = [line for line in closed[closed.index(shapes.doubtful) + 1 :] if line not in shapes.grounds]
-        raise _several([shapes.doubtful, inside[0]], closed, name)
+        edge = shapes.doubtful.polygon.boundary  # what touches it is a title block
+        raise _several([shapes.doubtful, min(inside, key=lambda line: line.polygon.intersects(edge))], closed, name)
     body = _the_largest(candidates, closed, name) if part is None else closed[part - 1]
     after = closed[closed.index(body) + 1 :]
     smaller = [line for line in after if line not in shapes.grounds]

@@ -34,7 +34,7 @@ class DrawnLine:
         closed: it ends where it begins.
         fill: paint within it.
         width: width that it is drawn with.
-        color: color of the paint, red, green and blue from 0 to 255; None without paint.
+        color: color of the paint, red, green and blue from 0 to 255; None without paint or for gradients.
         element: number of the element whose paint it bounds with others, evenly in and out.
         label: names of its layer, class or element, in one text.
     """

@@ -99,7 +99,7 @@ def _close(line: DrawnLine) -> DrawnLine:
     """The line, closed where its ends all but meet."""
     points, extent = line.points, line.extent
     gap = float(np.linalg.norm(points[0] - points[-1]))
-    closed = line.closed or gap <= _GAP * extent
+    closed = line.closed or gap <= max(_GAP * extent, min(line.width, 0.05 * extent))  # its ends meet as painted
     if 0.0 < gap <= _ROUNDING * extent:
         points = np.concatenate([points[:-1], points[:1]])
     return replace(line, points=points, closed=closed)

@@ -49,19 +49,19 @@ def find_grounds(rings: Sequence[DrawnLine], page: PageFacts) -> tuple[list[Draw
     """
     found: list[DrawnLine] = []
     rest = [ring for ring in rings if ring.polygon.area > 0.0]
-    while len(rest) > 1 and _is_rectangle(rest[0]):
+    while len(rest) > 1 and (_is_rectangle(rest[0]) or _is_pale_disk(rest[0], page)):
         first, others = rest[0], rest[1:]
         inside = [ring for ring in others if first.polygon.buffer(1e-6 * first.extent).covers(ring.polygon)]
         inside = [ring for ring in inside if not ring.polygon.equals(first.polygon)]
         if not inside:
             break
-        doubt = _doubt(first, inside, page)
+        edge = first.polygon.boundary.buffer(1e-3 * first.extent)
+        block = [ring for ring in inside if first.fill not in PAINTED and ring.polygon.intersects(edge)]
+        doubt = _doubt(first, [ring for ring in inside if ring not in block] or inside, page, bool(block))
         if found and doubt is not Doubt.GROUND and not _is_hole(inside[0], first):
             doubt = Doubt.GROUND  # a frame within a frame
         if doubt is not Doubt.GROUND:
             return found, first if doubt is Doubt.ASK else None
-        edge = first.polygon.boundary.buffer(1e-3 * first.extent)
-        block = [ring for ring in inside if first.fill not in PAINTED and ring.polygon.intersects(edge)]
         if len(block) == len(inside):
             break
         found += [first, *block]
@@ -74,6 +74,13 @@ def _is_rectangle(ring: DrawnLine) -> bool:
     return ring.polygon.area > 0.97 * float(np.prod(np.ptp(ring.points, axis=0)))
 
 
+def _is_pale_disk(ring: DrawnLine, page: PageFacts) -> bool:
+    """True for a pale circle or ellipse without an edge that fills the page: the ground of a badge."""
+    across, up = np.ptp(ring.points, axis=0)
+    is_round = ring.polygon.area > 0.99 * np.pi / 4.0 * float(across * up)
+    return ring.fill is Fill.PALE and ring.width == 0.0 and is_round and _fills_page(ring, page)
+
+
 def _is_hole(ring: DrawnLine, plate: DrawnLine) -> bool:
     """True for what a plate has rather than a frame around it: circles, rectangles, and what is small."""
     hull = float(ring.polygon.convex_hull.area)
@@ -81,8 +88,8 @@ def _is_hole(ring: DrawnLine, plate: DrawnLine) -> bool:
     return round_share > 0.98 or _is_rectangle(ring) or ring.polygon.area < 0.005 * plate.polygon.area
 
 
-def _doubt(first: DrawnLine, inside: list[DrawnLine], page: PageFacts) -> Doubt:
-    """Answer of paint, names, size and texts to the question whether a rectangle is a ground."""
+def _doubt(first: DrawnLine, inside: list[DrawnLine], page: PageFacts, has_block: bool) -> Doubt:
+    """Answer of paint, names, size, texts and blocks on its edge to the question whether a rectangle is a ground."""
     label = first.label.replace("_", " ").replace("-", " ")
     largest = max((ring for ring in inside), key=lambda ring: (not _is_hole(ring, first), ring.polygon.area))
     share = largest.polygon.area / first.polygon.area
@@ -93,7 +100,7 @@ def _doubt(first: DrawnLine, inside: list[DrawnLine], page: PageFacts) -> Doubt:
     if first.fill is Fill.PALE and bare and any(ring.fill is not Fill.PALE or ring.width > 0.0 for ring in inside):
         return Doubt.GROUND
     if _is_hole(largest, first) or not sharp:
-        return Doubt.BODY
+        return _doubt_of_plate(first, largest, page, has_block)
     if first.fill is Fill.PALE:
         likely = any(ring.fill is not Fill.PALE for ring in inside)
     elif first.fill is Fill.FULL:
@@ -111,6 +118,18 @@ def _doubt(first: DrawnLine, inside: list[DrawnLine], page: PageFacts) -> Doubt:
     if not likely and not _LIKELY.search(label):
         return Doubt.BODY
     return Doubt.GROUND if share > 0.1 else Doubt.ASK if share > 0.02 else Doubt.BODY
+
+
+def _doubt_of_plate(first: DrawnLine, largest: DrawnLine, page: PageFacts, has_block: bool) -> Doubt:
+    """Answer where what is inside may be a hole, or the shape is not a sharp rectangle."""
+    if _is_hole(largest, first):
+        is_named = has_block or _LIKELY.search(first.label.replace("_", " "))
+        if first.fill not in PAINTED and is_named and _is_paper(first, page):
+            return Doubt.GROUND
+        return Doubt.ASK if has_block else Doubt.BODY
+    is_badge = first.fill is Fill.PALE and first.width == 0.0 and _fills_page(first, page)
+    is_behind = largest.fill is Fill.FULL and largest.polygon.area > 0.1 * first.polygon.area
+    return Doubt.GROUND if is_badge and is_behind else Doubt.BODY
 
 
 def _fills_page(ring: DrawnLine, page: PageFacts) -> bool:

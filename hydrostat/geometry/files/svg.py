@@ -347,6 +347,8 @@ def _paint(element: Any, values: Mapping[str, Any]) -> tuple[Fill, tuple[int, in
         width = max(float(element.stroke_width or 0.0), 0.0)
     if fill is None or fill.value is None or seen * fill.opacity <= faint or type(element).__name__ == "SimpleLine":
         return Fill.NONE, None, width
+    if str(values.get("fill")).startswith("url("):
+        return Fill.FULL, None, width  # a gradient or pattern, of which the reader knows no color
     color = (int(fill.red), int(fill.green), int(fill.blue))
     pale = 235  # white, and what paper looks like
     return (Fill.PALE if min(color) >= pale else Fill.FULL), color, width

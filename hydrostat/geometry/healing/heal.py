@@ -165,12 +165,14 @@ def _made_anew(
     anew = [f"made again on a grid of {1e3 * made.spacing:.3g} mm: edges and corners are rounded by up to half of it"]
     if made.spacing > want:
         anew.append(f"the grid is coarser than the {1e3 * want:.3g} mm asked for, which would have too many points")
+    holes = holes_of(kept)
+    closed = with_closed(kept, holes, holes.simple) if holes.simple.any() else kept
     return Healing(
         surface=made.surface,
         found=found,
         done=(*done, *anew, *made.done),
         removed=(*removed, *made.removed, *lost),
-        volume_before=float(shells.volumes[shells.of_role(Role.BODY, Role.CAVITY)].sum()),
+        volume_before=closed.volume,
         volume_after=made.surface.volume,
         largest_distance=off.largest,
         patched=off.patched,

@@ -30,7 +30,6 @@ class Shells:
     inside_out: Bool[np.ndarray, " parts"]  # parts that looked inward and were turned as a whole
     whole: Bool[np.ndarray, " parts"]  # parts that are closed, manifold and turned one way
     boxes: Float[np.ndarray, "parts 2 3"]  # lowest and highest coordinates of each [m]
-    volumes: Vector  # of each [m^3], its holes closed by fans; negative for a cavity
     roles: tuple[Role, ...]  # what each is to the body
 
     def of_role(self, *roles: Role) -> Bool[np.ndarray, " parts"]:
@@ -66,7 +65,7 @@ def shells_of(
     triangles = np.where(turned[label][:, None], triangles[:, ::-1], triangles)
     turned_surface = Surface(surface.vertices, triangles)
     _find_specks(turned_surface, label, boxes, whole, meets, roles, largest, near)
-    return Shells(turned_surface, label, turned, whole, boxes, np.where(turned, -volume, volume), tuple(roles))
+    return Shells(turned_surface, label, turned, whole, boxes, tuple(roles))
 
 
 def _boxes_of_parts(vertices: np.ndarray, triangles: np.ndarray, label: np.ndarray) -> Float[np.ndarray, "parts 2 3"]:

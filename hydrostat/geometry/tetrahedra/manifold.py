@@ -79,9 +79,9 @@ def _crowded_edge_elements(mesh: Mesh) -> np.ndarray:
     sides = np.sort(
         np.concatenate([mesh.boundary[:, [0, 1]], mesh.boundary[:, [1, 2]], mesh.boundary[:, [2, 0]]]), axis=1
     )
-    edges, counts = np.unique(sides, axis=0, return_counts=True)
+    keys, counts = np.unique(sides[:, 0] * len(mesh.nodes) + sides[:, 1], return_counts=True)
     out = np.zeros(len(mesh.elements), dtype=bool)
-    for edge in edges[counts > 2]:
+    for edge in np.column_stack(np.divmod(keys[counts > 2], len(mesh.nodes))):
         around = np.flatnonzero(np.isin(mesh.elements, edge).sum(axis=1) == 2)
         group = joined_groups(_joins(mesh.elements[around]) // 4, len(around))
         volumes = signed_volumes(mesh.nodes, mesh.elements[around])

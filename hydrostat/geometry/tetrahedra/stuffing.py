@@ -92,15 +92,12 @@ def bisect(nodes: Nodes, elements: Elements, chosen: Bool[np.ndarray, " elements
     divided first. On the body-centered cubic lattice this leaves four shapes of tetrahedra, the lattice's own and
     three more, however often it is done; no angle gets below 45 degrees.
     """
-    every, which = edges_of(elements)
-    marked = np.zeros(len(every), dtype=bool)
-    marked[_longest(nodes, every, which)[chosen]] = True
-    todo = every[marked]
-    while len(todo):
+    todo: Edges | None = None
+    while todo is None or len(todo):
         every, which = edges_of(elements)
         longest = _longest(nodes, every, which)
         marked = np.zeros(len(every), dtype=bool)
-        marked[find_edges(every, todo)] = True
+        marked[longest[chosen] if todo is None else find_edges(every, todo)] = True
         _close(marked, which, longest)
         ready = marked.copy()
         ready[which[marked[which] & (which != longest[:, None])]] = False
@@ -117,7 +114,7 @@ def bisect(nodes: Nodes, elements: Elements, chosen: Bool[np.ndarray, " elements
 def _longest(nodes: Nodes, every: Edges, which: Int[np.ndarray, "elements 6"]) -> Int[np.ndarray, " elements"]:
     """Longest edge of each tetrahedron; of equals, the same for all that have them."""
     lengths = np.linalg.norm(nodes[every[:, 1]] - nodes[every[:, 0]], axis=1)
-    order = np.lexsort((np.arange(len(every)), np.round(lengths / lengths.max(), 9)))
+    order = np.argsort(np.round(lengths / lengths.max(), 9), kind="stable")
     rank = np.empty(len(every), dtype=np.int64)
     rank[order] = np.arange(len(every))
     return np.take_along_axis(which, np.argmax(rank[which], axis=1)[:, None], axis=1)[:, 0]
@@ -167,20 +164,26 @@ def _snap_nodes(
     return nodes, elements, sides, edges[left], cuts[left]
 
 
+_THERE = 1e-6  # a cut this near to the surface, in sizes of the body, is on it
+
+
 def _edge_crossings(
     solid: Solid, ends: Float[np.ndarray, "edges 2 3"], distances: Float[np.ndarray, "edges 2"]
 ) -> Float[np.ndarray, " edges"]:
     """Share of each edge where it passes the surface, by the Illinois method, to a thousandth."""
     low, high = ends[:, 0], ends[:, 1]
     left, right = np.zeros(len(ends)), np.ones(len(ends))
-    at_left, at_right = distances.T
+    at_left, at_right = distances.T.copy()
     share = np.full(len(ends), 0.5)
+    some = np.arange(len(ends))  # those that go on
     for _ in range(5):
-        share = left + (right - left) * np.clip(at_left / (at_left - at_right), 0.02, 0.98)
-        value = solid.distances(low + share[:, None] * (high - low))
-        same = (value < 0) == (at_left < 0)
-        left, right = np.where(same, share, left), np.where(same, right, share)
-        at_left, at_right = np.where(same, value, 0.5 * at_left), np.where(same, 0.5 * at_right, value)
+        one, two = at_left[some], at_right[some]
+        share[some] = left[some] + (right - left)[some] * np.clip(one / (one - two), 0.02, 0.98)
+        value = solid.distances(low[some] + share[some, None] * (high - low)[some])
+        same = (value < 0) == (one < 0)
+        left[some[same]], right[some[~same]] = share[some[same]], share[some[~same]]
+        at_left[some], at_right[some] = np.where(same, value, 0.5 * one), np.where(same, 0.5 * two, value)
+        some = some[np.abs(value) > _THERE * solid.surface.size]
     return share
 
 

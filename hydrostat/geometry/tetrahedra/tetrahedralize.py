@@ -148,7 +148,9 @@ _FEWEST, _MOST, _MOST_CELLS = 20, 400_000, 2_000_000
 """Elements, and cells of the lattice over the bounding box: what fits into memory."""
 
 
-def tetrahedralize(surface: Surface, element_size: float, *, most_nodes: float = np.inf) -> Mesh:
+def tetrahedralize(
+    surface: Surface, element_size: float, *, most_nodes: float = np.inf, most_lost: float = 1.0
+) -> Mesh:
     """Fill a closed surface, oriented outward, with tetrahedra whose edges have about the element size [m] in the mean.
 
     A lattice is cut along the surface (`stuffing.py`), then its nodes move until the elements are well shaped and their
@@ -159,7 +161,8 @@ def tetrahedralize(surface: Surface, element_size: float, *, most_nodes: float =
 
     Raises:
         InputError: so large that the body has too few elements, or so small that it has too many.
-        TooManyNodesError: more nodes than `most_nodes`, because of places that need finer elements.
+        TooManyNodesError: more nodes than `most_nodes`, because of places that need finer elements; or more than
+            `most_lost` of the volume breaks off the lattice before it is refined there.
             With that limit it is a SurfaceError, too, if the boundary stays farther than half an element somewhere.
         SurfaceError: the body is much thinner than the elements; the message says where, and what to take.
     """
@@ -174,6 +177,8 @@ def tetrahedralize(surface: Surface, element_size: float, *, most_nodes: float =
     whole = 0.7  # if a lattice takes less of the volume, then finer elements in some places do not help
     if draft.whole < whole:
         raise SurfaceError(f"much of the body is thinner than {_advice(surface, element_size)}")
+    if draft.lost > most_lost:
+        raise TooManyNodesError(_describe_excess(element_size, len(draft.mesh.nodes), draft.places))
     finer = 4  # rounds of finer elements where the boundary is not close
     bisections = 2  # of the longest edges, in each round; three halve the elements
     for size in element_size / 2.0 ** (np.arange(finer) * bisections / 3):

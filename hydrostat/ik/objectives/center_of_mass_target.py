@@ -9,10 +9,10 @@ from hydrostat.arrays import Vector
 from hydrostat.given import Point
 from hydrostat.ik.objectives.objective import (
     EquilibriumState,
+    Jacobian,
     Objective,
     Residual,
     Rows,
-    Slopes,
     StateJacobian,
     not_negative,
     place,
@@ -51,7 +51,7 @@ class _Center(Residual):
     def residual(self, posture: EquilibriumState) -> Rows:
         return self._weight * (self._shares @ posture.nodes - self._target)
 
-    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
+    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Jacobian:
         return self._weight * np.einsum("n,ndw->dw", self._shares, moves.nodes)
 
     def errors(self, posture: EquilibriumState) -> Mapping[str, float]:

@@ -10,10 +10,10 @@ import numpy as np
 from hydrostat.closed_set import make_member
 from hydrostat.ik.objectives.objective import (
     EquilibriumState,
+    Jacobian,
     Objective,
     Residual,
     Rows,
-    Slopes,
     StateJacobian,
     above_zero,
     full_travels,
@@ -74,7 +74,7 @@ class _Contraction(Residual):
     def residual(self, posture: EquilibriumState) -> Rows:
         return self._scale * posture.contractions
 
-    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
+    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Jacobian:
         return np.diag(np.broadcast_to(self._scale, posture.contractions.shape))
 
 
@@ -85,7 +85,7 @@ class _Tension(Residual):
     def residual(self, posture: EquilibriumState) -> Rows:
         return self._scale * posture.tensions
 
-    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
+    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Jacobian:
         return self._scale * moves.tensions
 
 
@@ -96,6 +96,6 @@ class _Slack(Residual):
     def residual(self, posture: EquilibriumState) -> Rows:
         return self._scale * np.minimum(posture.elongations, 0.0)
 
-    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
+    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Jacobian:
         scale = np.broadcast_to(self._scale, posture.elongations.shape)
         return np.where(posture.elongations < 0, scale, 0.0)[:, None] * moves.elongations

@@ -12,10 +12,10 @@ from hydrostat.geometry import Anchors, locate
 from hydrostat.given import Point, list_choices
 from hydrostat.ik.objectives.objective import (
     EquilibriumState,
+    Jacobian,
     Objective,
     Residual,
     Rows,
-    Slopes,
     StateJacobian,
     by_name,
     describe,
@@ -138,7 +138,7 @@ class MarkerResidual(Residual):
         """Scaled distance of each point from its target, along each constrained axis [m]."""
         return (self._scales * self._offsets(posture)).ravel()
 
-    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
+    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Jacobian:
         """Jacobian of the residual by the contractions."""
         moved: Float[np.ndarray, "markers dim winches"] = np.einsum(
             "pc,pcdw->pdw", self.anchors.weights, moves.nodes[self.anchors.stencils]

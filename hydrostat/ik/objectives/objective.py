@@ -10,12 +10,12 @@ import numpy as np
 from hydrostat.arrays import Bool, Float, Int, Nodes, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry import Mesh
-from hydrostat.mechanics import FrictionCableEnergy, Stiffness
+from hydrostat.mechanics import FactorizedHessian, FrictionCableEnergy
 from hydrostat.robot import Robot
 from hydrostat.simulation import Equilibrium, Simulation
 
 Rows = Float[np.ndarray, " rows"]
-Slopes = Float[np.ndarray, "rows winches"]
+Jacobian = Float[np.ndarray, "rows winches"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -87,7 +87,7 @@ class Residual(ABC):
         """Residual that the search drives to zero [m], (rows,); its number of rows is the same in every state."""
 
     @abstractmethod
-    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
+    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Jacobian:
         """D residual / d contractions, (rows, winches)."""
 
     def errors(self, posture: EquilibriumState) -> Mapping[str, float]:
@@ -148,7 +148,7 @@ def rubbing_moves(
     simulation: Simulation,
     friction: FrictionCableEnergy,
     posture: EquilibriumState,
-    stiffness: Stiffness,
+    stiffness: FactorizedHessian,
     taut: Int[np.ndarray, " some"] | None = None,
 ) -> StateJacobian:
     """Return the state Jacobian for cables with friction: points at the capstan limit slip on, the others stick.
@@ -229,5 +229,8 @@ def place(what: str, given: object, mesh: Mesh, *, held: Bool[np.ndarray, " dim"
     way = float(np.linalg.norm(ways if held is None else ways[held]))
     farthest = 100.0  # sizes of its body that a target may be away; in millimeters it is a thousand
     if way > farthest * mesh.size:
-        raise InputError(f"{what} is {way:.4g} m away from a body of {mesh.size:.3g} m; targets are in meters")
+        raise InputError(
+            f"{what} is {way:.4g} m away from a body of {mesh.size:.3g} m. "
+            "Check its unit: millimeters in robot.toml, meters in Python"
+        )
     return found

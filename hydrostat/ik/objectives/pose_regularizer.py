@@ -11,10 +11,10 @@ from hydrostat.errors import InputError
 from hydrostat.geometry import Anchors
 from hydrostat.ik.objectives.objective import (
     EquilibriumState,
+    Jacobian,
     Objective,
     Residual,
     Rows,
-    Slopes,
     StateJacobian,
     describe,
     not_negative,
@@ -82,7 +82,7 @@ class _Nodes(Residual):
     def residual(self, posture: EquilibriumState) -> Rows:
         return self._weight * (posture.nodes - self._nodes).ravel()
 
-    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
+    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Jacobian:
         return self._weight * moves.nodes.reshape(posture.nodes.size, -1)
 
 
@@ -94,7 +94,7 @@ class _Markers(Residual):
     def residual(self, posture: EquilibriumState) -> Rows:
         return self._weight * (self._anchors.positions(posture.nodes)[self._which] - self._places).ravel()
 
-    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
+    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Jacobian:
         stencils, weights = self._anchors.stencils[self._which], self._anchors.weights[self._which]
         moved = np.einsum("mk,mkdc->mdc", weights, moves.nodes[stencils])
         return self._weight * moved.reshape(-1, moved.shape[2])
@@ -107,5 +107,5 @@ class _Contractions(Residual):
     def residual(self, posture: EquilibriumState) -> Rows:
         return self._weights * (posture.contractions - self._contractions)
 
-    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
+    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Jacobian:
         return np.diag(self._weights)

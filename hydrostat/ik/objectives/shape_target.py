@@ -14,10 +14,10 @@ from hydrostat.geometry import Curve, Mesh, Nearest, Outline, Shell, Surface, re
 from hydrostat.given import path_of
 from hydrostat.ik.objectives.objective import (
     EquilibriumState,
+    Jacobian,
     Objective,
     Residual,
     Rows,
-    Slopes,
     StateJacobian,
     describe,
     not_negative,
@@ -111,7 +111,7 @@ class _Shape(Residual):
     def residual(self, posture: EquilibriumState) -> Rows:
         return self._weight * self._distances(posture)
 
-    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
+    def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Jacobian:
         shape, body = self._nearest(posture)
         nodes = np.einsum("pd,pdw->pw", shape.directions, moves.nodes[self._rim])
         places = np.einsum("pc,pd,pcdw->pw", body.shares, -body.directions, moves.nodes[body.stencils], optimize=True)

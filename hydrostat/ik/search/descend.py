@@ -14,7 +14,7 @@ Square = Float[np.ndarray, "channels channels"]
 class Curvature:
     """Estimate of sum r_i d2r_i, which counts where a target is out of reach (Dennis, Gay and Welsch 1981).
 
-    It follows from how the slopes of the residual change along a step. It is used only while it tells the objective
+    It follows from how the Jacobian of the residual changes along a step. It is used only while it tells the objective
     better than Gauss-Newton alone does and that falls slowly, and forgotten when a cable becomes taut or slack.
     """
 
@@ -187,7 +187,7 @@ class _TrustRegionDescent:
             self.state = self.search.drop_slack(self.state)
         elif self.state.excess > EXCESS:
             reason = IKStatus.INFEASIBLE
-        elif reason is IKStatus.LOCAL_OPTIMUM and self.problem.slope(self.state, self.weight) > steep:
+        elif reason is IKStatus.LOCAL_OPTIMUM and self.problem.descent_rate(self.state, self.weight) > steep:
             reason = IKStatus.STALLED
         return Descent(state=self.state, reason=reason, iterations=iterations, weight=self.weight)
 

@@ -325,7 +325,7 @@ def reached_pose(search: InverseSearch, found: Descent, target: PoseTarget | Non
         status=found.reason,
         iterations=found.iterations,
         solves=search.solves,
-        optimality=problem.slope(state, found.weight),
+        optimality=problem.descent_rate(state, found.weight),
         active_limits=() if found.reason is IKStatus.REACHED else limits_that_hold(search, found),
     )
 

@@ -13,7 +13,7 @@ from hydrostat.arrays import Float, Vector
 from hydrostat.ik.limits import Bounds
 from hydrostat.ik.objectives.objective import EquilibriumState, StateJacobian, rubbing_moves, winch_to_cable_matrix
 from hydrostat.lazy import load_compiled
-from hydrostat.mechanics import CableEnergy, Stiffness
+from hydrostat.mechanics import CableEnergy, FactorizedHessian
 from hydrostat.simulation import Simulation
 
 
@@ -67,7 +67,7 @@ _EDGE = 0.1  # a channel whose tautest cable is longer by less than this share o
 
 
 def stack_jacobians(
-    simulation: Simulation, posture: EquilibriumState, stiffness: Stiffness, taut: np.ndarray
+    simulation: Simulation, posture: EquilibriumState, stiffness: FactorizedHessian, taut: np.ndarray
 ) -> StateJacobian:
     """Sensitivities to contractions, by the implicit function theorem: H dx/da = -d2E/dx da (R33, E16).
 
@@ -109,7 +109,7 @@ class LinearModel:
         bounds: Bounds,
         values: Vector,
     ) -> None:
-        """Residual and its slopes, slopes of tensions, and limits at contractions `values` of the channels."""
+        """Residual and its Jacobian, that of tensions, and limits at contractions `values` of the channels."""
         self.residual, self.matrix, self.places, self.bounds, self.values = residual, matrix, places, bounds, values
         self._pulls = _first_pulls(posture, tensions, places, bounds)
         self._loads = bounds.loads @ posture.tensions, bounds.loads @ tensions, bounds.most
@@ -159,14 +159,14 @@ class LinearModel:
         return other
 
     def gradient(self, residual: Vector | None = None) -> Vector:
-        """Slope of half the squares of the residual, or of another one, along each channel [m]."""
+        """Gradient of half the squares of the residual, or of another one, along each channel [m]."""
         return self.matrix.T @ (self.residual if residual is None else residual)
 
     def alike(self, other: "LinearModel") -> bool:
         """Return True if the same cables are taut in both models."""
         return bool(((self.places.gaps != 0) == (other.places.gaps != 0)).all())
 
-    def slope(self, effort: Vector) -> float:
+    def descent_rate(self, effort: Vector) -> float:
         """Steepest fall of the length of residual and effort along a channel, as far as the limits allow [m/m].
 
         Multipliers of the limits that hold are those that leave least of the gradient; 0 at an optimum (Karush, Kuhn
@@ -189,8 +189,8 @@ class LinearModel:
     def apply_step(self, step: Vector) -> Vector:
         """Contractions of the channels after a step [m]; slack ones that do not join stay as they are."""
         places = self.places
-        pulls, slopes = self._pulls
-        slack = pulls + slopes @ step <= 1e-9 * (np.abs(slopes) @ self.range)
+        pulls, rates = self._pulls
+        slack = pulls + rates @ step <= 1e-9 * (np.abs(rates) @ self.range)
         joins = self.active & ~slack & (places.gaps != 0)
         leaves = self.active & slack & (places.gaps == 0)
         stays = self.active & ~slack & (places.gaps == 0)
@@ -205,7 +205,7 @@ class LinearModel:
         return np.where(ends > high - hair, high, np.where(ends < low + hair, low, ends))
 
     def _squares(self, effort: Vector) -> tuple[np.ndarray, Vector]:
-        """Slopes with respect to active channels, and values, of residual and effort."""
+        """Jacobian with respect to active channels, and values, of residual and effort."""
         tensions, rises = self._efforts
         matrix = np.vstack([self.matrix, effort[:, None] * rises])[:, self.active]
         return matrix, np.concatenate([self.residual, effort * tensions])
@@ -216,9 +216,9 @@ class LinearModel:
         begin = self.values[active] + self.places.gaps[active]
         reach = radius * self.range[active]
         eye = np.eye(int(active.sum()))
-        pulls, slopes = self._pulls
+        pulls, rates = self._pulls
         loads, rises, largest = self._loads
-        rows = [eye, -eye, -slopes[np.ix_(active, active)], rises[:, active]]
+        rows = [eye, -eye, -rates[np.ix_(active, active)], rises[:, active]]
         room = [
             np.minimum(bounds.high[active] - begin, reach),
             np.minimum(begin - bounds.low[active], reach),
@@ -231,13 +231,13 @@ class LinearModel:
 def _first_pulls(
     posture: EquilibriumState, tensions: Float[np.ndarray, "cables channels"], places: Channels, bounds: Bounds
 ) -> tuple[Vector, Float[np.ndarray, "channels channels"]]:
-    """Tension of the first cable of each channel, and its slopes; that of a drive pulls always."""
+    """Tension of the first cable of each channel, and its derivatives; that of a drive pulls always."""
     if not bounds.driven.any():
         return posture.tensions[places.first], tensions[places.first]
-    pulls, slopes = np.full(len(places.first), np.inf), np.zeros((len(places.first), len(places.first)))
+    pulls, rates = np.full(len(places.first), np.inf), np.zeros((len(places.first), len(places.first)))
     winches = ~bounds.driven
-    pulls[winches], slopes[winches] = posture.tensions[places.first[winches]], tensions[places.first[winches]]
-    return pulls, slopes
+    pulls[winches], rates[winches] = posture.tensions[places.first[winches]], tensions[places.first[winches]]
+    return pulls, rates
 
 
 Matrix = Float[np.ndarray, "rows size"]

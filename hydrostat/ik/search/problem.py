@@ -13,9 +13,9 @@ from hydrostat.errors import InputError
 from hydrostat.ik.limits import Bounds
 from hydrostat.ik.objectives.objective import (
     EquilibriumState,
+    Jacobian,
     Residual,
     Rows,
-    Slopes,
     StateJacobian,
     full_travels,
     posture_of,
@@ -39,7 +39,9 @@ class IKOptions:
         iterations: maximum number of steps from one start.
         largest_step: largest change of a contraction in one step, as a fraction of the winch's whole range.
         min_tension: among equally good contractions, choose those with the least tension, for any start.
-        restarts: maximum number of restarts while a goal is not reached; 0 to save time.
+        restarts: maximum number of restarts while a target is missed by more than `restart_error`; 0 to save time.
+        restart_error: largest error of a marker, as a fraction of the body's size, up to which a local optimum is not
+            restarted: robots are built less exactly. With `objectives` each local optimum is.
         hold_free_markers: keep markers without a target where they are. This changes nothing if the target is in reach.
             Otherwise they move a distance d from rest only if that gains about d^2 over four times the body's size.
     """
@@ -51,10 +53,18 @@ class IKOptions:
     largest_step: float = 0.3
     min_tension: bool = True
     restarts: int = 3
+    restart_error: float = 3e-3
     hold_free_markers: bool = True
 
     def __post_init__(self) -> None:
-        for name, least in (("effort", 0.0), ("tolerance", 0.0), ("progress", 0.0), ("iterations", 0), ("restarts", 0)):
+        for name, least in (
+            ("effort", 0.0),
+            ("tolerance", 0.0),
+            ("progress", 0.0),
+            ("restart_error", 0.0),
+            ("iterations", 0),
+            ("restarts", 0),
+        ):
             value = getattr(self, name)
             whole = name in ("iterations", "restarts")
             if isinstance(value, bool) or not isinstance(value, int if whole else (int, float)) or not value >= least:
@@ -127,7 +137,7 @@ class InverseProblem:
         if any(
             (energy.controls is not None and (energy.controls < winches).any())
             or energy.has_history
-            or energy.coupling(*idle) is not None
+            or energy.low_rank_hessian(*idle) is not None
             for energy in others
         ):
             raise InputError(
@@ -227,9 +237,9 @@ class InverseProblem:
         tensions = moves.tensions @ self.bounds.spread
         return LinearModel(state.posture, state.residual, matrix, tensions, places, self.bounds, state.values)
 
-    def slope(self, state: InverseState, weight: float) -> float:
+    def descent_rate(self, state: InverseState, weight: float) -> float:
         """Steepest decrease of the residual norm along a channel that can move that way [m/m]."""
-        return self.linear(state).slope(weight * self.worth)
+        return self.linear(state).descent_rate(weight * self.worth)
 
     def redundant(self, state: InverseState) -> bool:
         """Return True if some change of the contractions has no effect on the residual."""
@@ -241,7 +251,7 @@ class InverseProblem:
         idle = 1e-3  # a change that moves less than this share of what the best one moves counts as none
         return moves.shape[0] < moves.shape[1] or bool(values[-1] < idle * values[0])
 
-    def jacobian(self, state: InverseState) -> Slopes:
+    def jacobian(self, state: InverseState) -> Jacobian:
         """D residual / d contractions of the channels; slack ones as if they had just become taut."""
         return self.linear(state).matrix
 
@@ -256,12 +266,12 @@ class InverseProblem:
         """Weight of the effort: a share of the error, for then it fades as fast as the search converges."""
         return effort_weight(state.residual, self.size, self.options.effort)
 
-    def _rows(self, posture: EquilibriumState, moves: StateJacobian) -> Slopes:
+    def _rows(self, posture: EquilibriumState, moves: StateJacobian) -> Jacobian:
         rows = [np.zeros((0, len(self.bounds.channels))), *(term.jacobian(posture, moves) for term in self.terms)]
         return np.vstack(rows) @ self.bounds.spread
 
-    def _direct(self, posture: EquilibriumState) -> Slopes:
-        """Slopes of terms that look at contractions or slack, while no cable pulls more."""
+    def _direct(self, posture: EquilibriumState) -> Jacobian:
+        """Jacobian of terms that look at contractions or slack, while no cable pulls more."""
         own = winch_to_cable_matrix(self.simulation)
         still = StateJacobian(
             nodes=np.zeros((*posture.nodes.shape, own.shape[1])), elongations=own, tensions=np.zeros_like(own)

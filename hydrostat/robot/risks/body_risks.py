@@ -32,9 +32,12 @@ LOCKING = {
 }
 """Relative bending stiffness added by locking, 4 elements across a limb, in 2D and 3D (`lab/locking/locking.py`)."""
 
-LEAST_ACROSS = {2: 2.0, 3: 3.0}
+MIN_ELEMENTS_ACROSS = {2: 2.0, 3: 3.0}
 """A limb with fewer elements across bends much too stiffly, in the plane and in space (docs/decisions/0012)."""
 
+
+FEW_ELEMENTS = " elements across ("
+"""Words of the sentence on a limb of few elements alone, whatever its elements are."""
 
 LEAST_QUADRATIC = 0.8
 """A limb with fewer quadratic elements across may bend 10 % too little or too much (docs/decisions/0044)."""
@@ -54,6 +57,8 @@ def body_risks(robot: Robot) -> Iterator[str]:
     yield from _locking(robot.body)
     yield from _crossing(mesh)
     yield from _thin(robot.body)
+    if robot.body.thickness is not None and robot.body.thickness > mesh.size:
+        yield f"body.thickness: {mm(robot.body.thickness)}, more than the size of {mm(mesh.size)}; check its unit"
 
 
 def _flat_angles(mesh: Mesh) -> Iterator[str]:
@@ -149,7 +154,7 @@ def _thin(body: Body) -> Iterator[str]:
             spacing=thickness.spacing[bends],
             areas=thickness.areas[bends],
         )
-    parts = thickness.thin_parts(2 * LEAST_QUADRATIC if quadratic else LEAST_ACROSS[dim])
+    parts = thickness.thin_parts(2 * LEAST_QUADRATIC if quadratic else MIN_ELEMENTS_ACROSS[dim])
     if not parts:
         return
     thinnest = parts[0]

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.mechanics import Stiffness
+from hydrostat.mechanics import FactorizedHessian
 from hydrostat.simulation.simulation import Simulation
 
 
@@ -40,7 +40,7 @@ class PathPoint:
 
     nodes: Nodes
     share: float
-    stiffness: Stiffness
+    stiffness: FactorizedHessian
     tangent: Tangent
     residual: float
     allowed: float
@@ -143,7 +143,13 @@ class Bordered:
         return None
 
     def _place(
-        self, nodes: Nodes, share: float, stiffness: Stiffness, tangent: Tangent, distance: float, iterations: int
+        self,
+        nodes: Nodes,
+        share: float,
+        stiffness: FactorizedHessian,
+        tangent: Tangent,
+        distance: float,
+        iterations: int,
     ) -> PathPoint | None:
         """Equilibrium with its forces; None if there is none."""
         controls = self.controls(share)

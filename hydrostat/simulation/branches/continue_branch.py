@@ -7,7 +7,7 @@ import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError
-from hydrostat.mechanics import NewtonResult, Reason
+from hydrostat.mechanics import NewtonResult, NewtonStatus
 from hydrostat.simulation.branches.bordered import Bordered, PathPoint, Tangent
 from hydrostat.simulation.branches.branch import Branch, BranchPoint, BranchReason, CriticalKind, CriticalPoint
 from hydrostat.simulation.controls import split_controls
@@ -254,7 +254,7 @@ def _solve_at(simulation: Simulation, controls: Callable[[float], Vector], place
         energy=energy,
         result=NewtonResult(
             nodes=place.nodes,
-            reason=Reason.CONVERGED,
+            reason=NewtonStatus.CONVERGED,
             residual=place.residual,
             allowed=place.allowed,
             energy=energy,

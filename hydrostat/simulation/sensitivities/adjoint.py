@@ -9,18 +9,18 @@ import numpy as np
 from hydrostat.arrays import Float, Nodes, Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry import locate
-from hydrostat.mechanics import Assembly, CableEnergy, Stiffness
+from hydrostat.mechanics import Assembly, CableEnergy, FactorizedHessian
 from hydrostat.robot import Material, Robot
 from hydrostat.simulation.body_physics import BodyPhysics
 from hydrostat.simulation.drive_energies import pin_drives
 from hydrostat.simulation.equilibrium import Equilibrium
 from hydrostat.simulation.load_energies import driven_loads
-from hydrostat.simulation.route_points import RoutePoints, RouteSlopes
+from hydrostat.simulation.route_points import RouteGradient, RoutePoints
 
 
 def response(
     assembly: Assembly,
-    stiffness: Stiffness,
+    stiffness: FactorizedHessian,
     state: tuple[Nodes, Vector],
     forces: Float[np.ndarray, "dofs columns"],
 ) -> Float[np.ndarray, "dofs columns"]:
@@ -32,7 +32,7 @@ def response(
         state: nodes [m] and contractions [m].
         forces: force on every degree of freedom [N], a column for each load case.
     """
-    body, springs = assembly.hessian(*state), assembly.coupling(*state)
+    body, springs = assembly.hessian(*state), assembly.low_rank_hessian(*state)
     allowed = 1e-11 * np.abs(forces).max(axis=0, initial=0.0)
     rounding = 1e-15 * np.abs(body.data).max(initial=0.0)
     moves = stiffness.solve(forces)
@@ -80,7 +80,7 @@ class Sensitivity:
 
     contractions: Vector
     slack: Vector
-    routes: tuple[RouteSlopes, ...]
+    routes: tuple[RouteGradient, ...]
     cable_stiffness: Vector
     friction: Vector
     pin_stiffness: Vector
@@ -181,7 +181,7 @@ def _check_shape(name: str, given: np.ndarray, shape: tuple[int, ...]) -> np.nda
 
 def by_body(body: BodyPhysics, pose: Equilibrium, field: Nodes) -> dict[str, Any]:
     """Sensitivities by materials, thickness and stiffness of pins, by their names in `Sensitivity`."""
-    works = _parameter_works(body, pose, field)
+    works = _parameter_derivatives(body, pose, field)
     for moved in pin_drives(pose.robot, body.pins):
         works["support_stiffness"] = works["support_stiffness"] + moved.support_work(field, pose.controls)
     materials = pose.robot.body.materials
@@ -217,11 +217,11 @@ def by_body(body: BodyPhysics, pose: Equilibrium, field: Nodes) -> dict[str, Any
     }
 
 
-def _parameter_works(body: BodyPhysics, pose: Equilibrium, field: Nodes) -> dict[str, Vector]:
+def _parameter_derivatives(body: BodyPhysics, pose: Equilibrium, field: Nodes) -> dict[str, Vector]:
     """Sums of the works of all energies by names of parameters."""
-    found = [energy.parameter_work(pose.nodes, field) for energy in body.assembly.energies]
+    found = [energy.parameter_derivative(pose.nodes, field) for energy in body.assembly.energies]
     driven = driven_loads(pose.robot, body.rest_unknowns)
-    found += [load.parameter_work_at(pose.nodes, field, pose.controls) for load in driven]
+    found += [load.parameter_derivative_at(pose.nodes, field, pose.controls) for load in driven]
     works: dict[str, Vector] = {}
     for name, work in (item for each in found for item in each.items()):
         works[name] = _add(works.get(name, np.zeros(0)), work)

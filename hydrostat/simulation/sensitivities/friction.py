@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.arrays import Float
-from hydrostat.mechanics import FrictionCableEnergy, Stiffness
+from hydrostat.mechanics import FactorizedHessian, FrictionCableEnergy
 from hydrostat.robot import Robot
 from hydrostat.simulation.body_physics import BodyPhysics
 from hydrostat.simulation.cable_energies import turn_starts
@@ -41,7 +41,7 @@ def friction_sensitivities(
     robot: Robot,
     points: RoutePoints,
     cables: FrictionCableEnergy,
-    stiffness: Stiffness,
+    stiffness: FactorizedHessian,
     pose: Equilibrium,
     rows: tuple[Float[np.ndarray, "rows dofs"], Float[np.ndarray, "rows cables"]],
 ) -> FrictionSensitivities:

@@ -11,7 +11,7 @@ import numpy as np
 from hydrostat.arrays import Bool, Float, Nodes, Points, Vector
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.geometry import Anchors
-from hydrostat.mechanics import Reason
+from hydrostat.mechanics import NewtonStatus
 from hydrostat.result_table import Columns, Tabular, control_columns, marker_columns, named_columns
 from hydrostat.robot import Robot
 from hydrostat.simulation.equilibrium import Equilibrium
@@ -42,7 +42,7 @@ class PoseRow(NamedTuple):
     jacobian: Derivatives | None = None
     nodes: Nodes | None = None
     stable: bool = False
-    reason: Reason | None = None
+    reason: NewtonStatus | None = None
     trouble: str = ""
 
 
@@ -68,7 +68,7 @@ class BatchResult(Tabular):
     tensions: Float[np.ndarray, "poses cables"]
     jacobians: Float[np.ndarray, "poses markers dim winches"] | None
     nodes: Float[np.ndarray, "poses nodes dim"] | None
-    reasons: tuple[Reason | None, ...]
+    reasons: tuple[NewtonStatus | None, ...]
     stable: Bool[np.ndarray, " poses"]
     errors: tuple[str, ...]
     robot: Robot
@@ -84,7 +84,7 @@ class BatchResult(Tabular):
     @property
     def converged(self) -> Bool[np.ndarray, " poses"]:
         """Mask of the rows that are equilibria."""
-        return np.array([reason is Reason.CONVERGED for reason in self.reasons], dtype=bool)
+        return np.array([reason is NewtonStatus.CONVERGED for reason in self.reasons], dtype=bool)
 
     def __len__(self) -> int:
         return len(self.reasons)

@@ -6,15 +6,15 @@ from dataclasses import replace
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.mechanics import Assembly, NewtonResult, Reason, Stiffness
+from hydrostat.mechanics import Assembly, FactorizedHessian, NewtonResult, NewtonStatus
 
-Relax = Callable[[Assembly, Nodes, Stiffness | None, float], NewtonResult]
+Relax = Callable[[Assembly, Nodes, FactorizedHessian | None, float], NewtonResult]
 """Minimizes the sum of energies from nodes [m], with the Hessian there if it is known, to a tolerance if that is looser
 than its own: a share of the largest applied force."""
 
 
 def find_history_equilibrium(
-    assembly: Assembly, start: tuple[Nodes, Stiffness | None], controls: Vector, relax: Relax, floor: float
+    assembly: Assembly, start: tuple[Nodes, FactorizedHessian | None], controls: Vector, relax: Relax, floor: float
 ) -> tuple[Assembly, NewtonResult]:
     """Minimize and correct the quantities held fixed, such as friction limits, until both agree (E14).
 
@@ -59,7 +59,7 @@ def find_history_equilibrium(
             least, last = missed, corrections
         hopeless = missed > far * largest and iterations > most * assembly.max_stalled_corrections
         if hopeless or corrections == min(_CORRECTIONS, last + assembly.max_stalled_corrections):
-            result = replace(result, reason=Reason.NO_BALANCE)
+            result = replace(result, reason=NewtonStatus.NO_BALANCE)
             break
         if left > slow and stiffness is not None:  # factors of a place nearby no longer serve
             stiffness = assembly.stiffness(nodes, controls)

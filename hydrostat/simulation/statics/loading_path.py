@@ -7,7 +7,7 @@ from math import ceil
 import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
-from hydrostat.mechanics import Assembly, NewtonResult, Reason, Stiffness
+from hydrostat.mechanics import Assembly, FactorizedHessian, NewtonResult, NewtonStatus
 from hydrostat.robot import Robot
 from hydrostat.simulation.equilibrium import Equilibrium
 from hydrostat.simulation.statics.history_equilibrium import find_history_equilibrium
@@ -22,7 +22,7 @@ class _PathState:
     contractions: Vector
     assembly: Assembly
     result: NewtonResult | None = None
-    known: Stiffness | None = None
+    known: FactorizedHessian | None = None
 
     @property
     def reaches_goal(self) -> bool:
@@ -65,7 +65,7 @@ class LoadingPath:
         return other
 
     def solve(
-        self, goal: Vector, start: Equilibrium | None, known: Stiffness | None = None
+        self, goal: Vector, start: Equilibrium | None, known: FactorizedHessian | None = None
     ) -> tuple[NewtonResult, Vector]:
         """Equilibrium at contractions `goal` [m], on the path from `start` or from rest, and its history variables.
 
@@ -140,7 +140,7 @@ class LoadingPath:
     def _solve(self, state: _PathState, goal: Vector) -> _PathState:
         """Equilibrium at `goal` after one increment, consistent with the path-dependent quantities."""
 
-        def relax(assembly: Assembly, nodes: Nodes, known: Stiffness | None, tolerance: float) -> NewtonResult:
+        def relax(assembly: Assembly, nodes: Nodes, known: FactorizedHessian | None, tolerance: float) -> NewtonResult:
             return self._relax(assembly, nodes, goal, known, tolerance)
 
         start = state.nodes, _stiffness(state)
@@ -149,7 +149,7 @@ class LoadingPath:
         return _PathState(result.nodes, goal, after, replace(result, energy=after.value(result.nodes, goal)))
 
     def _relax(
-        self, assembly: Assembly, nodes: Nodes, goal: Vector, known: Stiffness | None, tolerance: float = 0.0
+        self, assembly: Assembly, nodes: Nodes, goal: Vector, known: FactorizedHessian | None, tolerance: float = 0.0
     ) -> NewtonResult:
         return replace(self._solver, assembly=assembly).relax(
             nodes, goal, known, tolerance=tolerance, rough=tolerance > 0
@@ -157,10 +157,10 @@ class LoadingPath:
 
 
 def _late(state: _PathState) -> bool:
-    return state.result is not None and state.result.reason is Reason.TIME_LIMIT
+    return state.result is not None and state.result.reason is NewtonStatus.TIME_LIMIT
 
 
-def _stiffness(state: _PathState) -> Stiffness | None:
+def _stiffness(state: _PathState) -> FactorizedHessian | None:
     return state.known if state.result is None else state.result.stiffness
 
 

@@ -10,13 +10,13 @@ from hydrostat.arrays import Nodes, Points, Vector
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.mechanics import (
     Assembly,
-    Bend,
     CableEnergy,
+    FactorizedHessian,
     NewtonOptions,
     NewtonResult,
-    Reason,
+    NewtonStatus,
     RoundOff,
-    Stiffness,
+    StepMap,
     minimize,
 )
 from hydrostat.robot import Robot
@@ -86,13 +86,13 @@ class StaticSolver:
     assembly: Assembly
     options: NewtonOptions
     round_off: RoundOff
-    warp: Bend | None
+    warp: StepMap | None
 
     def relax(
         self,
         nodes: Nodes,
         controls: Vector,
-        stiffness: Stiffness | None = None,
+        stiffness: FactorizedHessian | None = None,
         *,
         iterations: int | None = None,
         tolerance: float | None = None,
@@ -168,8 +168,8 @@ class StaticSolver:
     def solve(
         self,
         goal: Vector,
-        rest: tuple[Nodes, Stiffness],
-        start: tuple[Nodes, Vector, Stiffness | None] | None = None,
+        rest: tuple[Nodes, FactorizedHessian],
+        start: tuple[Nodes, Vector, FactorizedHessian | None] | None = None,
     ) -> NewtonResult:
         """Equilibrium at `goal`: directly; else in load steps from `start`, then from rest with the dead loads.
 
@@ -194,7 +194,7 @@ class StaticSolver:
             spent += result.iterations
         if not result.converged:
             result = min(self._failed_result(result, goal), direct, key=lambda found: found.energy)
-            result = replace(result, reason=Reason.TIME_LIMIT) if self._late else result
+            result = replace(result, reason=NewtonStatus.TIME_LIMIT) if self._late else result
         return replace(result, iterations=spent)
 
     @property
@@ -212,7 +212,7 @@ class StaticSolver:
         )
 
     def _in_steps(
-        self, start: tuple[Nodes, Vector, Stiffness | None], goal: Vector, *, with_load: bool = False
+        self, start: tuple[Nodes, Vector, FactorizedHessian | None], goal: Vector, *, with_load: bool = False
     ) -> NewtonResult:
         """By load steps that are halved where one fails and doubled where not; the last failure if they get too small.
 
@@ -247,13 +247,13 @@ class StaticSolver:
         if with_load and _needs_fallback(result):
             result, last = self.relax(nodes, goal, stiffness), True
             spent += result.iterations
-        told = last or result.reason is Reason.TIME_LIMIT
-        return replace(result, iterations=spent, reason=result.reason if told else Reason.ITERATION_LIMIT)
+        told = last or result.reason is NewtonStatus.TIME_LIMIT
+        return replace(result, iterations=spent, reason=result.reason if told else NewtonStatus.ITERATION_LIMIT)
 
 
 def _needs_fallback(result: NewtonResult) -> bool:
     """Return True if another solution method should be tried."""
-    return result.reason not in (Reason.CONVERGED, Reason.TIME_LIMIT)
+    return result.reason not in (NewtonStatus.CONVERGED, NewtonStatus.TIME_LIMIT)
 
 
 _ROUGH = 1e-2

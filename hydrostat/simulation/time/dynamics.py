@@ -14,13 +14,13 @@ from hydrostat.mechanics import (
     SCHEMES,
     Assembly,
     Energy,
+    FactorizedHessian,
     InertiaEnergy,
     MaxwellBranches,
-    Metrics,
     NewtonOptions,
     NewtonResult,
     RoundOff,
-    Stiffness,
+    ViscousMetrics,
     minimize,
 )
 from hydrostat.robot import Robot
@@ -40,7 +40,7 @@ class StepOptions:
 
     Attributes:
         scheme: name of a scheme in `SCHEMES`.
-        drag: drag force per mass and velocity [1/s]; 0 for none.
+        drag: mass-proportional (Rayleigh) damping, alpha [1/s]: force per mass and velocity; 0 for none.
         halvings: maximum number of times a step is halved if its minimization fails.
 
     Raises:
@@ -66,7 +66,7 @@ class _MotionState:
 
     nodes: Nodes
     velocities: Nodes
-    metrics: Metrics
+    metrics: ViscousMetrics
 
     def plus(self, step: float, rate: "_MotionState") -> "_MotionState":
         return _MotionState(
@@ -94,6 +94,7 @@ class Dynamics:
         self._statics, self._tensions, self._markers, self._options = statics, tensions, markers, options
         self.obstacles = body.obstacles  # indices of their energies
         self._guides, self._load_paths, self._begin = body.guides, body.load_paths, body.rest_unknowns
+        self._warp = body.warp
         branches = [(branch.modulus * branch.time, branch.time) for branch in material.relaxation]
         branches += [(material.viscosity, 0.0)] if material.viscosity else []
         viscosities, times = np.array(branches).reshape(-1, 2).T.copy()
@@ -130,7 +131,8 @@ class Dynamics:
         """
         if not isinstance(motion, Motion):
             raise InputError(
-                f"a step goes on from a motion, not from {type(motion).__name__}; `simulation.still(pose)` is one"
+                f"a step goes on from a motion, not from {type(motion).__name__}: call "
+                "`simulation.motion_at_rest(pose)`"
             )
         if not (np.isfinite(dt) and dt > 0):
             raise InputError(f"the time step must be above 0 s, not {dt:g}")
@@ -252,9 +254,11 @@ class Dynamics:
         start = guesses[int(np.argmin(values))]
         noise = self._noise(step)
 
-        def relax(assembly: Assembly, nodes: Nodes, known: Stiffness | None, tolerance: float) -> NewtonResult:
+        def relax(assembly: Assembly, nodes: Nodes, known: FactorizedHessian | None, tolerance: float) -> NewtonResult:
             options = replace(self._options, tolerance=max(tolerance, self._options.tolerance))
-            return minimize(assembly, nodes, controls, round_off=noise, options=options, stiffness=known)
+            return minimize(
+                assembly, nodes, controls, round_off=noise, options=options, warp=self._warp, stiffness=known
+            )
 
         return find_history_equilibrium(assembly, (start, None), controls, relax, noise.force)
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from hydrostat.arrays import Nodes, Points, Vector
-from hydrostat.mechanics import Metrics, NewtonResult
+from hydrostat.mechanics import NewtonResult, ViscousMetrics
 from hydrostat.named_vector import NamedVector
 from hydrostat.painters import html_repr
 from hydrostat.result_table import Columns, Tabular
@@ -47,7 +47,7 @@ class Motion(Tabular):
     nodes: Nodes
     velocities: Nodes
     accelerations: Nodes
-    metrics: Metrics
+    metrics: ViscousMetrics
     markers: Mapping[str, Vector]
     tensions: Vector
     kinetic: float

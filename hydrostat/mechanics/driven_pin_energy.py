@@ -1,4 +1,4 @@
-"""`DriveEnergy`: work of drives that move pins from their places at rest."""
+"""`DrivenPinEnergy`: work of drives that move pins from their places at rest."""
 
 from copy import copy
 
@@ -9,7 +9,7 @@ from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks
 from hydrostat.mechanics.nodal_energies import PinEnergy
 
 
-class DriveEnergy(Energy):
+class DrivenPinEnergy(Energy):
     """Energy that moves targets p of a `PinEnergy` to t(a), a being the control of each term.
 
     The energy k/2 |y - t|^2 - k/2 |y - p|^2 of a pin is linear in the anchor y, so the Hessian of the body, of its
@@ -17,7 +17,7 @@ class DriveEnergy(Energy):
     sin(a) D + (1 - cos a) E with D = n x (p - c), E = n x D; a slide by a D.
     """
 
-    quadratic = True
+    has_constant_hessian = True
 
     def __init__(
         self,
@@ -69,13 +69,13 @@ class DriveEnergy(Energy):
         pulls = self._stiffness[:, None] * (self._anchors(nodes) - self._places - self._shifts(controls))
         return float(np.abs(pulls).max(initial=0.0)) if controls[self.controls].any() else 0.0
 
-    def with_supports_moved(self, shifts: Points) -> "DriveEnergy":
+    def with_supports_moved(self, shifts: Points) -> "DrivenPinEnergy":
         other = copy(self)
         other._places = self._places + shifts[self._owners]
         return other
 
     def support_work(self, field: Nodes, controls: Vector) -> Vector:
-        """d(dE/dx . field) / dk of each support of the pins, to be added to the `parameter_work` of these."""
+        """d(dE/dx . field) / dk of each support of the pins, to be added to the `parameter_derivative` of these."""
         works = (self.gradient(field, controls) * field[self.stencils]).sum(axis=(1, 2))
         wholes = np.bincount(self._pins.support_of, self._pins.stiffness)
         return np.bincount(self._owners, works, len(wholes)) / wholes

@@ -1,4 +1,4 @@
-"""`SliderEnergy`: rate-free hysteresis of a material by Prandtl elements (Prandtl 1928, Iwan 1966)."""
+"""`PrandtlEnergy`: rate-free hysteresis of a material by Prandtl elements (Prandtl 1928, Iwan 1966)."""
 
 from collections.abc import Mapping
 from copy import copy
@@ -12,7 +12,7 @@ from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, Stencils
 Tensors = Float[np.ndarray, "points dim dim"]
 
 
-class SliderEnergy(Energy):
+class PrandtlEnergy(Energy):
     """Springs in series with sliders, parallel to the elastic material at each point of quadrature.
 
     With Green's strain E and the slip P the spring has the stress k (E - P), of norm at most k y: beyond, P follows. In
@@ -86,7 +86,7 @@ class SliderEnergy(Energy):
         size = corners * dim
         return blocks.reshape(-1, self._points, size, size).sum(axis=1)
 
-    def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
+    def parameter_derivative(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
         """By the thickness."""
         return {"thickness": np.array([float((self.gradient(nodes, np.zeros(0)) * field[self.stencils]).sum())])}
 
@@ -95,12 +95,12 @@ class SliderEnergy(Energy):
         """Slip of each point."""
         return self.slip.ravel()
 
-    def with_history(self, history: Vector, nodes: Nodes, controls: Vector) -> "SliderEnergy":
+    def with_history(self, history: Vector, nodes: Nodes, controls: Vector) -> "PrandtlEnergy":
         other = copy(self)
         other.slip = history.reshape(self.slip.shape)
         return other
 
-    def with_advanced_history(self, nodes: Nodes, controls: Vector) -> "SliderEnergy":
+    def with_advanced_history(self, nodes: Nodes, controls: Vector) -> "PrandtlEnergy":
         """Return the energy whose sliders have followed to `nodes`."""
         state = self._state(nodes)
         slip = self.slip + (1 - state.secants)[:, None, None] * state.spans

@@ -1,4 +1,4 @@
-"""`ControlledLoad`: a load times a control of the robot."""
+"""`DrivenLoadEnergy`: a load times a control of the robot."""
 
 from collections.abc import Mapping
 from copy import copy
@@ -10,7 +10,7 @@ from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks
 
 
-class ControlledLoad(Energy):
+class DrivenLoadEnergy(Energy):
     """a E(x) with the energy E of a whole load, which reads no control, and the share a of it that acts."""
 
     convex: ClassVar[bool] = False
@@ -36,7 +36,7 @@ class ControlledLoad(Energy):
     def largest_force(self, nodes: Nodes, controls: Vector) -> float:
         return abs(controls[self._index]) * self.whole.largest_force(nodes, controls)
 
-    def with_active_terms(self, nodes: Nodes) -> "ControlledLoad":
+    def with_active_terms(self, nodes: Nodes) -> "DrivenLoadEnergy":
         whole = self.whole.with_active_terms(nodes)
         if whole is self.whole:
             return self
@@ -44,7 +44,7 @@ class ControlledLoad(Energy):
         other.whole = whole
         return other
 
-    def parameter_work_at(self, nodes: Nodes, field: Nodes, controls: Vector) -> Mapping[str, Vector]:
-        """`parameter_work` of the share that acts."""
-        works = self.whole.parameter_work(nodes, field)
+    def parameter_derivative_at(self, nodes: Nodes, field: Nodes, controls: Vector) -> Mapping[str, Vector]:
+        """`parameter_derivative` of the share that acts."""
+        works = self.whole.parameter_derivative(nodes, field)
         return {name: controls[self._index] * work for name, work in works.items()}

@@ -7,7 +7,7 @@ from states import CONTROLS, deform, rough_mesh
 
 from hydrostat.geometry import Mesh
 from hydrostat.mechanics import Assembly, NeoHookean
-from hydrostat.mechanics.patch_volume import PATCH_SIZE, PatchVolume, grow_patches
+from hydrostat.mechanics.patch_dilatation import PATCH_SIZE, PatchDilatation, grow_patches
 from hydrostat.testing import ConformanceError, check_energy
 
 LAME, MU = 17e3, 11e3
@@ -20,9 +20,9 @@ def meshes(dim: int) -> list[Mesh]:
     return [regular, rough_mesh(dim, np.random.default_rng(dim))]
 
 
-def in_patches(mesh: Mesh, *, lame: float = LAME, thickness: float = 1.0) -> PatchVolume:
+def in_patches(mesh: Mesh, *, lame: float = LAME, thickness: float = 1.0) -> PatchDilatation:
     patches = grow_patches(mesh.elements, PATCH_SIZE[mesh.dim])
-    return PatchVolume(mesh.nodes, mesh.elements, patches, lame=lame, thickness=thickness)
+    return PatchDilatation(mesh.nodes, mesh.elements, patches, lame=lame, thickness=thickness)
 
 
 def squeezed(mesh: Mesh, factor: float) -> np.ndarray:
@@ -43,7 +43,7 @@ def test_energy_keeps_its_contract(dim: int, factor: float) -> None:
 def test_the_contract_can_be_broken() -> None:
     """The check can fail: a Hessian 1 % too large."""
 
-    class Stiffer(PatchVolume):
+    class Stiffer(PatchDilatation):
         def projected_hessian(self, nodes, controls, share):
             return super().projected_hessian(nodes, controls, share) * 1.01
 
@@ -74,7 +74,7 @@ def test_a_patch_of_one_element_is_the_element(dim: int) -> None:
     """Oracle: `NeoHookean`, which takes the volume of each element by itself; value, gradient and Hessian."""
     mesh = rough_mesh(dim, np.random.default_rng(5))
     nodes = deform(mesh, np.random.default_rng(6))
-    single = PatchVolume(mesh.nodes, mesh.elements, np.arange(len(mesh.elements)), lame=LAME, thickness=0.03)
+    single = PatchDilatation(mesh.nodes, mesh.elements, np.arange(len(mesh.elements)), lame=LAME, thickness=0.03)
     split = [NeoHookean(mesh.nodes, mesh.elements, mu=MU, lame=0.0, thickness=0.03), single]
     whole = [NeoHookean(mesh.nodes, mesh.elements, mu=MU, lame=LAME, thickness=0.03)]
     one, two = (Assembly(parts, rest=mesh.nodes, control_count=0) for parts in (split, whole))

@@ -1,4 +1,4 @@
-"""`ContactEnergy`: a body does not pass through itself."""
+"""`SelfContactEnergy`: a body does not pass through itself."""
 
 from copy import copy
 from dataclasses import dataclass
@@ -76,7 +76,7 @@ class CandidatePairs(NamedTuple):
         return bool((self.low <= nodes).all() and (nodes <= self.high).all())
 
 
-class ContactEnergy(Energy):
+class SelfContactEnergy(Energy):
     """Barriers between all parts of a body's boundary that come near one another (Li et al. 2020): self-contact.
 
     A term is a pair: in the plane a node and an edge, in space a node and a triangle or two edges, with no node in
@@ -158,13 +158,13 @@ class ContactEnergy(Energy):
         least_step = 1e-12  # Steps are above 0
         return max(float(share), least_step)
 
-    def with_active_terms(self, nodes: Nodes) -> "ContactEnergy":
+    def with_active_terms(self, nodes: Nodes) -> "SelfContactEnergy":
         watch = self.watch
         if watch is None or not watch.serves(nodes):
             watch = self._look_around(nodes)
         elif watch.pairs is self.pairs:
             return self
-        found = ContactEnergy(self.skin, watch.pairs, watch)
+        found = SelfContactEnergy(self.skin, watch.pairs, watch)
         if found._active_pair_count(nodes) != self._active_pair_count(nodes):
             return found
         if watch is self.watch:
@@ -174,7 +174,7 @@ class ContactEnergy(Energy):
         return same
 
     def continues(self, other: Energy) -> bool:
-        return isinstance(other, ContactEnergy) and other.skin is self.skin
+        return isinstance(other, SelfContactEnergy) and other.skin is self.skin
 
     def contact_forces(self, nodes: Nodes) -> ContactForces:
         """Return the places of self-contact, half-way between both sides, with the normal force on the first side."""

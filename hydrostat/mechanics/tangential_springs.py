@@ -151,11 +151,11 @@ class SelfContactFriction:
         return places
 
     def blocks(self, nodes: Nodes) -> Float[np.ndarray, "held corners dim"]:
-        """Slope of the energy by the nodes of each row of the stencils [N]."""
+        """Gradient of the energy by the nodes of each row of the stencils [N]."""
         return self.shares[:, :, None] * self.grip.forces(self.places(nodes))[self.touching_nodes, None, :]
 
     def forces(self, nodes: Nodes) -> Nodes:
-        """Slope of the energy by all nodes [N]."""
+        """Gradient of the energy by all nodes [N]."""
         total = np.zeros_like(nodes)
         np.add.at(total, self.stencils, self.blocks(nodes))
         return total

@@ -1,4 +1,4 @@
-"""`Stiffness`: the Hessian (tangent stiffness matrix) of the energy, factorized, with its part of low rank."""
+"""`FactorizedHessian`: the Hessian (tangent stiffness matrix) of the energy, factorized, with its part of low rank."""
 
 from copy import copy
 from functools import cached_property
@@ -11,7 +11,7 @@ from hydrostat.mechanics.energy import Compliance, Law, LowRankBasis, LowRankSti
 from hydrostat.mechanics.factorization import Factorization
 
 
-class Stiffness:
+class FactorizedHessian:
     """H = K + G D G^T, with K sparse and factorized, G of a few columns, D small and positive semidefinite.
 
     A taut cable couples all the nodes along it. Kept apart, it neither fills the factors of K nor spoils their
@@ -21,7 +21,7 @@ class Stiffness:
     Attributes:
         definite: True if H is positive definite.
         factors: factors of K.
-        coupling: coupling springs as given at construction.
+        low_rank: the springs G D G^T as given at construction.
         columns: G.
         weights: D.
         token: identity of the assembly whose Hessian this is; the factors serve no other assembly.
@@ -29,28 +29,28 @@ class Stiffness:
     """
 
     def __init__(
-        self, factors: Factorization, coupling: LowRankStiffness, *, token: object = None, source: object = None
+        self, factors: Factorization, low_rank: LowRankStiffness, *, token: object = None, source: object = None
     ) -> None:
         """Take the factors of K, and G and D."""
-        self.factors, self.token, self.coupling, self.source = factors, token, coupling, source
-        self.columns = coupling.columns
-        self._weigh(coupling.weights)
+        self.factors, self.token, self.low_rank, self.source = factors, token, low_rank, source
+        self.columns = low_rank.columns
+        self._weigh(low_rank.weights)
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the state that is sent to another process, without `source`."""
         return self.__dict__ | {"source": None}
 
-    def with_coupling(self, coupling: LowRankStiffness) -> "Stiffness":
+    def with_low_rank(self, low_rank: LowRankStiffness) -> "FactorizedHessian":
         """Return this stiffness with other springs; if their law is known and they are of the same spans, G stays."""
-        new, old = coupling.series, self.coupling.series
+        new, old = low_rank.series, self.low_rank.series
         same = new is old or (new is not None and old is not None and np.array_equal(new, old))
-        if coupling.law is None or coupling.weights.shape != self.weights.shape or not same:
-            return Stiffness(self.factors, coupling, token=self.token, source=self.source)
-        other = self.with_weights(coupling.weights)
-        other.coupling = coupling
+        if low_rank.law is None or low_rank.weights.shape != self.weights.shape or not same:
+            return FactorizedHessian(self.factors, low_rank, token=self.token, source=self.source)
+        other = self.with_weights(low_rank.weights)
+        other.low_rank = low_rank
         return other
 
-    def with_weights(self, weights: RankMatrix) -> "Stiffness":
+    def with_weights(self, weights: RankMatrix) -> "FactorizedHessian":
         """Return this stiffness with another D, at almost no cost."""
         if not self.factors.singular:
             _ = self.compliance  # Computed once for both
@@ -133,17 +133,17 @@ class Stiffness:
         inner = np.eye(len(weights)) + weights @ self.compliance
         return -self.moves @ np.linalg.solve(inner, weights)
 
-    def move(self, forces: Float[np.ndarray, " dofs"], coupling: LowRankStiffness) -> Float[np.ndarray, " dofs"] | None:
+    def move(self, forces: Float[np.ndarray, " dofs"], low_rank: LowRankStiffness) -> Float[np.ndarray, " dofs"] | None:
         """Displacement of x under forces [N] and springs that can become slack or taut; None if no solution is found.
 
         Args:
             forces: forces on the body without those of the springs [N].
-            coupling: the springs, with their law and their current elongations.
+            low_rank: the springs, with their law and their current elongations.
         """
-        assert coupling.law is not None
+        assert low_rank.law is not None
         free = self.factors.reduce(forces)
-        elongations = coupling.elongations + self.factors.inner(self._reduced_columns, free)
-        tensions = coupling.law.solve_slack_complementarity(elongations, self.compliance)
+        elongations = low_rank.elongations + self.factors.inner(self._reduced_columns, free)
+        tensions = low_rank.law.solve_slack_complementarity(elongations, self.compliance)
         return None if tensions is None else self.factors.expand(free - self._reduced_columns @ tensions)
 
     def push(
@@ -184,7 +184,7 @@ def _square_root(weights: RankMatrix) -> RankMatrix:
     return vectors * np.sqrt(np.maximum(values, 0.0))
 
 
-def find_negative_curvature(stiffness: Stiffness, size: int) -> Vector | None:
+def find_negative_curvature(stiffness: FactorizedHessian, size: int) -> Vector | None:
     """Find a mode of negative curvature, largest entry 1: that of the most negative eigenvalue of H^-1, by Lanczos.
 
     None if Lanczos does not arrive.

@@ -1,4 +1,4 @@
-"""`PatchVolume`: resistance to a change of volume over patches of elements (F-bar), against volumetric locking."""
+"""`PatchDilatation`: resistance to a change of volume over patches (mean dilatation), against volumetric locking."""
 
 from collections import defaultdict
 from collections.abc import Mapping
@@ -108,13 +108,13 @@ PATCH_SIZE = {2: 4, 3: 6}
 """Elements in a patch, in the plane and in space: `lab/locking/locking.py` and decision 0012 compare others."""
 
 
-class PatchVolume(Energy):
-    """F-bar patches: sum of V lambda/2 (ln J)^2, with J the deformed volume of the patch over its rest volume V.
+class PatchDilatation(Energy):
+    """Mean dilatation: sum of V lambda/2 (ln J)^2 over patches, J being the deformed over the rest volume V of each.
 
     It takes the place of that term in `NeoHookean`, which then has lame = 0. There every linear element would have to
     keep its own volume when lambda is large, which leaves too few ways to move: the body locks. A patch asks for one
-    volume of several elements (F-bar on patches, de Souza Neto et al. 2005). The mean is exact for a homogeneous
-    deformation. That no single element is inverted is left to the - mu ln J of `NeoHookean`.
+    volume of several elements (patches as of F-bar, de Souza Neto et al. 2005, but for this term alone). The mean is
+    exact for a homogeneous deformation. That no single element is inverted is left to the - mu ln J of `NeoHookean`.
     """
 
     convex: ClassVar[bool] = False
@@ -137,7 +137,7 @@ class PatchVolume(Energy):
             patches: index of the patch of each element, counted from 0 without gaps.
             lame: Lame's first parameter, lambda [Pa], one number or one for each element; all of a patch are equal.
             thickness: thickness as of `NeoHookean`; a factor of the moduli also weighs the mean of its patch.
-            materials: index of the material of each element, counted from 0, for `parameter_work`; all of one by
+            materials: index of the material of each element, counted from 0, for `parameter_derivative`; all of one by
                 default.
         """
         shape = NeoHookean(nodes, elements, mu=0.0, lame=0.0, thickness=thickness)
@@ -180,7 +180,7 @@ class PatchVolume(Energy):
         native.patch_hessian(nodes - self._rest, self.lame * self.volumes, share, blocks, *self._patch_data)
         return blocks
 
-    def parameter_work(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
+    def parameter_derivative(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
         blocks = np.zeros((*self.stencils.shape, nodes.shape[1]))
         native.patch_gradient(nodes - self._rest, self.volumes, blocks, *self._patch_data)
         work = (blocks * field[self.stencils]).sum(axis=(1, 2))

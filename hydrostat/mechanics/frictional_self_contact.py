@@ -1,4 +1,4 @@
-"""`SelfFrictionEnergy`: self-contact with Coulomb friction."""
+"""`FrictionalSelfContactEnergy`: self-contact with Coulomb friction."""
 
 from dataclasses import replace
 from typing import ClassVar
@@ -7,12 +7,12 @@ import numpy as np
 
 from hydrostat.arrays import Float, Int, Nodes, Points, Vector
 from hydrostat.geometry import Mesh, Pairs
-from hydrostat.mechanics.contact import ContactEnergy
 from hydrostat.mechanics.energy import Blocks, Compliance, ContactForces, Energy, Gaps, HessianBlocks, Response
-from hydrostat.mechanics.self_contact_friction import FacetPoints, SelfContactFriction, SelfContactSurface
+from hydrostat.mechanics.self_contact import SelfContactEnergy
+from hydrostat.mechanics.tangential_springs import FacetPoints, SelfContactFriction, SelfContactSurface
 
 
-class SelfFrictionEnergy(Energy):
+class FrictionalSelfContactEnergy(Energy):
     """Contact of a body with itself with Coulomb friction.
 
     Each node that other parts push has a spring to a point of the part opposite (`SelfContactFriction`), against half
@@ -24,13 +24,13 @@ class SelfFrictionEnergy(Energy):
     projects_first: ClassVar[bool] = True
     has_history = True
 
-    def __init__(self, contact: ContactEnergy, clasp: SelfContactFriction) -> None:
+    def __init__(self, contact: SelfContactEnergy, clasp: SelfContactFriction) -> None:
         """Take the contact energy and the friction state."""
         self.contact, self.clasp = contact, clasp
         self.stencils = np.concatenate([contact.stencils, clasp.stencils])
 
     @classmethod
-    def of(cls, mesh: Mesh, contact: ContactEnergy, friction: float) -> "SelfFrictionEnergy":
+    def of(cls, mesh: Mesh, contact: SelfContactEnergy, friction: float) -> "FrictionalSelfContactEnergy":
         """Contact of a body at rest with friction; nothing touches yet.
 
         Args:
@@ -68,7 +68,7 @@ class SelfFrictionEnergy(Energy):
     def contact_forces(self, nodes: Nodes) -> ContactForces:
         return self.contact.contact_forces(nodes)
 
-    def with_active_terms(self, nodes: Nodes) -> "SelfFrictionEnergy":
+    def with_active_terms(self, nodes: Nodes) -> "FrictionalSelfContactEnergy":
         contact = self.contact.with_active_terms(nodes)
         return self if contact is self.contact else self._with(contact, self.clasp)
 
@@ -78,7 +78,7 @@ class SelfFrictionEnergy(Energy):
         anchors = self.clasp.anchors
         return np.concatenate([anchors.facets[:, None], anchors.weights], axis=1).ravel()
 
-    def with_history(self, history: Vector, nodes: Nodes, controls: Vector) -> "SelfFrictionEnergy":
+    def with_history(self, history: Vector, nodes: Nodes, controls: Vector) -> "FrictionalSelfContactEnergy":
         rows = history.reshape(len(self.clasp.offsets), -1)
         anchors = FacetPoints(np.rint(rows[:, 0]).astype(int), rows[:, 1:])
         clasp = replace(self.clasp, anchors=anchors, before=nodes)
@@ -91,7 +91,7 @@ class SelfFrictionEnergy(Energy):
 
     def with_corrected_history(
         self, nodes: Nodes, controls: Vector, compliance: Compliance | None, response: Response | None = None
-    ) -> "SelfFrictionEnergy":
+    ) -> "FrictionalSelfContactEnergy":
         pushes, normals = self._pushes(nodes)
         clasp = self.clasp.attach_springs(nodes, self._active_pairs(nodes), pushes, normals)
         places, grip = clasp.places(nodes), clasp.grip.with_adapted_relaxation(self.history_residual(nodes, controls))
@@ -103,17 +103,17 @@ class SelfFrictionEnergy(Energy):
         moves = -grip.friction * (rises.T @ response(drags))
         return self._with(self.contact, clasp.with_grip(grip.with_newton_step(pushes, normals, slips, moves)))
 
-    def with_advanced_history(self, nodes: Nodes, controls: Vector) -> "SelfFrictionEnergy":
+    def with_advanced_history(self, nodes: Nodes, controls: Vector) -> "FrictionalSelfContactEnergy":
         return self._with(self.contact, self._with_limits_at(nodes).clasp.drag_anchors(nodes))
 
-    def _with(self, contact: ContactEnergy, clasp: SelfContactFriction) -> "SelfFrictionEnergy":
+    def _with(self, contact: SelfContactEnergy, clasp: SelfContactFriction) -> "FrictionalSelfContactEnergy":
         """Return another state; it reuses the pattern of its Hessian if the stencils are the same."""
-        other = SelfFrictionEnergy(contact, clasp)
+        other = FrictionalSelfContactEnergy(contact, clasp)
         if np.array_equal(other.stencils, self.stencils):
             other.stencils = self.stencils
         return other
 
-    def _with_limits_at(self, nodes: Nodes) -> "SelfFrictionEnergy":
+    def _with_limits_at(self, nodes: Nodes) -> "FrictionalSelfContactEnergy":
         """Return this energy with the limits that belong to a shape."""
         pushes, normals = self._pushes(nodes)
         clasp = self.clasp.attach_springs(nodes, self._active_pairs(nodes), pushes, normals)
@@ -135,8 +135,8 @@ class SelfFrictionEnergy(Energy):
         return pairs.only(skin.compute_squared_distances(nodes, pairs) < skin.begins(pairs))
 
     def _rises(self, nodes: Nodes, some: Int[np.ndarray, " some"], normals: Points) -> Float[np.ndarray, "dofs some"]:
-        """Slopes of the forces on some nodes of the boundary along their normals by all degrees of freedom [N/m]."""
-        contact, dim = ContactEnergy(self.contact.skin, self._active_pairs(nodes)), nodes.shape[1]
+        """Derivatives of normal forces on some nodes of the boundary by all degrees of freedom [N/m]."""
+        contact, dim = SelfContactEnergy(self.contact.skin, self._active_pairs(nodes)), nodes.shape[1]
         numbers = np.full(len(nodes), -1)
         numbers[self.clasp.skin.own[some]] = np.arange(len(some))
         blocks, columns = contact.hessian(nodes, np.zeros(0)), np.zeros((len(nodes) * len(some), dim))
