@@ -10,14 +10,15 @@ if TYPE_CHECKING:
     from hydrostat.control.bus_link import BusLink, LinkLimits, LinkState
     from hydrostat.control.calibration import CALIBRATION, EMULATED_CALIBRATION, Calibration, WinchMotor
     from hydrostat.control.corrected_link import correct_table
-    from hydrostat.control.driven_pins import motor_stand, stand_table, stand_tensions
+    from hydrostat.control.driven_pins import list_moved_loads, motor_stand, stand_table, stand_tensions
     from hydrostat.control.dynamixel_bus import GOAL, TICK, DynamixelBus
-    from hydrostat.control.emulated_feetech import EmulatedLine
+    from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedLine, EmulatedScs, EmulatedSts
     from hydrostat.control.emulated_servos import EmulatedChain, EmulatedServo, LiveChain
+    from hydrostat.control.feetech_bus import FeetechBus
     from hydrostat.control.firmware_build import (
-        board_kind,
         build_images,
         check_ports,
+        firmware_settings,
         flash,
         flash_command,
         on_boards,
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from hydrostat.control.open_bus import EMULATED, add_cable_layers, check_port, open_bus, open_line, servo_ratings
     from hydrostat.control.player import Player
     from hydrostat.control.restart_motors import restart_motors
+    from hydrostat.control.scs_bus import ScsBus
     from hydrostat.control.spool_curve import SpoolCurve
     from hydrostat.control.take_up import SlackCalibration, find_cable_zeros
     from hydrostat.control.timeline import LONGEST, Key, Timeline
@@ -50,8 +52,12 @@ __all__ = [
     "Calibration",
     "DynamixelBus",
     "EmulatedChain",
+    "EmulatedFeetechChain",
     "EmulatedLine",
+    "EmulatedScs",
     "EmulatedServo",
+    "EmulatedSts",
+    "FeetechBus",
     "Key",
     "Link",
     "LinkLimits",
@@ -64,6 +70,7 @@ __all__ = [
     "Motors",
     "Player",
     "Port",
+    "ScsBus",
     "SimulatedLink",
     "SlackCalibration",
     "SpoolCurve",
@@ -75,14 +82,15 @@ __all__ = [
     "add_cable_layers",
     "arm_motors",
     "bake_moves",
-    "board_kind",
     "build_images",
     "check_port",
     "check_ports",
     "correct_table",
     "find_cable_zeros",
+    "firmware_settings",
     "flash",
     "flash_command",
+    "list_moved_loads",
     "motor_stand",
     "not_judged",
     "on_boards",

@@ -55,7 +55,11 @@ def arm_motors(
     bus = open_bus(port, robot, calibration, felt)
     link = BusLink(bus, robot.winches, calibration, log=log)
     try:
-        constants = np.array([fact.constant for fact in link.identify()])
+        facts = link.identify()
+        if port == EMULATED:
+            models = ", ".join(sorted({fact.model for fact in facts}))
+            log(f'{port}: motors are {models} (motor = "{robot.motor}" in robot.toml)')
+        constants = np.array([fact.constant for fact in facts])
         link.guard = TensionGuard(known, constants, calibration.labels)
         link.arm()
         places = link.read(time.monotonic())

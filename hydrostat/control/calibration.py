@@ -11,7 +11,7 @@ import numpy as np
 
 from hydrostat import units
 from hydrostat.arrays import Vector
-from hydrostat.control.motors import LEVER
+from hydrostat.control.motors import LEVER, DriveAxis
 from hydrostat.errors import InputError
 from hydrostat.files import read_stranger, replace_file
 from hydrostat.robot import PinDrive, Robot
@@ -182,8 +182,9 @@ class Calibration:
                 raise InputError(f'{file}: winch "{winch}" has more than one [[motor]]; keep one')
         found = Calibration(tuple(by_name.values()))
         found.check(robot)
-        for turning in (winch.name for winch in robot.winches if winch.spool_radius == LEVER):
-            _require_gear(by_name[turning], file)
+        for axis in robot.winches:
+            if isinstance(axis, DriveAxis) and axis.turns:
+                _require_gear(by_name[axis.name], file)
         return Calibration(tuple(by_name[winch.name] for winch in robot.winches))
 
     @staticmethod

@@ -7,9 +7,8 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.control.model_tensions import tensions_along
-from hydrostat.control.motors import LEVER
-from hydrostat.errors import InputError
-from hydrostat.robot import LoadDrive, Robot, Winch, fix_drives
+from hydrostat.control.motors import LEVER, DriveAxis
+from hydrostat.robot import LoadDrive, Robot, Winch, with_fixed_drives
 from hydrostat.simulation import ProfileTable
 
 
@@ -23,8 +22,9 @@ def motor_stand(robot: Robot) -> Robot:
     factors, (low, high) = _factors(robot), robot.control_limits
     moved = factors * low, factors * high
     axes = [
-        Winch(
+        DriveAxis(
             name=drive.name,
+            turns=drive.turns,
             at=tuple(robot.body.mesh.nodes[0].tolist()),
             spool_radius=LEVER if drive.turns else Winch.spool_radius,
             travel=max(float(moved[1][index]), 1e-6),
@@ -33,21 +33,25 @@ def motor_stand(robot: Robot) -> Robot:
         for index, drive in enumerate(robot.drives, start=len(robot.winches))
         if not isinstance(drive, LoadDrive)
     ]
-    still = fix_drives(robot)
+    still = with_fixed_drives(robot)
     return replace(still, winches=(*still.winches, *axes))
 
 
 def stand_table(table: ProfileTable, robot: Robot) -> ProfileTable:
-    """Table of moves of a robot, for its `motor_stand` (InputError: it changes a load, which no motor does)."""
+    """Table of moves of a robot, for its `motor_stand`: without the shares of loads, which no motor changes."""
     if not robot.drives:
         return table
+    return replace(table, profile=replace(table.profile, values=_select(robot, table.profile.values)))
+
+
+def list_moved_loads(table: ProfileTable, robot: Robot) -> list[str]:
+    """Columns of a table of moves that change a load; `stand_table` leaves them out."""
     values = table.profile.values
-    for column, drive in enumerate(robot.drives, start=len(robot.winches)):
-        if isinstance(drive, LoadDrive) and values[:, column].any():
-            raise InputError(
-                f"{table.name}, column {drive.column[0]}: no motor changes a load. Set it to 0, or leave it out"
-            )
-    return replace(table, profile=replace(table.profile, values=_select(robot, values)))
+    return [
+        drive.column[0]
+        for column, drive in enumerate(robot.drives, start=len(robot.winches))
+        if isinstance(drive, LoadDrive) and values[:, column].any()
+    ]
 
 
 def stand_tensions(robot: Robot, table: ProfileTable) -> tuple[Callable[[Vector], Vector], Callable[[Vector], Vector]]:

@@ -85,6 +85,7 @@ class DynamixelBus(ServoBus):
     """Servos in extended position mode, bounded in current where they can be (modes 5 and 4)."""
 
     kind: ClassVar[str] = "dynamixel"
+    braking: ClassVar[float] = ACCELERATION
     silence = 0.08  # watchdogs fire after 0.1 s
 
     def __init__(self, port: Port, numbers: Sequence[int], **rest: Any) -> None:
@@ -138,21 +139,19 @@ class DynamixelBus(ServoBus):
                     return
             raise self._refusal_error(min(set(self._numbers) - armed), WATCHDOG)
 
-    def read(self) -> Reading:
-        """Return the latest reading of each servo."""
-        with self._lock:
-            last = {name: getattr(self._last, name).copy() for name in ("angles", "currents", "temperatures", "volts")}
-            stamps, faults = self._last.stamps.copy(), list(self._last.faults)
-            for packet in self._ask_all(STATE, STATE_BYTES):
-                index, told = self._numbers.index(packet.number), packet.content[1:]
-                model = self._models.get(packet.number, _UNKNOWN)
-                raw = _to_signed(told[0:2])
-                last["currents"][index] = 1e-3 * raw * (1.0 if model.measures else model.stall)
-                last["angles"][index] = TICK * _to_signed(told[6:10])
-                last["volts"][index], last["temperatures"][index] = 0.1 * _to_signed(told[18:20]), told[20]
-                stamps[index] = self._clock()
-                faults[index] = self._fault(packet)
-            return self._keep_reading(Reading(**last, stamps=stamps, faults=tuple(faults)))
+    def _ask_state(self) -> Reading:
+        last = {name: getattr(self._last, name).copy() for name in ("angles", "currents", "temperatures", "volts")}
+        stamps, faults = self._last.stamps.copy(), list(self._last.faults)
+        for packet in self._ask_all(STATE, STATE_BYTES):
+            index, told = self._numbers.index(packet.number), packet.content[1:]
+            model = self._models.get(packet.number, _UNKNOWN)
+            raw = _to_signed(told[0:2])
+            last["currents"][index] = 1e-3 * raw * (1.0 if model.measures else model.stall)
+            last["angles"][index] = TICK * _to_signed(told[6:10])
+            last["volts"][index], last["temperatures"][index] = 0.1 * _to_signed(told[18:20]), told[20]
+            stamps[index] = self._clock()
+            faults[index] = self._fault(packet)
+        return Reading(**last, stamps=stamps, faults=tuple(faults))
 
     def write(self, angles: Vector, speeds: Vector) -> None:
         """Send goals and speeds to all at once; none answers."""
@@ -164,6 +163,7 @@ class DynamixelBus(ServoBus):
             for number, rate, step in zip(self._numbers, rates, steps, strict=True)
         }
         with self._lock:
+            self._goals, self._speeds = angles.copy(), np.abs(speeds)
             self._tell_all(PROFILE, values)
 
     def restart(self, place: int) -> None:

@@ -89,7 +89,7 @@ MODEL, LOW, VOLTS, MODE, TORQUE, RISE, GOAL, BOUND, STATE = 3, 9, 14, 33, 40, 41
 """Registers: model, least and greatest angle, greatest and least supply, mode, torque on, acceleration (then goal, time
 and speed), goal, bound of torque, present angle (to current)."""
 STATE_BYTES = 15
-MODELS = {777: "STS3215"}
+MODELS = {777: "STS3215", 1289: "STS3020"}
 """By the number of the model."""
 TICK = 2 * pi / 4096  # angle of a step [rad]
 AMPERE = 6.5e-3  # current of a step [A]
@@ -147,20 +147,18 @@ class FeetechBus(ServoBus):
             self._set(number, TORQUE, b"\x01", "its torque switch")
         self._holding = True
 
-    def read(self) -> Reading:
-        """Return the latest reading of each servo."""
-        with self._lock:
-            last = {name: getattr(self._last, name).copy() for name in ("angles", "currents", "temperatures", "volts")}
-            stamps, faults = self._last.stamps.copy(), list(self._last.faults)
-            self._send(ALL, SYNC_READ, bytes([STATE, STATE_BYTES, *self._numbers]))
-            for packet in self._answers(len(self._numbers), STATE_BYTES):
-                index, told = self._numbers.index(packet.number), packet.content
-                last["angles"][index] = TICK * _to_signed(told[0:2], 15)
-                last["currents"][index] = AMPERE * _to_signed(told[13:15], 15)
-                last["volts"][index], last["temperatures"][index] = 0.1 * told[6], told[7]
-                stamps[index] = self._clock()
-                faults[index] = ", ".join(word for bit, word in FAULTS.items() if packet.instruction & bit)
-            return self._keep_reading(Reading(**last, stamps=stamps, faults=tuple(faults)))
+    def _ask_state(self) -> Reading:
+        last = {name: getattr(self._last, name).copy() for name in ("angles", "currents", "temperatures", "volts")}
+        stamps, faults = self._last.stamps.copy(), list(self._last.faults)
+        self._send(ALL, SYNC_READ, bytes([STATE, STATE_BYTES, *self._numbers]))
+        for packet in self._answers(len(self._numbers), STATE_BYTES):
+            index, told = self._numbers.index(packet.number), packet.content
+            last["angles"][index] = TICK * _to_signed(told[0:2], 15)
+            last["currents"][index] = AMPERE * _to_signed(told[13:15], 15)
+            last["volts"][index], last["temperatures"][index] = 0.1 * told[6], told[7]
+            stamps[index] = self._clock()
+            faults[index] = ", ".join(word for bit, word in FAULTS.items() if packet.instruction & bit)
+        return Reading(**last, stamps=stamps, faults=tuple(faults))
 
     def write(self, angles: Vector, speeds: Vector) -> None:
         """Send goals and speeds to all at once; none answers."""
@@ -168,7 +166,9 @@ class FeetechBus(ServoBus):
         if beyond := np.flatnonzero((steps < self._low) | (steps > self._high)).tolist():
             raise self._tell_beyond(beyond[0], float(steps[beyond[0]]))
         rates = np.clip(np.rint(np.abs(speeds) / self.tick), 1, 32767).astype(int).tolist()
-        self._go(steps.astype(int).tolist(), rates, self._numbers)
+        with self._lock:
+            self._goals, self._speeds = angles.copy(), np.abs(speeds)
+            self._go(steps.astype(int).tolist(), rates, self._numbers)
 
     def restart(self, place: int) -> None:
         """Switch its torque off, which ends a fault by overload (from memory, tried on none); it keeps its count."""

@@ -1,4 +1,4 @@
-"""Firmware of one robot: its settings, built by Debian's avr-gcc, and the command that writes it to a board."""
+"""Firmware of one robot: its settings, built by Debian's avr-gcc or as an Arduino sketch, and how a board gets it."""
 
 import re
 import shutil
@@ -13,7 +13,7 @@ from pathlib import Path
 from hydrostat.control.bus_link import LinkLimits
 from hydrostat.control.calibration import CALIBRATION, Calibration, WinchMotor
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.fabrication import BOARDS, BoardKind
+from hydrostat.fabrication import BOARDS, check_board
 from hydrostat.files import replace_file
 from hydrostat.robot import Robot
 
@@ -27,7 +27,7 @@ def on_boards(calibration: Calibration, boards: Sequence[str]) -> Calibration:
     Raises:
         InputError: the boards do not bear all.
     """
-    room = [board_kind(board).motors for board in boards]
+    room = [check_board(board).motors for board in boards]
     if calibration.boards <= len(room) and all(
         len(calibration.places(number)) <= most for number, most in enumerate(room, 1)
     ):
@@ -92,15 +92,20 @@ def firmware_settings(robot: Robot, calibration: Calibration, *, rpm: float, sta
 def build_firmware(settings: str, board: str, folder: Path) -> Path:
     """Build the firmware with settings into a folder: settings.h, winches.elf, winches.hex; returns the last.
 
+    For a board that the Arduino IDE builds for, write the sketch winches/winches.ino instead, and return that.
+
     Raises:
         InputError: no such board, or fewer motors than the settings have.
         HydrostatError: avr-gcc is not there, or it refuses.
     """
-    kind = board_kind(board)
+    kind = check_board(board)
     asked = int((re.search(r"#define DCS (\d+)", settings) or [0, 0])[1])
     if asked > kind.motors:
         more = " Use --board mega (six motors)." if board == "uno" and asked <= BOARDS["mega"].motors else ""
         raise InputError(f"board {board} drives {kind.motors} motors, the robot has {asked}.{more}")
+    if not kind.loader:
+        _check_currents(settings, board)
+        return _write_sketch(settings, board, folder / "winches")
     if not (shutil.which("avr-gcc") and shutil.which("avr-objcopy")):
         raise HydrostatError("avr-gcc not found. On Debian/Ubuntu: sudo apt install gcc-avr avr-libc")
     folder.mkdir(parents=True, exist_ok=True)
@@ -135,8 +140,10 @@ def build_images(
 
 
 def flash_command(board: str, port: str, image: Path) -> list[str]:
-    """The command of avrdude that writes an image to a board on a port."""
-    kind = board_kind(board)
+    """The command of avrdude that writes an image to a board on a port, or of arduino-cli for a sketch."""
+    kind = check_board(board)
+    if not kind.loader:
+        return ["arduino-cli", "compile", "-b", f"esp32:esp32:{kind.chip}", "-u", "-p", port, str(image.parent)]
     return ["avrdude", "-p", kind.chip, *kind.loader, "-P", port, "-U", f"flash:w:{image}:i"]
 
 
@@ -148,17 +155,34 @@ def check_ports(ports: Sequence[str]) -> None:
 
 
 def flash(command: Sequence[str]) -> None:
-    """Write firmware to a board (HydrostatError: avrdude is not there, or it could not)."""
+    """Write firmware to a board (HydrostatError: the program for it is not there, or it could not)."""
     if not shutil.which(command[0]):
-        raise HydrostatError("boards are written by avrdude, which is not there; install Debian's avrdude")
+        fix = "On Debian/Ubuntu: sudo apt install avrdude"
+        if command[0] != "avrdude":
+            fix = f"Open {command[-1]}/winches.ino in the Arduino IDE, with Espressif's package esp32 3.x"
+        raise HydrostatError(f"{command[0]} not found. {fix}")
     _run(command)
 
 
-def board_kind(board: str) -> BoardKind:
-    """A board by its name (InputError: no such one)."""
-    if board not in BOARDS:
-        raise InputError(f"--board {board}: unknown board. Available: {', '.join(BOARDS)}.")
-    return BOARDS[board]
+def _write_sketch(settings: str, board: str, folder: Path) -> Path:
+    """Write an Arduino sketch: the sources of the firmware as C++, since Arduino's serial line is."""
+    folder.mkdir(parents=True, exist_ok=True)
+    sources, layer = resources.files("hydrostat.control") / "firmware", f"{board}.h"
+    for name, new in (("winches.c", "winches.cpp"), ("moves.h", "moves.h"), (layer, layer)):
+        replace_file(folder / new, (sources / name).read_bytes())
+    replace_file(folder / "settings.h", settings.encode())
+    words = b"/* Made by hydrostat firmware: settings.h has the robot, winches.cpp the program. */\n"
+    return replace_file(folder / "winches.ino", words)
+
+
+def _check_currents(settings: str, board: str) -> None:
+    """Refuse a current limit that the board's inputs of 3.1 V cannot tell from more, at 1.1 V for an ampere."""
+    largest = max((int(text) for text in re.findall(r", (\d+)}, /\*", settings)), default=0)
+    if largest > 2800:
+        raise InputError(
+            f"{CALIBRATION}: current too large for board {board} ({largest / 1000:g} A). Maximum: 2.8 A, the most that "
+            "it measures."
+        )
 
 
 def _motors_of_board(calibration: Calibration, board: int) -> list[WinchMotor]:

@@ -111,13 +111,16 @@ class FirmwareBus(Bus):
         """Return the latest reading of each motor."""
         with self._lock:
             told = (self._ask("R") or "").split()
-            if len(told) == 3 + 2 * len(self._scale) and told[0] == "ok":
+            end = 3 + 2 * len(self._scale)
+            if len(told) in (end, end + 1) and told[0] == "ok":  # with a divider, millivolts of the supply come last
                 slots = np.argsort(self._order)
-                numbers = np.array(told[3:], dtype=np.float64).reshape(-1, 2)[slots]
+                numbers = np.array(told[3:end], dtype=np.float64).reshape(-1, 2)[slots]
+                volts = 1e-3 * float(told[end]) if told[end:] else np.nan
                 faults = [f"refused: {self._refused}" if self._refused else ""] * len(self._scale)
                 stopped = told[1] not in ("armed", "off") and not self._stood  # who stands falls silent, too
                 if stopped:
-                    faults = [f"board stopped: {told[1]}"] * len(faults)
+                    why = "supply voltage too low" if told[1] == "supply" else f"board stopped: {told[1]}"
+                    faults = [why] * len(faults)
                 if stopped and told[2] != "0":  # whose fault it was, so that no other one is named
                     faults = [""] * len(faults)
                     faults[int(self._order[int(told[2]) - 1])] = told[1]
@@ -128,7 +131,7 @@ class FirmwareBus(Bus):
                     angles=numbers[:, 0] / self._scale,
                     currents=1e-3 * numbers[:, 1],
                     temperatures=self._last.temperatures,
-                    volts=self._last.volts,
+                    volts=np.full(len(self._scale), volts),
                     stamps=np.full(len(self._scale), self._clock()),
                     faults=tuple(faults),
                 )
@@ -172,6 +175,8 @@ class FirmwareBus(Bus):
 
     def _must(self, words: str, name: str) -> None:
         told = self._surely(words)
+        if told == "no supply":
+            raise HydrostatError("the motors' supply is below --min-supply. Charge its battery, or check its divider")
         if told != "ok":
             raise HydrostatError(f"the board did not take {name}; it says: {told}")
 
@@ -194,7 +199,8 @@ class FirmwareBus(Bus):
     def _ask(self, words: str) -> str | None:
         """The answer to a line, None after the time."""
         number, until = self._send(words), self._clock() + self._answer
-        while (left := until - self._clock()) > 0:
+        left = self._answer
+        while True:
             while b"\n" in self._heard:
                 text, _, self._heard = self._heard.partition(b"\n")
                 told = text.decode("ascii", "replace").rpartition("*")[0]
@@ -205,12 +211,16 @@ class FirmwareBus(Bus):
                     return rest
                 if rest.startswith("no "):
                     self._refused = rest[3:]
-            self._port.timeout = left
+            if left <= 0:
+                return None
+            left, late = until - self._clock(), 5e-3  # from so many seconds on the computer was held up
+            if -late < left <= 0:
+                return None
+            self._port.timeout = max(left, 0.0)  # 0: a late computer reads what has come
             try:
                 self._heard += self._port.read(1) + self._port.read(getattr(self._port, "in_waiting", 0))
             except (OSError, ValueError, TypeError) as error:
                 raise HydrostatError(f"the line to the motors is gone ({error}); plug it in and begin again") from None
-        return None
 
 
 def line_of(text: str) -> bytes:

@@ -11,10 +11,10 @@ from hydrostat.arrays import Vector
 from hydrostat.control.bus_link import LinkLimits
 from hydrostat.control.calibration import Calibration
 from hydrostat.control.corrected_link import correct_table
-from hydrostat.control.firmware_build import board_kind
 from hydrostat.control.link import SimulatedLink
 from hydrostat.control.motors import Motors
 from hydrostat.errors import InputError
+from hydrostat.fabrication import check_board
 from hydrostat.robot import Robot
 from hydrostat.simulation import ProfileTable
 
@@ -94,7 +94,7 @@ def bake_moves(
         raise InputError(f"{error}, as correction.json corrects it") from None
     profile = corrected.profile
     rows = max(2, ceil(float(profile.times[-1]) / _measure_row(rate) - 1e-9) + 1)
-    room = board_kind(board).room // (2 * len(calibration.motors))
+    room = check_board(board).room // (2 * len(calibration.motors))
     if rows > room:
         longest, slowest = (room - 1) * _measure_row(rate), (room - 1) * _measure_row(RATES[0])
         raise InputError(

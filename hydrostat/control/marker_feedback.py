@@ -173,9 +173,9 @@ class MarkerFeedback:
 
     def _allowed_share(self, time: float) -> float:
         """Share of the correction that keeps all simulated pulls within the limits of the guard, to first order."""
-        pulls, slopes = self._path.pulls_at(time)
+        pulls, rates = self._path.pulls_at(time)
         ways, limits = np.where(pulls < 0, -1.0, 1.0), GuardLimits()
-        more = ways * (slopes @ self._correction)
+        more = ways * (rates @ self._correction)
         room = (limits.times - 1.0) * np.abs(pulls) + limits.more
         shares = np.where(more > room, room / np.maximum(more, room), 1.0)
         worst = int(np.argmin(shares))

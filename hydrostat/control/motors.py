@@ -4,6 +4,7 @@ import math
 import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -15,6 +16,18 @@ from hydrostat.simulation import ProfileTable
 
 LEVER = 1e-3 * math.degrees(1.0)
 """Spool radius [m] at which a degree of a drive that turns counts as a millimeter of a winch."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class DriveAxis(Winch):
+    """Motor of a drive of pins, as a winch without cables.
+
+    Attributes:
+        turns: True if it turns its pins: its meters are the angle [rad] times `LEVER`.
+    """
+
+    turns: bool
+
 
 FASTEST = 0.15  # largest speed of the cables [m/s] unless told otherwise: brisk for a small motor; knobs feel direct
 SPEEDS = (1e-3, 1.0)  # slowest and fastest that motors may be told to turn [m/s]
@@ -55,7 +68,7 @@ class Motors:
         The timeout is infinite where gaps are usual, and the watch of the link itself is enough [s].
         """
         self.names = tuple(winch.name for winch in winches)
-        self.units = tuple("deg" if winch.spool_radius == LEVER else "mm" for winch in winches)
+        self.units = tuple("deg" if isinstance(winch, DriveAxis) and winch.turns else "mm" for winch in winches)
         self.low = np.array([-winch.release for winch in winches], dtype=float)
         self.high = np.array([winch.travel for winch in winches], dtype=float)
         self.places = np.zeros(len(winches)) if places is None else places.copy()

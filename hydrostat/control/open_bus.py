@@ -10,6 +10,7 @@ from hydrostat.arrays import Vector
 from hydrostat.control.bus import Bus, Port
 from hydrostat.control.calibration import Calibration
 from hydrostat.control.dynamixel_bus import MODELS, DynamixelBus
+from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedSts
 from hydrostat.control.emulated_servos import EmulatedServo, LiveChain
 from hydrostat.control.feetech_bus import MODELS as FEETECH_MODELS
 from hydrostat.control.feetech_bus import STALL, FeetechBus
@@ -18,6 +19,7 @@ from hydrostat.control.firmware_bus import FirmwareBus
 from hydrostat.control.joined_bus import JoinedBus
 from hydrostat.control.scs_bus import ScsBus
 from hydrostat.errors import HydrostatError, InputError
+from hydrostat.fabrication import Motor
 from hydrostat.robot import Robot
 from hydrostat.units import plural
 from hydrostat.version import install_command
@@ -34,6 +36,16 @@ class EmulatedBus(DynamixelBus):
     """Servos that are not there, in real time, or slower on a busy computer; every line says so."""
 
     kind = EMULATED
+
+
+class EmulatedFeetechBus(FeetechBus):
+    """The same with servos of the STS series."""
+
+    kind = EMULATED
+
+
+class LiveFeetechChain(LiveChain, EmulatedFeetechChain):
+    """Servos of the STS series in real time."""
 
 
 def add_cable_layers(calibration: Calibration) -> Calibration:
@@ -68,7 +80,7 @@ def open_bus(text: str, robot: Robot, calibration: Calibration, tensions: Callab
     """
     check_port(text)
     if text == EMULATED:
-        return _make_emulated_bus(calibration, tensions)
+        return _make_emulated_bus(robot.motor, calibration, tensions)
     kind, _, rest = text.partition(":")
     make, usual = _KINDS[kind]
     ports, buses = rest.split(","), list[Bus]()
@@ -94,7 +106,7 @@ def check_port(text: str) -> None:
     if text != EMULATED and (kind not in _KINDS or not all(ports) or len(set(ports)) < len(ports)):
         shown = ", ".join(f"{each}:/dev/ttyUSB0" for each in _KINDS)
         raise InputError(
-            f"--motors {text}: write {EMULATED}, or one such as {shown}; commas part those of several boards"
+            f"--motors {text}: write {EMULATED}, or one such as {shown}; separate those of several boards by commas"
         )
     for port in ports:
         _, at, baud = port.partition("@")
@@ -113,13 +125,21 @@ def servo_ratings() -> dict[str, Any]:
     }
 
 
-def _make_emulated_bus(calibration: Calibration, tensions: Callable[[Vector], Vector]) -> EmulatedBus:
-    """Servos that stand where nothing is taken in, each with the load of its cables."""
+def _make_emulated_bus(motor: str, calibration: Calibration, tensions: Callable[[Vector], Vector]) -> Bus:
+    """Servos of a motor that stand where nothing is taken in, each with the load of its cables."""
     calibration = calibration.assume_zeros()
-    servos = [
-        EmulatedServo(n, angle=each.angle(0.0), model=_LIKE_A_KIT) for n, each in enumerate(calibration.motors, 1)
-    ]
-    chain, known, torques = LiveChain(servos, longest=HELD_UP), -1.0, np.zeros(len(servos))
+    angles = [each.angle(0.0) for each in calibration.motors]
+    servos: list[EmulatedServo]
+    if is_sts := motor in _LIKE_STS:
+        supply, allowed = _LIKE_STS[motor]
+        servos = [EmulatedSts(n, angle=each, supply=supply, allowed=allowed) for n, each in enumerate(angles, 1)]
+        ratio = Motor.choose(motor).stall_torque * 1e-3 / STALL
+    else:
+        model = _LIKE_X.get(motor, _LIKE_X["xl330"])
+        servos = [EmulatedServo(n, angle=each, model=model) for n, each in enumerate(angles, 1)]
+        ratio = MODELS[model].torque / MODELS[model].stall
+    chain = (LiveFeetechChain if is_sts else LiveChain)(servos, longest=HELD_UP)
+    known, torques = -1.0, np.zeros(len(servos))
 
     def load(index: int) -> Callable[[float], float]:
         def torque(_: float) -> float:
@@ -132,12 +152,16 @@ def _make_emulated_bus(calibration: Calibration, tensions: Callable[[Vector], Ve
         return torque
 
     for index, servo in enumerate(servos):
-        servo.load, servo.constant = load(index), MODELS[servo.model].torque / MODELS[servo.model].stall
-    return EmulatedBus(chain, [servo.number for servo in servos], clock=chain.clock, wait=chain.sleep)
+        servo.load, servo.constant = load(index), ratio
+    make = EmulatedFeetechBus if is_sts else EmulatedBus
+    return make(chain, [servo.number for servo in servos], clock=chain.clock, wait=chain.sleep)
 
 
-_LIKE_A_KIT = 1200
-"""Emulated servos are XL330-M288, those of the servos that a kit may have."""
+_LIKE_X = {"xl330": 1200, "xc330": 1240}
+"""Numbers of the models of Dynamixel servos, by the motor of robot.toml; any other motor is emulated as the first."""
+
+_LIKE_STS = {"sts3215": (7.4, (4.0, 8.0)), "sts3215-12v": (12.0, (8.0, 14.0))}
+"""Supply of each kind of STS3215, and the least and greatest in its memory [V]."""
 
 
 def open_line(name: str, baud: int) -> Port:
@@ -145,7 +169,7 @@ def open_line(name: str, baud: int) -> Port:
     try:
         import serial
     except ModuleNotFoundError:
-        raise HydrostatError(f"serial lines need pyserial; install it: {install_command('motors')}") from None
+        raise InputError(f"serial lines need pyserial; install it: {install_command('motors')}") from None
     try:
         return cast(Port, serial.Serial(name, baud, timeout=0.02, write_timeout=0.1, exclusive=True))
     except (OSError, ValueError) as error:

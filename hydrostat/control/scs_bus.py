@@ -40,23 +40,21 @@ class ScsBus(FeetechBus):
                 self._set(number, BOUND, share.to_bytes(2, "big"), "its bound of torque")
             self._switch_on()
 
-    def read(self) -> Reading:
-        """Return the latest reading of each servo, asked one by one."""
-        with self._lock:
-            last = {name: getattr(self._last, name).copy() for name in ("angles", "currents", "temperatures", "volts")}
-            stamps, faults = self._last.stamps.copy(), list(self._last.faults)
-            for index, number in enumerate(self._numbers):
-                self._send(number, READ, bytes([STATE, STATE_BYTES]))
-                for packet in self._answers(1, STATE_BYTES):
-                    if packet.number != number:
-                        continue
-                    told, load = packet.content, int.from_bytes(packet.content[4:6], "big")
-                    last["angles"][index] = SCS_TICK * int.from_bytes(told[0:2], "big")
-                    last["currents"][index] = SCS_STALL * (load & 0x3FF) / FULL * (-1 if load >> 10 & 1 else 1)
-                    last["volts"][index], last["temperatures"][index] = 0.1 * told[6], told[7]
-                    stamps[index] = self._clock()
-                    faults[index] = ", ".join(word for bit, word in FAULTS.items() if packet.instruction & bit)
-            return self._keep_reading(Reading(**last, stamps=stamps, faults=tuple(faults)))
+    def _ask_state(self) -> Reading:
+        last = {name: getattr(self._last, name).copy() for name in ("angles", "currents", "temperatures", "volts")}
+        stamps, faults = self._last.stamps.copy(), list(self._last.faults)
+        for index, number in enumerate(self._numbers):
+            self._send(number, READ, bytes([STATE, STATE_BYTES]))
+            for packet in self._answers(1, STATE_BYTES):
+                if packet.number != number:
+                    continue
+                told, load = packet.content, int.from_bytes(packet.content[4:6], "big")
+                last["angles"][index] = SCS_TICK * int.from_bytes(told[0:2], "big")
+                last["currents"][index] = SCS_STALL * (load & 0x3FF) / FULL * (-1 if load >> 10 & 1 else 1)
+                last["volts"][index], last["temperatures"][index] = 0.1 * told[6], told[7]
+                stamps[index] = self._clock()
+                faults[index] = ", ".join(word for bit, word in FAULTS.items() if packet.instruction & bit)
+        return Reading(**last, stamps=stamps, faults=tuple(faults))
 
     def _go(self, steps: Sequence[int], rates: Sequence[int], numbers: Sequence[int]) -> None:
         content = bytes([GOAL, 6])

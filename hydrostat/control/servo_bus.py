@@ -19,6 +19,7 @@ TURNED = 0.75 * 2 * np.pi
 """No servo turns so far between two answers [rad]: who says so has begun to count again."""
 LATELY = 0.1
 """Maximum age of a reading [s] by which a motor may be told to hold without asking for its position first."""
+BLOCKED = 0.1  # share of its told speed below which a motor does not get on
 ANEW = "lost power for a moment, and its turn count. Run hydrostat calibrate again"
 
 
@@ -26,6 +27,7 @@ class ServoBus(Bus):
     """Servos on a serial line that answer when they are asked."""
 
     packets: ClassVar[type[PacketReader]] = PacketReader
+    braking: ClassVar[float] = 150.0  # least deceleration, of emulated STS and SCS [rad/s^2]
 
     def __init__(
         self,
@@ -51,7 +53,10 @@ class ServoBus(Bus):
         self._holding = False  # whether torque is on since they were heard last
         self.lost_position = False
         nothing = np.full(len(self._numbers), np.nan)
-        self._last = Reading(
+        self._goals = nothing.copy()  # told last [rad]
+        self._speeds = np.zeros(len(self._numbers))  # with those goals [rad/s]
+        self._asked = -np.inf  # when they were asked last [s]
+        self._last = self._before = Reading(
             angles=nothing,
             currents=nothing,
             temperatures=nothing,
@@ -65,15 +70,25 @@ class ServoBus(Bus):
         """Monotonic clock of its readings, by which motors are watched [s]."""
         return self._clock
 
+    def read(self) -> Reading:
+        """Return the latest reading of each servo."""
+        with self._lock:
+            self._asked = self._clock()
+            reading = self._ask_state()
+            if self._find_jumped(reading):  # noise passes a sum now and then, but not twice
+                reading = self._ask_state()
+            return self._keep_reading(reading)
+
     def halt(self) -> None:
-        """Last read positions as goals; none if another thread is using the line."""
+        """Goals where they can stand soonest, as they have gone on since they were read; none if the line is in use."""
         if not self._lock.acquire(blocking=False):
             return
         try:
             near = np.flatnonzero(self._clock() - self._last.stamps < LATELY).tolist()
             if near and self._known and not self._closed:
                 with suppress(Exception):
-                    self._hold({self._numbers[index]: float(self._last.angles[index]) for index in near})
+                    self._goals[near] = self._find_stops()[near]
+                    self._hold({self._numbers[index]: float(self._goals[index]) for index in near})
         finally:
             self._lock.release()
 
@@ -107,16 +122,24 @@ class ServoBus(Bus):
     def _has_torque(self, number: int) -> bool | None:
         """Return the state of a servo's torque switch; None where it does not answer."""
 
+    @abstractmethod
+    def _ask_state(self) -> Reading:
+        """Ask all once; who does not answer stays as it was heard last."""
+
+    def _find_jumped(self, reading: Reading) -> list[int]:
+        """Motors that hold and have jumped by a turn or so."""
+        jumped = np.abs(reading.angles - self._last.angles) > TURNED  # NaN: not heard yet
+        return np.flatnonzero(jumped & self._holding).tolist()
+
     def _keep_reading(self, reading: Reading) -> Reading:
         """Keep a reading as the last; a motor that holds and has jumped by a turn or so is at fault from then on.
 
         A servo that is switched on counts from within one turn, whatever it had counted before.
         """
-        jumped = np.abs(reading.angles - self._last.angles) > TURNED  # NaN: not heard yet
         faults = list(reading.faults)
-        for index in np.flatnonzero(jumped & self._holding).tolist():
+        for index in self._find_jumped(reading):
             faults[index], self.lost_position = ANEW, True
-        self._last = replace(reading, faults=tuple(faults))
+        self._before, self._last = self._last, replace(reading, faults=tuple(faults))
         return self._last
 
     def _stand(self, *, all_heard: bool = False) -> None:
@@ -127,6 +150,7 @@ class ServoBus(Bus):
             goals = np.where(np.isnan(goals) & (reading.stamps >= before), reading.angles, goals)
             heard = np.flatnonzero(~np.isnan(goals)).tolist()
             if heard:
+                self._goals = np.where(np.isnan(goals), self._goals, goals)
                 self._hold({self._numbers[index]: float(goals[index]) for index in heard})
             if attempt and len(heard) == len(goals):
                 return
@@ -137,6 +161,17 @@ class ServoBus(Bus):
     @abstractmethod
     def _hold(self, angles: dict[int, float]) -> None:
         """Tell servos, by their numbers, to stand at angles [rad]; none answers."""
+
+    def _find_stops(self) -> Vector:
+        """Angles where they stand soonest: so far on their way to the last goal as they turn since, and brake [rad].
+
+        One that hardly turned between its last two readings is blocked, or at its goal: it stands where it is.
+        """
+        since = self._clock() - np.minimum(self._last.stamps, self._asked)  # one that is silent delays the stamps
+        way = self._speeds * since + self._speeds**2 / (2 * self.braking)
+        turned, time = np.abs(self._last.angles - self._before.angles), self._last.stamps - self._before.stamps
+        way[(time > 0) & (turned <= BLOCKED * self._speeds * time)] = 0.0
+        return self._last.angles + np.clip(np.nan_to_num(self._goals - self._last.angles), -way, way)
 
     def _silent(self, number: int) -> HydrostatError:
         """Error that says who does not answer."""

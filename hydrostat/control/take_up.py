@@ -25,10 +25,13 @@ class TakeUpRules:
         max_depth: cable taken in since a measurement began at which a soft body is pulled enough [m].
         search_speed: speed of the search [m/s].
         step: step of a measurement [m].
-        back: distance before the edge at which a measurement begins [m].
+        back: distance before the place where nothing is felt at which a measurement begins [m].
+        before: distance before the edge of the last measurement at which the next begins at least [m].
         first_release: cable let out at first [m].
         interval: time between two commands [s].
         num_readings: readings of a standing motor at each step.
+        many_readings: readings at each step where an edge is coarse.
+        coarse: standard error of one measurement above which it is repeated with many readings [m].
         num_passes: minimum number of measurements of each edge.
         max_passes: maximum number of them, where the motor's current is noisy or coarse.
         precision: standard error of an edge at which measurements end [m].
@@ -47,12 +50,15 @@ class TakeUpRules:
     search_speed: float = 0.03
     step: float = 5e-4
     back: float = 2e-3
+    before: float = 4e-3
     first_release: float = 2e-3
     interval: float = 0.012
     num_readings: int = 3
+    many_readings: int = 16
+    coarse: float = 1.5e-4
     num_passes: int = 2
     max_passes: int = 12
-    precision: float = 1e-4
+    precision: float = 6e-5
     max_difference: float = 8e-4
     max_deviations: float = 4.5
     max_lag: float = 4e-3
@@ -203,21 +209,28 @@ class _Taker:
         began = self._clock()
         floor = self._free(index)
         self._search(index, floor)
-        edges, gains, places, currents, level = [], [], np.zeros(0), np.zeros(0), floor
-        weights = list[float]()
+        edges, weights, all_places, all_currents = list[float](), list[float](), list[Vector](), list[Vector]()
+        edge, places, currents, readings = np.inf, np.zeros(0), np.zeros(0), RULES.num_readings
         while len(edges) < RULES.num_passes or (sum(weights) < RULES.precision**-2 and len(edges) < RULES.max_passes):
-            self._let_out(index, floor)
-            places, currents = self._measure(index, floor)
+            self._let_out(index, floor)  # a soft cable is not felt at first: there, too, the floor is measured
+            self._go(index, min(self._goals[index], edge - RULES.before), RULES.search_speed)
+            places, currents = self._measure(index, floor, readings)
             edge, gain, level = find_edge(places, currents, model)
             if gain <= 0:
                 raise HydrostatError(
                     f"{self._name(index)}: current does not rise with the pull of the model. Check the motor, its "
                     "cable and this winch in robot.toml"
                 )
+            deviation = _edge_deviation(places, currents, model, edge, gain, level)
+            if readings < RULES.many_readings and deviation > RULES.coarse:
+                readings = RULES.many_readings  # this measurement was only a look
+                continue
             edges.append(edge)
-            gains.append(gain)
-            weights.append(_edge_deviation(places, currents, model, edge, gain, level) ** -2)
-        apart, edge = max(edges) - min(edges), float(np.average(edges, weights=weights))
+            all_places.append(places)
+            all_currents.append(currents)
+            weights.append(deviation**-2)
+        apart = max(edges) - min(edges)
+        edge, gain, level = find_edge(np.concatenate(all_places), np.concatenate(all_currents), model)
         change = find_change(np.array(edges)) / float(np.median(weights)) ** -0.5
         if apart > RULES.max_difference and change > RULES.max_deviations:
             raise HydrostatError(
@@ -232,7 +245,7 @@ class _Taker:
             motor=replace(origin, zero=float((origin.zero or 0.0) + origin.turns * turned)),
             slack=edge,
             apart=apart,
-            gain=float(np.mean(gains)),
+            gain=gain,
             places=places - edge,
             currents=currents,
             floor=level,
@@ -277,15 +290,15 @@ class _Taker:
             self._follows(index)
         self._go(index, self._goals[index] - RULES.back, RULES.search_speed)
 
-    def _measure(self, index: int, floor: float) -> tuple[Vector, Vector]:
+    def _measure(self, index: int, floor: float, readings: int) -> tuple[Vector, Vector]:
         """Take cable in step by step until the motor pulls enough; the place and the current of each reading."""
         places, currents, begin = [], [], self._goals[index]
         while self._goals[index] < begin + self._most:
             self._turn(index, self._goals[index] + RULES.step)
-            for _ in range(RULES.num_readings):
+            for _ in range(readings):
                 currents.append(self._turn(index, self._goals[index]))
                 places.append(self._place(index))
-            felt = float(np.mean(currents[-RULES.num_readings :])) - floor
+            felt = float(np.mean(currents[-readings:])) - floor
             deep = felt > RULES.touch_current and self._goals[index] > begin + RULES.max_depth
             if felt > RULES.pull_current or deep or places[-1] < self._goals[index] - 2 * RULES.step:
                 return np.array(places), np.array(currents)

@@ -5,7 +5,9 @@ from typing import TYPE_CHECKING
 from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
+    from hydrostat.fabrication.board_kind import BOARDS, board_for, check_board
     from hydrostat.fabrication.build_kit import build_kit, summarize_kit, write_kit
+    from hydrostat.fabrication.cable_work import CableWork
     from hydrostat.fabrication.demand import Demand, shaft_torques
     from hydrostat.fabrication.kit import Check, Kit, UnbuildableError
     from hydrostat.fabrication.kit_options import (
@@ -22,10 +24,10 @@ if TYPE_CHECKING:
     )
     from hydrostat.fabrication.lists.bill import PRICES
     from hydrostat.fabrication.lists.stitching import depth_table
-    from hydrostat.fabrication.motor_choice import find_motor, motor_offers, motors_price
+    from hydrostat.fabrication.motor_choice import find_motor, fit_motor, motor_offers, motors_price
     from hydrostat.fabrication.moulds.mould import make_mold
     from hydrostat.fabrication.moulds.pocket_room import PocketRoom
-    from hydrostat.fabrication.parts.motor import ALL_MOTORS, BOARDS, MOTORS, BoardKind, Motor, board_for
+    from hydrostat.fabrication.parts.motor import ALL_MOTORS, MOTORS, Motor
     from hydrostat.fabrication.parts.places import GIVES, TOUCHES, UnitBox, seam_of
     from hydrostat.fabrication.parts.winch_unit import unit_room
     from hydrostat.fabrication.patches.skin_mesh import skin_of_surface
@@ -48,7 +50,7 @@ __all__ = [
     "PRICES",
     "STUFFINGS",
     "TOUCHES",
-    "BoardKind",
+    "CableWork",
     "Check",
     "Cuboid",
     "Demand",
@@ -67,10 +69,12 @@ __all__ = [
     "UnitBox",
     "board_for",
     "build_kit",
+    "check_board",
     "depth_table",
     "find_motor",
     "find_refusals",
     "find_weak_lines",
+    "fit_motor",
     "make_mold",
     "motor_offers",
     "motors_price",

@@ -30,7 +30,7 @@ from hydrostat.fabrication.patterns.shape import Circle, PatternPart
 from hydrostat.fabrication.patterns.svg_writer import pattern_svg
 from hydrostat.fabrication.solids.construct import sides_text
 from hydrostat.fabrication.solids.printed import Printed
-from hydrostat.robot import Face, Mount, Robot
+from hydrostat.robot import CableSide, Mount, Robot
 from hydrostat.units import plural
 
 MANY_PIECES = 40  # more pieces of a mould than that are a warning: a judgement, each is some hours on a printer
@@ -74,7 +74,7 @@ def foam_work(robot: Robot, options: KitOptions, units: Iterable[WinchUnit]) -> 
 
 def _inside(robot: Robot) -> tuple[str, ...]:
     """Return a note if a flat robot is cast but has its cables on its faces."""
-    if robot.face in (None, Face.MIDDLE) or not robot.cables:
+    if robot.face in (None, CableSide.MIDDLE) or not robot.cables:
         return ()
     return (
         f"the robot file places its cables {robot.face.words}, but in a cast body they run in the middle of its "

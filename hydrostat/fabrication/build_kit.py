@@ -17,6 +17,7 @@ from hydrostat.fabrication.lists.lists import Lists, make_lists
 from hydrostat.fabrication.motor_choice import find_motor, motors_price, pulled_torques
 from hydrostat.fabrication.parts.motor import Motor
 from hydrostat.fabrication.parts.rigid_parts import RigidParts, rigid_parts
+from hydrostat.fabrication.patterns.channels import channel_strips
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.pattern import cut_sheet
 from hydrostat.fabrication.patterns.sheet_pieces import sheet_pieces
@@ -24,6 +25,7 @@ from hydrostat.fabrication.patterns.svg_writer import pattern_svg
 from hydrostat.fabrication.print_work import print_work
 from hydrostat.fabrication.refusals import find_refusals
 from hydrostat.fabrication.sheets.assembly_sheet import assembly_sheet
+from hydrostat.fabrication.sheets.foam_steps import channel_ways
 from hydrostat.fabrication.sheets.sheet_facts import sheet_facts
 from hydrostat.fabrication.sheets.summary import summary_rows
 from hydrostat.fabrication.sheets.text_sheet import sheet_text
@@ -33,7 +35,7 @@ from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.fabrication.solids.step import require_cad, step_bytes
 from hydrostat.given import check_type, path_of
 from hydrostat.progress import Progress, no_progress
-from hydrostat.robot import Face, Robot, describe_cable_side, sewn_robot, sewn_sides
+from hydrostat.robot import CableSide, Robot, describe_cable_side, sewn_robot, sewn_sides
 from hydrostat.simulation import is_stuffed_motion_fast, solve_stuffed_motion
 from hydrostat.units import plural
 
@@ -251,7 +253,7 @@ def _bending_warnings(plan: KitPlan) -> tuple[str, ...]:
     Elsewhere the warning is without a length.
     """
     robot, pulled = plan.drawn, plan.demand.contractions
-    one_panel = len(sewn_sides(robot)) == 1 and robot.face is not Face.MIDDLE
+    one_panel = len(sewn_sides(robot)) == 1 and robot.face is not CableSide.MIDDLE
     if plan.method is not Method.PLUSH or robot.body.mesh.dim != 2 or not (robot.cables and one_panel):
         return ()
     if is_stuffed_motion_fast(robot, len(pulled)):
@@ -283,6 +285,7 @@ def _files(plan: KitPlan, lists: Lists, findings: KitFindings) -> dict[str, byte
         **_solid_files("positive", name, work.spare, plan.options),
         **_base_files(name, rigid),
         **_sheet_files(plan.drawn),
+        **_channel_files(plan, lists),
         **{f"lists/{table.name}.csv": table.csv for table in lists.tables},
         "assembly_sheet.pdf": assembly_sheet(plan, lists, findings),
         "steps.txt": sheet_text(sheet_facts(plan, lists, findings)).encode(),
@@ -322,13 +325,25 @@ def _sheet_files(robot: Robot) -> dict[str, bytes]:
     return files
 
 
+def _channel_files(plan: KitPlan, lists: Lists) -> dict[str, bytes]:
+    """Strips of cloth for the channels of cables that are sewn on the skin of a foam body."""
+    ways = channel_ways(lists.stitching, len(plan.robot.cables)) if plan.method is Method.FOAM else {}
+    if not ways:
+        return {}
+    strips, paper = channel_strips(f"{plan.robot.name} - channels", ways), plan.options.paper
+    return {"pattern/channels.svg": pattern_svg(strips), f"pattern/channels_{paper}.pdf": tiled_pdf(strips, paper)}
+
+
 def _cable_summary(plan: KitPlan) -> tuple[str, ...]:
     """Return one line on the side of the cables of a flat robot; empty if the robot does not set it."""
     robot = plan.drawn
     if robot.face is None or not plan.robot.cables:
         return ()
-    words = describe_cable_side(robot) if plan.method is Method.PLUSH else Face.MIDDLE.words
-    return (f"Cables: {len(plan.robot.cables)}, {words}",)
+    if plan.method is not Method.PLUSH:
+        return (f"Cables: {len(plan.robot.cables)}, {CableSide.MIDDLE.words}",)
+    if robot.face is CableSide.PAIRS:
+        return (f"Cables: {plural(len(robot.cables), 'pair')} on both faces, {len(plan.robot.cables)} to sew",)
+    return (f"Cables: {len(plan.robot.cables)}, {describe_cable_side(robot)}",)
 
 
 def _insert_summary(plan: KitPlan) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from hydrostat.robot import Body, Robot, Rod, SkinSheet
+from hydrostat.robot import Body, Membrane, Robot, Rod
 
 
 class InsertKind(StrEnum):
@@ -158,7 +158,7 @@ def _insert_of_rod(rod: Rod, number: int) -> Insert:
     )
 
 
-def _insert_of_sheet(body: Body, sheet: SkinSheet, number: int) -> Insert:
+def _insert_of_sheet(body: Body, sheet: Membrane, number: int) -> Insert:
     triangles, edges = sheet.find_facets(body.mesh)
     held = 1e3 * body.mesh.nodes[np.unique(np.concatenate([triangles.ravel(), edges.ravel()]))]
     area, material = 1e6 * sheet.find_area(body.mesh, body.thickness), sheet.material

@@ -7,6 +7,7 @@ from typing import Any
 
 from hydrostat.closed_set import make_member
 from hydrostat.errors import InputError
+from hydrostat.fabrication.board_kind import check_board
 from hydrostat.given import check_number
 from hydrostat.robot import Body, Robot
 
@@ -132,6 +133,7 @@ class PartOptions:
         run: distance between the base of winches outside the body and the body [mm].
         spare_wraps: turns of cable that stay on a spool at maximum payout.
         grommets: True to print a grommet for each pinhole.
+        swap: True for a base whose cores are swapped: tubes end in a plate of their own, lines have couplers.
 
     Raises:
         InputError: a number out of its range.
@@ -146,6 +148,7 @@ class PartOptions:
     run: float = 100.0
     spare_wraps: float = 2.0
     grommets: bool = True
+    swap: bool = False
 
     def __post_init__(self) -> None:
         _check_sizes(self, above_zero=("wall", "cable", "tube", "bore"))
@@ -198,6 +201,7 @@ class KitOptions:
         motor: key of a motor in the table, or "auto": that of the robot, else the cheapest that fits, is strong enough
             and not slow.
         budget: maximum price of the kit in whole packs [USD]; None: no limit.
+        board: kind of board for motors without a bus, such as "esp32s3"; None: the smallest Arduino.
         tension: maximum cable tension in its poses [N], for the choice of motors and lines. None: the limit of its
             winches. A designed robot keeps to the limit of its design.
         torque: maximum torque of a winch in its poses [N m], as the tension.
@@ -210,12 +214,13 @@ class KitOptions:
         mould: options for the mold of a foam robot.
 
     Raises:
-        InputError: a text that is no method or no paper, a tension, torque or budget that is not above 0.
+        InputError: a text that is no method, paper or board, a tension, torque or budget that is not above 0.
     """
 
     method: Method | None = None
     motor: str = "auto"
     budget: float | None = None
+    board: str | None = None
     tension: float | None = None
     torque: float | None = None
     paper: Paper = Paper.A4
@@ -230,6 +235,8 @@ class KitOptions:
         if self.method is not None:
             make_member(self, "method", Method)
         make_member(self, "paper", Paper)
+        if self.board is not None:
+            check_board(self.board)
         for name, unit in (("tension", "N"), ("torque", "N m"), ("budget", "USD")):
             value = getattr(self, name)
             if value is None:

@@ -110,8 +110,7 @@ class CameraHand(HandSource):
             import mediapipe  # pyright: ignore[reportMissingImports]
             from mediapipe.tasks.python import BaseOptions, vision  # pyright: ignore[reportMissingImports]
         except (ImportError, OSError) as error:
-            words = f"a camera needs mediapipe ({error}): {install_command('camera')}"
-            raise HydrostatError(words) from None
+            raise InputError(f"a camera needs mediapipe ({error}): {install_command('camera')}") from None
         self._clock, self._begin, self._told = clock, clock(), -1
         self._cv2, self._mediapipe = cv2, mediapipe
         options = vision.HandLandmarkerOptions(

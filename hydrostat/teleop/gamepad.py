@@ -6,7 +6,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
-from hydrostat.errors import HydrostatError
+from hydrostat.errors import HydrostatError, InputError
 from hydrostat.teleop.source import DriveChannels, DriveSource, DriveWish
 from hydrostat.version import install_command
 
@@ -31,7 +31,7 @@ class Gamepad(DriveSource):
             import pygame
             from pygame._sdl2 import controller
         except ModuleNotFoundError:
-            raise HydrostatError(f"gamepads need pygame; install it: {install_command('teleop')}") from None
+            raise InputError(f"gamepads need pygame; install it: {install_command('teleop')}") from None
         pygame.display.init()
         controller.init()
         if number >= controller.get_count() or not controller.is_controller(number):

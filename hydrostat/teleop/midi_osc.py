@@ -1,6 +1,7 @@
 """`MidiKnobs`, `Osc`: knobs of a MIDI controller, and messages of Open Sound Control, as sources of drive."""
 
 import socket
+import sys
 import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
@@ -92,7 +93,8 @@ def _open(name: str) -> Any:
 
         names = list(mido.get_input_names())  # type: ignore[attr-defined]
     except ModuleNotFoundError:
-        raise HydrostatError(f"MIDI needs mido and python-rtmidi: {install_command('teleop')}") from None
+        words = "" if sys.version_info < (3, 13) else ", then pip install python-rtmidi (needs ALSA headers)"
+        raise InputError(f"MIDI needs mido and python-rtmidi: {install_command('teleop')}{words}") from None
     except Exception as error:  # noqa: BLE001 (each system of sound has errors of its own)
         raise HydrostatError(f"MIDI is not to be had here: {error}") from None
     found = [each for each in names if name.lower() in each.lower()]
@@ -124,7 +126,7 @@ class Osc(DriveSource):
         try:
             from pythonosc.osc_packet import OscPacket
         except ModuleNotFoundError:
-            raise HydrostatError(f"OSC needs python-osc; install it: {install_command('teleop')}") from None
+            raise InputError(f"OSC needs python-osc; install it: {install_command('teleop')}") from None
         self._packet: Any = OscPacket
         self._channels, self._clock, self._heard, self._hold, self._wrong = channels, clock, clock(), False, ""
         self._known = {name.replace(" ", "_"): name for name in channels.names}

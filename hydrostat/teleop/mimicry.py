@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.errors import HydrostatError, InputError
+from hydrostat.errors import InputError
 from hydrostat.files import replace_file
 from hydrostat.teleop.ridge import Ridge, Table, fit_ridge, folded_error, left_out_error
 from hydrostat.version import install_command
@@ -121,12 +121,12 @@ class Mimicry:
             path: path of the file.
 
         Raises:
-            HydrostatError: the package mcap is not there.
+            InputError: the package mcap is not there.
         """
         try:
             from mcap.writer import Writer
         except ModuleNotFoundError:
-            raise HydrostatError(f"MCAP files need mcap; install it: {install_command('teleop')}") from None
+            raise InputError(f"MCAP files need mcap; install it: {install_command('teleop')}") from None
         buffer = io.BytesIO()
         writer = Writer(buffer)
         writer.start(library="hydrostat")

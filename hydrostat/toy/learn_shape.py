@@ -120,10 +120,10 @@ class _Training:
                 return True
             rate = highest * 0.5 * (1.0 + np.cos(np.pi * share))
             chosen = self._random.integers(0, len(self._inputs), batch)
-            slopes = self._slopes(self._inputs[chosen], self._outputs[chosen])
-            for weight, slope, one, two in zip(self._weights, slopes, first, second, strict=True):
-                one += (1 - fast) * (slope - one)
-                two += (1 - slow) * (slope * slope - two)
+            gradients = self._gradients(self._inputs[chosen], self._outputs[chosen])
+            for weight, gradient, one, two in zip(self._weights, gradients, first, second, strict=True):
+                one += (1 - fast) * (gradient - one)
+                two += (1 - slow) * (gradient * gradient - two)
                 bias = np.sqrt(1 - slow ** (step + 1)) / (1 - fast ** (step + 1))
                 weight -= np.float32(rate * bias) * one / (np.sqrt(two) + np.float32(tiny))
             if step % 50 == 0:
@@ -131,14 +131,14 @@ class _Training:
         progress("learning", steps, steps)
         return False
 
-    def _slopes(self, inputs: Rows, outputs: Rows) -> list[Vector]:
-        """Slopes of the mean square error with all weights."""
+    def _gradients(self, inputs: Rows, outputs: Rows) -> list[Vector]:
+        """Gradients of the mean square error with all weights."""
         one, one_bias, two, two_bias, last, last_bias, linear = self._weights
-        early, early_slope = _silu(inputs @ one + one_bias)
-        late, late_slope = _silu(early @ two + two_bias)
+        early, early_rate = _silu(inputs @ one + one_bias)
+        late, late_rate = _silu(early @ two + two_bias)
         miss = (2.0 / len(inputs)) * (late @ last + last_bias + inputs @ linear - outputs)
-        back = miss @ last.T * late_slope
-        further = back @ two.T * early_slope
+        back = miss @ last.T * late_rate
+        further = back @ two.T * early_rate
         return [
             inputs.T @ further, further.sum(axis=0), early.T @ back, back.sum(axis=0), late.T @ miss, miss.sum(axis=0),
             inputs.T @ miss,
@@ -146,6 +146,6 @@ class _Training:
 
 
 def _silu(values: Rows) -> tuple[Rows, Rows]:
-    """Compute x sigmoid(x) and its slopes."""
+    """Compute x sigmoid(x) and its derivatives."""
     share = 1.0 / (1.0 + np.exp(-values))
     return values * share, share * (1.0 + values * (1.0 - share))

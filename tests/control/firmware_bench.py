@@ -1,4 +1,4 @@
-"""The firmware run by simavr with emulated motors: a serial port in memory, on the clock of the chip."""
+"""The firmware with emulated motors, by simavr, or an ESP32's sketch by a stand-in: a serial port in memory."""
 
 import ctypes
 import shutil
@@ -48,11 +48,32 @@ def folder() -> Path:
 
 
 @cache
+def stand_in() -> Path:
+    """The bench of an ESP32-S3."""
+    bench = Path(tempfile.mkdtemp(prefix="winches")) / "esp32.so"
+    compile_for_host(SOURCE.with_name("esp32_bench.cpp"), bench)
+    return bench
+
+
+def compile_for_host(source: Path, library: Path) -> None:
+    """Compile C++ against the stand-in of Espressif's package."""
+    if not shutil.which("g++"):
+        pytest.skip("g++ is not installed")
+    flags = ["-std=gnu++17", "-O1", "-shared", "-fPIC", "-fno-gnu-unique", "-Wall", "-Wextra", "-Werror"]
+    include = ["-I", str(SOURCE.with_name("esp32"))]
+    subprocess.run(["g++", *flags, *include, "-o", str(library), str(source), "-ldl"], check=True)
+
+
+@cache
 def program(chip: str, settings: str) -> Path:
     """The firmware with settings, built as `hydrostat firmware` builds it: what is flashed, with its symbols."""
     board = next(name for name, kind in BOARDS.items() if kind.chip == chip)
-    image = build_firmware(settings, board, folder() / f"{chip}-{zlib.crc32(settings.encode()):x}")
-    return image.with_suffix(".elf")
+    home = stand_in().parent if chip == "esp32s3" else folder()
+    image = build_firmware(settings, board, home / f"{chip}-{zlib.crc32(settings.encode()):x}")
+    if chip != "esp32s3":
+        return image.with_suffix(".elf")
+    compile_for_host(image.with_suffix(".cpp"), image.with_suffix(".so"))
+    return image.with_suffix(".so")
 
 
 class Board:
@@ -62,14 +83,21 @@ class Board:
         """Start the firmware on a chip: of two winches for trying, of all that a Mega bears, or with settings."""
         file = SOURCE.with_name("full_settings.h") if full else FIRMWARE / "settings.h"
         settings = settings or file.read_text()
-        self._bench = ctypes.CDLL(str(folder() / "bench.so"))
+        is_host = chip == "esp32s3"
+        self._bench = ctypes.CDLL(
+            str(stand_in() if is_host else folder() / "bench.so"), mode=ctypes.RTLD_GLOBAL if is_host else 0
+        )
         self._bench.bench_plant.restype = ctypes.POINTER(Plant)
+        self._bench.bench_supply.argtypes = [ctypes.c_double]
         self._bench.bench_press.argtypes = [ctypes.c_char, ctypes.c_int, ctypes.c_int]
         self._bench.bench_seconds.restype = self._bench.bench_pulse.restype = ctypes.c_double
+        if is_host:
+            for plant, wires in enumerate(BOARDS[chip].wiring[:2]):
+                self._bench.bench_wire(plant, *map(int, wires))
         assert self._bench.bench_start(str(program(chip, settings)).encode(), chip.encode(), int(full)) == 0
         self.winches = [self._bench.bench_plant(index).contents for index in range(2)]
         self.timeout: float | None = 0.02
-        self._button = (b"D", 2) if chip == "atmega328p" else (b"B", 6)
+        self._button = {"atmega328p": (b"D", 2), "atmega2560": (b"B", 6)}.get(chip, (b"-", 0))
         self._got = b""
         self.number = 0
         self.run(0.01)
@@ -112,6 +140,10 @@ class Board:
         for down, time in ((1, seconds), (0, 0.05)):
             self._bench.bench_press(*self._button, down)
             self.run(time)
+
+    def feed(self, volts: float) -> None:
+        """Set the supply of its motors, at its divider [V]."""
+        self._bench.bench_supply(volts)
 
     def is_lit(self) -> bool:
         """Whether its light is on."""

@@ -14,6 +14,7 @@ from hydrostat.control import (
     Motors,
     SimulatedLink,
     arm_motors,
+    list_moved_loads,
     motor_stand,
     stand_table,
     stand_tensions,
@@ -51,9 +52,18 @@ def test_a_degree_counts_as_a_millimeter(robot: Robot) -> None:
     assert motors.ask(np.array([0.0, 0.0, 0.07, 0.0])) == "base is at its limit of 57.3 deg and was asked for 70.0 deg"
     angles = Calibration.usual(stand).assume_zeros().angles(table.profile.values[1])
     assert angles[2] == pytest.approx(radians(10))
-    pushed = ProfileTable.read(b"time_s,thumb_share\n0,0\n1,0.5\n", robot, name="m.csv")
-    with pytest.raises(InputError, match=r"m\.csv, column thumb_share: no motor changes a load"):
-        stand_table(pushed, robot)
+
+
+def test_a_share_of_a_load_is_left_to_a_person(robot: Robot) -> None:
+    pushed = ProfileTable.read(b"time_s,up_mm,thumb_share\n0,0,0\n1,2,0.5\n", robot, name="m.csv")
+    assert list_moved_loads(pushed, robot) == ["thumb_share"]
+    assert not list_moved_loads(ProfileTable.read(TABLE, robot, name="m.csv"), robot)
+    np.testing.assert_allclose(stand_table(pushed, robot).profile.values, [[0.0] * 4, [2e-3, 0.0, 0.0, 0.0]])
+
+
+def test_a_winch_with_a_spool_as_large_as_a_degree_takes_in_millimeters(robot: Robot) -> None:
+    winch = replace(robot.winches[0], spool_radius=motor_stand(robot).winches[2].spool_radius)
+    assert Motors([winch], SimulatedLink(np.zeros(1))).units == ("mm",)
 
 
 @pytest.mark.parametrize("ratio", [1.0, 3.0, 1 / 3, 57.2957795 / 12, 0.2])

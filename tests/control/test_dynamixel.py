@@ -8,7 +8,7 @@ from contextlib import suppress
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hydrostat.control import DynamixelBus, EmulatedChain, EmulatedServo
@@ -26,6 +26,7 @@ def test_packets_are_those_of_the_manual() -> None:
     assert crc(bytes.fromhex("fffffd0001070002840004001d15")[:-2]) == 0x151D
 
 
+@settings(deadline=None)
 @given(st.binary(max_size=60), st.integers(0, 252))
 def test_what_is_packed_is_found_among_rubbish(content: bytes, number: int) -> None:
     whole = pack(number, STATUS, content + b"\xff\xff\xfd\x00" + content)
@@ -34,6 +35,7 @@ def test_what_is_packed_is_found_among_rubbish(content: bytes, number: int) -> N
     assert found == 2 * [Packet(number, STATUS, content + b"\xff\xff\xfd\x00" + content)]
 
 
+@settings(deadline=None)
 @given(st.integers(0, 400), st.integers(1, 255))
 def test_a_flipped_byte_is_never_taken_for_an_answer(place: int, change: int) -> None:
     whole = bytearray(pack(7, STATUS, bytes(range(40))))

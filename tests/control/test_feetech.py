@@ -83,8 +83,9 @@ def test_no_packet_that_lost_bytes_passes_its_sum() -> None:
 
 def test_it_goes_where_it_is_told_past_a_whole_turn() -> None:
     hand = Hand()
+    hand.chain.servos[1].table[3:5] = (1289).to_bytes(2, "little")
     facts = hand.link.identify()
-    assert [(fact.model, fact.watchdog) for fact in facts] == [("STS3215", False)] * 2
+    assert [(fact.model, fact.watchdog) for fact in facts] == [("STS3215", False), ("STS3020", False)]
     hand.link.arm()
     assert hand.go(0.058, 2.0) == pytest.approx(0.058, abs=2e-5)
     assert hand.places == pytest.approx(0.058, abs=2e-5)
@@ -105,6 +106,58 @@ def test_a_dead_host_leaves_motors_standing_though_they_have_no_watchdog() -> No
     hand.chain.wait(5.0)
     assert np.abs(hand.places - before).max() == 0.0
     assert (hand.places < 0.045).all()
+
+
+def test_a_halt_brings_no_motor_back_to_where_it_was_heard_long_before() -> None:
+    """Other lines are asked before `stop` comes to this one: meanwhile it stands, and then where it stands."""
+    hand = Hand()
+    hand.link.identify()
+    hand.link.arm()
+    hand.bus.write(np.full(2, 6.0), np.full(2, 6.0))
+    hand.chain.wait(0.1)
+    heard = hand.bus.read().angles
+    hand.chain.wait(0.08)
+    hand.bus.halt()
+    hand.chain.wait(0.06)
+    stood = hand.places
+    assert (stood > RADIUS * heard + 0.003).all()
+    hand.chain.wait(0.3)
+    hand.bus.stop()
+    hand.chain.wait(0.3)
+    assert hand.places == pytest.approx(stood, abs=RADIUS * 2 * TICK)
+
+
+def test_a_halt_pulls_no_blocked_motor_on() -> None:
+    """A shaft held fast at 1 rad; the other one is on its way at 6 rad/s, 0.05 s after the second reading."""
+    hand = Hand()
+    hand.link.identify()
+    hand.link.arm()
+    hand.servos[0].load = lambda angle: 100.0 * max(angle - 1.0, 0.0)
+    hand.bus.write(np.full(2, 6.0), np.full(2, 6.0))
+    for wait in (0.3, 0.1, 0.05):
+        hand.chain.wait(wait)
+        heard = hand.bus.read().angles if wait > 0.05 else heard
+    hand.bus.halt()
+    goals = [TICK * int.from_bytes(servo.table[42:44], "little") for servo in hand.servos]
+    assert goals[0] == pytest.approx(hand.servos[0].angle, abs=0.02)
+    assert goals[1] > heard[1] + 6.0 * 0.05
+
+
+@pytest.mark.parametrize("times", [1, 2])
+def test_a_count_is_lost_when_two_answers_say_so(times: int) -> None:
+    """Noise passes the sum of 8 bits now and then: one answer of another turn is asked for again."""
+    hand = Hand()
+    hand.link.identify()
+    hand.link.arm()
+    hand.go(0.02, 0.5)
+    heard = hand.bus.read().angles
+    false = [pack(1, 0, (40_000).to_bytes(2, "little") + bytes(13))] * times
+    hand.chain.back = lambda data: false.pop() if false else data
+    reading = hand.bus.read()
+    assert hand.bus.lost_position == (times == 2)
+    assert ("lost power" in reading.faults[0]) == (times == 2)
+    if times == 1:
+        assert reading.angles == pytest.approx(heard, abs=TICK)
 
 
 def test_its_torque_is_bounded_by_the_servo() -> None:

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from hydrostat.cli.main import app
 from hydrostat.control import BusLink, Calibration, LinkState, WinchMotor
-from hydrostat.control.firmware_build import BOARDS, build_firmware, firmware_settings, robot_word
+from hydrostat.control.firmware_build import BOARDS, build_firmware, firmware_settings, flash, flash_command, robot_word
 from hydrostat.control.firmware_bus import FirmwareBus
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Robot
@@ -70,17 +70,38 @@ def test_a_board_bears_so_many_motors(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="board uno drives 2 motors, the robot has 3"):
         build_firmware("#define DCS 3\n", "uno", tmp_path / "none")
     assert not (tmp_path / "none").exists()
-    with pytest.raises(InputError, match=r"--board due: unknown board\. Available: uno, mega"):
+    with pytest.raises(InputError, match=r"--board due: unknown board\. Available: uno, mega, esp32s3"):
         build_firmware("#define DCS 1\n", "due", tmp_path)
 
 
+def test_an_esp32_gets_a_sketch(robot: Robot, motors: Calibration, tmp_path: Path) -> None:
+    """The Arduino IDE wants a file named as its folder; C++ beside it is compiled as it stands."""
+    settings = firmware_settings(robot, motors, rpm=60.0)
+    sketch = build_firmware(settings, "esp32s3", tmp_path)
+    assert sketch == tmp_path / "winches" / "winches.ino"
+    written = {path.name: path.read_text() for path in sketch.parent.iterdir()}
+    assert sorted(written) == ["esp32s3.h", "moves.h", "settings.h", "winches.cpp", "winches.ino"]
+    assert written["settings.h"] == settings
+    assert written["winches.cpp"] == (FIRMWARE / "winches.c").read_text()
+    command = flash_command("esp32s3", "/dev/ttyACM0", sketch)
+    assert command[:6] == ["arduino-cli", "compile", "-b", "esp32:esp32:esp32s3", "-u", "-p"]
+    with pytest.raises(HydrostatError, match=r"winches\.ino in the Arduino IDE"):
+        flash(["arduino-cli-of-nobody", *command[1:]])
+    with pytest.raises(InputError, match="board esp32s3 drives 4 motors, the robot has 5"):
+        build_firmware("#define DCS 5\n", "esp32s3", tmp_path)
+
+
 def test_pins_that_are_told_are_those_of_the_boards() -> None:
-    """Oracle: the remarks beside the registers in board.h."""
-    lines = [line for line in (FIRMWARE / "board.h").read_text().splitlines() if "&TCCR" in line and "/*" in line]
-    told = [re.findall(r"A?\d+", line.split("/*")[1]) for line in lines]
+    """Oracle: the remarks beside the registers in avr.h, the pins themselves in esp32s3.h."""
+    text, sketch = (FIRMWARE / "avr.h").read_text(), (FIRMWARE / "esp32s3.h").read_text()
+    lines = [line.split("/*")[1] for line in text.splitlines() if "&TCCR" in line and "/*" in line]
+    lines += re.findall(r"    \{([\d, ]+)\},", sketch)
+    told = [re.findall(r"A?\d+", line) for line in lines]
     assert told == [list(pins) for kind in BOARDS.values() for pins in kind.wiring]
-    buttons = re.findall(r"#define BUTTON \d /\* between pin (\d+) and GND", (FIRMWARE / "board.h").read_text())
+    buttons = re.findall(r"#define BUTTON \d /\* between pin (\d+) and GND", text + sketch)
     assert buttons == [kind.button for kind in BOARDS.values()]
+    supplies = re.findall(r"#define SUPPLY (\d) ", text + sketch)
+    assert supplies == [kind.supply.removeprefix("A") for kind in BOARDS.values()]
 
 
 def test_a_robot_on_its_board_is_driven_within_its_limits(robot: Robot, motors: Calibration) -> None:
@@ -153,6 +174,8 @@ def test_firmware_is_built_shown_and_flashed(robot: Robot, tmp_path: Path, monke
     )
     assert both.exit_code == 0, both.output
     assert "board 2, uno: 1 motor, wiring" in both.output
+    many = run(app, [*given[:2], "--board", "uno,uno,uno", "--out", str(tmp_path / "many")])
+    assert "--board uno,uno,uno: 3 boards for motors that fit on 2. Remove the others." in str(many.exception)
     written = [line.split("flash:w:")[1] for line in noted.read_text().splitlines()]
     assert written == [f"{tmp_path}/two/board_{number}/winches.hex:i" for number in (1, 2)]
     assert [each.board for each in Calibration.read(folder, robot_of(folder)).motors] == [1, 1, 2]
@@ -174,3 +197,11 @@ def robot_of(folder: Path) -> Robot:
 def test_counts_stand_in_motors_toml() -> None:
     with pytest.raises(InputError, match="counts must be from 1 to a million"):
         WinchMotor(winch="left", number=1, radius=0.005, counts=0.0)
+
+
+def test_a_current_that_a_board_cannot_measure_is_refused(tmp_path: Path) -> None:
+    """An ESP32-S3 reads up to 3.1 V, 1.1 V for an ampere."""
+    line = "#define MOTORS {{ \\\n    {{0, 1, 1, 1, 1, {}}}, /* left */ \\\n}}\n#define DCS 1\n"
+    with pytest.raises(InputError, match=r"current too large for board esp32s3 \(4 A\)"):
+        build_firmware(line.format(4000), "esp32s3", tmp_path)
+    assert build_firmware(line.format(2800), "esp32s3", tmp_path).name == "winches.ino"

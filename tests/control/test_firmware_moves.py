@@ -53,18 +53,23 @@ def settings(robot: Robot, motors: Calibration, tmp_path: Path) -> str:
     return firmware_settings(robot, motors, rpm=216.0) + moves.settings
 
 
-def alone(settings: str, zeros: tuple[float, float] = ZEROS) -> Board:
+@pytest.fixture(params=["atmega328p", "esp32s3"])
+def chip(request: pytest.FixtureRequest) -> str:
+    return request.param
+
+
+def alone(chip: str, settings: str, zeros: tuple[float, float] = ZEROS) -> Board:
     """A board that was told its zeros and let go."""
-    board = Board(settings=settings)
+    board = Board(chip, settings=settings)
     assert board.ask("M {:.0f} {:.0f}".format(*zeros)) == "ok"
     return board
 
 
 def test_a_board_alone_moves_as_with_a_computer(
-    robot: Robot, motors: Calibration, settings: str, tmp_path: Path
+    chip: str, robot: Robot, motors: Calibration, settings: str, tmp_path: Path
 ) -> None:
     """Poses of both, from the first row on: within 0.1 mm where motors stand, 1 mm where they turn."""
-    board = Board(settings=settings)
+    board = Board(chip, settings=settings)
     numbers = [each.number for each in motors.motors]
     bus = FirmwareBus(board, [COUNTS] * 2, numbers, robot=robot_word(robot, motors), clock=board.clock, wait=board.run)
     link = BusLink(bus, robot.winches, motors, clock=board.clock)
@@ -87,7 +92,7 @@ def test_a_board_alone_moves_as_with_a_computer(
     link.close()
     guided = np.array(seen)
 
-    board = alone(settings)
+    board = alone(chip, settings)
     assert board.is_lit()
     board.press()
     found = list[tuple[float, ...]]()
@@ -110,9 +115,9 @@ def test_a_board_alone_moves_as_with_a_computer(
     assert abs(free[-1, 1:] - guided[-1, 1:]).max() < 10
 
 
-def test_a_second_press_stops_and_a_third_starts_again(settings: str) -> None:
+def test_a_second_press_stops_and_a_third_starts_again(chip: str, settings: str) -> None:
     """Motors stand where they were, hold for 2 s, and let go; a press begins at the first row."""
-    board = alone(settings)
+    board = alone(chip, settings)
     board.press()
     board.run(0.9)
     board.press()
@@ -135,9 +140,9 @@ def test_a_second_press_stops_and_a_third_starts_again(settings: str) -> None:
     assert board.ask("R").startswith("ok silent 0 ")
 
 
-def test_stops_stay_in_force_without_a_computer(settings: str) -> None:
+def test_stops_stay_in_force_without_a_computer(chip: str, settings: str) -> None:
     """A shaft that is held, then a program that hangs; who is reset knows no zeros, and plays nothing."""
-    board = alone(settings)
+    board = alone(chip, settings)
     board.winches[1].block = 1
     board.winches[1].wire = 30.0  # less current than its bound
     board.press()
@@ -161,7 +166,13 @@ def test_stops_stay_in_force_without_a_computer(settings: str) -> None:
 
 @pytest.mark.parametrize(
     ("chip", "told"),
-    [("atmega328p", "M"), ("atmega328p", "M 3"), ("atmega328p", "M 1500 0"), ("atmega2560", "M -900 0")],
+    [
+        ("atmega328p", "M"),
+        ("atmega328p", "M 3"),
+        ("atmega328p", "M 1500 0"),
+        ("atmega2560", "M -900 0"),
+        ("esp32s3", "M"),
+    ],
 )
 def test_a_board_without_zeros_in_its_limits_plays_nothing(settings: str, chip: str, told: str) -> None:
     """By hand: its settings allow counts from -796 to 1,751, and 20 mm are more than 600."""
@@ -178,9 +189,41 @@ def test_a_board_without_zeros_in_its_limits_plays_nothing(settings: str, chip: 
     assert board.ask("R").startswith("ok armed 0 ")
 
 
-def test_an_encoder_that_jumps_takes_the_zeros(settings: str) -> None:
+def test_a_battery_that_sags_stops_moves(chip: str, settings: str) -> None:
+    """A dip of 0.3 s, as motors start, is none; one of 0.8 s lets go, blinks, and no press or computer goes on."""
+    board = alone(chip, settings + "#define MIN_SUPPLY 9600\n")
+    assert int(board.ask("R").split()[-1]) == pytest.approx(12_000, abs=40)
+    board.press()
+    board.feed(9.3)
+    board.run(0.3)
+    board.feed(11.0)
+    board.run(0.3)
+    assert board.ask("R").startswith("ok armed 0 ")
+    board.feed(9.3)
+    board.run(0.8)
+    assert board.ask("R").startswith("ok supply 0 ")
+    assert int(board.ask("R").split()[-1]) == pytest.approx(9_300, abs=40)
+    assert all(abs(winch.current) < 0.05 for winch in board.winches)
+    seen = set[bool]()
+    for _ in range(6):
+        board.run(0.1)
+        seen.add(board.is_lit())
+    assert seen == {False, True}
+    board.press()
+    assert board.ask("A 400 400") == "no supply"
+    board.feed(12.0)  # a battery recovers when nothing pulls: it is still empty
+    board.run(0.1)
+    board.press()
+    assert board.ask("R").startswith("ok supply 0 ")
+    assert board.ask("A 400 400") == "no supply"
+    assert board.ask("O") == "ok"
+    board.press()
+    assert board.ask("R").startswith("ok off 0 ")
+
+
+def test_an_encoder_that_jumps_takes_the_zeros(chip: str, settings: str) -> None:
     """Also while motors are off, as a hand turns them: two counts in one step are none that it can make."""
-    board = alone(settings)
+    board = alone(chip, settings)
     board.winches[0].angle += 2
     board.run(0.02)
     assert not board.is_lit()

@@ -187,7 +187,7 @@ def test_motors_are_spread_and_kept(robot: Robot, motors: Calibration, tmp_path:
         with pytest.raises(InputError, match="motors on 2 boards"):
             open_bus(port, robot, motors, lambda taken: taken)
     for port in ("firmware:/dev/none,", "firmware:/dev/none,/dev/none"):
-        with pytest.raises(InputError, match="commas part those of several"):
+        with pytest.raises(InputError, match="separate those of several"):
             open_bus(port, robot, motors, lambda taken: taken)
     gap = Calibration((*motors.motors[:2], replace(motors.motors[2], board=3)))
     with pytest.raises(InputError, match="none of the motors is on board 2"):

@@ -195,8 +195,8 @@ def test_armed_motors_follow_a_correction(tmp_path: Path) -> None:
         motors.link.close()
 
 
-def test_emulated_motors_live_slower_on_a_late_computer(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """Each wait takes 0.6 s, longer than all deadlines. Oracle: the end of the table."""
+def own_time(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
+    """Give emulated servos a clock that runs only where somebody looks at it or sleeps."""
     now = [0.0]
 
     def pass_time(seconds: float) -> float:
@@ -205,10 +205,37 @@ def test_emulated_motors_live_slower_on_a_late_computer(monkeypatch: pytest.Monk
 
     clock = SimpleNamespace(monotonic=partial(pass_time, 1e-4), sleep=partial(pass_time))
     monkeypatch.setattr("hydrostat.control.emulated_servos.time", clock)
+    return clock
+
+
+def test_emulated_motors_live_slower_on_a_late_computer(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Each wait takes 0.6 s, longer than all deadlines. Oracle: the end of the table."""
+    clock = own_time(monkeypatch)
     motors = arm_motors(tmp_path, gallery_robot("starfish"), EMULATED, lambda taken: 0.0 * taken)
     ends = np.array([[0.0, 0.0, 0.0], [0.01, 0.0, 0.0]])
     profile, player = ContractionProfile(times=np.array([0.0, 1.0]), values=ends), Player()
     player.rounds = 1
     player.run(motors, profile, wait=lambda _: clock.sleep(0.6))
+    assert motors.places == pytest.approx(ends[1], abs=3e-4)
+    motors.link.close()
+
+
+@pytest.mark.parametrize(
+    ("motor", "model"),
+    [("auto", "XL330-M288"), ("n20", "XL330-M288"), ("xc330", "XC330-M288"), ("sts3215-12v", "STS3215")],
+)
+def test_emulated_motors_are_those_of_the_robot(
+    motor: str, model: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """They say who they are, and follow. Oracle: the names of both makers, the end of the move."""
+    clock = own_time(monkeypatch)
+    robot, lines = replace(gallery_robot("starfish"), motor=motor), list[str]()
+    motors = arm_motors(tmp_path, robot, EMULATED, lambda taken: 500.0 * taken, log=lines.append)
+    assert any(line.startswith("emulated: ") and f"{model}," in line for line in lines), lines
+    ends = np.array([[0.0, 0.0, 0.0], [0.01, 0.0, 0.005]])
+    player = Player()
+    player.rounds = 1
+    profile = ContractionProfile(times=np.array([0.0, 1.0]), values=ends)
+    player.run(motors, profile, wait=lambda _: clock.sleep(0.02))
     assert motors.places == pytest.approx(ends[1], abs=3e-4)
     motors.link.close()

@@ -58,7 +58,7 @@ def happens(event: str, process: subprocess.Popen[str], line: EmulatedLine) -> N
     if event == "unplugged":
         line.unplug()
     elif event in ("SIGINT", "SIGTERM", "SIGHUP", "SIGKILL", "SIGSTOP"):
-        os.kill(process.pid, getattr(signal, event))
+        process.send_signal(getattr(signal, event))  # nothing to one that a busy machine has ended
 
 
 TOLD = {
@@ -95,7 +95,7 @@ def ends(event: str, kind: str, slow: int) -> tuple[int, str, list[float]]:
                 until(lambda: line.chain.now > at + 1.0)
                 assert max(line.moved) - at < STANDS
                 asleep = [servo.angle for servo in servos]
-                os.kill(process.pid, signal.SIGCONT)
+                process.send_signal(signal.SIGCONT)
             out, told = process.communicate(timeout=300)
         finally:
             process.kill()

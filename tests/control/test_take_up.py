@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hydrostat.control.calibration import WinchMotor
-from hydrostat.control.dynamixel_bus import MODELS, DynamixelBus
+from hydrostat.control.dynamixel_bus import DynamixelBus
 from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedScs, EmulatedSts
 from hydrostat.control.emulated_servos import EmulatedChain, EmulatedServo, InjectedFaults
 from hydrostat.control.feetech_bus import FeetechBus
@@ -61,13 +61,13 @@ class Winches:
         return self.begin + self.slacks / RADIUS
 
 
-def test_ten_hidden_slacks_are_found_to_half_a_millimeter_within_a_minute() -> None:
+def test_ten_hidden_slacks_are_found_to_half_a_millimeter_in_two_minutes() -> None:
     winches = Winches()
     taken = winches.take_up()
     errors = RADIUS * (np.array([each.motor.zero for each in taken]) - winches.zeros())
     assert np.abs(errors).max() < 5e-4
     assert [each.slack for each in taken] == pytest.approx(winches.slacks, abs=5e-4)
-    assert winches.chain.now < 60.0
+    assert winches.chain.now < 120.0
     assert winches.hardest < CONSTANT * (RULES.max_current + 0.01) / RADIUS + 1.5  # a step goes so far beyond it
     gains = [each.gain for each in taken]
     assert gains == pytest.approx(winches.pulls / 100 * RADIUS / CONSTANT, rel=0.25)
@@ -77,19 +77,32 @@ def test_ten_hidden_slacks_are_found_to_half_a_millimeter_within_a_minute() -> N
     assert [servo.angle for servo in winches.servos] == pytest.approx(stands, abs=2e-3)
 
 
-@pytest.mark.parametrize("model", [1200, 1060, 777, 1284])
-def test_zeros_of_each_make_are_repeatable_to_a_third_of_a_millimeter(model: int) -> None:
-    """Oracle: the edge of a cable that pulls by 700 N/m, begun from three places with 2 mA of noise."""
+@pytest.mark.parametrize(
+    ("model", "constant", "stiff"),
+    [
+        (1200, 0.52 / 1.47, 400.0),
+        (1240, 0.93 / 1.8, 700.0),
+        (1060, 1.5 / 1.4, 700.0),
+        (777, 1.912 / 2.7, 400.0),
+        (777, 2.942 / 2.7, 700.0),
+        (1284, 0.25, 200.0),
+    ],
+    ids=["XL330", "XC330", "XL430", "STS3215", "STS3215 of 12 V", "SCS0009"],
+)
+def test_zeros_of_each_make_are_repeatable_to_a_third_of_a_millimeter(
+    model: int, constant: float, stiff: float
+) -> None:
+    """Oracle: the edge of a cable that pulls by so much [N/m], begun from three places with 2 mA of noise."""
     found = []
     edge, feetech = 2.5, {777: (EmulatedSts, FeetechBus), 1284: (EmulatedScs, ScsBus)}
     for seed, start in enumerate((2.0, 2.15, 1.8)):
         rng = np.random.default_rng(seed)
         make, kind = feetech.get(model, (EmulatedServo, DynamixelBus))
         servo = make(1, model=model, angle=start)
-        servo.constant = CONSTANT if model in feetech else MODELS[model].torque / MODELS[model].stall
+        servo.constant = constant
 
         def load(angle: float, servo: EmulatedServo = servo, rng: np.random.Generator = rng) -> float:
-            pull = 700.0 * max(RADIUS * (angle - edge), 0.0)
+            pull = stiff * max(RADIUS * (angle - edge), 0.0)
             return RADIUS * pull + servo.constant * (0.01 + 2e-3 * float(rng.normal()))
 
         servo.load = load
@@ -186,16 +199,17 @@ def test_a_busy_computer_only_takes_longer() -> None:
         find_cable_zeros(winches.bus, winches.motors, [straight()], winches.found.append, clock=clock, wait=slow)
 
 
-@pytest.mark.parametrize(("noise", "stiff", "slip"), [(5e-3, 700, 0.8e-3), (5e-3, 500, 1.2e-3)])
+@pytest.mark.parametrize(("noise", "stiff", "slip"), [(5e-3, 700, 0.8e-3), (5e-3, 500, 1.2e-3), (5e-3, 3000, 1.2e-3)])
 def test_a_spool_that_slips_is_told(noise: float, stiff: float, slip: float) -> None:
     winches = Winches(np.array([0.002]), noise=noise)
     winches.pulls[0] = stiff
-    torque, felt = winches.servos[0].load, [False, False]
+    torque, felt = winches.servos[0].load, [False] * 4  # after the first measurement, of soft cables a look
 
     def slips(angle: float) -> float:
         taken = RADIUS * (angle - winches.begin[0]) - 0.002
-        felt[0] |= stiff * taken * RADIUS / CONSTANT > 0.045  # measured once
-        felt[1] |= felt[0] and taken < 0  # let out again
+        for turn in (0, 2):  # measured, then let out
+            felt[turn] |= all(felt[:turn]) and stiff * taken * RADIUS / CONSTANT > 0.045
+            felt[turn + 1] |= all(felt[: turn + 1]) and taken < 0
         return torque(angle - (slip / RADIUS if all(felt) else 0.0))
 
     winches.servos[0].load = slips

@@ -48,6 +48,17 @@ const port = {
 Object.defineProperty(navigator, "serial", { value: { requestPort: async () => port } });
 """
 
+HIDE = """() => {
+  Object.defineProperty(document, "hidden", { value: true, configurable: true });
+  document.dispatchEvent(new Event("visibilitychange"));
+}"""
+SLEEP = "() => { window.write = window.boardWrite; window.boardWrite = async () => []; }"
+"""Nothing leaves the computer any more, nor does it say so."""
+WAKE = """() => {
+  Object.defineProperty(document, "hidden", { value: false, configurable: true });
+  window.boardWrite = window.write ?? window.boardWrite;
+}"""
+
 COUNTS = 1000.0
 
 Connect = Callable[..., "Page"]
@@ -71,15 +82,17 @@ def text(robot: Robot, motors: Calibration) -> str:
     return _text(robot, motors)
 
 
-def _text(robot: Robot, motors: Calibration, *, forged: float = 1.0) -> str:
-    """A page with motors; its shape, which these tests do not look at, stays at rest. Its ranges may be forged."""
+def _text(robot: Robot, motors: Calibration, *, forged: float = 1.0, moved: float = 0.0, silent: int = 1500) -> str:
+    """A page with motors; its shape moves as a whole by so much [m] for each winch. Its ranges may be forged."""
     winches = robot.winches
     shape = LearnedShape(
         low=np.array([-each.release for each in winches]),
         high=np.array([forged * each.travel for each in winches]),
-        network=Perceptrons.of_layers([(np.zeros((1, 3)), np.zeros(1))]),
+        network=Perceptrons.of_layers([(moved * np.eye(3), np.zeros(3))]),
         mean=robot.body.mesh.nodes,
-        basis=np.zeros((1, *robot.body.mesh.nodes.shape)),
+        basis=np.stack(
+            [np.broadcast_to(way, robot.body.mesh.nodes.shape) for way in ((1.0, 0), (0, 1.0), (-1.0, -1.0))]
+        ),
         samples=1,
         held_out=1,
         error=0.0,
@@ -88,7 +101,7 @@ def _text(robot: Robot, motors: Calibration, *, forged: float = 1.0) -> str:
         stopped=False,
     )
     module = import_module("hydrostat.toy.toy_page")
-    script = module._script().replace("SILENT = 160", "SILENT = 1500")  # a busy machine is not a silent board
+    script = module._script().replace("SILENT = 160", f"SILENT = {silent}")  # a busy machine is not a silent board
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(module, "_script", lambda: script)
         return toy_page(robot, shape, motors=motors)
@@ -194,10 +207,7 @@ def test_the_robot_follows_the_page_and_stops_when_it_is_hidden(connect: Connect
     _drive(page, board, 0, 12.0, lambda: abs(board.motors[0].count - wanted) < 2)
     assert [motor.count for motor in board.motors[1:]] == [0, 0]
     _drive(page, board, 1, 60.0, lambda: board.motors[1].count > 20)
-    page.evaluate("""() => {
-      Object.defineProperty(document, "hidden", { value: true });
-      document.dispatchEvent(new Event("visibilitychange"));
-    }""")
+    page.evaluate(HIDE)
     _wait(page, _says(page, "page was hidden"))  # a busy machine may be late by more than the wait below
     page.wait_for_timeout(100)
     before = board.motors[1].count
@@ -214,6 +224,49 @@ def test_motors_stand_within_a_quarter_second_of_closing(connect: Connect, board
     before = board.motors[2].count
     board.wait(1.0)
     assert board.motors[2].count == before
+
+
+def test_a_thousand_drags_outside_leave_motors_within_limits(
+    connect: Connect, robot: Robot, motors: Calibration, board: EmulatedBoard
+) -> None:
+    page = connect(board, _text(robot, motors, moved=0.03))
+    _arm(page, board)
+    page.evaluate("""() => {
+      const canvas = document.getElementById("above"), { left, top } = canvas.getBoundingClientRect();
+      const { data, shown } = toy;
+      canvas.setPointerCapture = () => {};
+      window.send = (kind, x, y) => canvas.dispatchEvent(
+        new PointerEvent(kind, { pointerId: 1, clientX: left + x, clientY: top + y, bubbles: true }));
+      const [, first] = data.groups.find(([kind]) => kind === "marker");
+      send("pointerdown", ...shown().sight.see(shown().points, data.dim * first));
+    }""")
+    counts = list[list[int]]()
+    for begun in range(0, 1000, 50):
+        page.evaluate(
+            """begun => {
+          for (let i = begun; i < begun + 50; i++) send("pointermove", 1e4 * Math.sin(i / 90), 1e4 * Math.cos(i / 90));
+        }""",
+            begun,
+        )
+        page.wait_for_timeout(50)
+        counts.append([motor.count for motor in board.motors])
+    taken = np.array(counts) * 2 * pi * 0.006 / COUNTS
+    assert np.ptp(taken[:, :2], axis=0).min() > 0.01
+    for winch, own in zip(robot.winches[:2], taken.T, strict=False):  # the last spool winds wider
+        assert own.min() > -winch.release - 3e-4
+        assert own.max() < winch.travel + 3e-4
+    assert taken[:, 2].max() < robot.winches[2].travel
+
+
+@pytest.mark.parametrize("kind", ["Dynamixel", "Feetech"])
+def test_a_port_that_answers_nonsense_is_refused(connect: Connect, robot: Robot, kind: str) -> None:
+    class Noise(EmulatedChain):
+        def read(self, most: int) -> bytes:
+            return np.random.default_rng(most).bytes(400)
+
+    page = connect(Noise([]), _text(robot, Calibration.usual(robot), silent=160), f"Connect {kind}")
+    _wait(page, _says(page, "Motor 1 does not answer"))
+    assert page.locator("#motors button:visible").all_inner_texts() == ["Connect Dynamixel", "Connect Feetech"]
 
 
 def test_a_board_of_another_robot_is_refused(connect: Connect, board: EmulatedBoard) -> None:
@@ -334,7 +387,12 @@ def test_servos_follow_within_limits_and_stand_by_themselves(
     assert max(farthest) * 0.006 == pytest.approx(0.06, abs=3e-4)
     assert 0.05 < 0.006 * max(fastest) < 0.061
     assert "W1 0.00 A" in page.locator("#motors output").inner_text()
-    for stop in (lambda: page.keyboard.press("Escape"), lambda: setattr(chain, "gone", True)):
+    for stop in (
+        lambda: page.keyboard.press("Escape"),
+        lambda: page.evaluate(HIDE),
+        lambda: page.evaluate(SLEEP),
+        lambda: setattr(chain, "gone", True),
+    ):
         if not page.locator("#motors .armed").is_visible():
             _arm(page, chain)
         _turn(page, 1, 50.0)
@@ -347,14 +405,29 @@ def test_servos_follow_within_limits_and_stand_by_themselves(
         assert 0.006 * abs(before - start) < 0.045  # on the way
         chain.wait(1.0)
         assert second.angle == pytest.approx(before, abs=2e-3)
+        page.evaluate(WAKE)
     _wait(page, _says(page, "unplugged"))
     assert [servo.table[40 if kind == "Feetech" else 64] for servo in chain.servos] == [1, 1, 1]
 
 
 @pytest.mark.parametrize("kind", ["Dynamixel", "Feetech"])
+def test_servos_stand_within_a_quarter_second_of_closing(connect: Connect, servo_page: str, kind: str) -> None:
+    chain = _servos(kind)
+    page, motor = connect(chain, servo_page, f"Connect {kind}"), chain.servos[0]
+    _drive(page, chain, 0, 60.0, lambda: motor.angle - 1.0 > 0.5)
+    page.close()
+    chain.wait(0.25)
+    before = motor.angle
+    assert 0.006 * (before - 1.0) < 0.045  # on the way
+    chain.wait(1.0)
+    assert motor.angle == pytest.approx(before, abs=2e-3)
+
+
+@pytest.mark.parametrize("kind", ["Dynamixel", "Feetech"])
 def test_servos_of_another_robot_or_after_a_reset_are_refused(connect: Connect, servo_page: str, kind: str) -> None:
     place = 40 if kind == "Feetech" else 64
-    chain = _servos(kind, 4)
+    chain, late = _servos(kind, 4), [0.3]  # time for which a busy computer keeps the first question [s]
+    chain.towards = lambda data: time.sleep(late.pop() if late else 0.0) or data
     page = connect(chain, servo_page, f"Connect {kind}")
     _wait(page, _says(page, "Motor 4 is not in motors.toml"))
     assert not page.get_by_role("button", name="Set zero").is_visible()

@@ -1,6 +1,6 @@
 /* The firmware in simavr, in closed loop with DC motors, gears, encoders, spools and cables; driven from Python by ctypes.
-   Oracle: equations of a brushed motor, integrated at 20 kHz; they know nothing of the firmware but its pins. */
-#include <math.h>
+   Oracle: `winch_plant.h`, integrated at 20 kHz; it knows nothing of the firmware but its pins. */
+#include "winch_plant.h"
 #include <simavr/avr_adc.h>
 #include <simavr/avr_ioport.h>
 #include <simavr/avr_uart.h>
@@ -10,14 +10,6 @@
 #include <string.h>
 
 #define STEP 800 /* cycles */
-typedef struct {
-    int duty, control, bit, port, direction, adc; /* addresses in memory */
-    char encoder;
-    int channel, block; /* block: the shaft is held fast */
-    double angle, speed, current, stiffness, slack, wire, fastest, least, most;
-    int cut; /* 1: the encoder's cable is cut; 2: the wire of its second channel is; 3: its channels are swapped */
-} Plant;
-
 static avr_t *avr;
 static Plant plants[2];
 static char got[1 << 16];
@@ -36,6 +28,8 @@ static void heard(struct avr_irq_t *irq, uint32_t value, void *param) {
 static avr_int_vector_t changed; /* simavr's Mega knows no change of pins of port K */
 static uint8_t pins_k;
 static double rose, pulse; /* of the first servo [s] */
+static double supply;      /* of the motors [V] */
+static int supply_pin;
 
 static void servo(struct avr_irq_t *irq, uint32_t value, void *param) {
     (void)irq, (void)param;
@@ -64,20 +58,17 @@ static void pin(char port, int number, int value) {
 }
 
 static void encode(Plant *plant) {
-    static const int gray[4] = {0, 1, 3, 2};
     if (plant->cut == 1)
         return;
-    int phase = gray[(int)floor(plant->cut == 3 ? -plant->angle : plant->angle) & 3];
+    int phase = phase_of(plant);
     pin(plant->encoder, plant->channel, phase & 1);
     if (plant->cut != 2)
         pin(plant->encoder, plant->channel + 1, phase >> 1);
 }
 
-/* Units: counts of the encoder [1], s, A, V. 12 V, 3600 counts/s without load, 2 A at stall, 20 ms to speed. */
 static avr_cycle_count_t turn(avr_t *unused, avr_cycle_count_t when, void *param) {
     (void)unused, (void)param;
     turned = when;
-    const double dt = STEP / 16e6, volts_by_speed = 12.0 / 3600, rise = 3600 / (0.02 * 2);
     for (int i = 0; i < 2; i++) {
         Plant *plant = &plants[i];
         uint8_t *data = avr->data;
@@ -85,32 +76,17 @@ static avr_cycle_count_t turn(avr_t *unused, avr_cycle_count_t when, void *param
         double volts = driven ? 12 * (data[plant->duty] + 1) / 256.0 : 0;
         if (!(data[plant->port] >> plant->direction & 1))
             volts = -volts;
-        plant->current = (volts - volts_by_speed * plant->speed) / (6 + plant->wire);
-        double pull = plant->stiffness * fmax(0, plant->angle - plant->slack); /* in amperes of the motor */
-        double force = plant->current - pull, friction = 0.05;
-        if (plant->speed == 0 && fabs(force) < friction)
-            force = 0;
-        else
-            force -= copysign(friction, plant->speed != 0 ? plant->speed : force);
-        double before = plant->speed;
-        plant->speed += dt * rise * force;
-        if (before * plant->speed < 0 || plant->block)
-            plant->speed = 0;
-        plant->angle += dt * plant->speed;
-        plant->fastest = fmax(plant->fastest, fabs(plant->speed));
-        plant->least = fmin(plant->least, plant->angle);
-        plant->most = fmax(plant->most, plant->angle);
+        turn_plant(plant, volts, STEP / 16e6);
         encode(plant);
         avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_ADC_GETIRQ, plant->adc), (int)(1100 * fabs(plant->current)));
     }
+    avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_ADC_GETIRQ, supply_pin), (int)(1000 * supply / 5.7));
     if (sent < queued && when >= byte_at) { /* a byte lasts 40 microseconds at 250,000 baud */
         avr_raise_irq(uart_in, queue[sent++]);
         byte_at = when + 640;
     }
     return when + STEP;
 }
-
-
 
 int bench_start(const char *path, const char *chip, int full) {
     elf_firmware_t firmware;
@@ -135,12 +111,14 @@ int bench_start(const char *path, const char *chip, int full) {
     got_bytes = queued = sent = 0;
     byte_at = turned = 0;
     static const Plant uno[2] = {{.duty = 0x47, .control = 0x44, .bit = 7, .port = 0x2B, .direction = 4, .adc = 4, .encoder = 'C'},
-                                 {.duty = 0x48, .control = 0x44, .bit = 5, .port = 0x2B, .direction = 7, .adc = 5, .encoder = 'C', .channel = 2}};
+                                 {.duty = 0x48, .control = 0x44, .bit = 5, .port = 0x2B, .direction = 7, .adc = 5, .encoder = 'B'}};
     static const Plant mega[2] = {{.duty = 0x98, .control = 0x90, .bit = 7, .port = 0x22, .direction = 0, .adc = 0, .encoder = 'B'},
                                   {.duty = 0x9A, .control = 0x90, .bit = 5, .port = 0x22, .direction = 1, .adc = 1, .encoder = 'B', .channel = 2}};
     pins_k = 0;
     memset(outside, 0, sizeof outside);
     pulse = 0;
+    supply = 12;
+    supply_pin = strcmp(chip, "atmega328p") ? 7 : 3;
     memset(&changed, 0, sizeof changed);
     if (full) {
         changed.vector = 11;
@@ -195,4 +173,5 @@ void bench_press(char port, int number, int down) {
 int bench_light(void) { return avr->data[0x25] >> (avr->data[0x24] & 0x20 ? 5 : 7) & 1; } /* port B */
 Plant *bench_plant(int i) { return &plants[i]; }
 double bench_pulse(void) { return pulse; }
+void bench_supply(double volts) { supply = volts; }
 double bench_seconds(void) { return avr->cycle / 16e6; }

@@ -37,7 +37,7 @@ def plush_robot(
     return Robot(
         name=name,
         body=body,
-        pins=(Pin(at=(0.0, 0.0), radius=1.0),),
+        pins=(Pin(at=(0.0, 0.0), radius=1.0, stiffness=100e3),),
         winches=winches,
         cables=tuple(Cable(winch="pull", points=route) for route in points),
         markers=(Marker(name="tip", at=(1e-3 * marker[0], 1e-3 * marker[1])),),

@@ -42,7 +42,8 @@ def test_its_table_names_every_kind_of_file(plush_kit: Kit, foam_kit: Kit) -> No
         patterns.append(kind)
     top = {"assembly_sheet.pdf", "manifest.json"}
     patterns = [kind.rpartition("/")[2] if kind.rpartition("/")[2] in top else kind for kind in patterns]
-    patterns = [kind for kind in patterns if not kind.startswith("body/")]  # of printed bodies: test_print_work.py
+    # of printed bodies: test_print_work.py; of cables on a skin, which these have not: test_channel_strips.py
+    patterns = [kind for kind in patterns if not kind.startswith(("body/", "pattern/channels"))]
     patterns.remove("lists/tags.pdf")  # which commands add: test_fabricate.py
     files = {*plush_kit.files, *foam_kit.files}
     unknown = {file for file in files if not any(Path(file).match(pattern) for pattern in patterns)}

@@ -2,6 +2,7 @@
 
 import csv
 import io
+import re
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -12,6 +13,7 @@ from page_words import read_words
 from plush_robots import SQUARE, crossed, drawn_body, plush_robot
 from shapely import LineString
 
+from hydrostat.design import BuildCost
 from hydrostat.errors import InputError
 from hydrostat.fabrication import MOTORS, Kit, KitOptions, Method, PatternOptions, build_kit
 from hydrostat.fabrication.checks.pattern_checks import SeenSvg, pattern_checks
@@ -26,11 +28,11 @@ from hydrostat.fabrication.patterns.svg_writer import pattern_svg
 from hydrostat.fabrication.sheets.legible import typeset
 from hydrostat.fabrication.solids.construct import solid_of
 from hydrostat.ik import IKOptions, solve_ik
-from hydrostat.robot import Face, Robot, gallery_folder, get_material, load_robot, robot_hash, sewn_robot
+from hydrostat.robot import CableSide, Robot, gallery_folder, get_material, load_robot, robot_hash, sewn_robot
 from hydrostat.simulation import Simulation, solve_stuffed_motion
 
 
-def starfish(face: Face | None) -> Robot:
+def starfish(face: CableSide | None) -> Robot:
     return replace(load_robot(gallery_folder("starfish")), face=face)
 
 
@@ -42,7 +44,7 @@ def single(plush_kit: Kit) -> Kit:
 
 @pytest.fixture(scope="module")
 def pairs() -> Kit:
-    return build_kit(starfish(Face.PAIRS))
+    return build_kit(starfish(CableSide.PAIRS))
 
 
 def table(kit: Kit, name: str) -> list[dict[str, str]]:
@@ -70,9 +72,13 @@ def test_lists_of_pairs_are_those_of_one_face_twice(single: Kit, pairs: Kit) -> 
     spools = [sum(part.count for part in kit.printed if part.name.startswith("spool")) for kit in (single, pairs)]
     assert spools == [3, 3]
     assert [row["cables"] for row in table(pairs, "motor_sizing")] == ["2", "4", "4"]
-    assert (pairs.robot.face, len(pairs.robot.cables)) == (Face.PAIRS, 5)
+    assert (pairs.robot.face, len(pairs.robot.cables)) == (CableSide.PAIRS, 5)
     assert robot_hash(pairs.robot) in pairs.files["manifest.json"].decode()
-    assert "Cables: 10, on both faces, in pairs" in pairs.summary
+    assert "Cables: 5 pairs on both faces, 10 to sew" in pairs.summary
+    costs = [BuildCost.of_robot(kit.robot, []) for kit in (single, pairs)]  # a design prints the work of its kit
+    assert [cost.holes for cost in costs] == [parts["grommet"] for parts in printed]
+    steps = re.findall(r"(?:Cut|Stitch) the cables \((\d+) min\)", single.files["steps.txt"].decode())
+    assert [sum(map(int, steps)), 2 * costs[0].minutes] == pytest.approx([costs[0].minutes, costs[1].minutes], abs=2.6)
 
 
 def _units(kit: Kit) -> tuple[WinchUnit, ...]:
@@ -139,7 +145,7 @@ def _sorted(places: np.ndarray) -> np.ndarray:
 @pytest.mark.slow
 def test_motors_are_asked_for_the_same_and_each_line_for_half(pairs: Kit) -> None:
     """Oracle: two equal cables beside each other share what one bore, at the same torque but for their stretch."""
-    robot = starfish(Face.PAIRS)
+    robot = starfish(CableSide.PAIRS)
     one, both = Demand.find(starfish(None)), Demand.find(sewn_robot(robot))
     np.testing.assert_allclose(both.tensions[:5], both.tensions[5:], rtol=1e-6, atol=1e-9)
     np.testing.assert_allclose(both.torques, one.torques, rtol=0.03)
@@ -175,9 +181,9 @@ def count(pattern: Pattern, panel: str, part: PatternPart) -> int:
 
 
 @pytest.mark.parametrize(
-    ("face", "front", "back"), [(None, 5, 0), (Face.FRONT, 5, 0), (Face.BACK, 0, 5), (Face.PAIRS, 5, 5)]
+    ("face", "front", "back"), [(None, 5, 0), (CableSide.FRONT, 5, 0), (CableSide.BACK, 0, 5), (CableSide.PAIRS, 5, 5)]
 )
-def test_holes_are_where_the_robot_says(face: Face | None, front: int, back: int) -> None:
+def test_holes_are_where_the_robot_says(face: CableSide | None, front: int, back: int) -> None:
     pattern = plush_pattern(replace(crossed(), face=face))
     assert [count(pattern, side, PatternPart.PINHOLE) for side in ("front", "back")] == [front, back]
     assert [count(pattern, side, PatternPart.STOPPER) for side in ("front", "back")] == [
@@ -188,7 +194,7 @@ def test_holes_are_where_the_robot_says(face: Face | None, front: int, back: int
 
 def test_marks_of_the_back_are_those_of_the_front_mirrored() -> None:
     """Oracle: a point of the robot on either panel; numbers go on from those of the front."""
-    robot = replace(crossed(), face=Face.PAIRS)
+    robot = replace(crossed(), face=CableSide.PAIRS)
     pattern = plush_pattern(robot)
     for side in ("front", "back"):
         panel = pattern.panel(side)
@@ -206,7 +212,7 @@ def test_marks_of_the_back_are_those_of_the_front_mirrored() -> None:
 
 def test_a_hole_that_is_missing_on_the_back_is_told() -> None:
     """Oracle: a drawing of one panel does for a robot of pairs on that panel only."""
-    robot = replace(crossed(), face=Face.PAIRS)
+    robot = replace(crossed(), face=CableSide.PAIRS)
     drawn = plush_pattern(crossed())  # the front alone
     files = pattern_svg(drawn), pattern_dxf(drawn)
     passed = {check.what: check.passed for check in pattern_checks(robot, drawn, *files, PatternOptions())}
@@ -219,24 +225,24 @@ def test_the_zipper_keeps_off_the_cables_of_the_back() -> None:
     route = [(-20.0, 0.0), (0.0, 0.0), (30.0, 0.0)]
     wide = "M0 0H200V120H0Z"
     found = {}
-    for face in (Face.FRONT, Face.PAIRS):
+    for face in (CableSide.FRONT, CableSide.PAIRS):
         pattern = plush_pattern(replace(plush_robot(drawn_body(wide), route), face=face))
         assert pattern.opening is not None
         found[face] = pattern.opening.slit.distance(LineString(route))
-    assert found[Face.FRONT] == 0
-    assert found[Face.PAIRS] > 4 - 1e-6
+    assert found[CableSide.FRONT] == 0
+    assert found[CableSide.PAIRS] > 4 - 1e-6
 
 
 def test_the_middle_is_for_bodies_that_are_cast() -> None:
-    robot = replace(crossed(), face=Face.MIDDLE)
+    robot = replace(crossed(), face=CableSide.MIDDLE)
     with pytest.raises(InputError, match="cables in the middle are held by nothing in loose filling"):
         plush_pattern(robot)
-    told: Mapping[Face, tuple[str, ...]] = {
+    told: Mapping[CableSide, tuple[str, ...]] = {
         face: build_kit(_foam(replace(robot, face=face)), options=KitOptions(method=Method.FOAM, force=True)).notes
-        for face in (Face.MIDDLE, Face.PAIRS)
+        for face in (CableSide.MIDDLE, CableSide.PAIRS)
     }
-    assert not any("cast body" in warning for warning in told[Face.MIDDLE])
-    assert sum("in a cast body they run in the middle" in warning for warning in told[Face.PAIRS]) == 1
+    assert not any("cast body" in warning for warning in told[CableSide.MIDDLE])
+    assert sum("in a cast body they run in the middle" in warning for warning in told[CableSide.PAIRS]) == 1
 
 
 def _foam(robot: Robot) -> Robot:

@@ -1,5 +1,6 @@
 """A hand before a camera. Oracles: landmarks made by hand; stand-ins that have the names MediaPipe and OpenCV have."""
 
+import re
 import sys
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
@@ -11,6 +12,7 @@ from hydrostat.errors import HydrostatError, InputError
 from hydrostat.teleop import open_hand, open_source
 from hydrostat.teleop.camera_hand import COUNT, CameraHand, HandLandmarks, bends
 from hydrostat.teleop.source import DriveChannels
+from hydrostat.version import install_command
 
 PLACES = np.random.default_rng(2).normal(size=(COUNT, 3))
 
@@ -132,6 +134,8 @@ def test_words_open_it(model: Path) -> None:
 
 def test_without_the_library_it_is_told_in_a_line(model: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "mediapipe", None)
-    with pytest.raises(HydrostatError, match=r"a camera needs mediapipe .*: pip install -e \"\.\[camera\]\"") as told:
+    with pytest.raises(
+        HydrostatError, match=f"a camera needs mediapipe .*: {re.escape(install_command('camera'))}"
+    ) as told:
         open_hand(f"camera:{model}")
     assert "\n" not in str(told.value)

@@ -221,6 +221,7 @@ def test_what_fails_behind_is_told(simulation: hs.Simulation) -> None:
 
     child = way._poses._process
     os.kill(child.pid, signal.SIGKILL)
+    child.join()
     with pytest.raises(HydrostatError, match="no pose is found any more: its process has ended"):
         drive(motors, way, Script([DriveWish(stamp=inf, steps={"left x": 1e-4})]), seconds=5.0)
     with pytest.raises(HydrostatError, match=r"no pose can be found: .*nonsense"):

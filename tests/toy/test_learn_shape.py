@@ -27,7 +27,7 @@ def test_the_error_that_is_stated_is_that_of_simulated_poses(
     assert np.abs(shape.nodes(np.zeros(3)) - rest).max() < 1e-6
 
 
-def test_slopes_of_training_are_those_of_finite_differences() -> None:
+def test_gradients_of_training_are_those_of_finite_differences() -> None:
     random = np.random.default_rng(0)
     training = _Training(random.uniform(-1, 1, (12, 3)), random.normal(size=(12, 4)), seed=1)
     training._weights = [each.astype(float) for each in training._weights]
@@ -37,14 +37,14 @@ def test_slopes_of_training_are_those_of_finite_differences() -> None:
         found = np.array([training.network.values(point)[0] for point in inputs])
         return float(np.mean(np.sum((found - outputs) ** 2, axis=1)))
 
-    slopes, step = training._slopes(inputs, outputs), 1e-6
-    for weight, slope in zip(training._weights, slopes, strict=True):
+    gradients, step = training._gradients(inputs, outputs), 1e-6
+    for weight, gradient in zip(training._weights, gradients, strict=True):
         place = tuple(random.integers(0, weight.shape))
         before = weight[place]
         weight[place] = before + step
         above = loss()
         weight[place] = before - step
-        assert (above - loss()) / (2 * step) == pytest.approx(slope[place], rel=1e-5, abs=1e-8)
+        assert (above - loss()) / (2 * step) == pytest.approx(gradient[place], rel=1e-5, abs=1e-8)
         weight[place] = before
 
 

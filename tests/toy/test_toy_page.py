@@ -79,6 +79,7 @@ def test_drives_have_knobs_in_their_units(starfish: Robot, open_page: Open) -> N
     text = toy_page(robot, shape, poses=[ToyPose(name="turned", contractions=(0.0, 0.0, 0.0, 0.25))])
     assert [knob["unit"] for knob in _data(text)["winches"]] == ["mm", "mm", "mm", "°"]
     page = open_page(text)
+    assert page.locator("#knobs-title").inner_text() == "Winches and drives"
     page.locator(".knob input").nth(3).fill("20")
     assert page.locator(".knob output").all_inner_texts() == ["0.0 mm", "0.0 mm", "0.0 mm", "20.0 °"]
     taken, turned = page.evaluate("[toy.model.contractions(toy.shown().inputs), Array.from(toy.shown().points)]")

@@ -1,12 +1,12 @@
 /* Moves that play without a computer, in settings with MOVE_ROWS: a button starts them, and stops them.
 
-   They begin only after word M told the zeros, and not after a fault of an encoder or of a limit. The light on the board
-   is on while a press would begin them. Everything that stops a motor stays; of the computer only its silence is not
-   missed. At the end, or after a press, motors hold for HOLD_TICKS, then let go. */
+   They begin only after word M told the zeros, and not after a fault of an encoder, of a limit or of the supply. The
+   light on the board is on while a press would begin them, and blinks after the supply was too low. Everything that
+   stops a motor stays; of the computer only its silence is not missed. At the end, or after a press, motors hold for
+   HOLD_TICKS, then let go. */
 #pragma once
 
 #ifdef MOVE_ROWS
-#include <avr/pgmspace.h>
 #define HOLD_TICKS (2 * RATE)
 #define AIM_TICKS 5 /* from one goal to the next, as from a computer: goals in each tick make the current tremble */
 #define BOUNCE 5 /* ticks in which a button is steady */
@@ -27,7 +27,7 @@ static uint8_t keep_zeros(char *text) {
 /* 1 once in each press, after 20 ms. A button that was down from the start has to be let go first. */
 static uint8_t is_pressed(void) {
     static uint8_t down = 1, steady;
-    uint8_t now = !(BUTTON_PINS & 1 << BUTTON);
+    uint8_t now = is_button_down();
     steady = now == down ? 0 : steady + 1;
     if (steady < BOUNCE)
         return 0;
@@ -37,7 +37,7 @@ static uint8_t is_pressed(void) {
 }
 
 static uint8_t can_play(void) {
-    if (!zeroed || state == ENCODER || state == BEYOND || (state == ARMED && !alone))
+    if (!zeroed || is_supply_low() || drained || state == ENCODER || state == BEYOND || (state == ARMED && !alone))
         return 0;
     for (uint8_t i = 0; i < COUNT; i++)
         if (zeros[i] + (int32_t)MOVE_STEP * move_ends[i][0] < limits[i].low ||
@@ -75,10 +75,7 @@ static void play_alone(void) {
         alone = ARRIVE;
         row = passed = 0;
     }
-    if (can_play())
-        LIGHT_PORT |= 1 << LIGHT;
-    else
-        LIGHT_PORT &= ~(1 << LIGHT);
+    set_light(state == SAGGED ? passed++ >> 6 & 1 : can_play());
     if (alone == HOLD && ++passed >= HOLD_TICKS) {
         stand();
         state = OFF;
@@ -95,13 +92,7 @@ static void play_alone(void) {
             alone = HOLD;
     }
 }
-
-static void start_button(void) {
-    BUTTON_PORT |= 1 << BUTTON; /* pull-up */
-    LIGHT_DIRECTION |= 1 << LIGHT;
-}
 #else
 static uint8_t keep_zeros(char *text) { return (void)text, 1; }
 static void play_alone(void) {}
-static void start_button(void) {}
 #endif

@@ -1,28 +1,29 @@
-/* Winches of a soft robot on an Arduino Uno or Mega. How it talks: docs/decisions/0037-firmware.md.
+/* Winches of a soft robot on a board: Arduino Uno, Mega or ESP32-S3. How it talks: docs/decisions/0037-firmware.md.
+
+   This file knows no pin and no register: avr.h and esp32s3.h do. It is C, and C++ for Arduino sketches.
 
    Time is counted in ticks of 4 ms, places in counts of an encoder, or in microseconds of a servo's pulse.
-   Four things stop a motor here: silence for DEADLINE_MS, too much current, no motion under full power, and the
-   hardware watchdog, which resets the processor 120 ms after the control loop ran last: pins are inputs then, and
+   Five things stop a motor here: silence for DEADLINE_MS, too much current, no motion under full power, a supply below
+   MIN_SUPPLY, and the hardware watchdog, which resets the processor 120 ms after the control loop ran last: pins are inputs then, and
    pull-down resistors switch the bridges off. */
 
-#include <avr/interrupt.h>
-#include <avr/io.h>
-#include <avr/wdt.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <util/atomic.h>
-#include <util/crc16.h>
 
 #ifndef ROBOT /* other settings may come by -include */
 #include "settings.h"
 #endif
 
-#include "board.h"
+static void count_step(uint8_t motor, uint8_t was, uint8_t now);
+#ifdef __AVR__
+#include "avr.h"
+#else
+#include "esp32s3.h"
+#endif
 
 #define COUNT (DCS + SERVOS)
-#define RATE 250 /* ticks a second */
-#define BAUD_RATE 250000UL
 #define LONGEST 240 /* bytes of a line */
 #define HALF 12     /* ticks after which a line that came to a halt is thrown away */
 
@@ -36,6 +37,10 @@
 #endif
 #define BEYOND_BY 100 /* counts past a limit at which something is wrong */
 #define SENSE 11      /* volts at the driver's current pin, by amperes, times ten */
+#define DIVIDER 57    /* volts of the supply, by those at its pin, times ten: 47 kOhm over 10 kOhm */
+#ifndef MIN_SUPPLY
+#define MIN_SUPPLY 0 /* of the supply [mV]: below it for half a second, motors stop; 0 without a divider */
+#endif
 
 #if DEADLINE_MS > 250 || DEADLINE_MS < 20
 #error "the deadline is from 20 to 250 ms"
@@ -61,8 +66,8 @@ typedef struct {
     uint8_t hot, stuck; /* ticks of too much current, of full power without motion */
 } Motor;
 
-enum State { OFF, ARMED, SILENT, CURRENT, STALL, ENCODER, BEYOND };
-static const char *const words[] = {"off", "armed", "silent", "current", "stall", "encoder", "beyond"};
+enum State { OFF, ARMED, SILENT, SAGGED, CURRENT, STALL, ENCODER, BEYOND };
+static const char *const words[] = {"off", "armed", "silent", "supply", "current", "stall", "encoder", "beyond"};
 
 static const Limits limits[COUNT] = MOTORS;
 static Motor motors[COUNT];
@@ -71,49 +76,19 @@ static volatile uint8_t lost;          /* an encoder made a step that it cannot 
 static enum State state = OFF;
 static uint8_t culprit;
 static uint8_t silence; /* ticks since a good line */
-static volatile uint8_t ticks;
-static uint8_t cause __attribute__((section(".noinit")));
 static uint8_t marked; /* zeros were found since the power came on: 0 after each start */
 static uint8_t zeroed; /* whether the board itself knows them, and no encoder was lost since */
 static uint8_t alone;  /* whether moves play without a computer, see moves.h */
-
-/* The watchdog still runs after it has reset the processor: it is switched off before anything else. */
-void begin(void) __attribute__((naked, used, section(".init3")));
-void begin(void) {
-    cause = MCUSR;
-    MCUSR = 0;
-    wdt_disable();
-}
+static uint16_t supply; /* [mV] */
+static uint8_t sagging; /* readings in a row below MIN_SUPPLY */
+static uint8_t drained; /* stopped by it: an empty battery recovers when nothing pulls; cleared by a reset alone */
 
 /* ---- serial line ---- */
 
-static volatile uint8_t in[128], in_head, in_tail, out_head, out_tail;
-static volatile uint8_t out[256];
-static uint16_t sum;
-
-ISR(LINE_IN) {
-    uint8_t next = (in_head + 1) & 127, byte = UDR0;
-    if (next != in_tail) {
-        in[in_head] = byte;
-        in_head = next;
-    }
-}
-
-ISR(LINE_OUT) {
-    if (out_head == out_tail)
-        UCSR0B &= ~(1 << UDRIE0);
-    else
-        UDR0 = out[out_tail++];
-}
+static uint16_t sum = 0xFFFF;
 
 static void put(char c) {
-    while ((uint8_t)(out_head + 1) == out_tail)
-        ; /* the watchdog bounds this wait */
-    out[out_head] = c;
-    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
-        out_head++;
-        UCSR0B |= 1 << UDRIE0;
-    }
+    put_byte(c);
     sum = _crc16_update(sum, c);
 }
 
@@ -142,9 +117,9 @@ static void end_line(void) {
 
 /* ---- motors ---- */
 
-static inline void count(uint8_t pins, uint8_t *old, uint8_t motor, uint8_t shift) {
+/* An encoder's channels went from one state to another, bit 0 is A: called by interrupts. */
+static void count_step(uint8_t motor, uint8_t was, uint8_t now) {
     static const int8_t steps[16] = {0, 1, -1, 2, -1, 0, 2, 1, 1, 2, 0, -1, 2, -1, 1, 0};
-    uint8_t now = pins >> shift & 3, was = *old >> shift & 3;
     int8_t step = steps[was << 2 | now];
     if (step == 2)
         lost = motor + 1;
@@ -152,50 +127,17 @@ static inline void count(uint8_t pins, uint8_t *old, uint8_t motor, uint8_t shif
         places[motor] += limits[motor].sign > 0 ? step : -step;
 }
 
-static uint8_t old_first, old_second;
-#if DCS
-ISR(FIRST_vect) {
-    uint8_t pins = FIRST_PINS;
-    for (uint8_t i = 0; i < DCS && i < FIRST_BRIDGES; i++)
-        count(pins, &old_first, i, bridges[i].channel);
-    old_first = pins;
-}
-#endif
-#if DCS > FIRST_BRIDGES
-ISR(SECOND_vect) {
-    uint8_t pins = SECOND_PINS;
-    for (uint8_t i = FIRST_BRIDGES; i < DCS; i++)
-        count(pins, &old_second, i, bridges[i].channel);
-    old_second = pins;
-}
-#endif
-
 static int32_t place(uint8_t i) {
-    int32_t found;
 #if SERVOS
     if (i >= DCS)
         return lroundf(motors[i].wish);
 #endif
-    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) found = places[i];
-    return found;
+    return read_count(&places[i]);
 }
 
-/* Power of a bridge from -255 to 255; none is a brake: the motor's coil is shorted. */
 static void drive(uint8_t i, int16_t power) {
-    const Bridge *bridge = &bridges[i];
     motors[i].power = power;
-    if (power == 0) {
-        *bridge->control &= ~(1 << bridge->bit); /* PWM would leave a needle of one part in 256 */
-        return;
-    }
-    ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
-        if (power > 0)
-            *bridge->port |= 1 << bridge->direction;
-        else
-            *bridge->port &= ~(1 << bridge->direction);
-    }
-    *bridge->duty = abs(power);
-    *bridge->control |= 1 << bridge->bit;
+    drive_bridge(i, power);
 }
 
 /* Let all stand where they are. */
@@ -256,19 +198,35 @@ static void follow(uint8_t i) {
         fault(BEYOND, i);
 }
 
-/* One current a tick and motor: the converter has had a whole tick for it. */
+static uint8_t is_supply_low(void) { return MIN_SUPPLY && supply + 1UL <= MIN_SUPPLY; }
+
+/* A moment in which motors start lets a good battery sag, too. */
+static void watch_supply(uint16_t millivolts) {
+    supply = (uint32_t)millivolts * DIVIDER / 10;
+    sagging = is_supply_low() ? sagging + (sagging < 255) : 0;
+    if (sagging * (DCS + 1) >= RATE / 2 && (state == ARMED || state == SILENT)) {
+        drained = 1;
+        fault(SAGGED, 0);
+    }
+}
+
+/* One current a tick and motor, then the supply. */
 static void measure(void) {
     static uint8_t turn;
     if (!DCS)
         return;
+    uint8_t next = turn + 1 < DCS + (MIN_SUPPLY > 0) ? turn + 1 : 0;
+    uint16_t millivolts = measure_pin(turn, next);
     Motor *motor = &motors[turn];
-    motor->milliamps = (uint32_t)ADC * 5000 / 1024 * 10 / SENSE; /* volts of the driver to milliamperes */
+    if (turn == DCS) {
+        turn = next;
+        return watch_supply(millivolts);
+    }
+    motor->milliamps = (uint32_t)millivolts * 10 / SENSE; /* volts of the driver to milliamperes */
     /* Which way: that of the volts across its coil, power less what its turning induces. A motor that brakes a cable
        on the way out still pulls at it. */
     motor->pays = motor->power * (FREE_SPEED / 255.0f) < (float)RATE * motor->pace_seen;
-    turn = turn + 1 < DCS ? turn + 1 : 0;
-    ADMUX = 1 << REFS0 | (FIRST_CURRENT + turn);
-    ADCSRA |= 1 << ADSC;
+    turn = next;
 }
 
 /* So many whole numbers, and nothing after them; 0 where they are not there. */
@@ -308,30 +266,6 @@ static void tick(void) {
             drive(i, 0);
     }
 }
-
-ISR(TIMER2_COMPA_vect) { ticks = 1; }
-
-/* Each servo has a slot of 2.5 ms: its pulse, then rest. */
-#if SERVOS
-static volatile uint16_t pulses[SERVOS];
-ISR(SERVO_TIMER) {
-    static uint8_t turn, high;
-    const ServoPin *pin = &servo_pins[turn];
-    uint16_t width = pulses[turn] * 2;
-    if (!high) {
-        if (width)
-            *pin->port |= 1 << pin->pin;
-        else
-            width = 1000;
-        SERVO_AT += width;
-    } else {
-        *pin->port &= ~(1 << pin->pin);
-        SERVO_AT += 5000 - (width ? width : 1000);
-        turn = turn + 1 < SERVOS ? turn + 1 : 0;
-    }
-    high = !high;
-}
-#endif
 
 /* ---- lines ---- */
 
@@ -382,6 +316,8 @@ static void arm(uint8_t number, char *text) {
     for (uint8_t i = 0; i < COUNT; i++)
         if (told[i] <= 0 || told[i] > limits[i].current)
             return no(number, "current");
+    if (drained || is_supply_low())
+        return no(number, "supply");
     for (uint8_t i = 0; i < COUNT; i++)
         motors[i].bound = told[i];
     stand();
@@ -398,6 +334,8 @@ static void tell(uint8_t number) {
         say_number(place(i));
         say_number(motors[i].pays ? -(int32_t)motors[i].milliamps : motors[i].milliamps);
     }
+    if (MIN_SUPPLY)
+        say_number(supply);
     end_line();
 }
 
@@ -405,7 +343,7 @@ static void identify(uint8_t number) {
     answer(number, "ok hydrostat 1 " BOARD " " ROBOT);
     say_number(COUNT);
     say_number(DEADLINE_MS);
-    say(cause & 1 << WDRF ? " watchdog" : " started");
+    say(was_hung() ? " watchdog" : " started");
     say(marked ? " marked" : " new");
     end_line();
 }
@@ -459,9 +397,7 @@ static void listen(uint8_t ticked) {
         length = 0;
         refuse("half");
     }
-    while (in_tail != in_head) {
-        char byte = in[in_tail];
-        in_tail = (in_tail + 1) & 127;
+    for (int byte; (byte = hear_byte()) >= 0;) {
         waited = 0;
         if (byte == '\n') {
             line[length] = 0;
@@ -477,39 +413,31 @@ static void listen(uint8_t ticked) {
     }
 }
 
-int main(void) {
+void setup(void) {
     start_board();
-    start_button();
-    UBRR0 = F_CPU / 16 / BAUD_RATE - 1;
-    UCSR0B = 1 << RXEN0 | 1 << TXEN0 | 1 << RXCIE0;
-    ADCSRA = 1 << ADEN | 7;
-    TCCR2A = 1 << WGM21; /* a tick */
-    TCCR2B = 1 << CS22 | 1 << CS21 | 1 << CS20;
-    OCR2A = F_CPU / 1024 / RATE - 1;
-    TIMSK2 = 1 << OCIE2A;
-    sum = 0xFFFF;
-    old_first = FIRST_PINS;
-    old_second = SECOND_PINS;
 #if SERVOS
-    for (uint8_t i = DCS; i < COUNT; i++) {
+    for (uint8_t i = DCS; i < COUNT; i++)
         motors[i].wish = limits[i].low;
-        *(servo_pins[i - DCS].port - 1) |= 1 << servo_pins[i - DCS].pin; /* the register before a port is its direction */
-    }
 #endif
     stand();
-    wdt_enable(WDTO_120MS);
-    sei();
-    for (;;) {
-        uint8_t ticked = ticks;
-        if (ticked) {
-            ticks = 0;
-            wdt_reset();
-            tick();
-#if SERVOS
-            for (uint8_t i = 0; i < SERVOS; i++)
-                ATOMIC_BLOCK(ATOMIC_RESTORESTATE) pulses[i] = state == OFF ? 0 : place(DCS + i);
-#endif
-        }
-        listen(ticked);
-    }
 }
+
+void loop(void) {
+    uint8_t ticked = pass_tick();
+    if (ticked) {
+        tick();
+#if SERVOS
+        for (uint8_t i = DCS; i < COUNT; i++)
+            set_pulse(i - DCS, state == OFF ? 0 : place(i));
+#endif
+    }
+    listen(ticked);
+}
+
+#ifdef __AVR__
+int main(void) {
+    setup();
+    for (;;)
+        loop();
+}
+#endif

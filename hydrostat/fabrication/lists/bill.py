@@ -77,6 +77,12 @@ PRICES = MappingProxyType(
         "controller": Price(
             amount=5.44, source="parts list of a drawing robot (RISE STEM kits): board like the Arduino Nano"
         ),
+        "esp32 board": Price(
+            amount=10.0,
+            month="2026-11",
+            source="parts list of the robot MARPY (LevinTamir): its older sister ESP32 DevKit V1 with screw terminals",
+        ),
+        "shifter": Price(amount=2.0),
         "servo board": Price(
             amount=28.64,
             source="parts list of a gripper with two Dynamixel servos (force_gripper_hardware): OpenRB-150",

@@ -62,12 +62,17 @@ class CableCut:
 
 
 def cable_cuts(
-    robot: Robot, *, leads: Mapping[int, float], outside: Mapping[int, float], spare_wraps: float
+    robot: Robot,
+    *,
+    leads: Mapping[int, float],
+    outside: Mapping[int, float],
+    spare_wraps: float,
+    coupled: bool = False,
 ) -> tuple[CableCut, ...]:
     """Find how long each cable of a robot is cut; `spare_wraps` are turns that stay on each spool.
 
     By cable index [mm]: `leads` from the winch's exit to its spool, 0 if left out, and tube `outside` the body, from
-    the base with the motors to where the cable begins.
+    the base with the motors to where the cable begins. Lines in two pieces, `coupled`, have two loops more to knot.
     """
     cuts = []
     for index, (cable, ratio) in enumerate(zip(robot.cables, robot.spool_ratios, strict=True)):
@@ -80,6 +85,7 @@ def cable_cuts(
                 body=1e3 * cable.length,
                 slack=1e3 * cable.slack,
                 outside=float(outside.get(index, 0.0)),
+                knot=3 * KNOT if coupled and index in outside else KNOT,
                 lead=float(leads.get(index, 0.0)),
                 wraps=1e3 * spare_wraps * 2 * math.pi * radius,
                 release=1e3 * abs(float(ratio)) * (winch.travel if cable.reverse else winch.release),

@@ -75,12 +75,15 @@ class Lists:
 def make_lists(plan: KitPlan) -> Lists:
     """All lists of a robot (InputError: a demand of another robot, or lengths for cables that it does not have)."""
     robot, options, demand, rigid = plan.robot, plan.options.parts, plan.demand, plan.rigid
-    cuts = cable_cuts(robot, leads=rigid.leads, outside=rigid.outside, spare_wraps=options.spare_wraps)
-    pieces = sheath_cuts(robot, seats=rigid.seats, outside=rigid.outside)
+    cuts = cable_cuts(
+        robot, leads=rigid.leads, outside=rigid.outside, spare_wraps=options.spare_wraps, coupled=options.swap
+    )
+    pieces = sheath_cuts(robot, seats=rigid.seats, outside=rigid.tubes)
     cables, tubes = cable_table(cuts), sheath_table(robot, pieces, bore=options.bore, tube=options.tube)
     strength = check_line(robot, demand.tensions, line_for(options.cable), hold=rigid.stopper_hold)
     sizings = size_winches(robot, demand, rigid.motor)
-    power = power_plan({each.winch: each.torque for each in sizings if each.cables}, rigid.motor)
+    torques = {each.winch: each.torque for each in sizings if each.cables}
+    power = power_plan(torques, rigid.motor, plan.options.board)
     items = tuple(all_needs(plan, strength.line, cuts, pieces, power))
     stitching, minded = _sewing(plan)
     simulation = Simulation(robot)
@@ -100,7 +103,7 @@ def make_lists(plan: KitPlan) -> Lists:
             *motor_warnings(sizings),
             *minded,
         ),
-        checks=(check_lengths(cables, simulation), check_sheaths(tubes, simulation, outside=rigid.outside)),
+        checks=(check_lengths(cables, simulation), check_sheaths(tubes, simulation, outside=rigid.tubes)),
     )
 
 

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from hydrostat.errors import InputError
+from hydrostat.fabrication.board_kind import BOARDS, board_for
 from hydrostat.fabrication.demand import Demand
 from hydrostat.fabrication.lists.table import Table, number_column, text_column
-from hydrostat.fabrication.parts.motor import BOARDS, MARGIN, Motor, board_for
+from hydrostat.fabrication.parts.motor import MARGIN, MOTORS, Motor
 from hydrostat.robot import Robot, Winch
 
 SLOW = 10.0  # a winch that takes longer than this for its full travel [s] is called slow
@@ -233,11 +234,13 @@ class PowerPlan:
         motor: motor of all winches.
         winches: names of the winches, in the order of the motors' numbers.
         largest: current of all motors at their largest torque at once [A].
+        board: kind of board that is asked for, None for the smallest that fit.
     """
 
     motor: Motor
     winches: tuple[str, ...]
     largest: float
+    board: str | None = None
 
     @property
     def servos(self) -> bool:
@@ -271,9 +274,14 @@ class PowerPlan:
         """Boards for DC motors."""
         rest, found = len(self.winches), list[str]()
         while rest > 0:
-            found.append(board_for(rest))
+            found.append(self.board or board_for(rest))
             rest -= BOARDS[found[-1]].motors
         return tuple(found)
+
+    @property
+    def resets(self) -> bool:
+        """True if a program that opens the port of a board resets it, as those of Arduino."""
+        return any(BOARDS[board].loader for board in self.boards)
 
     @property
     def cells(self) -> int:
@@ -312,10 +320,17 @@ class PowerPlan:
         )
 
 
-def power_plan(torques: Mapping[str, float], motor: Motor) -> PowerPlan | None:
-    """Plan the supply of a motor on each winch, by its name and largest torque [N mm]; None where there are none."""
+def power_plan(torques: Mapping[str, float], motor: Motor, board: str | None = None) -> PowerPlan | None:
+    """Plan the supply of a motor on each winch, by its name and largest torque [N mm]; None where there are none.
+
+    Raises:
+        InputError: a board for motors that hang on a bus.
+    """
+    if board is not None and motor.bus:
+        known = " or ".join(each.key for each in MOTORS if not each.bus)
+        raise InputError(f"--board {board}: motor {motor.key} needs no board. Remove --board, or add --motor {known}.")
     if not torques:
         return None
     spread = motor.stall_current - motor.free_current
     loads = (motor.free_current + spread * min(1.0, torque / motor.stall_torque) for torque in torques.values())
-    return PowerPlan(motor=motor, winches=tuple(torques), largest=sum(loads))
+    return PowerPlan(motor=motor, winches=tuple(torques), largest=sum(loads), board=board)

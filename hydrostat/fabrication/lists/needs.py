@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 
+from hydrostat.fabrication.board_kind import BOARDS
 from hydrostat.fabrication.inserts import Insert, InsertKind, filling_volume
 from hydrostat.fabrication.kit_options import Method
 from hydrostat.fabrication.kit_plan import Cloth, FoamNeeds, KitPlan
@@ -188,13 +189,24 @@ def control_needs(plan: PowerPlan | None) -> list[Item]:
     kinds = {name: plan.boards.count(name) for name in dict.fromkeys(plan.boards)}
     bridge = f"carrier of a DRV8874 or alike: {plan.motor.stall_current:g} A, current sense of 1.1 V/A"
     parts = [
-        _item(BillGroup.CONTROL, "controller board", f"Arduino {name.capitalize()} or alike", float(many), "controller")
+        _item(
+            BillGroup.CONTROL,
+            "controller board",
+            f"{BOARDS[name].title} or alike",
+            float(many),
+            "controller" if BOARDS[name].loader else "esp32 board",
+        )
         for name, many in kinds.items()
     ]
     if plan.motor.key == "n20":
         magnets = "magnetic, for micro metal gearmotors with a long shaft, 12 counts a turn"
         parts.append(_item(BillGroup.CONTROL, "encoder", magnets, count, "encoder"))
     small = "1 of 10 uF from RESET to GND of each board, and 10 kOhm from each PWM pin to GND"
+    if not plan.resets:
+        small = "10 kOhm from each PWM pin to GND, an LED with 330 Ohm"
+        if plan.motor.key == "25d":
+            shifter = "4 channels, 5 V to 3.3 V, for two encoders"
+            parts.append(_item(BillGroup.CONTROL, "level shifter", shifter, float(math.ceil(count / 2)), "shifter"))
     parts.append(_item(BillGroup.CONTROL, "capacitor and resistors", small, 1.0, "small parts"))
     return [*parts, _item(BillGroup.CONTROL, "motor driver", bridge, count, "driver"), *feed]
 

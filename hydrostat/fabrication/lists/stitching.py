@@ -240,6 +240,36 @@ def _point_access(bare: tuple[bool, ...], depth: float) -> PointAccess:
     return PointAccess.NEEDLE if depth <= NEEDLE else PointAccess.LAID
 
 
+@dataclass(frozen=True, kw_only=True)
+class CableDepths:
+    """Names of cables, C1, C2, ..."""
+
+    sewn: tuple[str, ...] = ()  # those that are sewn to the skin all along
+    drawn: tuple[str, ...] = ()  # those that are drawn through the body at some points
+    laid: tuple[str, ...] = ()  # those of which a point is too deep for a needle: a tube is laid before casting
+    tubed: tuple[str, ...] = ()  # those whose own tube runs in the body, deeper than the skin
+
+    @classmethod
+    def of(cls, stitching: Stitching | None, cables: int) -> "CableDepths":
+        """Read the depths of their points; in the middle of a flat body all are drawn through, without a list sewn."""
+        points = [row for row in stitching.rows if isinstance(row, DepthRow)] if stitching is not None else []
+        if not points:
+            names = tuple(f"C{number}" for number in range(1, cables + 1))
+            return cls(sewn=names) if stitching is None else cls(drawn=names)
+        found: dict[str, set[PointAccess]] = {}
+        for point in points:
+            in_tube = point.how in (PointAccess.TUBE, PointAccess.TUBE_END)
+            how = PointAccess.TUBE if in_tube and point.depth > SKIN else PointAccess.TUBE_END if in_tube else point.how
+            found.setdefault(point.cable, set()).add(how)
+        deep = {PointAccess.NEEDLE, PointAccess.LAID, PointAccess.TUBE}
+        return cls(
+            sewn=tuple(cable for cable, hows in found.items() if not hows & deep),
+            drawn=tuple(cable for cable, hows in found.items() if PointAccess.NEEDLE in hows),
+            laid=tuple(cable for cable, hows in found.items() if PointAccess.LAID in hows),
+            tubed=tuple(cable for cable, hows in found.items() if PointAccess.TUBE in hows),
+        )
+
+
 def close_warnings(robot: Robot) -> tuple[str, ...]:
     """Warn of cables with points too close for two stitches."""
     close = {

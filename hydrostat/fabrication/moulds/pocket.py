@@ -161,6 +161,11 @@ def _lain(at: Float[np.ndarray, "3"], room: WinchRoom) -> list[LyingWinch]:
     return list(dict.fromkeys(found))
 
 
+_MOVE = (
+    'Move the winch to a thicker part of the body, choose a smaller motor, or put the winch outside: mount = "world"'
+)
+
+
 def _pocket(name: str, body: Manifold, way: LyingWinch, upper: bool, clearance: float) -> Pocket:
     """A pocket for a winch laid one way, open to one half."""
     low, high = np.reshape(body.bounding_box(), (2, 3))
@@ -179,12 +184,12 @@ def _pocket(name: str, body: Manifold, way: LyingWinch, upper: bool, clearance: 
     if core.is_empty() or out > _OUTSIDE:
         problem = (
             f'winch "{name}": the pocket of {side} mm does not fit into the body at its place ({100 * out:.0f} % '
-            "outside). Move the winch to a thicker part of the body or choose a smaller motor"
+            f"outside). {_MOVE}"
         )
     elif float((skin - body).volume()) > bare * float(skin.volume()):
         problem = (
             f'winch "{name}": less than {LEAST_SKIN:g} mm of foam would be left next to the pocket of {side} mm. '
-            "Move the winch to a thicker part of the body or choose a smaller motor"
+            f"{_MOVE}"
         )
     return Pocket(
         winch=name,

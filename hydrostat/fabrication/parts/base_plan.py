@@ -43,6 +43,38 @@ def tube_holder(heights: Sequence[float], options: PartOptions) -> Construction:
     return body - Cylinder(depth + 1, _PILOT / 2).move(0, 0, -1)
 
 
+COUPLER = (17.0, 9.0, 3.0)  # size of a line coupler [mm]
+STOP = 2.0  # plastic behind the end of a tube in a core plate [mm]
+_EYE, _APART = 1.6, 4.5  # radius of an eye of a coupler, and its distance from the middle [mm]
+_INSET = 4.0  # from the end of a core plate to its screw [mm]
+
+
+def line_coupler(options: PartOptions) -> Construction:
+    """Two eyes in a plate [mm], each open by a slit as wide as the line, for the loops of two lines that pull apart."""
+    long, wide, thick = COUPLER
+    body: Construction = Box(COUPLER).move(-long / 2, -wide / 2, 0)
+    for turn in (0.0, 180.0):
+        slit = Box((wide, options.cable + 0.3, thick + 2)).move(0, -(options.cable + 0.3) / 2, -1).rotate(z=60)
+        eye = Cylinder(thick + 2, _EYE).move(0, 0, -1) + slit
+        body = body - eye.move(-_APART, 0, 0).rotate(z=turn)
+    return body
+
+
+def core_plate(width: float, bores: Sequence[tuple[float, float]], options: PartOptions) -> Construction:
+    """A wall on the plane z = 0 from x = 0 on, with a blind bore along y for a tube at each (x, height) [mm].
+
+    Tubes come from +y up to a stop, lines go on through it; two screws M3 stand upright in the ends.
+    """
+    top = max(height for _, height in bores) + options.tube / 2 + _ABOVE
+    body: Construction = Box((width, HOLDER_DEPTH, top)).move(0, -HOLDER_DEPTH / 2, 0)
+    for x, height in bores:
+        for length, radius in ((HOLDER_DEPTH + 1 - STOP, options.tube / 2 + 0.05), (HOLDER_DEPTH + 2, options.cable)):
+            body = body - Cylinder(length, radius).rotate(x=90).move(x, HOLDER_DEPTH / 2 + 1, height)
+    for x in (_INSET, width - _INSET):
+        body = body - Cylinder(top + 2, 1.7).move(x, 0, -1)
+    return body
+
+
 POST = 12.0  # width of a post [mm]
 
 
@@ -58,6 +90,7 @@ FREE = 15.0  # from a unit to its tube holder [mm]
 
 _GAP = 3.0
 _STRIP = 12.0
+_SHORTER = 3.0  # by which a core plate reaches into the margins of its tile [mm]
 _LEG_SCREW = 3.4  # between units; margin for the screws of the legs; hole for such a screw, M3 [mm]
 
 
@@ -106,13 +139,20 @@ class BasePlan:
     tiles: tuple["BaseTile", ...]
     bolts: tuple[Corner, ...]
     sheet: tuple[Ring, ...]
+    free: float  # from a unit to the holder of its tubes
 
     @staticmethod
-    def of(units: Sequence[WinchUnit], options: PartOptions, bed: tuple[float, float, float]) -> "BasePlan":
-        """One row, so that all tubes leave to one side, in tiles of as many units as the bed takes."""
+    def of(
+        units: Sequence[WinchUnit], options: PartOptions, bed: tuple[float, float, float], *, reach: float = 0.0
+    ) -> "BasePlan":
+        """One row, so that all tubes leave to one side, in tiles of as many units as the bed takes.
+
+        Where cores are swapped, couplers have room to move by `reach` [mm].
+        """
+        free = reach + COUPLER[0] + 8.0 if options.swap else FREE
         pitch = max(unit.room.size[0] for unit in units) + _GAP
         low = min(unit.room.low[1] for unit in units) - _GAP / 2
-        high = max(unit.room.high[1] for unit in units) + FREE + HOLDER_DEPTH + 2.0
+        high = max(unit.room.high[1] for unit in units) + free + HOLDER_DEPTH + 2.0
         most = max(1, math.floor((bed[0] - 2 * _STRIP) / pitch))
         count = math.ceil(len(units) / most)
         seats: list[Seat] = []
@@ -121,7 +161,9 @@ class BasePlan:
         for share in (len(units) // count + (place < len(units) % count) for place in range(count)):
             mine = [Seat(unit=len(seats) + place, x=left + _STRIP + (place + 0.5) * pitch) for place in range(share)]
             right = left + share * pitch + 2 * _STRIP
-            tiles.append(BaseTile.of((left, low), (right, high), [(seat, units[seat.unit]) for seat in mine], options))
+            tiles.append(
+                BaseTile.of((left, low), (right, high), [(seat, units[seat.unit]) for seat in mine], options, free)
+            )
             seats += mine
             left = right
         return BasePlan(
@@ -129,6 +171,7 @@ class BasePlan:
             tiles=tuple(tiles),
             bolts=tuple(bolt for tile in tiles for bolt in tile.bolts),
             sheet=(_rectangle((0.0, low), (left, high)), *(ring for tile in tiles for ring in tile.rings)),
+            free=free,
         )
 
 
@@ -143,7 +186,9 @@ class BaseTile:
     holes: tuple[Hole, ...]
 
     @staticmethod
-    def of(low: Corner, high: Corner, seats: Sequence[tuple[Seat, WinchUnit]], options: PartOptions) -> "BaseTile":
+    def of(
+        low: Corner, high: Corner, seats: Sequence[tuple[Seat, WinchUnit]], options: PartOptions, free: float
+    ) -> "BaseTile":
         """Make a tile with a hole for each motor, the screws of its housing and its tube holder, and for each leg."""
         inset = _STRIP / 2
         bolts = tuple((x, y) for x in (low[0] + inset, high[0] - inset) for y in (low[1] + inset, high[1] - inset))
@@ -154,8 +199,18 @@ class BaseTile:
             cut = Polygon(unit.motor.outline).buffer(options.clearance, join_style="mitre")
             cuts.append(tuple(seat.place_point((float(x), float(y))) for x, y in orient(cut).exterior.coords[:-1]))
             holes += [Hole(seat.place_point((x, y)), passage / 2) for x in (-post, post) for y in (-post, post)]
-            holes.append(Hole(seat.place_point(holder_at(unit)), HOLDER_PASSAGE / 2))
+            if not options.swap:
+                holes.append(Hole(seat.place_point(holder_at(unit, free)), HOLDER_PASSAGE / 2))
+        if options.swap:
+            level = holder_at(seats[0][1], free)[1]
+            ends = (low[0] + _STRIP - _SHORTER + _INSET, high[0] - _STRIP + _SHORTER - _INSET)
+            holes += [Hole((x, level), _PILOT / 2) for x in ends]
         return BaseTile(low=low, high=high, bolts=bolts, cuts=tuple(cuts), holes=tuple(holes))
+
+    def core_plate(self, bores: Sequence[tuple[float, float]], options: PartOptions) -> tuple[Construction, float]:
+        """Return the wall of a core on this tile for bores at (x, height) of the base, and where it begins [mm]."""
+        start, end = self.low[0] + _STRIP - _SHORTER, self.high[0] - _STRIP + _SHORTER
+        return core_plate(end - start, [(x - start, height) for x, height in bores], options), start
 
     @property
     def rings(self) -> tuple[Ring, ...]:
@@ -177,7 +232,7 @@ def _rectangle(low: Corner, high: Corner) -> Ring:
     return low, (high[0], low[1]), high, (low[0], high[1])
 
 
-def holder_at(unit: WinchUnit) -> Corner:
+def holder_at(unit: WinchUnit, free: float = FREE) -> Corner:
     """The middle of its tube holder, in the unit's coordinates [mm]."""
     x, y, _ = unit.exits[0].point
-    return x, y + FREE + HOLDER_DEPTH / 2
+    return x, y + free + HOLDER_DEPTH / 2

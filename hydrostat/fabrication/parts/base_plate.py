@@ -5,15 +5,29 @@ body stands. It is printed, in tiles if it is larger than the bed, or cut from a
 """
 
 import math
+from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
+from manifold3d import Manifold
+
 from hydrostat.fabrication.kit_options import PartOptions
-from hydrostat.fabrication.parts.base_plan import FREE, HOLDER_DEPTH, BasePlan, Ring, Seat, holder_at, post, tube_holder
+from hydrostat.fabrication.parts.base_plan import (
+    COUPLER,
+    HOLDER_DEPTH,
+    STOP,
+    BasePlan,
+    Ring,
+    Seat,
+    holder_at,
+    line_coupler,
+    post,
+    tube_holder,
+)
 from hydrostat.fabrication.parts.housing import SHEET
 from hydrostat.fabrication.parts.winch_unit import WinchUnit, letter_label
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
-from hydrostat.fabrication.solids.construct import Construction, sides_text
+from hydrostat.fabrication.solids.construct import Construction, sides_text, solid_of
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Mount, Robot
 
@@ -33,6 +47,7 @@ class BasePlate:
     # from the outer face of its housing to where its cable begins, by cable index [mm]
     tubes: tuple[tuple[int, float], ...]
     bought: tuple[tuple[str, int], ...]  # parts to buy for it, with the count of each
+    bare: float = 0.0  # length of line from a housing to its tube, where cores are swapped; else tubes begin there [mm]
     problems: tuple[str, ...] = ()  # why it cannot be built well
     warnings: tuple[str, ...] = ()  # warnings for the builder
 
@@ -52,7 +67,8 @@ def base_plate(
     outside = [unit for unit in units if unit.mount is Mount.WORLD]
     if not outside:
         return None
-    plan = BasePlan.of(outside, options, bed)
+    winches = [robot.winch(unit.winch) for unit in outside]
+    plan = BasePlan.of(outside, options, bed, reach=max(1e3 * (winch.travel + winch.release) for winch in winches))
     tiles = [
         Printed.of(
             tile.solid,
@@ -62,7 +78,7 @@ def base_plate(
         )
         for place, tile in enumerate(plan.tiles)
     ]
-    holders = _holders(outside, options)
+    holders, fixed = _swap(outside, plan, options) if options.swap else _hold(outside, plan, options)
     height = max(unit.motor.depth for unit in outside) + _BELOW - SHEET
     legs = Printed.of(
         post(height),
@@ -71,8 +87,8 @@ def base_plate(
         count=len(plan.bolts),
         note="Standing, with a brim, no support; holes for screws M3 at both ends.",
     )
-    used = {holder.name: sum(mine is holder for mine in holders) for holder in holders}
-    own = {holder.name: replace(holder, count=used[holder.name]) for holder in holders}
+    used = Counter(part.name for part, _ in holders)
+    own = {part.name: replace(part, count=used[part.name]) for part, _ in holders}
     printed = (*tiles, *own.values(), legs)
     return BasePlate(
         printed=printed,
@@ -81,10 +97,8 @@ def base_plate(
         thickness=SHEET,
         seats=plan.seats,
         tubes=_tubes(robot, outside, plan, options),
-        bought=(
-            ("M3 x 10 mm screw (legs and tube holders)", len(plan.bolts) + len(holders)),
-            ("M2 x 8 mm screw (tube holders)", len(holders)),
-        ),
+        bought=fixed,
+        bare=plan.free + STOP if options.swap else 0.0,
         problems=_too_large([*tiles, legs], bed),
         warnings=_to_hold(robot, outside, held),
     )
@@ -102,10 +116,10 @@ def _tubes(
     """
     begins = [robot.cables[cable].points[0] for unit in units for cable in unit.cables]
     spread = 1e3 * max(math.dist(one, other) for one in begins for other in begins)
-    places = {seat.unit: seat.place_point(holder_at(units[seat.unit]))[0] for seat in plan.seats}
+    places = {seat.unit: seat.place_point(holder_at(units[seat.unit], plan.free))[0] for seat in plan.seats}
     low, high = min(places.values()), max(places.values())
     return tuple(
-        (cable, FREE + HOLDER_DEPTH + options.run + max(places[number] - low, high - places[number]) + spread)
+        (cable, plan.free + HOLDER_DEPTH + options.run + max(places[number] - low, high - places[number]) + spread)
         for number, unit in enumerate(units)
         for cable in unit.cables
     )
@@ -126,11 +140,16 @@ def _to_hold(robot: Robot, units: Sequence[WinchUnit], held: Collection[int]) ->
     return tuple(found)
 
 
-def _holders(units: Sequence[WinchUnit], options: PartOptions) -> list[Printed]:
-    """The holder of each unit; equal ones are the same."""
+Stood = list[tuple[Printed, Manifold]]  # parts on the base, and each as it stands there
+Bought = tuple[tuple[str, int], ...]
+
+
+def _hold(units: Sequence[WinchUnit], plan: BasePlan, options: PartOptions) -> tuple[Stood, Bought]:
+    """The tube holder of each unit, equal ones the same, and their screws."""
     made: dict[Construction, Printed] = {}
-    found = []
-    for unit in units:
+    found: Stood = []
+    for seat in plan.seats:
+        unit = units[seat.unit]
         model = tube_holder([leaves.point[2] for leaves in unit.exits], options)
         if model not in made:
             made[model] = Printed.of(
@@ -139,8 +158,46 @@ def _holders(units: Sequence[WinchUnit], options: PartOptions) -> list[Printed]:
                 title="Tube holder",
                 note="Standing on its foot, the slot upwards, no support.",
             )
-        found.append(made[model])
-    return found
+        part = made[model]
+        found.append((part, part.solid.translate((*seat.place_point(holder_at(unit)), 0))))
+    return found, (
+        ("M3 x 10 mm screw (legs and tube holders)", len(plan.bolts) + len(found)),
+        ("M2 x 8 mm screw (tube holders)", len(found)),
+    )
+
+
+def _swap(units: Sequence[WinchUnit], plan: BasePlan, options: PartOptions) -> tuple[Stood, Bought]:
+    """A core plate on each tile and a coupler for each line, and their screws."""
+    coupler = Printed.of(
+        line_coupler(options),
+        name="line_coupler",
+        title="Line coupler",
+        note="Flat, no support, all walls (100 % infill).",
+    )
+    found: Stood = []
+    for place, tile in enumerate(plan.tiles):
+        bores, level = [], 0.0
+        for seat in plan.seats:
+            if tile.low[0] < seat.x < tile.high[0]:
+                x, level = seat.place_point(holder_at(units[seat.unit], plan.free))
+                for leaves in units[seat.unit].exits:
+                    height = leaves.point[2]
+                    bores.append((x, height))
+                    at_rest = (x, level - HOLDER_DEPTH / 2 - COUPLER[0] / 2 - 4.0, height - COUPLER[2] / 2)
+                    found.append((coupler, coupler.solid.rotate((0, 0, 90)).translate(at_rest)))
+        model, start = tile.core_plate(bores, options)
+        part = Printed.of(
+            model,
+            name=f"core_plate_{letter_label(place)}" if len(plan.tiles) > 1 else "core_plate",
+            title="Core plate",
+            note="Standing on its long side, no support.",
+        )
+        found.append((part, solid_of(model).translate((start, level, 0))))
+    return found, (
+        ("M3 x 10 mm screw (legs)", len(plan.bolts)),
+        ("M3 x 25 mm screw (core plate)", 2 * len(plan.tiles)),
+        ("M3 wing nut (core plate)", 2 * len(plan.tiles)),
+    )
 
 
 def _assembly(
@@ -148,7 +205,7 @@ def _assembly(
     units: Sequence[WinchUnit],
     plan: BasePlan,
     tiles: Sequence[Printed],
-    holders: Sequence[Printed],
+    holders: Stood,
     legs: Printed,
 ) -> PartAssembly:
     tall = legs.size[2]
@@ -165,7 +222,7 @@ def _assembly(
         )
         for number, bolt in enumerate(plan.bolts, start=1)
     ]
-    for seat, holder in zip(plan.seats, holders, strict=True):
+    for seat in plan.seats:
         unit = units[seat.unit]
         pieces += [
             replace(
@@ -176,15 +233,10 @@ def _assembly(
             )
             for piece in unit.assembly.pieces
         ]
-        x, y = seat.place_point(holder_at(unit))
-        pieces.append(
-            Placed(
-                name=f"{holder.name} ({unit.winch})",
-                title=holder.title,
-                solid=holder.solid.translate((x, y, 0)),
-                pulled=(0, 0, 20),
-            )
-        )
+    pieces += [
+        Placed(name=f"{part.name} {number}", title=part.title, solid=solid, pulled=(0, 0, 20))
+        for number, (part, solid) in enumerate(holders, start=1)
+    ]
     return PartAssembly(name=f"base of {robot.name}", pieces=tuple(pieces))
 
 

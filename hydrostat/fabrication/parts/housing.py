@@ -160,7 +160,7 @@ class Housing:
         else:
             length = max((each for each in _LENGTHS if each <= self.top - 0.3), default=_LENGTHS[0])
         end = "machine thread, with a nut" if self.outside else "self-tapping or machine thread"
-        title = f"M2 x {length:g} mm countersunk screw, {end}"
+        title = f"M2 x {length:g} mm countersunk screw (housing), {end}"
         return Screw(title=title, length=length, core=1.5, pilot=1.7, passage=2.4, head=3.8, head_height=1.2)
 
     @property

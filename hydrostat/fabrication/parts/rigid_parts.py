@@ -74,12 +74,18 @@ class RigidParts:
     @property
     def seats(self) -> dict[int, float]:
         """Depth of the seat of the tube of each cable at its winch [mm], by its index."""
-        return {way.cable: way.seat for unit in self.units for way in unit.exits}
+        swapped = self.base is not None and self.base.bare > 0  # no tube goes into a housing then
+        return {way.cable: 0.0 if swapped else way.seat for unit in self.units for way in unit.exits}
 
     @property
     def outside(self) -> dict[int, float]:
         """Length of the tube from the base with the motors to where a cable begins [mm], by its index."""
         return dict(self.base.tubes) if self.base else {}
+
+    @property
+    def tubes(self) -> dict[int, float]:
+        """Length of that in a tube [mm], by the index of the cable."""
+        return {cable: length - (self.base.bare if self.base else 0.0) for cable, length in self.outside.items()}
 
     @property
     def stopper_hold(self) -> float | None:
@@ -154,10 +160,13 @@ def rigid_parts(
     chosen = Motor.choose(motor)
     units = winch_units(robot, options, chosen)
     seat = body_seat(robot, options, bed)
+    base = base_plate(robot, units, options, bed, held=seat.held)
+    if options.swap and base is None:
+        raise InputError("--swap-core: the winches are in the body. Remove this option")
     return RigidParts(
         motor=chosen,
         units=units,
-        base=base_plate(robot, units, options, bed, held=seat.held),
+        base=base,
         seat=seat,
         stopper=stopper(options) if robot.cables else None,
         grommet=replace(grommet(options, hole), count=holes) if holes else None,

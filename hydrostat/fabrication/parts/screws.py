@@ -26,7 +26,7 @@ class Screw:
 
 
 M2X6 = Screw(
-    title="M2 x 6 mm countersunk screw, self-tapping or machine thread",
+    title="M2 x 6 mm countersunk screw (stopper), self-tapping or machine thread",
     length=6.0,
     core=1.5,
     pilot=1.7,

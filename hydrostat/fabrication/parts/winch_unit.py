@@ -384,9 +384,10 @@ def _exits(housing: Housing, place: int, cables: tuple[int, ...]) -> Iterator[Ex
 
 def _bought_pieces(housing: Housing) -> tuple[tuple[str, int], ...]:
     motor, wall = housing.motor, housing.options.wall
-    found = [(motor.screw.title(wall), len(motor.holes))]
+    found = [(f"{motor.screw.title(wall)} (plate)", len(motor.holes))]
     if motor.horn is not None:
-        found.append((motor.horn.screw.title(coupling_wall(motor.horn, housing.options)), motor.horn.count))
+        screw = motor.horn.screw.title(coupling_wall(motor.horn, housing.options))
+        found.append((f"{screw} (horn)", motor.horn.count))
     found.append((housing.screw.title, 4))
     if housing.outside:
         found.append(("M2 nut", 4))

@@ -8,6 +8,7 @@ import shapely
 from shapely import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from hydrostat.arrays import Float
 from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patterns.pinholes import Pinhole
 from hydrostat.fabrication.patterns.shape import LaserLine, Layer, PatternPart, Place, Shape, trace
@@ -41,13 +42,23 @@ class Opening:
     @property
     def label(self) -> str:
         """Such as "zipper 150 mm"."""
-        cut = "" if self.slit.length > self.zipper - 1e-6 else f" cut to {int(self.slit.length + 1e-6)} mm"
+        cut = "" if self.slit.length > self.zipper - 1e-6 else f" cut to {self._length} mm"
         return f"zipper {self.zipper} mm{cut}"
+
+    @property
+    def _length(self) -> int:
+        """Length of the slit in whole millimeters, rounded down [mm]."""
+        return int(self.slit.length + 1e-6)
 
     @property
     def is_short(self) -> bool:
         """True for a slit shorter than any zipper that is sold."""
         return self.slit.length <= ZIPPERS[0] - 1e-6
+
+    def is_over(self, middle: Float[np.ndarray, " 2"]) -> bool:
+        """True if its middle is within a quarter of its length of that of the winches [mm], so in no limb aside."""
+        aside = self.slit.interpolate(0.5, normalized=True).distance(shapely.Point(middle))
+        return aside <= 0.25 * self.slit.length
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -55,7 +66,7 @@ class Opening:
         if not self.is_short:
             return ()
         return (
-            f"the opening has room for {self.slit.length:.0f} mm only. Cut a zipper of {self.zipper} mm down to that, "
+            f"the opening has room for {self._length} mm only. Cut a zipper of {self.zipper} mm down to that, "
             "and check that the winch fits through",
         )
 
@@ -78,7 +89,7 @@ def find_opening(
     if ways:
         beside = seam.difference(shapely.union_all(ways).buffer(_PLACKET))
         found = opening_at(places, seam, pinholes, options, room=beside)
-        if found is not None and not found.is_short:
+        if found is not None and not found.is_short and found.is_over(np.mean(places, axis=0)):
             return found
     found = opening_at(places, seam, pinholes, options)
     winch = 45.0  # through a slit so long the unit of any winch passes [mm]
@@ -130,7 +141,11 @@ def opening_at(
         return None
     whole = [slit for slit in slits if slit.length > ZIPPERS[0] - 1e-6]
     slit = next(slit for slit in whole or slits if round(slit.length) > 0.75 * longest)
-    return Opening(slit, next((zipper for zipper in ZIPPERS if zipper >= slit.length - 1e-6), ZIPPERS[-1]))
+    made = [
+        Opening(slit, next((zipper for zipper in ZIPPERS if zipper >= slit.length - 1e-6), ZIPPERS[-1]))
+        for slit in (slit, *whole)
+    ]
+    return next((opening for opening in made if opening.is_over(winches.mean(axis=0))), made[0])
 
 
 def _slit(room: BaseGeometry, middle: np.ndarray, direction: np.ndarray, wanted: float) -> LineString:

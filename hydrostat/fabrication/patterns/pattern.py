@@ -25,7 +25,7 @@ from hydrostat.fabrication.patterns.shape import LaserLine, Layer, Panel, Patter
 from hydrostat.fabrication.patterns.sheet_layout import lay_out
 from hydrostat.fabrication.patterns.skin import Notch, Skin, find_notches, flat_skin
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side, cable_stitches
-from hydrostat.robot import Face, Robot, sewn_sides
+from hydrostat.robot import CableSide, Robot, sewn_sides
 
 
 def stuffed_thickness(seam: Polygon) -> float:
@@ -275,7 +275,7 @@ def _notes(draft: _PatternDraft) -> tuple[str, ...]:
 
 def _unheld(robot: Robot) -> tuple[str, ...]:
     """Return a problem if cables would run without cloth to hold them."""
-    if robot.face is not Face.MIDDLE or not robot.cables:
+    if robot.face is not CableSide.MIDDLE or not robot.cables:
         return ()
     return (
         'cables in the middle are held by nothing in loose filling. Set face = "pairs", which is as flat, or cast it '

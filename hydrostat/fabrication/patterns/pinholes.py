@@ -7,6 +7,7 @@ from itertools import combinations
 import numpy as np
 import shapely
 from shapely import Polygon
+from shapely.geometry.base import BaseGeometry
 
 from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patterns.shape import Circle, Layer, PatternPart, Place
@@ -40,7 +41,7 @@ class Pinhole:
         return float(np.hypot(*np.subtract(self.center, other.center))) - self.radius - other.radius
 
 
-def find_pinholes(robot: Robot, seam: Polygon, options: PatternOptions) -> tuple[Pinhole, ...]:
+def find_pinholes(robot: Robot, seam: BaseGeometry, options: PatternOptions) -> tuple[Pinhole, ...]:
     """A hole for every cable point, as a cable is stitched in and out of the cloth at its points.
 
     Cables that meet in a point share its hole; exits of one winch that overlap become one larger hole round them all. A

@@ -6,10 +6,10 @@ from shapely import LineString, MultiLineString, Polygon
 
 from hydrostat.fabrication.patterns.pattern import Pattern, cut_sheet
 from hydrostat.fabrication.patterns.skin import silhouette
-from hydrostat.robot import Robot, SheetSide, SkinSheet
+from hydrostat.robot import Membrane, Robot, SheetSide
 
 
-def sheet_pieces(robot: Robot, sheet: SkinSheet) -> Pattern | None:
+def sheet_pieces(robot: Robot, sheet: Membrane) -> Pattern | None:
     """Pieces of a sheet at true scale: that of one face, as seen from the front, and strips of the outline.
 
     The face is where the region meets the drawn outline, not the border of the elements. None for a body in space.
@@ -36,7 +36,7 @@ def sheet_pieces(robot: Robot, sheet: SkinSheet) -> Pattern | None:
     return cut_sheet(f"{robot.name} - {sheet.name}", [tuple(map(tuple, ring.tolist())) for ring in rings])
 
 
-def _region(sheet: SkinSheet, seam: Polygon) -> Polygon:
+def _region(sheet: Membrane, seam: Polygon) -> Polygon:
     """Region of a sheet in the plane [m]."""
     if sheet.shape == "polygon":
         return Polygon(sheet.points)

@@ -40,8 +40,8 @@ def skin_of(seam: Polygon, options: PatternOptions) -> Skin:
         if hole.is_empty:
             problems.append(
                 f"hole {index + 1} of the outline, at {_at(Polygon(ring))}, is too narrow for a seam allowance "
-                f"of {options.seam_allowance:g} mm. Choose a smaller allowance or a wider hole, or set "
-                'inner = "drawn" in [body] if it is drawn on the body, such as an eye'
+                f"of {options.seam_allowance:g} mm. Choose a smaller allowance or a wider hole. "
+                'For an eye, set inner = "drawn" in [body], or choose "Surface lines" in Start'
             )
         else:
             holes.append(hole.exterior)

@@ -8,6 +8,7 @@ from hydrostat.drawing import Camera, Canvas
 from hydrostat.fabrication.kit_options import Method, Paper
 from hydrostat.fabrication.kit_plan import KitFindings, KitPlan
 from hydrostat.fabrication.lists.lists import Lists
+from hydrostat.fabrication.lists.stitching import CableDepths
 from hydrostat.fabrication.sheets.bench_words import SURFACES
 from hydrostat.fabrication.sheets.cable_map import flat_map, single_maps, space_map
 from hydrostat.fabrication.sheets.diagrams import skin_scheme, stitch_scheme, stopper_scheme, wiring_scheme
@@ -17,7 +18,6 @@ from hydrostat.fabrication.sheets.list_facts import piece_numbers
 from hydrostat.fabrication.sheets.map_layout import best_views, body_solid
 from hydrostat.fabrication.sheets.sheet_facts import sheet_facts, shown_stitches
 from hydrostat.fabrication.sheets.solid_pictures import exploded_picture, portrait, undercut_picture
-from hydrostat.fabrication.sheets.steps import CableDepths
 from hydrostat.fabrication.winch_marks import winch_marks_of
 
 _TEMPLATES = ("blocks.typ", "assembly_sheet.typ", "overview.typ")

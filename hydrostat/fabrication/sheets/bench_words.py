@@ -3,6 +3,7 @@
 from hydrostat.fabrication.kit_options import Method, MoldKind
 from hydrostat.fabrication.kit_plan import KitPlan
 from hydrostat.fabrication.sheets.foam_steps import body_mass, foam_expansion
+from hydrostat.fabrication.sheets.steps import turn_words
 
 SURFACES = {Method.PLUSH: "cloth", Method.FOAM: "skin", Method.PRINT: "body"}
 """Surface that a stopper touches."""
@@ -14,10 +15,11 @@ def list_calibration(plan: KitPlan) -> list[str]:
         return []
     both = any(cable.reverse for cable in plan.robot.cables)
     return [
-        "Turn all winches to zero: the spool mark of each cable stands where the line meets the spool.",
+        "Turn all winches to zero: the spool mark of each cable stands where the line meets the spool. "
+        + turn_words(plan),
         "Pull the first cable straight by its tail, not tight: the body must not move.",
         f"Slide its stopper along the line until it touches the {SURFACES[plan.method]} at the cable's last point; "
-        "then back by the slack of the list, and clamp it there. Nothing else is measured.",
+        "then back by the slack of the list, and clamp it there.",
         "Do the next cable; then take in 10 mm with every winch, one after the other. Each limb must begin to move, "
         "and come back when you let out.",
         "If a limb moves late, retension the line and reset its stopper. If it is bent at zero, move the stopper "

@@ -16,6 +16,7 @@ from hydrostat.fabrication.sheets.map_layout import (
     box_round,
     flat_marks,
     flat_rings,
+    pin_ring,
 )
 from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.given import Point
@@ -50,19 +51,18 @@ def flat_map(robot: Robot, stitches: Sequence[CableStitches], *, width: float, h
     rings = [1e3 * ring for ring in flat_rings(robot)]
     places = np.concatenate([*rings, *(1e3 * np.array(cable.points) for cable in robot.cables)])
     box = np.array([places.min(axis=0), places.max(axis=0)])
-    height = Canvas.fit_height(box, width - 2 * _MARGIN, height - 2 * _MARGIN) + 2 * _MARGIN
-    canvas = Canvas(width, height)
+    canvas = Canvas(width, height := Canvas.fit_height(box, width - 2 * _MARGIN, height - 2 * _MARGIN) + 2 * _MARGIN)
     frame = CanvasFrame.fit(box, (_MARGIN, _MARGIN, width - _MARGIN, height - _MARGIN))
     canvas.fill([frame.way(ring) for ring in rings], grey=0.95)
     canvas.line([frame.way(ring) for ring in rings], width=Canvas.THICK, closed=True)
-    drawn = 0.45  # grey of what is drawn on the body
-    canvas.line([frame.way(mark) for mark in flat_marks(robot)], width=Canvas.THIN, grey=drawn)
+    canvas.line([frame.way(mark) for mark in flat_marks(robot)], width=Canvas.THIN, grey=0.45)
     labels = LabelPlaces((0.2, 0.2, width - 0.2, height - 0.2))
     for ring in rings:
         labels.take_line(frame.way([*ring, ring[0]]), weight=3)
     _put_inserts(canvas, labels, robot, lambda places: frame.way(places[:, :2]))
     runs = front_runs(robot, stitches, frame)
     _put_runs(canvas, labels, runs, {mark: frame.on(1e3 * np.array(at)) for mark, at in _stands(robot).items()})
+    _put_pins(canvas, labels, robot, frame)
     return canvas
 
 
@@ -141,10 +141,9 @@ def _draw_stitches(robot: Robot, sewn: CableStitches, frame: CanvasFrame, twin: 
 def _within(robot: Robot, index: int, frame: CanvasFrame) -> CableRun:
     """A cable in the middle of a flat body that is cast."""
     cable = robot.cables[index]
-    count = len(cable.points)
-    holes = [robot.winch(cable.winch).mount is Mount.BODY, *[True] * (count - 1)]
-    way = frame.way(1e3 * np.array(cable.points))
-    return CableRun(index + 1, way, [True] * (count - 1), (~cable.bare).tolist(), holes)
+    outside = [True] * (len(cable.points) - 1)
+    holes = [robot.winch(cable.winch).mount is Mount.BODY, *outside]
+    return CableRun(index + 1, frame.way(1e3 * np.array(cable.points)), outside, (~cable.bare).tolist(), holes)
 
 
 def project_cable(
@@ -198,6 +197,14 @@ def put_run(canvas: Canvas, labels: LabelPlaces, run: CableRun, mark: str) -> No
     for place, hole in enumerate(run.holes[:-1]):
         if hole and place:
             _put_number(canvas, labels, run, place, led=True, words=str(place + 1))
+
+
+def _put_pins(canvas: Canvas, labels: LabelPlaces, robot: Robot, frame: CanvasFrame) -> None:
+    """Regions in which a flat body is held, dotted, with a word."""
+    for way in (frame.way(pin_ring(pin)) for pin in robot.pins):
+        canvas.line([way], width=Canvas.THIN, dash=(0.3, 0.9), closed=True)
+        if middle := labels.beside(max(way, key=lambda spot: spot[1]), Canvas.text_size("clamp", 8.0), gap=1.2):
+            canvas.text(middle, "clamp", size=8.0, halo=True, grey=0.25)
 
 
 def _put_inserts(

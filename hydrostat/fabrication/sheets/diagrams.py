@@ -1,6 +1,7 @@
 """Diagrams: how a cable is stitched, put in and stopped, and how supply, board and motors are wired."""
 
 from hydrostat.drawing import Canvas, Spot
+from hydrostat.fabrication.board_kind import BOARDS
 from hydrostat.fabrication.lists.motors import PowerPlan
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side
 
@@ -210,8 +211,10 @@ def _put_chain(canvas: Canvas, plan: PowerPlan, places: list[float], step: float
 
 def _put_drivers(canvas: Canvas, plan: PowerPlan, places: list[float], step: float, top: float) -> None:
     """Draw the boards with the speed signals to the drivers and from the encoders."""
-    _put_board(canvas, {"uno": "Uno", "mega": "Mega"}[plan.boards[0]], top)
-    del plan
+    _put_board(canvas, BOARDS[plan.boards[0]].title.removeprefix("Arduino ").removesuffix("-DevKitC-1"), top)
+    if len(plan.boards) == 1:
+        _box(canvas, (0.4, 28.0, 25.0, 37.5), "9 V battery" if plan.resets else "power bank", "only to play alone")
+        canvas.line([[(12.0, 37.5), (12.0, top)]], width=Canvas.MIDDLE, dash=(1.2, 0.8))
     wide = 0.4 * step
     for place in places:
         _box(canvas, (place - wide, top - 12.0, place + wide, top - 3.0), "driver", "")
@@ -222,6 +225,7 @@ def _put_drivers(canvas: Canvas, plan: PowerPlan, places: list[float], step: flo
         canvas.line([[(place + 1.5, top - 3.0), (place + 1.5, top + 4.0)]], width=Canvas.THICK)
         canvas.line([[(place - wide, top - 7.5), (place - wide - 1.5, top - 7.5)]], width=Canvas.THIN)
         canvas.line([[(place - wide, top + 8.5), (place - wide - 1.5, top + 8.5)]], width=Canvas.THIN)
+    canvas.text((44.5, top - 1.6), "signals", size=8)
     canvas.line([[(38.0, top + 0.5), (places[-1] - wide - 1.5, top + 0.5)]], width=Canvas.THIN, dash=(1.2, 0.8))
     for place in places:
         canvas.line(

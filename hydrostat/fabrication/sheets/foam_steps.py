@@ -3,15 +3,18 @@
 Times of cure are those of R52 and N5, all others are estimates.
 """
 
+import math
+from collections.abc import Mapping, Sequence
+
+from hydrostat.fabrication.cable_work import DRAW, SEW, CableWork
 from hydrostat.fabrication.inserts import displaced_volume
 from hydrostat.fabrication.kit_options import MoldKind
 from hydrostat.fabrication.kit_plan import KitPlan
 from hydrostat.fabrication.lists.lists import Lists
-from hydrostat.fabrication.lists.stitching import PointAccess
+from hydrostat.fabrication.lists.stitching import CableDepths, DepthRow, PointAccess, Stitching
 from hydrostat.fabrication.moulds.mould import Mold
 from hydrostat.fabrication.sheets.steps import (
     AssemblyStep,
-    CableDepths,
     cables_text,
     insert_steps,
     minutes_text,
@@ -210,33 +213,65 @@ def skin_steps(plan: KitPlan, lists: Lists) -> tuple[AssemblyStep, ...]:
             wait="15 min",
         ),
         *winch_steps(plan),
-        *((tie_step(plan.robot),) if cables else ()),
+        *((tie_step(plan),) if cables else ()),
+        *coupler_steps(plan),
+    )
+
+
+def channel_ways(stitching: Stitching | None, cables: int) -> dict[str, list[tuple[str, float]]]:
+    """Points of each cable that is sewn on the skin, as (name, distance from the winch [mm])."""
+    sewn = set(CableDepths.of(stitching, cables).sewn)
+    rows = [row for row in stitching.rows if isinstance(row, DepthRow)] if stitching is not None else []
+    ways: dict[str, list[tuple[str, float]]] = {}
+    for row in rows:
+        if row.cable in sewn and row.how in (PointAccess.SKIN, PointAccess.TUBE_END):
+            ways.setdefault(row.cable, []).append((row.point, row.along))
+    return {cable: points for cable, points in ways.items() if len(points) > 1}
+
+
+def coupler_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
+    """Steps for a core that is swapped; none where its lines go on to the spools in one piece."""
+    base = plan.rigid.base
+    if base is None or not base.bare > 0:
+        return ()
+    lines, plates = len(base.tubes), sum(part.count for part in base.printed if part.title == "Core plate")
+    minutes = math.ceil((20 * lines + 30 * plates) / 60)
+    return (
+        AssemblyStep(
+            "Couple the lines",
+            4 * lines,
+            "Cut each line 30 mm behind the core plate. Tie a loop of 5 mm 10 mm behind it and one in the other piece. "
+            "Hook both into a line_coupler, at the plate when the winch is at zero. To swap the core "
+            f"({minutes} min, estimated): pay lines out, unhook them, undo the wing nuts.",
+        ),
     )
 
 
 def _cable_steps(plan: KitPlan, lists: Lists) -> tuple[AssemblyStep, ...]:
     """Steps that bring cables in or on the body, by their depth."""
-    cables = len(plan.robot.cables)
-    depths = CableDepths.of(lists.stitching, cables)
+    depths = CableDepths.of(lists.stitching, len(plan.robot.cables))
     tubes = bool(lists.tubes.rows)
     deep = sorted({*depths.drawn, *depths.laid, *depths.tubed}, key=lambda cable: int(cable[1:]))
     steps = [
         AssemblyStep(
             "Cut cables and tubes" if tubes else "Cut the cables",
-            3 * (2 if tubes else 1) * cables,
+            CableWork.of_robot(plan.drawn, plan.options).cut,
             "Cut lines to lists/cable_cuts.csv"
             + (" and PTFE tubes to lists/sheath_cuts.csv" if tubes else "")
             + ". Mark the spool mark with a pen, from the end that gets the stopper; tape numbers to the ends.",
         )
     ]
     if deep:
-        steps.append(_drawn_step(depths, deep))
+        steps.append(_drawn_step(depths, deep, flat=plan.robot.body.mesh.dim == 2))
     if depths.sewn:
-        steps.append(_sewn_step(depths, tubes=tubes))
+        steps.append(_sewn_step(depths, channel_ways(lists.stitching, len(plan.robot.cables)), tubes=tubes))
     return tuple(steps)
 
 
-def _drawn_step(depths: CableDepths, deep: list[str]) -> AssemblyStep:
+def _drawn_step(depths: CableDepths, deep: list[str], *, flat: bool) -> AssemblyStep:
+    """Step that draws cables through the foam, of a flat body in the middle of its thickness."""
+    pins = "points" if flat else "“skin” places"
+    where = "in the middle of the thickness" if flat else "at the depth listed, under the pins"
     tubes = (
         f" Push the tube of {cables_text(depths.tubed)} along the needle's channel, ends where the list has them."
         if depths.tubed
@@ -245,21 +280,27 @@ def _drawn_step(depths: CableDepths, deep: list[str]) -> AssemblyStep:
     laid = " Where a tube was laid, pull the line through it." if depths.laid else ""
     return AssemblyStep(
         "Draw cables through the foam",
-        15 * len(deep),
-        f"{cables_text(deep)}, before the skin is on. Pins at the “skin” places of lists/stitching.csv show the way "
-        "(so do dents). Draw the line with a long needle from point to point, at the depth listed, under the pins."
+        DRAW * len(deep),
+        f"{cables_text(deep)}, before the skin is on. Pins at the {pins} of lists/stitching.csv show the way "
+        f"(so do dents). Draw the line with a long needle from point to point, {where}."
         + tubes
         + laid
         + " Sewn on the skin instead, it would have another lever than simulated.",
     )
 
 
-def _sewn_step(depths: CableDepths, *, tubes: bool) -> AssemblyStep:
+def _sewn_step(depths: CableDepths, ways: Mapping[str, Sequence[tuple[str, float]]], *, tubes: bool) -> AssemblyStep:
     tube = ", tubes at both ends with the line in them" if tubes else ""
+    pace = 30.0  # of a seam by hand [mm/min], two for each channel. Estimated, as the 5 minutes to pin one
+    minutes = sum(5 + 2 * (points[-1][1] - points[0][1]) / pace for points in ways.values())
+    channels = (
+        f" Or sew channels, which guide it all along, about {minutes_text(minutes)} by hand in all: cut the strips of "
+        "pattern/channels.svg, pin each line across on the point of its number, sew both seams, pull the line through."
+    )
     return AssemblyStep(
         "Sew cables on the skin",
-        17 * len(depths.sewn),
+        SEW * len(depths.sewn),
         f"{cables_text(depths.sewn)}. Pull the skin over the body, pin every point of the map through it, mark it with "
         "its number. Take the skin off over a rolled sheet of paper. Sew each line on from the winch to its stopper: a "
-        f"stitch at every number, the line free to slide{tube}.",
+        f"stitch at every number, the line free to slide{tube}." + (channels if ways else ""),
     )

@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass
 
+from hydrostat.fabrication.board_kind import BOARDS
 from hydrostat.fabrication.kit_plan import KitPlan
 from hydrostat.fabrication.lists.bill import BillRow
 from hydrostat.fabrication.lists.lists import Lists
 from hydrostat.fabrication.lists.motors import PowerPlan
-from hydrostat.fabrication.parts.motor import BOARDS
 from hydrostat.fabrication.sheets.facts import PieceFacts, PowerFacts, TableFacts
 from hydrostat.fabrication.sheets.legible import shorten_text
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
@@ -174,6 +174,8 @@ def power_facts(plan: PowerPlan | None, robot: Robot) -> PowerFacts | None:
         "10 kOhm from each PWM pin to GND keeps motors off while the board starts.",
         "A motor that runs away has its two wires swapped: the board stops it after 0.2 s.",
     ]
+    if not plan.resets:
+        warnings.append(_encoder_warning(plan))
     if len(plan.boards) > 1:
         warnings.append("Each board has its own USB cable. Separate their ports by commas: firmware:PORT,PORT.")
     return {
@@ -184,6 +186,14 @@ def power_facts(plan: PowerPlan | None, robot: Robot) -> PowerFacts | None:
         "heads": ["winch", "board", "PWM", "direction", "A", "B", "current"],
         "pins": pins,
     }
+
+
+def _encoder_warning(plan: PowerPlan) -> str:
+    """Warning about encoders on a board with pins of 3.3 V."""
+    begin = "Pins of the ESP32-S3 withstand 3.3 V only. "
+    if plan.motor.key == "n20":
+        return begin + "Supply the encoders from its pin 3V3."
+    return begin + "Supply the encoders with 5 V, and lead A and B of each through the level shifter."
 
 
 def _list_first_steps(plan: PowerPlan, *, is_measured: bool) -> list[str]:
@@ -199,31 +209,44 @@ def _list_first_steps(plan: PowerPlan, *, is_measured: bool) -> list[str]:
     elif plan.servos:
         kind = "dynamixel"
         ready = [
-            "Load the example usb_to_dynamixel onto the OpenRB-150 with the Arduino IDE.",
+            "Load the example usb_to_dynamixel onto the OpenRB-150 with the Arduino IDE. Leave its power jumper on 5 V "
+            "and cut the plus wire of the cable between board and chain: USB then feeds the board alone.",
             "Plug in one servo at a time, with the switch off. Turn it on. Give the servo its number with ROBOTIS' "
             "Dynamixel Wizard. Turn the switch off. Write the number on the servo.",
             chain,
         ]
     else:
         kind = "firmware"
+        flash = f" --flash {','.join(['PORT'] * len(plan.boards))}" if plan.resets else ""
         ready = [
-            "Wire one winch by the table, then the others.",
-            f"Run: hydrostat firmware ROBOT --board {plan.boards[0]} --motor {plan.motor.key} --out DIR --flash PORT. "
-            "It prints the pins: compare them with the table.",
+            "Wire one winch by the table, then the others: PWM to EN of its driver, direction to PH, current to its "
+            f"current sense. On a DRV8874, PMODE goes to GND and SLEEP to {'5V' if plan.resets else '3V3'}. Names "
+            "differ between carriers: read the page of yours.",
+            f"Run: hydrostat firmware ROBOT --board {','.join(plan.boards)} --motor {plan.motor.key} --out DIR"
+            f"{flash}. It prints the pins: compare them with the table.",
             "Put 10 uF from RESET to GND (plus to RESET). The board then keeps running when a program opens its port. "
-            "Take it out before you flash again.",
+            "Take it out before you flash again."
+            if plan.resets
+            else "Open DIR/winches/winches.ino in the Arduino IDE, with the board package esp32 3 of Espressif. Choose "
+            "the board ESP32S3 Dev Module and USB CDC On Boot: Disabled, then upload through the USB port UART.",
         ]
     alone = []
     if not plan.servos and len(plan.boards) == 1:
         pin = BOARDS[plan.boards[0]].button
+        button = f"a push button between pin {pin} and GND" if plan.resets else "the button BOOT of the board"
+        feed = "a 9 V battery at its jack" if plan.resets else "a USB power bank at its port USB"
         alone = [
-            f"Optional: join a push button to pin {pin} and GND. After hydrostat firmware ROBOT --moves MOVES it "
-            "starts and stops these moves without a computer."
+            f"Optional: after hydrostat firmware ROBOT --moves MOVES, {button} starts and stops these moves without a "
+            f"computer. Feed the board by {feed} before you calibrate.",
+            f"Optional, if cells feed the motors: add --min-supply {plan.cells} to that command. Connect plus of the "
+            f"motors, 47 kOhm, pin {BOARDS[plan.boards[0]].supply}, 10 kOhm and GND in a row. The motors then stop at "
+            f"{plan.cells} V, and the light blinks.",
         ]
     return [
         f"Leave the switch off. Measure the supply behind the fuse: {plan.motor.volts:g} V, plus on the plus lead.",
         *ready,
-        "Find the port: /dev/ttyUSB0 or /dev/ttyACM0 on Linux, COM3 or alike on Windows.",
+        'Install the motor package: pip install -e ".[motors]" in the folder of hydrostat. Then find the port: '
+        "/dev/ttyUSB0 or /dev/ttyACM0 on Linux, COM3 or alike on Windows.",
         f"Keep a hand on the switch and turn it on. Run: hydrostat calibrate ROBOT --motors {kind}:PORT. Check that "
         "the winch that turns is the one that it names."
         if is_measured

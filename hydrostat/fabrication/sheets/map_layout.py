@@ -10,7 +10,7 @@ import shapely
 
 from hydrostat.arrays import Bool, Float
 from hydrostat.drawing import Box, Camera, DepthBuffer, DrawnSolid, Spot
-from hydrostat.robot import Robot
+from hydrostat.robot import Pin, Robot
 
 _TURNS = tuple(range(0, 360, 30))  # compass directions that are tried [degrees]
 
@@ -155,6 +155,16 @@ class LabelPlaces:
         return not any(
             box[0] < other[2] and other[0] < box[2] and box[1] < other[3] and other[1] < box[3] for other in self._boxes
         )
+
+
+def pin_ring(pin: Pin) -> Float[np.ndarray, "_ 2"]:
+    """Outline of the region that a pin of a flat body holds [mm]."""
+    if pin.box is not None:
+        (x, y, *_), (right, high, *_) = pin.box
+        return 1e3 * np.array([(x, y), (right, y), (right, high), (x, high)])
+    turns = np.linspace(0, 2 * np.pi, 48, endpoint=False)
+    circle = max(pin.radius, 1e-3) * np.stack([np.cos(turns), np.sin(turns)], axis=1)
+    return 1e3 * (np.array(pin.at)[:2] + circle)
 
 
 def box_round(middle: Spot, radius: float) -> Box:

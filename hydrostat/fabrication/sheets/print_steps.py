@@ -1,12 +1,13 @@
 """`print_steps`: from the files of a printed body to a robot. Times are estimates; none was measured."""
 
+from hydrostat.fabrication.cable_work import CableWork
 from hydrostat.fabrication.kit_plan import KitPlan
 from hydrostat.fabrication.sheets.steps import AssemblyStep, insert_steps, minutes_text, tie_step, winch_steps
 
 
 def print_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
     """Steps from the files to a robot."""
-    cables = len(plan.robot.cables)
+    work = CableWork.of_robot(plan.drawn, plan.options)
     material = plan.robot.body.material.name or "the material of the robot file"
     return (
         AssemblyStep(
@@ -19,23 +20,23 @@ def print_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
         AssemblyStep("Clear slits and holes", 15, "Cut strings in the slits. Push a wire of 1 mm through each hole."),
         *insert_steps(plan),
         *(
-            AssemblyStep(title, minutes * cables, text)
+            AssemblyStep(title, minutes, text)
             for title, minutes, text in (
                 (
                     "Cut the cables",
-                    3,
+                    work.cut,
                     "Cut lines to lists/cable_cuts.csv. Mark the spool mark with a pen, from the end that gets the "
                     "stopper; tape numbers to the ends.",
                 ),
                 (
                     "Thread the cables",
-                    5,
+                    work.route,
                     "Push a thin wire through the hole from the last point to the first, tie the line to it and draw "
                     "it through. Put the stopper on loosely at the last point.",
                 ),
             )
-            if cables
+            if plan.robot.cables
         ),
         *winch_steps(plan),
-        *((tie_step(plan.robot),) if cables else ()),
+        *((tie_step(plan),) if plan.robot.cables else ()),
     )

@@ -3,10 +3,11 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from hydrostat.fabrication.cable_work import CableWork
 from hydrostat.fabrication.inserts import Insert, InsertKind, insert_title
 from hydrostat.fabrication.kit_options import Method
 from hydrostat.fabrication.kit_plan import KitPlan
-from hydrostat.fabrication.lists.stitching import SKIN, DepthRow, PointAccess, Stitching
+from hydrostat.fabrication.parts.base_plate import BasePlate
 from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.robot import Mount, Pin, Robot, SheetSide
 from hydrostat.units import plural
@@ -41,7 +42,8 @@ def held_text(robot: Robot) -> str:
     if not robot.pins:
         return ""
     places = "; ".join(_pin_text(pin) for pin in robot.pins)
-    return f"It was simulated as held {places}, in the coordinates of the robot file: clamp or strap it there."
+    drawn = ", dotted on the map" if robot.body.mesh.dim == 2 else ""
+    return f"It was simulated as held {places}, in the coordinates of the robot file{drawn}: clamp or strap it there."
 
 
 def _pin_text(pin: Pin) -> str:
@@ -54,36 +56,7 @@ def _pin_text(pin: Pin) -> str:
 
 
 def _mm(value: float) -> str:
-    return f"{1e3 * value + 0.0:.0f}".replace("-", "−")
-
-
-@dataclass(frozen=True, kw_only=True)
-class CableDepths:
-    """Names of cables, C1, C2, ..."""
-
-    sewn: tuple[str, ...] = ()  # those that are sewn to the skin all along
-    drawn: tuple[str, ...] = ()  # those that are drawn through the body at some points
-    laid: tuple[str, ...] = ()  # those of which a point is too deep for a needle: a tube is laid before casting
-    tubed: tuple[str, ...] = ()  # those whose own tube runs in the body, deeper than the skin
-
-    @classmethod
-    def of(cls, stitching: Stitching | None, cables: int) -> "CableDepths":
-        """Read the depths of their points; cables whose depths are not listed are sewn on."""
-        points = [row for row in stitching.rows if isinstance(row, DepthRow)] if stitching is not None else []
-        if not points:
-            return cls(sewn=tuple(f"C{number}" for number in range(1, cables + 1)))
-        found: dict[str, set[PointAccess]] = {}
-        for point in points:
-            in_tube = point.how in (PointAccess.TUBE, PointAccess.TUBE_END)
-            how = PointAccess.TUBE if in_tube and point.depth > SKIN else PointAccess.TUBE_END if in_tube else point.how
-            found.setdefault(point.cable, set()).add(how)
-        deep = {PointAccess.NEEDLE, PointAccess.LAID, PointAccess.TUBE}
-        return cls(
-            sewn=tuple(cable for cable, hows in found.items() if not hows & deep),
-            drawn=tuple(cable for cable, hows in found.items() if PointAccess.NEEDLE in hows),
-            laid=tuple(cable for cable, hows in found.items() if PointAccess.LAID in hows),
-            tubed=tuple(cable for cable, hows in found.items() if PointAccess.TUBE in hows),
-        )
+    return f"{1e3 * value:z.0f}".replace("-", "−")
 
 
 def cables_text(cables: Iterable[str]) -> str:
@@ -112,19 +85,19 @@ def marks_on(plan: KitPlan, mount: Mount) -> tuple[str, ...]:
 def winch_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
     """Steps for the winches: put together, on the base, then in a body of foam; into plush they go with the filling."""
     inside, outside = marks_on(plan, Mount.BODY), marks_on(plan, Mount.WORLD)
-    count = len(inside) + len(outside)
+    count, has_horn = len(inside) + len(outside), plan.rigid.motor.horn is not None
     steps = []
     if count:
         steps.append(
             AssemblyStep(
                 "Put the winches together",
                 15 * count,
-                f"Build {plural(count, 'winch')} as drawn on page 2, each with its own files (see "
-                "Parts), and write the mark on it. Turn every motor to its zero before the spool goes on.",
+                f"Build {plural(count, 'winch')} as drawn on page 2, each with its own files (see Parts), and write "
+                f"the mark on it. Screw the plate on the motor{', the coupling on its horn' if has_horn else ''}. "
+                "Push the spool on, then screw the housing on. The bill names the screws of each.",
             )
         )
-    if outside:
-        steps.append(_base_step(outside))
+    steps += [_base_step(outside, plan.rigid.base)] if outside else []
     if inside and plan.method is Method.FOAM:
         steps.append(
             AssemblyStep(
@@ -135,23 +108,30 @@ def winch_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
             )
         )
     if plan.rigid.seat_assembly is not None:
-        steps.append(_seat_step(plan.robot))
+        steps.append(_seat_step(plan.robot, swapped=plan.options.parts.swap))
     elif (held := held_text(plan.robot)) and plan.method is not Method.PLUSH:
         steps.append(AssemblyStep("Hold it", 5, held))
     return tuple(steps)
 
 
-def _base_step(outside: tuple[str, ...]) -> AssemblyStep:
+def _base_step(outside: tuple[str, ...], base: BasePlate | None) -> AssemblyStep:
+    held = (
+        "Push each tube into its bore of the core plate, to the stop, with a drop of glue. Screws M3 x 25 come from "
+        "below, wing nuts on top. Lead each tube to where its cable begins, bend radius at least 40 mm. "
+        if base is not None and base.bare > 0
+        else "Push each tube into its holder and lead it to where its cable begins, bend radius at least 40 mm. "
+    )
     return AssemblyStep(
         "Build the base",
         5 + 10 * len(outside),
         f"Screw {marks_text(outside)} to the base plate (print it, or cut parts/base.svg from acrylic), legs below. "
-        "Push each tube into its holder and lead it to where its cable begins, bend radius at least 40 mm. "
-        "Hold both ends: only so does the tube keep the cable's length. The base stands anywhere the tubes reach.",
+        + held
+        + "Hold both ends: only so does the tube keep the cable's length. The base stands anywhere the tubes reach.",
     )
 
 
-def _seat_step(robot: Robot) -> AssemblyStep:
+def _seat_step(robot: Robot, *, swapped: bool) -> AssemblyStep:
+    another = " For a second core print seat_cup again: to swap them, untie the lines and undo the screws of the cup."
     ends = any(cable.bare[0] for cable in robot.cables)
     tubes = "up to the lip, where it ends" if ends else "through the plate and on to the body"
     return AssemblyStep(
@@ -160,13 +140,20 @@ def _seat_step(robot: Robot) -> AssemblyStep:
         "Screw the cup on its posts, the posts on the plate, the legs under it: screws M3. Push each tube from below "
         f"into its bore, {tubes}, with a drop of glue. Press the end of the body down to the floor of the cup, lines "
         "through its openings, and sew it there through the holes of the cup, round and round. What hangs is hung by "
-        "the legs from a shelf, the seat upside down. For a second core print seat_cup again and sew the core into it: "
-        "to swap them, untie the lines at the spools and undo the screws of the cup.",
+        "the legs from a shelf, the seat upside down." + ("" if swapped else another),
     )
 
 
-def tie_step(robot: Robot) -> AssemblyStep:
+def turn_words(plan: KitPlan) -> str:
+    """Sentences on who turns a spool before a computer does."""
+    if plan.rigid.motor.bus:
+        return "With the power off, turn spools slowly by hand."
+    return "Turn a geared motor by a cell of 1.5 V at its two wires."
+
+
+def tie_step(plan: KitPlan) -> AssemblyStep:
     """The step by which lines come on their spools."""
+    robot = plan.robot
     back = [f"C{index + 1}" for index, cable in enumerate(robot.cables) if cable.reverse]
     ways = f"all in one direction, but the other way round: {', '.join(back)}" if back else "all in one direction"
     return AssemblyStep(
@@ -174,7 +161,7 @@ def tie_step(robot: Robot) -> AssemblyStep:
         5 * len(robot.cables),
         "Lead each line through its own channel of the housing; push its tube, if it has one, into the seat. Knot it "
         f"at the spool's tie hole so that the spool mark meets the spool. Wind the spare turns on, {ways}. "
-        "Then calibrate.",
+        f"{turn_words(plan)} Then calibrate.",
     )
 
 
@@ -208,7 +195,7 @@ def plush_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
         ),
         _sew(plan),
         *winch_steps(plan),
-        *((tie_step(plan.robot),) if cables else ()),
+        *((tie_step(plan),) if cables else ()),
         *insert_steps(plan),
         _stuff(plan),
         AssemblyStep(
@@ -293,7 +280,7 @@ def _prints(plan: KitPlan) -> tuple[AssemblyStep, ...]:
 
 
 def _cables(plan: KitPlan) -> tuple[AssemblyStep, ...]:
-    cables = len(plan.robot.cables)
+    work = CableWork.of_robot(plan.drawn, plan.options)
     tubes = sum(len(cable.sheathed) for cable in plan.robot.cables)
     sheaths = "Tie sheaths to the inside of the cloth at both ends, the line in them. " if tubes else ""
     grommets = (
@@ -304,14 +291,14 @@ def _cables(plan: KitPlan) -> tuple[AssemblyStep, ...]:
     return (
         AssemblyStep(
             "Cut cables and sheaths" if tubes else "Cut the cables",
-            3 * (cables + tubes),
+            work.cut,
             "Cut each line to lists/cable_cuts.csv, pulled straight. Mark its spool mark with a pen, from the end that "
             "gets the stopper, and tape the cable's number to it."
             + (" Cut tubes to lists/sheath_cuts.csv, square, with a sharp blade." if tubes else ""),
         ),
         AssemblyStep(
             "Stitch the cables",
-            10 * cables,
+            work.route,
             f"{_panel_sentence(plan)} (lists/stitching.csv). Begin at the winch and follow the numbers of the map: "
             f"solid runs outside, dashed inside. {sheaths}"
             f"End outside; put the stopper on loosely behind the last hole.{grommets}",
@@ -380,6 +367,5 @@ def _stuff(plan: KitPlan) -> AssemblyStep:
     )
     winches = ", then round the winches," if inside else ""
     lumps = " No lumps by the cables." if plan.robot.cables else ""
-    return AssemblyStep(
-        "Stuff the body", 30, f"{places}Fill limbs first{winches} softly and evenly, until the body is {full}." + lumps
-    )
+    words = f"{places}Fill limbs first{winches} softly and evenly, until it is {full}.{lumps}"
+    return AssemblyStep("Stuff the body", 30, words)

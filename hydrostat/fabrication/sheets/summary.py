@@ -61,7 +61,7 @@ def _money(lists: Lists) -> list[str]:
     used, packs = lists.cost
     driven = {BillGroup.WINCHES, BillGroup.CONTROL}
     drive = sum(row.cost_packs for row in lists.bill.rows if row.is_total and row.group in driven)
-    share = f", {drive:.0f} USD of them motors, boards and power" if drive else ""
+    share = f", {drive:.0f} USD of them for winches, boards and power" if drive else ""
     return [f"about {used:.0f} USD used up, {packs:.0f} USD in whole packs{share}"]
 
 

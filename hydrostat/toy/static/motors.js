@@ -83,6 +83,6 @@ export function offerMotors(facts, { goal, meet }) {
     board.stop("Stopped: the page was hidden. Hold to arm.");
   };
   document.addEventListener("visibilitychange", () => { if (document.hidden) away(); });
-  for (const end of ["pagehide", "freeze"]) window.addEventListener(end, away);
+  for (const end of ["pagehide", "freeze"]) window.addEventListener(end, away, true); // freeze does not bubble
   window.addEventListener("keydown", (event) => { if (event.key === "Escape") board.stop(); });
 }

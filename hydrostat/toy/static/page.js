@@ -21,7 +21,7 @@ const paper = above.getContext("2d");
 const held = new Map(); // pointers that hold a point or turn the view
 const state = { held: -1, goal: null, ink: "#000", dots: Boolean(surface && !surface.gl) };
 let kept = []; // markers that better stay while another point is dragged
-let asked = false;
+let asked = false, resting = 0;
 let box = above.getBoundingClientRect(); // where the canvas is on the page
 
 /** Ask for one picture at the next frame of the screen. */
@@ -40,6 +40,8 @@ function step(now) {
     settle();
   }
   surface?.paint(sight, points);
+  clearTimeout(resting);
+  resting = surface ? setTimeout(() => surface.paint(sight, points, true), 200) : 0;
   draw(paper, sight, data, points, state);
   if (player.plays) redraw();
 }
@@ -69,10 +71,7 @@ function mark(played) {
 function resize() {
   const dense = window.devicePixelRatio || 1;
   box = above.getBoundingClientRect();
-  for (const canvas of [below, above]) {
-    canvas.width = Math.round(box.width * dense);
-    canvas.height = Math.round(box.height * dense);
-  }
+  Object.assign(above, { width: Math.round(box.width * dense), height: Math.round(box.height * dense) });
   paper.setTransform(dense, 0, 0, dense, 0, 0);
   sight.fit(box.width, box.height);
   redraw();

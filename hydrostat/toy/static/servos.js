@@ -25,6 +25,7 @@ export class Servos extends Drive {
     this.baud = speech.baud;
     this.numbers = facts.motors.map(({ number }) => number);
     this.bytes = [];
+    this.strangers = new Set(); // numbers of servos that answered and are not of this robot
     /** @type {(packet: any) => void} takes the next answer */
     this.heard = () => {};
     this.angles = facts.motors.map(() => 0); // at the last reading [rad]
@@ -34,8 +35,7 @@ export class Servos extends Drive {
 
   /** Refuse servos that are not all of this robot and no more; these stand without torque then. */
   async identify() {
-    const strangers = new Set();
-    this.heard = ({ number }) => strangers.add(number);
+    this.strangers.clear();
     for (let number = 0; number <= LAST_NUMBER; number++) {
       if (this.numbers.includes(number)) continue;
       this.send(number, PING);
@@ -45,7 +45,7 @@ export class Servos extends Drive {
     this.mayTurn = false;
     this.ratings = [];
     for (const number of this.numbers) this.ratings.push(await this.speech.identify(this, number));
-    const other = [...strangers].find((number) => !this.numbers.includes(number));
+    const [other] = this.strangers; // all have been heard, for answers keep the order of questions
     if (other !== undefined) throw new Error(`Motor ${other} is not in motors.toml. Connect the motors of this robot only.`);
     this.change("new", `Connected. ${TAUT}`);
   }
@@ -255,6 +255,7 @@ export class Servos extends Drive {
       const [packet, left] = this.speech.next(this.bytes);
       this.bytes = left;
       if (!packet) return;
+      if (!this.numbers.includes(packet.number)) this.strangers.add(packet.number);
       this.heard(packet);
     }
   }

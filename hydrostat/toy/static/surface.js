@@ -31,7 +31,8 @@ export class Surface {
     this.faces = faces;
     this.first = first;
     this.count = count;
-    const gl = this.gl = canvas.getContext("webgl", { antialias: true, alpha: true });
+    this.finest = isSlow() ? 2 : 1; // twice as many pixels along each side once it stands still, in place of smooth edges
+    const gl = this.gl = canvas.getContext("webgl", { antialias: this.finest === 1, alpha: true });
     if (!gl) return;
     const program = this.program = gl.createProgram();
     for (const [kind, text] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, FRAGMENT]]) {
@@ -55,10 +56,12 @@ export class Surface {
     gl.enable(gl.DEPTH_TEST);
   }
 
-  /** Paint the surface of some points. */
-  paint(sight, points) {
-    const gl = this.gl;
+  /** Paint the surface of some points, which move or stand still. */
+  paint(sight, points, still = false) {
+    const gl = this.gl, dense = (window.devicePixelRatio || 1) * (still ? this.finest : 1);
     if (!gl) return;
+    const [wide, high] = [sight.width, sight.height].map((side) => Math.round(dense * side));
+    if (gl.canvas.width !== wide || gl.canvas.height !== high) Object.assign(gl.canvas, { width: wide, height: high });
     const places = new Float32Array(points.subarray(3 * this.first, 3 * (this.first + this.count)));
     [places, normalsOf(places, this.faces)].forEach((array, i) => {
       gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers[i]);
@@ -72,6 +75,12 @@ export class Surface {
     gl.uniform3f(scale, (2 * sight.scale) / sight.width, (2 * sight.scale) / sight.height, 0.4 / sight.size);
     gl.drawElements(gl.TRIANGLES, this.faces.length, gl.UNSIGNED_SHORT, 0);
   }
+}
+
+/** True if a program draws, as there is no graphics card. */
+function isSlow() {
+  const gl = document.createElement("canvas").getContext("webgl"), names = gl?.getExtension("WEBGL_debug_renderer_info");
+  return Boolean(names) && /swiftshader|llvmpipe|software|basic render/i.test(gl.getParameter(names.UNMASKED_RENDERER_WEBGL));
 }
 
 /** Outward normals of the points of a surface, weighted by area. */

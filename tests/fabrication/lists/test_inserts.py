@@ -17,7 +17,7 @@ from hydrostat.fabrication.lists.needs import filling_mass
 from hydrostat.fabrication.patterns.sheet_pieces import sheet_pieces
 from hydrostat.fabrication.refusals import find_refusals
 from hydrostat.fabrication.sheets.steps import insert_steps
-from hydrostat.robot import BodyPart, Robot, Rod, SkinSheet, get_material
+from hydrostat.robot import BodyPart, Membrane, Robot, Rod, get_material
 
 BONE = BodyPart(name="bone", shape="box", at=(-0.04, -0.04), to=(0.0, -0.02), density=1200.0)
 PAD = BodyPart(name="pad", shape="box", at=(0.02, -0.04), to=(0.04, -0.02), material=get_material("flexfoam-it x"))
@@ -64,7 +64,7 @@ def test_a_sheet_on_the_skin_is_cut_and_fixed() -> None:
     """The left half of the square: two faces of 50 x 100 mm, and 200 mm of its outline, 30 mm wide, cut by elements."""
     felt = get_material("ecoflex 00-30")
     half = {"shape": "box", "at": (-0.1, -0.1), "to": (0.0, 0.1)}
-    sheet = SkinSheet(name="glove", material=felt, thickness=1e-3, wrinkles=True, **half)
+    sheet = Membrane(name="glove", material=felt, thickness=1e-3, wrinkles=True, **half)
     robot = replace(square(), sheets=(sheet,))
     plan = change_plan(given(robot), method=Method.PLUSH)
     (row,) = insert_table(plan.inserts, "").rows

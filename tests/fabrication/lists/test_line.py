@@ -9,7 +9,7 @@ from small_inputs import square
 from hydrostat.errors import InputError
 from hydrostat.fabrication.lists.line import KNOT, LINES, SAFETY, FishingLine, check_line, line_for
 from hydrostat.fabrication.weak_lines import find_weak_lines
-from hydrostat.robot import Face
+from hydrostat.robot import CableSide
 
 TEN = FishingLine(name="ten", diameter=0.3, pounds=10 / 4.448222)
 """A line that breaks at 10 N."""
@@ -30,7 +30,7 @@ def test_a_pose_names_the_cables_that_break() -> None:
     (told,) = find_weak_lines(square(), np.array([200.0]))
     assert "pulls 200.0 N, but PE 6, 80 lb breaks at its knot at 178 N" in told
     assert find_weak_lines(square(), np.array([170.0])) == ()
-    assert find_weak_lines(replace(square(), face=Face.PAIRS), np.array([200.0])) == ()
+    assert find_weak_lines(replace(square(), face=CableSide.PAIRS), np.array([200.0])) == ()
 
 
 def test_no_line_is_stronger_than_its_fibres() -> None:

@@ -2,9 +2,11 @@
 
 import pytest
 
+from hydrostat.errors import InputError
+from hydrostat.fabrication.board_kind import board_for
 from hydrostat.fabrication.lists.motors import PLUG, PowerPlan, power_plan
 from hydrostat.fabrication.lists.needs import control_needs
-from hydrostat.fabrication.parts.motor import ALL_MOTORS, MOTORS, board_for
+from hydrostat.fabrication.parts.motor import ALL_MOTORS, MOTORS
 
 N20, XL330, POLOLU_25D = MOTORS
 
@@ -59,6 +61,20 @@ def test_small_motors_get_encoders() -> None:
     plan = power_plan({"a": 40.0}, N20)
     assert plan is not None
     assert {item.what: item.quantity for item in control_needs(plan)}["encoder"] == 1
+
+
+def test_a_board_that_is_asked_for_is_bought_where_motors_need_one() -> None:
+    """By hand: five motors are on two boards for four; pins for 3.3 V need a shifter where encoders need 5 V."""
+    plan = power_plan(dict.fromkeys("abcde", 900.0), POLOLU_25D, "esp32s3")
+    assert plan is not None
+    assert (plan.boards, plan.resets) == (("esp32s3", "esp32s3"), False)
+    what = {item.what: item for item in control_needs(plan)}
+    assert what["controller board"].specification.startswith("ESP32-S3")
+    assert what["level shifter"].quantity == 3
+    small = power_plan({"a": 40.0}, N20, "esp32s3")
+    assert "level shifter" not in {item.what for item in control_needs(small)}
+    with pytest.raises(InputError, match=r"motor xl330 needs no board\. Remove --board, or add --motor n20"):
+        power_plan({"a": 40.0}, XL330, "uno")
 
 
 def test_no_motors_need_nothing() -> None:

@@ -10,6 +10,7 @@ from hydrostat.fabrication.lists.lists import make_lists
 from hydrostat.fabrication.lists.stitching import (
     NEEDLE,
     SKIN,
+    CableDepths,
     close_warnings,
     deep_warnings,
     depth_table,
@@ -83,3 +84,4 @@ def test_a_flat_body_of_foam_has_its_points_in_the_plane() -> None:
     lists = make_lists(given(robot, method=Method.FOAM, foam=foam))
     assert lists.stitching is not None
     assert lists.stitching.texts == table.texts
+    assert CableDepths.of(lists.stitching, 1) == CableDepths(drawn=("C1",))

@@ -23,7 +23,7 @@ from hydrostat.fabrication.solids.construct import solid_of
 from hydrostat.fabrication.solids.printed import Printed
 
 BED = (220.0, 220.0, 250.0)
-OUTSIDE_ALL = [name for name, text in gallery_texts().items() if text["winch"][0].get("mount") == "world"]
+OUTSIDE_ALL = [name for name, text in gallery_texts().items() if text.get("winch", [{}])[0].get("mount") == "world"]
 OUTSIDE = ["caging_gripper", "cupping_hand", "fish_tail", "octopus_arm", "tongue", "trunk"]
 
 
@@ -189,3 +189,32 @@ def test_a_tube_that_ends_where_its_cable_begins_is_to_be_held_there():
     place = ", ".join(f"{1e3 * value + 0.0:.1f}" for value in robot.cables[0].points[0])
     assert "cable C1" in text
     assert f"({place}) mm" in text
+
+
+@pytest.mark.slow
+def test_a_core_is_lifted_off_with_its_plates(unchecked: None):
+    """Oracles: solids; the way of a coupler from its plate to the housing, by the travel; a tube up to its stop."""
+    robot = gallery_robot("cupping_hand")
+    options = PartOptions(swap=True)
+    units = winch_units(robot, options, MOTORS[0])
+    base = base_plate(robot, units, options, BED)
+    assert base is not None
+    assert base.problems == ()
+    assert interferences(base.assembly) == ()
+    for part in base.printed:
+        assert watertight_problems(part) == ()
+    assert [part.count for part in base.printed if part.name == "line_coupler"] == [len(robot.cables)]
+    pieces = base.assembly.pieces
+    plates = [piece.solid for piece in pieces if piece.title == "Core plate"]
+    fixed = [piece.solid for piece in pieces if piece.title not in ("Core plate", "Line coupler")]
+    for plate in plates:
+        assert all((plate.translate((0, 0, 30)) ^ solid).volume() == 0.0 for solid in fixed)
+    travel = max(1e3 * winch.travel for winch in robot.winches)
+    for coupler in (piece.solid for piece in pieces if piece.title == "Line coupler"):
+        assert all((coupler.translate((0, -travel, 0)) ^ solid).volume() == 0.0 for solid in fixed)
+    for seat in base.seats:
+        (leaves,) = units[seat.unit].exits
+        tube = Manifold.cylinder(HOLDER_DEPTH - 2.0, 0.97, -1, 24).rotate((-90, 0, 0)).translate(leaves.point)
+        placed = seat.place_solid(tube.translate((0, base.bare + 0.01, 0)))
+        assert all((placed ^ solid).volume() < 1e-9 for solid in plates)
+        assert sum((placed.translate((0, -1.0, 0)) ^ solid).volume() for solid in plates) > 1.0

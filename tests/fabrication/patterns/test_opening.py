@@ -4,7 +4,7 @@ import shapely
 from plush_robots import drawn_body, plush_robot
 
 from hydrostat.fabrication import PatternOptions, plush_pattern
-from hydrostat.fabrication.patterns.opening import ZIPPERS
+from hydrostat.fabrication.patterns.opening import ZIPPERS, opening_at
 from hydrostat.fabrication.patterns.pattern import Pattern
 from hydrostat.fabrication.patterns.shape import Layer, PatternPart
 from hydrostat.robot import Cable, Robot, Winch
@@ -88,3 +88,14 @@ def test_a_body_too_small_for_a_zipper_is_warned_of():
     assert pattern.opening.label.startswith("zipper 100 mm cut to ")
     assert any("opening has room for" in warning for warning in pattern.warnings)
     assert not any("opening" in warning for warning in plush_pattern(with_winches(WIDE, (0, 0))).warnings)
+
+
+def test_the_opening_lies_over_its_winches() -> None:
+    """A torso with an arm, and a cable into the arm: the first slit beside it would be 25 mm off. Oracle: middles."""
+    seam = shapely.union_all([shapely.box(-45, -60, 45, 60), shapely.box(-45, 25, 190, 60)])
+    beside = seam.difference(shapely.LineString([(10, 0), (30, 30), (170, 35)]).buffer(4.0))
+    found = opening_at([(10, 0), (10, 30)], seam, (), PatternOptions(), room=beside)
+    assert found is not None
+    middle = found.slit.interpolate(0.5, normalized=True)
+    assert middle.distance(shapely.Point(10, 15)) < 0.25 * found.slit.length
+    assert found.slit.length == pytest.approx(100.0)

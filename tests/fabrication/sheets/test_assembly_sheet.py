@@ -139,6 +139,19 @@ def test_the_first_start_ends_in_commands_that_the_robot_and_its_motors_take(key
         assert steps.count(f"--motors {kind}:PORT") == 1 + calibrated
 
 
+@pytest.mark.parametrize(("key", "told"), [("n20", "encoders from its pin 3V3"), ("25d", "the level shifter")])
+def test_the_page_of_an_esp32_says_how_it_gets_its_sketch_and_3_3_volts(key: str, told: str) -> None:
+    robot, motor = plush().plan.robot, next(one for one in MOTORS if one.key == key)
+    facts = power_facts(power_plan({robot.winches[0].name: 40.0}, motor, "esp32s3"), robot)
+    assert facts is not None
+    assert facts["pins"][0][1:] == ["esp32s3", "15", "16", "39", "40", "1"]
+    assert told in facts["warnings"][-1]
+    steps = " ".join(facts["start"])
+    assert f"--board esp32s3 --motor {key} --out DIR. " in steps
+    assert "winches.ino in the Arduino IDE" in steps
+    assert "RESET" not in steps
+
+
 def test_what_a_foam_sheet_says(foam_sheet):
     text = words(foam_sheet)
     for part in (

@@ -15,6 +15,7 @@ from hydrostat.errors import InputError
 from hydrostat.fabrication.solids.construct import Box, Construction, Cylinder, Prism, Revolve, solid_of
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.fabrication.solids.step import model_of, step_bytes
+from hydrostat.version import install_command
 
 needs_cad = pytest.mark.skipif(find_spec("build123d") is None, reason="needs build123d (extra cad)")
 
@@ -121,5 +122,5 @@ def test_a_part_without_a_model_has_no_step():
 
 def test_where_build123d_is_missing_the_extra_is_named(monkeypatch):
     monkeypatch.setitem(sys.modules, "build123d", None)
-    with pytest.raises(InputError, match=r'pip install -e "\.\[cad\]"'):
+    with pytest.raises(InputError, match=re.escape(install_command("cad"))):
         step_bytes(part(Box((1, 1, 1))))

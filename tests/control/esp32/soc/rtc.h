@@ -1,0 +1,3 @@
+#pragma once
+#include <cstdint>
+extern "C" uint32_t rtc_clk_slow_freq_get_hz(void);
