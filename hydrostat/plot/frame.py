@@ -63,7 +63,7 @@ class Frame:
     contractions: Vector | None = None  # cable taken in by each winch [m]; without, no winch is seen to turn
     target: PoseTarget | None = None  # the pose that is approached, whose targets are shown
     words: str = ""  # what happens, in a line
-    things: tuple[Obstacle, ...] = ()  # beside the robot, where they are
+    obstacles: tuple[Obstacle, ...] = ()  # beside the robot, where they are
 
     @classmethod
     def of(
@@ -72,11 +72,11 @@ class Frame:
         *,
         target: PoseTarget | None = None,
         words: str = "",
-        things: Sequence[Obstacle] = (),
+        obstacles: Sequence[Obstacle] = (),
     ) -> Self:
-        """The frame that shows an equilibrium, or an instant of a motion, and things beside the robot."""
+        """The frame that shows an equilibrium, or an instant of a motion, and obstacles beside the robot."""
         told = {"nodes": found.nodes, "tensions": found.tensions, "contractions": found.contractions}
-        return cls(**told, target=target, words=words, things=tuple(things))
+        return cls(**told, target=target, words=words, obstacles=tuple(obstacles))
 
 
 def check_frames(robot: Robot, frames: Sequence[Frame]) -> None:

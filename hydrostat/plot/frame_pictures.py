@@ -36,7 +36,7 @@ class FramePictures:
         points = _visible_points(robot, self._carried, frames)
         inches = 6.4  # width of the drawing, whatever its pixels: words and lines keep their share of it
         self._sheet, panes = open_sheet(
-            with_obstacles(robot, frames[0].things),
+            with_obstacles(robot, frames[0].obstacles),
             [],
             [points],
             title=shorten(robot.name),
@@ -81,7 +81,7 @@ class FramePictures:
 
     def _draw(self, frame: Frame) -> None:
         sheet, pane, robot, carried = self._sheet, self._pane, self._robot, self._carried
-        surface = pane.draw_body(sheet, frame.nodes, pale=0.25, pins=True, things=frame.things)
+        surface = pane.draw_body(sheet, frame.nodes, pale=0.25, pins=True, obstacles=frame.obstacles)
         colors = [self._scale.color(float(tension)) for tension in frame.tensions]
         look = {"colors": colors, "width": 2.6, "contractions": frame.contractions}
         draw_hardware(sheet, pane, surface, carried, frame.nodes, **look)
@@ -97,7 +97,7 @@ def _visible_points(robot: Robot, carried: Attachments, frames: Sequence[Frame])
     shapes = list({id(frame.nodes): frame.nodes for frame in frames}.values())
     parts = outer_points(robot.body, shapes)
     parts += [part for nodes in shapes for part in (*carried.cables(nodes), carried.winches(nodes))]
-    parts += [line for frame in frames for thing in frame.things for line in rims(thing, robot)]
+    parts += [line for frame in frames for obstacle in frame.obstacles for line in rims(obstacle, robot)]
     parts += [load_reach(robot, nodes) for nodes in shapes]
     parts += [target_points(frame.target) for frame in frames if frame.target is not None]
     return np.concatenate(parts)
@@ -110,7 +110,7 @@ def _alike(one: Frame, two: Frame) -> bool:
     return (
         one.words == two.words
         and one.target == two.target
-        and one.things == two.things
+        and one.obstacles == two.obstacles
         and np.array_equal(one.nodes, two.nodes)
         and np.array_equal(one.tensions, two.tensions)
         and np.array_equal(_or_none(one.contractions), _or_none(two.contractions))

@@ -15,14 +15,14 @@ VERTICES, INDICES = 34962, 34963  # what an array is used for
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class GlbPart:
-    """A thing of triangles that changes its shape."""
+    """An object of triangles that changes its shape."""
 
     name: str  # that a program shows
     triangles: Int[np.ndarray, "triangles 3"]  # corners of each, counter-clockwise seen from outside, (triangles, 3)
     places: Float[np.ndarray, "keys vertices 3"]  # of the vertices in every key, (keys, vertices, 3) [m]
     normals: Float[np.ndarray, "keys vertices 3"]  # of length 1, (keys, vertices, 3)
     colors: Float[np.ndarray, "some vertices 3"]  # linear red, green, blue, in every key or one for all
-    opacity: float = 1.0  # 1, or less for what things within shine through
+    opacity: float = 1.0  # 1, or less for what parts within shine through
 
 
 class Glb:

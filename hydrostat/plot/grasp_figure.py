@@ -20,7 +20,7 @@ from hydrostat.units import MILLIMETERS
 def draw_pull(
     robot: Robot, pull: PullOut, cases: Sequence[PullCase] = (), *, title: str | None = None, width: float = WIDTH
 ) -> Figure:
-    """The grasp, where the pull is hardest, and its end; below, the force against the way of the object.
+    """The grasp, where the pull is hardest, and its end; below, the force against its displacement.
 
     Cases that were tried beside it are thin lines, the one without friction dashed.
 
@@ -56,7 +56,7 @@ def draw_pull(
     axes.plot(MILLIMETERS * pull.moved, pull.forces, color=Color.WINCHES[0], linewidth=2.0)
     axes.plot(MILLIMETERS * pull.moved[hardest], pull.peak, "o", color=Color.ERROR, markersize=4)
     axes.axhline(0.0, color=Color.MUTED, linewidth=0.8)
-    axes.set_xlabel("way of the object along the pull [mm]", color=Color.INK, fontsize=8.5)
+    axes.set_xlabel("displacement of the object [mm]", color=Color.INK, fontsize=8.5)
     axes.set_ylabel("force [N]", color=Color.INK, fontsize=8.5)
     return figure
 
@@ -68,7 +68,7 @@ def pull_frames(pull: PullOut, count: int = 30) -> list[Frame]:
         Frame.of(
             pull.poses[row],
             words=f"{pull.forces[row]:.2f} N, moved {MILLIMETERS * pull.moved[row]:.0f} mm",
-            things=[pull.object_at(int(row))],
+            obstacles=[pull.object_at(int(row))],
         )
         for row in rows
     ]
@@ -78,14 +78,14 @@ def _portraits(robot: Robot, pull: PullOut, rows: Sequence[int]) -> list[np.ndar
     """Pictures of some rows, all in one frame, without the border that is empty in all."""
     carried = Attachments(robot)
     shapes = [pull.poses[row].nodes for row in rows]
-    things = [pull.object_at(row) for row in rows]
-    lines = [rims(thing, robot) for thing in things]
+    obstacles = [pull.object_at(row) for row in rows]
+    lines = [rims(obstacle, robot) for obstacle in obstacles]
     beside = [part for nodes in shapes for part in (*carried.cables(nodes), carried.winches(nodes))]
     frame = np.concatenate([*shapes, *beside, *(line for each in lines for line in each)])
     images = []
     portrait = 3.0  # Width at which a portrait is drawn [inch]
-    for nodes, thing in zip(shapes, things, strict=True):
-        figure = draw_portrait(robot, nodes, frame=frame, things=[thing], width=portrait)
+    for nodes, obstacle in zip(shapes, obstacles, strict=True):
+        figure = draw_portrait(robot, nodes, frame=frame, obstacles=[obstacle], width=portrait)
         images.append(figure_pixels(figure, dpi=220))
     drawn = np.any([image[..., 3] > 0 for image in images], axis=0)
     up, across = np.flatnonzero(drawn.any(axis=1)), np.flatnonzero(drawn.any(axis=0))

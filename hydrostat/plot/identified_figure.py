@@ -22,8 +22,9 @@ def draw_identified(measurements: Measurements, found: IdentifiedRobot) -> Figur
     for index, view in enumerate(views):
         axes = figure.add_subplot(1, len(views), index + 1)
         _draw_view(axes, [MILLIMETERS * places[..., view].reshape(-1, 2) for places in (seen, before, after)])
-        axes.set(xlabel=f"{'xyz'[view[0]]} [mm]", ylabel=f"{'xyz'[view[1]]} [mm]", aspect="equal")
+        axes.set(xlabel=f"{'xyz'[view[0]]} [mm]", ylabel=f"{'xyz'[view[1]]} [mm]")
         axes.margins(0.08)
+        axes.set_aspect("equal", adjustable="datalim")
     figure.axes[0].legend(frameon=False, fontsize=8, loc="best")
     assumed, fitted = MILLIMETERS * rms(found.before), MILLIMETERS * rms(found.after)
     figure.suptitle(f"rms error {assumed:.2f} mm as assumed, {fitted:.2f} mm fitted", fontsize=10)

@@ -13,7 +13,7 @@ RAYS = 16  # directions in which a label is tried
 
 
 class Labels:
-    """Finds a free place for one label after another: off the body, off other labels and off things to be seen."""
+    """Finds a free place for one label after another: off the body, off other labels and off what is to be seen."""
 
     def __init__(self, sheet: PictureSheet, *, rings: list[Places], avoid: Places) -> None:
         """Labels on a sheet, beside the rings of the drawn body; points to avoid should not be covered."""

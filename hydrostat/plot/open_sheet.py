@@ -74,7 +74,7 @@ def _cameras(robot: Robot, shapes: Sequence[Spread]) -> list[Camera]:
 def _pose_offsets(robot: Robot) -> Spread:
     """Displacements of markers to their targets in the poses of a robot [m], or offsets of obstacles next to it."""
     nodes = robot.body.mesh.nodes
-    beside = [thing.frame()[0] for thing in robot.obstacles if thing.shape is not ObstacleShape.PLANE]
+    beside = [obstacle.frame()[0] for obstacle in robot.obstacles if obstacle.shape is not ObstacleShape.PLANE]
     if beside:
         return np.array(beside) - 0.5 * (nodes.min(axis=0) + nodes.max(axis=0))
     rest = {marker.name: np.array(marker.at) for marker in robot.markers}

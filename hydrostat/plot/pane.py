@@ -18,11 +18,11 @@ from hydrostat.units import MILLIMETERS
 Surface = tuple[Points, Int[np.ndarray, "triangles 3"]]  # places of its corners [m], and triangles seen from outside
 
 
-def object_surface(thing: Obstacle) -> Surface:
-    """The surface of a thing that has an end, as a hull of points."""
+def object_surface(obstacle: Obstacle) -> Surface:
+    """The surface of an object that has an end, as a hull of points."""
     from scipy.spatial import ConvexHull
 
-    points = _points(thing)
+    points = _points(obstacle)
     triangles = ConvexHull(points).simplices
     corners = points[triangles]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -31,13 +31,13 @@ def object_surface(thing: Obstacle) -> Surface:
     return points, triangles
 
 
-def _points(thing: Obstacle) -> Points:
+def _points(obstacle: Obstacle) -> Points:
     """Points all over it [m]."""
-    at, to, radius = np.array(thing.at), np.array(thing.to or thing.at), thing.radius or 0.0
-    if thing.shape is ObstacleShape.BOX:
+    at, to, radius = np.array(obstacle.at), np.array(obstacle.to or obstacle.at), obstacle.radius or 0.0
+    if obstacle.shape is ObstacleShape.BOX:
         return at + np.array(list(np.ndindex(2, 2, 2))) * (to - at)
-    if thing.shape is ObstacleShape.CYLINDER:
-        axes, turns = thing.frame()[1], np.linspace(0.0, 2 * np.pi, 48, endpoint=False)
+    if obstacle.shape is ObstacleShape.CYLINDER:
+        axes, turns = obstacle.frame()[1], np.linspace(0.0, 2 * np.pi, 48, endpoint=False)
         ring = radius * (np.outer(np.cos(turns), axes[1]) + np.outer(np.sin(turns), axes[2]))
         return np.concatenate([at + ring, to + ring])
     dots = 800  # Points on a sphere
@@ -45,7 +45,7 @@ def _points(thing: Obstacle) -> Points:
     turns = np.pi * (3 - np.sqrt(5)) * np.arange(dots)  # a spiral by the golden angle covers a sphere evenly
     flat = np.sqrt(1 - heights**2)
     ball = radius * np.column_stack([flat * np.cos(turns), flat * np.sin(turns), heights])
-    return at + ball if thing.to is None else np.concatenate([at + ball, to + ball])
+    return at + ball if obstacle.to is None else np.concatenate([at + ball, to + ball])
 
 
 DPI = 200  # pixels of an image of a body to an inch
@@ -74,16 +74,16 @@ class Pane(ABC):
         pale: float = 0.0,
         mesh: bool = False,
         pins: bool = False,
-        things: Sequence[Obstacle] = (),
+        obstacles: Sequence[Obstacle] = (),
     ) -> DrawnBody:
         """Draw the body with its nodes at `nodes` [m]; `pale`, 0 to 1, fades it, `mesh` and `pins` add these.
 
         Things that have an end are drawn with it: their rims, and in space hatched solids.
         """
 
-    def _with_rims(self, sheet: PictureSheet, body: DrawnBody, things: Sequence[Obstacle]) -> DrawnBody:
-        """Draw the rims of things where the body does not cover them; returns the body."""
-        for line in (line for thing in things for line in rims(thing, self.robot)):
+    def _with_rims(self, sheet: PictureSheet, body: DrawnBody, obstacles: Sequence[Obstacle]) -> DrawnBody:
+        """Draw the rims of obstacles where the body does not cover them; returns the body."""
+        for line in (line for obstacle in obstacles for line in rims(obstacle, self.robot)):
             for part, fade in body.cable(line).parts:
                 if fade == 0:
                     sheet.curve(part, color=Color.INK, linewidth=1.2, clip_on=True, zorder=3.3)
@@ -119,7 +119,7 @@ class FlatPane(Pane):
         pale: float = 0.0,
         mesh: bool = False,
         pins: bool = False,
-        things: Sequence[Obstacle] = (),
+        obstacles: Sequence[Obstacle] = (),
     ) -> DrawnBody:
         fill, light, seam = (
             Color.mix(color, Color.PAPER, pale) for color in (Color.FELT, Color.FELT_LIGHT, Color.SEAM)
@@ -156,7 +156,7 @@ class FlatPane(Pane):
             sheet.segments(ends, color=Color.MESH, linewidth=0.35, alpha=0.42, zorder=4)
         if pins:
             _draw_pins(sheet, self.robot, rings)
-        return self._with_rims(sheet, DrawnBody(rings), things)
+        return self._with_rims(sheet, DrawnBody(rings), obstacles)
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,13 +183,13 @@ class SpacePane(Pane):
         pale: float = 0.0,
         mesh: bool = False,
         pins: bool = False,
-        things: Sequence[Obstacle] = (),
+        obstacles: Sequence[Obstacle] = (),
     ) -> DrawnBody:
         body, facets = self.robot.body.mesh, [self.robot.body.mesh.boundary]
         spots = self.camera.see(MILLIMETERS * nodes)
         held = np.any([np.zeros(len(nodes)), *(pin.holds(body) for pin in self.robot.pins)], axis=0)
         held &= pins
-        for places, triangles in map(object_surface, things):
+        for places, triangles in map(object_surface, obstacles):
             facets.append(triangles + len(spots))
             spots = np.concatenate([spots, self.camera.see(MILLIMETERS * places)])
             held = np.append(held, np.ones(len(places), dtype=bool))
@@ -205,7 +205,7 @@ class SpacePane(Pane):
             image = image.with_tint(own, color)
         rings = lay_image(sheet, image, self.shift, seam=Color.mix(Color.SEAM, Color.PAPER, 0.6 * pale))
         thickness = MILLIMETERS * float(np.ptp(body.nodes, axis=0).min())
-        return self._with_rims(sheet, DrawnBody(rings, (self.camera, self.shift, image, thickness)), things)
+        return self._with_rims(sheet, DrawnBody(rings, (self.camera, self.shift, image, thickness)), obstacles)
 
     def _pixel(self, sheet: PictureSheet, spots: Spots) -> float:
         """Side of a pixel [mm] of an image of spots [mm]."""

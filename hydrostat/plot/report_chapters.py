@@ -118,10 +118,9 @@ def chapters(network: Network) -> list[Html]:
 
 
 def _body(robot: Robot) -> Chapter:
-    elements = "triangles" if robot.body.mesh.dim == 2 else "tetrahedra"
     words = (
-        f"{robot.body.file} is filled with {len(robot.body.mesh.elements)} {elements} of soft material. The hatched "
-        "fields are held; the white dots are the markers, points to be watched."
+        f"{robot.body.file} is filled with soft material: {robot.body.mesh.describe()}. The hatched fields are held; "
+        "the white dots are the markers, points to be watched."
     )
     return Chapter(_HEADS[robot.body.source], words, [body_part(robot)])
 
@@ -138,7 +137,7 @@ def target_chapter(robot: Robot, poses: Iterable[PoseTarget]) -> Chapter:
     """Return the chapter on the marker targets of each pose."""
     words = (
         "Each pose names targets for markers: a cross is a target; a marker with a cross and no arrow should stay, "
-        "and one that is not drawn may go anywhere."
+        "and one that is not drawn may move freely."
     )
     pictures = []
     for index, pose in enumerate(poses):
@@ -332,7 +331,7 @@ def certificate_words(error: float, certificate: Certificate | None) -> str:
     return (
         f"One more cable with a winch of its own, along the best path found by pricing "
         f"{certificate.paths:,} states, {gain}. Moving one via point along one axis lowers the error by at most "
-        f"{certificate.slope:.2g} mm for each millimeter."
+        f"{certificate.descent_rate:.2g} mm for each millimeter."
     )
 
 

@@ -10,11 +10,11 @@ from hydrostat.geometry import locate
 from hydrostat.ik import IKResult
 from hydrostat.plot.report_tables import number, table
 from hydrostat.robot import Robot
-from hydrostat.simulation import Sensitivity, Simulation
+from hydrostat.simulation import Sensitivity, Simulation, marker_compliance
 from hydrostat.units import MILLIMETERS
 
-CHANGE, POISSON_CHANGE = 0.1, 0.05
-"""Change of a number, as a share, and that of a Poisson's ratio."""
+CHANGE, POISSON_CHANGE, FORCE = 0.1, 0.05, 0.1
+"""Change of a number, as a share, that of a Poisson's ratio, and a force on a marker [N]."""
 
 
 def sensitivity_table(reached: IKResult) -> Html:
@@ -24,7 +24,7 @@ def sensitivity_table(reached: IKResult) -> Html:
     ways = [reached.pose.markers[name] - np.array(robot.marker(name).at) for name in names]
     travel = _rms(np.concatenate(ways), names)
     rows = []
-    for label, change, moves in _changes(robot, sensitivities):
+    for label, change, moves in (*_changes(robot, sensitivities), *_pushes(reached, names)):
         moved = _rms(moves, names)
         share = f"{100 * moved / travel:.1f} %" if travel > 0 else ""
         rows.append((label, change, number(MILLIMETERS * moved, 2), share))
@@ -68,3 +68,14 @@ def _changes(robot: Robot, sensitivities: list[Sensitivity]) -> Iterator[tuple[s
     cables = np.array([cable.stiffness for cable in robot.cables])
     yield "stiffness of all cables", share, CHANGE * of("cable_stiffness") @ cables
     yield "stiffness of all pins", share, CHANGE * of("pin_stiffness") @ np.array([pin.stiffness for pin in robot.pins])
+
+
+def _pushes(reached: IKResult, names: list[str]) -> Iterator[tuple[str, str, Vector]]:
+    """Force on each marker in its softest direction; none where physics remember the way."""
+    simulation = Simulation(reached.pose.robot)
+    if simulation.assembly.has_history:
+        return
+    compliances = marker_compliance(simulation, reached.pose)
+    chosen = [index for index, marker in enumerate(simulation.robot.markers) if marker.name in names]
+    softest = np.linalg.norm(compliances[chosen], ord=2, axis=(1, 2))
+    yield "force on each marker in its softest direction", f"{FORCE:g} N", FORCE * softest

@@ -155,7 +155,7 @@ def _score(network: Network) -> dict[str, str]:
 
 def _body(robot: Robot) -> str:
     mesh = robot.body.mesh
-    return f"{len(mesh.nodes)} nodes, {len(mesh.elements)} elements, {MILLIMETERS * mesh.size:.0f} mm"
+    return f"{mesh.describe()}, {MILLIMETERS * mesh.size:.0f} mm"
 
 
 def body_table(robot: Robot) -> Html:
@@ -170,7 +170,7 @@ def body_table(robot: Robot) -> Html:
         ("Poisson's ratio", f"{material.poisson:g}"),
         *([("foam law", f"exponents {foam}")] if foam else []),
         *((f"part {part.name}", part_text(part)) for part in body.parts),
-        ("mesh", f"{len(body.mesh.nodes)} nodes, {len(body.mesh.elements)} elements"),
+        ("mesh", body.mesh.describe()),
     ]
     return table(("", ""), rows, numbers=(1,))
 

@@ -41,7 +41,7 @@ def draw_rest(robot: Robot, *, title: str | None = None, width: float = WIDTH) -
     """
     _check(robot, width)
     body = robot.body
-    count = f"{len(body.mesh.nodes)} nodes, {len(body.mesh.elements)} elements"
+    count = body.mesh.describe()
     head = shorten(robot.name) if title is None else title
     sheet, panes, bodies = _at_rest(robot, head, count, width, mesh=True)
     drawn, labels = _draw_parts(sheet, robot, panes, bodies)
@@ -238,7 +238,7 @@ def draw_portrait(
     nodes: Nodes,
     *,
     frame: Spread | None = None,
-    things: Sequence[Obstacle] = (),
+    obstacles: Sequence[Obstacle] = (),
     width: float = WIDTH,
 ) -> Figure:
     """The robot alone, without grid or words, its nodes at `nodes` [m]; the picture holds all points of `frame` [m].
@@ -249,7 +249,7 @@ def draw_portrait(
     beside = [*carried.cables(nodes), carried.winches(nodes)] if nodes.shape[1] == 3 else []
     shapes, points = ([nodes], beside) if frame is None else ([], [frame])
     sheet, panes = open_sheet(robot, shapes, points, width=width, ruled=False)
-    draw_hardware(sheet, panes[0], panes[0].draw_body(sheet, nodes, things=things), carried, nodes)
+    draw_hardware(sheet, panes[0], panes[0].draw_body(sheet, nodes, obstacles=obstacles), carried, nodes)
     return sheet.figure
 
 

@@ -10,7 +10,7 @@ class Topic(StrEnum):
     ROBOT = "robot"
     STAGE = "stage"
     SHAPE = "shape"
-    SCENE = "things"
+    SCENE = "items"
     JOB = "job"
     DRIVE = "drive"
     NOTE = "note"

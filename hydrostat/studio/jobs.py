@@ -5,7 +5,6 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from math import inf
-from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from threading import Condition, Lock, Semaphore, Thread
@@ -14,6 +13,7 @@ from typing import Any
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.work_process import Report, run_work
+from hydrostat.studio.worker_context import start_worker
 
 __all__ = ["JobState", "Jobs", "Report", "Slots"]
 
@@ -298,12 +298,7 @@ class _Worker:
     @classmethod
     def start(cls) -> "_Worker":
         """Start a process. Its work follows through the pipe: arguments would have to wait until it runs."""
-        context = get_context("spawn")
-        here, there = context.Pipe()
-        process = context.Process(target=run_work, args=(there,), daemon=True)
-        process.start()
-        there.close()
-        return cls(process, here)
+        return cls(*start_worker(run_work))
 
     def say_stop(self) -> None:
         """Ask it to end with what it has."""

@@ -332,10 +332,10 @@ class Session:
         if not self.document.is_open:
             return None
         with self._lock:
-            robot, shape, things = *self._look(), self.current.scene_items()
+            robot, shape, items = *self._look(), self.current.scene_items()
         head = {"stage": str(self.stage), "stamp": self.answered, "errors": shape.errors, "notes": list(shape.notes)}
         head["before"] = self.before
-        return self._show.moment(robot, shape, things, head, node_values(robot, shape, self.coloring))
+        return self._show.moment(robot, shape, items, head, node_values(robot, shape, self.coloring))
 
     def thumbnail(self) -> bytes:
         """Return a small picture of the robot as it is shown now, as WebP; empty without a robot."""

@@ -24,9 +24,9 @@ class StageName(StrEnum):
 class Hit:
     """Object and place under the pointer."""
 
-    key: str = ""  # of a thing, such as "marker:tip"; "body" for the body, "" for nothing
+    key: str = ""  # of a item, such as "marker:tip"; "body" for the body, "" for nothing
     rest: Point | None = None  # the place of the body under the pointer, in the rest shape [m]; None beside the body
-    world: Point  # where the pointer is [m]; in space on the thing that was hit, or in a plane through what is dragged
+    world: Point  # where the pointer is [m]; in space on the item that was hit, or in a plane through what is dragged
     shift: bool = False  # whether the shift key is down
 
 

@@ -113,7 +113,7 @@ def grown(network: Network, stages: int = 11) -> Network:
                 DesignStage(words=told, robot=begun if index < stages // 2 else robot, error=0.03 / (index + 1))
                 for index, told in enumerate(words)
             ),
-            certificate=Certificate(further=0.0021, paths=12345, slope=0.0123),
+            certificate=Certificate(further=0.0021, paths=12345, descent_rate=0.0123),
         ),
         alternatives=(
             Alternative(robot=robot, ik_results=(replace(reached, errors={"tip": 0.0345}),), expected_error=0.0345),

@@ -10,7 +10,7 @@ from hydrostat.plot import draw_portrait
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import SpacePane, object_surface
 from hydrostat.plot.picture_file import figure_pixels
-from hydrostat.robot import Obstacle, Robot, SkinSheet, get_material, rims
+from hydrostat.robot import Membrane, Obstacle, Robot, get_material, rims
 from hydrostat.simulation import with_obstacles
 
 AT, TO = (0.01, 0.02, 0.03), (0.05, 0.08, 0.06)
@@ -28,10 +28,10 @@ VOLUMES = {
 
 @pytest.mark.parametrize("shape", VOLUMES)
 def test_a_surface_lies_on_the_thing_and_looks_outward(shape: str) -> None:
-    thing, volume = VOLUMES[shape]
-    places, triangles = object_surface(thing)
+    obstacle, volume = VOLUMES[shape]
+    places, triangles = object_surface(obstacle)
     used = places[np.unique(triangles)]
-    assert np.abs(thing.field()(used).values).max() < 1e-4  # a capsule has corners on both balls, some a hair inside
+    assert np.abs(obstacle.field()(used).values).max() < 1e-4  # a capsule has corners on both balls, some a hair inside
     assert np.linalg.det(places[triangles]).sum() / 6 == pytest.approx(volume, rel=0.015)
 
 
@@ -47,7 +47,7 @@ def test_what_lies_behind_the_body_is_hidden_by_it() -> None:
         at = middle + sign * np.array([0.0, 1.2 * size[1], 0.0])
         ball = Obstacle(name="ball", shape="sphere", at=tuple(at), radius=0.3 * float(size.min()))
         assert rims(ball, robot)
-        drawn = figure_pixels(draw_portrait(robot, nodes, frame=frame, things=[ball]), dpi=80).astype(int)
+        drawn = figure_pixels(draw_portrait(robot, nodes, frame=frame, obstacles=[ball]), dpi=80).astype(int)
         changed.append(int((np.abs(drawn - bare).max(axis=2) > 40).sum()))
     assert changed[0] != changed[1]
     assert max(changed) > 20
@@ -60,7 +60,7 @@ def test_a_sheet_is_tinted_where_it_lies(robot: Robot) -> None:
     low, high = nodes.min(axis=0) - 0.01, nodes.max(axis=0) + 0.01
     middle = (*(low[:1] + high[:1]) / 2, *high[1:])
     half = {"shape": "box", "at": tuple(low.tolist()), "to": tuple(float(value) for value in middle)}
-    cover = SkinSheet(name="glove", material=get_material("ecoflex 00-30"), thickness=1e-3, **half)
+    cover = Membrane(name="glove", material=get_material("ecoflex 00-30"), thickness=1e-3, **half)
     views = [figure_pixels(draw_portrait(one, nodes), dpi=40) for one in (robot, replace(robot, sheets=(cover,)))]
     changed = np.abs(views[0].astype(int) - views[1]).max(axis=2) > 10
     body = views[0].min(axis=2) < 245

@@ -1,4 +1,4 @@
-"""Pictures of learning. Oracle: where matplotlib puts things."""
+"""Pictures of learning. Oracle: where matplotlib puts lines and words."""
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg

@@ -50,7 +50,7 @@ def test_stages_shown_are_spread_evenly(count: int, most: int) -> None:
 
 
 def test_the_certificate_in_words() -> None:
-    one = Certificate(further=0.0012, paths=12345, slope=0.0251)
+    one = Certificate(further=0.0012, paths=12345, descent_rate=0.0251)
     assert certificate_words(0.0034, one) == (
         "One more cable with a winch of its own, along the best path found by pricing 12,345 states, would promise "
         "1.20 mm rms instead of 3.40 mm rms. Moving one via point along one axis lowers the error by at most 0.025 mm "

@@ -10,7 +10,7 @@ from builders import strip_robot
 from hydrostat.ik import solve_ik
 from hydrostat.mechanics import NewtonOptions
 from hydrostat.plot.report_sensitivities import sensitivity_table
-from hydrostat.robot import BodyPart, Material, PoseTarget, Robot
+from hydrostat.robot import BodyPart, Load, Material, PoseTarget, Robot
 from hydrostat.simulation import Simulation
 
 
@@ -69,3 +69,11 @@ def test_markers_move_as_far_as_the_table_says() -> None:
             ends.append(simulation.solve(reached.pose.contractions, start=reached.pose).markers["tip"])
         told = 1e3 * np.linalg.norm(ends[0] - ends[1]) / 2e-3
         assert abs(float(table[label][2]) - told) <= 0.006, label
+    pushed, forces = [], 1e-4 * np.array([[1.0, 0.0], [0.0, 1.0]])
+    for force in (*forces, *-forces):
+        loaded = replace(robot, loads=(Load(name="push", marker="tip", force=(float(force[0]), float(force[1]))),))
+        simulation = Simulation(loaded, options=NewtonOptions(tolerance=1e-12))
+        pushed.append(simulation.solve(reached.pose.contractions, start=reached.pose).markers["tip"])
+    compliance = np.subtract(pushed[:2], pushed[2:]) / 2e-4
+    told = float(table["force on each marker in its softest direction"][2])
+    assert abs(told - 1e3 * 0.1 * np.linalg.norm(compliance, ord=2)) <= 0.006

@@ -18,6 +18,7 @@ import pytest
 from hydrostat.errors import InputError
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.jobs import Jobs, JobState, Slots
+from hydrostat.studio.worker_context import PRELOADED
 
 TIMEOUT = 60.0
 
@@ -275,6 +276,13 @@ def test_a_process_that_was_warmed_has_its_modules(heard: Heard) -> None:
     again.end()
     assert not again.results[0][1]
     assert heard.results[0][0] != again.results[0][0]
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="other systems do not fork")
+@pytest.mark.parametrize("name", PRELOADED)
+def test_a_process_begins_with_what_work_imports(heard: Heard, name: str) -> None:
+    heard.begin(works.loaded, name).end()
+    assert heard.results[0][1]
 
 
 @pytest.mark.skipif(not hasattr(os, "pidfd_open"), reason="waits for a process of another by a Linux call")

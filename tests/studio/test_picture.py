@@ -48,32 +48,32 @@ def test_the_scene_has_the_surface_of_the_body(robot: Robot) -> None:
 
 def test_a_frame_moves_what_is_stuck_to_the_body(robot: Robot) -> None:
     mesh = robot.body.mesh
-    things = robot_items(robot, vias=True)
-    picture = Picture(robot, things, 1)
+    items = robot_items(robot, vias=True)
+    picture = Picture(robot, items, 1)
     moved = mesh.nodes * 1.1 + 0.01
-    _, arrays = parse_message(picture.frame(moved, things, {}))
+    _, arrays = parse_message(picture.frame(moved, items, {}))
     head, _ = parse_message(picture.scene())
-    style = next(style for style in head["things"] if style["kind"] == "dot" and style["look"] == "marker")
+    style = next(style for style in head["items"] if style["kind"] == "dot" and style["look"] == "marker")
     marker = robot.markers[0]
     expected = locate(mesh, np.array([marker.at])).positions(moved)[0]
     assert np.allclose(arrays["points"][style["first"], : mesh.dim], expected, atol=1e-6)
-    assert len(arrays["loads"]) == sum(style["kind"] == "line" for style in head["things"])
+    assert len(arrays["loads"]) == sum(style["kind"] == "line" for style in head["items"])
 
 
 def test_places_in_the_world_and_loads_need_no_new_scene(robot: Robot) -> None:
     name, at = robot.markers[0].name, robot.markers[0].at
     away = tuple(value + 0.01 for value in at)
 
-    def things(target: tuple[float, ...], tension: float) -> list:
+    def items(target: tuple[float, ...], tension: float) -> list:
         tensions = np.full(len(robot.cables), tension)
         return [*robot_items(robot, tensions=tensions), *target_items({name: target}, {name: at})]
 
-    picture = Picture(robot, things(at, 0.0), 1)
-    assert picture.fits(robot, things(away, 5.0))
-    _, arrays = parse_message(picture.frame(robot.body.mesh.nodes, things(away, 5.0), {}))
+    picture = Picture(robot, items(at, 0.0), 1)
+    assert picture.fits(robot, items(away, 5.0))
+    _, arrays = parse_message(picture.frame(robot.body.mesh.nodes, items(away, 5.0), {}))
     assert np.allclose(arrays["points"][-1, : len(away)], away, atol=1e-6)
     assert not picture.fits(robot, robot_items(robot))
-    assert not picture.fits(robot, things(at, 0.0)[1:])
+    assert not picture.fits(robot, items(at, 0.0)[1:])
 
 
 def test_what_is_stuck_elsewhere_needs_a_new_scene(robot: Robot) -> None:
@@ -87,13 +87,13 @@ def test_ghosts_clouds_and_areas_come_along(robot: Robot) -> None:
     cloud = Cloud(name="reach", points=mesh.nodes[:5] + 1.0, color="#0b5fa5")
     ghost = Ghost(name="rest", nodes=mesh.nodes, color="#b4afbc")
     area = Area(key="zone:0", color="#c8243f", at=tuple(mesh.nodes[0].tolist()), radius=0.01)
-    things = [area, ghost, cloud]
-    picture = Picture(robot, things, 1)
+    items = [area, ghost, cloud]
+    picture = Picture(robot, items, 1)
     head, arrays = parse_message(picture.scene())
-    assert [style["kind"] for style in head["things"]] == ["area", "ghost", "cloud"]
+    assert [style["kind"] for style in head["items"]] == ["area", "ghost", "cloud"]
     assert np.allclose(arrays["cloud:reach"][:, : mesh.dim], mesh.nodes[:5] + 1.0, atol=1e-6)
     assert arrays["ghost:rest"].shape == arrays["rest"].shape
-    assert picture.fits(robot, things)
+    assert picture.fits(robot, items)
     assert not picture.fits(robot, [area, ghost, Cloud(name="reach", points=mesh.nodes[:6], color="#0b5fa5")])
 
 
@@ -125,7 +125,7 @@ def test_winches_have_the_marks_of_the_kit() -> None:
     """The sheet's own marks in the view and in the bars of Pose (finding 34); a color each, up to sixteen."""
     robot = gallery_robot("starfish")
     marks = winch_marks_of(robot)
-    dots = [thing for thing in robot_items(robot) if isinstance(thing, Dot) and thing.key.startswith("winch:")]
+    dots = [item for item in robot_items(robot) if isinstance(item, Dot) and item.key.startswith("winch:")]
     assert {dot.label: dot.short for dot in dots} == marks
     assert {bar.winch: bar.mark for bar in winch_bars(robot, rest_shape(robot), 20.0)} == marks
     many = [replace(robot.winches[0], name=f"winch_{number}") for number in range(16)]
@@ -137,13 +137,13 @@ def test_eyes_are_shown_and_go_along_with_the_body() -> None:
     robot = gallery_robot("starfish")
     eye = 0.01 * np.stack([np.cos(np.linspace(0, 6, 5000)), np.sin(np.linspace(0, 6, 5000))], axis=1)
     robot = replace(robot, body=replace(robot.body, marks=(eye,)))
-    things = robot_items(robot)
-    picture = Picture(robot, things, 1)
+    items = robot_items(robot)
+    picture = Picture(robot, items, 1)
     head, _ = parse_message(picture.scene())
-    (drawn,) = [thing for thing in head["things"] if thing.get("stroke") == Stroke.DRAWN]
+    (drawn,) = [item for item in head["items"] if item.get("stroke") == Stroke.DRAWN]
     assert drawn["count"] <= 2 * DETAIL, "no drawing makes each frame heavy"
     by = np.array([0.02, -0.01])
-    _, arrays = parse_message(picture.frame(robot.body.mesh.nodes + by, things, {}))
+    _, arrays = parse_message(picture.frame(robot.body.mesh.nodes + by, items, {}))
     points = arrays["points"][drawn["first"] : drawn["first"] + drawn["count"], :2]
     assert np.linalg.norm(points - by, axis=1) == pytest.approx(0.01, abs=1e-6)
     assert np.allclose(points[[0, -1]], eye[[0, -1]] + by, atol=1e-6)

@@ -34,8 +34,8 @@ def judged(judge: Judge, robot: Robot, wishes: Wishes = WISHES) -> tuple:
     return said
 
 
-def flags(things: object) -> set[tuple]:
-    return {(dot.at, dot.color, dot.about) for dot in things if isinstance(dot, Dot) and dot.look is Look.FLAG}  # type: ignore[attr-defined]
+def flags(items: object) -> set[tuple]:
+    return {(dot.at, dot.color, dot.about) for dot in items if isinstance(dot, Dot) and dot.look is Look.FLAG}  # type: ignore[attr-defined]
 
 
 def test_what_is_said_is_the_one_judgement_once_a_robot_rests(squid: Robot) -> None:

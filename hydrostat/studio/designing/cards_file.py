@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict
 from hydrostat.design import BuildCost
 from hydrostat.errors import InputError
 from hydrostat.fabrication import Demand
-from hydrostat.robot import Body, Cable, Face, PoseTarget, Robot, Winch
+from hydrostat.robot import Body, Cable, CableSide, PoseTarget, Robot, Winch
 from hydrostat.studio.designing.design_work import Candidate, PoseResult
 
 LARGEST = 8_000_000  # more bytes than these are not kept: cards that would go beyond are left out, the last first
@@ -40,7 +40,7 @@ class CardRecord(BaseModel):
 
     winches: tuple[Winch, ...]
     cables: tuple[Cable, ...]
-    face: Face | None
+    face: CableSide | None
     reaches: tuple[ReachRecord, ...]
     error: float
     built: float

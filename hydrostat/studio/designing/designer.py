@@ -237,15 +237,15 @@ class Designer(Stage):
         """The network that is shown, targets, zones."""
         shown, ease, reach = self.shown_robot, self._ease, self._reach()
         fits = ease is not None and len(ease.tensions) == len(shown.cables)
-        things = robot_items(
+        items = robot_items(
             shown, tensions=ease.tensions if ease and fits else None, scale=self.wishes.constraints.tension
         )
         there = reach is not None and ease is not None and not ease.moving
         for targets, color in self._targets():
-            things += target_items(targets, reach.places if reach is not None and there else {}, color=color)
+            items += target_items(targets, reach.places if reach is not None and there else {}, color=color)
         judge = self._document.judge
         flags = diagnostic_items(shown, judge.of(shown, self.wishes) or (), judge.chosen)
-        return [*things, *flags, *self.painter.scene_items()]
+        return [*items, *flags, *self.painter.scene_items()]
 
     def step(self, now: float) -> bool:
         """The body glides to the shape that is to be shown; what rests is judged, then one card after another."""

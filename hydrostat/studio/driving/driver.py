@@ -42,8 +42,8 @@ class Driver(Stage):
         chosen = () if self._pull is None else (f"winch:{self._pull[0]}",)
         robot, shape = self._document.robot, self.shape()
         options = {"scale": self.strongest, "carried": shape.carried}
-        things = robot_items(robot, tensions=shape.tensions, chosen=chosen, **options)
-        return things + contact_items(shape, robot.body.mesh.size)
+        items = robot_items(robot, tensions=shape.tensions, chosen=chosen, **options)
+        return items + contact_items(shape, robot.body.mesh.size)
 
     @property
     def motors(self) -> Motors:

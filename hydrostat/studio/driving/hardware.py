@@ -21,7 +21,7 @@ from hydrostat.control import (
     open_bus,
 )
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.robot import Robot
+from hydrostat.robot import PinDrive, Robot
 from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.view.scene_items import RobotShape
@@ -101,6 +101,7 @@ class Hardware:
         check_port(port)
         self.disconnect()
         robot, folder = self._document.robot, self._document.folder
+        PinDrive.require_none(robot.drives, "the motors of the studio")
         if not robot.winches:
             raise InputError("this robot has no winches. Press Design to find some")
         if port == EMULATED:

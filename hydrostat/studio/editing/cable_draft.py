@@ -64,15 +64,15 @@ def end_cable(robot: Robot, draft: CableDraft, mirror: Mirror | None = None) -> 
 
 def overlay(robot: Robot, draft: CableDraft | None, mirror: Mirror | None) -> list[SceneItem]:
     """Return the mirror axis and the cable draft, to be shown with the parts of the robot."""
-    things: list[SceneItem] = []
+    items: list[SceneItem] = []
     if mirror is not None and robot.body.mesh.dim == 2:
-        things.append(_axis(robot, mirror))
+        items.append(_axis(robot, mirror))
     if draft is not None:
-        things += _draft(robot, draft)
+        items += _draft(robot, draft)
         if mirror is not None and any(mirror.point(point) != point for point in draft.points):
             twin = CableDraft(points=tuple(mirror.point(point) for point in draft.points))
-            things += [thing for thing in _draft(robot, twin) if isinstance(thing, Strand)]
-    return things
+            items += [item for item in _draft(robot, twin) if isinstance(item, Strand)]
+    return items
 
 
 def _axis(robot: Robot, mirror: Mirror) -> Strand:
@@ -90,10 +90,10 @@ def _draft(robot: Robot, draft: CableDraft) -> list[SceneItem]:
     if draft.winch is not None:
         color = Color.of_winches(robot.winches).get(draft.winch, Color.INK)
     start, *rest = draft.points
-    things: list[SceneItem] = []
+    items: list[SceneItem] = []
     if rest:
-        things.append(Strand(points=draft.points, stroke=Stroke.CABLE, color=color, loose=-1))
+        items.append(Strand(points=draft.points, stroke=Stroke.CABLE, color=color, loose=-1))
     if draft.winch is None:
-        things.append(Dot(at=start, look=Look.WINCH, color=color, stuck=False))
+        items.append(Dot(at=start, look=Look.WINCH, color=color, stuck=False))
     vias = [Dot(at=point, look=Look.HANDLE, color=color, stuck=False) for point in rest]
-    return [*things, *vias]
+    return [*items, *vias]

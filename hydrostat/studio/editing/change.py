@@ -6,13 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from hydrostat import units
 from hydrostat.errors import InputError
 from hydrostat.given import check_name
 from hydrostat.robot import Body, Cable, Contact, Mount, Robot, Source, get_material, gravity_along
+from hydrostat.studio.editing.body_parts import fill, own_parts, read_body_again, with_body_parts
 from hydrostat.studio.editing.part import Kind, find_part
 
 FIELDS = {  # what can be changed of a part
+    Kind.REGION: ("filling",),
     Kind.PIN: ("radius", "stiffness"),
     Kind.WINCH: ("spool_radius", "travel", "release", "mount"),
     Kind.CABLE: ("winch", "stiffness", "slack", "friction", "sheathed", "spool_radius"),
@@ -35,6 +36,10 @@ def rename(robot: Robot, key: str, name: str) -> Robot:
             for cable, given in zip(robot.cables, robot.given_cable_names, strict=True)
         )
         return replace(robot, winches=winches, cables=cables)
+    if part is not None and part.kind is Kind.REGION:
+        regions = list(own_parts(robot.body))
+        regions[part.index] = replace(regions[part.index], name=name)
+        return with_body_parts(robot, regions)
     if part is not None and part.kind is Kind.CABLE:
         cables = list(robot.cables)
         cables[part.index] = replace(cables[part.index], name=name)
@@ -61,10 +66,14 @@ def change(robot: Robot, keys: Collection[str], **values: Any) -> Robot:
         if name in RANGES and value is not None:
             check_range(name, value, *RANGES[name])
     pins, winches, cables = list(robot.pins), list(robot.winches), list(robot.cables)
+    regions = list(own_parts(robot.body))
     for key in keys:
         part = find_part(robot, key)
         if part is None or not set(values) <= set(FIELDS.get(part.kind, ())):
             raise InputError(f"{key} has no {' or '.join(values)}")
+        if part.kind is Kind.REGION:
+            regions[part.index] = replace(regions[part.index], **fill(values["filling"]))
+            continue
         changed: list[Any] = {Kind.PIN: pins, Kind.WINCH: winches, Kind.CABLE: cables}[part.kind]
         if "winch" in values:  # a name made up of that of the winch before goes with it
             changed[part.index] = replace(changed[part.index], name=robot.given_cable_names[part.index])
@@ -74,6 +83,7 @@ def change(robot: Robot, keys: Collection[str], **values: Any) -> Robot:
         cables = [
             replace(cable, points=(places.get(cable.winch, cable.points[0]), *cable.points[1:])) for cable in cables
         ]
+    robot = with_body_parts(robot, regions) if "filling" in values else robot
     return replace(robot, pins=tuple(pins), winches=tuple(winches), cables=tuple(cables))
 
 
@@ -136,15 +146,5 @@ def remesh(
         return body
     if body.source is Source.MESH:
         raise InputError("this body is an imported mesh. Its element size cannot be changed")
-    given = {"file": body.file, "material": body.material, "element_size": element_size, "size": body.size}
-    if body.source is Source.SURFACE:
-        unit = float(units.unit_factor(robot.length_unit, units.LENGTH))
-        return (
-            Body.from_surface(body.content, unit=unit, volume=body.volume, **given)
-            .with_parts(body.parts)
-            .with_elements(body.elements)
-        )
-    assert body.thickness is not None
-    reading = {"inner": body.inner, "drawing_part": body.drawing_part}
-    drawn = Body.from_outline(body.content, thickness=body.thickness, volume=body.volume, **reading, **given)
-    return replace(drawn.with_parts(body.parts), plane=body.plane).with_elements(body.elements)
+    again = read_body_again(replace(robot, body=body), element_size=element_size)
+    return again.with_parts(body.parts).with_elements(body.elements)

@@ -9,6 +9,7 @@ from hydrostat.errors import InputError
 from hydrostat.given import Point
 from hydrostat.project import fresh_name
 from hydrostat.robot import Pin, Robot
+from hydrostat.studio.editing.body_parts import move_body_part, own_parts, with_body_parts
 from hydrostat.studio.editing.part import Kind, Mirror, find_part, place_of
 from hydrostat.studio.editing.place import move
 
@@ -21,7 +22,7 @@ def spots(robot: Robot, keys: Collection[str]) -> list[str]:
         if part is not None and part.kind is Kind.CABLE:
             last = len(robot.cables[part.index].points)
             found.update({f"via:{part.index}:{place}": None for place in range(1, last)})
-        elif part is not None:
+        elif place_of(robot, key) is not None:
             found[key] = None
     return list(found)
 
@@ -67,6 +68,7 @@ def _ways(dim: int) -> list[Point]:
 def _with_copies(robot: Robot, source: Robot, keys: Collection[str], way: Point) -> tuple[Robot, tuple[str, ...]]:
     made, names = [], {}
     pins, winches, cables, markers = list(robot.pins), list(robot.winches), list(robot.cables), list(robot.markers)
+    regions = list(own_parts(robot.body))
     parts = [part for key in dict.fromkeys(keys) if (part := find_part(source, key)) is not None]
     for part in parts:
         if part.kind is Kind.PIN:
@@ -77,6 +79,13 @@ def _with_copies(robot: Robot, source: Robot, keys: Collection[str], way: Point)
             name = fresh_name(_stem(marker.name), [other.name for other in markers])
             made.append(f"marker:{name}")
             markers.append(replace(marker, name=name, at=_beside(marker.at, way)))
+        elif part.kind is Kind.REGION:
+            region, middle = source.body.parts[part.index], place_of(source, f"region:{part.index}")
+            if middle is None:
+                raise InputError(f"part {region.name} cannot be copied here. Copy it in robot.toml")
+            made.append(f"region:{len(regions)}")
+            name = fresh_name(_stem(region.name), [other.name for other in regions])
+            regions.append(replace(move_body_part(region, middle, _beside(middle, way)), name=name))
         elif part.kind is Kind.WINCH:
             winch = source.winches[part.index]
             name = names[winch.name] = fresh_name(_stem(winch.name), [other.name for other in winches])
@@ -94,6 +103,7 @@ def _with_copies(robot: Robot, source: Robot, keys: Collection[str], way: Point)
         made.append(f"cable:{len(cables)}")
         cables.append(replace(cable, winch=names.get(cable.winch, cable.winch), points=points, name=""))
     grown = {"winches": tuple(winches), "cables": tuple(cables), "markers": tuple(markers)}
+    robot = robot if len(regions) == len(own_parts(robot.body)) else with_body_parts(robot, regions)
     return replace(robot, pins=tuple(pins), **grown), tuple(made)
 
 

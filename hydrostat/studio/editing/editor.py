@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from hydrostat.closed_set import parse_choice
+from hydrostat.design import Zone
 from hydrostat.errors import InputError
 from hydrostat.given import Point
 from hydrostat.robot import Robot
@@ -17,6 +18,7 @@ from hydrostat.studio.editing.change import change, remesh, rename, set_contact,
 from hydrostat.studio.editing.copies import paste_parts, shift_parts
 from hydrostat.studio.editing.hold import Hold, below_skin, inside, snap_to_grid, take_hold
 from hydrostat.studio.editing.part import Mirror, find_part, keys_of, name_of, place_of, title_of
+from hydrostat.studio.editing.part_brush import PartBrush, add_body_part
 from hydrostat.studio.editing.place import add_marker, add_pin, add_winch, move, remove
 from hydrostat.studio.editing.tools import ARROWS, KEYS, NUDGE, PUSH, Findings, Ruler, Tool, look_over
 from hydrostat.studio.jobs import Jobs
@@ -32,13 +34,13 @@ class Editor(Stage):
     def __init__(self, document: Document, jobs: Jobs) -> None:
         self._document, self._jobs = document, jobs
         self.tool = Tool.MOVE  # what the pointer does
-        self.mirror: Mirror | None = None  # both sides are edited alike about this plane; None: only what is touched
-        depth = 0.005  # how deep below the skin of a body in space winches and cables are placed at first [m]
-        self.depth = depth  # how deep below the skin of a body in space winches and cables are placed [m]
+        self.mirror: Mirror | None = None  # both sides are edited alike about this plane; None: no mirror
+        self.depth = 0.005  # how deep below the skin of a body in space winches and cables are placed [m]
         self.draft: CableDraft | None = None  # the cable that is being laid
         self.snap = 0.0  # places of parts are multiples of it [m]; 0: of a tenth of a millimeter
         self.ruler: Ruler | None = None  # laid with its tool; None: it is not
         self.several = False  # whether a press adds to what is selected, as with Shift: fingers have none
+        self.brush = PartBrush(document)  # paints regions of another material
         self._chosen: tuple[str, ...] = ()
         self._copied: tuple[Robot, tuple[str, ...]] | None = None
         self._hold: Hold | None = None
@@ -77,13 +79,13 @@ class Editor(Stage):
         flags = diagnostic_items(robot, judge.of(robot, self._document.work.wishes) or (), judge.chosen)
         ruler = [] if self.ruler is None else self.ruler.scene_items()
         parts = robot_items(robot, vias=True, chosen=chosen)
-        return [*parts, *flags, *overlay(robot, self.draft, self.mirror), *ruler]
+        regions = self.brush.scene_items(chosen, pickable=self.tool is Tool.MOVE)
+        return [*regions, *parts, *flags, *overlay(robot, self.draft, self.mirror), *ruler]
 
     def leave(self) -> None:
         """Drop what was begun: another stage is shown."""
         self.draft, self.ruler, self._hold, self._refused = None, None, None, ""
-
-    # What the panel does.
+        self.brush.drawn.clear()
 
     def choose(self, key: str, *, also: bool = False) -> None:
         """Select a part, "" for none; with `also` beside what is selected, or no longer if it is."""
@@ -113,19 +115,18 @@ class Editor(Stage):
         """Put in what was copied once more, beside it, and select that (InputError: nothing was copied, or no room)."""
         if self._copied is None:
             raise InputError("nothing copied. Select parts and press Ctrl C")
-        robot, keys = paste_parts(self._document.robot, *self._copied)
-        self._change(f"paste {plural(len(keys), 'part')}", robot)
-        self._copied = (robot, keys)
-        self._chosen = keys
-        self._ring()
+        self._copied = self._paste(*self._copied)
 
     def duplicate(self) -> None:
         """Copy what is selected, and paste it (InputError: there is no room beside it)."""
-        before = self._copied
         if self.selection:
-            self.copy()
-            self.paste()
-            self._copied = before
+            self._paste(self._document.robot, self.selection)
+
+    def _paste(self, source: Robot, keys: tuple[str, ...]) -> tuple[Robot, tuple[str, ...]]:
+        """Put in parts of a robot once more, and select them."""
+        robot, self._chosen = paste_parts(self._document.robot, source, keys)
+        self._change(f"paste {plural(len(self._chosen), 'part')}", robot)
+        return robot, self._chosen
 
     def nudge(self, step: float, axis: int) -> None:
         """Move what is selected by a step [m] along an axis (InputError: it would lie outside)."""
@@ -146,6 +147,7 @@ class Editor(Stage):
     def take(self, tool: Tool | str) -> None:
         """Take another tool; a cable that was begun is dropped (InputError: there is no tool of this name)."""
         self.tool, self.draft, self.ruler = parse_choice(Tool, tool, what="tool"), None, None
+        self.brush.drawn.clear()
         self._ring()
 
     def mirror_about(self, axis: str) -> None:
@@ -218,8 +220,9 @@ class Editor(Stage):
                 return
 
     def finish(self) -> None:
-        """End the cable at its last point (InputError: it has no stopper yet)."""
+        """End the cable at its last point (InputError: it has no stopper yet), or close the polygon that is painted."""
         if self.draft is None:
+            self._paint(self.brush.drawn.close())
             return
         laid = end_cable(self._document.robot, self.draft, self.mirror)
         self.draft = None
@@ -227,18 +230,15 @@ class Editor(Stage):
         self.choose(f"cable:{len(laid.cables) - 1}")
 
     def cancel(self) -> None:
-        """Drop the cable that was begun; else the selection, and take the first tool."""
-        if self.draft is not None:
-            self.draft = None
-            self._ring()
-        else:
-            self._chosen = ()
-            self.take(Tool.MOVE)
-
-    # What the pointer does.
+        """Drop the cable or polygon that was begun; else the selection, and take the first tool."""
+        if self.draft is None and not self.brush.drawn.corners:
+            self._chosen, self.tool = (), Tool.MOVE
+        self.take(self.tool)
 
     def grab(self, hit: Hit) -> bool:
         """Take hold of a part; of a cable, to draw a new via point out of it."""
+        if self.tool is Tool.PART:
+            return self.brush.grab(hit)
         robot = self._document.robot
         if self.draft is not None or self.tool is Tool.RULER or find_part(robot, hit.key) is None:
             return False
@@ -253,6 +253,7 @@ class Editor(Stage):
     def drag(self, hit: Hit) -> None:
         """Move what is held; where it cannot be it stays at the last place where it could."""
         if self._hold is None:
+            self.brush.drawn.drag(hit.rest or hit.world)
             return
         try:
             robot, hold = self._hold.drawn_out(self._document.robot)
@@ -269,6 +270,7 @@ class Editor(Stage):
     def release(self) -> None:
         """Let go."""
         self._hold, self._refused = None, ""
+        self._paint(self.brush.drawn.end())
 
     def click(self, hit: Hit) -> None:
         """Select, place a new part, or lay a cable one point further."""
@@ -276,13 +278,14 @@ class Editor(Stage):
             self._lay(hit)
         elif self.tool is Tool.RULER:
             self._measure(hit)
+        elif self.tool is Tool.PART:
+            self._paint(None if hit.rest is None else self.brush.drawn.click(hit.rest))
         elif self.tool is Tool.MOVE or find_part(self._document.robot, hit.key) is not None:
             key = hit.key if find_part(self._document.robot, hit.key) else ""
             self.choose(key, also=hit.shift or (self.several and bool(key)))
         else:
             at = self._clicked_place(hit, skin=self.tool is not Tool.WINCH)
-            add = {Tool.PIN: add_pin, Tool.MARKER: add_marker, Tool.WINCH: add_winch}[self.tool]
-            self._add(add, at)
+            self._add({Tool.PIN: add_pin, Tool.MARKER: add_marker, Tool.WINCH: add_winch}[self.tool], at)
 
     def key(self, name: str) -> bool:
         """Heed delete, escape, enter, arrows, the words of copying, and a letter for each tool."""
@@ -293,18 +296,17 @@ class Editor(Stage):
         elif arrow in ARROWS:
             sign, last = ARROWS[arrow]
             self.nudge(sign * (NUDGE if arrow == name else PUSH), -1 if last else 0)
+        elif name == "delete" and self.draft is not None:
+            self.draft = self.draft.shorter()
+            self._ring()
         elif name == "delete":
-            if self.draft is not None:
-                self.draft = self.draft.shorter()
-                self._ring()
-            else:
-                self.delete()
+            self.delete()
         elif name == "escape":
             if self.draft is not None and len(self.draft.points) > 1:
                 self.finish()
             else:
                 self.cancel()
-        elif name == "enter" and self.draft is not None:
+        elif name == "enter" and (self.draft is not None or self.brush.drawn.corners):
             self.finish()
         elif name in KEYS:
             self.take(KEYS[name])
@@ -324,8 +326,7 @@ class Editor(Stage):
     def _lay(self, hit: Hit) -> None:
         """One more point of the cable that is being laid."""
         robot, at = self._document.robot, self._clicked_place(hit, skin=False)
-        # a click so near to the last one, as a share of the body, ends a cable: it was a double click
-        same_click = 0.005
+        same_click = 0.005  # a click so near to the last one, as a share of the body, ends a cable: a double click
         if self.draft is None:
             self.draft = begin_cable(robot, at, hit.key)
             self._chosen = ()
@@ -366,17 +367,21 @@ class Editor(Stage):
 
     def _add(self, add: Callable[[Robot, Point], Robot], at: Point) -> None:
         """Place a new part, and its twin."""
-        robot = add(self._document.robot, at)
-        parts = {
-            Tool.PIN: f"pin:{len(robot.pins) - 1}",
-            Tool.MARKER: f"marker:{robot.markers[-1].name}" if robot.markers else "",
-            Tool.WINCH: f"winch:{robot.winches[-1].name}" if robot.winches else "",
-        }
-        key = parts[self.tool]
+        before = self._document.robot
+        robot = add(before, at)
+        key = next(key for key in keys_of(robot) if key not in keys_of(before))
         if self.mirror is not None and not self.mirror.holds(robot, key):
             robot = add(robot, self.mirror.point(at))
         self._change(f"add {self.tool}", robot)
         self.choose(key)
+
+    def _paint(self, zone: Zone | None) -> None:
+        """Add a region, if one was drawn, and its twin; it is selected, to be looked at."""
+        if zone is not None:
+            robot = add_body_part(self._document.robot, zone, self.brush.filling, self.mirror)
+            self._change("paint region", robot)
+            self.take(Tool.MOVE)
+            self.choose(keys_of(robot)[-1])
 
     def _both(self, robot: Robot, key: str) -> Collection[str]:
         """A part and its twin."""

@@ -7,6 +7,7 @@ import numpy as np
 
 from hydrostat.given import Point
 from hydrostat.robot import Robot
+from hydrostat.studio.editing.body_parts import middle_of, own_parts
 
 
 class Kind(StrEnum):
@@ -17,6 +18,7 @@ class Kind(StrEnum):
     CABLE = "cable"
     VIA = "via"
     MARKER = "marker"
+    REGION = "region"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,7 +26,7 @@ class Part:
     """One part of a robot."""
 
     kind: Kind  # what it is
-    index: int  # its number among the pins, winches, cables or markers
+    index: int  # its number among the pins, winches, cables, markers or regions of another material
     place: int = 0  # number of the point of a cable, for a via point
 
 
@@ -35,6 +37,8 @@ def find_part(robot: Robot, key: str) -> Part | None:
         return _parse_numbered(Kind.PIN, rest, len(robot.pins))
     if kind == Kind.CABLE:
         return _parse_numbered(Kind.CABLE, rest, len(robot.cables))
+    if kind == Kind.REGION:
+        return _parse_numbered(Kind.REGION, rest, len(own_parts(robot.body)))
     if kind == Kind.WINCH:
         return _parse_named(Kind.WINCH, rest, [winch.name for winch in robot.winches])
     if kind == Kind.MARKER:
@@ -48,7 +52,7 @@ def find_part(robot: Robot, key: str) -> Part | None:
 
 
 def place_of(robot: Robot, key: str) -> Point | None:
-    """Place of a part [m]; None for a cable, which is in many places, and for what there is not."""
+    """Place of a part [m]; None for a cable, which is in many places, a region without one, and what there is not."""
     part = find_part(robot, key)
     if part is None or part.kind is Kind.CABLE:
         return None
@@ -57,22 +61,26 @@ def place_of(robot: Robot, key: str) -> Point | None:
         return pin.at if pin.at is not None else tuple(np.mean(pin.box or (), axis=0).tolist())
     if part.kind is Kind.VIA:
         return robot.cables[part.index].points[part.place]
+    if part.kind is Kind.REGION:
+        return middle_of(robot.body.parts[part.index], robot.body.mesh.dim)
     return (robot.winches if part.kind is Kind.WINCH else robot.markers)[part.index].at
 
 
 def keys_of(robot: Robot) -> list[str]:
-    """The keys of all pins, winches, cables and markers, each cable after its winch."""
+    """The keys of all pins, winches, cables, markers and regions, each cable after its winch."""
     keys = [f"pin:{index}" for index in range(len(robot.pins))]
     for winch in robot.winches:
         keys.append(f"winch:{winch.name}")
         keys += [f"cable:{index}" for index, cable in enumerate(robot.cables) if cable.winch == winch.name]
-    return [*keys, *(f"marker:{marker.name}" for marker in robot.markers)]
+    keys += [f"marker:{marker.name}" for marker in robot.markers]
+    return [*keys, *(f"region:{index}" for index in range(len(own_parts(robot.body))))]
 
 
 def name_of(robot: Robot, key: str) -> str:
-    """Name of a winch, cable or marker; "" for what has none."""
+    """Name of a winch, cable, marker or region; "" for what has none."""
     part = find_part(robot, key)
     named = {Kind.WINCH: robot.winches, Kind.CABLE: robot.cables, Kind.MARKER: robot.markers}
+    named[Kind.REGION] = robot.body.parts
     return "" if part is None or part.kind not in named else named[part.kind][part.index].name
 
 
@@ -82,7 +90,7 @@ def title_of(key: str) -> str:
     if kind == Kind.VIA:
         index, _, place = rest.partition(":")
         return f"point {place} of cable {int(index) + 1}"
-    return f"{kind} {int(rest) + 1}" if kind in (Kind.PIN, Kind.CABLE) else f"{kind} {rest}"
+    return f"{kind} {int(rest) + 1}" if kind in (Kind.PIN, Kind.CABLE, Kind.REGION) else f"{kind} {rest}"
 
 
 def _parse_numbered(kind: Kind, text: str, count: int) -> Part | None:
@@ -134,6 +142,7 @@ class Mirror:
             Kind.PIN: [f"pin:{index}" for index in range(len(robot.pins))],
             Kind.WINCH: [f"winch:{winch.name}" for winch in robot.winches],
             Kind.MARKER: [f"marker:{marker.name}" for marker in robot.markers],
+            Kind.REGION: [f"region:{index}" for index in range(len(own_parts(robot.body)))],
         }[part.kind]
         return self._nearest(robot, key, [other for other in keys if other != key])
 
@@ -152,12 +161,12 @@ class Mirror:
 
     def _nearest(self, robot: Robot, key: str, keys: list[str]) -> str | None:
         at = place_of(robot, key)
-        places = [place_of(robot, other) for other in keys]
-        if at is None or not places:
+        placed = [(other, place) for other in keys if (place := place_of(robot, other)) is not None]
+        if at is None or not placed:
             return None
-        gaps = np.linalg.norm(np.array(places) - np.array(self.point(at)), axis=1)
+        gaps = np.linalg.norm(np.array([place for _, place in placed]) - np.array(self.point(at)), axis=1)
         least = int(np.argmin(gaps))
-        return keys[least] if gaps[least] <= SAME * robot.body.mesh.size else None
+        return placed[least][0] if gaps[least] <= SAME * robot.body.mesh.size else None
 
     def _cable(self, robot: Robot, index: int) -> int | None:
         own = np.array([self.point(point) for point in robot.cables[index].points])

@@ -9,6 +9,7 @@ from hydrostat.errors import InputError
 from hydrostat.given import Point
 from hydrostat.project import fresh_name
 from hydrostat.robot import Cable, Marker, Pin, PoseTarget, Robot, Winch
+from hydrostat.studio.editing.body_parts import move_body_part, own_parts, with_body_parts
 from hydrostat.studio.editing.part import Kind, Part, find_part, place_of
 
 
@@ -68,7 +69,7 @@ def nearest_segment(points: tuple[Point, ...], at: Point) -> int:
 def move(robot: Robot, places: Mapping[str, Point]) -> Robot:
     """The same robot with parts, by key, elsewhere [m]; cables stay at their winches (InputError: not there)."""
     pins, winches, markers = list(robot.pins), list(robot.winches), list(robot.markers)
-    points = [list(cable.points) for cable in robot.cables]
+    points, regions = [list(cable.points) for cable in robot.cables], list(own_parts(robot.body))
     for key, at in places.items():
         part, before = find_part(robot, key), place_of(robot, key)
         if part is None or before is None:
@@ -79,15 +80,18 @@ def move(robot: Robot, places: Mapping[str, Point]) -> Robot:
             markers[part.index] = replace(robot.markers[part.index], at=at)
         elif part.kind is Kind.VIA:
             points[part.index][part.place] = at
+        elif part.kind is Kind.REGION:
+            regions[part.index] = move_body_part(regions[part.index], before, at)
         else:
             winch = robot.winches[part.index]
             winches[part.index] = replace(winch, at=at)
             for own, cable in zip(points, robot.cables, strict=True):
                 if cable.winch == winch.name:
                     own[0] = _along(cable.points[0], before, at)
-    return replace(
+    moved = replace(
         robot, pins=tuple(pins), winches=tuple(winches), cables=_rerun(robot.cables, points), markers=tuple(markers)
     )
+    return moved if tuple(regions) == own_parts(robot.body) else with_body_parts(moved, regions)
 
 
 def _pin(pin: Pin, before: Point, at: Point) -> Pin:
@@ -122,6 +126,9 @@ def remove(robot: Robot, keys: Collection[str]) -> Robot:
     winches = tuple(winch for index, winch in enumerate(robot.winches) if index not in gone[Kind.WINCH])
     names = {winch.name for winch in winches}
     markers = tuple(marker for index, marker in enumerate(robot.markers) if index not in gone[Kind.MARKER])
+    if gone[Kind.REGION]:
+        kept = [part for index, part in enumerate(own_parts(robot.body)) if index not in gone[Kind.REGION]]
+        robot = with_body_parts(robot, kept)
     return replace(
         robot,
         pins=tuple(pin for index, pin in enumerate(robot.pins) if index not in gone[Kind.PIN]),

@@ -8,7 +8,7 @@ from typing import Any
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.fabrication import KitOptions
 from hydrostat.ik import IKOptions, IKResult, solve_ik
-from hydrostat.robot import Face, Robot
+from hydrostat.robot import CableSide, Robot
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.document import Document
 from hydrostat.studio.exporting.download import Download, archive, file_name, work_files, work_zip
@@ -83,7 +83,7 @@ class Exporter(Stage):
             self.options = self._document.judge.options = options
             self._document.bell.ring(Topic.JOB, Topic.SCENE)
 
-    def lay_cables(self, face: Face) -> None:
+    def lay_cables(self, face: CableSide) -> None:
         """Have the cables of a flat robot run there, one step to undo (InputError: a robot in space)."""
         robot = self._document.robot
         if face is not robot.face:

@@ -38,7 +38,7 @@ class LetGo(_Message):
 
 
 class Seen(_Message):
-    """The last of `count` frames that came is on the screen: others may come."""
+    """So many more frames have come: others may follow."""
 
     kind: Literal["seen"]
     count: Annotated[int, Field(ge=1, le=1000)] = 1

@@ -181,7 +181,7 @@ class Rooms:
         if oldest is None or (oldest.visited and time.monotonic() - oldest.seen < IDLE):
             greedy, rooms = count.most_common(1)[0]
             if rooms < count[address] + 2:
-                raise RoomsFullError(f"all {MOST} rooms of this studio are in use. Try again in a minute")
+                raise RoomsFullError(f"all {MOST} rooms of this studio are in use")
             oldest = min((room for room in self._rooms.values() if room.address == greedy), key=lambda room: room.seen)
         del self._rooms[oldest.key]
         Thread(target=oldest.close, name="closing a room", daemon=True).start()

@@ -138,7 +138,7 @@ def _full(words: str) -> Response:
     """Page that says why there is no room, and asks again by itself."""
     head = f'<meta charset="utf-8"><meta http-equiv="refresh" content="{RETRY}"><title>{TITLE}</title>'
     style = "font: 18px system-ui, sans-serif; max-width: 30em; margin: 20vh auto; padding: 0 1em; color: #2b2833"
-    text = f"{words[0].upper()}{words[1:]}: this page asks again every {RETRY} seconds."
+    text = f"{words[0].upper()}{words[1:]}. This page tries again every {RETRY} seconds."
     page = f'<!doctype html><html lang="en">{head}<p style="{style}">{text}</p></html>'
     return HTMLResponse(page, status_code=503, headers={"retry-after": str(RETRY)})
 

@@ -113,7 +113,7 @@ class Stream:
 
 
 class _Screen:
-    """One screen: a few pictures may be on their way to it, then it is sent the latest when it has painted one."""
+    """One screen: a few pictures may be on their way to it, then it is sent the latest when one has arrived."""
 
     def __init__(self, socket: WebSocket, watching: bool) -> None:
         self.socket, self.watching = socket, watching
@@ -129,9 +129,9 @@ class _Screen:
 
     async def write(self, latest: Callable[[], Shown | None]) -> None:
         """Send pictures until the connection ends."""
-        # So many pictures may be on their way to a screen: one that is painted, and one that comes next
+        # So many pictures may be on their way to a screen: one that arrives, and one that comes next
         most_flying = 2
-        timeout = 2.0  # A screen that has not painted for so long [s] gets the next picture anyway
+        timeout = 2.0  # A screen that has answered nothing for so long [s], such as a hidden one, gets the next anyway
         while True:
             await self.fresh.wait()
             while self._flying >= most_flying:

@@ -8,6 +8,7 @@ from typing import Any
 from nicegui import events, ui
 
 from hydrostat.studio.bell import Topic
+from hydrostat.studio.editing.tools import Tool
 from hydrostat.studio.face.dialogs import SaveDialog, may_leave
 from hydrostat.studio.face.page import HEARTBEAT, Toasts, WindowPage, icon_button
 from hydrostat.studio.face.panels.design_panel import design_panel
@@ -120,13 +121,15 @@ def build_window(
     brush = [False]
 
     def follow_brush() -> None:
-        wanted = session.stage is StageName.DESIGN and session.designer.painter.paint is not None
+        designs, edits = session.stage is StageName.DESIGN, session.stage is StageName.EDIT
+        paints = session.designer.painter.paint is not None
+        wanted = (designs and paints) or (edits and session.editor.tool is Tool.PART)
         if brush != [wanted]:
             brush[:] = [wanted]
             page.viewport.set_brush(wanted)
 
     page.on(Topic.STAGE, show_stage, lasting=True)
-    page.on(Topic.SCENE, follow_brush, lasting=True)
+    page.on((Topic.STAGE, Topic.SCENE), follow_brush, lasting=True)
     page.on(Topic.LOCK, show_lock, lasting=True)
     dark.on_value_change(lambda: page.viewport.set_dark(bool(dark.value)))
     ui.keyboard(on_key=lambda event: _key(page, event, ask_save, ask_help), repeating=False)
@@ -173,6 +176,7 @@ def _header(
     def show_stage() -> None:
         for stage, button in buttons.items():
             button.classes(**{"add" if stage is session.stage else "remove": "studio-stage-now"})
+            button.props(f'aria-pressed="{str(stage is session.stage).lower()}"')
             button.set_enabled(stage is StageName.START or session.document.is_open)
 
     def show_robot() -> None:

@@ -1,7 +1,6 @@
 """`CableProposals`: cables for the pose that is held just now, found again and again by a process of its own (X1)."""
 
 from dataclasses import dataclass
-from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from threading import Condition, Thread
 
@@ -14,6 +13,7 @@ from hydrostat.studio.jobs import Slots
 from hydrostat.studio.posing.movers import MuscleMover, same_physics
 from hydrostat.studio.posing.pose_state import Mode, PoseTargets
 from hydrostat.studio.posing.proposal_work import MusclePulls, Proposal, ProposalInput, propose_work
+from hydrostat.studio.worker_context import start_worker
 from hydrostat.units import plural
 
 LOST = "the proposal process crashed. Switch proposals off and on again"
@@ -158,11 +158,7 @@ class CableProposals:
 
     def _follow(self, run: int) -> None:
         """Ask and listen until it is switched off; the process ends when its pipe is closed."""
-        context = get_context("spawn")
-        here, there = context.Pipe()
-        process = context.Process(target=propose_work, args=(there,), daemon=True)
-        process.start()
-        there.close()
+        process, here = start_worker(propose_work)
         known: Robot | None = None
         try:
             while (question := self._next(run)) is not None:

@@ -89,6 +89,7 @@ class Mover(ABC):
 
 
 MISSED = 0.01  # from this distance on a target counts as out of reach, in sizes of the body
+NEAREST = "target not reached: the winches get no closer from here"
 
 
 class MuscleMover(Mover):
@@ -251,9 +252,8 @@ class CableMover(Mover):
             self._near, self._still, self._updates, more = True, 0, max_cable_updates - last, True
         notes = reached.active_limits
         if not more and max(reached.errors.values()) > MISSED * self.robot.body.mesh.size:
-            stopped = reached.status is not IKStatus.ITERATION_LIMIT
-            ended = reached if stopped else replace(reached, status=IKStatus.LOCAL_OPTIMUM)
-            notes = (*notes, ended.outcome)
+            nearest = reached.status in (IKStatus.ITERATION_LIMIT, IKStatus.LOCAL_OPTIMUM, IKStatus.STALLED)
+            notes = (*notes, NEAREST if nearest else str(reached.status))
         if not more:
             notes = (*notes, *self._band())
         shape = self._shape(dict(reached.errors), notes, settled=not more)

@@ -123,7 +123,7 @@ def fit_photographs(report: Report, robot: Robot, measurements: Measurements) ->
         InputError: see `identify`.
     """
     report.progress("Fitting", 0, 0)
-    found = identify(robot, measurements, progress=lambda line: report.progress(line, 0, 0))
+    found = identify(robot, measurements, progress=report.progress)
     fitted = found.fitted
     values = []
     for parameter in fitted.model.parameters:

@@ -171,9 +171,12 @@ class Autosave:
                 else:
                     self._write(self._folder, self._document.work, state[2])
             except (OSError, HydrostatError) as error:
+                is_file = isinstance(error, OSError)
+                why = f"{error.filename or self._folder}: {error.strerror}" if is_file else str(error)
+                problem = f"Autosave failed: {why}".splitlines()[0]
                 if not self.problem:
-                    logging.getLogger("hydrostat").exception("autosave failed")
-                self.problem = f"autosave failed: {error}".splitlines()[0]
+                    logging.getLogger("hydrostat").warning(problem)
+                self.problem = problem
                 return False
             self._kept, self.problem = state, ""
         return True

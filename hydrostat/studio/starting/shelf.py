@@ -130,7 +130,7 @@ def _words(folder: Path) -> str:
     try:
         table = tomllib.loads((folder / "robot.toml").read_text(encoding="utf-8"))
         kind = "flat" if "outline" in table["body"] else "in space"
-        parts = [plural(len(table.get(key, [])), key) for key in ("winch", "cable")]
+        parts = [plural(len(table.get(key, [])), key) for key in ("winch", "cable", "drive")]
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return ""
     return ", ".join([kind, *(part for part in parts if not part.startswith("0 "))])

@@ -1,4 +1,4 @@
-"""`with_touches`, `touch_things`: where a body touches itself and obstacles, or passes through itself, as shown."""
+"""`with_touches`, `touch_items`: where a body touches itself and obstacles, or passes through itself, as shown."""
 
 from dataclasses import replace
 
@@ -34,7 +34,7 @@ def contact_items(shape: RobotShape, size: float) -> list[SceneItem]:
         shape: shape of the body.
         size: size of the body [m].
     """
-    things: list[SceneItem] = []
+    items: list[SceneItem] = []
     hardest = max((touch.strength for touch in shape.touches), default=0.0)
     most = 8  # places that are shown, the hardest
     longest = 0.05  # arrow at the hardest, in sizes of the body
@@ -45,8 +45,8 @@ def contact_items(shape: RobotShape, size: float) -> list[SceneItem]:
         way = longest * size * np.sqrt(touch.strength / hardest) * touch.force / touch.strength
         ends = (touch.place - way, touch.place + way) if touch.obstacle is None else (touch.place, touch.place + way)
         line = tuple(tuple(end.tolist()) for end in ends)
-        things.append(Strand(points=line, stroke=Stroke.RIM, color=TOUCH, loose=-1))
-        things.append(Dot(at=tuple(touch.place.tolist()), look=Look.TOUCH, color=TOUCH, stuck=False))
+        items.append(Strand(points=line, stroke=Stroke.RIM, color=TOUCH, loose=-1))
+        items.append(Dot(at=tuple(touch.place.tolist()), look=Look.TOUCH, color=TOUCH, stuck=False))
     if shape.crossing is not None:
-        things.append(Dot(at=shape.crossing, look=Look.FLAG, color=Color.ERROR, label=OFF, stuck=False, chosen=True))
-    return things
+        items.append(Dot(at=shape.crossing, look=Look.FLAG, color=Color.ERROR, label=OFF, stuck=False, chosen=True))
+    return items

@@ -49,7 +49,7 @@ def parse_message(message: bytes) -> tuple[dict[str, Any], dict[str, np.ndarray]
 
 Table = Float[np.ndarray, "rows 3"]
 
-KINDS_OF_THINGS = {Dot: "dot", Strand: "line", Ghost: "ghost", Cloud: "cloud", Area: "area"}  # what a screen calls each
+KINDS_OF_ITEMS = {Dot: "dot", Strand: "line", Ghost: "ghost", Cloud: "cloud", Area: "area"}  # what a screen calls each
 
 
 class Picture:
@@ -57,25 +57,25 @@ class Picture:
 
     A *scene* is sent once, a *frame* for each new place. Every point has three coordinates, the last 0 in a flat body.
 
-    The head of a scene: kind "scene", serial, name, dim, things (a list; each with kind, its style, and "first" and
+    The head of a scene: kind "scene", serial, name, dim, items (a list; each with kind, its style, and "first" and
     "count" of its points in the frame's `points`). Arrays: `rest` and `faces` of the shown surface; `rim`, edges of a
     flat body; for each ghost `ghost:NAME` and for each cloud `cloud:NAME`.
 
     The head of a frame: kind "frame", scene (the serial of the scene it belongs to), and what the session adds. Arrays:
-    `nodes` of the surface, `points` of all things, `loads` of the lines, `values` of the nodes (0 to 1) if colored.
+    `nodes` of the surface, `points` of all items, `loads` of the lines, `values` of the nodes (0 to 1) if colored.
     """
 
-    def __init__(self, robot: Robot, things: Sequence[SceneItem], serial: int) -> None:
-        """The picture of a robot's body with things beside it; the serial names the scene."""
+    def __init__(self, robot: Robot, items: Sequence[SceneItem], serial: int) -> None:
+        """The picture of a robot's body with items beside it; the serial names the scene."""
         self.robot, self.serial = robot, serial
-        self.signature = _signature(robot, things)
+        self.signature = _signature(robot, items)
         self._shown = _shown_nodes(robot)
-        self._stuck_flags, self._rest = _stuck_flags(things, robot.body.mesh.dim)
-        self._things = tuple(things)
+        self._stuck_flags, self._rest = _stuck_flags(items, robot.body.mesh.dim)
+        self._items = tuple(items)
 
-    def fits(self, robot: Robot, things: Sequence[SceneItem]) -> bool:
+    def fits(self, robot: Robot, items: Sequence[SceneItem]) -> bool:
         """Return True if these need no new scene: only places in the world and loads may differ."""
-        return robot.body.mesh is self.robot.body.mesh and _signature(robot, things) == self.signature
+        return robot.body.mesh is self.robot.body.mesh and _signature(robot, items) == self.signature
 
     def scene(self) -> bytes:
         """All that stays the same."""
@@ -86,28 +86,28 @@ class Picture:
         arrays = {"rest": _in_space(mesh.nodes[self._shown]), "faces": renumber[faces]}
         if mesh.dim == 2:
             arrays["rim"] = renumber[mesh.boundary]
-        for thing in self._things:
-            if isinstance(thing, Ghost):
-                arrays[f"ghost:{thing.name}"] = _in_space(thing.nodes[self._shown])
-            elif isinstance(thing, Cloud):
-                arrays[f"cloud:{thing.name}"] = _in_space(thing.points)
+        for item in self._items:
+            if isinstance(item, Ghost):
+                arrays[f"ghost:{item.name}"] = _in_space(item.nodes[self._shown])
+            elif isinstance(item, Cloud):
+                arrays[f"cloud:{item.name}"] = _in_space(item.points)
         head = {
             "kind": "scene",
             "serial": self.serial,
             "name": self.robot.name,
             "dim": mesh.dim,
-            "things": _styles(self._things),
+            "items": _styles(self._items),
         }
         return packet(head, arrays)
 
     def frame(
-        self, nodes: Nodes, things: Sequence[SceneItem], head: dict[str, Any], *, values: Vector | None = None
+        self, nodes: Nodes, items: Sequence[SceneItem], head: dict[str, Any], *, values: Vector | None = None
     ) -> bytes:
-        """All that changes: nodes [m] and their colors from 0 to 1, if any, places and loads of things, words."""
-        points = np.concatenate([_points(thing) for thing in things] or [np.zeros((0, nodes.shape[1]))])
+        """All that changes: nodes [m] and their colors from 0 to 1, if any, places and loads of items, words."""
+        points = np.concatenate([_points(item) for item in items] or [np.zeros((0, nodes.shape[1]))])
         if self._stuck_flags.any():
             points[self._stuck_flags] = self._anchors.positions(nodes) + self._beside
-        loads = np.array([thing.load for thing in things if isinstance(thing, Strand)], dtype=np.float32)
+        loads = np.array([item.load for item in items if isinstance(item, Strand)], dtype=np.float32)
         arrays = {"nodes": _in_space(nodes[self._shown]), "points": _in_space(points), "loads": loads}
         if values is not None:
             arrays["values"] = values[self._shown].astype(np.float32)
@@ -136,76 +136,76 @@ def _in_space(points: Points) -> Table:
     return table
 
 
-def _points(thing: SceneItem) -> Points:
-    """The points of a thing that are sent with every frame."""
-    if isinstance(thing, Dot):
-        return np.array([thing.at], dtype=float)
-    if isinstance(thing, Strand):
-        return np.array(thing.points, dtype=float)
-    if isinstance(thing, Area):
-        return np.array(thing.outline or (thing.at,), dtype=float)
-    return np.zeros((0, (thing.nodes if isinstance(thing, Ghost) else thing.points).shape[1]))
+def _points(item: SceneItem) -> Points:
+    """The points of a item that are sent with every frame."""
+    if isinstance(item, Dot):
+        return np.array([item.at], dtype=float)
+    if isinstance(item, Strand):
+        return np.array(item.points, dtype=float)
+    if isinstance(item, Area):
+        return np.array(item.outline or (item.at,), dtype=float)
+    return np.zeros((0, (item.nodes if isinstance(item, Ghost) else item.points).shape[1]))
 
 
-def _stuck_flags(things: Sequence[SceneItem], dim: int) -> tuple[np.ndarray, Points]:
+def _stuck_flags(items: Sequence[SceneItem], dim: int) -> tuple[np.ndarray, Points]:
     """Return flags of the points that are stuck to the body, and all points as given [m]."""
     flags, places = [np.zeros(0, dtype=bool)], [np.zeros((0, dim))]
-    for thing in things:
-        points = _points(thing)
+    for item in items:
+        points = _points(item)
         stuck = np.ones(len(points), dtype=bool)
-        if isinstance(thing, Dot):
-            stuck[:] = thing.stuck
-        elif isinstance(thing, Strand):
-            stuck[: len(points) if thing.loose < 0 else thing.loose] = False
+        if isinstance(item, Dot):
+            stuck[:] = item.stuck
+        elif isinstance(item, Strand):
+            stuck[: len(points) if item.loose < 0 else item.loose] = False
         flags.append(stuck)
         places.append(points)
     return np.concatenate(flags), np.concatenate(places)
 
 
-def _styles(things: Sequence[SceneItem]) -> list[dict[str, Any]]:
+def _styles(items: Sequence[SceneItem]) -> list[dict[str, Any]]:
     """Return the style of each object, and the range of its points."""
     styles, first = [], 0
-    for thing in things:
-        count = len(_points(thing))
-        style = {"kind": KINDS_OF_THINGS[type(thing)], "first": first, "count": count, **_style(thing)}
+    for item in items:
+        count = len(_points(item))
+        style = {"kind": KINDS_OF_ITEMS[type(item)], "first": first, "count": count, **_style(item)}
         styles.append(style)
         first += count
     return styles
 
 
-def _style(thing: SceneItem) -> dict[str, Any]:
-    if isinstance(thing, Dot):
+def _style(item: SceneItem) -> dict[str, Any]:
+    if isinstance(item, Dot):
         return {
-            "key": thing.key, "look": str(thing.look), "color": thing.color, "label": thing.label,
-            "short": thing.short, "chosen": thing.chosen, "radius": thing.radius, "about": thing.about,
-            "faint": thing.faint,
+            "key": item.key, "look": str(item.look), "color": item.color, "label": item.label,
+            "short": item.short, "chosen": item.chosen, "radius": item.radius, "about": item.about,
+            "faint": item.faint,
         }  # fmt: skip
-    if isinstance(thing, Strand):
+    if isinstance(item, Strand):
         return {
-            "key": thing.key, "stroke": str(thing.stroke), "color": thing.color, "chosen": thing.chosen,
-            "faint": thing.faint,
+            "key": item.key, "stroke": str(item.stroke), "color": item.color, "chosen": item.chosen,
+            "faint": item.faint,
         }  # fmt: skip
-    if isinstance(thing, Area):
+    if isinstance(item, Area):
         return {
-            "key": thing.key, "color": thing.color, "radius": thing.radius, "label": thing.label,
-            "chosen": thing.chosen,
+            "key": item.key, "color": item.color, "radius": item.radius, "label": item.label,
+            "chosen": item.chosen,
         }  # fmt: skip
-    return {"name": thing.name, "color": thing.color}
+    return {"name": item.name, "color": item.color}
 
 
-def _signature(robot: Robot, things: Sequence[SceneItem]) -> tuple[Any, ...]:
+def _signature(robot: Robot, items: Sequence[SceneItem]) -> tuple[Any, ...]:
     """Return the content of a scene as a tuple: equal tuples mean an equal scene."""
     marks: list[Any] = [robot.name]
-    for thing in things:
-        if isinstance(thing, Dot):
-            marks.append((*_style(thing).values(), thing.at if thing.stuck else None))
-        elif isinstance(thing, Strand):
-            stuck = thing.points[thing.loose :] if thing.loose >= 0 else len(thing.points)
-            marks.append((*_style(thing).values(), thing.loose, stuck))
-        elif isinstance(thing, Area):
-            marks.append((*_style(thing).values(), thing.at, thing.outline))
+    for item in items:
+        if isinstance(item, Dot):
+            marks.append((*_style(item).values(), item.at if item.stuck else None))
+        elif isinstance(item, Strand):
+            stuck = item.points[item.loose :] if item.loose >= 0 else len(item.points)
+            marks.append((*_style(item).values(), item.loose, stuck))
+        elif isinstance(item, Area):
+            marks.append((*_style(item).values(), item.at, item.outline))
         else:
-            marks.append((thing.name, thing.color, id(thing.nodes if isinstance(thing, Ghost) else thing.points)))
+            marks.append((item.name, item.color, id(item.nodes if isinstance(item, Ghost) else item.points)))
     return tuple(marks)
 
 
@@ -230,14 +230,14 @@ class Show:
         self,
         robot: Robot,
         shape: RobotShape,
-        things: Sequence[SceneItem],
+        items: Sequence[SceneItem],
         head: dict[str, Any],
         values: Vector | None = None,
     ) -> Shown:
-        """A robot in a shape, with things, words to go along with the frame, and values of nodes for colors."""
-        if self._picture is None or not self._picture.fits(robot, things):
+        """A robot in a shape, with items, words to go along with the frame, and values of nodes for colors."""
+        if self._picture is None or not self._picture.fits(robot, items):
             self._serial += 1
-            self._picture = Picture(robot, things, self._serial)
+            self._picture = Picture(robot, items, self._serial)
             self._scene = self._picture.scene()
-        frame = self._picture.frame(shape.nodes, things, head, values=values)
+        frame = self._picture.frame(shape.nodes, items, head, values=values)
         return Shown(self._serial, self._scene, frame)

@@ -61,31 +61,31 @@ def robot_items(
     a cable is a dot that can be taken hold of; else only its stopper is shown.
     """
     colors, marks = Color.of_winches(robot.winches), winch_marks_of(robot)
-    things: list[SceneItem] = [
+    items: list[SceneItem] = [
         Strand(points=tuple(map(tuple, line.tolist())), stroke=Stroke.RIM, color=Color.MUTED, loose=-1)
         for line in obstacle_lines(obstacles_in_pose(robot, carried))
     ]
-    things += [*_part_items(robot), *_drawing_items(robot)]
+    items += [*_part_items(robot), *_drawing_items(robot)]
     held = pinned_points(robot)
     if len(held):
-        things.append(Cloud(name="pins", points=held, color=PIN))
+        items.append(Cloud(name="pins", points=held, color=PIN))
     for index, pin in enumerate(robot.pins):
         middle = pin.at if pin.at is not None else tuple(np.mean(pin.box or (), axis=0).tolist())
         key = f"pin:{index}"
-        things.append(Dot(key=key, at=middle, look=Look.PIN, color=PIN, chosen=key in chosen, radius=pin.radius))
+        items.append(Dot(key=key, at=middle, look=Look.PIN, color=PIN, chosen=key in chosen, radius=pin.radius))
     loads = np.zeros(len(robot.cables)) if tensions is None else np.clip(tensions / scale, 0.0, 1.0)
     for index, cable in enumerate(robot.cables):
-        things += _cable(robot, index, cable, colors[cable.winch], float(loads[index]), chosen)
+        items += _cable(robot, index, cable, colors[cable.winch], float(loads[index]), chosen)
     for index, cable in enumerate(robot.cables):
-        things += _vias(index, cable, colors[cable.winch], chosen, every=vias)
+        items += _vias(index, cable, colors[cable.winch], chosen, every=vias)
     for winch in robot.winches:
         key = f"winch:{winch.name}"
-        things.append(_winch(winch, colors[winch.name], marks[winch.name], chosen=key in chosen))
+        items.append(_winch(winch, colors[winch.name], marks[winch.name], chosen=key in chosen))
     for marker in robot.markers:
         key = f"marker:{marker.name}"
         dot = Dot(key=key, at=marker.at, look=Look.MARKER, color=MARKER, label=marker.name, chosen=key in chosen)
-        things.append(dot)
-    return things
+        items.append(dot)
+    return items
 
 
 def proposal_items(robot: Robot, own: Collection[Winch] = ()) -> list[SceneItem]:
@@ -94,20 +94,20 @@ def proposal_items(robot: Robot, own: Collection[Winch] = ()) -> list[SceneItem]
     Winches that stand on own ones, which are drawn already, are left out.
     """
     colors, marks = Color.of_winches(robot.winches), winch_marks_of(robot)
-    things: list[SceneItem] = []
+    items: list[SceneItem] = []
     for index, cable in enumerate(robot.cables):
-        things += _cable(robot, index, cable, colors[cable.winch], 0.0, ())
+        items += _cable(robot, index, cable, colors[cable.winch], 0.0, ())
     for index, cable in enumerate(robot.cables):
-        things += _vias(index, cable, colors[cable.winch], (), every=False)
-    things += [
+        items += _vias(index, cable, colors[cable.winch], (), every=False)
+    items += [
         _winch(winch, colors[winch.name], marks[winch.name], chosen=False)
         for winch in robot.winches
         if all(math.dist(winch.at, other.at) > 2 * other.spool_radius for other in own)
     ]
     return [
-        replace(thing, key="", label="", faint=True) if isinstance(thing, Dot) else replace(thing, key="", faint=True)
-        for thing in things
-        if isinstance(thing, Dot | Strand)
+        replace(item, key="", label="", faint=True) if isinstance(item, Dot) else replace(item, key="", faint=True)
+        for item in items
+        if isinstance(item, Dot | Strand)
     ]
 
 
@@ -154,13 +154,13 @@ def target_items(
     targets: Mapping[str, Point], places: Mapping[str, Point], *, chosen: str = "", color: str = Color.INK
 ) -> list[SceneItem]:
     """Rings where markers should go [m], keys "target:tip", the chosen one selected, with lines from where they are."""
-    things: list[SceneItem] = []
+    items: list[SceneItem] = []
     for name, target in targets.items():
         key = f"target:{name}"
         if name in places:
-            things.append(Strand(points=(places[name], target), stroke=Stroke.MISS, color=color, loose=-1))
-        things.append(Dot(key=key, at=target, look=Look.TARGET, color=color, stuck=False, chosen=key == chosen))
-    return things
+            items.append(Strand(points=(places[name], target), stroke=Stroke.MISS, color=color, loose=-1))
+        items.append(Dot(key=key, at=target, look=Look.TARGET, color=color, stuck=False, chosen=key == chosen))
+    return items
 
 
 def prediction_items(shape: RobotShape) -> list[SceneItem]:
@@ -177,14 +177,14 @@ def prediction_items(shape: RobotShape) -> list[SceneItem]:
 def _cable(robot: Robot, index: int, cable: Cable, color: str, load: float, chosen: Collection[str]) -> list[SceneItem]:
     """The run of a cable, its sheaths over it."""
     key, loose = f"cable:{index}", int(robot.winch(cable.winch).mount is Mount.WORLD)
-    things: list[SceneItem] = [
+    items: list[SceneItem] = [
         Strand(key=key, points=cable.points, stroke=Stroke.CABLE, color=color, loose=loose, load=load,
              chosen=key in chosen)
     ]  # fmt: skip
     for start, end in cable.sheathed:
         hidden = loose if start == 0 else 0
-        things.append(Strand(points=cable.points[start : end + 1], stroke=Stroke.SHEATH, color=color, loose=hidden))
-    return things
+        items.append(Strand(points=cable.points[start : end + 1], stroke=Stroke.SHEATH, color=color, loose=hidden))
+    return items
 
 
 def _vias(index: int, cable: Cable, color: str, chosen: Collection[str], *, every: bool) -> list[SceneItem]:
@@ -246,12 +246,12 @@ BRIEF = 64  # letters that are written beside a ring
 def diagnostic_items(robot: Robot, said: Iterable[Diagnostic], chosen: Diagnostic | None = None) -> list[SceneItem]:
     """A ring at each place of each finding; its words are seen where it is chosen, or its part under the pointer."""
     loose = {f"winch:{winch.name}" for winch in robot.winches if winch.mount is Mount.WORLD}
-    things: list[SceneItem] = []
+    items: list[SceneItem] = []
     most = 24  # rings of one finding: more say no more
     for finding in said:
         words = in_words(finding.text)
         label = words if len(words) <= BRIEF else words[: BRIEF - 1].rsplit(" ", 1)[0].rstrip(",;:") + " …"
-        things += [
+        items += [
             Dot(
                 at=place.at,
                 look=Look.FLAG,
@@ -263,4 +263,4 @@ def diagnostic_items(robot: Robot, said: Iterable[Diagnostic], chosen: Diagnosti
             )
             for place in finding.places[:most]
         ]
-    return things
+    return items

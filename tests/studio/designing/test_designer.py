@@ -124,9 +124,9 @@ def test_a_candidate_is_shown_in_its_pose_and_at_rest(done: Studio) -> None:
     np.testing.assert_allclose(designer.shape().nodes, solved.nodes, atol=1e-5)
     np.testing.assert_allclose(designer.shape().tensions, solved.tensions, atol=1e-2)
     assert designer.shape().errors == best.reaches[0].errors
-    targets = [thing for thing in designer.scene_items() if isinstance(thing, Dot) and thing.look is Look.TARGET]
+    targets = [item for item in designer.scene_items() if isinstance(item, Dot) and item.look is Look.TARGET]
     assert [dot.at for dot in targets] == list(best.robot.pose("up").targets.values())
-    cables = [thing for thing in designer.scene_items() if isinstance(thing, Strand) and thing.key.startswith("cable")]
+    cables = [item for item in designer.scene_items() if isinstance(item, Strand) and item.key.startswith("cable")]
     assert [line.points for line in cables] == [cable.points for cable in best.robot.cables]
     designer.show(best.number)
     done.settle()
@@ -174,15 +174,13 @@ def test_stopped_it_returns_the_best_so_far(fresh: Studio, strip: Robot) -> None
     designer.design()
     with pytest.raises(InputError, match="Designing cables is still running"):
         designer.design()
-    assert [
-        thing for thing in designer.scene_items() if isinstance(thing, Strand) and thing.key.startswith("cable")
-    ] == []
+    assert [item for item in designer.scene_items() if isinstance(item, Strand) and item.key.startswith("cable")] == []
     fresh.until(lambda: designer.run is not None and len(designer.run.trail) > 0)
     assert designer.running
     fresh.settle()
     run = designer.run
     assert run is not None
-    cables = [thing for thing in designer.scene_items() if isinstance(thing, Strand) and thing.key.startswith("cable")]
+    cables = [item for item in designer.scene_items() if isinstance(item, Strand) and item.key.startswith("cable")]
     assert len(cables) > 0
     assert len(run.best.cables) == run.trail[-1].cables
     fresh.session.go(StageName.POSE)
@@ -284,8 +282,8 @@ def test_targets_of_several_poses_are_told_apart(fresh: Studio) -> None:
     """Oracle: where the poses want their marker; one pose alone has no color."""
 
     def rings() -> dict[tuple[float, ...], str]:
-        things = fresh.designer.scene_items()
-        return {thing.at: thing.color for thing in things if isinstance(thing, Dot) and thing.look is Look.TARGET}
+        items = fresh.designer.scene_items()
+        return {item.at: item.color for item in items if isinstance(item, Dot) and item.look is Look.TARGET}
 
     assert rings() == {(0.18, 0.06): Color.INK}
     fresh.designer.wish_pose("down", True)

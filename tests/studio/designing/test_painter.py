@@ -10,8 +10,9 @@ from hydrostat.design import Zone
 from hydrostat.errors import InputError
 from hydrostat.project import Paint, Work
 from hydrostat.studio.bell import Bell
-from hydrostat.studio.designing.painter import LEAST, Painter, lasso
+from hydrostat.studio.designing.painter import Painter
 from hydrostat.studio.document import Document
+from hydrostat.studio.shape_draft import LEAST, lasso
 from hydrostat.studio.stage import Hit
 from hydrostat.studio.view.picture import Picture
 from hydrostat.studio.view.scene_items import Area, Dot, Look, Strand
@@ -95,12 +96,20 @@ def test_a_line_that_crosses_itself_keeps_its_larger_part() -> None:
     assert set(zone.outline) == {(-0.04, -0.04), (0.0, 0.0), (-0.04, 0.04)}
 
 
+def test_clicked_sides_that_cross_keep_the_larger_part(painter: Painter, document: Document) -> None:
+    painter.take(Paint.KEEP_OUT)
+    for corner in ((-0.04, -0.04), (0.02, 0.02), (0.02, -0.02), (-0.04, 0.04)):
+        painter.click(on_body(*corner))
+    painter.key("enter")
+    assert set(painted(document)[0][1].outline) == {(-0.04, -0.04), (0.0, 0.0), (-0.04, 0.04)}
+
+
 def test_a_line_round_nothing_is_refused(painter: Painter, document: Document) -> None:
     painter.take(Paint.KEEP_OUT)
     with pytest.raises(InputError, match="encloses no area"):
         stroke(painter, on_body(0.0, 0.0, shift=True), on_body(0.02, 0.0))
     assert painted(document) == ()
-    assert not [thing for thing in painter.scene_items() if isinstance(thing, Strand)]
+    assert not [item for item in painter.scene_items() if isinstance(item, Strand)]
 
 
 def test_clicks_set_corners_and_the_first_one_closes(painter: Painter, document: Document) -> None:
@@ -214,7 +223,7 @@ def test_in_space_zones_are_balls() -> None:
     zone = painted(document)[0][1]
     assert (zone.at, zone.radius) == (place, pytest.approx(0.02))
     painter.take(Paint.KEEP_OUT)
-    with pytest.raises(InputError, match="zones of a body in space are balls"):
+    with pytest.raises(InputError, match="only balls can be drawn"):
         painter.click(on_body(*place))
 
 

@@ -10,13 +10,15 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from hydrostat.robot import gallery_folder
+
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
 RUN = "from hydrostat.cli.main import main; main()"
 
 TIMEOUT = 300_000
-"""The most that a test waits for one thing [ms]: the machine may be busy, and compile."""
+"""The most that a test waits for anything [ms]: the machine may be busy, and compile."""
 
 Open = Callable[..., "Page"]
 
@@ -41,6 +43,14 @@ def running(*arguments: str, state: Path, cache: Path) -> Iterator[str]:
 def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Where programs keep what can be made again: empty at first, and warm for all but the first studio."""
     return tmp_path_factory.mktemp("cache")
+
+
+@pytest.fixture(scope="session")
+def rooms(tmp_path_factory: pytest.TempPathFactory, cache: Path) -> Iterator[str]:
+    """Address of one studio for many tests: whoever opens it has a room with a starfish."""
+    starfish = str(gallery_folder("starfish"))
+    with running(starfish, "--rooms", state=tmp_path_factory.mktemp("rooms"), cache=cache) as address:
+        yield address
 
 
 @pytest.fixture

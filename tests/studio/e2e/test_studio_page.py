@@ -31,8 +31,8 @@ def go(page: "Page", stage: str) -> None:
 
 def place(page: "Page", key: str) -> tuple[float, float]:
     """Where a sign is in the window [pixels]."""
-    page.wait_for_function("key => window.__app.things.some(thing => thing.key === key)", arg=key)
-    found = page.evaluate("key => window.__app.things.find(thing => thing.key === key)", key)
+    page.wait_for_function("key => window.__app.items.some(item => item.key === key)", arg=key)
+    found = page.evaluate("key => window.__app.items.find(item => item.key === key)", key)
     return found["x"], found["y"]
 
 
@@ -136,76 +136,76 @@ def cards_are_whole(page: "Page") -> None:
     page.set_viewport_size(before)
 
 
-def test_from_the_gallery_to_a_kit_and_back(studio: Studio, window: Open, tmp_path: Path) -> None:
-    with studio() as address:
-        page = window(address)
-        complaints: list[str] = []
-        listen(page, complaints)
-        page.get_by_role("button", name=re.compile("^starfish")).first.click()
-        wait_for_view(page)
+def test_from_the_gallery_to_a_kit_and_back(rooms: str, window: Open, tmp_path: Path) -> None:
+    page = window(rooms)
+    complaints: list[str] = []
+    listen(page, complaints)
+    go(page, "start")
+    page.get_by_role("button", name=re.compile("^starfish")).first.click()
+    wait_for_view(page)
 
-        go(page, "pose")
-        start = place(page, "marker:right")
-        drag(page, "marker:right", -30, -60)
-        # the held marker has a target, an error in millimeters, and cables that pull it most of the way there
-        page.get_by_label("Release right").wait_for()
-        page.wait_for_function(
-            "([x, y]) => { const [marker, target] = ['marker', 'target'].map("
-            "kind => __app.things.find(t => t.key === kind + ':right'));"
-            " return Math.hypot(target.x - marker.x, target.y - marker.y)"
-            " < 0.6 * Math.hypot(target.x - x, target.y - y); }",
-            arg=start,
-        )
-        page.get_by_label("Name of the pose").fill("hello")
-        page.get_by_label("Name of the pose").press("Enter")
-        page.get_by_text("hello", exact=True).first.wait_for()
+    go(page, "pose")
+    start = place(page, "marker:right")
+    drag(page, "marker:right", -30, -60)
+    # the held marker has a target, an error in millimeters, and cables that pull it most of the way there
+    page.get_by_label("Release right").wait_for()
+    page.wait_for_function(
+        "([x, y]) => { const [marker, target] = ['marker', 'target'].map("
+        "kind => __app.items.find(t => t.key === kind + ':right'));"
+        " return Math.hypot(target.x - marker.x, target.y - marker.y)"
+        " < 0.6 * Math.hypot(target.x - x, target.y - y); }",
+        arg=start,
+    )
+    page.get_by_label("Name of the pose").fill("hello")
+    page.get_by_label("Name of the pose").press("Enter")
+    page.get_by_text("hello", exact=True).first.wait_for()
 
-        go(page, "design")
-        only_pose(page, "hello")  # one pose and three cables take seconds
-        for left in (5, 4, 3):
-            page.get_by_test_id("fewer-cables").click()
-            page.get_by_test_id("design-cables").get_by_text(str(left), exact=True).wait_for()
-        page.get_by_test_id("design-go").click()
-        page.get_by_test_id("design-card").first.wait_for()
-        cards_are_whole(page)
-        page.get_by_test_id("design-accept").click()
-        page.wait_for_function(
-            "__app.things.some(t => t.key === 'winch:winch_1')"
-        )  # a designed one: the gallery's are left, right, feet
+    go(page, "design")
+    only_pose(page, "hello")  # one pose and three cables take seconds
+    for left in (5, 4, 3):
+        page.get_by_test_id("fewer-cables").click()
+        page.get_by_test_id("design-cables").get_by_text(str(left), exact=True).wait_for()
+    page.get_by_test_id("design-go").click()
+    page.get_by_test_id("design-card").first.wait_for()
+    cards_are_whole(page)
+    page.get_by_test_id("design-accept").click()
+    page.wait_for_function(
+        "__app.items.some(t => t.key === 'winch:winch_1')"
+    )  # a designed one: the gallery's are left, right, feet
 
-        go(page, "drive")
-        add_key(page, 0.0, 0.0)
-        add_key(page, 1.0, 15.0)
-        seek(page, 0.0)
-        moved = page.evaluate("__app.things.filter(t => t.key.startsWith('marker:'))")
-        page.get_by_label("Play", exact=True).click()
-        page.wait_for_function(
-            "moved => __app.things.some(t => { const m = moved.find(m => m.key === t.key);"
-            " return m && Math.hypot(t.x - m.x, t.y - m.y) > 4; })",
-            arg=moved,
-        )
+    go(page, "drive")
+    add_key(page, 0.0, 0.0)
+    add_key(page, 1.0, 15.0)
+    seek(page, 0.0)
+    moved = page.evaluate("__app.items.filter(t => t.key.startsWith('marker:'))")
+    page.get_by_label("Play", exact=True).click()
+    page.wait_for_function(
+        "moved => __app.items.some(t => { const m = moved.find(m => m.key === t.key);"
+        " return m && Math.hypot(t.x - m.x, t.y - m.y) > 4; })",
+        arg=moved,
+    )
 
-        go(page, "export")
-        page.get_by_test_id("make-kit").click()
-        download, forced = page.get_by_test_id(re.compile("^download-.*kit.*zip")), page.get_by_test_id("make-forced")
-        download.or_(forced).first.wait_for()
-        # what is designed for this very pose need not fit the motors: then the reasons are told
-        if forced.is_visible():
-            forced.click()
-        with page.expect_download() as caught:
-            download.click()
-        kit = zipfile.ZipFile(io.BytesIO(Path(caught.value.path()).read_bytes()))
-        assert kit.testzip() is None
-        assert any(name.endswith("assembly_sheet.pdf") for name in kit.namelist())
+    go(page, "export")
+    page.get_by_test_id("make-kit").click()
+    download, forced = page.get_by_test_id(re.compile("^download-.*kit.*zip")), page.get_by_test_id("make-forced")
+    download.or_(forced).first.wait_for()
+    # what is designed for this very pose need not fit the motors: then the reasons are told
+    if forced.is_visible():
+        forced.click()
+    with page.expect_download() as caught:
+        download.click()
+    kit = zipfile.ZipFile(io.BytesIO(Path(caught.value.path()).read_bytes()))
+    assert kit.testzip() is None
+    assert any(name.endswith("assembly_sheet.pdf") for name in kit.namelist())
 
-        undo_all(page)
-        go(page, "edit")
-        gallery = load_robot(gallery_folder("starfish"))
-        count = len(gallery.winches)
-        page.wait_for_function("n => __app.things.filter(t => t.key.startsWith('winch:')).length === n", arg=count)
-        assert page.get_by_label("Undo", exact=True).is_disabled()
-        quiet(page)
-        assert complaints == []
+    undo_all(page)
+    go(page, "edit")
+    gallery = load_robot(gallery_folder("starfish"))
+    count = len(gallery.winches)
+    page.wait_for_function("n => __app.items.filter(t => t.key.startsWith('winch:')).length === n", arg=count)
+    assert page.get_by_label("Undo", exact=True).is_disabled()
+    quiet(page)
+    assert complaints == []
 
 
 def test_two_windows_see_the_same_and_come_back(studio: Studio, window: Open) -> None:
@@ -214,27 +214,27 @@ def test_two_windows_see_the_same_and_come_back(studio: Studio, window: Open) ->
         for page in (one, two):
             wait_for_view(page)
         drag(one, "marker:top", 60, 10)
-        one.wait_for_function("__app.things.some(t => t.key === 'target:top')")
-        two.wait_for_function("__app.things.some(t => t.key === 'target:top')")
+        one.wait_for_function("__app.items.some(t => t.key === 'target:top')")
+        two.wait_for_function("__app.items.some(t => t.key === 'target:top')")
         still = "n => new Promise(done => setTimeout(() => done(__app.painted === n), 700))"
         while not one.evaluate(still, one.evaluate("__app.painted")):
             pass  # the body has not come to rest yet
         assert np.allclose(place(one, "marker:top"), place(two, "marker:top"), atol=1.0)
         go(two, "edit")
-        one.wait_for_function("!__app.things.some(t => t.key === 'target:top')")
+        one.wait_for_function("!__app.items.some(t => t.key === 'target:top')")
         # the line of one window breaks; the window comes back by itself, to where the other is by then
         two.evaluate("window.__app.view.link.url = new URL('/nowhere', location.href)")
         two.evaluate("window.__app.view.link.socket.close()")
         two.wait_for_function("!__app.connected")
         go(one, "pose")
-        one.wait_for_function("__app.things.some(t => t.key === 'target:top')")
+        one.wait_for_function("__app.items.some(t => t.key === 'target:top')")
         two.evaluate("window.__app.view.link.url = Object.assign(new URL('/stream', location.href), {protocol: 'ws:'})")
-        two.wait_for_function("__app.connected && __app.things.some(t => t.key === 'target:top')")
+        two.wait_for_function("__app.connected && __app.items.some(t => t.key === 'target:top')")
         quiet(one)
         quiet(two)
 
 
-def test_a_dirty_scan_is_mended_and_becomes_a_robot(studio: Studio, window: Open, tmp_path: Path) -> None:
+def test_a_dirty_scan_is_mended_and_becomes_a_robot(rooms: str, window: Open, tmp_path: Path) -> None:
     import trimesh
 
     ball = trimesh.creation.icosphere(subdivisions=3, radius=30.0)
@@ -243,56 +243,54 @@ def test_a_dirty_scan_is_mended_and_becomes_a_robot(studio: Studio, window: Open
     torn.faces[40:60] = torn.faces[40:60, ::-1]
     file = tmp_path / "torn ball.stl"
     torn.export(file)
-    with studio() as address:
-        page = window(address)
-        page.locator("[data-testid=upload] input[type=file]").set_input_files(str(file))
-        page.get_by_text(re.compile("hole", re.IGNORECASE)).first.wait_for()
-        page.get_by_role("button", name=re.compile("make.*robot|begin", re.IGNORECASE)).first.click()
-        wait_for_view(page)
-        assert page.evaluate("__app.scenes") >= 1
-        quiet(page)
+    page = window(rooms)
+    go(page, "start")
+    page.locator("[data-testid=upload] input[type=file]").set_input_files(str(file))
+    page.get_by_text(re.compile("hole", re.IGNORECASE)).first.wait_for()
+    page.get_by_role("button", name=re.compile("make.*robot|begin", re.IGNORECASE)).first.click()
+    wait_for_view(page)
+    assert page.evaluate("__app.scenes") >= 1
+    quiet(page)
 
 
-def test_cables_are_proposed_for_what_was_dragged_before(studio: Studio, window: Open) -> None:
+def test_cables_are_proposed_for_what_was_dragged_before(rooms: str, window: Open) -> None:
     """Switching on asks for the pose that is held, twice; *Keep* gives a word and cannot be pressed again."""
-    with studio(str(gallery_folder("starfish"))) as address:
-        page = window(address)
-        wait_for_view(page)
-        page.get_by_role("button", name="Muscles", exact=True).click()
-        drag(page, "marker:right", -30, -60)
-        switch, error = page.get_by_text("Propose cables while dragging"), page.get_by_text("mm as-built error")
-        for state in ("visible", "hidden", "visible"):
-            switch.click()
-            error.wait_for(state=state)
-        page.get_by_role("button", name="Keep", exact=True).click()
-        page.get_by_text(re.compile(r"^kept \d winch")).wait_for()
-        assert page.get_by_role("button", name="Kept", exact=True).is_disabled()
-        quiet(page)
+    page = window(rooms)
+    wait_for_view(page)
+    page.get_by_role("button", name="Muscles", exact=True).click()
+    drag(page, "marker:right", -30, -60)
+    switch, error = page.get_by_text("Propose cables while dragging"), page.get_by_text("mm as-built error")
+    for state in ("visible", "hidden", "visible"):
+        switch.click()
+        error.wait_for(state=state)
+    page.get_by_role("button", name="Keep", exact=True).click()
+    page.get_by_text(re.compile(r"^kept \d winch")).wait_for()
+    assert page.get_by_role("button", name="Kept", exact=True).is_disabled()
+    quiet(page)
 
 
-def test_keys(studio: Studio, window: Open) -> None:
-    with studio(str(gallery_folder("starfish"))) as address:
-        page = window(address)
-        wait_for_view(page)
-        page.keyboard.press("?")
-        page.get_by_text("Show the tour").wait_for()
-        page.keyboard.press("Escape")
-        page.get_by_text("Show the tour").wait_for(state="hidden")
-        drag(page, "marker:top", 50, 0)
-        page.wait_for_function("__app.things.some(t => t.key === 'target:top')")
-        page.keyboard.press("r")
-        page.wait_for_function("!__app.things.some(t => t.key === 'target:top')")
-        go(page, "edit")
-        page.wait_for_function("__app.things.some(t => t.key === 'via:0:1')")
-        start = place(page, "marker:top")
-        drag(page, "marker:top", 0, 25)
-        page.wait_for_function("y => __app.things.find(t => t.key === 'marker:top').y > y + 15", arg=start[1])
-        page.keyboard.press("z")
-        page.wait_for_function("y => Math.abs(__app.things.find(t => t.key === 'marker:top').y - y) < 1", arg=start[1])
-        page.keyboard.press("Shift+Z")
-        page.wait_for_function("y => __app.things.find(t => t.key === 'marker:top').y > y + 15", arg=start[1])
-        space_plays_and_does_not_press_the_last_button_again(page)
-        quiet(page)
+def test_keys(rooms: str, window: Open) -> None:
+    page = window(rooms)
+    wait_for_view(page)
+    page.keyboard.press("?")
+    page.get_by_text("Show the tour").wait_for()
+    page.keyboard.press("Escape")
+    page.get_by_text("Show the tour").wait_for(state="hidden")
+    drag(page, "marker:top", 50, 0)
+    page.wait_for_function("__app.items.some(t => t.key === 'target:top')")
+    page.keyboard.press("r")
+    page.wait_for_function("!__app.items.some(t => t.key === 'target:top')")
+    go(page, "edit")
+    page.wait_for_function("__app.items.some(t => t.key === 'via:0:1')")
+    start = place(page, "marker:top")
+    drag(page, "marker:top", 0, 25)
+    page.wait_for_function("y => __app.items.find(t => t.key === 'marker:top').y > y + 15", arg=start[1])
+    page.keyboard.press("z")
+    page.wait_for_function("y => Math.abs(__app.items.find(t => t.key === 'marker:top').y - y) < 1", arg=start[1])
+    page.keyboard.press("Shift+Z")
+    page.wait_for_function("y => __app.items.find(t => t.key === 'marker:top').y > y + 15", arg=start[1])
+    space_plays_and_does_not_press_the_last_button_again(page)
+    quiet(page)
 
 
 def space_plays_and_does_not_press_the_last_button_again(page: "Page") -> None:
@@ -311,18 +309,17 @@ def space_plays_and_does_not_press_the_last_button_again(page: "Page") -> None:
     assert page.evaluate("Quasar.Dark.isActive"), "the last button was pressed again"
 
 
-def test_the_tour_has_five_steps_and_comes_once(studio: Studio, window: Open) -> None:
-    with studio(str(gallery_folder("fish_tail"))) as address:
-        page = window(address, tour=True)
-        tour = page.get_by_test_id("tour")
-        tour.wait_for()
-        for step in range(1, 6):
-            tour.get_by_text(f"{step} of 5").wait_for()
-            tour.get_by_role("button", name=re.compile("Next|Start")).click()
-        tour.wait_for(state="hidden")
-        page.reload()
-        wait_for_view(page)
-        assert not page.get_by_test_id("tour").is_visible()
+def test_the_tour_has_five_steps_and_comes_once(rooms: str, window: Open) -> None:
+    page = window(rooms, tour=True)
+    tour = page.get_by_test_id("tour")
+    tour.wait_for()
+    for step in range(1, 6):
+        tour.get_by_text(f"{step} of 5").wait_for()
+        tour.get_by_role("button", name=re.compile("Next|Start")).click()
+    tour.wait_for(state="hidden")
+    page.reload()
+    wait_for_view(page)
+    assert not page.get_by_test_id("tour").is_visible()
 
 
 def test_saving_keeps_comments(studio: Studio, window: Open, tmp_path: Path) -> None:
@@ -334,7 +331,7 @@ def test_saving_keeps_comments(studio: Studio, window: Open, tmp_path: Path) -> 
         page = window(address)
         wait_for_view(page)
         go(page, "edit")
-        page.wait_for_function("__app.things.some(t => t.key === 'via:0:1')")
+        page.wait_for_function("__app.items.some(t => t.key === 'via:0:1')")
         drag(page, "marker:top", 0, 25)
         page.keyboard.press("Control+s")
         page.get_by_text(re.compile("^saved in")).wait_for()
@@ -345,79 +342,85 @@ def test_saving_keeps_comments(studio: Studio, window: Open, tmp_path: Path) -> 
         quiet(page)
 
 
-def test_every_stage_shows_a_body_in_space_without_a_complaint(studio: Studio, window: Open) -> None:
-    with studio(str(gallery_folder("tongue"))) as address:
-        page = window(address)
-        complaints: list[str] = []
-        listen(page, complaints)
-        wait_for_view(page)
-        for stage, words in (
-            ("edit", "Parts"), ("pose", "Cables"), ("design", "Design"), ("drive", "Rest"), ("export", "Kit"),
-            ("start", "Gallery"),
-        ):  # fmt: skip
-            go(page, stage)
-            page.get_by_text(words).first.wait_for()
-        assert complaints == []
+def test_every_stage_shows_a_body_in_space_without_a_complaint(rooms: str, window: Open) -> None:
+    """And none is wider than the screen of a phone."""
+    page, phone = window(rooms), {"width": 390, "height": 844}
+    wide = page.viewport_size
+    assert wide is not None
+    complaints: list[str] = []
+    listen(page, complaints)
+    go(page, "start")
+    page.get_by_role("button", name=re.compile("^tongue")).first.click()
+    wait_for_view(page)
+    for stage, words in (
+        ("edit", "Parts"), ("pose", "Cables"), ("design", "Design"), ("drive", "Rest"), ("export", "Kit"),
+        ("start", "Gallery"),
+    ):  # fmt: skip
+        go(page, stage)
+        page.get_by_text(words).first.wait_for()
+        page.set_viewport_size(phone)
+        assert page.evaluate("document.documentElement.scrollWidth") == phone["width"], stage
+        page.set_viewport_size(wide)
+    assert complaints == []
 
 
-def test_a_class_each_with_a_robot_and_who_watches(studio: Studio, window: Open, tmp_path: Path) -> None:
+def test_a_class_each_with_a_robot_and_who_watches(rooms: str, window: Open, tmp_path: Path) -> None:
     """Two browsers have a robot each; a third watches one; its robot goes home and comes back; keys mean the robot."""
-    with studio(str(gallery_folder("starfish")), "--rooms") as address:
-        one, two = window(address), window(address)
-        for page in (one, two):
-            wait_for_view(page)
-        assert one.url != two.url
-        one.get_by_label("Share", exact=True).click()
-        one.get_by_test_id("share-local").wait_for()
-        watcher = window(one.get_by_test_id("share-watch").input_value())
-        one.keyboard.press("Escape")
-        wait_for_view(watcher)
-        watcher.get_by_test_id("watching").wait_for()
-        go(one, "edit")
-        watcher.get_by_text("View only: Edit").wait_for()
-        assert not watcher.get_by_label("Undo", exact=True).count()
-        one.wait_for_function("__app.things.some(t => t.key === 'via:0:1')")
-        start = place(two, "marker:top")
-        drag(one, "marker:top", 0, 25)
-        watcher.wait_for_function("y => __app.things.find(t => t.key === 'marker:top').y > y + 10", arg=start[1])
-        assert np.allclose(place(two, "marker:top"), start, atol=1.0)
-        with one.expect_download() as told:
-            one.keyboard.press("Control+s")
-        home = tmp_path / "home.zip"
-        told.value.save_as(home)
-        with zipfile.ZipFile(home) as archive:
-            archive.extractall(tmp_path / "out")
-        moved = load_robot(tmp_path / "out" / "starfish").markers[0].at
-        go(two, "start")
-        two.locator("[data-testid=upload] input[type=file]").set_input_files(str(home))
-        two.wait_for_function("y => __app.things.find(t => t.key === 'marker:top')?.y > y + 10", arg=start[1])
-        assert moved[1] < load_robot(gallery_folder("starfish")).markers[0].at[1] - 0.002
-        go(one, "edit")
-        one.keyboard.press("Control+a")
-        one.get_by_text("14 parts").wait_for()
-        assert one.evaluate("String(getSelection())") == ""
-        assert one.evaluate("document.documentElement.lang") == "en-US"
-        one.locator("[role=option]").first.focus()
-        one.keyboard.press("Tab")
-        assert one.evaluate("document.activeElement.getAttribute('role')") == "option"
-        for page in (one, two, watcher):
-            quiet(page)
+    one, two = window(rooms), window(rooms)
+    for page in (one, two):
+        wait_for_view(page)
+    assert one.url != two.url
+    one.get_by_label("Share", exact=True).click()
+    one.get_by_test_id("share-local").wait_for()
+    watcher = window(one.get_by_test_id("share-watch").input_value())
+    one.keyboard.press("Escape")
+    wait_for_view(watcher)
+    watcher.get_by_test_id("watching").wait_for()
+    go(one, "edit")
+    watcher.get_by_text("View only: Edit").wait_for()
+    assert not watcher.get_by_label("Undo", exact=True).count()
+    one.wait_for_function("__app.items.some(t => t.key === 'via:0:1')")
+    start = place(two, "marker:top")
+    drag(one, "marker:top", 0, 25)
+    watcher.wait_for_function("y => __app.items.find(t => t.key === 'marker:top').y > y + 10", arg=start[1])
+    assert np.allclose(place(two, "marker:top"), start, atol=1.0)
+    with one.expect_download() as told:
+        one.keyboard.press("Control+s")
+    home = tmp_path / "home.zip"
+    told.value.save_as(home)
+    with zipfile.ZipFile(home) as archive:
+        archive.extractall(tmp_path / "out")
+    moved = load_robot(tmp_path / "out" / "starfish").markers[0].at
+    go(two, "start")
+    two.locator("[data-testid=upload] input[type=file]").set_input_files(str(home))
+    two.wait_for_function("y => __app.items.find(t => t.key === 'marker:top')?.y > y + 10", arg=start[1])
+    assert moved[1] < load_robot(gallery_folder("starfish")).markers[0].at[1] - 0.002
+    go(one, "edit")
+    one.keyboard.press("Control+a")
+    one.get_by_text("14 parts").wait_for()
+    assert one.evaluate("String(getSelection())") == ""
+    assert one.evaluate("document.documentElement.lang") == "en-US"
+    one.locator("[role=option]").first.focus()
+    one.keyboard.press("Tab")
+    assert one.evaluate("document.activeElement.getAttribute('role')") == "option"
+    for page in (one, two, watcher):
+        quiet(page)
 
 
-def test_a_click_chooses_the_part_of_a_drawing(studio: Studio, window: Open, tmp_path: Path) -> None:
+def test_a_click_chooses_the_part_of_a_drawing(rooms: str, window: Open, tmp_path: Path) -> None:
     """Oracle: the size of the smaller of two rectangles, 60 x 40 mm, whose picture was clicked."""
     file = tmp_path / "two parts.svg"
     file.write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="200mm" height="60mm" viewBox="0 0 200 60">'
         '<rect x="5" y="5" width="100" height="50"/><rect x="130" y="10" width="60" height="40"/></svg>'
     )
-    with studio() as address:
-        page = window(address)
-        page.locator("[data-testid=upload] input[type=file]").set_input_files(str(file))
-        page.get_by_test_id("problem").filter(has_text="Click the one that is the body").wait_for()
-        page.locator("[data-testid=parts] [data-part='2'] path").click()
-        page.get_by_test_id("sketch-words").filter(has_text=re.compile("^60 mm")).wait_for()
-        page.locator("[data-testid=parts] .start-part-chosen[data-part='2']").wait_for()
-        page.get_by_test_id("make-robot").click()
-        wait_for_view(page)
-        quiet(page)
+    page = window(rooms)
+    go(page, "start")
+    page.locator("[data-testid=upload] input[type=file]").set_input_files(str(file))
+    page.get_by_test_id("problem").filter(has_text="Click the one that is the body").wait_for()
+    page.locator("[data-testid=parts] [data-part='2'] path").click()
+    page.get_by_test_id("sketch-words").filter(has_text=re.compile("^60 mm")).wait_for()
+    page.locator("[data-testid=parts] .start-part-chosen[data-part='2']").wait_for()
+    page.get_by_test_id("make-robot").click()
+    wait_for_view(page)
+    quiet(page)

@@ -127,7 +127,7 @@ def test_a_cable_is_laid_click_by_click(editor: Editor, document: Document, star
     for at in ((-0.04, 0.002), (-0.06, 0.01)):
         editor.click(on(at))
     assert document.robot is starfish
-    drawn = [thing for thing in editor.scene_items() if isinstance(thing, Strand)]
+    drawn = [item for item in editor.scene_items() if isinstance(item, Strand)]
     assert drawn[-1].points == ((-0.02, -0.008), (-0.04, 0.002), (-0.06, 0.01))
     if end == "done":
         editor.finish()
@@ -180,7 +180,7 @@ def test_twins_move_and_go_together(editor: Editor, document: Document, starfish
     assert len(left.points) == len(right.points) == len(starfish.cables[0].points) + 1
     assert np.allclose(np.array(left.points) * [-1, 1], right.points)
     editor.choose("cable:0")
-    assert {thing.key for thing in editor.scene_items() if isinstance(thing, Strand) and thing.chosen} == {
+    assert {item.key for item in editor.scene_items() if isinstance(item, Strand) and item.chosen} == {
         "cable:0",
         "cable:1",
     }
@@ -307,9 +307,9 @@ def test_all_that_is_shown_makes_a_picture(editor: Editor, document: Document) -
     editor.take(Tool.CABLE)
     editor.click(on((0.03, 0.015)))
     editor.click(on((0.05, 0.02)))
-    things = editor.scene_items()
-    assert {thing.key for thing in things if isinstance(thing, Dot)} >= {"via:0:1", "winch:left", "pin:0", ""}
-    assert Picture(document.robot, things, 1).scene()
+    items = editor.scene_items()
+    assert {item.key for item in items if isinstance(item, Dot)} >= {"via:0:1", "winch:left", "pin:0", ""}
+    assert Picture(document.robot, items, 1).scene()
     assert editor.key("v")
     assert editor.tool is Tool.MOVE
     assert not editor.key("q")
@@ -415,7 +415,7 @@ def test_the_ruler_measures_between_parts_and_places(editor: Editor, document: D
     editor.click(on((at[0] - 0.03, at[1] - 0.04)))
     assert editor.ruler is not None
     assert editor.ruler.words == "50.0 mm (x 30.0, y 40.0)"
-    assert "50.0 mm" in [thing.label for thing in editor.scene_items() if isinstance(thing, Dot)]
+    assert "50.0 mm" in [item.label for item in editor.scene_items() if isinstance(item, Dot)]
     editor.click(on((0.0, 0.0)))
     assert editor.ruler.words == "", "it begins again"
     editor.take(Tool.MOVE)

@@ -180,16 +180,16 @@ def test_cables_are_proposed_while_muscles_follow_and_can_be_kept(
     until(lambda: poser.proposals.network(document.robot), poser)
     found = poser.proposals.network(document.robot)
     assert found is not None
-    winches = [thing for thing in poser.scene_items() if isinstance(thing, Dot) and thing.look is Look.WINCH]
-    assert {thing.at for thing in winches if thing.faint} == {winch.at for winch in found.winches}
-    assert all(thing.faint for thing in winches)
+    winches = [item for item in poser.scene_items() if isinstance(item, Dot) and item.look is Look.WINCH]
+    assert {item.at for item in winches if item.faint} == {winch.at for winch in found.winches}
+    assert all(item.faint for item in winches)
     until(lambda: not poser.proposals.searching, poser)
     found = poser.proposals.network(document.robot)
     assert found is not None
     assert "2 winches" in poser.proposals.keep()
     assert document.robot.cables == found.cables
     assert poser.proposals.is_kept(document.robot)
-    assert not any(thing.faint for thing in poser.scene_items() if isinstance(thing, Dot))
+    assert not any(item.faint for item in poser.scene_items() if isinstance(item, Dot))
     assert document.undo()
     assert document.robot.cables == starfish.cables
     poser.rest()

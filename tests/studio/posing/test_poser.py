@@ -102,7 +102,7 @@ def test_any_point_of_the_body_can_be_dragged_and_stays_held(starfish: Robot, po
     assert poser.shape().errors == {"point_1": pytest.approx(miss, abs=1e-9)}
     if mode is Mode.MUSCLES:
         assert miss < 2e-4
-    keys = {thing.key for thing in poser.scene_items() if isinstance(thing, Dot)}
+    keys = {item.key for item in poser.scene_items() if isinstance(item, Dot)}
     assert {"point:point_1", "target:point_1"} <= keys
 
 

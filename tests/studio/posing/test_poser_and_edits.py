@@ -185,8 +185,8 @@ def test_what_is_shown_is_of_one_robot(starfish: Robot, document: Document, monk
 
     monkeypatch.setattr(module, "Anchored", Watching)
     document.open(Work(robot=tail), folder=None)
-    things = poser.scene_items()
+    items = poser.scene_items()
     assert seen == [(len(starfish.body.mesh.nodes), set(starfish.poses["wave"].targets))]
-    assert {thing.key for thing in things if isinstance(thing, Dot)} >= {f"marker:{own.name}" for own in tail.markers}
+    assert {item.key for item in items if isinstance(item, Dot)} >= {f"marker:{own.name}" for own in tail.markers}
     assert not poser.held_points
     jobs.close()

@@ -155,7 +155,9 @@ def test_a_disk_that_cannot_be_written_is_no_reason_to_stop(tmp_path: Path, work
     assert autosave.find_recovered() == []
 
 
-def test_why_nothing_is_kept_is_told_and_tried_again(tmp_path: Path, work: Work) -> None:
+def test_why_nothing_is_kept_is_told_and_tried_again(
+    tmp_path: Path, work: Work, caplog: pytest.LogCaptureFixture
+) -> None:
     """Oracle: the problem while a file is where the folder should be; none, and a copy, soon after it is gone."""
     state = tmp_path / "state"
     state.write_text("a file where the folder should be")
@@ -164,7 +166,8 @@ def test_why_nothing_is_kept_is_told_and_tried_again(tmp_path: Path, work: Work)
     settle(autosave, 0.0)
     settle(autosave, QUIET_TIME)
     assert autosave.problem
-    assert "\n" not in autosave.problem
+    assert autosave.problem.endswith(": Not a directory")
+    assert [(line.getMessage(), line.exc_info) for line in caplog.records] == [(autosave.problem, None)]
     state.unlink()
     settle(autosave, QUIET_TIME + 0.9 * AGAIN)
     assert autosave.problem

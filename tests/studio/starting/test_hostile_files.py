@@ -23,7 +23,7 @@ from hydrostat.studio.starting.sketch import make_sketch
 from hydrostat.studio.starting.starter import Starter
 
 SECONDS, MEGABYTES = 20.0, 600
-"""What a file may take on a machine that is busy with other things; all but a few take well under a second."""
+"""What a file may take on a machine that is busy with other work; all but a few take well under a second."""
 
 NAMES = 'xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"'
 SVG = f'<svg {NAMES} width="50mm" height="50mm" viewBox="0 0 50 50">%s</svg>'

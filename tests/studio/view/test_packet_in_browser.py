@@ -44,12 +44,12 @@ def test_words_of_any_length_and_tables_of_any_size(tmp_path: Path, word: str) -
         "whole": np.array([[0, 7], [2**32 - 1, 3]], dtype=np.uint32),
         "ghost:rest": np.arange(6.0).reshape(2, 3),
     }
-    check(tmp_path, packet({"kind": "scene", "name": word, "things": [{"chosen": True}]}, arrays))
+    check(tmp_path, packet({"kind": "scene", "name": word, "items": [{"chosen": True}]}, arrays))
 
 
 @needs_node
 def test_frame_of_a_robot(tmp_path: Path) -> None:
     robot = gallery_robot("fish_tail")
-    things = robot_items(robot)
-    picture = Picture(robot, things, 3)
-    check(tmp_path, picture.frame(robot.body.mesh.nodes, things, {"stamp": 12.5}))
+    items = robot_items(robot)
+    picture = Picture(robot, items, 3)
+    check(tmp_path, picture.frame(robot.body.mesh.nodes, items, {"stamp": 12.5}))

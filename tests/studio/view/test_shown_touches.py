@@ -32,12 +32,12 @@ def test_where_it_touches(dim: int) -> None:
     shape = shown(dim, contact=True)
     assert shape.crossing is None
     assert shape.notes == ("before",)
-    things = contact_items(shape, 0.12)
-    dots = [thing for thing in things if isinstance(thing, Dot)]
+    items = contact_items(shape, 0.12)
+    dots = [item for item in items if isinstance(item, Dot)]
     assert dots
     assert all(dot.look is Look.TOUCH and not dot.stuck for dot in dots)
     np.testing.assert_allclose(dots[0].at, shape.touches[0].place)
-    arrow = next(thing for thing in things if isinstance(thing, Strand))
+    arrow = next(item for item in items if isinstance(item, Strand))
     way = np.subtract(arrow.points[1], arrow.points[0])
     assert np.linalg.norm(np.cross(np.append(way, 0.0)[:3], np.append(shape.touches[0].force, 0.0)[:3])) < 1e-12
 
@@ -80,7 +80,7 @@ def test_what_moves_is_drawn_where_the_pose_has_it() -> None:
 def test_what_pins_hold_is_dotted_on_the_skin_in_space() -> None:
     """Oracle: the pin's own rule for nodes; a flat disc has its ring instead."""
     hand = gallery_robot("cupping_hand")
-    (cloud,) = [thing for thing in robot_items(hand) if isinstance(thing, Cloud)]
+    (cloud,) = [item for item in robot_items(hand) if isinstance(item, Cloud)]
     nodes = hand.body.mesh.nodes
     held = np.any([pin.holds(hand.body.mesh) for pin in hand.pins], axis=0)
     assert held.any()
@@ -89,6 +89,6 @@ def test_what_pins_hold_is_dotted_on_the_skin_in_space() -> None:
     low, high = nodes[held].min(axis=0), nodes[held].max(axis=0)
     assert (cloud.points >= low - 1e-6).all()
     assert (cloud.points <= high + 1e-6).all()
-    again = next(thing for thing in robot_items(hand) if isinstance(thing, Cloud))
+    again = next(item for item in robot_items(hand) if isinstance(item, Cloud))
     assert again.points is cloud.points, "the same points are no new scene"
-    assert not [thing for thing in robot_items(gallery_robot("starfish")) if isinstance(thing, Cloud)]
+    assert not [item for item in robot_items(gallery_robot("starfish")) if isinstance(item, Cloud)]

@@ -2,7 +2,7 @@
 
 from nicegui import ui
 
-from hydrostat.robot import Face
+from hydrostat.robot import CableSide
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import WindowPage
 
@@ -10,10 +10,10 @@ UNSAID = "Default: front"
 
 FACES = {
     "": UNSAID,
-    Face.FRONT.value: "Front",
-    Face.BACK.value: "Back",
-    Face.PAIRS.value: "Both, in pairs",
-    Face.MIDDLE.value: "Middle, cast",
+    CableSide.FRONT.value: "Front",
+    CableSide.BACK.value: "Back",
+    CableSide.PAIRS.value: "Both, in pairs",
+    CableSide.MIDDLE.value: "Middle, cast",
 }
 
 HINT = "Side of the body that cables run on. Cables on one side curl a stuffed body out of its plane; pairs do not."
@@ -34,7 +34,7 @@ def face_choice(page: WindowPage) -> None:
 
     def take() -> None:
         if choice.value:
-            page.act(lambda: exporter.lay_cables(Face(choice.value)))
+            page.act(lambda: exporter.lay_cables(CableSide(choice.value)))
         else:
             show()  # what is said is not unsaid
 

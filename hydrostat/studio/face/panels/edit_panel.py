@@ -7,13 +7,16 @@ from nicegui import events, ui
 
 from hydrostat.drawing import Color
 from hydrostat.fabrication import winch_marks_of
-from hydrostat.robot import Robot
+from hydrostat.robot import MATERIALS, Robot
 from hydrostat.studio.bell import Topic
+from hydrostat.studio.editing.body_parts import RIGID, filling_of
 from hydrostat.studio.editing.part import Kind, find_part, keys_of
+from hydrostat.studio.editing.part_brush import region_color
 from hydrostat.studio.editing.tools import KEYS, Tool
-from hydrostat.studio.face.page import WindowPage
+from hydrostat.studio.face.page import WindowPage, heading
 from hydrostat.studio.face.panels.edit_body import body_card, check_card
 from hydrostat.studio.face.panels.edit_part import EditNumber, chip, light, part_card
+from hydrostat.studio.shape_draft import Form
 
 TOOLS = {  # icon, name and what to do with each tool
     Tool.MOVE: (
@@ -25,13 +28,14 @@ TOOLS = {  # icon, name and what to do with each tool
     Tool.MARKER: ("my_location", "Place markers", "Click a point to track."),
     Tool.WINCH: ("album", "Place winches", "Click the body where a winch should sit."),
     Tool.CABLE: ("polyline", "Lay cables", "Click a winch, then point after point. Enter or double-click to finish."),
+    Tool.PART: ("texture", "Paint regions", "Draw a region of another material or a rigid one on the body."),
     Tool.RULER: ("straighten", "Measure", "Click two parts or points to measure their distance at rest."),
 }
 
 
 def edit_panel(page: WindowPage) -> None:
     """Build the panel."""
-    ui.label("Edit").classes("studio-title")
+    heading("Edit", 1)
     _tools(page)
     _mirror(page)
     _snap(page)
@@ -54,6 +58,7 @@ def _tools(page: WindowPage) -> None:
             button.style("border-radius: 10px")
             buttons[tool] = button.tooltip(f"{name} ({letters[tool]})").mark(f"edit-{tool}")
     hint = ui.label().classes("studio-hint").style("min-height: 38px")
+    _brush(page)
     with ui.element("div").classes("studio-row") as laying:
         done = ui.button("Done", icon="check", on_click=page.doing(editor.finish)).classes("flex-1")
         done.props("unelevated no-caps").mark("edit-done")
@@ -67,8 +72,33 @@ def _tools(page: WindowPage) -> None:
             button.props(add="" if now else "flat", remove="flat" if now else "")
         measured = "" if editor.ruler is None else editor.ruler.words
         hint.set_text(measured or TOOLS[editor.tool][2])
-        laying.set_visibility(editor.draft is not None)
-        done.set_enabled(editor.draft is not None and len(editor.draft.points) > 1)
+        corners = editor.brush.drawn.corners
+        laying.set_visibility(editor.draft is not None or bool(corners))
+        done.set_enabled(len(corners) > 2 if editor.draft is None else len(editor.draft.points) > 1)
+
+    page.on(Topic.SCENE, show)
+
+
+FORMS = {
+    Form.DISC: ("circle", "edit-form-disc", "Drag from the center outward"),
+    Form.BOX: ("box", "edit-form-box", "Drag from corner to corner"),
+    Form.FREE: ("free", "edit-form-free", "Drag around a part, or click corner after corner"),
+}
+
+
+def _brush(page: WindowPage) -> None:
+    """Material and form of the region that is painted next, while its tool is in the hand."""
+    editor = page.session.editor
+    with ui.column().classes("w-full gap-2") as rows:
+        choice = ui.select([RIGID, *MATERIALS], label="Material", value=editor.brush.filling)
+        choice.props("dense outlined options-dense").classes("w-full").mark("edit-brush-material")
+        choice.on_value_change(lambda: setattr(editor.brush, "filling", choice.value))
+        if page.session.document.robot.body.mesh.dim == 2:
+            _choice(page, "category", "Form", FORMS, editor.brush.choose_form, lambda: editor.brush.form)
+
+    def show() -> None:
+        rows.set_visibility(editor.tool is Tool.PART)
+        choice.set_value(editor.brush.filling)
 
     page.on(Topic.SCENE, show)
 
@@ -156,14 +186,15 @@ def _depth(page: WindowPage) -> None:
 
 
 HEIGHT = "min(420px, 40vh)"  # of the list; longer ones are scrolled
-ICONS = {Kind.PIN: "push_pin", Kind.WINCH: "album", Kind.CABLE: "timeline", Kind.MARKER: "my_location"}
+ICONS = {Kind.PIN: "push_pin", Kind.WINCH: "album", Kind.CABLE: "timeline", Kind.MARKER: "my_location",
+         Kind.REGION: "texture"}  # fmt: skip
 
 
 def parts_list(page: WindowPage) -> None:
     """Build the list."""
     editor, document = page.session.editor, page.session.document
     with ui.element("div").classes("studio-row"):
-        ui.label("Parts").classes("studio-section")
+        heading("Parts")
         ui.space()
         count = ui.label().classes("studio-hint studio-figure").style("margin-top: 8px")
     box = ui.column().classes("w-full").props('role="listbox" aria-label="Parts" aria-multiselectable="true"').style(
@@ -227,6 +258,8 @@ def _part_words(robot: Robot, key: str) -> tuple[str, str]:
     if part.kind is Kind.WINCH:
         name = robot.winches[part.index].name
         return name, f"winch {winch_marks_of(robot)[name]}"
+    if part.kind is Kind.REGION:
+        return robot.body.parts[part.index].name, filling_of(robot.body.parts[part.index])
     return robot.markers[part.index].name, "marker"
 
 
@@ -237,6 +270,8 @@ def _color(robot: Robot, key: str) -> str:
         return _page_color(colors[robot.winches[part.index].name])
     if part is not None and part.kind is Kind.CABLE:
         return _page_color(colors[robot.cables[part.index].winch])
+    if part is not None and part.kind is Kind.REGION:
+        return _page_color(region_color(robot.body, robot.body.parts[part.index]))
     return "var(--muted)"
 
 

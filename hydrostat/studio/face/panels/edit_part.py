@@ -6,8 +6,9 @@ from typing import Any
 
 from nicegui import ui
 
-from hydrostat.robot import Mount, Robot
+from hydrostat.robot import MATERIALS, Mount, Robot
 from hydrostat.studio.bell import Topic
+from hydrostat.studio.editing.body_parts import RIGID, filling_of
 from hydrostat.studio.editing.change import sheathed_segments, sheaths
 from hydrostat.studio.editing.part import Kind, Part, find_part, name_of, place_of, title_of
 from hydrostat.studio.face.messages import sent_number
@@ -127,8 +128,10 @@ def _build(page: WindowPage, key: str, part: Part) -> Shows:
     shows: Shows = []
     if name_of(page.session.document.robot, key):
         shows.append(_name(page, key))
-    if part.kind is not Kind.CABLE:
+    if place_of(page.session.document.robot, key) is not None:
         shows.append(_place(page, key))
+    if part.kind is Kind.REGION:
+        shows.append(_filling(page, key))
     if part.kind is Kind.PIN and page.session.document.robot.pins[part.index].box is None:
         shows += _numbers(page, key, PIN)
     if part.kind is Kind.WINCH:
@@ -141,7 +144,7 @@ def _build(page: WindowPage, key: str, part: Part) -> Shows:
 def _title(key: str) -> str:
     """Without the name where that can be changed below."""
     kind = key.partition(":")[0]
-    return (kind if kind in ("winch", "marker") else title_of(key)).capitalize()
+    return (kind if kind in ("winch", "marker", "region") else title_of(key)).capitalize()
 
 
 def _name(page: WindowPage, key: str) -> Show:
@@ -224,6 +227,25 @@ def _mount(page: WindowPage, key: str) -> Show:
         switch.set_value(shown[0])
 
     switch.on_value_change(send)
+    return show
+
+
+def _filling(page: WindowPage, key: str) -> Show:
+    """Build the choice of a region's material; one that is not of the table is shown as it is called."""
+    editor = page.session.editor
+    choice = ui.select({}, label="Material").props("dense outlined options-dense").classes("w-full")
+    choice.mark("edit-region-material")
+    shown = [""]
+
+    def send() -> None:
+        if choice.value != shown[0]:
+            page.act(lambda: editor.set(key, filling=choice.value))
+
+    def show(robot: Robot, part: Part) -> None:
+        shown[0] = filling_of(robot.body.parts[part.index])
+        choice.set_options(list(dict.fromkeys([shown[0], RIGID, *MATERIALS])), value=shown[0])
+
+    choice.on_value_change(send)
     return show
 
 

@@ -32,9 +32,9 @@ export default /** @type {Component} */ ({
           :fill="mark.chosen ? 'var(--accent)' : 'var(--paper)'" :stroke="mark.chosen ? 'var(--accent)' : 'var(--muted)'"
           stroke-width="1.8" />
       </g>
-      <text v-if="!keys.length" :x="left + span / 2" :y="ruler + curves / 2 + 5" text-anchor="middle" fill="var(--muted)">
-        {{ hint }}
-      </text>
+      <foreignObject v-if="!keys.length" :x="left" :y="ruler" :width="span" :height="curves" style="pointer-events: none">
+        <div class="studio-empty">{{ hint }}</div>
+      </foreignObject>
       <g :transform="'translate(' + x(shownTime) + ' 0)'" style="pointer-events: none">
         <line x1="0" x2="0" :y1="ruler - 6" :y2="height - 2" stroke="var(--head)" stroke-width="1.6" />
         <path :d="'M-6 ' + (ruler - 13) + 'h12v6l-6 6l-6 -6z'" fill="var(--head)" stroke="var(--paper)" stroke-width="1" />

@@ -9,7 +9,7 @@ from hydrostat.robot import Robot
 from hydrostat.studio.editing.editor import Tool
 from hydrostat.studio.editing.part import keys_of
 from hydrostat.studio.judge import QUIET
-from hydrostat.studio.stage import StageName
+from hydrostat.studio.stage import Hit, StageName
 
 
 def place(robot: Robot, name: str) -> Point:
@@ -126,5 +126,25 @@ def test_material_gravity_and_contact(starfish: Robot) -> None:
         for on in (True, False):
             desk.one("edit-contact").set_value(on)
             await desk.until(lambda on=on: (desk.robot.contact is not None) == on)
+
+    at_desk(starfish, act)
+
+
+def test_a_region_is_painted_of_a_chosen_material(starfish: Robot) -> None:
+    async def act(desk: Desk) -> None:
+        desk.go(StageName.EDIT)
+        editor = desk.session.editor
+        await desk.press("edit-part")
+        await desk.press("edit-form-box")
+        await desk.type("edit-brush-material", "ecoflex 00-30")
+        assert editor.grab(Hit(key="body", rest=(-0.02, -0.01), world=(-0.02, -0.01)))
+        editor.drag(Hit(world=(0.02, 0.01)))
+        editor.release()
+        assert [str(part.shape) for part in desk.robot.body.parts] == ["box"]
+        await desk.follow()
+        assert desk.one("edit-region-material").value == "ecoflex 00-30"
+        assert desk.all("part-region:0")
+        await desk.type("edit-region-material", "rigid")
+        assert desk.robot.body.parts[0].is_rigid
 
     at_desk(starfish, act)

@@ -4,7 +4,7 @@ import pytest
 from desk import Desk, at_desk
 
 from hydrostat.fabrication import Method, MoldKind, Paper
-from hydrostat.robot import Face, Robot
+from hydrostat.robot import CableSide, Robot
 from hydrostat.studio.exporting.exporter import Export
 from hydrostat.studio.stage import StageName
 
@@ -35,8 +35,8 @@ def test_where_cables_run_is_said_and_chosen(starfish: Robot) -> None:
         desk.go(StageName.EXPORT)
         document = desk.session.document
         assert desk.one("cable-face").value == ""
-        await desk.choose("cable-face", Face.PAIRS.value)
-        assert document.robot.face is Face.PAIRS
+        await desk.choose("cable-face", CableSide.PAIRS.value)
+        assert document.robot.face is CableSide.PAIRS
         assert desk.one("cable-face").value == "pairs"
         document.undo()
         desk.beat()

@@ -42,8 +42,8 @@ export function drawGrid(pen, view) {
 
 /** Other shapes of a flat body, behind it. */
 export function drawGhosts(pen, view) {
-  for (const { thing, array } of Object.values(view.ghosts)) {
-    const color = view.ghostColor(thing);
+  for (const { item, array } of Object.values(view.ghosts)) {
+    const color = view.ghostColor(item);
     const path = ringPath(view.skin.rim.at(array), view.camera);
     pen.fillStyle = veil(color, 0.2);
     pen.fill(path, "evenodd");
@@ -92,9 +92,9 @@ export function drawFelt(pen, view) {
   pen.lineWidth = 2;
   pen.stroke(rim);
   // what is sought stays to be seen through the body
-  for (const { thing, array } of Object.values(view.ghosts)) {
-    if (thing.color === palette.ghost) continue;
-    pen.strokeStyle = veil(view.ghostColor(thing), 0.55);
+  for (const { item, array } of Object.values(view.ghosts)) {
+    if (item.color === palette.ghost) continue;
+    pen.strokeStyle = veil(view.ghostColor(item), 0.55);
     pen.lineWidth = 1.2;
     pen.setLineDash([4, 3]);
     pen.stroke(ringPath(skin.rim.at(array), camera));
@@ -138,7 +138,7 @@ export function drawGhostsInSpace(pen, view) {
   pen.lineCap = "round";
   for (const ghost of Object.values(view.ghosts)) {
     const { field, rim } = ghostPaths(view, ghost);
-    const color = view.ghostColor(ghost.thing);
+    const color = view.ghostColor(ghost.item);
     pen.fillStyle = veil(color, 0.2);
     pen.fill(field);
     pen.strokeStyle = veil(color, 0.75);
@@ -151,8 +151,8 @@ function drawSought(pen, view) {
   pen.lineWidth = 1.2;
   pen.setLineDash([4, 3]);
   for (const ghost of Object.values(view.ghosts)) {
-    if (ghost.thing.color === view.palette.ghost) continue;
-    pen.strokeStyle = veil(view.ghostColor(ghost.thing), 0.55);
+    if (ghost.item.color === view.palette.ghost) continue;
+    pen.strokeStyle = veil(view.ghostColor(ghost.item), 0.55);
     pen.stroke(ghostPaths(view, ghost).rim);
   }
   pen.setLineDash([]);

@@ -93,11 +93,11 @@ export function drawLines(pen, view) {
 /** Draw all clouds of a view. */
 export function drawClouds(pen, view) {
   const spot = [0, 0, 0];
-  for (const { thing, array } of Object.values(view.clouds)) {
-    const held = thing.name === "pins"; // what is held is seen at once, what can be reached is a mist
+  for (const { item, array } of Object.values(view.clouds)) {
+    const held = item.name === "pins"; // what is held is seen at once, what can be reached is a mist
     const radius = held ? 2.1 : 1.7;
     for (const hidden of view.camera.flat ? [false] : [true, false]) {
-      pen.fillStyle = veil(thing.color, hidden ? 0.16 : held ? 0.85 : 0.5);
+      pen.fillStyle = veil(item.color, hidden ? 0.16 : held ? 0.85 : 0.5);
       pen.beginPath();
       for (let i = 0; i < array.length; i += 3) {
         view.camera.project(array[i], array[i + 1], array[i + 2], spot);

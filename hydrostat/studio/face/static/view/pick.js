@@ -117,12 +117,12 @@ function areaAt(view, x, y) {
 /** All that is under a pixel: {key, rest, world}. */
 export function pick(view, x, y) {
   const body = bodyAt(view, x, y);
-  const thing = dotAt(view, x, y) ?? lineAt(view, x, y);
-  if (thing) {
-    const world = thing.world ?? thing.place;
+  const item = dotAt(view, x, y) ?? lineAt(view, x, y);
+  if (item) {
+    const world = item.world ?? item.place;
     const flat = view.camera.flat;
     const rest = flat ? body && body.rest : restOf(world, view.nodes, view.rest);
-    return { key: thing.key, rest, world };
+    return { key: item.key, rest, world };
   }
   const area = areaAt(view, x, y);
   if (area) return { key: area.key, rest: body && body.rest, world: body ? body.world : view.camera.facing(x, y, [0, 0, 0]) };

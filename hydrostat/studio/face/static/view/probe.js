@@ -16,7 +16,7 @@ export class Probe {
   }
 
   /** Dots with a key: [{key, x, y}], in pixels of the window. */
-  get things() {
+  get items() {
     const box = this.view.element.getBoundingClientRect();
     return this.view.dots.filter((dot) => dot.key).map(({ key, x, y }) => ({ key, x: box.left + x, y: box.top + y }));
   }

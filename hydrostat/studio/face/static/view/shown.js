@@ -1,4 +1,4 @@
-// What is shown: a body and the things beside it, from scenes and frames.
+// What is shown: a body and the items beside it, from scenes and frames.
 
 import { THREE } from "nicegui-scene";
 import { Camera } from "./camera.js";
@@ -67,12 +67,12 @@ export class Shown {
     this.camera.flat = flat;
     if (other) this.newBody(flat, arrays);
     const before = new Map(this.dots.map((dot) => [dot.key, dot]));
-    this.dots = head.things.filter((thing) => thing.kind === "dot").map((dot) => ({
+    this.dots = head.items.filter((item) => item.kind === "dot").map((dot) => ({
       ...dot, short: dot.short || initials(dot.label), x: -99, y: -99, depth: 0, density: 1, place: [0, 0, 0], slot: before.get(dot.key)?.slot,
     }));
-    this.points = new Float32Array(3 * head.things.reduce((most, thing) => Math.max(most, thing.first + thing.count), 0));
-    this.lines = head.things.filter((thing) => thing.kind === "line");
-    this.areas = head.things.filter((thing) => thing.kind === "area").map((area) => ({ ...area, spots: [] }));
+    this.points = new Float32Array(3 * head.items.reduce((most, item) => Math.max(most, item.first + item.count), 0));
+    this.lines = head.items.filter((item) => item.kind === "line");
+    this.areas = head.items.filter((item) => item.kind === "area").map((area) => ({ ...area, spots: [] }));
     this.takeGhosts(head, arrays);
     this.clouds = named(head, arrays, "cloud");
     this.recut();
@@ -110,8 +110,8 @@ export class Shown {
     this.ghosts = fresh;
   }
 
-  ghostColor(thing) {
-    return thing.color === this.palette.ghost ? this.theme.ghost : thing.color;
+  ghostColor(item) {
+    return item.color === this.palette.ghost ? this.theme.ghost : item.color;
   }
 
   add(part) {
@@ -186,10 +186,10 @@ export class Shown {
   }
 }
 
-/** The things of a kind by name, each with its array. */
+/** The items of a kind by name, each with its array. */
 function named(head, arrays, kind) {
-  const things = head.things.filter((thing) => thing.kind === kind);
-  return Object.fromEntries(things.map((thing) => [thing.name, { thing, array: arrays[`${kind}:${thing.name}`] }]));
+  const items = head.items.filter((item) => item.kind === kind);
+  return Object.fromEntries(items.map((item) => [item.name, { item, array: arrays[`${kind}:${item.name}`] }]));
 }
 
 /** Up to two letters for a disc: "index flexor" is IF, "winch_2" is W2, "left" is L. */

@@ -38,7 +38,7 @@ export class View extends Shown {
     this.font = getComputedStyle(element).fontFamily || "sans-serif";
     this.dirty = new Set();
     this.before = 0; // drags of other rooms that come before the next answer
-    this.unseen = 0; // frames that came since the last one was painted
+    this.unseen = 0; // frames that came and were not acknowledged
     this.pixel = new Uint8Array(4);
     this.probe = new Probe(this);
     window.__app = this.probe;
@@ -86,12 +86,18 @@ export class View extends Shown {
       this.probe.frames += 1;
       this.latest = { head, arrays };
       this.unseen += 1;
+      if (!document.hidden) this.acknowledge(); // the next one need not wait until this one is painted
       if (head.before !== this.before) this.tell("before", head.before);
       this.before = head.before;
       this.mark("frame");
     } else if (head.kind === "note") {
       this.tell("note", head);
     }
+  }
+
+  acknowledge() {
+    if (this.unseen) this.send({ kind: "seen", count: Math.min(this.unseen, 1000) });
+    this.unseen = 0;
   }
 
   /** Something has changed: the next animation frame paints. */
@@ -119,8 +125,7 @@ export class View extends Shown {
     if (!only("hover", "drag")) this.point();
     this.paint();
     if (!dirty.has("frame") && !dirty.has("bare")) return;
-    if (this.unseen) this.send({ kind: "seen", count: Math.min(this.unseen, 1000) });
-    this.unseen = 0;
+    this.acknowledge();
     if (fresh) this.probe.saw(this.stamp ?? 0, performance.now() - start);
   }
 
@@ -205,19 +210,18 @@ export class View extends Shown {
     if (!this.ratio) return;
     camera.place();
     this.under.style.visibility = this.sheet.style.visibility = surface ? "visible" : "hidden";
-    if (surface) {
+    const gl = surface && renderer.getContext();
+    if (gl) {
       this.paintUnder();
       renderer.render(this.world, camera.now);
+      gl.flush(); // the body is drawn while all else is
       this.cover.see(this.nodes, camera, this.cut);
     }
     this.spread();
     overlay.draw(this);
     // reading a pixel waits until all is drawn: what is told as painted is painted
-    if (surface) {
-      const gl = renderer.getContext();
-      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, this.pixel);
-    }
     if (this.slow) overlay.pen.getImageData(0, 0, 1, 1);
+    if (gl) gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, this.pixel);
   }
 
   /** Ghosts in space stay where they are until the camera moves. */
