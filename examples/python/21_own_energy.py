@@ -18,7 +18,7 @@ import hydrostat as hs
 class Spring(hs.Energy):
     """Spring of no length: k/2 |x - place|^2."""
 
-    quadratic = True
+    has_constant_hessian = True
 
     def __init__(self, node, place, stiffness):
         self.stencils = np.array([[node]])

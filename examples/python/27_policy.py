@@ -9,14 +9,13 @@ PyTorch.
 # %%
 # A policy is one file: a small network, and the facts of its training. This one comes from
 # ``examples/policies/train_starfish.py``; ``hydrostat train`` writes the same file as ``actor.policy``.
-from pathlib import Path
-
 import numpy as np
 from matplotlib.figure import Figure
 
 import hydrostat as hs
+from hydrostat.robot import gallery_folder
 
-file = Path(__file__).resolve().parents[1] / "policies" / "starfish_reach.policy"
+file = gallery_folder("starfish").parent / "policies" / "starfish_reach.policy"
 policy = hs.learning.PortablePolicy.load(file)
 print(policy.facts["task"], policy.facts["sees"], f"error in training {1e3 * policy.facts['error']:.1f} mm")
 

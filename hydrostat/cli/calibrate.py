@@ -36,7 +36,7 @@ def calibrate(
     ] = "",
     restart: Annotated[
         bool,
-        typer.Option("--restart", help="First restart motors that are off by overload or heat, once they are cool."),
+        typer.Option("--restart", help="First restart motors that overload or heat switched off, after they cooled."),
     ] = False,
 ) -> None:
     """Tension each cable and record the motor zero positions.
@@ -138,7 +138,8 @@ def _take_up(
 
     known = {motor.winch: motor for motor in calibration.motors}
     facts = bus.identify()
-    print(f"{kind}: {plural(len(facts), 'motor')} found; they turn now, one by one", flush=True)
+    models = ", ".join(sorted({fact.model for fact in facts}))
+    print(f"{kind}: {plural(len(facts), 'motor')} found ({models}); they turn now, one by one", flush=True)
 
     def save(taken: "SlackCalibration") -> None:
         before, known[taken.motor.winch] = known[taken.motor.winch], taken.motor

@@ -12,7 +12,7 @@ from hydrostat.errors import InputError
 from hydrostat.units import plural
 
 if TYPE_CHECKING:
-    from hydrostat.robot import Body, Material, Robot, Rod, Sensor, SkinSheet
+    from hydrostat.robot import Body, Material, Membrane, Robot, Rod, Sensor
 
 
 def check(
@@ -20,7 +20,8 @@ def check(
     thorough: Annotated[
         bool,
         typer.Option(
-            "--thorough", help="Also compute marker workspaces and the out-of-plane motion of a stuffed body."
+            "--thorough",
+            help="Also compute marker workspaces, compliance and the out-of-plane motion of a stuffed body.",
         ),
     ] = False,
     stuffed: Annotated[
@@ -33,7 +34,7 @@ def check(
     Without options nothing is simulated: mesh, parts, rods, cables, winches and fit of the kit are checked. `hydrostat
     fabricate` also checks the motor and line loads of the poses.
 
-    Exit code 1 if there is an error, 0 with warnings and notes alone.
+    Exit code 1 if there is an error, 0 with warnings and notes only.
 
     Example: hydrostat check gallery:starfish --thorough
     """
@@ -66,9 +67,10 @@ def check(
     reaches = bool(found.markers and (found.cables or found.drives))
     if reaches and thorough:
         _print_workspaces(found)
-    left_out = ["marker workspaces"] * reaches + ["out-of-plane motion"] * (bool(words) and not stuffed)
+        _print_compliance(found)
+    left_out = ["marker workspaces", "compliance"] * reaches + ["out-of-plane motion"] * (bool(words) and not stuffed)
     if left_out and not thorough:
-        print(f"not computed: {' and '.join(left_out)}. Add --thorough. Loads of poses: hydrostat fabricate.")
+        print(f"not computed: {', '.join(left_out)}. Add --thorough. Loads of poses: hydrostat fabricate.")
     if found.body.has_hysteresis:
         print("note: hysteresis: refused by pose, trajectory, share, design, branches and linear models.")
     _print_judgement(found, curled)
@@ -114,6 +116,25 @@ def print_sewing(body: "Body") -> tuple[str, ...]:
 
 FINDINGS = {"refused": "error", "limit": "note", "mind": "warning"}
 """Beginning of the line of a finding, by its weight."""
+
+
+def _print_compliance(robot: "Robot") -> None:
+    """Print how far a small force moves each marker at rest, in its softest direction, or why that is not computed."""
+    import numpy as np
+
+    from hydrostat.errors import NotConvergedError
+    from hydrostat.simulation import Simulation, marker_compliance
+
+    simulation = Simulation(robot)
+    try:
+        if simulation.assembly.has_history:
+            raise InputError("with friction or hysteresis a pose depends on the way to it")
+        softest = 1e3 * np.linalg.norm(marker_compliance(simulation, simulation.rest), ord=2, axis=(1, 2))
+    except (InputError, NotConvergedError) as error:
+        print(f"compliance: not computed ({error})")
+        return
+    each = [f"{marker.name} {value:.3g}" for marker, value in zip(robot.markers, softest, strict=True)]
+    print(f"compliance at rest, mm/N: {', '.join(each)}")
 
 
 def _print_workspaces(robot: "Robot") -> None:
@@ -163,7 +184,7 @@ def _print_out_of_plane(robot: "Robot") -> str | None:
 
 def _print_stuffed(robot: "Robot") -> str | None:
     """Print the out-of-plane displacement of a stuffed flat robot by cable face; return the warning of its own."""
-    from hydrostat.robot import Face
+    from hydrostat.robot import CableSide
     from hydrostat.simulation import solve_stuffed_motion
 
     if robot.body.outline is None:
@@ -172,10 +193,10 @@ def _print_stuffed(robot: "Robot") -> str | None:
         raise InputError("--stuffed: needs at least one [[pose]] and one [[cable]]. Add them or remove --stuffed.")
     pulled = _full_contractions(robot)
     print("Stuffed 3D body, contractions of the flat model (maximum over markers and poses):")
-    by_face = {face: solve_stuffed_motion(robot, pulled, face) for face in Face}
+    by_face = {face: solve_stuffed_motion(robot, pulled, face) for face in CableSide}
     for face, found in by_face.items():
         print(f"  cables {face.words}: {found}")
-    return by_face[robot.face or Face.FRONT].warning
+    return by_face[robot.face or CableSide.FRONT].warning
 
 
 def _full_contractions(robot: "Robot") -> list[Any]:
@@ -190,12 +211,13 @@ def _full_contractions(robot: "Robot") -> list[Any]:
 
 
 def _body_lines(body: "Body") -> list[str]:
-    """Material with mass and volume; width or thickness of nine tenths of the body, worst angle of its mesh."""
+    """Material with mass and volume; width or thickness where the body is narrow, worst angle of its mesh."""
     mesh, material = body.mesh, body.material
     own = body.element_materials == 0
     volume = float(mesh.volumes[own].sum()) * (body.thickness or 1.0)
     thickness = body.measured_thickness
-    (thin, few), (thick, many) = thickness.part(0.05), thickness.part(0.95)
+    (thin, few), (thick, _) = thickness.part(0.05), thickness.part(0.95)
+    few = few if mesh.quadratic is None else few / 2  # an element is two of the mesh's edges wide
     across, flat = "thickness", ""
     if body.thickness is not None:
         across, flat = "width", f", thickness {1e3 * body.thickness:.3g} mm"
@@ -208,7 +230,7 @@ def _body_lines(body: "Body") -> list[str]:
         f"{name}: {_mass_text(float(body.element_masses[own].sum()))}, {_volume_text(volume)}",
         *(_part_line(body, index) for index in range(len(body.parts))),
         *([f"body with its parts: {_mass_text(body.mass)}"] if body.parts else []),
-        f"{across} {1e3 * thin:.0f} to {1e3 * thick:.0f} mm ({few:.1f} to {many:.0f} elements across){flat}; {angle}",
+        f"{across} from {1e3 * thin:.0f} mm ({few:.1f} elements across){flat}; {angle}",
         *_plane_lines(body, thick),
     ]
 
@@ -243,7 +265,8 @@ def _part_line(body: "Body", index: int) -> str:
     name = "rigid" if part.material is None else _material_name(part.material)
     volume = float(body.mesh.volumes[own].sum()) * (body.thickness or 1.0)
     mass = _mass_text(float(body.element_masses[own].sum()))
-    return f"part {part.name}: {name}, {mass}, {_volume_text(volume)}, {own.sum()} elements"
+    count = int(own.sum()) // (1 if body.mesh.quadratic is None else 2**body.mesh.dim)
+    return f"part {part.name}: {name}, {mass}, {_volume_text(volume)}, {plural(count, 'element')}"
 
 
 def _held_parts(robot: "Robot") -> list[str]:
@@ -272,7 +295,7 @@ def _rod_line(rod: "Rod") -> str:
     return f"rod {rod.name}: {1e3 * rod.length:.0f} mm long{thick}, EA {stretch}, EI {bend}"
 
 
-def _sheet_line(body: "Body", sheet: "SkinSheet") -> str:
+def _sheet_line(body: "Body", sheet: "Membrane") -> str:
     """Material, thickness and covered area of a sheet."""
     name = _material_name(sheet.material)
     wrinkles = ", wrinkles" if sheet.wrinkles else ""

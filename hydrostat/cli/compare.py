@@ -21,8 +21,8 @@ def compare(
         Path | None,
         typer.Option(
             metavar="PHOTO",
-            help="Photograph without contraction, to place the board.",
-            show_default="place the board by the pose itself",
+            help="Photograph without contraction, to locate the board.",
+            show_default="locate the board by the pose itself",
         ),
     ] = None,
     tag: TagSide = "15mm",
@@ -32,8 +32,8 @@ def compare(
     """Compare a photograph with the simulated pose.
 
     Prints the distance of each marker from the simulated one, and writes the photograph with the simulated outline and
-    markers drawn in. Print tags and board by `hydrostat measure --print`. With --rest, errors of a whole-body shift
-    or turn count too.
+    markers drawn in. Without --contract and --load, the pose comes from a name such as left=12mm,tip=50g.jpg. Print
+    tags and board with `hydrostat measure --print`. With --rest, the distances include a shift or turn of the body.
 
     Example: hydrostat compare my_starfish photo.jpg --contract left=12mm --out build/compared
     """
@@ -42,8 +42,11 @@ def compare(
     require_files([photo] if rest is None else [photo, rest])
     require_folder(out)
     loaded = read_robot(robot)
-    added = loads(loaded, load).loads[len(loaded.loads) :]
-    photos = [Photo(file=photo, contractions=contractions(loaded, contract), masses={}, loads=added)]
+    if "=" in photo.stem and not contract and not load:
+        photos = Photo.read_all([photo], loaded)
+    else:
+        added = loads(loaded, load).loads[len(loaded.loads) :]
+        photos = [Photo(file=photo, contractions=contractions(loaded, contract), masses={}, loads=added)]
     if rest is not None:
         photos.append(Photo(file=rest, contractions={}, masses={}))
     found = measure_photos(loaded, photos, photo_options(tag, height, lens))

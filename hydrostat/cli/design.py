@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from hydrostat.fabrication import Kit
     from hydrostat.robot import Robot
 
+_MUCH = 0.25  # a larger share of the way to the targets that is left is explained
 _CLEARLY = 0.95  # a network with so many times the error of the last that was told is told
 STOPPING = "stopping: solving and writing the best network so far ..."  # said when Ctrl-C ends a search
 
@@ -82,6 +83,8 @@ def design(
     if made is not None:
         print_kit(made, printed=printed)
     _tell_count(network, request, lifts)
+    if not lifts:
+        _tell_miss(network)
     fits = kit_fits(network) and not (made is not None and made.problems)
     over = find_over_budget(network, spend) if made is None and fits else ()
     for problem in over:
@@ -192,21 +195,41 @@ def _tell_better() -> "Callable[[DesignStage], None]":
 
 def _tell_count(network: "Network", request: "DesignRequest", lifts: "Iterable[Lift]") -> None:
     """Print a note if there are fewer than there may be, what lowers the error, and the front of other winches."""
+    from hydrostat.design import find_mirror_axis
     from hydrostat.errors import in_words
 
     found, asked = (len(network.robot.winches), len(network.robot.cables)), (request.winches, request.cables)
     if network.complete and isinstance(request.winches, int) and found != asked:
         words = f"{plural(request.winches, 'winch')} and {plural(request.cables, 'cable')}"
-        print(f"note: {words} were allowed. The search found no smaller error with more that can be built")
+        print(f"note: {words} were allowed. The search found no larger buildable network with a smaller error")
     if refused := find_refused_better(network):
         better, reason = refused
         size = f"{1e3 * better.expected_error:.3g} mm with {plural(len(better.robot.cables), 'cable')}"
         print(f"note: {size} fell away, its kit would be refused: {in_words(reason)}")
+    if request.constraints.mirror is None and (axis := find_mirror_axis(network.source, request.poses)):
+        print(
+            f"note: outline, markers and targets are symmetric about {axis}. For a network that is: --symmetric {axis}"
+        )
     for lift in lifts:
         error = 1e3 * lift.network.expected_error
         print(f"note: {lift.words} would leave at most {error:.2g} mm as built, by a quick search")
     if request.is_open or request.front or lifts:
         print_front(network)
+
+
+def _tell_miss(network: "Network") -> None:
+    """Print a note on what keeps a network from its targets where it leaves much of the way to them."""
+    left = network.rms_error / max(network.rest_error, 1e-12)
+    if left < _MUCH:
+        return
+    held = dict.fromkeys(words for reached in network.ik_results for words in reached.active_limits)
+    if not network.complete:
+        words = "the search was stopped before its end. Give it more time"
+    elif held:
+        words = f"{', '.join(held)}. Raise these limits, or move the targets nearer"
+    else:
+        words = "no limit of winches or cables stands in the way. Allow more cables, or move the targets nearer"
+    print(f"note: {100 * left:.0f} % of the way to the targets is left: {words}")
 
 
 def _tell_next(

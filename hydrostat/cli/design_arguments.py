@@ -35,7 +35,12 @@ class DesignArguments:
             "N|auto", "Number of winches, or auto for the fewest that meet the tolerance.", "DesignRequest.winches"
         ),
     ] = None
-    cables: Annotated[int | None, _option("N", "Maximum number of cables in total.", "DesignRequest.cables")] = None
+    cables: Annotated[
+        int | None,
+        _option(
+            "N", "Maximum number of cables in total. A pair, sewn on both faces, counts once.", "DesignRequest.cables"
+        ),
+    ] = None
     pose: Annotated[
         list[str] | None, typer.Option(metavar="NAME", help="Pose to design for. Repeatable.", show_default="all")
     ] = None
@@ -67,29 +72,36 @@ class DesignArguments:
     tension: Annotated[str | None, _option("FORCE", "Maximum cable tension.", "Constraints.tension")] = None
     motor: MotorOption = None
     budget: Budget = None
-    slack: Annotated[str | None, _option("LENGTH", "Maximum cable slack.", "Constraints.slack")] = None
+    slack: Annotated[
+        str | None,
+        _option(
+            "LENGTH", "Maximum slack of a cable, so that cables of a winch pull one after another.", "Constraints.slack"
+        ),
+    ] = None
     stepped_spools: Annotated[
         bool, typer.Option("--stepped-spools", help="Allow cable spools from half to twice the winch spool radius.")
     ] = False
     two_way: Annotated[
-        bool, typer.Option("--two-way", help="Let winches pull both ways, by cables wound the other way round.")
+        bool, typer.Option("--two-way", help="Let winches pull both ways, with cables wound in opposite directions.")
     ] = False
     front: Annotated[
         bool,
         typer.Option(
-            "--front", help="Also search with a winch fewer and more, pulling one way and both ways. 3-6 times longer."
+            "--front",
+            help="Also search one winch fewer and one more, pulling one way and both ways. Takes 3 to 6 times as long.",
         ),
     ] = False
-    symmetric: Annotated[str | None, typer.Option(metavar="x|y|z", help="Require mirror symmetry about this axis.")] = (
-        None
-    )
+    symmetric: Annotated[
+        str | None,
+        typer.Option(metavar="x|y|z", help="Mirror the network across the plane where this coordinate is 0."),
+    ] = None
     lock_winch: Annotated[
         list[str] | None, typer.Option(metavar="NAME", help="Keep this winch of the robot. Repeatable.")
     ] = None
     lock_cable: Annotated[
         list[str] | None, typer.Option(metavar="NAME", help="Keep this cable, by name or number from 1. Repeatable.")
     ] = None
-    warm_start: Annotated[bool, typer.Option("--warm-start", help="Warm-start from the robot's own network.")] = False
+    warm_start: Annotated[bool, typer.Option("--warm-start", help="Start from the robot's own cables.")] = False
     tolerance: Annotated[
         str | None,
         typer.Option(
@@ -128,7 +140,7 @@ class DesignArguments:
             "--time",
             "--timeout",
             metavar="TIME",
-            help="Maximum search time, without writing the results. Keeps the best network so far.",
+            help="Maximum search time. Keeps the best network so far; writing it takes a few seconds more.",
             show_default="none",
         ),
     ] = None

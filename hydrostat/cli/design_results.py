@@ -142,7 +142,7 @@ def print_poses(network: "Network", seconds: float) -> tuple[str, ...]:
     from hydrostat.units import plural
 
     robot = network.robot
-    size = f"{plural(len(robot.winches), 'winch')}, {plural(len(robot.cables), 'cable')}"
+    size = f"{plural(len(robot.winches), 'winch')}, {count_cables(robot)}"
     table = Table(title=f"{robot.name}: {size}", title_justify="left")
     for name, justify in (("pose", "left"), ("rms error", "right"), ("worst marker", "left"), ("contractions", "left")):
         table.add_column(name, justify=justify)  # type: ignore[arg-type]
@@ -172,16 +172,37 @@ def print_poses(network: "Network", seconds: float) -> tuple[str, ...]:
     return _print_findings(network)
 
 
+def count_cables(robot: "Robot") -> str:
+    """Return the number of cables in words; of those in pairs also how many are sewn."""
+    from hydrostat.fabrication import KitOptions, Method
+    from hydrostat.robot import sewn_robot
+    from hydrostat.units import plural
+
+    count, sewn = len(robot.cables), len(sewn_robot(robot).cables)
+    if sewn == count or KitOptions().method_for(robot.body) is not Method.PLUSH:
+        return plural(count, "cable")
+    return f"{plural(count, 'pair')} of cables, {sewn} to sew"
+
+
 def _print_findings(network: "Network") -> tuple[str, ...]:
-    """Print errors that would prevent a kit, and warnings, for the loads that the design found; return them."""
+    """Print errors that would prevent a kit, and warnings, for the loads that the design found; return them.
+
+    Few elements across a limb are a note where they move the markers less than the build tolerances do.
+    """
     from hydrostat.cli.check import FINDINGS
     from hydrostat.design import review_robot
     from hydrostat.errors import in_words
     from hydrostat.fabrication import Demand
+    from hydrostat.robot import FEW_ELEMENTS
 
     found = review_robot(network.robot, demand=Demand.of_results(network.robot, network.ik_results))
     for finding in found:
-        print(f"{FINDINGS[finding.weight]}: {in_words(finding.text)}")
+        moved = network.element_error if FEW_ELEMENTS in finding.text else float("inf")
+        words = "" if moved == float("inf") else f"quadratic elements move the markers by {1e3 * moved:.2g} mm rms"
+        if moved < network.expected_error:
+            print(f"note: few elements across a limb: {words}")
+        else:
+            print(f"{FINDINGS[finding.weight]}: {in_words(finding.text)}{words and f': {words}'}")
     return tuple(finding.text for finding in found)
 
 

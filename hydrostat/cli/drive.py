@@ -50,9 +50,9 @@ def drive(
 ) -> None:
     """Drive winches by keys, gamepad, MIDI, OSC, glove or camera.
 
-    Without --motors the motors are simulated, and every line starts with "simulated". With --motors, winch limits, a
-    watchdog and a tension guard protect the robot. Motors hold when the input is lost, and stop at the end, on Ctrl-C,
-    on SIGTERM, when the terminal closes and on any error.
+    Without --motors the motors are simulated, and every line starts with "simulated". With --motors, the limits of the
+    winches protect the robot, and a watchdog and a tension guard where the motors have them. Motors hold when the input
+    is lost, and stop at the end, on Ctrl-C, on SIGTERM, when the terminal closes and on any error.
 
     With --markers you move markers, and inverse kinematics computes the contractions while you drive.
 

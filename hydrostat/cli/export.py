@@ -20,9 +20,7 @@ def export(
     usd: Annotated[bool, typer.Option("--usd", help="Write robot.usda, a film of the robot as a USD scene.")] = False,
     trials: Annotated[
         int,
-        typer.Option(
-            metavar="N", min=0, max=1000, help="Poses in which the MuJoCo model is measured; 0 measures none."
-        ),
+        typer.Option(metavar="N", min=0, max=1000, help="Number of random poses that test the MuJoCo model. 0 = none."),
     ] = 5,
 ) -> None:
     """Write a robot for other simulators and renderers.

@@ -26,7 +26,7 @@ Tension = Annotated[
     str | None,
     typer.Option(
         metavar="FORCE",
-        help="Maximum cable tension in its poses.",
+        help="Cable tension to build for: motors and line must hold it.",
         show_default="that of robot.toml or of the studio, else none",
     ),
 ]
@@ -44,11 +44,15 @@ def fabricate(
         typer.Option(
             metavar="plush|foam|print",
             help="Build method.",
-            show_default="print for TPU, foam for what is poured, plush for flat or stuffed bodies",
+            show_default="print for TPU, foam for castable materials, plush for flat or stuffed bodies",
         ),
     ] = None,
     motor: MotorOption = None,
     budget: Budget = None,
+    board: Annotated[
+        str | None,
+        typer.Option(metavar="uno|mega|esp32s3", help="Board for motors n20 and 25d.", show_default="smallest Arduino"),
+    ] = None,
     mould: Annotated[
         str | None,
         typer.Option(metavar="printed|silicone", help="Mold material for foam robots.", show_default="printed"),
@@ -67,7 +71,12 @@ def fabricate(
     force: Force = False,
     simple: Annotated[
         bool,
-        typer.Option("--simple", help="First afternoon: fewest cables, one panel where flat, no grommets. Plush only."),
+        typer.Option(
+            "--simple", help="Simpler kit: fewer cables, one panel if the body stays flat, no grommets. Plush only."
+        ),
+    ] = False,
+    swap: Annotated[
+        bool, typer.Option("--swap-core", help="Let foam cores be swapped in minutes: core plates and line couplers.")
     ] = False,
     summary: Annotated[
         bool, typer.Option("--summary", help="Print difficulty, time, cost and tools. Write nothing.")
@@ -75,9 +84,9 @@ def fabricate(
 ) -> None:
     """Write a build kit: patterns, parts, lists and assembly sheet.
 
-    Start with assembly_sheet.pdf; steps.txt has its words. pattern/ is for a laser cutter, or a printer and scissors.
+    Start with assembly_sheet.pdf; steps.txt has its text. pattern/ is for a laser cutter, or a printer and scissors.
     parts/ and mould/ are for a 3D printer. lists/ holds the bill of materials and the cable lengths. tags.pdf holds
-    tags to measure the robot by photographs. manifest.json records the inputs.
+    tags to measure the robot with photographs. manifest.json records the inputs.
 
     Example: hydrostat fabricate gallery:starfish --out build/kit
     """
@@ -95,8 +104,9 @@ def fabricate(
         paper=parse_choice(kits.Paper, paper, what="--paper"),
         pattern=kits.PatternOptions(seam_allowance=_millimeters("--seam", seam)),
         parts=kits.PartOptions(
-            cable=_millimeters("--line", line), clearance=_millimeters("--print-clearance", clearance)
+            cable=_millimeters("--line", line), clearance=_millimeters("--print-clearance", clearance), swap=swap
         ),
+        board=board,
         step=step,
         force=force,
     )
@@ -114,7 +124,6 @@ def fabricate(
         raise InputError("--mould: needs a foam body. Remove it, or add --method foam.")
     if simple:
         from hydrostat.cli.simple_kit import simplify_robot
-        from hydrostat.robot import save_robot
 
         loaded, options = simplify_robot(loaded, options)
     if out is None or summary:
@@ -125,6 +134,8 @@ def fabricate(
     _print_motors(loaded, kit, options)
     print_kit(kit)
     if simple:
+        from hydrostat.robot import save_robot
+
         save_robot(loaded, out / "robot")
         print(f"Its robot: {out / 'robot'}. Calibrate and play that one")
     if loaded.markers:
@@ -157,7 +168,7 @@ def _print_summary(folder: Path, robot: "Robot", options: "KitOptions") -> None:
 def _build_or_report(folder: Path, robot: "Robot", options: "KitOptions", out: Path) -> "Kit":
     """The kit; else the reasons are printed, and a command that fixes them (InputError: it cannot be built well)."""
     from hydrostat.camera import tag_files
-    from hydrostat.cli.remedies import kit_remedy
+    from hydrostat.cli.remedies import kit_remedy, note_room
     from hydrostat.errors import in_words
     from hydrostat.fabrication import UnbuildableError, build_kit
 
@@ -167,7 +178,10 @@ def _build_or_report(folder: Path, robot: "Robot", options: "KitOptions", out: P
     except UnbuildableError as error:
         for reason in error.reasons:
             print(f"error: {in_words(reason)}")
-        print(f"Try: {kit_remedy(robot, folder, out, options=options, reasons=error.reasons)}")
+        if note := note_room(robot, str(folder), options=options, reasons=error.reasons):
+            print(note)
+        if remedy := kit_remedy(robot, folder, out, options=options, reasons=error.reasons):
+            print(f"Try: {remedy}")
         raise _refusal(folder, error.reasons) from None
 
 

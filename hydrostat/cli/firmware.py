@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hydrostat.cli.folders import OutFolder, RobotFolder
+from hydrostat.cli.folders import OutFolder, OwnRobotFolder
 from hydrostat.cli.waiting import read_robot
 from hydrostat.errors import InputError
 from hydrostat.units import plural
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 
 
 def firmware(
-    robot: RobotFolder,
+    robot: OwnRobotFolder,
     out: OutFolder,
     board: Annotated[
         str | None,
         typer.Option(
-            metavar="uno|mega,...",
-            help="Board types: an uno drives two motors, a mega six.",
+            metavar="uno|mega|esp32s3",
+            help="Board types: an uno drives two motors, a mega six, an esp32s3 four. Separate several by commas.",
             show_default="smallest that fit",
         ),
     ] = None,
@@ -54,28 +54,37 @@ def firmware(
         Path | None,
         typer.Option(metavar="MOVES.csv", help="Table of contractions that a button plays.", show_default="none"),
     ] = None,
-    rate: Annotated[int, typer.Option(metavar="5|10|25|50", help="Rows per second stored of --moves.")] = 25,
+    rate: Annotated[int, typer.Option(metavar="5|10|25|50", help="Rows of --moves stored per second.")] = 25,
+    min_supply: Annotated[
+        float | None,
+        typer.Option(
+            metavar="VOLTS",
+            help="Stop the motors below this supply [V]; needs the divider of the kit.",
+            show_default="no such stop",
+        ),
+    ] = None,
 ) -> None:
     """Build Arduino firmware for geared motors, and flash it.
 
     Limits come from robot.toml and motors.toml. Missing encoder counts are added to motors.toml; --motor or --counts
     replaces them. Robots with more motors than one board drives use several boards, each with its own port. Without
-    --flash the command prints the flash command instead of running it. With --moves the board plays the table without
-    a computer, once it was calibrated. Needs Debian's gcc-avr and avr-libc, and avrdude to flash. Then run: hydrostat
-    calibrate ROBOT --motors firmware:/dev/ttyACM0.
+    --flash the command prints the flash command instead of running it. With --moves the board plays the table without a
+    computer, after calibration. Needs Debian's gcc-avr and avr-libc, and avrdude to flash. For an ESP32-S3 the command
+    writes an Arduino sketch instead. Then run: hydrostat calibrate ROBOT --motors firmware:/dev/ttyACM0.
 
     Example: hydrostat firmware examples/starfish --board mega --out build/firmware
     """
     from hydrostat import control
-    from hydrostat.fabrication import MOTORS
+    from hydrostat.fabrication import MOTORS, check_board
+    from hydrostat.robot import PinDrive
 
     known = {each.key: each for each in MOTORS if each.counts}
     if motor is not None and motor not in known:
         raise InputError(f"--motor {motor}: unknown motor. Available: {', '.join(known)}. Or give --counts and --rpm.")
-    if moves is None and rate != 25:
-        raise InputError("--rate: needs --moves. Add it, or remove --rate.")
+    _check_alone(moves, rate, min_supply)
     folder = robot if robot.is_dir() else robot.parent
     loaded = read_robot(robot)
+    PinDrive.require_none(loaded.drives, "firmware, whose boards turn winches")
     if not loaded.winches:
         raise InputError(f"{robot}: no winches. Add winches and cables, or run `hydrostat design`.")
     if (folder / control.CALIBRATION).exists():
@@ -89,6 +98,7 @@ def firmware(
             raise InputError(f"--{name} {value:g}: must be above 0")
     boards = _boards(board, calibration)
     given = control.on_boards(calibration, boards)
+    _check_count(board, given)
     new = usual if counts or motor else None  # else what motors.toml says stays
     given = control.Calibration(tuple(replace(each, counts=new or each.counts or usual) for each in given.motors))
     ports = port.split(",") if port else []
@@ -102,6 +112,7 @@ def firmware(
     print(f"{shown} counts per spool turn, no-load speed {turns:g} turns/min")
     baked = None if moves is None else control.bake_moves(moves, folder, loaded, given, boards[0], rate=rate)
     text = "" if baked is None else baked.settings
+    text += "" if min_supply is None else f"#define MIN_SUPPLY {round(1e3 * min_supply)} /* [mV] */\n"
     images = control.build_images(loaded, given, boards, places, rpm=turns, stall=chosen.stall_current, moves=text)
     if given != calibration:
         print(f"Wrote {given.write(folder)}")
@@ -110,9 +121,36 @@ def firmware(
         _flash(kind, image, ports[number - 1] if ports else None)
     if baked is not None:
         words = f"{baked.seconds:.1f} s, {baked.size / 1000:.1f} kB. Button between pin"
-        print(f"{moves}: {words} {control.board_kind(boards[0]).button} and GND plays and stops it, after calibration.")
+        print(f"{moves}: {words} {check_board(boards[0]).button} and GND plays and stops it, after calibration.")
+    _tell_supply(boards[: given.boards], min_supply, alone=baked is not None)
     if ports:
         print(f"{port}: flashed. Pay out all cables, then: hydrostat calibrate {folder} --motors firmware:{port}")
+
+
+def _check_alone(moves: Path | None, rate: int, min_supply: float | None) -> None:
+    if moves is None and rate != 25:
+        raise InputError("--rate: needs --moves. Add it, or remove --rate.")
+    if min_supply is not None and not 3 <= min_supply <= 17:
+        raise InputError(f"--min-supply {min_supply:g}: must be from 3 to 17 V.")
+
+
+def _check_count(asked: str | None, given: "Calibration") -> None:
+    """Reject more boards than the motors need."""
+    count = 0 if asked is None else len(asked.split(","))
+    if count > given.boards:
+        raise InputError(
+            f"--board {asked}: {plural(count, 'board')} for motors that fit on {given.boards}. Remove the others."
+        )
+
+
+def _tell_supply(kinds: list[str], min_supply: float | None, *, alone: bool) -> None:
+    from hydrostat.fabrication import check_board
+
+    if min_supply is not None:
+        pins = ", ".join(dict.fromkeys(check_board(kind).supply for kind in kinds))
+        print(f"Motors stop below {min_supply:g} V. Divider: plus of the motors, 47 kΩ, pin {pins}, 10 kΩ, GND.")
+    elif alone:
+        print("note: no low-voltage stop. From a battery add the divider and --min-supply, 1 V per NiMH cell.")
 
 
 _USUAL = "25d"
@@ -127,25 +165,24 @@ def _motor_key(known: "Mapping[str, Motor]", calibration: "Calibration") -> str:
 
 def _boards(asked: str | None, calibration: "Calibration") -> list[str]:
     """Kinds of boards as asked for, the last again and again while motors are left; else the smallest that fit."""
-    from hydrostat.control import board_kind
-    from hydrostat.fabrication import board_for
+    from hydrostat.fabrication import board_for, check_board
 
     found, motors = [each.strip() for each in asked.split(",")] if asked else [], len(calibration.motors)
     if not asked and calibration.boards > 1:
         return [board_for(len(calibration.places(number))) for number in range(1, calibration.boards + 1)]
-    while (room := sum(board_kind(each).motors for each in found)) < motors:
+    while (room := sum(check_board(each).motors for each in found)) < motors:
         found.append(found[-1] if asked else board_for(motors - room))
     return found
 
 
 def _tell(kind: str, number: int, given: "Calibration") -> None:
     """Say which motor is wired to which pins of a board."""
-    from hydrostat.control import board_kind
+    from hydrostat.fabrication import check_board
 
     motors = sorted((given.motors[place] for place in given.places(number)), key=lambda one: one.number)
     name = kind if given.boards == 1 else f"board {number}, {kind}"
     print(f"{name}: {plural(len(motors), 'motor')}, wiring (driver PWM, direction, encoder A and B, current):")
-    for each, pins in zip(motors, board_kind(kind).wiring, strict=False):
+    for each, pins in zip(motors, check_board(kind).wiring, strict=False):
         print(f"  {each.number} {each.winch}: {', '.join(pins)}")
 
 
@@ -154,6 +191,7 @@ def _flash(kind: str, image: "Path", port: str | None) -> None:
     from hydrostat.control import flash, flash_command
 
     command = flash_command(kind, port or "PORT", image)
-    print(f"Wrote {image}. {'Flashing the board' if port else 'To flash a board'}: {join(command)}", flush=True)
+    other = "" if image.suffix == ".hex" else ", or open it in the Arduino IDE with Espressif's board package esp32 3"
+    print(f"Wrote {image}. {'Flashing the board' if port else 'To flash a board'}: {join(command)}{other}", flush=True)
     if port:
         flash(command)

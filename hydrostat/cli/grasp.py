@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 def grasp(
     robot: RobotFolder,
     out: OutFolder,
-    thing: Annotated[
+    obstacle: Annotated[
         str,
         typer.Option(
             "--object",
@@ -33,7 +33,10 @@ def grasp(
         str | None, typer.Option(metavar="NAME", help="Pose that closes the robot, instead of --contract.")
     ] = None,
     contract: Contract = None,
-    direction: Annotated[str, typer.Option(metavar="AXIS", help="Pull direction, e.g. +z.")] = "+z",
+    direction: Annotated[
+        str | None,
+        typer.Option(metavar="AXIS", help="Pull direction, e.g. +x.", show_default="+z; +y for a flat robot"),
+    ] = None,
     at: Annotated[
         str | None,
         typer.Option(metavar="X,Y,Z", help="Object center [mm].", show_default="near the markers of the pose"),
@@ -69,7 +72,7 @@ def grasp(
     require_folder(out)
     weight, stride = positive("--mass", mass, MASS), positive("--increment", step, LENGTH)
     loaded = _feeling(read_robot(robot))
-    held = read_object(thing, loaded.body.mesh.dim, mass=weight, friction=friction)
+    held = read_object(obstacle, loaded.body.mesh.dim, mass=weight, friction=friction)
     options = PullOptions(direction=_direction(direction, loaded.body.mesh.dim), step=stride)
     with progress_bar() as progress:
         closing, closed = _close_robot(loaded, pose, contractions(loaded, contract))
@@ -124,17 +127,18 @@ def _reach_pose(simulation: "Simulation", name: str) -> "Equilibrium":
     return found.pose
 
 
-def _place_object(robot: "Robot", thing: "Obstacle", at: str | None, closed: "Points") -> "Obstacle":
+def _place_object(robot: "Robot", obstacle: "Obstacle", at: str | None, closed: "Points") -> "Obstacle":
     """Place the object."""
     from hydrostat.grasp import move_object, place_object
 
     if at is None:
-        return place_object(robot, thing, closed)
-    return move_object(thing, middle(at, robot.body.mesh.dim))
+        return place_object(robot, obstacle, closed)
+    return move_object(obstacle, middle(at, robot.body.mesh.dim))
 
 
-def _direction(text: str, dim: int) -> tuple[float, ...]:
+def _direction(text: str | None, dim: int) -> tuple[float, ...]:
     axes = "xyz"[:dim]
+    text = f"+{axes[-1]}" if text is None else text
     if len(text) != 2 or text[0] not in "+-" or text[1] not in axes:
         raise InputError(
             f"--direction {text}: unknown axis. Allowed: {', '.join(sign + axis for axis in axes for sign in '+-')}."
@@ -164,9 +168,9 @@ def _bands(cases: "tuple[PullCase, ...]") -> str:
     return "\n".join(lines) + "\n"
 
 
-def _print(pull: "PullOut", thing: "Obstacle", cases: "tuple[PullCase, ...]") -> None:
+def _print(pull: "PullOut", obstacle: "Obstacle", cases: "tuple[PullCase, ...]") -> None:
     """Print the most that the pull took, and how it changes with what nobody knows well."""
-    place = ", ".join(f"{1e3 * value:z.1f}" for value in thing.frame()[0])
+    place = ", ".join(f"{1e3 * value:z.1f}" for value in obstacle.frame()[0])
     print(f"object at ({place}) mm")
     hardest = 1e3 * float(pull.moved[int(pull.forces.argmax())])
     print(f"peak force {pull.peak:.3g} N at {hardest:.1f} mm, work {1e3 * pull.work:.3g} mJ; {pull.reason}")

@@ -10,7 +10,7 @@ import typer
 
 from hydrostat.cli.folders import RobotFolder, folder_of, require_folder
 from hydrostat.cli.options import MostTension, parse_optional, positive
-from hydrostat.cli.waiting import ProgressLines, read_robot
+from hydrostat.cli.waiting import read_robot, report_progress
 from hydrostat.errors import InputError
 from hydrostat.units import plural
 
@@ -35,11 +35,11 @@ def identify(
     fit: Annotated[
         str | None,
         typer.Option(
-            "--fit", metavar="NAMES", help="Parameters to fit, with commas.", show_default="all that are common"
+            "--fit", metavar="NAMES", help="Parameters to fit, separated by commas.", show_default="all that are common"
         ),
     ] = None,
     in_order: Annotated[
-        bool, typer.Option("--in-order", help="The rows are one motion: each pose follows from the one before.")
+        bool, typer.Option("--in-order", help="The rows are one motion: each pose starts from the previous one.")
     ] = False,
     profile: Annotated[
         bool, typer.Option("--profile", help="Check the intervals by profile likelihood. Takes several times longer.")
@@ -48,9 +48,7 @@ def identify(
         str | None,
         typer.Option(metavar="NAME", help="Add the fitted material of the body to your own materials."),
     ] = None,
-    suggest: Annotated[
-        int | None, typer.Option(metavar="N", help="Print the N most informative measurements to make.")
-    ] = None,
+    suggest: Annotated[int | None, typer.Option(metavar="N", help="Print the N most informative measurements.")] = None,
     hang: Annotated[
         list[str] | None,
         typer.Option(metavar="MASS", help="Mass that you can hang at a marker, for --suggest, e.g. 50g. Repeatable."),
@@ -61,12 +59,12 @@ def identify(
 
     Parameters: young, poisson, density, hysteresis (scale of its moduli), stiffness (of cables), zero and gain (of
     winches), routes (points of cables), friction, pins, gravity, rods, sheets, frame (of the measurement), force (scale
-    of measured forces). Writes the fitted robot, parameters.csv with 95 % intervals and identified.png. Every fifth of
-    ten or more rows is also predicted by a fit that did not see it. `hydrostat design` takes the interval of the fitted
-    material as its uncertainty. A correction of the contractions is written if it predicts such rows better:
-    correction.json. Intervals follow from a linearized model; --profile corrects them where the model is nonlinear or a
-    value is at its limit. Friction and hysteresis make strokes up and down differ: measure both, and add --in-order.
-    With --suggest, the command prints file names of photographs to take, the most informative first.
+    of measured forces). Writes the fitted robot, parameters.csv with 95 % intervals and identified.png. With ten or
+    more rows, every fifth row is also predicted by a fit that leaves it out. `hydrostat design` takes the interval of
+    the fitted material as its uncertainty. correction.json holds a correction of the contractions, if it predicts those
+    rows better. Intervals follow from a linearized model; --profile corrects them where the model is nonlinear or a
+    value is at its limit. With friction or hysteresis, loading and unloading differ: measure both, and add --in-order.
+    With --suggest, the command prints file names of photographs to take, most informative first.
 
     Example: hydrostat identify my_starfish measured.csv --out build/fitted
     """
@@ -93,7 +91,7 @@ def identify(
     loaded = read_robot(robot)
     table = replace(read_measurements(measurements, loaded), in_order=in_order)
     began = time.process_time()
-    found = identify_robot(loaded, table, fit=names, profile=profile, progress=ProgressLines())
+    found = identify_robot(loaded, table, fit=names, profile=profile, progress=report_progress())
     _write(robot, table, found, out)
     _print_values(found)
     _print_errors(found, table, time.process_time() - began)

@@ -1,13 +1,12 @@
 """`hydrostat learn`."""
 
-from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from hydrostat.cli.folders import require_writable
-from hydrostat.cli.waiting import hold_signals, one_interrupt, report_progress
+from hydrostat.cli.waiting import one_interrupt, report_progress
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
@@ -28,7 +27,7 @@ def learn(
         int | None,
         typer.Option(
             metavar="N",
-            help="Training steps. More is slower and slightly more accurate.",
+            help="Training steps. More steps take longer and are slightly more accurate.",
             show_default="6000, plus 3 per sample",
         ),
     ] = None,
@@ -41,8 +40,8 @@ def learn(
 ) -> None:
     """Train a surrogate model from samples.
 
-    The model predicts marker positions and solves inverse kinematics. Writes one file. It runs without simulator and
-    PyTorch: hydrostat pose ROBOT --model MODEL, or in Python
+    The model predicts marker positions and solves inverse kinematics in microseconds; `hydrostat pose` needs none.
+    Writes one file. It runs without simulator and PyTorch: hydrostat pose ROBOT --model MODEL, or in Python
     hydrostat.learning.LearnedModel.load(MODEL).solve(targets). Ctrl-C stops early and saves the best model so far.
 
     With --fine-tune, training continues from an existing model. Train on many samples of a coarse mesh first, then
@@ -61,8 +60,6 @@ def learn(
     clear_unfinished(out.parent)
     chosen = {"members": members, "steps": steps}
     options = LearnOptions(seed=seed, threads=threads, **{name: n for name, n in chosen.items() if n is not None})
-    with hold_signals(), suppress(ModuleNotFoundError):
-        import torch  # noqa: F401  # pyright: ignore
     samples = Samples.read(data)
     samples = samples if count is None else samples.first(count)
     if start is not None:

@@ -1,8 +1,10 @@
-"""Limits of material and line that a pose exceeds."""
+"""Limits of material, line and robot that a pose exceeds."""
 
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from hydrostat.arrays import Vector
+    from hydrostat.robot import Robot
     from hydrostat.simulation import Equilibrium
 
 
@@ -14,3 +16,17 @@ def print_exceeded(pose: "Equilibrium", indent: str = "") -> None:
         print(f"{indent}error: {reason}")
     if words := pose.overstrain:
         print(f"{indent}warning: {words}")
+
+
+def print_overloads(robot: "Robot", tensions: "Vector", torques: "Vector") -> None:
+    """Print cables [N] and winches [N m] above the robot's own max_tension and max_torque, by more than 1 %."""
+    limits = {"max_tension": (robot.max_tension, 1.0, "N"), "max_torque": (robot.max_torque, 1e3, "N mm")}
+    loads = (
+        [(f"cable {number}", tension) for number, tension in enumerate(tensions.tolist(), start=1)],
+        [(f"winch {winch.name}", torque) for winch, torque in zip(robot.winches, torques.tolist(), strict=True)],
+    )
+    for (key, (limit, factor, unit)), values in zip(limits.items(), loads, strict=True):
+        for name, value in values:
+            if limit is not None and value > 1.01 * limit:  # poses are solved up to the limit
+                most = f"more than its {key} of {factor * limit:.3g} {unit}"
+                print(f"warning: {name}: {factor * value:.3g} {unit}, {most}")

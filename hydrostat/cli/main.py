@@ -144,15 +144,18 @@ def main() -> None:
 
 def _print_usage_error(error: Any, *_: object) -> None:
     words = " ".join(error.format_message().split()).rstrip(".")
-    print(f"hydrostat: error: {words}. See {error.ctx.command_path if error.ctx else 'hydrostat'} -h.", file=sys.stderr)
+    words += "" if words.endswith("?") else "."
+    print(f"hydrostat: error: {words} See {error.ctx.command_path if error.ctx else 'hydrostat'} -h.", file=sys.stderr)
 
 
 def _run() -> None:
     """Run the app; what it printed is out when it ends, so that a full disk or a closed pipe is noticed here."""
     try:
         _only(sys.argv[1:2])()
-    except SystemExit:
+    except SystemExit as stop:
         sys.stdout.flush()
+        if isinstance(getattr(stop.__context__, "__cause__", None), KeyboardInterrupt):  # while typer read the options
+            raise KeyboardInterrupt from None
         raise
 
 

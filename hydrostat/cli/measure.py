@@ -7,7 +7,7 @@ import typer
 
 from hydrostat.cli.folders import RobotFolder, require_files, require_folder, require_writable
 from hydrostat.cli.options import parse_optional
-from hydrostat.cli.waiting import ProgressLines, read_robot
+from hydrostat.cli.waiting import read_robot, report_progress
 from hydrostat.errors import InputError
 from hydrostat.units import plural
 
@@ -50,12 +50,12 @@ def measure(
         Path | None,
         typer.Option(
             metavar="FILE.csv",
-            help="Contractions: columns photo, left_mm, tip_load_g; of a film its moves: time_s, left_mm.",
+            help="Contractions: columns photo, left_mm, tip_load_g; for a film its moves: time_s, left_mm.",
         ),
     ] = None,
     every: Annotated[str, typer.Option(metavar="TIME", help="Time between two measured frames of a film.")] = "200ms",
     start: Annotated[
-        str, typer.Option(metavar="TIME", help="Time in a film at which the robot begins its moves.")
+        str, typer.Option(metavar="TIME", help="Time in a film at which the robot starts to move.")
     ] = "0s",
     tag: TagSide = "15mm",
     height: TagHeight = None,
@@ -70,9 +70,9 @@ def measure(
 ) -> None:
     """Measure marker positions in photographs or in a film.
 
-    Print the board and the tags with --print. Lay the robot on the board, or before it, and photograph each pose with
-    one camera. File names hold contractions and hung masses: left=12mm,tip=100g.jpg, or rest.jpg for none. A film is of
-    a camera that stands still, and shows slow moves: --table names them.
+    Print the board and the tags with --print. Lay the robot on the board, or in front of it, and photograph each pose
+    with one camera. File names hold contractions and hung masses: left=12mm,tip=100g.jpg, or rest.jpg for none. A film
+    needs a camera that stands still and slow moves, which --table lists.
 
     Example: hydrostat measure my_starfish photos/*.jpg --out measured.csv
     """
@@ -156,7 +156,7 @@ def _measure_film(robot: "Robot", film: Path, table: Path, out: Path, how: "tupl
     options = FilmOptions(
         every=positive("--every", every, TIME), start=positive("--start", start, TIME, zero=True), photo=photo
     )
-    found = measure_film(robot, film, ProfileTable.open(table, robot).profile, options, ProgressLines())
+    found = measure_film(robot, film, ProfileTable.open(table, robot).profile, options, report_progress())
     replace_file(out, found.text(robot))
     seen = found.measurements
     counts = np.isfinite(seen.places).any(axis=2).sum(axis=0)

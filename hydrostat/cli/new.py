@@ -51,7 +51,7 @@ def new(
     material: Annotated[str | None, typer.Option(help="Material name. List them with `hydrostat materials`.")] = None,
     inner: Annotated[
         str | None,
-        typer.Option(help="Closed shapes inside a drawing: holes, or drawn for features on the body (eyes, a mouth)."),
+        typer.Option(help="Inner shapes of a drawing: holes, or drawn (features on the body, such as eyes)."),
     ] = None,
     part: Annotated[
         int | None,
@@ -309,7 +309,9 @@ def _print_made(made: "Robot", name: Path, lines: list[str], *, chosen: bool, fr
     print(f"Edit {name / 'robot.toml'}. Coordinates: {origin}, see {name / 'rest.png'}")
     folder = quote(str(name))
     if flat:
-        print(f"Next: hydrostat design {folder} --out {quote(str(name) + '_design')}")
+        poses = f"write your poses into robot.toml or drag them in hydrostat studio {folder}, then: "
+        design = f"hydrostat design {folder} --out {quote(str(name) + '_design')}"
+        print(f"Next: {'' if from_gallery else poses}{design}")
     elif made.winches:
         pull = f"{made.winches[0].name}={250 * made.winches[0].travel:.0f}mm"
         print(f"Next: hydrostat simulate {folder} --contract {quote(pull)} --out {quote(f'build/{made.name}')}")
@@ -328,19 +330,19 @@ def _commented_text(robot: "Robot", source: str) -> str:
     origin = "the middle of the drawing, x to the right, y up" if flat else "where the file of the body has it"
     where = "[0, 0]" if flat else "[0, 0, 0]"
     head = (
-        f"# {robot.name}, begun from {printable(source)}. All of it is meant to be changed.\n"
+        f"# {robot.name}, made from {printable(source)}. Change anything.\n"
         f"# Lengths are in {robot.length_unit}; {where} is {origin}. rest.png shows them.\n"
         "# `hydrostat check` reports errors and warnings. docs/robot_toml.md of hydrostat lists all keys.\n"
     )
     notes = {
         "[body]": "# The body. A smaller element_size is finer but slower; `hydrostat materials` lists materials.",
-        "[[pin]]": "# Where it is held: what is within `radius` of `at`, or in the `box`, stays put.",
+        "[[pin]]": "# The pin holds all nodes within `radius` of `at`, or in its `box`.",
         "[[winch]]": "# A winch takes in up to `travel` of its cables' length, and lets out up to `release`.",
         "[[cable]]": "# A cable runs from its winch, the first point, to its stopper, the last.",
-        "[[marker]]": "# Markers are points whose way is followed. Add one wherever the robot should reach something.",
+        "[[marker]]": "# Markers are the points that you follow. Add one where the robot should reach something.",
         "[[pose]]": (
-            "# A pose says where markers should go. `hydrostat design` finds cables for it.\n"
-            "# What it does not name may go anywhere: name markers that stay, too, where they are."
+            "# A pose sets targets for markers. `hydrostat design` finds cables for it.\n"
+            "# A marker without a target may move freely. To keep one in place, name its position at rest."
         ),
     }
     lines, told = [], set()

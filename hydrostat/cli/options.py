@@ -66,12 +66,12 @@ AddedLoads = Annotated[
 Pulls = Annotated[
     list[str] | None,
     typer.Option(
-        "--pull", metavar="WINCH=FORCE", help="Pull of a winch in place of its contraction, e.g. left=5N. Repeatable."
+        "--pull", metavar="WINCH=FORCE", help="Tension of a winch instead of its contraction, e.g. left=5N. Repeatable."
     ),
 ]
 MostTension = Annotated[
     str | None,
-    typer.Option(metavar="FORCE", help="Maximum cable tension, e.g. 20N.", show_default="that of robot.toml"),
+    typer.Option(metavar="FORCE", help="Maximum cable tension, e.g. 20N.", show_default="max_tension of robot.toml"),
 ]
 MostTorque = Annotated[
     str | None,
@@ -140,7 +140,9 @@ MotorOption = Annotated[
 Budget = Annotated[
     str | None,
     typer.Option(
-        metavar="AMOUNT", help="Maximum price of the kit in whole packs, e.g. 250USD.", show_default="no limit"
+        metavar="AMOUNT",
+        help="Maximum price of everything to buy, in whole packs, e.g. 250USD.",
+        show_default="no limit",
     ),
 ]
 PictureWidth = Annotated[int, typer.Option(metavar="PIXELS", help="Width of the animation [pixels].")]
@@ -353,9 +355,12 @@ def pulls(robot: "Robot", texts: Sequence[str] | None) -> dict[str, float]:
         name, force = _split_value("--pull", text, "WINCH=FORCE, e.g. left=5N")
         try:
             robot.winch(name)
-            return name, parse_quantity(force, FORCE)
+            value = parse_quantity(force, FORCE)
         except InputError as error:
             raise InputError(f"--pull {text}: {error}") from None
+        if value < 0:
+            raise InputError(f"--pull {text}: a cable only pulls. Write 0 N or more.")
+        return name, value
 
     return _unique("--pull", map(read, texts or []))
 
@@ -377,7 +382,10 @@ def check_contraction(robot: "Robot", name: str, value: float, *, option: str = 
         raise InputError(f'{option} {name}: "{name}" is a marker. {list_choices("winches", winches)}')
     if name not in winches and name in {each.name for each in robot.drives}:
         raise InputError(f'{option} {name}: "{name}" is a drive. Move it by --move. {list_choices("winches", winches)}')
-    winch = robot.winch(name)
+    try:
+        winch = robot.winch(name)
+    except InputError as error:
+        raise InputError(f"{option} {name}: {error}") from None
     if not -winch.release <= value <= winch.travel:
         print(
             f"warning: winch {name}: contraction {1e3 * value:g} mm is outside its range "

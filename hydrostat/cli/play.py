@@ -39,14 +39,15 @@ def play(
     camera: Annotated[
         str | None,
         typer.Option(
-            metavar="CAMERA", help="Correct contractions by the tags that a camera sees: its number, device or address."
+            metavar="CAMERA", help="Camera that sees the tags, to correct contractions: number, device or address."
         ),
     ] = None,
     lag: Annotated[
         str, typer.Option(metavar="TIME", help="Time from a command until a frame with its effect arrives.")
     ] = "100ms",
     lost: Annotated[
-        str, typer.Option(metavar="hold|continue", help="Without a marker in sight, hold or go on uncorrected.")
+        str,
+        typer.Option(metavar="hold|continue", help="If no marker is in sight, hold or continue without correction."),
     ] = "hold",
     tag: TagSide = "15mm",
     height: TagHeight = None,
@@ -55,9 +56,10 @@ def play(
     """Play a table of contractions on the motors in real time.
 
     Without --motors the motors are simulated, and every line starts with "simulated". `hydrostat trajectory` and the
-    studio write such tables. Motors stop at the end, on Ctrl-C, on SIGTERM, when the terminal closes and on
-    any error. With --motors they also stop if a cable tension is far above the simulated one, or missing. With
-    --camera, tags that `hydrostat measure --print` writes keep the markers on their simulated paths.
+    studio write such tables. Motors stop at the end, on Ctrl-C, on SIGTERM, when the terminal closes and on any error.
+    With --motors, Dynamixel servos also stop if a cable tension is far above the simulated one, or missing; boards and
+    Feetech servos have no such guard. With --camera, tags that `hydrostat measure --print` writes keep the markers on
+    their simulated paths.
 
     Example: hydrostat play gallery:starfish build/dance/trajectory.csv --repeat 3
     """
@@ -85,6 +87,8 @@ def play(
         raise InputError(f"{robot}: no winches. Add winches and cables, or run `hydrostat design`.")
     asked = ProfileTable.open(moves, given)
     table = control.stand_table(asked, given)
+    for column in control.list_moved_loads(asked, given):
+        _say(kind, f"warning: no motor changes column {column}. Apply this load by hand, or the poses differ")
     fastest = control.FASTEST if port is None else control.LinkLimits().speed
     motors = control.Motors(loaded.winches, control.SimulatedLink(np.zeros(len(loaded.winches))), fastest=fastest)
     motors.check(table, speed=speed)  # before anything turns

@@ -37,7 +37,7 @@ def pose(
     equal: EqualWinches = None,
     restarts: Annotated[
         int | None,
-        typer.Option(metavar="N", help="Random restarts if the target is not reached.", show_default="3"),
+        typer.Option(metavar="N", help="Random restarts if a target is not reached.", show_default="3; 0 within 0.3 %"),
     ] = None,
     timeout: Annotated[
         str | None,
@@ -65,7 +65,7 @@ def pose(
     require_folder(out)
     if restarts is not None and restarts < 0:
         raise InputError(f"--restarts {restarts}: must be 0 or more")
-    options = IKOptions() if restarts is None else IKOptions(restarts=restarts)
+    options = IKOptions() if restarts is None else IKOptions(restarts=restarts, restart_error=0.0)
     loaded = read_robot(robot)
     limits, seconds = pose_limits(loaded, tension, torque, equal), parse_optional("--timeout", timeout, TIME)
     outline = None if drawing is None else load_target_outline(loaded, drawing)

@@ -9,9 +9,9 @@ if TYPE_CHECKING:
     from pstats import Stats
 
 FILES = {
-    "elements": "neo_hookean patch_volume energy",
+    "elements": "neo_hookean patch_dilatation energy",
     "assembly": "assembly",
-    "factorization": "factorization supernodal stiffness",
+    "factorization": "factorization supernodal factorized_hessian",
     "symbolic analysis": "ordering symbolic",
     "arcs": "warp",
     "cables": "cable cable_friction capstan loading_path tension_law",

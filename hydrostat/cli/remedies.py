@@ -20,9 +20,10 @@ _SILICONE = "mould of silicone"  # in reasons that a mold of silicone does not h
 def kit_remedy(robot: "Robot", folder: Path, out: Path, *, options: "KitOptions", reasons: Iterable[str]) -> str:
     """Command that makes a rejected kit buildable: another motor, a mold of silicone, a seam, or a new design.
 
-    It is `hydrostat materials` if the material is a cause, and `hydrostat check` if no kit can be made of the body
-    itself.
+    It is `hydrostat materials` if the material is a cause, `hydrostat check` if no kit can be made of the body itself,
+    and empty where no design has room for a motor either.
     """
+    from hydrostat.design import find_no_room
     from hydrostat.fabrication import ALL_MOTORS, MATERIAL_FIX, OVER_BUDGET, Method, find_refusals
 
     place, kit = quote(str(folder)), quote(str(out))
@@ -32,7 +33,7 @@ def kit_remedy(robot: "Robot", folder: Path, out: Path, *, options: "KitOptions"
     if any(MATERIAL_FIX in reason for reason in told):
         return f"hydrostat materials, then edit material in {place}"
     if found := next((reason for reason in told if OVER_BUDGET in reason), ""):
-        return _cheaper(robot, found, f"--budget {options.budget:g}USD", place, out)
+        return _cheaper(robot, found, options.budget or 0.0, place, out)
     known = set(find_refusals(robot, options=options))
     for motor in ("auto", *(each.key for each in ALL_MOTORS)) if known and known >= set(told) else ():
         if motor != options.motor and not find_refusals(robot, options=replace(options, motor=motor)):
@@ -43,19 +44,44 @@ def kit_remedy(robot: "Robot", folder: Path, out: Path, *, options: "KitOptions"
             if seam < options.pattern.seam_allowance and not find_refusals(robot, options=narrow):
                 return f"hydrostat fabricate {place} --seam {seam}mm --out {kit}"
         return f"hydrostat check {place}"
+    if any("smaller motor" in reason for reason in told) and find_no_room(robot):
+        return ""
     winches, cables = max(len(robot.winches), 1), max(len(robot.cables), 1)
     return f"hydrostat design {place} --winches {winches} --cables {cables} --out {quote(f'{out}_design')}"
 
 
-def _cheaper(robot: "Robot", reason: str, budget: str, place: str, out: Path) -> str:
-    """Command that brings a kit within its budget: another motor, fewer winches, or else the budget that it needs."""
-    if motor := re.search(r"--motor (\S+)", reason):
-        return f"hydrostat fabricate {place} --motor {motor[1]} {budget} --out {quote(str(out))}"
-    if (winches := len(robot.winches) - 1) > 0:
-        return f"hydrostat design {place} --winches {winches} --two-way {budget} --out {quote(f'{out}_design')}"
-    if price := re.search(r"costs (\d+) USD", reason):
-        return f"hydrostat fabricate {place} --budget {int(price[1]) + 1}USD --out {quote(str(out))}"  # it was rounded
-    return f"hydrostat check {place}"
+def note_room(robot: "Robot", place: str, *, options: "KitOptions", reasons: Iterable[str]) -> str:
+    """Note how large the body has to be for its motors, or for any motor, if units have no room; else empty."""
+    from hydrostat.fabrication import ALL_MOTORS, Motor, fit_motor
+    from hydrostat.robot import scaled_robot
+
+    if not any("smaller motor" in reason for reason in reasons):
+        return ""
+    key = options.motor_for(robot)
+    motors = ALL_MOTORS if key == "auto" else (Motor.choose(key),)
+    for factor in (1.0, 1.25, 1.5, 2.0, 2.5, 3.0):
+        larger = scaled_robot(robot, factor)
+        if found := [motor.key for motor in motors if not fit_motor(larger, options, motor)[0]]:
+            words = f"a body {factor:g} times as large has room for {', '.join(found)}"
+            return "" if factor == 1.0 else f"note: {words}: hydrostat scale {place} {factor:g}, then a new design"
+    from hydrostat.design import find_no_room
+
+    return f"note: {find_no_room(robot) or 'a body 3 times as large has no room for these motors there either'}"
+
+
+def _cheaper(robot: "Robot", reason: str, budget: float, place: str, out: Path) -> str:
+    """Command that brings a kit within its budget [USD]: another motor, fewer winches, or else the budget it needs."""
+    known = {word: int(number) for word, number in re.findall(r"(costs|about|winches) (\d+)", reason)}
+    price, least, winches = known["costs"], known.get("about", known["costs"]), max(len(robot.winches), 1)
+    motor = "".join(re.findall(r"--motor \S+ ", reason))
+    each = known.get("winches", 0) / winches
+    fit = next((number for number in range(winches - 1, 0, -1) if price - each * (winches - number) <= budget), 0)
+    if least > budget and fit:
+        return (
+            f"hydrostat design {place} --winches {fit} --two-way --budget {budget:g}USD --out {quote(f'{out}_design')}"
+        )
+    spend = f"{budget:g}" if least <= budget else f"{least + 1}"  # prices in reasons are rounded
+    return f"hydrostat fabricate {place} {motor}--budget {spend}USD --out {quote(str(out))}"
 
 
 def design_remedy(
@@ -64,7 +90,7 @@ def design_remedy(
     """Command to continue with if the kit of a design would be rejected: an alternative, or fewer winches.
 
     All keep to the budget [USD], for which `over` are the problems. It is `hydrostat check` if no kit can be made of
-    the body itself, or if fewer winches were what was asked for.
+    the body itself, or if fewer winches were what was asked for or what was found and rejected.
     """
     from hydrostat.design import kit_fits
 
@@ -78,8 +104,9 @@ def design_remedy(
     if reasons := tuple(over):
         options = kit_options(network, budget)
         return kit_remedy(network.robot, out / "robot", out / "kit", options=options, reasons=reasons)
-    winches, cables = max(len(network.robot.winches) - 1, 1), max(len(network.robot.cables) - 1, 1)
-    if (winches, cables) == (network.request.winches, network.request.cables):
+    found = len(network.robot.winches), len(network.robot.cables)
+    winches, cables = (max(number - 1, 1) for number in found)
+    if (winches, cables) in (found, (network.request.winches, network.request.cables)):
         return f"hydrostat check {quote(str(out / 'robot'))}"
     return f"hydrostat design {quote(str(source))} --winches {winches} --cables {cables}{spend} --out {quote(str(out))}"
 

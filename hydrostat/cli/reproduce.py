@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 from typer.main import get_command
 
-from hydrostat.errors import HydrostatError
+from hydrostat.errors import InputError
 
 LAB = Path(__file__).resolve().parents[2] / "lab"
 """Folder of the studies, next to the package of a checkout."""
@@ -25,7 +25,7 @@ def reproduce(
     """
     if find_spec("hydrostat_lab") is None:
         if not (LAB / "hydrostat_lab").is_dir():
-            raise HydrostatError("package hydrostat-lab not found. Clone hydrostat and run: pip install --editable lab")
+            raise InputError("package hydrostat-lab not found. Clone hydrostat and run: pip install --editable lab")
         sys.path.append(str(LAB))
     from hydrostat_lab.reproduce import app
 

@@ -8,7 +8,7 @@ import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder
 from hydrostat.cli.options import parse_optional
-from hydrostat.cli.waiting import read_robot, report_progress
+from hydrostat.cli.waiting import one_interrupt, read_robot, report_progress
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
@@ -26,7 +26,8 @@ def sample(
         str,
         typer.Option(
             metavar="WAY,WAY",
-            help="Sampling strategies, alternated sample by sample: box, antagonist, faces, tension.",
+            help="Sampling strategies, alternated: box (all winches), antagonist (one of two opposed winches), faces "
+            "(half of the winches), tension (up to --tension).",
         ),
     ] = "box",
     tension: Annotated[
@@ -51,7 +52,7 @@ def sample(
 ) -> None:
     """Sample a robot to train surrogate models.
 
-    Each sample holds contractions, markers, exact gradients and tensions. Writes the settings to samples.json and the
+    Each sample holds contractions, markers, exact Jacobians and tensions. Writes the settings to samples.json and the
     samples to .npy files. Run the same command again to resume, or with a larger --count to add samples. Results do not
     depend on the number of processes. Read them in Python with hydrostat.learning.Samples.read.
 
@@ -72,7 +73,8 @@ def sample(
         loaded, count, contact=contact, seed=seed, draws=draws, shard=file_size, nodes=nodes, tension=most
     )
     try:
-        sample_robot(plan, out, part=part, jobs=jobs, backend=backend, progress=report_progress())
+        with one_interrupt("", interrupt=True):
+            sample_robot(plan, out, part=part, jobs=jobs, backend=backend, progress=report_progress())
     except KeyboardInterrupt:
         line_end = "\n" if sys.stderr.isatty() else ""  # of the line with the progress
         print(f"{line_end}interrupted: run the same command again to resume", file=sys.stderr, flush=True)

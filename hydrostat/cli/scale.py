@@ -43,4 +43,6 @@ def scale(
     size = f"{1e3 * loaded.body.mesh.size:.0f} mm to {1e3 * made.body.mesh.size:.0f} mm"
     if out is None and (home / PROJECT_FILE).exists():
         print(f"note: keyframes and limits in {PROJECT_FILE} are not scaled. Set them again in the studio")
+    if out is None:
+        print(f"note: {path} was changed in place. Undo: hydrostat scale {home} {1 / times:.10g}")
     print(f"Scaled {path}: {size}. Next: hydrostat check {out or home}")

@@ -7,7 +7,7 @@ import typer
 
 from hydrostat.cli.folders import RobotFolder, folder_of, require_writable
 from hydrostat.cli.options import parse_optional
-from hydrostat.cli.waiting import prepare_physics, progress_bar, read_robot
+from hydrostat.cli.waiting import one_interrupt, prepare_physics, progress_bar, read_robot
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ def share(
     ] = None,
     seed: Annotated[int, typer.Option(help="Random seed.")] = 0,
 ) -> None:
-    """Write a robot as one HTML page to play with: no server, no installation.
+    """Write a robot as one interactive HTML page.
 
     Samples the robot, trains a network of the whole body, and checks it in other poses. In the page you drag the body,
     turn the winches and play the poses of robot.toml and the keyframes of the studio. The page states its error.
@@ -56,7 +56,7 @@ def share(
     if not loaded.cables:
         raise InputError(f"{robot}: no cables. Add winches and cables, or run `hydrostat design`.")
     motors = Calibration.read(folder_of(robot), loaded) if (folder_of(robot) / CALIBRATION).exists() else None
-    with progress_bar() as progress:
+    with one_interrupt(""), progress_bar() as progress:  # worker processes end before this one
         toy = make_toy(
             prepare_physics(loaded),
             samples=samples,

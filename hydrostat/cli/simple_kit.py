@@ -56,13 +56,13 @@ def simplify_robot(robot: "Robot", options: "KitOptions") -> "tuple[Robot, KitOp
 
 def _one_panel(found: "PosedNetwork") -> "tuple[Robot, str]":
     """The robot with its cables on the front if it has pairs and stays flat; else itself, and why."""
-    from hydrostat.robot import Face
+    from hydrostat.robot import CableSide
     from hydrostat.simulation import is_stuffed_motion_fast, solve_stuffed_motion
 
     robot = found.robot
-    if robot.face is not Face.PAIRS:
+    if robot.face is not CableSide.PAIRS:
         return robot, ""
-    front = replace(robot, face=Face.FRONT)
+    front = replace(robot, face=CableSide.FRONT)
     if not is_stuffed_motion_fast(front, len(found.reached)):
         return robot, "cables stay on both panels: what one panel bends out of plane takes long to compute"
     with suppress(InputError, NotConvergedError):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result_folder
-from hydrostat.cli.limits import print_exceeded
+from hydrostat.cli.limits import print_exceeded, print_overloads
 from hydrostat.cli.options import (
     AddedLoads,
     Contract,
@@ -125,6 +125,9 @@ def simulate(
         print(f"note: {note}")
     print("Wrote " + ", ".join(str(out / file.relative_to(folder)) for file in files))
     if not pose.result.converged:
+        for name in ("pose.vtu", "cables.vtu", "jacobian.npz"):  # of an earlier pose
+            (out / name).unlink(missing_ok=True)
+        print("note: no equilibrium was found: pose.json and pose.png say so, pose.vtu is not written")
         raise typer.Exit(1)
 
 
@@ -166,6 +169,7 @@ def _print_readings(reader: "SensorReader", found: "Equilibrium | Motion") -> No
 def _print_notes(simulation: "Simulation", pose: "Equilibrium") -> None:
     """Print what is in the way of a pose that was not found, and where else the body could have gone."""
     from hydrostat.geometry import find_crossings
+    from hydrostat.ik import spool_arms
 
     if not pose.result.converged:
         for obstacle in simulation.diagnose(pose):
@@ -173,6 +177,7 @@ def _print_notes(simulation: "Simulation", pose: "Equilibrium") -> None:
     if words := str(find_crossings(simulation.robot.body.mesh, pose.nodes)):
         print(f"warning: {words}")
     print_exceeded(pose)
+    print_overloads(pose.robot, pose.tensions, abs(spool_arms(pose.robot) @ pose.tensions))
     if pose.result.buckled:
         print("note: buckled: a mirror-image pose is equally likely")
     if pose.result.converged and not pose.result.stable:
@@ -190,6 +195,7 @@ def _move(
     play: Path | None,
 ) -> list[Path]:
     """Move a robot from where it rests at first, print how it ended, and write all files; returns their paths."""
+    from hydrostat.ik import spool_arms
     from hydrostat.plot import draw_motion, draw_pose, save_png
     from hydrostat.simulation import SensorReader, rests_at_first, write_motion, write_pose
     from hydrostat.units import TIME
@@ -212,6 +218,8 @@ def _move(
     files.append(save_png(draw_motion(simulation.robot, table), out / "motion.png"))
     _print_places(last, simulation.robot)
     _print_readings(reader, last)
+    torques = abs(spool_arms(simulation.robot) @ table.tensions.T).max(axis=1)
+    print_overloads(simulation.robot, table.tensions.max(axis=0), torques)
     fastest = 1e3 * float((last.velocities**2).sum(axis=1).max() ** 0.5)
     steps = f"{plural(len(table.times) - 1, 'step')} to {last.time:g} s, computed in {spent:.1f} s"
     print(f"{steps}. Maximum speed at the end: {fastest:.2g} mm/s")

@@ -2,13 +2,16 @@
 
 from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from hydrostat.cli.folders import found_folder
 from hydrostat.errors import InputError
 from hydrostat.version import install_command
+
+if TYPE_CHECKING:
+    from hydrostat.studio import Session
 
 
 def studio(
@@ -27,7 +30,9 @@ def studio(
     ] = None,
     model: Annotated[
         Path | None,
-        typer.Option(metavar="MODEL", help="Model of ROBOT from `hydrostat learn`, for a fast first answer to drags."),
+        typer.Option(
+            metavar="MODEL", help="Model of ROBOT from `hydrostat learn`, for a fast first pose while you drag."
+        ),
     ] = None,
     rooms: Annotated[
         bool,
@@ -62,23 +67,34 @@ def studio(
     if rooms and LINK_MARK in str(robot):
         raise InputError("--rooms, --class: not available with a link. Open it alone and save its robot first.")
     host = host or (find_network_address() if classroom else "127.0.0.1")
-    if rooms:
+    session = None if rooms else Session(state_folder())
+    if session is None:
         served = Rooms(state=state_folder(), first=robot and found_folder(robot))
     else:
-        session = Session(state_folder())
-        if robot is not None and LINK_MARK in str(robot):
-            session.starter.open_link(str(robot))
-            session.go("pose")
-        elif robot is not None:
-            session.open_folder(robot, model)
         served = Rooms(session)
-
+        if robot is not None:
+            _open(session, robot, model)
     try:
         teacher = Classroom(served) if classroom else None
         serve(served, host=host, port=port, show=browser, classroom=teacher, announce=partial(_announce, classroom))
     except KeyboardInterrupt:
-        print("Studio ended. It keeps unsaved work for its next start.")
+        problem = session and session.starter.autosave.problem
+        print(f"Studio ended. {problem}." if problem else ENDED)
         raise typer.Exit(130) from None
+
+
+def _open(session: "Session", robot: Path, model: Path | None) -> None:
+    """Show a robot of a folder, with its model, or of a link."""
+    from hydrostat.studio import LINK_MARK
+
+    if LINK_MARK in str(robot):
+        session.starter.open_link(str(robot))
+        session.go("pose")
+    else:
+        session.open_folder(robot, model)
+
+
+ENDED = "Studio ended. It keeps unsaved work for its next start."
 
 
 def _announce(classroom: bool, address: str) -> None:

@@ -2,15 +2,14 @@
 
 import sys
 import time
-from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
 from hydrostat.cli.folders import RobotFolder, require_folder
-from hydrostat.cli.waiting import hold_signals, one_interrupt, read_robot, report_progress
-from hydrostat.errors import HydrostatError, InputError
+from hydrostat.cli.waiting import one_interrupt, read_robot, report_progress
+from hydrostat.errors import InputError
 from hydrostat.version import install_command
 
 if TYPE_CHECKING:
@@ -31,7 +30,7 @@ def train(
     horizon: Annotated[
         int | None,
         typer.Option(
-            metavar="T", help="Actions per episode.", show_default="1 to reach, 4 to push or twist, 5 s to walk"
+            metavar="T", help="Actions per episode.", show_default="1 to reach, 4 to push or twist, 10 or 50 to walk"
         ),
     ] = None,
     model: Annotated[
@@ -43,7 +42,11 @@ def train(
     ] = 0,
     tolerance: Annotated[
         str | None,
-        typer.Option(metavar="LENGTH", help="Success distance.", show_default="5 mm to reach or push, 20 mm to walk"),
+        typer.Option(
+            metavar="LENGTH",
+            help="Success distance. Fixed for twist.",
+            show_default="5 mm to reach or push, 20 mm to walk",
+        ),
     ] = None,
     friction: Annotated[
         float | None,
@@ -70,7 +73,7 @@ def train(
             metavar="ONE,OTHER", help="Antagonistic pair: one action drives ONE or OTHER, never both. Repeatable."
         ),
     ] = None,
-    thing: Annotated[
+    obstacle: Annotated[
         str | None,
         typer.Option(
             "--object",
@@ -107,10 +110,10 @@ def train(
     the extra rl. For static poses, inverse kinematics and `hydrostat learn` are better and cheaper. Use
     this command for comparison, and for tasks they cannot solve.
 
-    Task reach-with-hysteresis: cables have friction, and the pose depends on the loading path. A --model here is one
-    without friction, with a deliberate model error. Task walk: the robot stands on the ground without its pins and
-    walks in a dynamic simulation. One action is 0.5 s of a gait, or contractions for 0.1 s. Tasks push and twist:
-    keyframes move an object with mass in a dynamic simulation, either an [[obstacle]] of the robot or the --object.
+    Task reach-with-hysteresis: cables have friction, and the pose depends on the loading path. A --model for it has no
+    friction: a deliberate model error. Task walk: the robot stands on the ground without its pins and walks in a
+    dynamic simulation. One action is 0.5 s of a gait, or contractions for 0.1 s. Tasks push and twist: keyframes move
+    an object with mass in a dynamic simulation, either an [[obstacle]] of the robot or the --object.
 
     Example: hydrostat train gallery:cupping_hand --contact --steps 2000 --out build/policy
 
@@ -125,7 +128,7 @@ def train(
     try:
         from hydrostat import training
     except ModuleNotFoundError as error:
-        raise HydrostatError(f"train: package {error.name} not found. Install it: {install_command('rl')}") from None
+        raise InputError(f"train: package {error.name} not found. Install it: {install_command('rl')}") from None
     from hydrostat.learning import LearnedModel
     from hydrostat.units import LENGTH, parse_quantity, plural
 
@@ -135,7 +138,7 @@ def train(
         raise InputError(f"--method {method}: unknown method. Available: {', '.join(methods)}.")
     if simulator_every and model is None:
         raise InputError("--simulator-every: needs --model. Without it every episode runs in the simulator.")
-    if at and not thing:
+    if at and not obstacle:
         raise InputError("--at: needs --object. Move an [[obstacle]] of the robot in robot.toml.")
     made, loaded = training.task_of(task).env, read_robot(robot)
     asked = training.TaskOptions(
@@ -149,7 +152,7 @@ def train(
         friction=friction,
         actions=actions,
         tied=tied or (),
-        thing=None if thing is None else _thing(loaded, thing, at, mass, friction),
+        obstacle=None if obstacle is None else _read_object(loaded, obstacle, at, mass, friction),
     )
     env, judged = (made.for_task(loaded, asked) for _ in range(2))
     if watch:
@@ -174,8 +177,6 @@ def train(
     def tell(point: "CurvePoint") -> None:
         _row(f"{_line(point, word, factor)}   {time.process_time() - began:.0f} s")
 
-    with hold_signals(), suppress(ModuleNotFoundError):
-        import stable_baselines3  # noqa: F401  # pyright: ignore
     with one_interrupt("stopping: --resume continues from the last row above", interrupt=True):
         more = {"resume": resume, "processes": processes}
         listener = training.Listener(point=tell, progress=progress)
@@ -194,15 +195,17 @@ def train(
         print(f"Wrote {learned.save(out / 'policy.model')}")
 
 
-def _thing(robot: "Robot", text: str, at: str | None, mass: str, friction: float | None) -> "Obstacle":
+def _read_object(robot: "Robot", text: str, at: str | None, mass: str, friction: float | None) -> "Obstacle":
     """Return the object to push or turn, at its position."""
     from hydrostat.cli.options import middle, positive
     from hydrostat.grasp import move_object, read_object
     from hydrostat.units import MASS
 
     dim = robot.body.mesh.dim
-    thing = read_object(text, dim, mass=positive("--mass", mass, MASS), friction=0.8 if friction is None else friction)
-    return thing if at is None else move_object(thing, middle(at, dim))
+    obstacle = read_object(
+        text, dim, mass=positive("--mass", mass, MASS), friction=0.8 if friction is None else friction
+    )
+    return obstacle if at is None else move_object(obstacle, middle(at, dim))
 
 
 def _row(text: str) -> None:

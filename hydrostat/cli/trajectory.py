@@ -116,8 +116,8 @@ def _keyframe_names(robot: Any, poses: str | None) -> list[str]:
         if not robot.poses:
             raise InputError(f"{robot.name}: no [[pose]] in robot.toml. Add one, or give --poses rest.")
         return list(robot.poses)
-    names = [name.strip() for name in poses.split(",") if name.strip()]
-    if not names:
+    names = [name.strip() for name in poses.split(",")]
+    if not all(names):
         raise InputError('--poses: no pose named. Write e.g. "wave,rest".')
     for name in names:
         if name != REST:

@@ -4,6 +4,7 @@ import os
 import signal
 import sys
 import time
+from _thread import interrupt_main, start_new_thread
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -76,7 +77,7 @@ def progress_bar() -> Iterator[Progress]:
 
 
 def report_progress() -> Progress:
-    """Return a function that prints progress, speed and the remaining time."""
+    """Return a function that prints progress, speed and the remaining time, or the stage alone if that is not known."""
     begin: dict[str, tuple[float, int]] = {}
     seen: dict[str, int] = {}
     last = [0.0]
@@ -90,11 +91,11 @@ def report_progress() -> Progress:
         seen[stage] = done
         since, first = begin.setdefault(stage, (now, done))
         terminal = sys.stderr.isatty()
-        if done < total and now - last[0] < (often if terminal else seldom):
+        if (done < total or not total) and now - last[0] < (often if terminal else seldom):
             return
         last[0] = now
         seconds, made = now - since, done - first
-        words = f"{stage}: {done} of {total}"
+        words = f"{stage}: {done} of {total}" if total else stage
         if made and seconds > 0:
             rate = made / seconds
             words += f", {rate:.3g}/s" + (f", {_span((total - done) / rate)} left" if done < total else "")
@@ -173,7 +174,8 @@ def one_interrupt(
             signal.signal(number, signal.SIG_IGN)
 
     def stop(number: int, frame: FrameType | None) -> None:
-        del frame
+        if _put_off(number, frame):
+            return
         pass_over()
         if words:
             print(words, file=sys.stderr, flush=True)
@@ -188,22 +190,17 @@ def one_interrupt(
             signal.signal(number, before[number])
 
 
-@contextmanager
-def hold_signals() -> Iterator[None]:
-    """Let a signal that arrives in the block act after it: PyTorch's import aborts the program when Ctrl-C meets it."""
-    caught: list[int] = []
-    before = {number: signal.getsignal(number) for number in STOP_SIGNALS}
-    ours = [number for number, handler in before.items() if handler not in (None, signal.SIG_IGN)]
-    ours = ours if current_thread() is main_thread() else []
-    try:
-        for number in ours:
-            signal.signal(number, lambda number, _: caught.append(number))
-        yield
-    finally:
-        for number in ours:
-            signal.signal(number, before[number])
-        for number in sorted(set(caught), key=lambda each: each == signal.SIGINT):  # the others end the program
-            signal.raise_signal(number)
+def _put_off(number: int, frame: FrameType | None) -> bool:
+    """Tell whether a signal must wait for the end of an import or a finalizer, and send it again soon.
+
+    A compiled library aborts if a signal raises in its import. Callbacks of the import system and `__del__` drop what
+    is raised in them.
+    """
+    while frame and not (frame.f_code.co_filename.startswith("<frozen importlib") or frame.f_code.co_name == "__del__"):
+        frame = frame.f_back
+    if frame:
+        start_new_thread(lambda: (time.sleep(0.02), interrupt_main(signal.Signals(number))), ())
+    return frame is not None
 
 
 class _LastingOutput:
@@ -245,24 +242,16 @@ def outlive_readers(*, errors: type[OSError] = BrokenPipeError) -> None:
 
 
 def heed_interrupts() -> None:
-    """Let SIGINT raise KeyboardInterrupt also where it came ignored.
+    """Let SIGINT raise KeyboardInterrupt, after an import that it meets, and also where it came ignored.
 
     A shell without job control starts `command &` with SIGINT ignored, and Python leaves that so; whoever sends it to
     such a job means it. A handler that stands already stays.
     """
-    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN and current_thread() is main_thread():
-        signal.signal(signal.SIGINT, signal.default_int_handler)
 
+    def interrupt(number: int, frame: FrameType | None) -> None:
+        if not _put_off(number, frame):
+            raise KeyboardInterrupt
 
-class ProgressLines:
-    """Progress of long work as lines, at most one every two seconds."""
-
-    def __init__(self) -> None:
-        self._last = time.monotonic()
-
-    def __call__(self, line: str) -> None:
-        """Print a line if the last one is old enough."""
-        often = 2.0
-        if time.monotonic() - self._last > often:
-            print(f"  {line}", flush=True)
-            self._last = time.monotonic()
+    ours = (signal.SIG_IGN, signal.default_int_handler)
+    if signal.getsignal(signal.SIGINT) in ours and current_thread() is main_thread():
+        signal.signal(signal.SIGINT, interrupt)

@@ -1,5 +1,6 @@
 """Bad input ends with code 2 and one clear line; oracle: exit code, one line, no traceback, nothing written."""
 
+import json
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partialmethod
@@ -34,6 +35,7 @@ OPEN += b'<path fill="none" stroke="red" d="M0 0H60V40"/></svg>'
             ("left", "twice"),
         ),
         (("simulate", "STARFISH", "--pull", "left=2N", "--pull", "left=3N", "--out", "OUT"), ("left", "twice")),
+        (("simulate", "STARFISH", "--pull", "left=-3N", "--out", "OUT"), ("--pull left=-3N", "only pulls")),
         (("simulate", "STARFISH", "--contract", "left", "--out", "OUT"), ("WINCH=LENGTH",)),
         (("simulate", "STARFISH", "--contract", "up=12mm", "--out", "OUT"), ('"up"', "right, left, feet")),
         (("pose", "STARFISH", "--pose", "dance", "--out", "OUT"), ('"dance"', "wave")),
@@ -92,12 +94,15 @@ def test_a_file_in_the_way_of_the_results_is_told_before_the_work(run: Run, star
 def test_a_solve_that_does_not_converge_ends_with_code_1(
     run: Run, starfish: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Oracle: Newton allowed no iteration; what it found is still written."""
+    """Oracle: Newton allowed no iteration; pose.json says that it is no equilibrium, and no fields show one."""
+    (tmp_path / "pose.vtu").write_text("of an earlier pose")
     monkeypatch.setattr(Simulation, "__init__", partialmethod(Simulation.__init__, options=NewtonOptions(iterations=0)))
     code, out, _ = run("simulate", starfish, "--contract", "left=12mm", "--out", tmp_path)
     assert code == 1
     assert "iteration limit" in out
-    assert "iteration limit" in (tmp_path / "pose.json").read_text()
+    facts = json.loads((tmp_path / "pose.json").read_text())
+    assert (facts["converged"], facts["reason"]) == (False, "iteration limit reached")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["pose.json", "pose.png"]
 
 
 @pytest.mark.slow

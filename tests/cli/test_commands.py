@@ -8,10 +8,12 @@ from pathlib import Path
 import meshio
 import numpy as np
 import pytest
+from builders import gallery_robot
 
 import hydrostat as hs
+from hydrostat.cli.limits import print_overloads
 from hydrostat.cli.profiling import PARTS
-from hydrostat.robot import robot_hash
+from hydrostat.robot import robot_hash, save_robot
 
 Run = Callable[..., tuple[int, str, str]]
 SQUARE = b'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 60 40"><path d="M0 0H60V40H0Z"/></svg>'
@@ -60,7 +62,8 @@ def test_check_says_that_all_is_well(run: Run) -> None:
         assert code == 0
         assert "\nOK: 0 errors, " in out
         assert ("\nMarker workspaces (maximum tension 20 N, 64 poses sampled):\n" in out) == (number == 0)
-        assert ("\nnot computed: marker workspaces" in out) == (number > 0)
+        assert ("\ncompliance at rest, mm/N: " in out) == (number == 0)
+        assert ("\nnot computed: marker workspaces, compliance" in out) == (number > 0)
 
 
 @pytest.mark.slow
@@ -96,14 +99,28 @@ def test_simulate_writes_what_the_library_solves(run: Run, tmp_path: Path, starf
 
 
 @pytest.mark.slow
-def test_simulate_warns_beyond_travel(run: Run, tmp_path: Path, starfish: Path) -> None:
-    assert (
-        "is outside its range (-10 to 60 mm)"
-        in run("simulate", starfish, "--contract", "left=-30mm", "--out", tmp_path)[1]
-    )
+def test_simulate_warns_beyond_travel_and_tension(run: Run, tmp_path: Path, starfish: Path) -> None:
+    save_robot(replace(hs.load_robot(starfish), max_tension=0.1), tmp_path / "weak")
+    asked = ("--contract", "left=-30mm", "--contract", "right=20mm")
+    out = run("simulate", tmp_path / "weak", *asked, "--out", tmp_path / "out")[1]
+    assert "is outside its range (-10 to 60 mm)" in out
+    assert "more than its max_tension of 0.1 N" in out
 
 
 @pytest.mark.slow
+def test_simulate_warns_beyond_the_limits_of_the_robot(capsys: pytest.CaptureFixture[str]) -> None:
+    """Oracle: by hand: 2 N at a spool of 6 mm are 12 N mm; 1.004 N are 1 N as far as a solver tells."""
+    robot = gallery_robot("starfish")
+    robot = replace(robot, max_tension=1.0, max_torque=0.01)
+    tensions = np.full(len(robot.cables), 1.004)
+    tensions[1] = 2.0
+    print_overloads(robot, tensions, np.array([0.012, *[0.01] * (len(robot.winches) - 1)]))
+    assert capsys.readouterr().out.splitlines() == [
+        "warning: cable 2: 2 N, more than its max_tension of 1 N",
+        f"warning: winch {robot.winches[0].name}: 12 N mm, more than its max_torque of 10 N mm",
+    ]
+
+
 def test_pose_writes_one_pose_or_a_folder_for_each(run: Run, tmp_path: Path, starfish: Path) -> None:
     robot = hs.load_robot(starfish)
     assert run("pose", starfish, "--pose", "wave", "--out", tmp_path / "one")[0] == 0

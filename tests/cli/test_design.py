@@ -12,11 +12,13 @@ from hashlib import sha256
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
+from builders import strip_robot
 from plot.designs import plain_network
 
 import hydrostat as hs
-from hydrostat.cli.remedies import body_refusals, kit_remedy
+from hydrostat.cli.remedies import body_refusals, design_remedy, kit_remedy
 from hydrostat.design import (
     Alternative,
     Constraints,
@@ -31,6 +33,7 @@ from hydrostat.design import (
 )
 from hydrostat.fabrication import PatternOptions
 from hydrostat.robot import Marker, PoseTarget, robot_hash, save_robot
+from hydrostat.simulation import Simulation
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -66,6 +69,7 @@ def search(monkeypatch: pytest.MonkeyPatch) -> Search:
     fake = Search()
     monkeypatch.setattr("hydrostat.design.find_network", fake)
     monkeypatch.setattr("hydrostat.design.kit_fits", lambda network: True)
+    monkeypatch.setattr("hydrostat.design.find_lifts", lambda _: ())
     return fake
 
 
@@ -145,10 +149,13 @@ def test_a_design_that_no_kit_can_be_made_of_is_an_error(
 ) -> None:
     """Oracle: the strip's own refusals; the command continues with the alternative that fits, else with fewer winches.
 
-    All is written anyway.
+    A rejected network of one winch and one cable is not asked for again. All is written anyway.
     """
-    other = search.answer.alternatives[1]
+    found, other = search.answer, search.answer.alternatives[1]
     out = tmp_path / "out"
+    least = replace(found.robot, winches=found.robot.winches[:1], cables=found.robot.cables[:1])
+    small = replace(found, robot=least, alternatives=())
+    assert design_remedy(small, strip, out) == f"hydrostat check {out}/robot"
     for fits, remedy in (
         (lambda network: network is other, f"hydrostat fabricate {out}/alternatives/02_1_winches_1_cables "),
         (lambda network: False, f"hydrostat design {strip} --winches 1 --cables 1 "),
@@ -372,6 +379,49 @@ def test_clear_gains_are_printed_and_written_as_alternatives(
 
     monkeypatch.setattr("hydrostat.design.find_lifts", stop)
     assert run("design", strip, "--out", tmp_path / "out")[0] == 0
+
+
+@pytest.mark.parametrize(
+    ("held", "complete", "words"),
+    [
+        ((), False, "the search was stopped before its end. Give it more time"),
+        (("up: at maximum tension, 20 N", "down: slack"), True, "20 N, down: slack. Raise these limits, or move the"),
+        ((), True, "Allow more cables, or move the targets nearer"),
+    ],
+)
+def test_what_keeps_a_network_from_its_targets_is_told(
+    run: Run, strip: Path, search: Search, no_report: None, held: tuple[str, ...], complete: bool, words: str,
+    tmp_path: Path,
+) -> None:  # fmt: skip
+    """Oracle: half of the way to the target, by hand; a network with a tenth of it left says nothing."""
+    network = plain_network()
+    (reached,) = network.ik_results
+    for share, told in ((0.5, True), (0.1, False)):
+        miss = replace(reached, errors={"tip": share * network.rest_error}, active_limits=held)
+        search.answer = replace(network, ik_results=(miss,), complete=complete)
+        _, out, _ = run("design", strip, "--out", tmp_path / "out")
+        assert ("note: 50 % of the way to the targets is left: " in out) == told
+        assert (words in out) == told
+
+
+def test_few_elements_across_a_limb_warn_where_they_move_the_markers(
+    run: Run, strip: Path, search: Search, no_report: None, tmp_path: Path
+) -> None:
+    """Oracle: the tip of a strip of quadratic elements a quarter as long."""
+    network = plain_network()
+    thin, fine = strip_robot(columns=10, rows=1), strip_robot(columns=40, rows=4)
+    fine = replace(fine, body=fine.body.with_elements("quadratic"))
+    poses = [Simulation(robot).solve(np.array([0.01, 0.0])) for robot in (thin, fine)]
+    away = float(np.linalg.norm(poses[0].markers["tip"] - poses[1].markers["tip"]))
+    results = (replace(network.ik_results[0], pose=poses[0]),)
+    coarse = replace(network, robot=thin, ik_results=results)
+    assert coarse.element_error == pytest.approx(away, rel=0.15)
+    for error, words in ((1.2 * away, "note: few elements across a limb: "), (0.8 * away, "warning: body: a limb has")):
+        search.answer = replace(coarse, expected_error=error)
+        out = run("design", strip, "--out", tmp_path / "out")[1]
+        (said,) = (line for line in out.splitlines() if "elements across" in line)
+        assert said.startswith(words)
+        assert said.endswith(f": quadratic elements move the markers by {1e3 * coarse.element_error:.2g} mm rms")
 
 
 STARTS = 'method "trees" needs a number of winches and cannot improve a network. Use method "routes".'

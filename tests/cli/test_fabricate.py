@@ -14,18 +14,19 @@ from builders import gallery_robot
 from plush import near_the_edge
 
 from hydrostat.cli.design_results import (
+    count_cables,
     designed_motor,
     designed_tension,
     designed_torque,
     find_over_budget,
     find_refused_better,
 )
-from hydrostat.cli.remedies import design_remedy
+from hydrostat.cli.remedies import design_remedy, kit_remedy, note_room
 from hydrostat.design import Alternative, BuildCost, Constraints, Network
 from hydrostat.errors import InputError
-from hydrostat.fabrication import ALL_MOTORS, Demand, find_refusals
+from hydrostat.fabrication import ALL_MOTORS, Demand, KitOptions, find_refusals
 from hydrostat.project import Wishes, Work
-from hydrostat.robot import Marker, Pin, PoseTarget, load_robot, robot_hash, save_robot
+from hydrostat.robot import CableSide, Marker, Pin, PoseTarget, load_robot, robot_hash, save_robot, scaled_robot
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -287,5 +288,29 @@ def test_design_and_fabricate_judge_one_budget(run: Run, tmp_path: Path) -> None
     assert find_over_budget(network, cost + 1) == ()
     tried = design_remedy(network, tmp_path / "robot", Path("out"), budget=1.0, over=over)
     assert tried == f"hydrostat fabricate out/robot --budget {cost + 1}USD --out out/kit"
+    three = replace(robot, winches=tuple(replace(robot.winches[0], name=name) for name in "abc"), cables=())
+    said = "the kit costs 256 USD in whole packs (body 18, winches 193), more than the budget of {} USD. No cheaper"
+    for budget, way in ((200.0, "--winches 2 --two-way --budget 200USD"), (5.0, "fabricate robot --budget 257USD")):
+        options, reasons = KitOptions(budget=budget), [said.format(budget)]
+        assert way in kit_remedy(three, Path("robot"), Path("kit"), options=options, reasons=reasons)
     _, out, _ = run("fabricate", tmp_path / "robot", "--budget", f"{cost - 1}USD", "--summary")
     assert f"costs {cost} USD in whole packs" in out
+
+
+def test_a_body_without_room_for_motors_is_told_how_large_it_must_be() -> None:
+    """Oracle: the reasons of the larger body, and of one that is 0.8 times as large as that."""
+    robot, options = scaled_robot(gallery_robot("starfish"), 0.5), KitOptions(motor="n20")
+    reasons = find_refusals(robot, options=options)
+    note = note_room(robot, "tiny", options=options, reasons=reasons)
+    assert note.startswith("note: a body 1.25 times as large has room for n20: hydrostat scale tiny 1.25")
+    assert not any("smaller motor" in each for each in find_refusals(scaled_robot(robot, 1.25), options=options))
+    assert note_room(robot, "tiny", options=options, reasons=["the cloth is red"]) == ""
+    tiny = scaled_robot(robot, 0.2)
+    told = kit_remedy(tiny, Path("tiny"), Path("kit"), options=options, reasons=["choose a smaller motor"])
+    assert told == "", "no design has room"
+
+
+def test_a_pair_of_cables_is_counted_once_and_sewn_twice() -> None:
+    robot = replace(gallery_robot("starfish"), face=CableSide.PAIRS)
+    assert count_cables(robot) == "5 pairs of cables, 10 to sew"
+    assert count_cables(replace(robot, face=CableSide.FRONT)) == "5 cables"

@@ -39,8 +39,8 @@ def test_a_new_robot_is_commented_and_not_risky(run: Run, tmp_path: Path) -> Non
     robot = load_robot(tmp_path / "moby")
     assert find_risks(robot) == []
     told = comments((tmp_path / "moby" / "robot.toml").read_text())
-    assert told[0] == "# moby, begun from whale.svg. All of it is meant to be changed."
-    assert sum(line.startswith(("# The body", "# Where it is held", "# Markers", "# A pose")) for line in told) == 4
+    assert told[0] == "# moby, made from whale.svg. Change anything."
+    assert sum(line.startswith(("# The body", "# The pin", "# Markers", "# A pose")) for line in told) == 4
     assert "# [[winch]]" in told
 
 

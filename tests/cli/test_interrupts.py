@@ -84,11 +84,26 @@ def test_one_signal_stops_and_then_all_is_as_before(
     assert ("stopping" in beside) == bool(words)
 
 
-def test_an_import_is_whole_before_it_is_interrupted(tmp_path: Path) -> None:
-    """Oracle: a library that aborts where Ctrl-C raises in the middle of its import, as PyTorch does."""
+@pytest.mark.parametrize("block", ["nullcontext()", 'one_interrupt("stopping")'])
+@pytest.mark.parametrize("work", ["import met", "del gone"])
+def test_a_signal_waits_where_it_would_do_harm(block: str, work: str, tmp_path: Path) -> None:
+    """Oracle: a library that aborts where Ctrl-C raises in its import, as PyTorch does, and a finalizer."""
     body = "import os, signal\ntry:\n    os.kill(os.getpid(), signal.SIGINT)\nexcept BaseException:\n    os.abort()\n"
     (tmp_path / "met.py").write_text(body)
-    code = "from hydrostat.cli.waiting import hold_signals\nwith hold_signals():\n    import met"
+    code = f"""
+import os, signal, time
+from contextlib import nullcontext
+from hydrostat.cli.waiting import heed_interrupts, one_interrupt
+class Gone:
+    def __del__(self):
+        os.kill(os.getpid(), signal.SIGINT)
+gone = Gone()
+heed_interrupts()
+with {block}:
+    {work}
+    print("whole", flush=True)
+    time.sleep(20)
+"""
     found = subprocess.run(
         [sys.executable, "-c", code],
         capture_output=True,
@@ -96,6 +111,7 @@ def test_an_import_is_whole_before_it_is_interrupted(tmp_path: Path) -> None:
         env=os.environ | {"PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path])},
         preexec_fn=USUAL,
     )
+    assert found.stdout == "whole\n"
     assert "KeyboardInterrupt" in found.stderr
     assert found.returncode == -signal.SIGINT
 
@@ -157,6 +173,16 @@ def test_a_command_that_is_interrupted_says_so(begun: Callable[[], object], tmp_
     assert work.returncode == 130
     assert beside == "hydrostat: interrupted; files written so far are complete\n"
     assert "Wrote" not in printed
+
+
+def test_an_interrupt_while_options_are_read_is_one_line(
+    run: Callable[..., tuple[int, str, str]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("typer.core.TyperGroup.parse_args", interrupt)
+    assert run("check") == (130, "", "hydrostat: interrupted; files written so far are complete\n")
 
 
 def test_an_interrupt_while_commands_are_read_is_one_line() -> None:

@@ -28,7 +28,7 @@ def test_a_missing_extra_is_named(run: Run, tmp_path: Path, starfish: Path, monk
     (tmp_path / "rest.jpg").touch()
     for command, *more in (("measure", "--out", tmp_path / "a.csv"), ("compare", "--out", tmp_path / "a")):
         code, _, err = run(command, starfish, tmp_path / "rest.jpg", *more)
-        assert code == 1
+        assert code == 2
         assert err.startswith("hydrostat: error: photographs need OpenCV")
         assert "[photos]" in err
         assert err.count("\n") == 1
@@ -43,8 +43,10 @@ def test_measure_says_what_it_needs(run: Run, tmp_path: Path, starfish: Path) ->
     assert (code, "tags.txt: must end in .pdf" in err) == (2, True)
     code, _, err = run("measure", starfish, tmp_path / "b.jpg", "--out", tmp_path / "a.csv")
     assert (code, err) == (2, f"hydrostat: error: {tmp_path / 'b.jpg'}: there is no such file\n")
-    for name in ("a.MP4", "a.mp4", "b.jpg"):
+    for name in ("a.MP4", "a.mp4", "b.jpg", "wing=3mm.jpg"):
         (tmp_path / name).touch()
+    code, _, err = run("compare", starfish, tmp_path / "wing=3mm.jpg", "--out", tmp_path / "compared")
+    assert (code, 'wing=3mm.jpg: unknown winch "wing"' in err) == (2, True)
     code, _, err = run("measure", starfish, tmp_path / "a.MP4", "--out", tmp_path / "a.csv")
     assert (code, "a film needs --table with the moves that were played" in err) == (2, True)
     code, _, err = run("measure", starfish, tmp_path / "a.mp4", tmp_path / "b.jpg", "--out", tmp_path / "a.csv")

@@ -166,6 +166,7 @@ WRONG = [
     (("--thickness", "12 mm"), "--thickness: is only for drawings; leave it out"),
     (("--inflate", "12 mm"), "--inflate: is only for drawings; leave it out"),
     (("--material", "steel"), "unknown material"),
+    (("--from", "starfish"), "starfish: is a robot of the gallery; write gallery:starfish"),
 ]
 
 

@@ -17,7 +17,7 @@ from own_time import PROGRAM, run_in_own_time
 from hydrostat.cli.play_camera import require_rest
 from hydrostat.control import Motors, SimulatedLink
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.robot import Winch
+from hydrostat.robot import Winch, gallery_folder
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -232,7 +232,7 @@ def test_a_camera_begins_at_rest(place: float, is_refused: bool) -> None:
         (("--camera", 0), 2, "--camera: simulated motors move no robot. Add --motors."),
         (("--camera", 0, "--motors", "emulated", "--lag", "2s"), 2, "--lag 2s: must be 500 ms or less"),
         (("--camera", 0, "--motors", "emulated", "--lost", "run"), 2, "--lost"),
-        (("--camera", 0, "--motors", "emulated"), 1, "photographs need OpenCV"),
+        (("--camera", 0, "--motors", "emulated"), 2, "photographs need OpenCV"),
     ],
 )
 def test_a_camera_that_cannot_correct_is_refused(
@@ -248,3 +248,10 @@ def test_a_camera_that_cannot_correct_is_refused(
     found, _, err = run("play", starfish, wave, *options)
     assert (found, err.count("\n")) == (code, 1)
     assert words in err
+
+
+def test_boards_turn_no_drives(run: Run, tmp_path: Path) -> None:
+    code, _, err = run("firmware", gallery_folder("emio"), "--out", tmp_path / "made")
+    assert code == 2
+    assert 'drives, such as "front", are not available in firmware' in err
+    assert not (tmp_path / "made").exists()

@@ -50,7 +50,7 @@ def test_a_missing_package_is_named_before_anything_is_sampled(
     run("reproduce", "list")  # the laboratory can be imported from now on
     monkeypatch.setattr("hydrostat_lab.catalog.find_spec", lambda name: None)
     code, _, words = run("reproduce", "table-5.1", "--out", tmp_path / "out")
-    assert code == 1
+    assert code == 2
     assert words.startswith("hydrostat: error: table-5.1: package torch not found. Install it: pip install")
     assert not (tmp_path / "out").exists()
 
@@ -61,7 +61,7 @@ def test_without_the_laboratory_one_line_says_where_to_get_it(
     monkeypatch.setattr(entry, "find_spec", lambda name: None)
     monkeypatch.setattr(entry, "LAB", tmp_path)
     code, _, words = run("reproduce", "all", "--out", tmp_path)
-    assert code == 1
+    assert code == 2
     assert words == (
         "hydrostat: error: package hydrostat-lab not found. Clone hydrostat and run: pip install --editable lab\n"
     )

@@ -122,7 +122,7 @@ def test_the_name_of_a_file_stays_in_its_comment() -> None:
     """Oracle: tomllib; a name with an end of line wrote keys of its own into robot.toml."""
     text = _commented_text(gallery_robot("starfish"), 'a\ngravity = "down"\x1b[31m.svg')
     assert "gravity" not in tomllib.loads(text)
-    assert text.splitlines()[0].startswith("# starfish, begun from a\\ngravity")
+    assert text.splitlines()[0].startswith("# starfish, made from a\\ngravity")
 
 
 OUTLINES = {

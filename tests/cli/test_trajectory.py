@@ -78,6 +78,7 @@ def test_the_profile_can_be_played(run: Run, starfish: Path, tmp_path: Path) -> 
         (("--path", "round"), '--path must be one of smooth, linear, straight, not "round"'),
         (("--poses", "wave,dance"), "dance"),
         (("--poses", ","), "--poses: no pose named"),
+        (("--poses", "wave,,rest"), "--poses: no pose named"),
         (("--equal", "left"), "--equal left: too few winches"),
         (("--equal", "left,tail"), "tail"),
         (("--path", "linear", "--max-acceleration", "1 m/s^2"), "no limit on the acceleration can hold"),
