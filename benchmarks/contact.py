@@ -22,7 +22,7 @@ import numpy as np  # isort: skip
 import hydrostat as hs
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.geometry import find_crossings
-from hydrostat.mechanics import ContactEnergy
+from hydrostat.mechanics import SelfContactEnergy
 from hydrostat.robot import Robot
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -43,7 +43,7 @@ def crosses(robot: Robot, nodes: Nodes) -> bool:
     return bool(ipctk.has_intersections(mesh, nodes[outer]))
 
 
-def gaps(energy: ContactEnergy, nodes: Nodes) -> np.ndarray:
+def gaps(energy: SelfContactEnergy, nodes: Nodes) -> np.ndarray:
     """Gap of each pair that is felt, as a share of the distance at which it is."""
     near = energy.with_active_terms(nodes)
     squared, begins = energy.skin.compute_squared_distances(nodes, near.pairs), energy.skin.begins(near.pairs)
@@ -66,7 +66,7 @@ def study(name: str, count: int, minutes: float, seed: int, share: float) -> int
     """Print the row of one body; return how many poses are wrong."""
     robot = hs.load_robot(EXAMPLES / name)
     free, touching = hs.Simulation(robot), hs.Simulation(replace(robot, contact=hs.Contact()))
-    energy = next(each for each in touching.assembly.energies if isinstance(each, ContactEnergy))
+    energy = next(each for each in touching.assembly.energies if isinstance(each, SelfContactEnergy))
     travel = np.array([winch.travel for winch in robot.winches])
     random, steps = np.random.default_rng(seed), np.random.default_rng(seed + 1)
     _ = free.rest, touching.rest
@@ -85,7 +85,7 @@ def study(name: str, count: int, minutes: float, seed: int, share: float) -> int
         good = (
             pose.result.converged
             and not crosses(robot, pose.nodes)
-            and touching.assembly.least_volume(pose.nodes) > 0
+            and touching.assembly.min_volume_ratio(pose.nodes) > 0
             and least > LEAST_GAP
         )
         if not good:

@@ -10,7 +10,8 @@ robots are drawn (`hydrostat.design.BuildTolerances`: holes, friction, stiffness
 design saw, and solved from rest along the straight loading path with the friction of each. `exact` are routes for a
 robot that is built just as its model: cables may cross, lie side by side and turn by 75 degrees.
 Further methods, printed on request: `reach` are routes with `RouteOptions.workspace_weight` of 1, `family`
-routes that are designed for the half-way poses too, `two_way` routes whose winches may pull both ways.
+routes that are designed for the half-way poses too, `two_way` routes whose winches may pull both ways, `chang2018`
+the search of the thesis with one setting (trees: with many).
 
 Columns, errors in mm rms over markers and poses: `model`, as designed; `built`, median and 90 % of the draws;
 `corrected`, the same after one round of correction: up to five markers of each pose are measured on the built robot,
@@ -90,7 +91,7 @@ def network(method: str, robot: Robot, body: Body, poses: Sequence[PoseTarget]) 
         poses = [*poses, *(half_way(robot, pose) for pose in poses)]
     request = DesignRequest(
         poses=tuple(poses), winches=body.winches, cables=body.cables, constraints=constraints, uncertainty=uncertainty,
-        method=DesignMethod.TREES if method == "trees" else DesignMethod.ROUTES,
+        method=DesignMethod(method) if method in set(DesignMethod) else DesignMethod.ROUTES,
         options=RouteOptions(workspace_weight=1.0) if method == "reach" else None,
     )  # fmt: skip
     try:
@@ -345,7 +346,7 @@ def main() -> None:
     for name in given.bodies.split(","):
         flat = body_robot(name).body.mesh.dim == 2
         for method in given.methods.split(","):
-            if method == "trees" and not flat:
+            if method in ("trees", "chang2018") and not flat:
                 continue
             draws = given.draws if flat else given.draws_in_space
             jobs.append(

@@ -160,7 +160,7 @@ class RodLegs:
         frames, energy = turned @ robot.frames, np.zeros(angles.shape[:-1])
         for half in range(2 * LINKS):
             step = self.half * frames[..., :, 0]
-            moments = moments - np.cross(step, forces) - np.cross(step, self.weight) / 2
+            moments = moments - np.cross(step, forces + self.weight / 2)
             forces, places = forces + self.weight, places + step
             if half % 2 == 0:  # the middle of a link bends
                 own = (np.swapaxes(frames, -1, -2) @ moments[..., None])[..., 0]
@@ -228,8 +228,27 @@ class RodLegs:
                 loads = loads - np.linalg.solve(slopes, gaps[0][..., None])[..., 0]
         return np.concatenate([loads[:, :3].ravel(), loads[:, 3:].ravel(), np.zeros(7)])
 
-    def find_angles(self, places: np.ndarray) -> np.ndarray:
-        """Angles [rad] that lead the connector to each place [m], one after the other."""
+    def yielding(self, found: np.ndarray, places: np.ndarray, compliance: float) -> np.ndarray:
+        """Unknowns if servos asked for the angles in `found` at `places` [m] yield by a compliance [rad/(N m)]."""
+        robot, asked, step = self.robot, found[:, 24:28], 1e-6
+        unknowns = np.concatenate([found, 10 * places], axis=1)
+        for _ in range(20):
+            tried = np.concatenate([unknowns[:, None], unknowns[:, None] + step * np.eye(34)], axis=1)
+            values, _ = self.residual(tried[..., :31], tried[..., None, 31:] / 10, 0.0)
+            loads, angles = tried[..., :24] * SCALES[:24], tried[..., 24:28]
+            forces, moments = (part.reshape(*tried.shape[:-1], 4, 3) for part in np.split(loads, 2, axis=-1))
+            arms = (rotation(robot.axes * angles[..., None]) @ robot.bases[..., None])[..., 0]
+            torques = ((moments + np.cross(arms, forces)) * robot.axes).sum(axis=-1)
+            sagged = angles + compliance * torques - asked[:, None]
+            values = np.concatenate([values[..., :-1], sagged], axis=-1)
+            if np.abs(values[:, 0]).max() < 1e-8:
+                return unknowns[:, :31]
+            slopes = np.swapaxes(values[:, 1:] - values[:, :1], 1, 2) / step
+            unknowns = unknowns - np.linalg.solve(slopes, values[:, 0, :, None])[..., 0]
+        raise RuntimeError(f"no equilibrium of the rods on servos of {compliance} rad/(N m)")
+
+    def find_states(self, places: np.ndarray) -> np.ndarray:
+        """Unknowns that lead the connector to each place [m], one after the other; 24 to 27 are the angles [rad]."""
         at, yaw, found = np.array([0.0, -0.15, 0.0]), 0.0, []
         unknowns = self.begin(at)
         for place in places:
@@ -238,5 +257,5 @@ class RodLegs:
                 unknowns, _ = self.solve(unknowns, at + share * (place - at), yaw)
             unknowns, yaw = self.least_energy(unknowns, place, yaw)
             at = place
-            found.append(unknowns[24:28])
+            found.append(unknowns)
         return np.array(found)

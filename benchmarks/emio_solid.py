@@ -114,11 +114,12 @@ class SolidLegs:
         parts = (np.concatenate(part) for part in (stencils, weights, targets))
         return PinEnergy(**dict(zip(("stencils", "weights", "targets"), parts, strict=True)), stiffness=stiffness)
 
-    def find_tips(self, angles: np.ndarray) -> tuple[np.ndarray, Equilibrium]:
-        """Place of the connector [m] at each row of angles [rad], one after the other; the first pose."""
-        tips, first = [], None
+    def find_tips(self, angles: np.ndarray) -> tuple[np.ndarray, np.ndarray, Equilibrium]:
+        """Place [m] and turn of the connector at each row of angles [rad], one after the other; the first pose."""
+        tips, turns, first = [], [], None
         for row in angles:
             self.pose = self.simulation.solve(row, start=self.pose)
             first = first or self.pose
             tips.append(self.pose.markers["tip"])
-        return np.array(tips), first or self.pose
+            turns.append((self.pose.nodes[self.corners] - tips[-1]).T @ CORNERS / (CORNERS[:, 0] @ CORNERS[:, 0]))
+        return np.array(tips), np.array(turns), first or self.pose

@@ -1,6 +1,6 @@
 """Real robots: errors of hydrostat against published measurements of robots that others built.
 
-    python benchmarks/real.py FOLDER [--only NAME] [--samples N] [--plot FOLDER]
+    python benchmarks/real.py FOLDER [--only NAME] [--samples N] [--plot FOLDER] [--profile]
 
 FOLDER holds opencr_v4/ (a tendon continuum robot of three segments with nine tendons; Continuum Robotics Laboratory,
 opencr-mujoco), trunk_payload/ (a vacuum-hose trunk of six motors with hung masses; Stanford ASL, trunk-stack) and emio/
@@ -10,8 +10,9 @@ block of the second. Errors are distances in the frame of the measurement [mm]; 
 counts as the mean of the fitted rows' places.
 
 The angles of Emio's servos were not stored. Rods of the measured modulus find angles that lead the connector to the
-places that its makers' model predicts; volumes of the same modulus are turned by them. Only the sensor's offset is
-fitted, on the rows themselves.
+places that its makers' model predicts; volumes of the same modulus are turned by them. Fitted are the sensor's offset,
+then its place on the connector, then the angle by which servos and clamps yield to a torque; the last two are judged on
+rows that their fit did not see, in folds.
 """
 
 import argparse
@@ -24,12 +25,19 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from emio_rods import RodLegs, read_emio
+from emio_rods import RodLegs, read_emio, rotation
 from emio_solid import SolidLegs
 from machine import machine
 from real_robots import MM, opencr, trunk, with_hysteresis, with_play
 
-from hydrostat.identification import FittedModel, IdentificationModel, MarkerPredictor, Measurements, fit_model
+from hydrostat.identification import (
+    FittedModel,
+    IdentificationModel,
+    MarkerPredictor,
+    Measurements,
+    fit_model,
+    profile_intervals,
+)
 
 HEAD = "| {} | mean | median | RMSE | 90 % | rows, parameters, CPU |\n|---|---|---|---|---|---|"
 SKIPPED = 0.5  # head of a block of the trunk that is not scored [s]
@@ -73,16 +81,19 @@ def line(what: str, found: np.ndarray, places: np.ndarray, more: str = "") -> st
     )
 
 
-def identified(model: IdentificationModel, measured: Measurements, evaluations: int = 30) -> tuple[FittedModel, str]:
-    """Fit, and its rows, parameters and time."""
+def identified(
+    model: IdentificationModel, measured: Measurements, *, evaluations: int = 30, profile: bool = False
+) -> tuple[FittedModel, str]:
+    """Fit, and its rows, parameters and time; with intervals by profile likelihood if asked."""
     began = time.process_time()
     fitted = fit_model(
         model,
         measured,
         evaluations=evaluations,
         refine=not measured.in_order,
-        progress=lambda text: print(f"  {text}", end="\r", flush=True),
+        progress=lambda text, *_: print(f"  {text}", end="\r", flush=True),
     )
+    fitted = profile_intervals(fitted, measured, progress=print) if profile else fitted
     seconds = time.process_time() - began
     return fitted, f"{len(measured.commands)}, {len(model.parameters)}, {seconds:.0f} s"
 
@@ -97,7 +108,7 @@ def judged(fitted: FittedModel, asked: Measurements, known: Measurements, marker
 
 def covered(fitted: FittedModel, asked: Measurements) -> float:
     """Share of the measured coordinates within their 95 % intervals."""
-    found = MarkerPredictor(fitted.model, asked).predict(fitted.numbers, slopes=True)
+    found = MarkerPredictor(fitted.model, asked).predict(fitted.numbers, with_jacobian=True)
     assert found.jacobian is not None
     variance = np.einsum("rmdi,ij,rmdj->rmd", found.jacobian, fitted.interval_covariance, found.jacobian)
     away = np.abs(found.places - asked.places)
@@ -105,7 +116,7 @@ def covered(fitted: FittedModel, asked: Measurements) -> float:
     return float((away <= 1.96 * np.sqrt(variance + fitted.noise**2))[known].mean())
 
 
-def run_opencr(folder: Path, samples: int, pictures: Path | None, *, history: str = "") -> None:
+def run_opencr(folder: Path, samples: int, pictures: Path | None, *, history: str = "", profile: bool = False) -> None:
     """OpenCR v4: fitted on train.csv, judged on val.csv; `history` is "play" of tendons or "hysteresis" of the gaps."""
     facts: dict[str, Any] = json.loads((folder / "robot.json").read_text(encoding="utf-8"))
     model = opencr(
@@ -121,10 +132,12 @@ def run_opencr(folder: Path, samples: int, pictures: Path | None, *, history: st
     if history == "play":
         model = with_play(model, np.concatenate([known.commands, asked.commands]))
     chosen = np.sort(np.random.default_rng(0).choice(len(train), samples, replace=False))
-    fitted, cost = identified(model, known.rows(chosen))
+    fitted, cost = identified(model, known.rows(chosen), profile=profile and history != "hysteresis")
     if history == "hysteresis":
         path = known.rows(np.arange(0, len(train), EVERY))
-        fitted, more = identified(with_hysteresis(model, fitted.values), replace(path, in_order=True), evaluations=10)
+        fitted, more = identified(
+            with_hysteresis(model, fitted.values), replace(path, in_order=True), evaluations=10, profile=profile
+        )
         cost, asked = f"{cost}; then {more}", replace(joined([path, asked]), in_order=True)
     found, missing = judged(fitted, asked, known, 0)
     found = found[-len(val) :]
@@ -142,7 +155,7 @@ def run_opencr(folder: Path, samples: int, pictures: Path | None, *, history: st
         plot(pictures / f"opencr{history and '_' + history}.png", val[:, 10:13], found, ("x", "z"))
 
 
-def run_trunk(folder: Path, samples: int, pictures: Path | None) -> None:
+def run_trunk(folder: Path, samples: int, pictures: Path | None, *, profile: bool = False) -> None:
     """Trunk: fitted on two thirds of the blocks of all loads, and on those without a load; judged on the others."""
     facts: dict[str, Any] = json.loads((folder / "robot.json").read_text(encoding="utf-8"))
     base = np.array(facts["base_about_mm"])
@@ -165,7 +178,7 @@ def run_trunk(folder: Path, samples: int, pictures: Path | None) -> None:
         inputs = [np.column_stack([one.commands[:, ::2] / MM, one.hung_masses[:, 2]]) for one in (every, asked[load])]
         more = f"{len(every.commands)}, 108"
         print(line(f"quadratic, {load} g", ridge(inputs[0], every.places[:, 2] / MM, inputs[1]), places, more))
-    fitted, cost = identified(model, mixed)
+    fitted, cost = identified(model, mixed, profile=profile)
     for load in LOADS:
         found, missing = judged(fitted, asked[load], mixed, 2)
         places = asked[load].places[:, 2] / MM
@@ -210,30 +223,69 @@ def joined(parts: list[Measurements]) -> Measurements:
     )
 
 
-def run_emio(folder: Path, _: int, pictures: Path | None) -> None:
-    """Emio: volumes turned by the angles of rods, against tips in beam.csv."""
+def run_emio(folder: Path, samples: int, pictures: Path | None, *, yielded: tuple[float, ...] = (0.0,)) -> None:
+    """Emio: volumes turned by the angles of rods, against tips in beam.csv; `yielded`: compliances of the roots."""
     values = numbers(folder / "beam.csv")[1]
+    values = values[:: max(len(values) // samples, 1) if samples else 1]
     predicted, measured = values[:, 4:7], values[:, 7:10]
     facts = read_emio(folder)
     began = time.process_time()
-    angles = RodLegs(facts).find_angles(MM * predicted)
+    rods = RodLegs(facts)
+    states = rods.find_states(MM * predicted)
+    asked = [rods.yielding(states, MM * predicted, compliance)[:, 24:28] for compliance in yielded]
     print(f"angles by rods: {time.process_time() - began:.0f} s of CPU")
     print(HEAD.format("Emio, beam.csv, tip [mm]"))
-    rows = {"SOFA's beam of the makers": (predicted, "")}
-    for elements in ("linear", "quadratic"):
+    found = [("SOFA's beam of the makers", predicted, "")]
+    for elements, runs in (("linear", asked[:1]), ("quadratic", asked)):
         began = time.process_time()
         legs = SolidLegs(folder, facts, elements)
-        tips, pose = legs.find_tips(angles)
-        nodes = f", {len(pose.nodes)} nodes, {time.process_time() - began:.0f} s"
-        rows[f"hydrostat, {elements} elements, 35 MPa"] = (tips / MM, nodes)
-    for what, (found, more) in rows.items():
-        offset = (measured - found).mean(axis=0)
-        print(line(what, found + offset, measured, f"{len(found)}, 3{more}"))
-        apart = found + (predicted - found).mean(axis=0) - predicted
+        poses = [legs.find_tips(angles) for angles in runs]
+        nodes = f", {len(poses[0][2].nodes)} nodes, {time.process_time() - began:.0f} s"
+        found.append((f"hydrostat, {elements} elements, 35 MPa", poses[0][0] / MM, nodes))
+    for what, tips, nodes in found:
+        print(line(what, tips + (measured - tips).mean(axis=0), measured, f"{len(tips)}, 3{nodes}"))
+        apart = tips + (predicted - tips).mean(axis=0) - predicted
         print(f"  from SOFA's beam, offset removed: RMSE {np.sqrt((apart**2).sum(axis=1).mean()):.2f} mm")
+    tips, turns = np.array([pose[0] for pose in poses]) / MM, np.array([pose[1] for pose in poses])
+    number = np.arange(len(measured))
+    for what, places, axes in (
+        ("rods, sensor on the connector", predicted[None], rotation(states[None, :, 28:])),
+        ("quadratic elements, sensor on the connector", tips[:1], turns[:1]),
+        ("the same, servos yield", tips, turns),
+    )[: 1 + len(yielded)]:
+        held, fits = held_out((places, axes), measured, number % 8, yielded)
+        print(line(what, held, measured, f"{len(held)} in 8 folds, {6 if len(places) == 1 else 7}"))
+        away = held_out((places, axes), measured, 4 * number // len(number), yielded)[0] - measured
+        print(f"  whole quarters of the time left out: RMSE {np.sqrt((away**2).sum(axis=1).mean()):.2f} mm")
+        for name, part in (("offset, mm", fits[:, :3]), ("place, mm", fits[:, 3:6]), ("rad/(N m)", fits[:, 6:])):
+            low, middle, high = part.min(axis=0).round(2), part.mean(axis=0).round(2), part.max(axis=0).round(2)
+            print(f"  {name}: {middle}, from {low} to {high}")
     if pictures:
-        plot(pictures / "emio.png", measured, rows["hydrostat, quadratic elements, 35 MPa"][0] + offset, ("z", "y"))
-        plot_legs(pictures / "emio_legs.png", legs.simulation.robot.body.mesh.boundary, pose.nodes)
+        plot(pictures / "emio.png", measured, held, ("z", "y"))
+        plot_legs(pictures / "emio_legs.png", legs.simulation.robot.body.mesh.boundary, poses[0][2].nodes)
+
+
+def held_out(
+    runs: tuple[np.ndarray, np.ndarray], measured: np.ndarray, folds: np.ndarray, yielded: tuple[float, ...]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Places [mm] of the sensor, each by a fit to the rows of the other folds, and the fits.
+
+    A fit is an offset and a place on the connector [mm], by least squares, and a compliance [rad/(N m)] on the line
+    through two `runs`, which hold places and turns of the connector at two `yielded`; 0 if there is only one.
+    """
+    found, fits = np.empty_like(measured), []
+    for fold in np.unique(folds):
+        kept, out, tried = folds != fold, folds == fold, []
+        for share in np.linspace(0, 1, 76) if len(runs[0]) > 1 else [0.0]:
+            places, axes = ((1 - share) * run[0] + share * run[-1] for run in runs)
+            columns = np.concatenate([np.broadcast_to(np.eye(3), axes.shape), axes], axis=2)
+            fit, *_ = np.linalg.lstsq(columns[kept].reshape(-1, 6), (measured - places)[kept].ravel(), rcond=None)
+            predicted = places + columns @ fit
+            error = float(((predicted - measured)[kept] ** 2).sum())
+            tried.append((error, np.append(fit, share * yielded[-1]), predicted[out]))
+        _, fit, found[out] = min(tried, key=lambda one: one[0])
+        fits.append(fit)
+    return found, np.array(fits)
 
 
 def plot_legs(file: Path, faces: np.ndarray, nodes: np.ndarray) -> None:
@@ -282,6 +334,7 @@ def plot(file: Path, places: np.ndarray, found: np.ndarray, side: tuple[str, str
 
 RUNS = {
     "emio": (run_emio, "emio", 0),
+    "emio_yielding": (partial(run_emio, yielded=(0.0, 1.5)), "emio", 0),
     "opencr": (run_opencr, "opencr_v4", 90),
     "opencr_play": (partial(run_opencr, history="play"), "opencr_v4", 90),
     "opencr_hysteresis": (partial(run_opencr, history="hysteresis"), "opencr_v4", 90),
@@ -295,15 +348,19 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("folder", type=Path)
     parser.add_argument("--only", choices=sorted(RUNS), help="one of the robots")
-    parser.add_argument("--samples", type=int, help="rows that a model is fitted to (default 90 OpenCR, 200 trunk)")
+    parser.add_argument(
+        "--samples", type=int, help="rows that a model is fitted to (default 90 OpenCR, 200 trunk, all Emio)"
+    )
     parser.add_argument("--plot", type=Path, metavar="FOLDER", help="pictures of measured and predicted places")
+    parser.add_argument("--profile", action="store_true", help="intervals by profile likelihood, where doubtful")
     options = parser.parse_args()
     print(f"{machine()}\n")
     for name, (run, place, rows) in RUNS.items():
         if options.only not in (None, name):
             continue
         if (folder := options.folder / place).is_dir():
-            run(folder, options.samples or rows, options.plot)
+            more = {"profile": True} if options.profile and rows else {}
+            run(folder, options.samples or rows, options.plot, **more)
         else:
             print(f"{name}: no folder {folder}, left out")
 

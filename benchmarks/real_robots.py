@@ -9,7 +9,21 @@ import numpy as np
 
 from hydrostat.geometry import Mesh
 from hydrostat.identification import IdentificationModel, Parameter
-from hydrostat.robot import Body, BodyPart, Cable, Load, Marker, Material, Mount, Pin, Robot, Rod, Slider, Source, Winch
+from hydrostat.robot import (
+    Body,
+    BodyPart,
+    Cable,
+    Load,
+    Marker,
+    Material,
+    Mount,
+    Pin,
+    PrandtlElement,
+    Robot,
+    Rod,
+    Source,
+    Winch,
+)
 
 MM = 1e-3
 SHIFT = 20.0  # slack of every tendon at zero [mm], as a cable's slack is not below 0
@@ -134,7 +148,7 @@ def with_hysteresis(model: IdentificationModel, held: dict[str, float]) -> Ident
     elastic = model.robot(held)
 
     def robot(values: dict[str, float]) -> Robot:
-        slider = Slider(young=values["hysteresis"], strain=values["slip"])
+        slider = PrandtlElement(young=values["hysteresis"], strain=values["slip"])
         material = replace(elastic.body.material, hysteresis=(slider,))
         return replace(elastic, body=replace(elastic.body, material=material))
 

@@ -140,7 +140,9 @@ def fault(simulation: hs.Simulation, pose: hs.Equilibrium) -> str:
     if not ratios.min() > 0:
         return f"J = {ratios.min():.2g}"
     residual = float(np.abs(simulation.assembly.gradient(pose.nodes, pose.contractions)).max())
-    allowed = max(TOLERANCE * float(pose.tensions.max(initial=0.0)), ROUNDING)
+    rigid = any(part.is_rigid for part in simulation.robot.body.parts)  # forces in rigid parts are rounded to more
+    rounding = simulation.body.round_off().force if rigid else ROUNDING
+    allowed = max(TOLERANCE * float(pose.tensions.max(initial=0.0)), rounding)
     return "" if residual < allowed or residual == 0.0 else f"residual {residual:.2g} N, allowed {allowed:.2g} N"
 
 

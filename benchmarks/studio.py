@@ -82,8 +82,10 @@ def studio(robot: str, state: str) -> Iterator[tuple[str, int]]:
     environment = {**os.environ, "XDG_STATE_HOME": state}
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment) as process:
         assert process.stdout is not None
-        yield next(word for word in process.stdout.readline().split() if word.startswith("http://")), process.pid
-        process.terminate()
+        try:
+            yield next(word for word in process.stdout.readline().split() if word.startswith("http://")), process.pid
+        finally:
+            process.terminate()
 
 
 def memory(process: int) -> float:
@@ -104,9 +106,9 @@ def ready(page: Page, address: str, mode: str) -> None:
 
 def marker(page: Page, robot: str) -> dict[str, float]:
     """Where the marker is that is dragged [pixels]."""
-    things: list[dict[str, Any]] = page.evaluate("window.__app.things")
-    markers = [thing for thing in things if thing["key"].startswith("marker:")]
-    named = [thing for thing in markers if thing["key"] == f"marker:{MARKERS.get(robot)}"]
+    items: list[dict[str, Any]] = page.evaluate("window.__app.items")
+    markers = [item for item in items if item["key"].startswith("marker:")]
+    named = [item for item in markers if item["key"] == f"marker:{MARKERS.get(robot)}"]
     return (named or markers)[0]
 
 

@@ -19,6 +19,8 @@ STUDIES: dict[str, str] = {
     "ablation/ablation": "--count 5",
     "cable_friction/friction": "--quick",
     "coarseness/coarseness": "",
+    "coarseness/pins": "",
+    "coarseness/space": "",
     "designs/designs": "--bodies pig --random 20",
     "designs/drawn_networks": "puppy",
     "faults/faults": "mutations --count 60",
@@ -66,8 +68,10 @@ NEED_MORE = {
     "learned_ik/sample_starts": "a robot and samples",
     "peers/peers": "other simulators",
     "push_and_twist/push_learning": "PyTorch and stable-baselines3",
+    "reinforcement/equal_networks": "PyTorch and a model",
     "solver_floor/floor": "a C++ trial",
     "spool_layers/spool_layers": "a robot",
+    "teleoperation/glove_poses": "poses of `hydrostat mimic`",
     "tetwild/tetwild": "fTetWild",
 }
 """Studies that are run by hand, with what they need."""

@@ -2,9 +2,9 @@
 
     python lab/coarseness/coarseness.py
 
-For each robot: how many elements are across its thinnest limb (`hydrostat check` warns below LEAST_ACROSS); how far its
-markers move when every winch takes in 15 mm, with the finest mesh; how far from there they are with the coarser ones;
-and the largest tension. The hand takes in its flexors.
+For each robot: how many elements are across its thinnest limb (`hydrostat check` warns below MIN_ELEMENTS_ACROSS);
+how far its markers move when every winch takes in 15 mm, with the finest mesh; how far from there they are with the
+coarser ones; and the largest tension. The hand takes in its flexors.
 """
 
 from collections.abc import Callable, Iterator
@@ -15,7 +15,7 @@ from benchmark_bodies import ELEMENT_SIZE, hand_robot
 from machine import machine
 
 from hydrostat.geometry import Thickness
-from hydrostat.robot import LEAST_ACROSS, Body, Robot, Source, gallery_folder, list_gallery, load_robot
+from hydrostat.robot import MIN_ELEMENTS_ACROSS, Body, Robot, Source, gallery_folder, list_gallery, load_robot
 from hydrostat.simulation import Simulation
 
 TAKEN_IN = 0.015
@@ -65,7 +65,7 @@ def row(name: str, make: Callable[[float], Robot], finenesses: tuple[float, ...]
     return (
         f"| {name} | {' / '.join(str(len(robot.body.mesh.nodes)) for robot in robots)} "
         f"| {f'{parts[0].across:.1f}' if parts else '5 or more'} "
-        f"| {'yes' if Thickness.measure(mesh).thin_parts(LEAST_ACROSS[mesh.dim]) else 'no'} | {1e3 * moved:.1f} "
+        f"| {'yes' if Thickness.measure(mesh).thin_parts(MIN_ELEMENTS_ACROSS[mesh.dim]) else 'no'} | {1e3 * moved:.1f} "
         f"| {' / '.join(f'{1e3 * far:.1f}' for far in off)} | {' / '.join(f'{tension:.2f}' for tension in tensions)} |"
     )
 

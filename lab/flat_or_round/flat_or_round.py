@@ -27,7 +27,7 @@ import numpy as np  # isort: skip
 
 from hydrostat.ik import Limits, solve_ik
 from hydrostat.mechanics import Energy
-from hydrostat.robot import Face, PoseTarget, gravity_along, inflated_robot
+from hydrostat.robot import CableSide, PoseTarget, gravity_along, inflated_robot
 from hydrostat.simulation import Equilibrium, Simulation, solve_stuffed_motion
 
 EVERY = ("starfish", "robot", "pig", "letter_e", "letter_s", "puppy", "squid")
@@ -39,7 +39,7 @@ def rows(name: str, element_size: float | None) -> Iterator[str]:
     simulation, limits = Simulation(robot), Limits(tension=BODIES[name].constraints.tension_limit)
     poses = [solve_ik(simulation, pose, limits=limits).pose for pose in robot.poses.values()]
     pull = max(float(pose.tensions.max(initial=0.0)) for pose in poses)
-    for face in (face for face in Face if face is not Face.BACK):
+    for face in (face for face in CableSide if face is not CableSide.BACK):
         began = time.process_time()
         found = solve_stuffed_motion(robot, [pose.contractions for pose in poses], face, element_size=element_size)
         seconds = time.process_time() - began
@@ -85,7 +85,7 @@ def table_rows(name: str, element_size: float | None) -> Iterator[str]:
     """A line for each face: in the air, and on a table."""
     robot = body_robot(name)
     pulled = [solve_ik(Simulation(robot), pose).pose.contractions for pose in robot.poses.values()]
-    for face, lies in ((Face.FRONT, "up"), (Face.BACK, "down"), (Face.PAIRS, "both")):
+    for face, lies in ((CableSide.FRONT, "up"), (CableSide.BACK, "down"), (CableSide.PAIRS, "both")):
         solid = replace(inflated_robot(robot, face, element_size=element_size), gravity=gravity_along("-z", 3))
         mesh = solid.body.mesh
         table = Table(len(mesh.nodes), float(mesh.nodes[:, 2].min()), STIFF)
@@ -105,7 +105,7 @@ SHARES = (0.0, 0.4, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95, 1.0)
 def along_rows(name: str, element_size: float | None) -> Iterator[str]:
     """A line for each share of the contractions of the first pose."""
     robot = body_robot(name)
-    flat, solid = Simulation(robot), Simulation(inflated_robot(robot, Face.PAIRS, element_size=element_size))
+    flat, solid = Simulation(robot), Simulation(inflated_robot(robot, CableSide.PAIRS, element_size=element_size))
     reached = solve_ik(flat, next(iter(robot.poses.values()))).pose
     marker = max(robot.markers, key=lambda one: float(np.linalg.norm(reached.markers[one.name] - one.at)))
     mesh = solid.robot.body.mesh

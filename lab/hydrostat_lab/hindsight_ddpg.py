@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from hydrostat.errors import HydrostatError, InputError
+from hydrostat.errors import InputError
 from hydrostat.version import install_command
 from hydrostat_lab.curriculum import Curriculum
 from hydrostat_lab.trials import Trials
@@ -22,7 +22,7 @@ try:
     import torch
     from torch import Tensor
 except ModuleNotFoundError as error:
-    raise HydrostatError(f"training needs {error.name}; install it: {install_command('rl')}") from None
+    raise InputError(f"training needs {error.name}; install it: {install_command('rl')}") from None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,6 +47,7 @@ class DdpgOptions:
         tolerance: distance that is a success at the beginning, in the unit of the trials.
         curriculum: schedule of the tolerance.
         late_critic_rate: learning rate of the critic from the first change of the tolerance on; None: as before.
+        reset_adam: True if Adam counts its steps from 0 again, for all seeds, whenever one changes its tolerance.
         goal_only: True if networks see the goal alone, and not the state.
 
     Raises:
@@ -70,6 +71,7 @@ class DdpgOptions:
     tolerance: float = 1.0
     curriculum: Curriculum = Curriculum.FIXED
     late_critic_rate: float | None = None
+    reset_adam: bool = False
     goal_only: bool = False
 
     def __post_init__(self) -> None:
@@ -355,9 +357,13 @@ class HindsightDdpg:
         before = self.tolerance[:, 0].numpy().copy()
         after = self.options.curriculum.next(before, success, distance)
         self.tolerance[:, 0] = torch.tensor(after, dtype=torch.float32)
-        late = self.options.late_critic_rate
-        if late is not None and (after < before).any():
-            self._critic_adam.param_groups[0]["lr"] = late
+        if not (after < before).any():
+            return
+        if self.options.late_critic_rate is not None:
+            self._critic_adam.param_groups[0]["lr"] = self.options.late_critic_rate
+        if self.options.reset_adam:
+            for state in (*self._actor_adam.state.values(), *self._critic_adam.state.values()):
+                state["step"].zero_()
 
 
 def apply_layers(numbers: Sequence[Tensor], values: Tensor) -> Tensor:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from hydrostat.errors import HydrostatError
+from hydrostat.errors import InputError
 from hydrostat.progress import Progress, no_progress
 from hydrostat.version import install_command
 from hydrostat_lab.experiments import SMALL
@@ -19,7 +19,7 @@ try:
     import torch
     from torch import Tensor
 except ModuleNotFoundError as error:
-    raise HydrostatError(f"training needs {error.name}; install it: {install_command('rl')}") from None
+    raise InputError(f"training needs {error.name}; install it: {install_command('rl')}") from None
 
 from hydrostat.learning import answer
 

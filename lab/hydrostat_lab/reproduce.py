@@ -45,7 +45,7 @@ class Size(StrEnum):
 Methods = Annotated[
     str | None,
     typer.Option(
-        metavar="NAME,NAME", help="Learning methods without a step after, e.g. thesis,search.", show_default="all"
+        metavar="NAME,NAME", help="Learning methods, without a correction step, e.g. thesis,search.", show_default="all"
     ),
 ]
 Epochs = Annotated[
@@ -60,7 +60,7 @@ Epochs = Annotated[
 def reproduce(
     what: Annotated[
         list[str],
-        typer.Argument(metavar="TABLE...", help="Tables and figures: table-5.1, ..., all; or list, which prints them."),
+        typer.Argument(metavar="TABLE...", help="Tables and figures: table-5.1, ..., or all. `list` prints them."),
     ],
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Output folder (created if missing).", show_default=False)
@@ -102,18 +102,18 @@ def reproduce(
     another range of motion.
 
     Reinforcement learning (section 5.4): figure-5.8 (one, five or ten actions) and figure-5.9 (curricula), each also
-    with -small appended for small networks, figure-5.10 (tolerances and errors), figure-5.12 (random starts),
-    table-noise and table-reward. figure-5.14-trial compares it with methods that train on the same pairs.
-    table-policies compares other policy methods on the same outcomes, table-gradient only the best one. Training runs
-    in networks of the hand, with one action per finger and several seeds in parallel. The output lists the claims that
-    hold. Needs the extra rl.
+    with -small appended for small networks, figure-5.9-critic (three readings of one curriculum), figure-5.10
+    (tolerances and errors), figure-5.12 (random starts), table-noise and table-reward. figure-5.14-trial compares it
+    with methods that train on the same pairs. table-policies compares other policy methods on the same outcomes,
+    table-gradient only the best one. Training runs in networks of the hand, with one action per finger and several
+    seeds in parallel. The output lists the claims that hold. Needs the extra rl.
 
     figure-5.13 runs the same method in FetchReach, figure-5.13-hand in HandReach (both gymnasium-robotics), and
     compares it with published curves.
 
     `list` prints all tables and figures, also those of the README, with the results so far. reproduced.md in DIR sets
-    the thesis, the largest runs and those of DIR side by side. Repeat the command to resume it: finished tables stay.
-    `all` leaves out tables that --size minutes cannot tell, and says why.
+    the thesis, the largest runs and those of DIR side by side. Repeat the command to resume it: finished tables are
+    kept. `all` skips tables that --size minutes cannot judge, with the reason.
 
     Example: hydrostat reproduce table-5.1 figure-5.14 --out build/thesis
     """

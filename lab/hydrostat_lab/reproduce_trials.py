@@ -31,6 +31,7 @@ TRIALS = (
     "figure-5.8-small",
     "figure-5.9",
     "figure-5.9-small",
+    "figure-5.9-critic",
     "figure-5.10",
     "figure-5.12",
     "table-noise",

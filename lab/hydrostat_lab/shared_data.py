@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hydrostat.errors import HydrostatError
+from hydrostat.errors import InputError
 from hydrostat.progress import Progress, no_progress
 from hydrostat.simulation import Simulation
 from hydrostat.version import install_command
@@ -19,7 +19,7 @@ from hydrostat_lab.trials import NetworkReach
 try:
     import torch
 except ModuleNotFoundError as error:
-    raise HydrostatError(f"training needs {error.name}; install it: {install_command('rl')}") from None
+    raise InputError(f"training needs {error.name}; install it: {install_command('rl')}") from None
 
 
 class Order(NamedTuple):
@@ -86,11 +86,11 @@ def compare_on_shared_data(
             ways |= {f"{name}, {data}": way(trials, pairs, budget) for name, way in OTHERS.items()}
         for name, act in ways.items():
             exact = exact_distances(simulation, trials, act, seeds, asked) if at == marks[-1] else None
-            yield OfPairs(way=name, pairs=each * at, expected=_expected_errors(trials, act, seeds), exact=exact)
+            yield OfPairs(way=name, pairs=each * at, expected=expected_errors(trials, act, seeds), exact=exact)
 
 
-def _expected_errors(trials: NetworkReach, act: Act, seeds: int) -> np.ndarray:
-    """Distances [cm] in the networks from goals that none learns from, (seeds, goals)."""
+def expected_errors(trials: NetworkReach, act: Act, seeds: int) -> np.ndarray:
+    """Compute distances [cm] in the networks from 1,000 goals that none learns from, (seeds, goals)."""
     states, _, goals = trials.begin_alike(torch.Generator().manual_seed(_GOALS), (seeds, _MANY))
     with torch.no_grad():
         return trials.distances(trials.reach(act(states, goals)), goals).numpy()

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hydrostat.errors import HydrostatError
+from hydrostat.errors import InputError
 from hydrostat.version import install_command
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ def trials_missing() -> Iterator[None]:
     try:
         yield
     except ModuleNotFoundError as error:
-        raise HydrostatError(f"package {error.name} not found. Install it: {install_command('rl')}") from None
+        raise InputError(f"package {error.name} not found. Install it: {install_command('rl')}") from None
 
 
 def is_finished(file: Path, settings: Mapping[str, object]) -> bool:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from hydrostat.errors import HydrostatError
+from hydrostat.errors import HydrostatError, InputError
 from hydrostat.learning import LearnedModel, answer, tensors_of
 from hydrostat.version import install_command
 
@@ -14,7 +14,7 @@ try:
     import torch
     from torch import Tensor
 except ModuleNotFoundError as error:
-    raise HydrostatError(f"training needs {error.name}; install it: {install_command('rl')}") from None
+    raise InputError(f"training needs {error.name}; install it: {install_command('rl')}") from None
 
 Begun = tuple[Tensor, Tensor, Tensor]
 

@@ -21,7 +21,7 @@ from benchmark_bodies import hand_mesh
 from scipy.sparse import coo_array, csc_array, diags_array, eye_array, kron
 
 from hydrostat.arrays import Elements, Nodes
-from hydrostat.mechanics import Analysis, Backend
+from hydrostat.mechanics import Backend, SymbolicFactorization
 from hydrostat.robot import gallery_folder, load_robot
 
 
@@ -71,8 +71,8 @@ def row(body: Body, backend: Backend, repeat: int) -> str:
     count, dim = body.nodes.shape
     right = np.random.default_rng(0).standard_normal((count * dim, 16))
 
-    def analyze() -> Analysis:
-        return Analysis(definite.indptr, definite.indices, dim=dim, points=body.nodes, backend=backend)
+    def analyze() -> SymbolicFactorization:
+        return SymbolicFactorization(definite.indptr, definite.indices, dim=dim, points=body.nodes, backend=backend)
 
     analysis = analyze()
     factor, other = analysis.factorize(definite.data), analysis.factorize(indefinite.data)

@@ -25,7 +25,7 @@ import numpy as np  # isort: skip
 from benchmark_bodies import hand_robot
 
 from hydrostat.geometry import Mesh
-from hydrostat.mechanics import Reason
+from hydrostat.mechanics import NewtonStatus
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
 
@@ -120,7 +120,7 @@ def measured(size: str, share: float) -> dict[str, Any]:
         "first": taken[0],
         "solve": taken[1],
         "iterations": pose.result.iterations,
-        "converged": pose.result.reason is Reason.CONVERGED,
+        "converged": pose.result.reason is NewtonStatus.CONVERGED,
         "factorizations": counted[0],
         "factorizing": counted[1],
         "memory": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6,

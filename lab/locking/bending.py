@@ -11,7 +11,7 @@ Timoshenko's beam is the oracle (in the plane with E / (1 - nu^2) for E). The fi
 **Cost.** CPU time of one Hessian and its factorization, by nodes. Linear elements with volume in patches need so many
 more nodes for the same error.
 
-**Lambda at each point.** The same with other shares of lambda at the points of quadrature (`POINTWISE`).
+**Lambda at each point.** The same with other shares of lambda at the points of quadrature (`MAX_POINTWISE_RATIO`).
 """
 
 import time
@@ -24,12 +24,12 @@ from scipy.sparse.linalg import splu
 
 from hydrostat.geometry import Mesh
 from hydrostat.mechanics import (
+    MAX_POINTWISE_RATIO,
     PATCH_SIZE,
-    POINTWISE,
     Assembly,
     Energy,
     NeoHookean,
-    PatchVolume,
+    PatchDilatation,
     QuadraticSolid,
     grow_patches,
 )
@@ -54,7 +54,7 @@ def assemble(mesh: Mesh, poisson: float, kind: str) -> tuple[Mesh, Assembly]:
     elif kind == "patch":
         patches = grow_patches(mesh.elements, PATCH_SIZE[mesh.dim])
         energies = [NeoHookean(mesh.nodes, mesh.elements, mu=mu, lame=None)]
-        energies.append(PatchVolume(mesh.nodes, mesh.elements, patches, lame=lame))
+        energies.append(PatchDilatation(mesh.nodes, mesh.elements, patches, lame=lame))
     else:
         energies = [NeoHookean(mesh.nodes, mesh.elements, mu=mu, lame=lame)]
     return mesh, Assembly(energies, rest=mesh.nodes, control_count=0)
@@ -138,17 +138,17 @@ def pointwise() -> None:
     print("\nsag less what it should be [%], 2 quadratic across: free root, then clamped, nu 0.45, 0.49, 0.499\n")
     for name in ("triangles", "cubes cut in six"):
         dim = 2 if name == "triangles" else 3
-        kept = POINTWISE[dim]
+        kept = MAX_POINTWISE_RATIO[dim]
         for share in (0.0, 4.0, 6.0, 8.0, 12.0, np.inf):
             found = []
             for clamped in (False, True):
-                POINTWISE[dim] = kept
+                MAX_POINTWISE_RATIO[dim] = kept
                 for nu in RATIOS[2:]:
                     clamped_limit(name, nu)
-                POINTWISE[dim] = share
+                MAX_POINTWISE_RATIO[dim] = share
                 found += errors(name, 2, "quadratic", clamped=clamped)[2:]
             print(f"- {name}, {share:g} mu: " + ", ".join(f"{100 * error:.1f}" for error in found), flush=True)
-        POINTWISE[dim] = kept
+        MAX_POINTWISE_RATIO[dim] = kept
 
 
 def main() -> None:

@@ -33,7 +33,7 @@ from scipy.linalg import cholesky, solve_triangular
 from scipy.sparse.linalg import splu
 
 from hydrostat.geometry import Mesh, Outline, triangulate
-from hydrostat.mechanics import PATCH_SIZE, Assembly, Energy, NeoHookean, PatchVolume, grow_patches
+from hydrostat.mechanics import PATCH_SIZE, Assembly, Energy, NeoHookean, PatchDilatation, grow_patches
 from hydrostat.robot import Material, Robot, Volume, gallery_folder, load_robot
 from hydrostat.simulation import Simulation
 
@@ -115,14 +115,14 @@ MESHES: dict[str, tuple[Callable[..., Mesh], tuple[int, ...], tuple[Kind, ...]]]
 """Maker, numbers of elements across the height, and ways to measure the volume."""
 
 
-def volume_energy(mesh: Mesh, kind: Kind, lame: float) -> PatchVolume:
+def volume_energy(mesh: Mesh, kind: Kind, lame: float) -> PatchDilatation:
     """The volumetric term; the patch about a node has its share of each element there."""
     corners = mesh.dim + 1
     if kind == "nodal":
         shared = np.repeat(mesh.elements, corners, axis=0)
-        return PatchVolume(mesh.nodes, shared, mesh.elements.ravel(), lame=lame, thickness=1 / corners)
+        return PatchDilatation(mesh.nodes, shared, mesh.elements.ravel(), lame=lame, thickness=1 / corners)
     patches = np.arange(len(mesh.elements)) if kind == "element" else grow_patches(mesh.elements, int(kind))
-    return PatchVolume(mesh.nodes, mesh.elements, patches, lame=lame)
+    return PatchDilatation(mesh.nodes, mesh.elements, patches, lame=lame)
 
 
 def exact(mesh: Mesh, poisson: float) -> np.ndarray:

@@ -44,7 +44,7 @@ class Twist:
     robot: str = ""  # if it has another name than the twist
     length: float = 0.0  # of the straight part of an upright rod with round ends, in place of a ball [mm]
 
-    def thing(self, friction: float) -> Obstacle:
+    def obstacle(self, friction: float) -> Obstacle:
         """What is turned."""
         known = {"name": "ball", "radius": 1e-3 * self.radius, "mass": 0.03, "friction": friction}
         middle, half = 1e-3 * np.array(self.at), 5e-4 * self.length * np.eye(3)[2]
@@ -122,7 +122,7 @@ class Held:
     """A robot and a ball that it turns, from keyframe to keyframe."""
 
     def __init__(self, robot: Robot, twist: Twist, friction: float) -> None:
-        self.ball = twist.thing(friction)
+        self.ball = twist.obstacle(friction)
         self.begun, self.begin = self.ball.frame()
         body = replace(robot.body, material=replace(robot.body.material, viscosity=VISCOSITY))
         self.robot = replace(robot, body=body, contact=Contact(), obstacles=(self.ball,))
@@ -180,7 +180,7 @@ def run(name: str, friction: float, step: float, films: Path | None) -> None:
             share = number / count
             motion = held.go(begin + share * share * (3 - 2 * share) * (goal - begin), SECONDS / count)
             words = f"{key}: the ball has turned by {np.linalg.norm(held.turned):.0f} degrees"
-            frames.append(Frame.of(motion, words=words, things=held.drawn()))
+            frames.append(Frame.of(motion, words=words, obstacles=held.drawn()))
         x, y, z = held.turned
         away = 1e3 * float(np.linalg.norm(held.place - held.begun))
         print(

@@ -1,4 +1,4 @@
-"""Turning a thing: keyframes by hand, keyframes that were searched, a learned policy, judged on draws none has seen.
+"""Turning an object: keyframes by hand, keyframes that were searched, a learned policy, judged on draws none has seen.
 
     python lab/push_and_twist/twist_learning.py [--body flat|caging_gripper] [--draws 60] [--search 4000]
                        [--feel 0] [--learn 0]
@@ -77,7 +77,7 @@ def made(body: str, steps: int, kind: type[TwistEnv] = TwistEnv, **more: Any) ->
         return kind(flat_gripper(), options=TwistOptions(**options, physics=ManipulationPhysics(drag=DRAG)))
     physics = ManipulationPhysics(hold=100.0)
     robot = hs.load_robot(f"gallery:{body}")
-    return kind(robot, thing=BALL, options=TwistOptions(**options, physics=physics), contact=True)
+    return kind(robot, obstacle=BALL, options=TwistOptions(**options, physics=physics), contact=True)
 
 
 def as_action(millimeters: np.ndarray) -> np.ndarray:
@@ -86,7 +86,7 @@ def as_action(millimeters: np.ndarray) -> np.ndarray:
 
 
 def cycle(env: TwistEnv, act: Act, draw: dict[str, Any]) -> tuple[float, float]:
-    """How far the thing turns in a cycle [degree], and how far it has moved [mm]."""
+    """How far the obstacle turns in a cycle [degree], and how far it has moved [mm]."""
     seen, info = env.reset(options=draw)
     for number in range(env.steps):
         seen, _, _, _, info = env.step(act(seen, number))

@@ -10,6 +10,7 @@ drawn. Ends with 1 if a file is not read as it was meant.
 
 import sys
 from collections.abc import Callable, Iterator
+from functools import partial
 from io import BytesIO, StringIO
 from itertools import pairwise
 from time import process_time
@@ -209,6 +210,13 @@ def frame(space: object) -> None:
     space.add_lwpolyline([(-60, -90), (237, -90), (237, 120), (-60, 120)], close=True)  # type: ignore[attr-defined]
 
 
+def sheet(space: object, layer: str) -> None:
+    for left, low, right, high in ((-100, -100, 320, 197), (140, -100, 320, -64)):
+        corners = [(left, low), (right, low), (right, high), (left, high)]
+        space.add_lwpolyline(corners, close=True, dxfattribs={"layer": layer})  # type: ignore[attr-defined]
+    bar(space)
+
+
 def sides(space: object) -> None:
     for one, two in zip(BAR, BAR[1:] + BAR[:1], strict=True):
         space.add_line(one, two)  # type: ignore[attr-defined]
@@ -228,6 +236,9 @@ def list_kinds() -> Iterator[Row]:
         "frame": f'<rect x="2" y="2" width="86" height="86" {LINES}/>',
         "two frames": f'<rect width="90" height="90" {LINES}/><rect x="4" y="4" width="82" height="82" {LINES}/>',
         "path as page": '<path d="M 0 0H90V90H0Z" fill="white"/>',
+        "rounded ground": '<rect width="90" height="90" rx="6" fill="white"/>',
+        "white badge": '<circle cx="45" cy="45" r="45" fill="white"/>',
+        "gradient": '<rect width="90" height="90" fill="url(#g)"/>',
         "polygon as page": '<polygon points="0,0 90,0 90,90 0,90" fill="#fff"/>',
     }
     for name, ground in grounds.items():
@@ -257,6 +268,8 @@ def list_kinds() -> Iterator[Row]:
         70.0,
     )
     yield "two open halves", "a.svg", svg(f'<g {LINES}><path d="M 10 10H80V60"/><path d="M 10 10V60H80"/></g>'), 70.0
+    ends = '<polyline points="10,10 80,10 80,60 10,60 10,10.9" stroke-width="2"'
+    yield "ends that meet within their width", "a.svg", svg(f"{ends} {LINES}/>"), 70.0
     yield "symbol and use", "a.svg", svg(f'<symbol id="s">{fish}</symbol><use href="#s"/>'), 66.0
     yield (
         "xlink use",
@@ -288,6 +301,32 @@ def list_kinds() -> Iterator[Row]:
         "a.dxf",
         dxf(lambda space: (frame(space), space.add_lwpolyline(spline, close=True))),
         66.0,
+    )
+    for layer in ("FRAME", "0"):
+        yield (
+            f"DXF bar in a frame with a title block, layer {layer}",
+            "a.dxf",
+            dxf(partial(sheet, layer=layer)),
+            80.0,
+        )
+    slot = [(0, 0, 0), (80, 0, 1), (80, 30, 0), (0, 30, 1)]
+    yield (
+        "DXF frozen layer",
+        "a.dxf",
+        dxf(
+            lambda space: (
+                bar(space),
+                space.doc.layers.add("AXES").freeze(),
+                space.add_circle((40, 15), 90, dxfattribs={"layer": "AXES"}),
+            )
+        ),
+        80.0,
+    )
+    yield (
+        "DXF slot with zeros after its end",
+        "a.dxf",
+        dxf(lambda space: space.add_lwpolyline(slot, format="xyb", close=True), ending=bytes(512)),
+        110.0,
     )
     yield "DXF plate of A4 with a rectangular hole", "a.dxf", dxf(lambda space: (frame(space), bar(space))), 297.0
     yield "DXF center line", "a.dxf", dxf(lambda space: (bar(space), space.add_line((-5, 15), (85, 15)))), 80.0
@@ -355,6 +394,11 @@ def list_reports() -> Iterator[Row]:
     yield "PLY of doubles", "a.ply", write_ply(brick, "double", "uchar uint"), 40.0
     yield "PLY of float64, ushort lists", "a.ply", write_ply(brick, "float64", "ushort uint"), 40.0
     yield "PLY with CRLF", "a.ply", write_ply(brick, "float", "uchar int", "\r\n"), 40.0
+    points = b"0 0 0\n40 0 0\n0 40 0\n0 0 40\n"
+    faces = b"3 0 2 1\n3 0 1 3 # last but two\n3 0 3 2\n3 1 2 3\n"
+    yield "OFF with comments everywhere", "a.off", b"# one\n\nOFF # two\n# three\n4 4 0\n" + points + faces, 40.0
+    yield "OFF with counts in its first line", "a.off", b"OFF 4 4 6\n" + points + faces, 40.0
+    yield "STL with bytes after its end", "a.stl", write_stl(brick) + b"made by a scanner\n", 40.0
     move = 'transform="1 0 0 0 1 0 0 0 1 2 0 0"'
     yield "3MF in inches, moved", "a.3mf", write_3mf(brick, "inch", "model", move), 40 * 25.4
     yield "3MF in feet", "a.3mf", write_3mf(box(0.4, 0.2, 0.1), "foot", "model", ""), 0.4 * 304.8

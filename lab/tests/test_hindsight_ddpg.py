@@ -125,6 +125,16 @@ def test_tolerances_go_on_when_nine_of_ten_succeed(curriculum: Curriculum, wante
     assert found.tolist() == pytest.approx([1.0, wanted])
 
 
+@pytest.mark.parametrize(("easy", "wanted"), [(True, 0.0), (False, 40.0)])
+def test_steps_of_adam_begin_again_with_a_new_tolerance(easy: bool, wanted: float) -> None:
+    """Counted by hand: two epochs of two cycles of ten updates; every test succeeds within 9, none within 0."""
+    options = replace(FEW, cycles=2, curriculum=Curriculum.TENTH, tolerance=9.0 if easy else 0.0, reset_adam=True)
+    learner = HindsightDdpg(PointReach(), options, seeds=2, epochs=2)
+    learner.learn(tests=5)
+    for adam in (learner._actor_adam, learner._critic_adam):
+        assert {float(state["step"]) for state in adam.state.values()} == {wanted}
+
+
 def test_numbers_that_cannot_be_are_refused() -> None:
     with pytest.raises(InputError, match="noise must be from 0 to 1"):
         DdpgOptions(noise=2.0)

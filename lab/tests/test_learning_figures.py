@@ -1,4 +1,4 @@
-"""Pictures of what was learned. Oracle: where matplotlib puts things."""
+"""Pictures of what was learned. Oracle: where matplotlib puts lines and words."""
 
 from hydrostat_lab.learning_figures import draw_costs
 

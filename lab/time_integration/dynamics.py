@@ -21,7 +21,7 @@ from scipy.linalg import eigh
 import hydrostat as hs
 from hydrostat.geometry import Mesh
 from hydrostat.mechanics import SCHEMES
-from hydrostat.robot import Body, Material, Pin, Relaxation, Robot, Source
+from hydrostat.robot import Body, Material, Pin, PronyTerm, Robot, Source
 
 GRAVITY = 9.80665
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -30,7 +30,7 @@ FOAM = Material(young=30e3, poisson=0.3, density=40)
 
 def viscous(robot: Robot) -> Robot:
     """With a dashpot and two Maxwell branches."""
-    branches = (Relaxation(modulus=5e3, time=0.1), Relaxation(modulus=5e3, time=1.0))
+    branches = (PronyTerm(modulus=5e3, time=0.1), PronyTerm(modulus=5e3, time=1.0))
     return replace(
         robot, body=replace(robot.body, material=replace(robot.body.material, viscosity=50.0, relaxation=branches))
     )
@@ -67,7 +67,7 @@ def branches() -> Iterator[str]:
     """Time of a step of the starfish by how many Maxwell branches its material has."""
     robot = hs.load_robot(EXAMPLES / "starfish")
     for count in (0, 1, 3, 10):
-        memory = tuple(Relaxation(modulus=2e4 / count, time=10.0 ** (-2 + 0.3 * place)) for place in range(count))
+        memory = tuple(PronyTerm(modulus=2e4 / count, time=10.0 ** (-2 + 0.3 * place)) for place in range(count))
         material = replace(robot.body.material, relaxation=memory)
         simulation = hs.Simulation(replace(robot, body=replace(robot.body, material=material)))
         reach = np.array([0.02, 0.02, 0.0])
