@@ -14,6 +14,7 @@ from bodies.gripper import caging
 from bodies.hands import cupping, extended
 from bodies.hydrostats import arm_of_octopus, elephant_trunk, tail_of_fish, tongue_of_foam
 from bodies.plush import bear
+from bodies.servos import emio
 from bodies.sheet import POSES, Sheet
 from bodies.tendons import spine, spiral, tendon_finger
 
@@ -33,8 +34,13 @@ SHEETS: Mapping[str, Callable[[], Sheet]] = {
 }
 """What is written, by the names of the robots."""
 
-TENDON_SHEETS: Mapping[str, Callable[[], Sheet]] = {"spiral": spiral, "finger": tendon_finger, "spine": spine}
-"""Robots whose body is a drawing or a mesh, with hinges, bones or disks."""
+TENDON_SHEETS: Mapping[str, Callable[[], Sheet]] = {
+    "spiral": spiral,
+    "finger": tendon_finger,
+    "spine": spine,
+    "emio": emio,
+}
+"""Robots whose body is a drawing or a mesh, with hinges, bones, disks or servos."""
 
 ALL = {**SHEETS, **TENDON_SHEETS}
 
@@ -54,7 +60,7 @@ def simulate_poses(sheet: Sheet, folder: Path) -> dict[str, dict[str, list[int]]
     simulation = hs.Simulation(hs.load_robot(folder))
     poses = {}
     for name, play in sheet.plays.items():
-        pose = simulation.solve({winch: 1e-3 * length for winch, length in play.contractions.items()})
+        pose = simulation.solve(play.controls(simulation.robot))
         poses[name] = {marker: [round(1e3 * float(value)) for value in place] for marker, place in pose.markers.items()}
     return poses
 

@@ -264,11 +264,9 @@ def draw_tendons() -> None:
     for name, sheet in TENDON_SHEETS.items():
         simulation = hs.Simulation(hs.load_robot(gallery_folder(name)))
         robot, plays = simulation.robot, sheet().plays
-        states = [robot.body.mesh.nodes]
-        for play in plays.values():
-            pulls = {winch: 1e-3 * length for winch, length in play.contractions.items()}
-            states.append(simulation.solve(pulls).nodes)
-        frame = np.concatenate([*states, [winch.at for winch in robot.winches]])
+        moved = [simulation.solve(play.controls(robot)).nodes for play in plays.values()]
+        states = [robot.body.mesh.nodes, *moved]
+        frame = np.concatenate([*states, *([winch.at] for winch in robot.winches)])
         rows.append([draw_portrait(robot, nodes, frame=frame, width=PORTRAIT) for nodes in states])
         names.append([name, *plays])
     save_png(_contact_sheet(rows, side=2.2, names=names), HERE / "tendons.png", dpi=110)

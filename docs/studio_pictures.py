@@ -78,8 +78,8 @@ def settle(page: Page) -> None:
 
 def drag(page: Page, key: str, dx: float, dy: float) -> None:
     """Drag a sign by so many pixels."""
-    page.wait_for_function("key => __app.things.some(t => t.key === key)", arg=key)
-    at = page.evaluate("key => __app.things.find(t => t.key === key)", key)
+    page.wait_for_function("key => __app.items.some(t => t.key === key)", arg=key)
+    at = page.evaluate("key => __app.items.find(t => t.key === key)", key)
     page.mouse.move(at["x"], at["y"])
     page.mouse.down()
     for step in range(1, 13):
@@ -140,15 +140,17 @@ def take_starfish(browser: Browser) -> None:
         drag(page, "marker:left", 40, -60)
         keep(page, "pose")
         go(page, "edit")
-        page.wait_for_function("__app.things.some(t => t.key === 'via:0:2')")
-        at = page.evaluate("__app.things.find(t => t.key === 'via:0:2')")
-        page.mouse.click(at["x"], at["y"])
-        page.keyboard.down("Shift")
-        for key in ("marker:right", "winch:right"):
-            at = page.evaluate("key => __app.things.find(t => t.key === key)", key)
-            page.mouse.click(at["x"], at["y"])
-        page.keyboard.up("Shift")
+        page.wait_for_function("__app.items.some(t => t.key === 'via:0:2')")
+        page.keyboard.press("b")
+        page.get_by_role("button", name="circle", exact=True).wait_for()
+        at = page.evaluate("__app.body(0, 0.05)")
+        page.mouse.move(at["x"], at["y"])
+        page.mouse.down()
+        page.mouse.move(at["x"] + 36, at["y"], steps=6)
+        page.mouse.up()
+        page.get_by_text("Region", exact=True).wait_for()
         keep(page, "edit")
+        page.keyboard.press("z")
         go(page, "design")
         page.get_by_test_id("design-go").click()
         page.get_by_test_id("design-card").first.wait_for()

@@ -84,7 +84,7 @@ def arm_of_octopus() -> Sheet:
         markers={"tip": arm.at(0.98), "outer": arm.at(0.7), "inner": arm.at(0.4)},
         marker_words="the tip, and two points on the way there.",
         plays={
-            "curl": Play(words="It rolls up round its suckers.", contractions={"suckers": 68}),
+            "curl": Play(words="It rolls up round its suckers.", contractions={"suckers": 67}),
             "reach_left": Play(words="It reaches up and to the left.", contractions={"left": 42}),
             "wave": Play(words="It lifts its tip.", contractions={"left": 45, "right": 45}),
             "corkscrew": Play(words="It winds like a corkscrew.", contractions={"oblique": 37}),

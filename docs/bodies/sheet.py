@@ -11,6 +11,7 @@ import numpy as np
 from bodies.field import Place
 from bodies.ply import decimated, ply_bytes
 from hydrostat.geometry import Surface
+from hydrostat.robot import Robot
 
 POSES = Path(__file__).parent / "poses.json"
 """Where the markers of each robot are in its poses [mm], as simulated."""
@@ -56,11 +57,18 @@ class Play:
 
     Attributes:
         words: what it looks like.
-        contractions: of some winches [mm], below 0 for payout; the others stay at rest.
+        contractions: of some winches [mm], below 0 for payout, and angles of drives [degrees]; the others stay at rest.
     """
 
     words: str
     contractions: Mapping[str, float]
+
+    def controls(self, robot: Robot) -> dict[str, float]:
+        """Values by name [m or rad]."""
+        drives = {drive.name for drive in robot.drives}
+        return {
+            name: np.radians(value) if name in drives else 1e-3 * value for name, value in self.contractions.items()
+        }
 
 
 @dataclass(frozen=True, kw_only=True)
