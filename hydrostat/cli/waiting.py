@@ -8,7 +8,7 @@ from _thread import interrupt_main, start_new_thread
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from threading import Timer, current_thread, main_thread
+from threading import Timer, current_thread, get_ident, main_thread
 from types import FrameType
 from typing import TYPE_CHECKING, Any
 
@@ -199,8 +199,17 @@ def _put_off(number: int, frame: FrameType | None) -> bool:
     while frame and not (frame.f_code.co_filename.startswith("<frozen importlib") or frame.f_code.co_name == "__del__"):
         frame = frame.f_back
     if frame:
-        start_new_thread(lambda: (time.sleep(0.02), interrupt_main(signal.Signals(number))), ())
+        thread = get_ident()  # the main one, where handlers run
+        start_new_thread(lambda: (time.sleep(0.02), _send(number, thread)), ())
     return frame is not None
+
+
+def _send(number: int, thread: int) -> None:
+    """Send a signal to the main thread, and wake it there if it sleeps or waits for a file (not on Windows)."""
+    if hasattr(signal, "pthread_kill"):
+        signal.pthread_kill(thread, number)
+    else:
+        interrupt_main(signal.Signals(number))
 
 
 class _LastingOutput:

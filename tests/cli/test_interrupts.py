@@ -87,7 +87,10 @@ def test_one_signal_stops_and_then_all_is_as_before(
 @pytest.mark.parametrize("block", ["nullcontext()", 'one_interrupt("stopping")'])
 @pytest.mark.parametrize("work", ["import met", "del gone"])
 def test_a_signal_waits_where_it_would_do_harm(block: str, work: str, tmp_path: Path) -> None:
-    """Oracle: a library that aborts where Ctrl-C raises in its import, as PyTorch does, and a finalizer."""
+    """Oracle: a library that aborts where Ctrl-C raises in its import, as PyTorch does, and a finalizer.
+
+    The signal ends a sleep of ten minutes that follows.
+    """
     body = "import os, signal\ntry:\n    os.kill(os.getpid(), signal.SIGINT)\nexcept BaseException:\n    os.abort()\n"
     (tmp_path / "met.py").write_text(body)
     code = f"""
@@ -102,7 +105,7 @@ heed_interrupts()
 with {block}:
     {work}
     print("whole", flush=True)
-    time.sleep(20)
+    time.sleep(600)
 """
     found = subprocess.run(
         [sys.executable, "-c", code],
@@ -110,6 +113,7 @@ with {block}:
         text=True,
         env=os.environ | {"PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path])},
         preexec_fn=USUAL,
+        timeout=300,
     )
     assert found.stdout == "whole\n"
     assert "KeyboardInterrupt" in found.stderr
