@@ -9,8 +9,8 @@ INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --co
 NEED_MORE := design_meshes real
 # Small dense matrices: more threads of the linear algebra library only wait for each other.
 export OPENBLAS_NUM_THREADS ?= 1
-# Tests start the package some forty times: it is compiled once, even where bytecode is not to be written (empty: it is).
-test test-all quick: export PYTHONDONTWRITEBYTECODE =
+# The package is compiled once, even where bytecode is not to be written (empty: it is): a second less at each start.
+demo test test-all quick: export PYTHONDONTWRITEBYTECODE =
 
 .PHONY: help demo studio test test-all quick check lint lint-js fix bench studies docs pictures wheels wheels-arm clean
 

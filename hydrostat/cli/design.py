@@ -18,9 +18,9 @@ from hydrostat.cli.design_results import (
     STALE,
     find_over_budget,
     find_refused_better,
+    make_kit,
     print_front,
     print_poses,
-    write_kit,
     write_results,
 )
 from hydrostat.cli.fabricate import print_kit
@@ -162,16 +162,23 @@ def _search(
 
 
 def _write(network: "Network", out: Path, *, kit: bool, budget: float | None) -> "Kit | None":
-    """Write the results, with the kit if wanted, and print the seconds that this took."""
+    """Write the results, with the kit if wanted, on two cores if there are, and print the seconds that this took."""
     from hydrostat.fabrication import Kit
+    from hydrostat.kernel import THREADS
+    from hydrostat.shared_work import map_in_order
 
-    began = time.perf_counter()
-    with progress_bar() as progress:
-        progress("Writing results", 0, 1)
+    def write() -> None:
         with result_folder(out, stale=STALE, kept=RECORDS) as folder:
             write_results(network, folder)
+
+    began = time.perf_counter()
+    work: list[Callable[[], Kit | None]] = [write, lambda: make_kit(network, budget=budget)]
+    with progress_bar() as progress:
+        progress("Writing results", 0, 1)
+        *_, made = map_in_order(lambda piece: piece(), work if kit else work[:1], cores=THREADS)
         Kit.forget_files(out / "kit")
-        made = write_kit(network, out / "kit", budget=budget) if kit else None
+        if made is not None:
+            made.write(out / "kit")
         progress("Writing results", 1, 1)
     print(f"results written in {time.perf_counter() - began:.1f} s", file=sys.stderr, flush=True)
     return made

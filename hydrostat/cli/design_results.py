@@ -38,15 +38,13 @@ def alternative_folder(out: Path, number: int, robot: "Robot") -> Path:
     return out / "alternatives" / f"{number:02d}_{len(robot.winches)}_winches_{len(robot.cables)}_cables"
 
 
-def write_kit(network: "Network", folder: Path, *, budget: float | None) -> "Kit":
-    """The fabrication kit, with problems listed. Its poses keep to the design's tension."""
+def make_kit(network: "Network", *, budget: float | None) -> "Kit":
+    """Make the fabrication kit, with problems listed. Its poses keep to the design's tension."""
     from hydrostat.camera import tag_files
     from hydrostat.fabrication import build_kit
 
     robot, options = network.robot, kit_options(network, budget)
-    kit = build_kit(robot, options=options, added=tag_files(robot, options.paper))
-    kit.write(folder)
-    return kit
+    return build_kit(robot, options=options, added=tag_files(robot, options.paper))
 
 
 def kit_options(network: "Network", budget: float | None) -> "KitOptions":
