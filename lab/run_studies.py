@@ -69,6 +69,7 @@ NEED_MORE = {
     "peers/peers": "other simulators",
     "push_and_twist/push_learning": "PyTorch and stable-baselines3",
     "reinforcement/equal_networks": "PyTorch and a model",
+    "reinforcement/large_curricula": "PyTorch and a model",
     "solver_floor/floor": "a C++ trial",
     "spool_layers/spool_layers": "a robot",
     "teleoperation/glove_poses": "poses of `hydrostat mimic`",

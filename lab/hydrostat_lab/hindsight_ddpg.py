@@ -15,12 +15,14 @@ import numpy as np
 
 from hydrostat.errors import InputError
 from hydrostat.version import install_command
-from hydrostat_lab.curriculum import Curriculum
+from hydrostat_lab.curriculum import MASTERED, Curriculum
 from hydrostat_lab.trials import Trials
 
 try:
     import torch
     from torch import Tensor
+
+    from hydrostat_lab.running import Running
 except ModuleNotFoundError as error:
     raise InputError(f"training needs {error.name}; install it: {install_command('rl')}") from None
 
@@ -131,28 +133,6 @@ def rewards(distance: Tensor, tolerance: Tensor, *, shaped: bool) -> Tensor:
     return -distance if shaped else -(distance >= tolerance).float()
 
 
-class Running:
-    """Running mean and deviation of what is observed, one for each seed."""
-
-    def __init__(self, seeds: int, size: int) -> None:
-        """Nothing seen yet."""
-        self.count = 0.0
-        self.sum, self.squares = torch.zeros(seeds, 1, size), torch.zeros(seeds, 1, size)
-
-    def see(self, values: Tensor) -> None:
-        """Take values into account, (seeds, many, size)."""
-        self.count += values.shape[1]
-        self.sum += values.sum(1, keepdim=True)
-        self.squares += values.square().sum(1, keepdim=True)
-
-    def __call__(self, values: Tensor) -> Tensor:
-        """Values counted from the mean, in units of the deviation (0.01 at least), cut off at 5."""
-        many = max(self.count, 1.0)
-        mean = self.sum / many
-        spread = (self.squares / many - mean.square()).clamp(min=1e-4).sqrt()
-        return ((values - mean) / spread).clamp(-5.0, 5.0)
-
-
 @dataclass(eq=False)
 class Policy:
     """Actors of all seeds, with what they need to see: calls give actions of states and goals, (seeds, many, size)."""
@@ -219,6 +199,7 @@ class HindsightDdpg:
         self._filled, self._taken = 0, 0
         self.tolerance = torch.full((seeds, 1), options.tolerance)
         self.best, self._least = self.policy.copy_policy(), np.full(seeds, np.inf)
+        self._rows: list[tuple[int, np.ndarray, np.ndarray, np.ndarray]] = []
 
     @property
     def tried(self) -> tuple[np.ndarray, np.ndarray]:
@@ -243,21 +224,50 @@ class HindsightDdpg:
             tests: episodes of a test, the same each time.
             progress: called with the number of epochs that are done, and of all.
         """
-        rows: list[tuple[int, np.ndarray, np.ndarray, np.ndarray]] = []
-        for epoch in range(self._epochs):
-            for _ in range(self.options.cycles):
-                self._roll_out()
-                for _ in range(self.options.updates):
-                    self._update()
-                self._follow()
-            distance = self.test(self.policy, tests)[-1]
-            success = (distance < self.tolerance.numpy()).mean(axis=1)
-            rows.append((self._taken, success, distance.mean(axis=1), self.tolerance[:, 0].numpy().copy()))
-            self._keep_best(distance.mean(axis=1))
-            self._go_on(success, distance.mean(axis=1))
-            progress(epoch + 1, self._epochs)
-        actions, success, distance, tolerance = (np.array(column) for column in zip(*rows, strict=True))
+        while len(self._rows) < self._epochs:
+            self._learn_epoch(tests)
+            progress(len(self._rows), self._epochs)
+        actions, success, distance, tolerance = (np.array(column) for column in zip(*self._rows, strict=True))
         return Epochs(actions=actions, success=success, distance=distance, tolerance=tolerance)
+
+    @property
+    def latest(self) -> tuple[int, np.ndarray, np.ndarray, np.ndarray]:
+        """Actions taken, and success, distance and tolerance of each seed, in the latest epoch."""
+        return self._rows[-1]
+
+    @property
+    def has_mastered(self) -> bool:
+        """True if a seed mastered its tolerance in the latest epoch."""
+        return bool(self._rows) and bool((self._rows[-1][1] >= MASTERED).any())
+
+    def learn_first(self, *, tests: int = 100, progress: Callable[[int, int], Any] = lambda *_: None) -> None:
+        """Learn until a seed masters its tolerance, at most for all epochs; `branch` goes on from there."""
+        while len(self._rows) < self._epochs and not self.has_mastered:
+            self._learn_epoch(tests)
+            progress(len(self._rows), self._epochs)
+
+    def branch(self, options: DdpgOptions, *, more: int) -> "HindsightDdpg":
+        """Copy the learner for more epochs, with options that matter from the first mastered tolerance on only."""
+        other = copy.deepcopy(self)
+        other.options, other._epochs = options, len(self._rows) + more
+        room = more * options.cycles * self._rollouts
+        for name in ("_states", "_reached", "_goals", "_acts"):
+            kept = getattr(self, name)[:, : self._filled]
+            setattr(other, name, torch.cat([kept, torch.zeros(len(kept), room, *kept.shape[2:])], 1))
+        other._go_on(*self.latest[1:3])
+        return other
+
+    def _learn_epoch(self, tests: int) -> None:
+        for _ in range(self.options.cycles):
+            self._roll_out()
+            for _ in range(self.options.updates):
+                self._update()
+            self._follow()
+        distance = self.test(self.policy, tests)[-1]
+        success, mean = (distance < self.tolerance.numpy()).mean(axis=1), distance.mean(axis=1)
+        self._rows.append((self._taken, success, mean, self.tolerance[:, 0].numpy().copy()))
+        self._keep_best(mean)
+        self._go_on(success, mean)
 
     def test(self, policy: Policy, tests: int) -> np.ndarray:
         """Distances after each action of a policy without exploration, (horizon, seeds, tests)."""

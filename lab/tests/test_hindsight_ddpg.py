@@ -12,12 +12,12 @@ from hydrostat_lab.curriculum import Curriculum  # noqa: E402
 from hydrostat_lab.hindsight_ddpg import (  # noqa: E402
     DdpgOptions,
     HindsightDdpg,
-    Running,
     cut_targets,
     discount,
     hindsight,
     rewards,
 )
+from hydrostat_lab.running import Running  # noqa: E402
 from hydrostat_lab.trials import Trials  # noqa: E402
 
 
@@ -123,6 +123,24 @@ def test_best_policies_are_those_of_the_best_epoch() -> None:
 def test_tolerances_go_on_when_nine_of_ten_succeed(curriculum: Curriculum, wanted: float) -> None:
     found = curriculum.next(np.ones(2), np.array([0.89, 0.9]), np.array([0.3, 0.3]))
     assert found.tolist() == pytest.approx([1.0, wanted])
+
+
+@pytest.mark.parametrize("late", [None, 1e-2])
+def test_a_branch_goes_on_as_if_it_had_begun_with_its_options(late: float | None) -> None:
+    """Oracle: the run that has them from the start, bit for bit; tolerances change in between."""
+    few = replace(FEW, cycles=4, shaped=False, tolerance=0.8)
+    options = replace(few, curriculum=Curriculum.TENTH, late_critic_rate=late)
+    first = HindsightDdpg(PointReach(2), few, seeds=3, epochs=9)
+    first.learn_first(tests=50)
+    done = len(first._rows)
+    assert first.has_mastered
+    assert done < 9
+    whole = HindsightDdpg(PointReach(2), options, seeds=3, epochs=done + 4).learn(tests=50)
+    for _ in range(2):  # a branch leaves the first as it was
+        branch = first.branch(options, more=4).learn(tests=50)
+        for name in ("actions", "success", "distance", "tolerance"):
+            assert np.array_equal(getattr(branch, name), getattr(whole, name))
+    assert whole.tolerance[-1].min() < 0.8
 
 
 @pytest.mark.parametrize(("easy", "wanted"), [(True, 0.0), (False, 40.0)])
