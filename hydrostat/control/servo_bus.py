@@ -75,8 +75,8 @@ class ServoBus(Bus):
         with self._lock:
             self._asked = self._clock()
             reading = self._ask_state()
-            if self._find_jumped(reading):  # noise passes a sum now and then, but not twice
-                reading = self._ask_state()
+            if jumped := self._find_jumped(reading):  # noise passes a sum now and then, but not twice
+                reading = self._join_readings(reading, self._ask_state(), jumped)
             return self._keep_reading(reading)
 
     def halt(self) -> None:
@@ -130,6 +130,15 @@ class ServoBus(Bus):
         """Motors that hold and have jumped by a turn or so."""
         jumped = np.abs(reading.angles - self._last.angles) > TURNED  # NaN: not heard yet
         return np.flatnonzero(jumped & self._holding).tolist()
+
+    def _join_readings(self, first: Reading, second: Reading, jumped: list[int]) -> Reading:
+        """Return the second reading; motors silent in it keep their first one, unless they jumped in that."""
+        silent = second.stamps == self._last.stamps
+        silent[jumped] = False
+        names = ("angles", "currents", "temperatures", "volts", "stamps")
+        joined = {name: np.where(silent, getattr(first, name), getattr(second, name)) for name in names}
+        faults = zip(first.faults, second.faults, silent.tolist(), strict=True)
+        return Reading(**joined, faults=tuple(one if kept else other for one, other, kept in faults))
 
     def _keep_reading(self, reading: Reading) -> Reading:
         """Keep a reading as the last; a motor that holds and has jumped by a turn or so is at fault from then on.

@@ -160,6 +160,25 @@ def test_a_count_is_lost_when_two_answers_say_so(times: int) -> None:
         assert reading.angles == pytest.approx(heard, abs=TICK)
 
 
+def test_a_motor_that_is_silent_when_asked_again_keeps_its_first_answer() -> None:
+    """Motor 1 is asked again for noise, motor 2 answers the first question only: its answer is not lost."""
+    hand = Hand()
+    hand.link.identify()
+    hand.link.arm()
+    hand.go(0.02, 0.5)
+    before = hand.bus.read()
+    hand.servos[1].angle += 0.5
+    hand.chain.wait(0.05)
+    truth, length = hand.servos[1].counted_angle, len(pack(1, 0, bytes(15)))
+    parts = [lambda data: pack(1, 0, (40_000).to_bytes(2, "little") + bytes(13)) + data[length:],
+             lambda data: data[:length]]  # fmt: skip
+    hand.chain.back = lambda data: parts.pop(0)(data) if parts and data else data
+    reading = hand.bus.read()
+    assert not parts
+    assert reading.stamps[1] > before.stamps[1]
+    assert reading.angles == pytest.approx([before.angles[0], truth], abs=2 * TICK)
+
+
 def test_its_torque_is_bounded_by_the_servo() -> None:
     hand = Hand()
     hand.link.identify()
