@@ -7,6 +7,9 @@ from pathlib import Path
 import pytest
 from pypdf import PdfReader
 
+from hydrostat.cli.compare import read_pose
+from hydrostat.robot import load_robot
+
 Run = Callable[..., tuple[int, str, str]]
 
 
@@ -51,3 +54,16 @@ def test_measure_says_what_it_needs(run: Run, tmp_path: Path, starfish: Path) ->
     assert (code, "a film needs --table with the moves that were played" in err) == (2, True)
     code, _, err = run("measure", starfish, tmp_path / "a.mp4", tmp_path / "b.jpg", "--out", tmp_path / "a.csv")
     assert (code, "measure one film at a time" in err) == (2, True)
+
+
+def test_options_of_compare_replace_their_part_of_the_name_alone(starfish: Path) -> None:
+    """The name holds a contraction and a mass. Oracle: what the options do not give stays."""
+    robot = load_robot(starfish)
+    marker, winch = robot.markers[0].name, robot.winches[0].name
+    file = Path(f"{winch}=12mm,{marker}=50g.jpg")
+    loaded = read_pose(robot, file, load=[f"{marker}=0,-1N"])
+    assert loaded.contractions == {winch: 0.012}
+    assert [load.force for load in loaded.loads_of_pose] == [(0.0, -1.0)]
+    pulled = read_pose(robot, file, contract=[f"{winch}=5mm"])
+    assert (pulled.contractions, pulled.masses) == ({winch: 0.005}, {marker: 0.05})
+    assert read_pose(robot, Path("photo.jpg")).contractions == {}
