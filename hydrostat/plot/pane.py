@@ -12,7 +12,7 @@ from hydrostat.drawing import Camera, Color, Render, Spots, render
 from hydrostat.plot.drawn_body import DrawnBody
 from hydrostat.plot.sheet import BODY, PictureSheet, Place, Places
 from hydrostat.plot.skin import FlatSkin
-from hydrostat.robot import Obstacle, ObstacleShape, Robot, rims
+from hydrostat.robot import Obstacle, ObstacleShape, Robot, find_part_facets, rims
 from hydrostat.units import MILLIMETERS
 
 Surface = tuple[Points, Int[np.ndarray, "triangles 3"]]  # places of its corners [m], and triangles seen from outside
@@ -204,8 +204,23 @@ class SpacePane(Pane):
             own[: len(body.boundary)] = cover.holds(body.nodes[body.boundary].mean(axis=1))
             image = image.with_tint(own, color)
         rings = lay_image(sheet, image, self.shift, seam=Color.mix(Color.SEAM, Color.PAPER, 0.6 * pale))
+        self._draw_parts(sheet, nodes, pale)
         thickness = MILLIMETERS * float(np.ptp(body.nodes, axis=0).min())
         return self._with_rims(sheet, DrawnBody(rings, (self.camera, self.shift, image, thickness)), obstacles)
+
+    def _draw_parts(self, sheet: PictureSheet, nodes: Nodes, pale: float) -> None:
+        """Draw the parts of the body with its nodes at `nodes` [m] as if it were half transparent."""
+        if not self.robot.body.parts:
+            return
+        spots = self.camera.see(MILLIMETERS * nodes)
+        pixel, edge = self._pixel(sheet, spots), Color.mix(Color.INK, Color.PAPER, pale)
+        for part, facets in zip(self.robot.body.parts, find_part_facets(self.robot.body), strict=True):
+            color = Color.mix(Color.mix(Color.INK, Color.FELT, 0.3 if part.is_rigid else 0.7), Color.PAPER, pale)
+            rings = [ring + self.shift for ring in Render.silhouette(spots, facets, pixel=pixel).rings()]
+            if rings:
+                look = {"edgecolor": "none", "alpha": 0.45, "joinstyle": "round"}
+                sheet.area(rings, facecolor=color, zorder=3.15, **look)
+                sheet.area(rings, facecolor="none", edgecolor=edge, linewidth=0.9, linestyle=(0, (3, 2)), zorder=3.16)
 
     def _pixel(self, sheet: PictureSheet, spots: Spots) -> float:
         """Side of a pixel [mm] of an image of spots [mm]."""

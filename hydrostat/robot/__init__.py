@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from hydrostat.robot.obstacle_lines import obstacle_lines, rims
     from hydrostat.robot.own_materials import own_materials, save_own_material
     from hydrostat.robot.part import BodyPart
+    from hydrostat.robot.part_elements import find_part_facets, find_rings
     from hydrostat.robot.pin import Pin
     from hydrostat.robot.pin_drive import PinDrive
     from hydrostat.robot.read import FILE, GALLERY, RobotReader, gallery_folder, is_of_gallery, list_gallery, load_robot
@@ -89,6 +90,8 @@ __all__ = [
     "describe_cable_side",
     "describe_filled_holes",
     "direction_of",
+    "find_part_facets",
+    "find_rings",
     "find_risks",
     "fit_winch_bodies",
     "gallery_folder",

@@ -17,6 +17,7 @@ from hydrostat.geometry import Mesh
 from hydrostat.given import Point
 from hydrostat.robot import Cable, Mount, Pin, Robot, Winch, obstacle_lines
 from hydrostat.simulation import obstacles_in_pose
+from hydrostat.studio.view.part_lines import find_part_lines
 from hydrostat.studio.view.scene_items import Cloud, Dot, Look, RobotShape, SceneItem, Strand, Stroke
 
 
@@ -125,14 +126,13 @@ def _winch(winch: Winch, color: str, mark: str, *, chosen: bool) -> Dot:
 
 
 def _part_items(robot: Robot) -> list[SceneItem]:
-    """Borders of the parts of a flat body, and of its sheets."""
-    nodes = robot.body.mesh.nodes
-    covers = [sheet.find_rings(robot.body.mesh) for sheet in robot.sheets]
+    """Lines on the parts of a body, and borders of the sheets of a flat one."""
+    mesh = robot.body.mesh
+    sheets = [mesh.nodes[[*loop, loop[0]]] for sheet in robot.sheets for loop in sheet.find_rings(mesh)]
     return [
-        Strand(points=tuple(map(tuple, nodes[[*loop, loop[0]]].tolist())), stroke=Stroke.DRAWN, color=color)
-        for color, rings in ((Color.MUTED, robot.body.part_rings), (Color.SHEET, covers))
-        for loops in rings
-        for loop in loops
+        Strand(points=tuple(map(tuple, line.tolist())), stroke=Stroke.DRAWN, color=color)
+        for color, lines in ((Color.MUTED, find_part_lines(robot.body)), (Color.SHEET, sheets))
+        for line in lines
     ]
 
 
