@@ -209,7 +209,8 @@ def _begin(source: str, folder: Path, wish: "NewRobotWish", seconds: float) -> l
         return run_bounded(sketch, file=source, words="healing and meshing the body ...", seconds=seconds)
 
     begun = wish.begin(source, run=run)
-    save_robot(begun.robot, folder, text=_commented_text(begun.robot, Path(source).name))
+    robot = _with_room(begun.robot)
+    save_robot(robot, folder, text=_commented_text(robot, Path(source).name))
     lines, sketch = list(begun.notes), begun.sketch
     if sketch is not None and not sketch.healing.clean:
         from hydrostat.plot import draw_healing, save_png
@@ -220,6 +221,15 @@ def _begin(source: str, folder: Path, wish: "NewRobotWish", seconds: float) -> l
         save_png(figure, folder / "healing.png")
         lines.append(f"surface: see {folder / 'healing.png'}. The source file is unchanged")
     return lines
+
+
+def _with_room(robot: "Robot") -> "Robot":
+    """The robot with its winch where a motor fits, and then a pose that its cable reaches from there."""
+    from hydrostat.design import place_first_winch
+    from hydrostat.ik import with_first_pose
+
+    placed = place_first_winch(robot)
+    return robot if placed is robot else with_first_pose(placed)
 
 
 def _asked_about_holes(source: str, wish: "NewRobotWish", seconds: float) -> "NewRobotWish":

@@ -124,7 +124,7 @@ def kit_warnings(robot: "Robot") -> tuple[str, ...]:
     from hydrostat.fabrication import find_refusals
 
     reasons = find_refusals(robot)
-    if reasons and not body_refusals(robot):
+    if (reasons or not robot.cables) and not body_refusals(robot):
         from hydrostat.design import find_no_room
 
         if words := find_no_room(robot):

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from hydrostat.design.design_cables import design_cables, find_network
     from hydrostat.design.fewer_cables import PosedNetwork, drop_cables
     from hydrostat.design.finding import Diagnostic, Severity, places_in
-    from hydrostat.design.first_cable import draw_first_cable
+    from hydrostat.design.first_cable import draw_first_cable, place_first_winch
     from hydrostat.design.lifts import Lift, find_lifts
     from hydrostat.design.marker_estimator import MarkerEstimator
     from hydrostat.design.mirror_axis import find_mirror_axis
@@ -105,6 +105,7 @@ __all__ = [
     "kit_fits",
     "nearest_shares",
     "on_front",
+    "place_first_winch",
     "places_in",
     "propose_routes",
     "propose_trees",

@@ -1,4 +1,6 @@
-"""`draw_first_cable`: a winch and a straight cable that can be built, as an example to edit."""
+"""`draw_first_cable`, `place_first_winch`: a first winch and cable that can be built, to edit."""
+
+from dataclasses import replace
 
 import numpy as np
 import shapely
@@ -6,7 +8,7 @@ import shapely
 from hydrostat.design.buildable import violations
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.skin_region import cable_region
-from hydrostat.design.winch_room import find_winch_places
+from hydrostat.design.winch_room import find_winch_places, has_known_room, winch_room
 from hydrostat.fabrication import find_refusals
 from hydrostat.robot import Cable, Robot, Winch
 
@@ -40,3 +42,25 @@ def draw_first_cable(robot: Robot) -> Robot | None:
         if not violations(made, constraints, region) and not find_refusals(made):
             return made
     return None
+
+
+def place_first_winch(robot: Robot) -> Robot:
+    """Robot with its one winch moved to the nearest room for its unit, if it has none at its place.
+
+    The cable leads on from there to its next points. A robot without such a place returns as it is.
+    """
+    constraints = Constraints(motor=robot.motor)
+    if len(robot.cables) != 1 or not has_known_room(robot.body) or not find_refusals(robot):
+        return robot
+    winch, points = robot.winches[0], np.array(robot.cables[0].points)
+    rooms = [zone.at for zone in winch_room(robot, constraints, 1)[0] if zone.at is not None]
+    for room in sorted(rooms, key=lambda at: float(np.linalg.norm(points[0] - at)))[:_TRIALS]:
+        rest = robot.cables[0].points[int(np.linalg.norm(points - room, axis=1).argmin()) + 1 :]
+        if not rest:
+            continue
+        cable = Cable(winch=winch.name, points=(room, *rest))
+        travel = max(round(0.4 * cable.length, 3), 1e-3)
+        made = robot.with_network([replace(winch, at=room, travel=travel)], [cable])
+        if not find_refusals(made):
+            return made
+    return robot

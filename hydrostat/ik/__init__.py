@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from hydrostat.ik.ik_result import IKResult, IKStatus
     from hydrostat.ik.limits import Limits, spool_arms
     from hydrostat.ik.linearized_pose import LinearizedPose, unconstrained_motion
-    from hydrostat.ik.new_robot import BegunRobot, NewRobotWish, new_robot
+    from hydrostat.ik.new_robot import BegunRobot, NewRobotWish, new_robot, with_first_pose
     from hydrostat.ik.objectives.center_of_mass_target import CenterOfMassTarget
     from hydrostat.ik.objectives.effort import Effort
     from hydrostat.ik.objectives.marker_target import MarkerTarget, PointTarget, named_targets
@@ -66,6 +66,7 @@ __all__ = [
     "spool_arms",
     "unconstrained_motion",
     "usable_spans",
+    "with_first_pose",
     "workspace_extent",
 ]
 

@@ -208,8 +208,7 @@ def _add_first_pose(begun: BegunRobot) -> BegunRobot:
     mesh = begun.robot.body.mesh
     if mesh.dim == 2:
         return begun
-    most_posed = 10_000  # Nodes of a body from which on no first pose is looked for
-    if len(mesh.nodes) > most_posed:
+    if len(mesh.nodes) > _MOST_POSED:
         note = f"no first pose was looked for, as {len(mesh.nodes)} nodes take long: hydrostat pose finds yours"
         return replace(begun, notes=(*begun.notes, note))
     return replace(begun, robot=with_first_pose(begun.robot))
@@ -223,6 +222,7 @@ def _file_name(name: str) -> str:
     return re.sub(r"[^\w.-]", "_", name)
 
 
+_MOST_POSED = 10_000  # nodes of a body from which on no first pose is looked for
 _SHARES, _REACHED = (0.5, 0.25, 0.1), 0.01  # travels to try, in shares of all; how near is near, in sizes of the body
 
 
@@ -231,6 +231,8 @@ def with_first_pose(robot: Robot) -> Robot:
     from hydrostat.ik.solve_ik import solve_ik
     from hydrostat.simulation import Simulation
 
+    if len(robot.body.mesh.nodes) > _MOST_POSED:
+        return robot
     simulation = Simulation(robot)
     simulation.solve({}, strict=False)
     for share in _SHARES:

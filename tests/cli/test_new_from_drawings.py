@@ -60,4 +60,6 @@ def test_a_size_in_centimeters_is_named(run: Run, tmp_path: Path) -> None:
     (tmp_path / "bar.svg").write_text(BAR)
     out = run("new", tmp_path / "bar", "--from", tmp_path / "bar.svg", "--size", "150cm")[1]
     assert "note: the body is 1.5 m long. For a smaller one, give --size in mm" in out
-    assert "m long" not in run("new", tmp_path / "small", "--from", tmp_path / "bar.svg", "--size", "150mm")[1]
+    out = run("new", tmp_path / "small", "--from", tmp_path / "bar.svg", "--size", "150mm")[1]
+    assert "note: the body is" not in out
+    assert "warning: body: no room for the motor" in out  # its 20 mm are too thin

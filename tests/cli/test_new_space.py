@@ -202,3 +202,20 @@ def test_an_empty_folder_is_filled_and_stays_when_that_fails(run: Run, tmp_path:
     code, _, err = run("new", tmp_path / "bar", "--from", bar)
     assert code == 2
     assert "already exists" in err
+
+
+@pytest.mark.slow
+def test_a_winch_without_room_at_the_held_end_moves_to_a_thicker_place(run: Run, tmp_path: Path) -> None:
+    """A bar of 27 mm, held at its end, with 44 mm further on. Oracle: `hydrostat check` finds no error."""
+    from manifold3d import Manifold
+    from trimesh import Trimesh
+
+    bar = Manifold.cube([160, 27, 27]).translate([0, -13.5, -13.5])
+    solid = (bar + Manifold.cube([60, 44, 44], True).translate([110, 0, 0])).to_mesh()
+    Trimesh(np.array(solid.vert_properties)[:, :3], np.array(solid.tri_verts)).export(tmp_path / "bell.stl")
+    folder = tmp_path / "bell"
+    assert "warning" not in run("new", folder, "--from", tmp_path / "bell.stl")[1]
+    robot = hs.load_robot(folder)
+    assert 0.08 < robot.winches[0].at[0] < 0.14
+    assert robot.cables[0].points[0] == robot.winches[0].at
+    assert run("check", folder)[0] == 0
