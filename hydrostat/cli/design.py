@@ -24,7 +24,7 @@ from hydrostat.cli.design_results import (
     write_results,
 )
 from hydrostat.cli.fabricate import print_kit
-from hydrostat.cli.folders import OutFolder, RobotFolder, folder_of, require_folder, result_folder
+from hydrostat.cli.folders import OutFolder, RobotFolder, folder_of, note_others, require_folder, result_folder
 from hydrostat.cli.options import parse_budget
 from hydrostat.cli.records import take_records
 from hydrostat.cli.remedies import body_refusals, design_remedy
@@ -62,6 +62,7 @@ def design(
     Example: hydrostat design gallery:starfish --pose wave --winches 2 --cables 6 --out build/starfish
     """
     require_folder(out)
+    note_others(out, (*RECORDS, "score.json"))
     from hydrostat.design import kit_fits
     from hydrostat.errors import in_words
 

@@ -115,7 +115,7 @@ def firmware(
     text += "" if min_supply is None else f"#define MIN_SUPPLY {round(1e3 * min_supply)} /* [mV] */\n"
     images = control.build_images(loaded, given, boards, places, rpm=turns, stall=chosen.stall_current, moves=text)
     if given != calibration:
-        print(f"Wrote {given.write(folder)}")
+        print(f"Wrote {given.write(folder)}, next to the robot: motors and counts for calibrate, play and drive")
     for number, (kind, image) in enumerate(zip(boards, images, strict=False), 1):
         _tell(kind, number, given)
         _flash(kind, image, ports[number - 1] if ports else None)

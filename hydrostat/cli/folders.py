@@ -3,6 +3,7 @@
 import os
 import re
 import shutil
+import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -59,15 +60,25 @@ def require_files(files: Iterable[Path]) -> None:
             raise InputError(f"{file}: there is no such file")
 
 
+_FILE_ENDINGS = (
+    *(".csv", ".gif", ".glb", ".html", ".jpg", ".json", ".mp4", ".npz", ".pdf"),
+    *(".png", ".stl", ".svg", ".toml", ".txt", ".usda", ".xml", ".zip"),
+)  # endings of files, which no new output folder has
+
+
 def require_folder(out: Path, *, shared: bool = False) -> None:
     """Before long work begins: the results can go there, and what killed runs left unfinished there is cleared.
 
     Raises:
-        InputError: something that is no folder is in the way, nothing can be written there, or, unless it is shared,
-            another process writes there.
+        InputError: something that is no folder is in the way, a new folder is named like a file, nothing can be
+            written there, or, unless it is shared, another process writes there.
     """
     from hydrostat.files import clear_unfinished, hold_folder
 
+    if out.suffix.lower() in _FILE_ENDINGS and not out.exists():
+        raise InputError(
+            f"--out {out}: {out.suffix} is the ending of a file. Name a folder, e.g. {out.with_suffix('')}."
+        )
     for folder in (out, out.parent):
         clear_unfinished(folder)
     for folder in (out, *out.parents):
@@ -76,6 +87,13 @@ def require_folder(out: Path, *, shared: bool = False) -> None:
     require_writable(out, f"--out {out}")
     if not shared:
         hold_folder(out)
+
+
+def note_others(out: Path, own: Iterable[str]) -> None:
+    """Print a note if an output folder holds files, and none of the names that earlier results have."""
+    names = set(os.listdir(out)) if out.is_dir() else set[str]()
+    if names and not names & set(own):
+        print(f"note: {out} holds other files ({len(names)}). They stay", file=sys.stderr, flush=True)
 
 
 def require_writable(folder: Path, what: str) -> None:

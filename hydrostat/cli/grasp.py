@@ -176,6 +176,11 @@ def _print(pull: "PullOut", obstacle: "Obstacle", cases: "tuple[PullCase, ...]")
     print(f"peak force {pull.peak:.3g} N at {hardest:.1f} mm, work {1e3 * pull.work:.3g} mJ; {pull.reason}")
     for case in cases:
         print(f"  {case.name:<14} " + (case.trouble if case.pull is None else f"{case.pull.peak:.3g} N"))
+    if pull.peak <= 0:
+        print(
+            "warning: the robot does not hold the object: nothing resists the pull. Close it further, choose another "
+            "--direction, or put the object into its grasp with --at"
+        )
     known = [case.pull for case in cases if case.pull is not None and case.name != "no friction"]
     if known:
         peaks = [pull.peak, *(each.peak for each in known)]

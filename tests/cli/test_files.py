@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from hydrostat.cli.folders import note_others
 from hydrostat.errors import in_words
 from hydrostat.robot import comments, find_risks, load_robot
 
@@ -119,3 +120,19 @@ def test_robots_of_the_gallery_are_read_by_their_names_and_not_written(run: Run,
         code, _, err = run(*command)
         assert code == 2
         assert "hydrostat new my_starfish --from gallery:starfish" in err
+
+
+def test_a_folder_is_not_named_like_a_file(run: Run, tmp_path: Path) -> None:
+    code, _, err = run("animate", "gallery:starfish", "--out", tmp_path / "film.gif")
+    assert (code, "film.gif: .gif is the ending of a file. Name a folder" in err) == (2, True)
+    assert not (tmp_path / "film.gif").exists()
+
+
+def test_files_of_others_in_an_output_folder_are_noted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    note_others(tmp_path, ("score.json",))
+    (tmp_path / "letter.txt").touch()
+    note_others(tmp_path, ("score.json",))
+    assert capsys.readouterr().err == f"note: {tmp_path} holds other files (1). They stay\n"
+    (tmp_path / "score.json").touch()
+    note_others(tmp_path, ("score.json",))
+    assert capsys.readouterr().err == ""

@@ -99,3 +99,12 @@ def test_a_motion_begins_under_the_loads_of_its_first_instant(run: Run, tmp_path
         assert code == 0
     plain, late = (json.loads((tmp_path / "out" / name / "pose.json").read_text())["markers"]["top"] for name in names)
     assert late == pytest.approx(plain, abs=1e-6)
+
+
+@pytest.mark.slow
+def test_an_object_that_nothing_holds_is_told(run: Run, tmp_path: Path) -> None:
+    """A ball on a flat starfish. Oracle: no force in the table after the first row."""
+    code, out, _ = run("grasp", "gallery:starfish", "--pose", "wave", "--out", tmp_path / "out")
+    assert (code, "warning: the robot does not hold the object" in out) == (0, True)
+    rows = (tmp_path / "out" / "pull.csv").read_text().splitlines()[2:]
+    assert all(float(row.split(",")[2]) == 0 for row in rows)
