@@ -2,6 +2,7 @@
 
 from contextlib import suppress
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -60,9 +61,7 @@ def check(
     if words := describe_cable_side(found):
         print(f"cables: {words}")
     if found.cables:
-        from hydrostat.design import BuildCost
-
-        print(f"build: {BuildCost.of_robot(found, ())}; more if poses need stronger motors")
+        _print_cost(found, robot)
     curled = _print_stuffed(found) if stuffed else _print_out_of_plane(found) if words and thorough else None
     reaches = bool(found.markers and (found.cables or found.drives))
     if reaches and thorough:
@@ -74,6 +73,16 @@ def check(
     if found.body.has_hysteresis:
         print("note: hysteresis: refused by pose, trajectory, share, design, branches and linear models.")
     _print_judgement(found, curled)
+
+
+def _print_cost(robot: "Robot", folder: Path) -> None:
+    """Print the work on cables and the price of motors: those of its design, else with the weakest motors that fit."""
+    from hydrostat.cli.design_results import designed_cost
+    from hydrostat.design import BuildCost
+
+    known = designed_cost(robot, folder)
+    least = "" if known else "; more if poses need stronger motors"
+    print(f"build: {known or BuildCost.of_robot(robot, ())}{least}. Whole kit: hydrostat fabricate --summary")
 
 
 def _print_judgement(robot: "Robot", curled: str | None) -> None:

@@ -1,6 +1,7 @@
 """Output files and printed results of `hydrostat design`."""
 
 import json
+from contextlib import suppress
 from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -8,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
-    from hydrostat.design import Alternative, Constraints, Network
+    from hydrostat.design import Alternative, BuildCost, Constraints, Network
     from hydrostat.fabrication import Kit, KitOptions
     from hydrostat.ik import IKResult
     from hydrostat.robot import Robot
@@ -97,6 +98,21 @@ def designed_torque(robot: "Robot", folder: Path) -> float | None:
 def designed_motor(robot: "Robot", folder: Path) -> str:
     """Key of the motor that a robot without one was designed for, from the score.json next to its folder; or "auto"."""
     return _design_value(robot, folder, "motor", str) or "auto" if robot.motor == "auto" else "auto"
+
+
+def designed_cost(robot: "Robot", folder: Path) -> "BuildCost | None":
+    """The cost to build that a design computed for a robot, with the motors of its poses; None without a design."""
+    from hydrostat.design import BuildCost
+    from hydrostat.robot import robot_hash
+
+    own = robot_hash(robot)
+    for place in (folder.resolve().parent, folder.resolve().parent.parent):
+        with suppress(OSError, ValueError, KeyError, TypeError):
+            card = json.loads((place / "score.json").read_text(encoding="utf-8"))
+            for made in (card, *card["alternatives"]):
+                if made["robot"] == own:
+                    return BuildCost(**made["craft"])
+    return None
 
 
 def _design_value(robot: "Robot", folder: Path, name: str, kind: "type[_Value]") -> "_Value | None":

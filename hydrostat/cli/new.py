@@ -301,7 +301,7 @@ def _print_made(made: "Robot", name: Path, lines: list[str], *, chosen: bool, fr
     mesh, flat = made.body.mesh, made.body.mesh.dim == 2
     print(f"Created {name}: {1e3 * mesh.size:.0f} mm, {mesh.describe()}, poses: {', '.join(made.poses)}")
     coarse = not flat and not chosen  # fewer elements than would be exact, so that all is quick at first
-    for risk in find_risks(made):
+    for risk in (*find_risks(made), *(() if from_gallery else _pinned_drawings(made))):
         mild = coarse and "elements across" in risk
         lines.append(f"{'note: coarse for speed' if mild else 'warning'}: {in_words(risk)}")
     large = 0.8  # longer bodies are named, as centimeters may have been meant to be millimeters [m]
@@ -325,6 +325,13 @@ def _print_made(made: "Robot", name: Path, lines: list[str], *, chosen: bool, fr
     elif made.winches:
         pull = f"{made.winches[0].name}={250 * made.winches[0].travel:.0f}mm"
         print(f"Next: hydrostat simulate {folder} --contract {quote(pull)} --out {quote(f'build/{made.name}')}")
+
+
+def _pinned_drawings(robot: "Robot") -> Iterator[str]:
+    """Sentences on pins over drawn shapes; imported here, as a copy of the gallery needs no designs."""
+    from hydrostat.design import find_pinned_drawings
+
+    return find_pinned_drawings(robot)
 
 
 def _commented_text(robot: "Robot", source: str) -> str:

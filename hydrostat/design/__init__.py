@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from hydrostat.design.constraints_file import cable_name, read_constraints, read_uncertainty
     from hydrostat.design.corrected_error import corrected_errors
     from hydrostat.design.design_cables import design_cables, find_network
+    from hydrostat.design.drawn_shapes import find_pinned_drawings
     from hydrostat.design.fewer_cables import PosedNetwork, drop_cables
     from hydrostat.design.finding import Diagnostic, Severity, places_in
     from hydrostat.design.first_cable import draw_first_cable, place_first_winch
@@ -101,6 +102,7 @@ __all__ = [
     "find_mirror_axis",
     "find_network",
     "find_no_room",
+    "find_pinned_drawings",
     "front",
     "kit_fits",
     "nearest_shares",

@@ -1,12 +1,14 @@
-"""`drawn_shapes`, `drawn_zones`: decorations of a flat body, such as eyes, that winches and cables leave free."""
+"""`drawn_shapes`, `drawn_zones`: decorations of a flat body, such as eyes, that pins and cables leave free."""
 
 import math
+from collections.abc import Iterator
 
+import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
 from hydrostat.design.zone import Zone
-from hydrostat.robot import Body
+from hydrostat.robot import Body, Robot
 
 _LARGEST = 0.3  # share of the body above which a drawn shape is no eye or mouth: cables must cross it
 _ROUND = 0.9  # a shape that fills such a share of the circle around it becomes a disc
@@ -39,3 +41,14 @@ def _zone(hull: BaseGeometry) -> Zone:
         return Zone(at=(center.x, center.y), radius=radius)
     corners = shapely.get_coordinates(shapely.simplify(hull, _SIMPLER))[:-1]
     return Zone(outline=tuple(map(tuple, corners.tolist())))
+
+
+def find_pinned_drawings(robot: Robot) -> Iterator[str]:
+    """Sentence for each pin that covers most of a small shape drawn on a flat body, such as an eye."""
+    for index, pin in enumerate(robot.pins if robot.body.mesh.dim == 2 else ()):
+        field = shapely.Point(pin.at).buffer(pin.radius) if pin.box is None else shapely.box(*np.ravel(pin.box))
+        for hull in (shape.buffer(_SIMPLER) for shape in drawn_shapes(robot.body)):
+            if field.intersection(hull).area > 0.5 * hull.area:
+                x, y = (f"{1e3 * value:z.0f}" for value in hull.centroid.coords[0])
+                yield f"pin[{index}]: covers the shape drawn at [{x}, {y}] mm. Move the pin, or make it smaller"
+                break

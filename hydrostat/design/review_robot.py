@@ -6,6 +6,7 @@ from hydrostat.design.checks.cables import clearance_violations, gap_violations,
 from hydrostat.design.checks.parts import Parts
 from hydrostat.design.checks.winches import standing_violations
 from hydrostat.design.constraints import Constraints
+from hydrostat.design.drawn_shapes import find_pinned_drawings
 from hydrostat.design.finding import Diagnostic, Severity, places_in
 from hydrostat.design.skin_region import cable_region
 from hydrostat.errors import NO_KIT
@@ -26,19 +27,20 @@ def review_robot(
       Without cables it is a warning, as a body may be for simulation alone.
     - Limits of designs that its network does not keep, where constraints are given; one sentence for each kind, with
       the places of all. Travel, release and numbers of cables are limits of the search alone.
-    - Risks (`find_risks`).
+    - Risks (`find_risks`), and pins on drawn shapes such as eyes.
     - Holes of the body that its mesh leaves out.
 
     Raises InputError: an unknown motor, or a demand of another robot.
     """
     refused = find_refusals(robot, demand, options=options)
+    risks = (*find_risks(robot), *find_pinned_drawings(robot))
     weight = Severity.REFUSED if robot.cables else Severity.MIND
     before = "" if robot.cables else NO_KIT
     limits = _limits(robot, constraints) if constraints is not None and robot.cables else ()
     return (
         *(Diagnostic(text=before + text, weight=weight, places=places_in(text, robot)) for text in refused),
         *limits,
-        *(Diagnostic(text=text, weight=Severity.MIND, places=places_in(text, robot)) for text in find_risks(robot)),
+        *(Diagnostic(text=text, weight=Severity.MIND, places=places_in(text, robot)) for text in risks),
         *(
             Diagnostic(text=text, weight=Severity.LIMIT, places=())
             for text in [describe_filled_holes(robot.body)]

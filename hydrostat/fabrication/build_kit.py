@@ -35,7 +35,7 @@ from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.fabrication.solids.step import require_cad, step_bytes
 from hydrostat.given import check_type, path_of
 from hydrostat.progress import Progress, no_progress
-from hydrostat.robot import CableSide, Robot, describe_cable_side, sewn_robot, sewn_sides
+from hydrostat.robot import CableSide, Mount, Robot, describe_cable_side, sewn_robot, sewn_sides
 from hydrostat.simulation import is_stuffed_motion_fast, solve_stuffed_motion
 from hydrostat.units import plural
 
@@ -210,7 +210,7 @@ def _findings(plan: KitPlan, lists: Lists) -> KitFindings:
         checks=checks,
         problems=tuple(dict.fromkeys((*_problems(plan, lists), *failed))),
         warnings=(
-            *(*_cable_warnings(plan), *_bending_warnings(plan), *_part_warnings(plan)),
+            *(*_cable_warnings(plan), *_bending_warnings(plan), *_part_warnings(plan), *_opening_warnings(plan)),
             *(*work.warnings, *rigid.warnings, *lists.warnings),
         ),
         notes=(*work.notes, *rigid.notes, *plan.demand.far),
@@ -272,6 +272,22 @@ def _part_warnings(plan: KitPlan) -> tuple[str, ...]:
     made = [insert for insert in plan.inserts if not (flat and insert.kind is InsertKind.SHEET)]
     names = ", ".join(f"{insert.mark} {insert.name}" for insert in made)
     return (f"the kit has no files for {names}: make them to the sizes of lists/inserts.csv",) if made else ()
+
+
+def _opening_warnings(plan: KitPlan) -> tuple[str, ...]:
+    """Warn of a zipper that is too short for a winch: a slit opens to a ring of twice its length."""
+    opening = None if plan.work.pattern is None else plan.work.pattern.opening
+    inside = [unit for unit in plan.rigid.units if unit.mount is Mount.BODY]
+    if opening is None or not inside:
+        return ()
+    needed, unit = max(((sum(sorted(unit.room.size)[:2]), unit) for unit in inside), key=lambda pair: pair[0])
+    if opening.slit.length >= needed:
+        return ()
+    sides = " x ".join(f"{side:.0f}" for side in sorted(unit.room.size))
+    return (
+        f'the opening of {opening.slit.length:.0f} mm is too short for the unit of winch "{unit.winch}", {sides} mm, '
+        f"which needs {needed:.0f} mm. Choose a smaller motor, or move the winch to a wider place",
+    )
 
 
 def _files(plan: KitPlan, lists: Lists, findings: KitFindings) -> dict[str, bytes]:

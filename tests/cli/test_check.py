@@ -1,5 +1,6 @@
 """`hydrostat check`: what it says of the body. Oracle: a rectangle 60 x 40 x 20 mm of 40 kg/m^3, and a box like it."""
 
+import json
 import re
 import sys
 from collections.abc import Callable
@@ -12,8 +13,19 @@ from builders import box_mesh
 from manifold3d import Manifold
 
 from hydrostat.cli.main import main
+from hydrostat.design import BuildCost
 from hydrostat.geometry import Surface, write_ply, write_vtu
-from hydrostat.robot import Cable, CableSide, Marker, Obstacle, Winch, gallery_folder, load_robot, save_robot
+from hydrostat.robot import (
+    Cable,
+    CableSide,
+    Marker,
+    Obstacle,
+    Winch,
+    gallery_folder,
+    load_robot,
+    robot_hash,
+    save_robot,
+)
 from hydrostat.simulation import is_stuffed_motion_fast
 
 Check = Callable[[Path], list[str]]
@@ -215,3 +227,17 @@ def test_a_robot_without_pins_gets_its_verdict(check: Check, tmp_path: Path, fri
     lines = check(tmp_path / "loose")
     assert any(line.startswith(f"compliance: not computed ({words}") for line in lines)
     assert lines[-1].startswith("OK: 0 errors")
+
+
+def test_a_robot_of_a_design_costs_what_the_design_printed(check: Check, tmp_path: Path) -> None:
+    """Oracle: the price in score.json next to the robot, with the motors of its poses."""
+    robot = load_robot(gallery_folder("starfish"))
+    save_robot(robot, tmp_path / "robot")
+    cost = replace(BuildCost.of_robot(robot, ()), price=243.0)
+    card = {"robot": robot_hash(load_robot(tmp_path / "robot")), "craft": cost.as_values, "alternatives": []}
+    (line,) = [line for line in check(tmp_path / "robot") if line.startswith("build:")]
+    assert line.endswith("; more if poses need stronger motors. Whole kit: hydrostat fabricate --summary")
+    (tmp_path / "score.json").write_text(json.dumps(card))
+    (line,) = [line for line in check(tmp_path / "robot") if line.startswith("build:")]
+    assert line == f"build: {cost}. Whole kit: hydrostat fabricate --summary"
+    assert "243 USD" in line

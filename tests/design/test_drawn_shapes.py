@@ -10,13 +10,21 @@ import shapely
 from builders import strip_robot
 from plot.designs import plain_network
 
-from hydrostat.design import Constraints, DesignRequest, find_lifts, find_network, violations
+from hydrostat.design import (
+    Constraints,
+    DesignRequest,
+    find_lifts,
+    find_network,
+    find_pinned_drawings,
+    review_robot,
+    violations,
+)
 from hydrostat.design.drawn_shapes import drawn_zones
 from hydrostat.design.lifts import CROSSING
 from hydrostat.design.routes.quick_search import RouteProposal, propose_routes
 from hydrostat.design.skin_region import cable_region
 from hydrostat.errors import HydrostatError
-from hydrostat.robot import PoseTarget, Robot
+from hydrostat.robot import Pin, PoseTarget, Robot
 
 GAP = Constraints.drawing_gap
 
@@ -100,3 +108,13 @@ def test_shapes_in_the_way_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(HydrostatError, match=r"no network\.$"):
         find_network(eyes, request)
     assert find_lifts(large) == ()
+
+
+def test_a_pin_over_an_eye_is_told() -> None:
+    """An eye of 3 mm. Oracle: a pin of 30 mm covers it at its place, and not 50 mm aside."""
+    robot = drawn_strip(ring(0.1, 0.0, 0.003))
+    aside, over = (replace(robot, pins=(Pin(at=(x, 0.0), radius=0.03),)) for x in (0.15, 0.1))
+    assert list(find_pinned_drawings(aside)) == []
+    (told,) = find_pinned_drawings(over)
+    assert told == "pin[0]: covers the shape drawn at [100, 0] mm. Move the pin, or make it smaller"
+    assert told in [finding.text for finding in review_robot(over)]
