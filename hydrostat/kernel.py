@@ -18,7 +18,7 @@ def _load() -> Any:
         raise InputError("hydrostat's compiled core is missing; run pip install --editable . in its folder") from None
     except ImportError as error:
         raise InputError(str(error.__cause__ or error)) from None
-    interface = 8  # Version of the functions that are called here; `interface` in native/module.cpp is the same
+    interface = 9  # Version of the functions that are called here; `interface` in native/module.cpp is the same
     if getattr(core, "interface", 1) != interface:
         raise InputError("hydrostat's compiled core is of another version; install hydrostat again")
     return core

@@ -67,7 +67,31 @@ template <int D> INLINE void inverse_transposed(const Lanes (&G)[D][D], Lanes J,
     }
 }
 
-template <int D> double value(const Elements& all, const double* displacements) {
+// Resistance to a change of volume, and its derivatives by ln J.
+struct Squeeze {
+    Lanes log_j, energy, pressure, tangent;
+};
+
+// At J - 1; in plane stress the least over the stretch across, whose square less 1 is w: plane_stress.py.
+template <bool THIN> INLINE Squeeze squeeze(Lanes change, Lanes mu, Lanes lame) {
+    const Lanes log_j = log1p(change);
+    if constexpr (!THIN) return {log_j, 0.5 * lame * log_j * log_j, lame * log_j, lame};
+    else {
+        const Lanes zero{}, J = 1.0 + change;
+        Lanes w = where(change > zero, -change * (2.0 + change) / (J * J), zero), log = log1p(w);
+        for (int step = 0; step < 60; step++) {
+            const Lanes steep = mu + 0.5 * lame / (1.0 + w);
+            const Lanes move = (mu * w + lame * (log_j + 0.5 * log)) / where(steep > zero, steep, all(1.0));
+            w -= move, log = log1p(w);
+            if (!any(absolute(move) > 1e-15 * (1.0 + absolute(w)))) break;
+        }
+        const Lanes stretched = log_j + 0.5 * log, twice = 2.0 * (1.0 + w) * mu, both = twice + lame;
+        return {log_j, 0.5 * mu * (w - log) + 0.5 * lame * stretched * stretched, -mu * w,
+                twice * lame / where(both > zero, both, all(1.0))};
+    }
+}
+
+template <int D, bool THIN> double value(const Elements& all, const double* displacements) {
     Lanes total{};
     for (int64_t element = 0; element < all.terms; element += LANES) {
         Group<D> group(all, element);
@@ -75,19 +99,20 @@ template <int D> double value(const Elements& all, const double* displacements) 
         group.differentiate(displacements, G);
         Lanes change = change_of<D>(G);
         if (any(~(change > -1.0))) return __builtin_inf();
-        Lanes log_j = log1p(change), stretch{};
+        Lanes stretch{};
         for (int i = 0; i < D; i++) {
             stretch += G[i][i];
             for (int j = 0; j < D; j++) stretch += 0.5 * G[i][j] * G[i][j];
         }
-        Lanes mu = load<Lanes>(all.mu + element), lame = load<Lanes>(all.lame + element);
-        total += group.volume * (mu * (stretch - log_j) + 0.5 * lame * log_j * log_j);
+        Lanes mu = load<Lanes>(all.mu + element);
+        const Squeeze found = squeeze<THIN>(change, mu, load<Lanes>(all.lame + element));
+        total += group.volume * (mu * (stretch - found.log_j) + found.energy);
     }
     return sum(total);
 }
 
 // P grad N of each element, with P = mu (F - F^-T) + lambda ln J F^-T = mu (G + (I - F^-T)) + ...
-template <int D> void gradient(const Elements& all, const double* displacements, double* total) {
+template <int D, bool THIN> void gradient(const Elements& all, const double* displacements, double* total) {
     constexpr int C = D + 1;
     for (int64_t element = 0; element < all.terms; element += LANES) {
         Group<D> group(all, element);
@@ -95,7 +120,8 @@ template <int D> void gradient(const Elements& all, const double* displacements,
         group.differentiate(displacements, G);
         Lanes change = change_of<D>(G);
         inverse_transposed<D>(G, 1.0 + change, T);
-        Lanes mu = load<Lanes>(all.mu + element), pressure = load<Lanes>(all.lame + element) * log1p(change);
+        Lanes mu = load<Lanes>(all.mu + element);
+        const Lanes pressure = squeeze<THIN>(change, mu, load<Lanes>(all.lame + element)).pressure;
         for (int i = 0; i < D; i++)  // P = mu (G + I - F^-T) + pressure F^-T
             for (int j = 0; j < D; j++) {
                 Lanes rest = i == j ? 1.0 - T[i][j] : -T[i][j];
@@ -160,7 +186,7 @@ template <int D> struct Negative {
     bool some = false;
 
     Negative() = default;
-    INLINE Negative(const Lanes (&G)[D][D], Lanes J, Lanes log_j, Lanes mu, Lanes lame) {
+    INLINE Negative(const Lanes (&G)[D][D], Lanes mu, Lanes pressure, Lanes tangent) {
         Lanes F[D][D], squares[D][D], s[D];
         for (int i = 0; i < D; i++)
             for (int j = 0; j < D; j++) F[i][j] = i == j ? 1.0 + G[i][j] : G[i][j];
@@ -178,13 +204,13 @@ template <int D> struct Negative {
                 U[i][k] = along / s[k];
             }
         }
-        Lanes pull = lame * log_j - mu, zero{};
+        Lanes pull = pressure - mu, zero{};
         for (int i = 0; i < D; i++)
             for (int j = 0; j < D; j++) {
                 Lanes product = 1.0 / (s[i] * s[j]);
-                squares[i][j] = i == j ? mu + (lame - pull) * product : lame * product;
+                squares[i][j] = i == j ? mu + (tangent - pull) * product : tangent * product;
                 if (i != j) {
-                    // The twist and the flip of two axes: mu -+ (lame ln J - mu) / (s_i s_j).
+                    // The twist and the flip of two axes: mu -+ (pressure - mu) / (s_i s_j).
                     Lanes plus = least(mu - pull * product, zero), minus = least(mu + pull * product, zero);
                     even[i][j] = 0.5 * (minus + plus);
                     odd[i][j] = 0.5 * (plus - minus);
@@ -252,21 +278,22 @@ template <int D, int C> INLINE bool is_inside(const int32_t* nodes, int count, c
     return true;
 }
 
-template <int D> bool hessian(const Elements& all, const double* displacements, double share, const Blocks& to) {
+template <int D, bool THIN> bool hessian(const Elements& all, const double* displacements, double share, const Blocks& to) {
     constexpr int C = D + 1, PAIRS = C * (C + 1) / 2;
     for (int64_t element = 0; element < all.terms; element += LANES) {
         Group<D> group(all, element);
         Lanes G[D][D], T[D][D], spatial[C][D], blocks[PAIRS][D][D];
         group.differentiate(displacements, G);
-        Lanes change = change_of<D>(G), J = 1.0 + change, log_j = log1p(change);
-        inverse_transposed<D>(G, J, T);
+        Lanes change = change_of<D>(G);
+        inverse_transposed<D>(G, 1.0 + change, T);
         for (int corner = 0; corner < C; corner++)
             for (int i = 0; i < D; i++) {
                 spatial[corner][i] = Lanes{};
                 for (int j = 0; j < D; j++) spatial[corner][i] += T[i][j] * group.slope(corner, j);
             }
-        Lanes mu = load<Lanes>(all.mu + element), lame = load<Lanes>(all.lame + element);
-        Lanes straight = group.volume * lame, crossed = group.volume * (mu - lame * log_j);
+        Lanes mu = load<Lanes>(all.mu + element);
+        const Squeeze squeezed = squeeze<THIN>(change, mu, load<Lanes>(all.lame + element));
+        Lanes straight = group.volume * squeezed.tangent, crossed = group.volume * (mu - squeezed.pressure);
         for (int a = 0, pair = 0; a < C; a++)
             for (int b = 0; b <= a; b++, pair++) {
                 Lanes along{};
@@ -279,7 +306,7 @@ template <int D> bool hessian(const Elements& all, const double* displacements, 
                     }
             }
         if (share > 0.0) {
-            Negative<D> negative(G, J, log_j, mu, lame);
+            Negative<D> negative(G, mu, squeezed.pressure, squeezed.tangent);
             if (negative.some) {
                 Lanes local[C][D], found[D][D];
                 for (int corner = 0; corner < C; corner++)

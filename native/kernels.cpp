@@ -9,27 +9,30 @@
 
 namespace {
 
-double any_value(const Elements& all, const double* displacements) {
-    return all.dim == 2 ? value<2>(all, displacements) : value<3>(all, displacements);
-}
+// The variant of a kernel for a body in space, in plane stress or in plane strain.
+#define CHOOSE(kernel, all, ...) \
+    ((all).dim == 3 ? kernel<3, false>(all, __VA_ARGS__) \
+     : (all).thin   ? kernel<2, true>(all, __VA_ARGS__) \
+                    : kernel<2, false>(all, __VA_ARGS__))
+
+double any_value(const Elements& all, const double* displacements) { return CHOOSE(value, all, displacements); }
 void any_gradient(const Elements& all, const double* displacements, double* total) {
-    all.dim == 2 ? gradient<2>(all, displacements, total) : gradient<3>(all, displacements, total);
+    CHOOSE(gradient, all, displacements, total);
 }
 bool any_hessian(const Elements& all, const double* displacements, double share, const Blocks& blocks) {
-    return all.dim == 2 ? hessian<2>(all, displacements, share, blocks) : hessian<3>(all, displacements, share, blocks);
+    return CHOOSE(hessian, all, displacements, share, blocks);
 }
 double any_quadratic_value(const Quadratics& all, const double* displacements) {
-    return all.dim == 2 ? quadratic_value<2>(all, displacements) : quadratic_value<3>(all, displacements);
+    return CHOOSE(quadratic_value, all, displacements);
 }
 double any_quadratic_least(const Quadratics& all, const double* displacements) {
     return all.dim == 2 ? quadratic_least<2>(all, displacements) : quadratic_least<3>(all, displacements);
 }
 void any_quadratic_gradient(const Quadratics& all, const double* displacements, double* total) {
-    all.dim == 2 ? quadratic_gradient<2>(all, displacements, total) : quadratic_gradient<3>(all, displacements, total);
+    CHOOSE(quadratic_gradient, all, displacements, total);
 }
 bool any_quadratic_hessian(const Quadratics& all, const double* displacements, double share, const Blocks& blocks) {
-    return all.dim == 2 ? quadratic_hessian<2>(all, displacements, share, blocks)
-                        : quadratic_hessian<3>(all, displacements, share, blocks);
+    return CHOOSE(quadratic_hessian, all, displacements, share, blocks);
 }
 void any_turn(const Elements& all, const double* nodes, const double* step, double* right) {
     all.dim == 2 ? turn<2>(all, nodes, step, right) : turn<3>(all, nodes, step, right);

@@ -12,6 +12,7 @@ struct Elements {
     const double* volumes;
     const double* mu;    // Lame's parameters of each element, in groups like the volumes
     const double* lame;
+    bool thin;           // plane stress
 };
 
 // Quadratic simplices in groups of eight: stencils (groups, nodes, 8), corners first; shape gradients (groups, points,
@@ -25,6 +26,7 @@ struct Quadratics {
     const double* offsets;  // none where it is 0
     const double* weights;
     const double* moduli;
+    bool thin;              // plane stress
 };
 
 // Where the blocks of elements go in a matrix: the first number of each block, by element and its two corners; the

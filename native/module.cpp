@@ -59,13 +59,15 @@ struct Packed {
                    (int64_t)gradients.shape(2) == corners - 1, "elements must be simplices");
         demand((int64_t)gradients.shape(0) == groups && (int64_t)volumes.shape(0) == groups &&
                    terms <= 8 * groups && terms > 8 * (groups - 1), "as many groups of each");
-        all = {groups, terms, (int)corners - 1, stencils.data(), gradients.data(), volumes.data(), nullptr, nullptr};
+        all = {groups, terms, (int)corners - 1, stencils.data(), gradients.data(), volumes.data(), nullptr, nullptr, false};
         demand((int)field.shape(1) == all.dim, "dim of the nodes");
         demand_corners(all, (int64_t)field.shape(0));
     }
 
-    // Lame's parameters: (2, groups, 8), mu first.
-    void take_moduli(const Reals<3>& moduli) {
+    // Lame's parameters: (2, groups, 8), mu first; `thin` in plane stress.
+    void take_moduli(const Reals<3>& moduli, bool thin) {
+        demand(!thin || all.dim == 2, "plane stress is for flat elements");
+        all.thin = thin;
         demand(moduli.shape(0) == 2 && (int64_t)moduli.shape(1) == all.groups && moduli.shape(2) == 8,
                "two moduli of each element");
         all.mu = moduli.data();
@@ -74,17 +76,17 @@ struct Packed {
 };
 
 double value(Reals<2> displacements, Array<const int32_t, 3> stencils, Array<const double, 4> gradients,
-             Reals<2> volumes, int64_t terms, Reals<3> moduli) {
+             Reals<2> volumes, int64_t terms, Reals<3> moduli, bool thin) {
     Packed packed(displacements, stencils, gradients, volumes, terms);
-    packed.take_moduli(moduli);
+    packed.take_moduli(moduli, thin);
     Free free(9.0 * terms);
     return kernels.value(packed.all, displacements.data());
 }
 
 void gradient(Reals<2> displacements, Array<const int32_t, 3> stencils, Array<const double, 4> gradients,
-              Reals<2> volumes, int64_t terms, Reals<3> moduli, Array<double, 2> total) {
+              Reals<2> volumes, int64_t terms, Reals<3> moduli, bool thin, Array<double, 2> total) {
     Packed packed(displacements, stencils, gradients, volumes, terms);
-    packed.take_moduli(moduli);
+    packed.take_moduli(moduli, thin);
     demand(total.shape(0) == displacements.shape(0) &&
                total.shape(1) == displacements.shape(1), "shape of the total");
     Free free(15.0 * terms);
@@ -92,10 +94,10 @@ void gradient(Reals<2> displacements, Array<const int32_t, 3> stencils, Array<co
 }
 
 void hessian(Reals<2> displacements, Array<const int32_t, 3> stencils, Array<const double, 4> gradients,
-             Reals<2> volumes, int64_t terms, Reals<3> moduli, double share, Array<const int64_t, 3> slots,
+             Reals<2> volumes, int64_t terms, Reals<3> moduli, bool thin, double share, Array<const int64_t, 3> slots,
              Array<const int64_t, 1> strides, Array<double, 1> data) {
     Packed packed(displacements, stencils, gradients, volumes, terms);
-    packed.take_moduli(moduli);
+    packed.take_moduli(moduli, thin);
     const size_t corners = stencils.shape(1);
     demand((int64_t)slots.shape(0) == terms && slots.shape(1) == corners && slots.shape(2) == corners &&
                strides.shape(0) == displacements.shape(0), "shapes of displacements, slots and strides");
@@ -110,7 +112,7 @@ void hessian(Reals<2> displacements, Array<const int32_t, 3> stencils, Array<con
 
 // Quadratic elements as they come from Python; `offsets` is empty where it is 0.
 Quadratics pack_quadratics(const Reals<2>& field, const Array<const int32_t, 3>& stencils, const Reals<5>& gradients,
-                           const Reals<3>& weights, int64_t terms, const Reals<3>& moduli, const Reals<5>& offsets) {
+                           const Reals<3>& weights, int64_t terms, const Reals<3>& moduli, const Reals<5>& offsets, bool thin) {
     const size_t groups = stencils.shape(0), corners = stencils.shape(1), dim = corners == 6 ? 2 : 3, points = dim + 1;
     demand(corners == 6 || corners == 10, "elements must be quadratic simplices");
     demand(stencils.shape(2) == 8 && gradients.shape(4) == 8 && weights.shape(2) == 8 && moduli.shape(2) == 8,
@@ -123,37 +125,38 @@ Quadratics pack_quadratics(const Reals<2>& field, const Array<const int32_t, 3>&
                                    offsets.shape(3) == dim && offsets.shape(4) == 8), "shape of the offsets");
     demand(field.shape(1) == dim, "dim of the nodes");
     const Quadratics all{(int64_t)groups, terms, (int)dim, stencils.data(), gradients.data(),
-                         offsets.size() ? offsets.data() : nullptr, weights.data(), moduli.data()};
+                         offsets.size() ? offsets.data() : nullptr, weights.data(), moduli.data(), thin};
+    demand(!thin || dim == 2, "plane stress is for flat elements");
     demand_corners(all, (int64_t)field.shape(0));
     return all;
 }
 
 double quadratic_value(Reals<2> displacements, Array<const int32_t, 3> stencils, Reals<5> gradients, Reals<3> weights,
-                       int64_t terms, Reals<3> moduli, Reals<5> offsets) {
-    const Quadratics all = pack_quadratics(displacements, stencils, gradients, weights, terms, moduli, offsets);
+                       int64_t terms, Reals<3> moduli, Reals<5> offsets, bool thin) {
+    const Quadratics all = pack_quadratics(displacements, stencils, gradients, weights, terms, moduli, offsets, thin);
     Free free(40.0 * terms);
     return kernels.quadratic_value(all, displacements.data());
 }
 
 double quadratic_least(Reals<2> displacements, Array<const int32_t, 3> stencils, Reals<5> gradients, Reals<3> weights,
-                       int64_t terms, Reals<3> moduli, Reals<5> offsets) {
-    const Quadratics all = pack_quadratics(displacements, stencils, gradients, weights, terms, moduli, offsets);
+                       int64_t terms, Reals<3> moduli, Reals<5> offsets, bool thin) {
+    const Quadratics all = pack_quadratics(displacements, stencils, gradients, weights, terms, moduli, offsets, thin);
     Free free(30.0 * terms);
     return kernels.quadratic_least(all, displacements.data());
 }
 
 void quadratic_gradient(Reals<2> displacements, Array<const int32_t, 3> stencils, Reals<5> gradients, Reals<3> weights,
-                        int64_t terms, Reals<3> moduli, Reals<5> offsets, Array<double, 2> total) {
-    const Quadratics all = pack_quadratics(displacements, stencils, gradients, weights, terms, moduli, offsets);
+                        int64_t terms, Reals<3> moduli, Reals<5> offsets, bool thin, Array<double, 2> total) {
+    const Quadratics all = pack_quadratics(displacements, stencils, gradients, weights, terms, moduli, offsets, thin);
     demand(total.shape(0) == displacements.shape(0) && total.shape(1) == displacements.shape(1), "shape of the total");
     Free free(80.0 * terms);
     kernels.quadratic_gradient(all, displacements.data(), total.data());
 }
 
 void quadratic_hessian(Reals<2> displacements, Array<const int32_t, 3> stencils, Reals<5> gradients, Reals<3> weights,
-                       int64_t terms, Reals<3> moduli, Reals<5> offsets, double share, Counts<3> slots, Counts<1> strides,
+                       int64_t terms, Reals<3> moduli, Reals<5> offsets, bool thin, double share, Counts<3> slots, Counts<1> strides,
                        Array<double, 1> data) {
-    const Quadratics all = pack_quadratics(displacements, stencils, gradients, weights, terms, moduli, offsets);
+    const Quadratics all = pack_quadratics(displacements, stencils, gradients, weights, terms, moduli, offsets, thin);
     const size_t corners = stencils.shape(1);
     demand((int64_t)slots.shape(0) == terms && slots.shape(1) == corners && slots.shape(2) == corners &&
                strides.shape(0) == displacements.shape(0), "shapes of displacements, slots and strides");
@@ -392,14 +395,14 @@ NB_MODULE(_native, module) {
     for (const Kernels* found : levels()) names.append(found->name);
     module.attr("levels") = names;
     module.attr("instructions") = kernels.name;
-    module.attr("interface") = 8;  // kernel.py asks for it: raise both where the arguments of a function change
+    module.attr("interface") = 9;  // kernel.py asks for it: raise both where the arguments of a function change
     module.def("value", &value);
-    module.def("gradient", &gradient, given(), given(), given(), given(), given(), given(), filled());
-    module.def("hessian", &hessian, given(), given(), given(), given(), given(), given(), given(), given(), given(), filled());
-    module.def("quadratic_value", &quadratic_value, given(), given(), given(), given(), given(), given(), given());
-    module.def("quadratic_least", &quadratic_least, given(), given(), given(), given(), given(), given(), given());
-    module.def("quadratic_gradient", &quadratic_gradient, given(), given(), given(), given(), given(), given(), given(), filled());
-    module.def("quadratic_hessian", &quadratic_hessian, given(), given(), given(), given(), given(), given(), given(), given(),
+    module.def("gradient", &gradient, given(), given(), given(), given(), given(), given(), given(), filled());
+    module.def("hessian", &hessian, given(), given(), given(), given(), given(), given(), given(), given(), given(), given(), filled());
+    module.def("quadratic_value", &quadratic_value, given(), given(), given(), given(), given(), given(), given(), given());
+    module.def("quadratic_least", &quadratic_least, given(), given(), given(), given(), given(), given(), given(), given());
+    module.def("quadratic_gradient", &quadratic_gradient, given(), given(), given(), given(), given(), given(), given(), given(), filled());
+    module.def("quadratic_hessian", &quadratic_hessian, given(), given(), given(), given(), given(), given(), given(), given(), given(),
                given(), given(), filled());
     module.def("turn", &turn, given(), given(), given(), given(), given(), given(), filled());
     module.def("factorise", &factorise, given(), given(), given(), given(), given(), given(), filled(), filled(), filled(), filled(), filled(), given());

@@ -58,7 +58,7 @@ template <int D> INLINE Lanes mean_change(const Quadratic<D>& element, const Lan
     return mean / element.volume;
 }
 
-template <int D> double quadratic_value(const Quadratics& all, const double* displacements) {
+template <int D, bool THIN> double quadratic_value(const Quadratics& all, const double* displacements) {
     Lanes total{};
     for (int64_t first = 0; first < all.terms; first += LANES) {
         const Quadratic<D> element(all, first);
@@ -67,12 +67,13 @@ template <int D> double quadratic_value(const Quadratics& all, const double* dis
         for (int q = 0; q <= D; q++) {
             change[q] = change_of<D>(G[q]);
             if (any(~(change[q] > -1.0))) return __builtin_inf();
-            Lanes log_j = log1p(change[q]), stretch{};
+            Lanes stretch{};
             for (int i = 0; i < D; i++) {
                 stretch += G[q][i][i];
                 for (int j = 0; j < D; j++) stretch += 0.5 * G[q][i][j] * G[q][i][j];
             }
-            total += element.weights[q] * (element.mu * (stretch - log_j) + 0.5 * element.lame * log_j * log_j);
+            const Squeeze found = squeeze<THIN>(change[q], element.mu, element.lame);
+            total += element.weights[q] * (element.mu * (stretch - found.log_j) + found.energy);
         }
         Lanes log_mean = log1p(mean_change<D>(element, change));
         total += 0.5 * element.volume * element.mean * log_mean * log_mean;
@@ -93,7 +94,7 @@ template <int D> double quadratic_least(const Quadratics& all, const double* dis
     return 1.0 + found;
 }
 
-template <int D> void quadratic_gradient(const Quadratics& all, const double* displacements, double* total) {
+template <int D, bool THIN> void quadratic_gradient(const Quadratics& all, const double* displacements, double* total) {
     constexpr int C = Quadratic<D>::C, Q = Quadratic<D>::Q;
     for (int64_t first = 0; first < all.terms; first += LANES) {
         const Quadratic<D> element(all, first);
@@ -105,7 +106,7 @@ template <int D> void quadratic_gradient(const Quadratics& all, const double* di
         }
         Lanes mean = mean_change<D>(element, change), common = element.mean * log1p(mean) / (1.0 + mean);
         for (int q = 0; q < Q; q++) {
-            Lanes pressure = element.lame * log1p(change[q]) + common * (1.0 + change[q]);
+            Lanes pressure = squeeze<THIN>(change[q], element.mu, element.lame).pressure + common * (1.0 + change[q]);
             for (int i = 0; i < D; i++)
                 for (int j = 0; j < D; j++) {
                     Lanes rest = i == j ? 1.0 - T[q][i][j] : -T[q][i][j];
@@ -128,7 +129,7 @@ template <int D> void quadratic_gradient(const Quadratics& all, const double* di
     }
 }
 
-template <int D> bool quadratic_hessian(const Quadratics& all, const double* displacements, double share, const Blocks& to) {
+template <int D, bool THIN> bool quadratic_hessian(const Quadratics& all, const double* displacements, double share, const Blocks& to) {
     constexpr int C = Quadratic<D>::C, Q = Quadratic<D>::Q;
     for (int64_t first = 0; first < all.terms; first += LANES) {
         const Quadratic<D> element(all, first);
@@ -156,16 +157,17 @@ template <int D> bool quadratic_hessian(const Quadratics& all, const double* dis
         Negative<D> negative[Q];
         Lanes local[Q][C][D];
         for (int q = 0; q < Q; q++) {
-            const Lanes J = 1.0 + change[q], log_j = log1p(change[q]);
+            const Lanes J = 1.0 + change[q];
+            const Squeeze squeezed = squeeze<THIN>(change[q], element.mu, element.lame);
             const Lanes bend = element.mean * log_mean / J_mean * element.weights[q] * J;
             const Lanes over = where(bend > zero, bend, zero), under = bend - over;
-            straight[q] = element.weights[q] * element.lame + bend -
+            straight[q] = element.weights[q] * squeezed.tangent + bend -
                           share * (over * (1.0 / D) + under * (1.0 - 1.0 / D));
-            crossed[q] = element.weights[q] * (element.mu - element.lame * log_j) - bend + 0.5 * share * bend;
+            crossed[q] = element.weights[q] * (element.mu - squeezed.pressure) - bend + 0.5 * share * bend;
             plain[q] = 0.5 * share * absolute(bend);
             along[q] = element.weights[q] * element.mu;
             if (share > 0.0) {
-                negative[q] = Negative<D>(G[q], J, log_j, element.mu, element.lame);
+                negative[q] = Negative<D>(G[q], element.mu, squeezed.pressure, squeezed.tangent);
                 if (negative[q].some)
                     for (int corner = 0; corner < C; corner++)
                         for (int k = 0; k < D; k++) {

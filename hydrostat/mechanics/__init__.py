@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from hydrostat.mechanics.nodal_energies import DeadLoadEnergy, LoadEnergy, PinEnergy
     from hydrostat.mechanics.obstacle import ObstacleEnergy
     from hydrostat.mechanics.patch_dilatation import PATCH_SIZE, PatchDilatation, grow_patches
-    from hydrostat.mechanics.plane_stress import PlaneStress, solve_thickening
+    from hydrostat.mechanics.plane_stress import solve_thickening
     from hydrostat.mechanics.prandtl_energy import PrandtlEnergy
     from hydrostat.mechanics.pressure import PressureEnergy
     from hydrostat.mechanics.quadratic_solid import MAX_POINTWISE_RATIO, QuadraticSolid
@@ -73,7 +73,6 @@ __all__ = [
     "ObstacleEnergy",
     "PatchDilatation",
     "PinEnergy",
-    "PlaneStress",
     "PrandtlEnergy",
     "PressureEnergy",
     "QuadraticSolid",

@@ -1,6 +1,7 @@
 """`NeoHookean`: the elastic energy of the body."""
 
 from collections.abc import Mapping
+from copy import copy
 from functools import cached_property
 from typing import ClassVar
 
@@ -17,16 +18,19 @@ from hydrostat.mechanics.energy import (
     element_groups,
     group_moduli,
 )
+from hydrostat.mechanics.plane_stress import thickening_works
 
 
 class NeoHookean(Energy):
     """Compressible Neo-Hookean solid on linear simplices (R20 to R22, E7 to E9).
 
     Psi(F) = mu/2 tr(F^T F - I) - mu ln J + lambda/2 (ln J)^2, E = sum of volume x Psi.
-    In the plane this is plane strain (F is padded by F33 = 1); the volume is area times thickness.
+    In the plane this is plane strain (F is padded by F33 = 1), or plane stress (`as_plane_stress`); the volume is area
+    times thickness.
     """
 
     convex: ClassVar[bool] = False
+    thin = False
 
     def __init__(
         self,
@@ -70,6 +74,12 @@ class NeoHookean(Energy):
         self._padded[:, :, :dim] = self.shape_gradients
         self._axes = tuple(range(dim))
 
+    def as_plane_stress(self) -> "NeoHookean":
+        """The same flat solid, free to become thicker or thinner: see `mechanics/plane_stress.py`."""
+        found = copy(self)
+        found.thin = True
+        return found
+
     @property
     def point_gradients(self) -> Float[np.ndarray, "elements corners dim"]:
         """Gradients of the shape functions at each point of quadrature [1/m], one in each element."""
@@ -81,7 +91,7 @@ class NeoHookean(Energy):
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
         """Computed from the displacement gradient G = F - I, so that little is lost to rounding near rest."""
-        return native.value(nodes - self._rest, *self._groups, self._moduli)
+        return native.value(nodes - self._rest, *self._groups, self._moduli, self.thin)
 
     def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
         return self._forces(nodes, self._moduli)
@@ -96,14 +106,14 @@ class NeoHookean(Energy):
         slots = size**2 * np.arange(terms)[:, None, None] + size * corner + corner[:, None]
         strides = np.full(terms * corners, size)
         apart = self._apart(nodes), *self._groups_apart
-        native.hessian(*apart, self._moduli, share, slots, strides, blocks.reshape(-1))
+        native.hessian(*apart, self._moduli, self.thin, share, slots, strides, blocks.reshape(-1))
         return blocks
 
     def add_gradient(self, nodes: Nodes, controls: Vector, total: Nodes) -> None:
-        native.gradient(nodes - self._rest, *self._groups, self._moduli, total)
+        native.gradient(nodes - self._rest, *self._groups, self._moduli, self.thin, total)
 
     def add_hessian(self, nodes: Nodes, controls: Vector, share: float, places: ScatterMap) -> None:
-        native.hessian(nodes - self._rest, *self._groups, self._moduli, share, *places)
+        native.hessian(nodes - self._rest, *self._groups, self._moduli, self.thin, share, *places)
 
     def min_volume_ratio(self, nodes: Nodes) -> float:
         return native.least_volume(nodes, self.stencils, self._padded, self._axes)
@@ -113,6 +123,10 @@ class NeoHookean(Energy):
         one, none = np.ones(len(self.stencils)), np.zeros(len(self.stencils))
         shear = self._work(nodes, field, one, none)
         squeeze = self._work(nodes, field, none, one) if self.volumetric else none
+        if self.thin:
+            gradients = self.deformation_gradients(nodes), self.deformation_gradients(field)
+            thickening, squeeze = thickening_works(self.mu, self.lame, self.volumes, *gradients)
+            shear = shear + thickening
         own = self.mu > 0  # other energies stand for elements without moduli
         works = {"mu": np.bincount(self.materials, own * shear)}
         if self.volumetric:
@@ -127,7 +141,7 @@ class NeoHookean(Energy):
     def _forces(self, nodes: Nodes, moduli: Float[np.ndarray, "2 groups 8"]) -> Blocks:
         """Gradient of each element, were Lame's parameters these."""
         total = np.zeros((self.stencils.size, nodes.shape[1]))
-        native.gradient(self._apart(nodes), *self._groups_apart, moduli, total)
+        native.gradient(self._apart(nodes), *self._groups_apart, moduli, self.thin, total)
         return total.reshape(*self.stencils.shape, -1)
 
     def _apart(self, nodes: Nodes) -> Nodes:

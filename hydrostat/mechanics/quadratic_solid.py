@@ -1,6 +1,7 @@
 """`QuadraticSolid`: the elastic energy of a body of quadratic simplices, which bend as they should."""
 
 from collections.abc import Mapping
+from copy import copy
 from functools import cached_property
 from itertools import combinations
 from typing import ClassVar
@@ -10,6 +11,7 @@ import numpy as np
 from hydrostat.arrays import Float, Int, Nodes, Vector
 from hydrostat.kernel import native
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, ScatterMap, group_terms
+from hydrostat.mechanics.plane_stress import thickening_works
 
 MAX_POINTWISE_RATIO = {2: 8.0, 3: 4.0}
 """Lambda that counts at each point, at most, over mu, in the plane and in space; the rest counts for the mean volume.
@@ -26,10 +28,11 @@ class QuadraticSolid(Energy):
 
     Psi(F) = mu/2 tr(F^T F - I) - mu ln J + p/2 (ln J)^2 at 3 or 4 points of quadrature, and (lambda - p)/2 (ln J)^2 of
     the mean J of the element, with p = min(lambda, c mu), c = `MAX_POINTWISE_RATIO`. Of a homogeneous deformation the
-    sum is that of `NeoHookean`. In the plane this is plane strain.
+    sum is that of `NeoHookean`. In the plane this is plane strain, or plane stress (`as_plane_stress`).
     """
 
     convex: ClassVar[bool] = False
+    thin = False
 
     def __init__(
         self,
@@ -76,6 +79,13 @@ class QuadraticSolid(Energy):
             self._rest, self.stencils, mu=modulus, lame=0.0, thickness=self._thickness, metrics=metrics
         )
 
+    def as_plane_stress(self) -> "QuadraticSolid":
+        """The same flat solid, free to become thicker or thinner at each point: see `mechanics/plane_stress.py`."""
+        found = copy(self)
+        found.thin = True
+        vars(found).pop("_moduli", None)
+        return found
+
     @property
     def point_gradients(self) -> Float[np.ndarray, "points corners dim"]:
         """Gradients of the shape functions at each point of quadrature [1/m]."""
@@ -93,7 +103,7 @@ class QuadraticSolid(Energy):
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
         """Computed from the displacement gradient, so that little is lost to rounding near rest."""
-        return native.quadratic_value(nodes - self._rest, *self._groups, self._moduli, self._packed_offsets)
+        return native.quadratic_value(nodes - self._rest, *self._groups, self._moduli, self._packed_offsets, self.thin)
 
     def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
         return self._forces(nodes, self._moduli)
@@ -107,19 +117,21 @@ class QuadraticSolid(Energy):
         corner = dim * np.arange(corners)
         slots = size**2 * np.arange(terms)[:, None, None] + size * corner + corner[:, None]
         strides = np.full(terms * corners, size)
-        given = *self._groups_apart, self._moduli, self._packed_offsets
+        given = *self._groups_apart, self._moduli, self._packed_offsets, self.thin
         native.quadratic_hessian(self._apart(nodes), *given, share, slots, strides, blocks.reshape(-1))
         return blocks
 
     def add_gradient(self, nodes: Nodes, controls: Vector, total: Nodes) -> None:
-        native.quadratic_gradient(nodes - self._rest, *self._groups, self._moduli, self._packed_offsets, total)
+        native.quadratic_gradient(
+            nodes - self._rest, *self._groups, self._moduli, self._packed_offsets, self.thin, total
+        )
 
     def add_hessian(self, nodes: Nodes, controls: Vector, share: float, places: ScatterMap) -> None:
-        given = *self._groups, self._moduli, self._packed_offsets
+        given = *self._groups, self._moduli, self._packed_offsets, self.thin
         native.quadratic_hessian(nodes - self._rest, *given, share, *places)
 
     def min_volume_ratio(self, nodes: Nodes) -> float:
-        return native.quadratic_least(nodes - self._rest, *self._groups, self._moduli, self._packed_offsets)
+        return native.quadratic_least(nodes - self._rest, *self._groups, self._moduli, self._packed_offsets, self.thin)
 
     def parameter_derivative(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
         """By mu and lame of each material, and by the thickness."""
@@ -132,6 +144,10 @@ class QuadraticSolid(Energy):
         shear, points, mean = apart
         by_mu = shear + np.where(split, most * (points - mean), 0.0)
         by_lame = np.where(split, mean, points)
+        if self.thin:
+            gradients = self.deformation_gradients(nodes), self.deformation_gradients(field)
+            thickening, by_lame = thickening_works(self.mu, self.lame, self.volumes, *gradients)
+            by_mu = shear + thickening
         own = self.mu > 0  # other energies stand for elements without moduli
         works = {"mu": np.bincount(self.materials, own * by_mu)}
         if self.volumetric:
@@ -146,7 +162,9 @@ class QuadraticSolid(Energy):
     def _forces(self, nodes: Nodes, moduli: Float[np.ndarray, "3 groups 8"]) -> Blocks:
         """Gradient of each element, were the moduli these."""
         total = np.zeros((self.stencils.size, nodes.shape[1]))
-        native.quadratic_gradient(self._apart(nodes), *self._groups_apart, moduli, self._packed_offsets, total)
+        native.quadratic_gradient(
+            self._apart(nodes), *self._groups_apart, moduli, self._packed_offsets, self.thin, total
+        )
         return total.reshape(*self.stencils.shape, -1)
 
     def _apart(self, nodes: Nodes) -> Nodes:
@@ -169,8 +187,8 @@ class QuadraticSolid(Energy):
 
     @cached_property
     def _moduli(self) -> Float[np.ndarray, "3 groups 8"]:
-        """Mu, and lambda in its two shares."""
-        points = np.minimum(self.lame, MAX_POINTWISE_RATIO[self._rest.shape[1]] * self.mu)
+        """Mu, and lambda in its two shares; in plane stress nothing locks, so all of it counts at the points."""
+        points = self.lame if self.thin else np.minimum(self.lame, MAX_POINTWISE_RATIO[self._rest.shape[1]] * self.mu)
         return np.stack([group_terms(moduli, float) for moduli in (self.mu, points, self.lame - points)])
 
 

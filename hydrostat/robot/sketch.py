@@ -1,6 +1,7 @@
 """`sketch_robot`: a first robot from nothing but a drawing, to be edited from there."""
 
 from contextlib import suppress
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -9,7 +10,7 @@ from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry import Inner, Outline, read_drawing, size_for, triangulate
 from hydrostat.robot.body import Body
-from hydrostat.robot.element_kind import ElementKind
+from hydrostat.robot.element_kind import ElementKind, Plane
 from hydrostat.robot.limb_tips import find_limb_tips, measure_geodesics, name_tips
 from hydrostat.robot.marker import Marker, PoseTarget
 from hydrostat.robot.materials import get_material
@@ -24,6 +25,12 @@ SLENDER = 6
 def is_slender(body: Body) -> bool:
     """Return True if linear elements bend a limb too little: it has few across, or they lock."""
     return body.material.poisson >= LOCKING_POISSON or bool(body.measured_thickness.thin_parts(SLENDER))
+
+
+def choose_plane(body: Body) -> Plane:
+    """Plane stress for a flat body that is thinner than its limbs are wide, else plane strain."""
+    width, _ = body.measured_thickness.part(0.5)
+    return Plane.STRESS if body.thickness is not None and body.thickness < width else Plane.STRAIN
 
 
 def finer_size(body: Body, most: int) -> float | None:
@@ -58,9 +65,9 @@ def sketch_robot(
 ) -> Robot:
     """Robot from the bytes of a drawing (SVG, DXF, PNG, JPG), with sensible numbers where none are given.
 
-    A body with slender limbs gets quadratic elements. It is held round its deepest point. The tip of each limb is a
-    marker, named by its place ("upper left"), or "tip" if there is one. A pose bends the
-    longest limb sideways; the other tips stay. Everything is meant to be changed.
+    A body with slender limbs gets quadratic elements. One that is thinner than its limbs are wide is in plane stress.
+    It is held round its deepest point. The tip of each limb is a marker, named by its place ("upper left"), or "tip" if
+    there is one. A pose bends the longest limb sideways; the other tips stay. Everything is meant to be changed.
 
     Args:
         content: the drawing.
@@ -99,6 +106,7 @@ def sketch_robot(
         if _round(finer) >= (body.element_size or 0.0):
             break
         body = refine(_round(finer))
+    body = replace(body, plane=choose_plane(body))
     as_fine = 2**-0.5 if kind is ElementKind.QUADRATIC else 1.0
     spacing = as_fine * (body.element_size or 0.0)  # of linear elements in place of these
     center = np.array(maximum_inscribed_circle(outline.polygon).coords[0])

@@ -23,7 +23,6 @@ from hydrostat.mechanics import (
     ObstacleEnergy,
     PatchDilatation,
     PinEnergy,
-    PlaneStress,
     PrandtlEnergy,
     QuadraticSolid,
     RigidBodyDofs,
@@ -83,8 +82,10 @@ class BodyPhysics:
         self.rigid_dofs = _rigid_dofs(robot, in_time=in_time)
         moving = [carriage.unknowns(*_begin(robot.obstacles[index])) for index, carriage in self.rigid_dofs.items()]
         self.rest_unknowns = np.concatenate([mesh.nodes, *moving]) if moving else mesh.nodes
-        patched, thin = body.volume is Volume.PATCH, body.plane is Plane.STRESS
-        self.elastic = _elastic(robot, self.rest_unknowns, None if patched or thin else lame)
+        patched = body.volume is Volume.PATCH
+        self.elastic = _elastic(robot, self.rest_unknowns, None if patched else lame)
+        if body.plane is Plane.STRESS:
+            self.elastic = self.elastic.as_plane_stress()
         self.pins = _pins(robot)
         carried = [_obstacle_masses(robot.obstacles[index], carriage) for index, carriage in self.rigid_dofs.items()]
         self.sheets = [make_sheet_energies(robot, sheet, self.rest_unknowns) for sheet in robot.sheets]
@@ -97,8 +98,6 @@ class BodyPhysics:
             patches = grow_patches(elements, PATCH_SIZE[mesh.dim], kinds)
             given = {"lame": lame[solid], "thickness": _depths(body)[solid], "materials": kinds}
             energies.append(PatchDilatation(self.rest_unknowns, elements, patches, **given))
-        if thin and solid.any():
-            energies.append(_plane_stress(self.elastic, self.rest_unknowns, lame))
         energies += _foams(robot, self.elastic, self.rest_unknowns)
         energies += _sliders(robot, self.elastic, self.rest_unknowns)
         energies += _barriers(body, self.elastic, self.rest_unknowns)
@@ -273,19 +272,6 @@ def _elastic(robot: Robot, rest: Nodes, lame: Vector | None) -> NeoHookean | Qua
     kinds = {name: values[each] for name, values in kinds.items()}
     squeeze = None if lame is None else lame[each]
     return QuadraticSolid(rest, mesh.quadratic, mu=mu[each], lame=squeeze, **kinds)
-
-
-def _plane_stress(elastic: NeoHookean | QuadraticSolid, rest: Nodes, lame: Vector) -> PlaneStress:
-    """Resistance of a flat body to a change of area, at each point of quadrature of its elements."""
-    points = len(elastic.volumes) // len(elastic.stencils)
-    parts = len(lame) // len(elastic.stencils)  # of an element in the mesh
-    own = np.repeat(elastic.mu > 0, points)  # foams have a law of their own
-    stencils, mu, squeeze, materials = (
-        np.repeat(each, points, axis=0)[own]
-        for each in (elastic.stencils, elastic.mu, lame[::parts], elastic.materials)
-    )
-    given = {"mu": mu, "lame": squeeze, "materials": materials}
-    return PlaneStress(rest, stencils, gradients=elastic.point_gradients[own], volumes=elastic.volumes[own], **given)
 
 
 def _foams(robot: Robot, elastic: NeoHookean | QuadraticSolid, rest: Nodes) -> list[FoamSolid]:

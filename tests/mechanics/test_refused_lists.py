@@ -20,7 +20,7 @@ LISTS = {
     "value": {1: "a corner is no node"},
     "gradient": {1: "a corner is no node"},
     "turn": {2: "a corner is no node"},
-    "hessian": {1: "a corner is no node", 7: "outside the matrix", 8: "longer than the matrix"},
+    "hessian": {1: "a corner is no node", 8: "outside the matrix", 9: "longer than the matrix"},
     "block_graph": {0: "no such entries", 1: "in no row"},
     "distances": {0: "no such neighbors", 1: "no node"},
     "dissect": {0: "no such neighbors", 1: "no node", 3: "no such node", 7: "-1 before", 8: "0 before"},

@@ -9,7 +9,7 @@ import pytest
 from PIL import Image, ImageDraw
 
 from hydrostat.errors import OutlineError
-from hydrostat.robot import find_risks, load_robot, save_robot, sketch_robot
+from hydrostat.robot import Plane, find_risks, load_robot, save_robot, sketch_robot
 
 
 def bar_png() -> bytes:
@@ -48,6 +48,13 @@ def test_sketch(content: bytes, file: str, size: float | None, tmp_path: Path) -
     assert robot.body.outline is not None
     assert robot.body.outline.size == pytest.approx(0.2, rel=1e-9)
     assert robot.body.outline.area == pytest.approx(0.15 * 0.05 + 3.14159 * 0.025**2, rel=5e-3)
+
+
+@pytest.mark.parametrize(("thickness", "plane"), [(0.03, Plane.STRESS), (0.06, Plane.STRAIN)])
+def test_a_body_thinner_than_its_limbs_is_in_plane_stress(thickness: float, plane: Plane) -> None:
+    """Oracle: the bar's own width of 50 mm."""
+    robot = sketch_robot(bar_png(), file="bar.png", name="bar", size=0.2, thickness=thickness)
+    assert robot.body.plane is plane
 
 
 def test_picture_without_size() -> None:
