@@ -353,6 +353,7 @@ def _commented_text(robot: "Robot", source: str) -> str:
     )
     notes = {
         "[body]": "# The body. A smaller element_size is finer but slower; `hydrostat materials` lists materials.",
+        'plane = "stress"': '# The body becomes thicker where it is squeezed. "strain": it stays as thick as it is.',
         "[[pin]]": "# The pin holds all nodes within `radius` of `at`, or in its `box`.",
         "[[winch]]": "# A winch takes in up to `travel` of its cables' length, and lets out up to `release`.",
         "[[cable]]": "# A cable runs from its winch, the first point, to its stopper, the last.",
