@@ -225,7 +225,7 @@ def _body_lines(body: "Body") -> list[str]:
     own = body.element_materials == 0
     volume = float(mesh.volumes[own].sum()) * (body.thickness or 1.0)
     thickness = body.measured_thickness
-    (thin, few), (thick, _) = thickness.part(0.05), thickness.part(0.95)
+    thin, few = thickness.part(0.05)
     few = few if mesh.quadratic is None else few / 2  # an element is two of the mesh's edges wide
     across, flat = "thickness", ""
     if body.thickness is not None:
