@@ -132,8 +132,9 @@ class ServoBus(Bus):
         return np.flatnonzero(jumped & self._holding).tolist()
 
     def _join_readings(self, first: Reading, second: Reading, jumped: list[int]) -> Reading:
-        """Return the second reading; motors silent in it keep their first one, unless they jumped in that."""
+        """Return the second reading; motors silent or jumped in it keep their first one, unless they jumped in that."""
         silent = second.stamps == self._last.stamps
+        silent[self._find_jumped(second)] = True
         silent[jumped] = False
         names = ("angles", "currents", "temperatures", "volts", "stamps")
         joined = {name: np.where(silent, getattr(first, name), getattr(second, name)) for name in names}

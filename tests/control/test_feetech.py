@@ -179,6 +179,22 @@ def test_a_motor_that_is_silent_when_asked_again_keeps_its_first_answer() -> Non
     assert reading.angles == pytest.approx([before.angles[0], truth], abs=2 * TICK)
 
 
+def test_noise_in_the_second_answer_alone_is_no_lost_count() -> None:
+    """Motor 1 jumps in the first answer, motor 2 in the second: each has one that is right."""
+    hand = Hand()
+    hand.link.identify()
+    hand.link.arm()
+    hand.go(0.02, 0.5)
+    heard, length = hand.bus.read().angles, len(pack(1, 0, bytes(15)))
+    false = (40_000).to_bytes(2, "little") + bytes(13)
+    parts = [lambda data: pack(1, 0, false) + data[length:], lambda data: data[:length] + pack(2, 0, false)]
+    hand.chain.back = lambda data: parts.pop(0)(data) if parts and data else data
+    reading = hand.bus.read()
+    assert not parts
+    assert not hand.bus.lost_position
+    assert reading.angles == pytest.approx(heard, abs=2 * TICK)
+
+
 def test_its_torque_is_bounded_by_the_servo() -> None:
     hand = Hand()
     hand.link.identify()
