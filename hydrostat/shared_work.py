@@ -70,7 +70,8 @@ def _work_aside(work: Callable[[Any], Any], items: Sequence[Any], writer: int, k
     """Work in the copied process: send the answers one by one, and end without any cleaning up."""
     try:
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            signal.signal(number, signal.SIG_DFL)
+            if signal.getsignal(number) != signal.SIG_IGN:
+                signal.signal(number, signal.SIG_DFL)
         with os.fdopen(writer, "wb") as pipe:
             for item in items:
                 try:
@@ -88,11 +89,16 @@ def _work_aside(work: Callable[[Any], Any], items: Sequence[Any], writer: int, k
 
 
 def _read_answer(pipe: io.BufferedReader, known: Sequence[object]) -> tuple[bool, Any] | None:
-    """Read one answer; None if the other process ended before it was whole."""
+    """Read one answer; None if the other process ended before it was whole, or it cannot be made again here."""
     head = pipe.read(8)
     size = struct.unpack("<Q", head)[0] if len(head) == 8 else 0
     content = pipe.read(size)
-    return _TrialUnpickler(io.BytesIO(content), known).load() if size and len(content) == size else None
+    if not size or len(content) != size:
+        return None
+    try:
+        return _TrialUnpickler(io.BytesIO(content), known).load()
+    except Exception:  # noqa: BLE001  # an error with arguments of its own: the work is done here, and raises it
+        return None
 
 
 class _TrialPickler(pickle.Pickler):

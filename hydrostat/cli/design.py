@@ -171,13 +171,13 @@ def _write(network: "Network", out: Path, *, kit: bool, budget: float | None) ->
     def write() -> None:
         with result_folder(out, stale=STALE, kept=RECORDS) as folder:
             write_results(network, folder)
+        Kit.forget_files(out / "kit")
 
     began = time.perf_counter()
     work: list[Callable[[], Kit | None]] = [write, lambda: make_kit(network, budget=budget)]
     with progress_bar() as progress:
         progress("Writing results", 0, 1)
         *_, made = map_in_order(lambda piece: piece(), work if kit else work[:1], cores=THREADS)
-        Kit.forget_files(out / "kit")
         if made is not None:
             made.write(out / "kit")
         progress("Writing results", 1, 1)

@@ -58,6 +58,22 @@ def test_an_error_is_raised_in_its_turn() -> None:
         next(results)
 
 
+def test_an_error_with_arguments_of_its_own_is_raised_as_it_is() -> None:
+    """Such an error cannot be made again from its text alone."""
+
+    class OddError(Exception):
+        def __init__(self, text: str, number: int) -> None:
+            super().__init__(text)
+
+    def fail(item: int) -> int:
+        if item:
+            raise OddError("odd", item)
+        return item
+
+    with pytest.raises(OddError, match="odd"):
+        list(map_in_order(fail, range(2), cores=2))
+
+
 def test_work_of_a_process_that_was_killed_is_done_here() -> None:
     own = os.getpid()
 
