@@ -62,10 +62,15 @@ def read_pose(
 ) -> "Photo":
     """Return a photograph with the pose in its name; options replace the contractions and the masses in it."""
     from hydrostat.camera import Photo
+    from hydrostat.errors import InputError
 
     photo = Photo(file=file, contractions={}, masses={})
     if "=" in file.stem and not (contract and load):
-        photo = Photo.read_all([file], robot)[0]
+        try:
+            photo = Photo.read_all([file], robot)[0]
+        except InputError:  # no pose: the options tell it
+            if not (contract or load):
+                raise
     if contract:
         photo = replace(photo, contractions=contractions(robot, contract))
     if load:

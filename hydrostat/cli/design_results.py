@@ -111,7 +111,7 @@ def designed_cost(robot: "Robot", folder: Path) -> "BuildCost | None":
             card = json.loads((place / "score.json").read_text(encoding="utf-8"))
             for made in (card, *card["alternatives"]):
                 if made["robot"] == own:
-                    return BuildCost(**made["craft"])
+                    return BuildCost.from_values(made["craft"])
     return None
 
 

@@ -66,7 +66,7 @@ _FILE_ENDINGS = (
 )  # endings of files, which no new output folder has
 
 
-def require_folder(out: Path, *, shared: bool = False) -> None:
+def require_folder(out: Path, *, shared: bool = False, option: str = "--out") -> None:
     """Before long work begins: the results can go there, and what killed runs left unfinished there is cleared.
 
     Raises:
@@ -77,14 +77,14 @@ def require_folder(out: Path, *, shared: bool = False) -> None:
 
     if out.suffix.lower() in _FILE_ENDINGS and not out.exists():
         raise InputError(
-            f"--out {out}: {out.suffix} is the ending of a file. Name a folder, e.g. {out.with_suffix('')}."
+            f"{option} {out}: {out.suffix} is the ending of a file. Name a folder, e.g. {out.with_suffix('')}."
         )
     for folder in (out, out.parent):
         clear_unfinished(folder)
     for folder in (out, *out.parents):
         if folder.exists() and not folder.is_dir():
-            raise InputError(f"--out {out}: {'' if folder == out else f'{folder} '}is a file. Name a folder.")
-    require_writable(out, f"--out {out}")
+            raise InputError(f"{option} {out}: {'' if folder == out else f'{folder} '}is a file. Name a folder.")
+    require_writable(out, f"{option} {out}")
     if not shared:
         hold_folder(out)
 

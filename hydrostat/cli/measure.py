@@ -83,7 +83,7 @@ def measure(
     for file in (each for each in (sheet, out) if each is not None):
         require_writable(file.parent, str(file))
     if check is not None:
-        require_folder(check)
+        require_folder(check, option="--check")
     require_files(photos or [])
     loaded = read_robot(robot)
     options = photo_options(tag, height, lens)

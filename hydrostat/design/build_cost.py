@@ -1,7 +1,9 @@
 """`BuildCost`: what it takes to sew and to motorise a network, in plain units."""
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -37,6 +39,18 @@ class BuildCost:
             f"{plural(self.holes, 'hole')}{crossed}, {self.minutes:.0f} min of {self.work}, {self.price:.0f} USD "
             f"({plural(self.motors, 'motor')}, power, cables)"
         )
+
+    @classmethod
+    def from_values(cls, values: Mapping[str, Any]) -> "BuildCost":
+        """Cost of the values of a file (ValueError, TypeError: they are none)."""
+        cost = cls(**values)
+        texts = (cost.motor, cost.work)
+        numbers = [value for name, value in vars(cost).items() if name not in ("motor", "work")]
+        if not all(isinstance(text, str) for text in texts):
+            raise ValueError("a text is none")
+        if any(isinstance(number, bool) or not 0 <= number < math.inf for number in numbers):
+            raise ValueError("a number is none, or negative")
+        return cost
 
     @property
     def as_values(self) -> dict[str, float | int | str]:

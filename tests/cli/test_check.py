@@ -241,3 +241,8 @@ def test_a_robot_of_a_design_costs_what_the_design_printed(check: Check, tmp_pat
     (line,) = [line for line in check(tmp_path / "robot") if line.startswith("build:")]
     assert line == f"build: {cost}. Whole kit: hydrostat fabricate --summary"
     assert "243 USD" in line
+    for wrong in (None, "243", float("nan"), -7.0):
+        card["craft"]["price"] = wrong
+        (tmp_path / "score.json").write_text(json.dumps(card))
+        (line,) = [line for line in check(tmp_path / "robot") if line.startswith("build:")]
+        assert "more if poses need" in line

@@ -67,3 +67,4 @@ def test_options_of_compare_replace_their_part_of_the_name_alone(starfish: Path)
     pulled = read_pose(robot, file, contract=[f"{winch}=5mm"])
     assert (pulled.contractions, pulled.masses) == ({winch: 0.005}, {marker: 0.05})
     assert read_pose(robot, Path("photo.jpg")).contractions == {}
+    assert read_pose(robot, Path("photo_v=2.jpg"), contract=[f"{winch}=5mm"]).contractions == {winch: 0.005}
