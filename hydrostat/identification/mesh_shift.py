@@ -54,8 +54,9 @@ def estimate_mesh_shift(
 
 
 def choose_rows(measurements: Measurements) -> np.ndarray:
-    """Indices of up to eight rows, evenly spread."""
-    return np.unique(np.linspace(0, len(measurements.commands) - 1, ROWS).astype(int))
+    """Indices of up to eight rows, evenly spread, and of as many with hung masses, which alone may show the modulus."""
+    spread = np.linspace(0, len(measurements.commands) - 1, ROWS).astype(int)
+    return np.union1d(spread, np.flatnonzero(measurements.hung_masses.any(axis=1))[:ROWS])
 
 
 def _refine(robot: Robot) -> Robot | None:
