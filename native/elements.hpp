@@ -77,12 +77,14 @@ template <bool THIN> INLINE Squeeze squeeze(Lanes change, Lanes mu, Lanes lame) 
     const Lanes log_j = log1p(change);
     if constexpr (!THIN) return {log_j, 0.5 * lame * log_j * log_j, lame * log_j, lame};
     else {
-        const Lanes zero{}, J = 1.0 + change;
-        Lanes w = where(change > zero, -change * (2.0 + change) / (J * J), zero), log = log1p(w);
+        const Lanes zero{}, J = 1.0 + change, low = all(-1.0 + 1e-15);  // from J = 3e7 on w is -1 but for rounding
+        Lanes w = where(change > zero, -change * (2.0 + change) / (J * J), zero);
+        w = where(w > low, w, low);
+        Lanes log = log1p(w);
         for (int step = 0; step < 60; step++) {
             const Lanes steep = mu + 0.5 * lame / (1.0 + w);
             const Lanes move = (mu * w + lame * (log_j + 0.5 * log)) / where(steep > zero, steep, all(1.0));
-            w -= move, log = log1p(w);
+            w = where(w - move > low, w - move, low), log = log1p(w);
             if (!any(absolute(move) > 1e-15 * (1.0 + absolute(w)))) break;
         }
         const Lanes stretched = log_j + 0.5 * log, twice = 2.0 * (1.0 + w) * mu, both = twice + lame;

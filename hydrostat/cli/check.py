@@ -240,7 +240,7 @@ def _body_lines(body: "Body") -> list[str]:
         *(_part_line(body, index) for index in range(len(body.parts))),
         *([f"body with its parts: {_mass_text(body.mass)}"] if body.parts else []),
         f"{across} from {1e3 * thin:.0f} mm ({few:.1f} elements across){flat}; {angle}",
-        *_plane_lines(body, thickness.part(0.5)[0]),
+        *_plane_lines(body),
     ]
 
 
@@ -257,15 +257,17 @@ def _material_name(material: "Material") -> str:
     return "custom material"
 
 
-def _plane_lines(body: "Body", width: float) -> list[str]:
-    """Freedom of a flat body across its plane, and the difference that it makes if the body is thinner than wide."""
+def _plane_lines(body: "Body") -> list[str]:
+    """Freedom of a flat body across its plane, and the difference that it makes where plane stress is nearer."""
+    from hydrostat.robot import choose_plane
+
     if body.thickness is None:
         return []
     share = f"with {100 * body.material.poisson**2:.0f} % less force"
     if body.plane == "stress":
         return [f"plane stress: free to become thicker, bends {share} than in plane strain"]
     words = "plane strain: as thick everywhere as at rest"
-    return [f'{words}; plane = "stress" would bend {share}' if body.thickness < width else words]
+    return [f'{words}; plane = "stress" would bend {share}' if choose_plane(body) == "stress" else words]
 
 
 def _part_line(body: "Body", index: int) -> str:

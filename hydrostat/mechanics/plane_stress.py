@@ -42,11 +42,12 @@ def thickening_works(
 def solve_thickening(change: Vector, mu: Vector, lame: Vector) -> Vector:
     """Return s^2 - 1 without stress across the plane, at a change of area J - 1; by Newton's method from below."""
     log = np.log1p(np.maximum(change, -1.0 + 1e-12))
-    found = np.where(log > 0, np.expm1(-2 * log), 0.0)  # left of the root of a concave function
+    least = -1.0 + 1e-15
+    found = np.where(log > 0, np.maximum(np.expm1(-2 * log), least), 0.0)  # left of the root of a concave function
     most_steps = 60
     for _ in range(most_steps):
         step = (mu * found + lame * (log + 0.5 * np.log1p(found))) / (mu + 0.5 * lame / (1.0 + found))
-        found = found - step
+        found = np.maximum(found - step, least)
         if (np.abs(step) <= 1e-15 * (1.0 + np.abs(found))).all():
             break
     return found

@@ -141,7 +141,7 @@ def footer(network: Network, facts: Mapping[str, object]) -> Html:
     words = (
         "How the errors were computed: for each pose, inverse kinematics finds the contractions of the network's own "
         "winches; the body's equilibrium under these cables is solved by finite elements "
-        f"(Neo-Hookean{', plane strain' if network.robot.body.mesh.dim == 2 else ''}); "
+        f"(Neo-Hookean{f', plane {network.robot.body.plane}' if network.robot.body.mesh.dim == 2 else ''}); "
         "an error is the distance from a marker to its target there; rms is the root of the mean of the squared errors."
     )
     rows = [(name, tag("code", value)) for name, value in {**known, **facts}.items()]

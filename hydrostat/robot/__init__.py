@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from hydrostat.robot.scaled import scaled_robot
     from hydrostat.robot.sensor import Sensor, SensorKind
     from hydrostat.robot.sheet import Membrane, SheetSide
-    from hydrostat.robot.sketch import sketch_robot
+    from hydrostat.robot.sketch import choose_plane, sketch_robot
     from hydrostat.robot.sketch_space import SurfaceSketch, inflate_outline, sketch_mesh
     from hydrostat.robot.tables_file import TablesFile
     from hydrostat.robot.winch import Mount, Winch
@@ -85,6 +85,7 @@ __all__ = [
     "Volume",
     "Winch",
     "check_winch_bodies",
+    "choose_plane",
     "closed_mesh",
     "comments",
     "describe_cable_side",
