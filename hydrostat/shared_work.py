@@ -22,7 +22,9 @@ def map_in_order(
     """Yield the results of some work in the order of its items, every other one computed by a second process.
 
     Results depend on their items alone, so they are the same for one core and for two, byte for byte. The second
-    process begins as a copy of this one. Close the iterator where not all results are needed, which ends that process.
+    process begins as a copy of this one, without the threads of its libraries: work must use none that has some, such
+    as typst, which would wait for them forever. Close the iterator where not all results are needed, which ends that
+    process.
 
     Args:
         work: computes a result, or raises; the error is raised here in its turn.

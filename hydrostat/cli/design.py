@@ -163,22 +163,17 @@ def _search(
 
 
 def _write(network: "Network", out: Path, *, kit: bool, budget: float | None) -> "Kit | None":
-    """Write the results, with the kit if wanted, on two cores if there are, and print the seconds that this took."""
+    """Write the results, with the kit if wanted, and print the seconds that this took."""
     from hydrostat.fabrication import Kit
-    from hydrostat.kernel import THREADS
-    from hydrostat.shared_work import map_in_order
 
-    def write() -> None:
+    began, made = time.perf_counter(), None
+    with progress_bar() as progress:
+        progress("Writing results", 0, 1)
         with result_folder(out, stale=STALE, kept=RECORDS) as folder:
             write_results(network, folder)
         Kit.forget_files(out / "kit")
-
-    began = time.perf_counter()
-    work: list[Callable[[], Kit | None]] = [write, lambda: make_kit(network, budget=budget)]
-    with progress_bar() as progress:
-        progress("Writing results", 0, 1)
-        *_, made = map_in_order(lambda piece: piece(), work if kit else work[:1], cores=THREADS)
-        if made is not None:
+        if kit:
+            made = make_kit(network, budget=budget)
             made.write(out / "kit")
         progress("Writing results", 1, 1)
     print(f"results written in {time.perf_counter() - began:.1f} s", file=sys.stderr, flush=True)
