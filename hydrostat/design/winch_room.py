@@ -223,7 +223,9 @@ def _no_room(robot: Robot, constraints: Constraints, cables: int, winches: int) 
     scale = _least_scale(lambda scale: _has_room(robot, box, winches, scale))
     sizes = f"{_round_up(1e3 * scale * body.mesh.size):g} mm long"
     if body.thickness is not None:
-        sizes += f" and {_round_up(1e3 * scale * body.thickness):g} mm thick"
+        thick = 1e-3 * _round_up(1e3 * scale * body.thickness)
+        alone = _has_room(replace(robot, body=replace(body, thickness=thick)), box, winches, 1.0)
+        sizes = f"{1e3 * thick:g} mm thick" if alone else f"{sizes} and {1e3 * thick:g} mm thick"
     count = plural(winches, "motor") if winches > 1 else "the motor"
     return f"body: no room for {count} (smallest: {smallest}). Make it at least {sizes}. {lift}"
 

@@ -31,13 +31,16 @@ class StuffedMotion:
 
     @property
     def warning(self) -> str | None:
-        """Warning of cables on one side that bend the body out of its plane; None where a quarter of the move is more.
+        """Warning of a stuffed body that leaves its plane; None where that is a quarter of the move at most.
 
-        Motion out of the plane is in no flat model, and no flat design counts it.
+        Motion out of the plane is in no flat model, and no flat design counts it. Pairs keep a body in its plane unless
+        limbs get much shorter.
         """
-        most = 0.25  # share of the displacement in the flat model; pairs stay within a millimeter of the plane
-        if self.face.flat or self.out <= most * self.moved:
+        most = 0.25  # share of the displacement in the flat model
+        if self.out <= most * self.moved:
             return None
+        if self.face.flat:
+            return f"stuffed body: {self}. The flat model does not hold for so strong a pull. Choose nearer targets"
         return (
             f"cables {self.face.words}: they bend the stuffed body {1e3 * self.out:.0f} mm out of plane, where the "
             f'flat model moves {1e3 * self.moved:.0f} mm in it. Set face = "pairs" above [body] to sew on both panels'

@@ -206,6 +206,20 @@ def test_a_body_of_the_size_that_an_error_names_has_room(thickness: float) -> No
     assert find_no_room(body_of(scale)) is None
 
 
+def test_a_thin_body_with_room_otherwise_need_only_be_thicker() -> None:
+    """Oracle: the same search for room in the thicker body; none in one 10 % thinner."""
+
+    def body_of(thickness: float) -> Robot:
+        body = mesh_body(strip_mesh(8, 4, size=(0.2, 0.1)), thickness=thickness)
+        return replace(strip_robot(), cables=(), winches=(), markers=(), body=body)
+
+    found = re.search(r"Make it at least (\d+) mm thick\.", find_no_room(body_of(0.008)) or "")
+    assert found is not None
+    thick = 1e-3 * float(found[1])
+    assert find_no_room(body_of(thick)) is None
+    assert find_no_room(body_of(0.9 * thick)) is not None
+
+
 def test_winches_outside_need_no_room(unchecked: None) -> None:
     assert find_no_room(gallery_robot("cupping_hand")) is None
 

@@ -18,6 +18,7 @@ def test_cables_on_both_faces_or_between_them_keep_a_body_flat(face: str, unchec
     assert 0.0 <= found.out <= 1e-3
     assert found.face is CableSide(face)
     assert found.warning is None
+    assert "The flat model does not hold" in (replace(found, out=0.3 * found.moved).warning or "")
 
 
 def test_one_face_curls_it_and_the_most_of_all_poses_is_told(unchecked: None) -> None:
