@@ -100,7 +100,7 @@ def _print_judgement(robot: "Robot", curled: str | None) -> None:
         found.append(Diagnostic(text=words, weight=Severity.MIND, places=()))
     found += [Diagnostic(text=curled, weight=Severity.MIND, places=())] if curled else []
     for finding in found:
-        print(f"{FINDINGS[finding.weight]}: {in_words(finding.text)}")
+        print(f"{finding.weight.word}: {in_words(finding.text)}")
     refused, risky = (sum(one.weight is weight for one in found) for weight in (Severity.REFUSED, Severity.MIND))
     missing = "" if robot.cables else " (body only: no cables yet)"
     print(f"{'' if refused else 'OK: '}{plural(refused, 'error')}, {plural(risky, 'warning')}{missing}.")
@@ -121,10 +121,6 @@ def print_sewing(body: "Body") -> tuple[str, ...]:
     if not sewing.problems:
         print(f"skin: {sewing}")
     return sewing.problems
-
-
-FINDINGS = {"refused": "error", "limit": "note", "mind": "warning"}
-"""Beginning of the line of a finding, by its weight."""
 
 
 def _print_compliance(robot: "Robot") -> None:

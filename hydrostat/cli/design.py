@@ -18,9 +18,9 @@ from hydrostat.cli.design_results import (
     STALE,
     find_over_budget,
     find_refused_better,
-    make_kit,
     print_front,
     print_poses,
+    write_kit,
     write_results,
 )
 from hydrostat.cli.fabricate import print_kit
@@ -166,15 +166,13 @@ def _write(network: "Network", out: Path, *, kit: bool, budget: float | None) ->
     """Write the results, with the kit if wanted, and print the seconds that this took."""
     from hydrostat.fabrication import Kit
 
-    began, made = time.perf_counter(), None
+    began = time.perf_counter()
     with progress_bar() as progress:
         progress("Writing results", 0, 1)
         with result_folder(out, stale=STALE, kept=RECORDS) as folder:
             write_results(network, folder)
         Kit.forget_files(out / "kit")
-        if kit:
-            made = make_kit(network, budget=budget)
-            made.write(out / "kit")
+        made = write_kit(network, out / "kit", budget=budget) if kit else None
         progress("Writing results", 1, 1)
     print(f"results written in {time.perf_counter() - began:.1f} s", file=sys.stderr, flush=True)
     return made

@@ -9,12 +9,15 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from hydrostat.design import Alternative, BuildCost, Constraints, Network
     from hydrostat.fabrication import Kit, KitOptions
     from hydrostat.ik import IKResult
     from hydrostat.robot import Robot
 
 _Value = TypeVar("_Value", float, str)
+_Taken = TypeVar("_Taken")
 STALE = r"alternatives/\d+_\d+_winches_\d+_cables"  # folders of alternatives of an earlier design
 
 
@@ -39,13 +42,15 @@ def alternative_folder(out: Path, number: int, robot: "Robot") -> Path:
     return out / "alternatives" / f"{number:02d}_{len(robot.winches)}_winches_{len(robot.cables)}_cables"
 
 
-def make_kit(network: "Network", *, budget: float | None) -> "Kit":
-    """Make the fabrication kit, with problems listed. Its poses keep to the design's tension."""
+def write_kit(network: "Network", folder: Path, *, budget: float | None) -> "Kit":
+    """The fabrication kit, with problems listed. Its poses keep to the design's tension."""
     from hydrostat.camera import tag_files
     from hydrostat.fabrication import build_kit
 
     robot, options = network.robot, kit_options(network, budget)
-    return build_kit(robot, options=options, added=tag_files(robot, options.paper))
+    kit = build_kit(robot, options=options, added=tag_files(robot, options.paper))
+    kit.write(folder)
+    return kit
 
 
 def kit_options(network: "Network", budget: float | None) -> "KitOptions":
@@ -103,30 +108,26 @@ def designed_motor(robot: "Robot", folder: Path) -> str:
 def designed_cost(robot: "Robot", folder: Path) -> "BuildCost | None":
     """The cost to build that a design computed for a robot, with the motors of its poses; None without a design."""
     from hydrostat.design import BuildCost
+
+    return _of_design(robot, folder, lambda _, network: BuildCost.from_values(network["craft"]))
+
+
+def _design_value(robot: "Robot", folder: Path, name: str, kind: "type[_Value]") -> "_Value | None":
+    """A value of the design that made a robot; None where there is no such design or no such value."""
+    return _of_design(robot, folder, lambda card, _: None if card[name] is None else kind(card[name]))
+
+
+def _of_design(robot: "Robot", folder: Path, take: "Callable[[Any, Any], _Taken]") -> "_Taken | None":
+    """Value taken from score.json and the network next to a robot; None where they are missing or wrong."""
     from hydrostat.robot import robot_hash
 
     own = robot_hash(robot)
     for place in (folder.resolve().parent, folder.resolve().parent.parent):
         with suppress(OSError, ValueError, KeyError, TypeError):
             card = json.loads((place / "score.json").read_text(encoding="utf-8"))
-            for made in (card, *card["alternatives"]):
-                if made["robot"] == own:
-                    return BuildCost.from_values(made["craft"])
-    return None
-
-
-def _design_value(robot: "Robot", folder: Path, name: str, kind: "type[_Value]") -> "_Value | None":
-    """A value of the design that made a robot; None where there is no such design or no such value."""
-    from hydrostat.robot import robot_hash
-
-    own = robot_hash(robot)
-    for place in (folder.resolve().parent, folder.resolve().parent.parent):
-        try:
-            card = json.loads((place / "score.json").read_text(encoding="utf-8"))
-            if own in {card["robot"], *(other["robot"] for other in card["alternatives"])}:
-                return None if card[name] is None else kind(card[name])
-        except (OSError, ValueError, KeyError, TypeError):
-            continue
+            for network in (card, *card["alternatives"]):
+                if network["robot"] == own:
+                    return take(card, network)
     return None
 
 
@@ -203,7 +204,6 @@ def _print_findings(network: "Network") -> tuple[str, ...]:
 
     Few elements across a limb are a note where they move the markers less than the build tolerances do.
     """
-    from hydrostat.cli.check import FINDINGS
     from hydrostat.design import review_robot
     from hydrostat.errors import in_words
     from hydrostat.fabrication import Demand
@@ -216,7 +216,7 @@ def _print_findings(network: "Network") -> tuple[str, ...]:
         if moved < network.expected_error:
             print(f"note: few elements across a limb: {words}")
         else:
-            print(f"{FINDINGS[finding.weight]}: {in_words(finding.text)}{words and f': {words}'}")
+            print(f"{finding.weight.word}: {in_words(finding.text)}{words and f': {words}'}")
     return tuple(finding.text for finding in found)
 
 

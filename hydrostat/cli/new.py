@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from hydrostat.cli.bounded import run_bounded
-from hydrostat.cli.check import FINDINGS, print_sewing
+from hydrostat.cli.check import print_sewing
 from hydrostat.cli.options import parse_optional, positive
 from hydrostat.cli.remedies import kit_warnings
 from hydrostat.cli.waiting import patiently
@@ -311,7 +311,7 @@ def _print_made(made: "Robot", name: Path, lines: list[str], *, chosen: bool, fr
         print(line)
     sewing = (NO_KIT + reason for reason in print_sewing(made.body))
     for reason in (*sewing, *(() if from_gallery else kit_warnings(made))):
-        print(f"{FINDINGS['mind']}: {in_words(reason)}")
+        print(f"warning: {in_words(reason)}")
     scaled = made.body.size is not None
     origin = (
         "from the center of the drawing" if flat else "in the scaled body" if scaled else "as in the file of the body"
@@ -353,7 +353,7 @@ def _commented_text(robot: "Robot", source: str) -> str:
     )
     notes = {
         "[body]": "# The body. A smaller element_size is finer but slower; `hydrostat materials` lists materials.",
-        'plane = "stress"': '# The body becomes thicker where it is squeezed. "strain": it stays as thick as it is.',
+        'plane = "stress"': '# Plane stress: thicker where it is squeezed. "strain": as thick everywhere as at rest.',
         "[[pin]]": "# The pin holds all nodes within `radius` of `at`, or in its `box`.",
         "[[winch]]": "# A winch takes in up to `travel` of its cables' length, and lets out up to `release`.",
         "[[cable]]": "# A cable runs from its winch, the first point, to its stopper, the last.",

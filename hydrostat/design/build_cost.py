@@ -44,12 +44,9 @@ class BuildCost:
     def from_values(cls, values: Mapping[str, Any]) -> "BuildCost":
         """Cost of the values of a file (ValueError, TypeError: they are none)."""
         cost = cls(**values)
-        texts = (cost.motor, cost.work)
         numbers = [value for name, value in vars(cost).items() if name not in ("motor", "work")]
-        if not all(isinstance(text, str) for text in texts):
-            raise ValueError("a text is none")
-        if any(isinstance(number, bool) or not 0 <= number < math.inf for number in numbers):
-            raise ValueError("a number is none, or negative")
+        if not isinstance(cost.motor, str) or any(isinstance(one, bool) or not 0 <= one < math.inf for one in numbers):
+            raise ValueError("not the cost of a design")
         return cost
 
     @property

@@ -19,6 +19,11 @@ class Severity(StrEnum):
     LIMIT = "limit"  # a limit that designs keep is not kept
     MIND = "mind"  # it may disappoint
 
+    @property
+    def word(self) -> str:
+        """Beginning of its line in a command's output."""
+        return {Severity.REFUSED: "error", Severity.LIMIT: "note", Severity.MIND: "warning"}[self]
+
 
 @dataclass(frozen=True, kw_only=True)
 class Place:
