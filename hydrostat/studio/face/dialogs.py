@@ -6,7 +6,7 @@ from pathlib import Path
 
 from nicegui import ui
 
-from hydrostat.studio.face.page import WindowPage, heading
+from hydrostat.studio.face.page import WindowPage, show_heading
 
 
 class SaveDialog:
@@ -16,7 +16,7 @@ class SaveDialog:
         """Build the dialogs of a window."""
         self._page, self._document = page, page.session.document
         with ui.dialog() as self._dialog, ui.card().classes("q-pa-md").style("min-width: 420px"):
-            heading("Save robot", 1)
+            show_heading("Save robot", 1)
             ui.label("A folder with robot.toml and the file of the body.").classes("studio-hint")
             self._folder = ui.input("Folder").classes("w-full").mark("save-folder")
             with ui.row().classes("w-full justify-end"):
@@ -76,7 +76,7 @@ class _Sure:
 
     def __init__(self) -> None:
         with ui.dialog() as self._dialog, ui.card().classes("q-pa-md").style("width: 480px"):
-            heading("Overwrite existing files?", 1)
+            show_heading("Overwrite existing files?", 1)
             self._words = ui.column().classes("w-full gap-2")
             with ui.row().classes("w-full justify-end"):
                 self._button("Cancel", "", "flat").mark("save-cancel")
@@ -103,7 +103,7 @@ async def may_leave(page: WindowPage) -> bool:
     if document.is_saved:
         return True
     with page.whole, ui.dialog() as dialog, ui.card().classes("q-pa-md"):
-        heading(f"Unsaved changes in {document.robot.name}", 1)
+        show_heading(f"Unsaved changes in {document.robot.name}", 1)
         ui.label("If you open another robot now, they are lost.").classes("studio-hint")
         with ui.row().classes("w-full justify-end items-center"):
             for words, answer, look in (
@@ -127,7 +127,7 @@ async def ask(
     """Ask a person of this window for a yes or no; a click beside it means no. Negative: something is lost by a yes."""
     look = "unelevated color=negative" if negative else "unelevated"
     with page.whole, ui.dialog() as dialog, ui.card().classes("q-pa-md"):
-        heading(title, 1)
+        show_heading(title, 1)
         ui.label(words).classes("studio-hint")
         with ui.row().classes("w-full justify-end"):
             ui.button(no, on_click=lambda: dialog.submit(False)).props(f'flat no-caps data-testid="{name}-no"')

@@ -127,7 +127,7 @@ def pressable(kind: str, action: Callable[[], Any], *, role: str = "button") -> 
     return field
 
 
-def heading(words: str, level: int = 2) -> ui.label:
+def show_heading(words: str, level: int = 2) -> ui.label:
     """Build the heading of a panel or dialog, level 1, or of a section."""
     label = ui.label(words).classes("studio-title" if level == 1 else "studio-section")
     return label.props(f'role="heading" aria-level="{level}"')

@@ -11,7 +11,7 @@ from nicegui import ui
 
 from hydrostat.errors import InputError
 from hydrostat.studio.face.guard import LOOPBACK
-from hydrostat.studio.face.page import heading
+from hydrostat.studio.face.page import show_heading
 
 LARGEST_CODE = 2900  # letters in a QR code; 2953 bytes fit
 _SHOW = "Show it, or write it on the board."
@@ -58,7 +58,7 @@ def share_dialog(links: Links, pack: Callable[[], str] | None = None) -> Callabl
         ui.dialog().props('aria-label="Share"') as dialog,
         ui.card().classes("q-pa-md gap-3").style("width: 520px; max-width: 92vw"),
     ):
-        heading("Share" if pack is not None else "Link for pupils", 1)
+        show_heading("Share" if pack is not None else "Link for pupils", 1)
         if links.work and links.are_local:
             hint = "These links open on this computer only. For others start hydrostat studio --class without --host."
             ui.label(hint).classes("studio-hint").props('data-testid="share-local"')
@@ -75,7 +75,7 @@ def share_dialog(links: Links, pack: Callable[[], str] | None = None) -> Callabl
                 continue
             with ui.column().classes("w-full gap-1"):
                 if links.watch:
-                    heading(words)
+                    show_heading(words)
                 if hint:
                     ui.label(hint).classes("studio-hint")
                 _link_box(words, link, name)
@@ -88,7 +88,7 @@ def share_dialog(links: Links, pack: Callable[[], str] | None = None) -> Callabl
     def show() -> None:
         robot.clear()
         with robot:
-            heading("Robot in a link")
+            show_heading("Robot in a link")
             try:
                 link = f"{links.home}{pack() if pack is not None else ''}"
             except InputError as error:

@@ -8,7 +8,7 @@ from hydrostat.errors import HydrostatError
 from hydrostat.project import Work
 from hydrostat.robot import gallery_folder, list_gallery, load_robot
 from hydrostat.studio.face.classroom import Classroom
-from hydrostat.studio.face.page import Toasts, heading, icon_button
+from hydrostat.studio.face.page import Toasts, icon_button, show_heading
 from hydrostat.studio.face.rooms import Room
 from hydrostat.studio.face.share import Links, share_dialog
 from hydrostat.studio.face.tour import STAGES
@@ -106,7 +106,7 @@ class _TeacherPage:
 
     def _hand_out_dialog(self) -> Callable[[], object]:
         with _named_dialog("Hand out") as dialog, ui.card().classes("q-pa-md gap-3 class-dialog"):
-            heading("Hand out a robot", 1)
+            show_heading("Hand out a robot", 1)
             ui.label("Everybody gets a copy. Undo brings their own robot back. New pupils start with it.").classes(
                 "studio-hint"
             )
@@ -138,7 +138,7 @@ class _TeacherPage:
 
     def _pack_dialog(self) -> Callable[[], object]:
         with _named_dialog("Take home") as dialog, ui.card().classes("q-pa-md gap-3 class-dialog"):
-            heading("Take home", 1)
+            show_heading("Take home", 1)
             ui.label("One .zip with a folder for each pupil. class.txt in it lists what could not be made.").classes(
                 "studio-hint"
             )

@@ -10,7 +10,7 @@ from hydrostat.project import WISH_RANGES, Paint, Wishes
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.designing.painter import COLORS, WORDS
 from hydrostat.studio.face.messages import sent_number
-from hydrostat.studio.face.page import WindowPage, heading, pressable
+from hydrostat.studio.face.page import WindowPage, pressable, show_heading
 
 SHORT = {Paint.KEEP_OUT: "No-cable zone", Paint.WINCH_ZONES: "Winch zone", Paint.STILL: "Keep rigid (sheathed)"}
 
@@ -22,7 +22,7 @@ CHOSEN = "Drag the zone to move it, or a handle to resize it. Press Delete to re
 def design_paint(page: WindowPage) -> None:
     """Build the section."""
     designer, document = page.session.designer, page.session.document
-    heading("Painted zones")
+    show_heading("Painted zones")
     buttons: dict[Paint, ui.element] = {}
     with ui.element("div").classes("studio-row").style("gap: 6px; align-items: stretch"):
         for paint, words in SHORT.items():

@@ -10,7 +10,7 @@ from hydrostat.studio.bell import Topic
 from hydrostat.studio.designing.charts import front_chart, growth_chart
 from hydrostat.studio.designing.design_work import Candidate
 from hydrostat.studio.designing.run import ProgressPoint, share_done, time_left
-from hydrostat.studio.face.page import WindowPage, heading, pressable
+from hydrostat.studio.face.page import WindowPage, pressable, show_heading
 from hydrostat.studio.face.panels.design_limits import design_limits, design_paint
 from hydrostat.studio.face.panels.design_method import design_method
 from hydrostat.studio.face.panels.finding_list import finding_list
@@ -20,7 +20,7 @@ from hydrostat.units import plural
 
 def design_panel(page: WindowPage) -> None:
     """Build the panel."""
-    heading("Design", 1)
+    show_heading("Design", 1)
     _poses(page)
     _counts(page)
     design_method(page)
@@ -28,7 +28,7 @@ def design_panel(page: WindowPage) -> None:
     _progress(page)
     design_paint(page)
     design_limits(page)
-    heading("Design review")
+    show_heading("Design review")
     finding_list(page, lambda: page.session.designer.shown_robot)
     with page.bottom:
         design_compare(page)
@@ -52,7 +52,7 @@ def _poses(page: WindowPage) -> None:
         if not names:
             _no_pose(page)
             return
-        heading("Poses to reach").style("margin-top: 0")
+        show_heading("Poses to reach").style("margin-top: 0")
         with ui.element("div").classes("row").style("gap: 6px"):
             for name in names:
                 kind = "design-pose" + (" design-pose-on" if name in on else "")
@@ -249,7 +249,7 @@ def design_compare(page: WindowPage) -> None:
 def _front(page: WindowPage, candidates: tuple[Candidate, ...]) -> None:
     designer = page.session.designer
     with ui.element("div").classes("design-front"):
-        heading(f"Error vs. {candidates[0].craft.work} time").style("margin: 0 0 8px")
+        show_heading(f"Error vs. {candidates[0].craft.work} time").style("margin: 0 0 8px")
         ui.html(front_chart(candidates, designer.trail, designer.chosen), sanitize=False).classes("w-full")
 
 

@@ -8,7 +8,7 @@ from hydrostat.robot import Winch
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.elements import Knob, winch_badge
 from hydrostat.studio.face.messages import sent_number
-from hydrostat.studio.face.page import WindowPage, heading
+from hydrostat.studio.face.page import WindowPage, show_heading
 from hydrostat.studio.face.panels.drive_strip import drive_strip, release_focus
 from hydrostat.studio.face.panels.edit_body import contact_switch, touch_label
 from hydrostat.studio.face.panels.motors_card import motors_card
@@ -25,7 +25,7 @@ def drive_panel(page: WindowPage) -> None:
         return
     driver = session.driver
     with ui.element("div").classes("studio-row"):
-        heading("Drive", 1)
+        show_heading("Drive", 1)
         ui.space()
         rest = ui.button("Rest", icon="restart_alt", on_click=page.doing(driver.rest), color=None)
         rest.props("flat dense no-caps").style("color: var(--accent)")
@@ -143,7 +143,7 @@ def _speed(page: WindowPage) -> None:
 
 def _no_cables(page: WindowPage) -> None:
     """Build the empty state of a robot without cables: the first steps."""
-    heading("Drive", 1)
+    show_heading("Drive", 1)
     with ui.element("div").classes("studio-card").style("display: flex; flex-direction: column; gap: 10px"):
         ui.label("No cables yet.")
         ui.label("Press Design to find winches and cables for the poses, or place them in Edit.").classes("studio-hint")

@@ -10,7 +10,7 @@ from hydrostat.studio.bell import Topic
 from hydrostat.studio.driving.film import FilmKind, film_kinds
 from hydrostat.studio.face.elements import TimelineView
 from hydrostat.studio.face.messages import sent_number
-from hydrostat.studio.face.page import WindowPage, heading, icon_button
+from hydrostat.studio.face.page import WindowPage, icon_button, show_heading
 from hydrostat.studio.session import Tone
 
 SPEEDS = {0.1: "0.1x", 0.25: "0.25x", 0.5: "0.5x", 1.0: "1x", 2.0: "2x", 4.0: "4x"}
@@ -185,7 +185,7 @@ def _tables(page: WindowPage) -> None:
 
     largest = 4_000_000  # no table is larger [bytes]
     with ui.dialog() as dialog, ui.card().classes("q-pa-md").style("min-width: 380px"):
-        heading("Import contractions", 1)
+        show_heading("Import contractions", 1)
         ui.label("A table with a column time_s and one for each winch by its name, in millimeters. It takes the place "
                  "of the keyframes; undo brings them back.").classes("studio-hint")  # fmt: skip
 

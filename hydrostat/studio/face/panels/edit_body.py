@@ -9,7 +9,7 @@ from hydrostat.robot import DIRECTIONS, MATERIALS, Source, direction_of
 from hydrostat.simulation import ContactPatch
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.editing.tools import Findings
-from hydrostat.studio.face.page import WindowPage, heading
+from hydrostat.studio.face.page import WindowPage, show_heading
 from hydrostat.studio.face.panels.edit_part import EditNumber
 from hydrostat.studio.face.panels.finding_list import finding_list
 from hydrostat.studio.stage import StageName
@@ -150,7 +150,7 @@ def _outline(page: WindowPage) -> None:
 def check_card(page: WindowPage) -> None:
     """Build the card."""
     editor, document = page.session.editor, page.session.document
-    heading("Check")
+    show_heading("Check")
     with ui.column().classes("studio-card").style("gap: 6px; flex-shrink: 0").mark("edit-check"):
         counts = ui.column().classes("w-full").style("gap: 6px")
         finding_list(page, lambda: document.robot)

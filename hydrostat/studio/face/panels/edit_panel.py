@@ -13,7 +13,7 @@ from hydrostat.studio.editing.body_parts import RIGID, filling_of
 from hydrostat.studio.editing.part import Kind, find_part, keys_of
 from hydrostat.studio.editing.part_brush import region_color
 from hydrostat.studio.editing.tools import KEYS, Tool
-from hydrostat.studio.face.page import WindowPage, heading
+from hydrostat.studio.face.page import WindowPage, show_heading
 from hydrostat.studio.face.panels.edit_body import body_card, check_card
 from hydrostat.studio.face.panels.edit_part import EditNumber, chip, light, part_card
 from hydrostat.studio.shape_draft import Form
@@ -35,7 +35,7 @@ TOOLS = {  # icon, name and what to do with each tool
 
 def edit_panel(page: WindowPage) -> None:
     """Build the panel."""
-    heading("Edit", 1)
+    show_heading("Edit", 1)
     _tools(page)
     _mirror(page)
     _snap(page)
@@ -194,7 +194,7 @@ def parts_list(page: WindowPage) -> None:
     """Build the list."""
     editor, document = page.session.editor, page.session.document
     with ui.element("div").classes("studio-row"):
-        heading("Parts")
+        show_heading("Parts")
         ui.space()
         count = ui.label().classes("studio-hint studio-figure").style("margin-top: 8px")
     box = ui.column().classes("w-full").props('role="listbox" aria-label="Parts" aria-multiselectable="true"').style(

@@ -12,7 +12,7 @@ from hydrostat.studio.bell import Topic
 from hydrostat.studio.exporting.download import Download, file_name
 from hydrostat.studio.exporting.exporter import Export
 from hydrostat.studio.exporting.kit_work import KitMade
-from hydrostat.studio.face.page import WindowPage, heading
+from hydrostat.studio.face.page import WindowPage, show_heading
 from hydrostat.studio.face.panels.cable_faces import face_choice
 from hydrostat.studio.face.panels.finding_list import finding_list
 from hydrostat.studio.stage import StageName
@@ -23,7 +23,7 @@ OUTDATED = "Outdated: the robot has changed. Make it again."
 
 def export_panel(page: WindowPage) -> None:
     """Build the panel."""
-    heading("Export", 1)
+    show_heading("Export", 1)
     ui.label("Nothing is written to your disk until you download it.").classes("studio-hint")
     _kit_card(page)
     _report_card(page)
@@ -180,7 +180,7 @@ def _save_view(page: WindowPage) -> None:
 def _card(title: str, words: str) -> ui.column:
     card = ui.column().classes("studio-card")
     with card:
-        heading(title).style("margin-top: 0")
+        show_heading(title).style("margin-top: 0")
         ui.label(words).classes("studio-hint")
     return card
 
@@ -270,7 +270,7 @@ def _own_options(options: KitOptions) -> KitOptions:
 
 def _show_refusal(page: WindowPage) -> None:
     """Its reasons are among the findings above."""
-    refused = heading("Errors prevent the kit").props('data-testid="kit-refused"')
+    refused = show_heading("Errors prevent the kit").props('data-testid="kit-refused"')
     button = ui.button("Build anyway", on_click=page.doing(lambda: page.session.exporter.make_kit(force=True)))
     button.props("outline no-caps").classes("w-full").props('data-testid="make-forced"')
     ui.run_javascript(  # once it is drawn

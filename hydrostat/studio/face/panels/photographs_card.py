@@ -6,7 +6,7 @@ from functools import partial
 from nicegui import events, ui
 
 from hydrostat.studio.bell import Topic
-from hydrostat.studio.face.page import WindowPage, heading, icon_button
+from hydrostat.studio.face.page import WindowPage, icon_button, show_heading
 from hydrostat.studio.posing import MOST_BYTES, Mode, PhotographFit
 from hydrostat.studio.session import Tone
 from hydrostat.studio.stage import format_error
@@ -32,7 +32,7 @@ def photographs_card(page: WindowPage) -> None:
         page.act(photographs.compare)
 
     with ui.column().classes("w-full").style("gap: 6px") as room:
-        heading("Photographs")
+        show_heading("Photographs")
         with ui.element("div").classes("studio-card column").style("gap: 8px"):
             ui.label(HINT).classes("studio-hint")
             upload = ui.upload(
@@ -100,7 +100,7 @@ def _show_overlay(page: WindowPage, name: str) -> None:
         return
     with page.panel, ui.dialog(value=True) as dialog, ui.card().style("max-width: 92vw; gap: 8px"):
         with ui.element("div").classes("studio-row"):
-            heading(name, 1)
+            show_heading(name, 1)
             ui.space()
             icon_button("close", "Close", dialog.close)
         picture = base64.b64encode(found.overlay).decode()

@@ -6,7 +6,7 @@ from hydrostat.drawing import Color
 from hydrostat.project import fresh_name
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.elements import winch_badge
-from hydrostat.studio.face.page import WindowPage, heading, icon_button
+from hydrostat.studio.face.page import WindowPage, icon_button, show_heading
 from hydrostat.studio.face.panels.edit_body import contact_switch, touch_label
 from hydrostat.studio.face.panels.motors_card import motors_card
 from hydrostat.studio.face.panels.photographs_card import photographs_card
@@ -23,7 +23,7 @@ def muscles_card(page: WindowPage) -> None:
     """Build the switch; with cables there is none."""
     session, poser = page.session, page.session.poser
     with ui.column().classes("w-full").style("gap: 6px") as room:
-        heading("Muscles")
+        show_heading("Muscles")
         colors = ui.switch("Show muscle activation").props("dense").style("font-size: 13px").mark("pose-colors")
 
     def color(on: bool) -> None:
@@ -50,7 +50,7 @@ def pose_panel(page: WindowPage) -> None:
     """Build the panel."""
     poser = page.session.poser
     with ui.element("div").classes("studio-row"):
-        heading("Pose", 1)
+        show_heading("Pose", 1)
         ui.space()
         rest = ui.button("Rest", icon="restart_alt", on_click=page.doing(poser.rest), color=None)
         rest.props("flat dense no-caps").style("color: var(--accent)")
@@ -157,7 +157,7 @@ def bars_card(page: WindowPage) -> None:
     poser, document = page.session.poser, page.session.document
     with ui.column().classes("w-full").style("gap: 6px") as room:
         with ui.element("div").classes("studio-row"):
-            heading("Winches")
+            show_heading("Winches")
             ui.space()
             limit = ui.label().classes("studio-hint studio-figure").style("margin-top: 8px")
         box = ui.element("div").classes("studio-card").style("display: flex; flex-direction: column; gap: 10px")
@@ -223,7 +223,7 @@ def _fill(bar: ui.element, share: float, color: str) -> None:
 def poses_card(page: WindowPage) -> None:
     """Build the list."""
     poser, document = page.session.poser, page.session.document
-    heading("Poses")
+    show_heading("Poses")
     with ui.element("div").classes("studio-card").style("display: flex; flex-direction: column"):
         rows = ui.column().classes("w-full").style("gap: 2px")
         with ui.element("div").classes("studio-row"):
@@ -276,7 +276,7 @@ def _pose_row(page: WindowPage, name: str) -> None:
 def _ask_name(page: WindowPage, old: str) -> None:
     """Ask for another name of a pose."""
     with page.panel, ui.dialog(value=True) as dialog, ui.card().classes("q-pa-md").style("min-width: 300px"):
-        heading(f"Rename {old}", 1)
+        show_heading(f"Rename {old}", 1)
         name = ui.input(value=old).props('dense outlined autofocus aria-label="New name"').classes("w-full")
 
         def rename() -> None:
@@ -295,7 +295,7 @@ def reach_card(page: WindowPage) -> None:
     """Build the choice of a marker and what begins and ends the search."""
     poser, document = page.session.poser, page.session.document
     with ui.column().classes("w-full").style("gap: 6px") as room:
-        heading("Workspace")
+        show_heading("Workspace")
         with ui.element("div").classes("studio-row"):
             marker = ui.select([], label=None).props('dense outlined options-dense aria-label="Marker"')
             marker.classes("flex-1").style("min-width: 0").mark("pose-reach-marker")

@@ -4,7 +4,7 @@ from nicegui import ui
 
 from hydrostat.design import DesignMethod
 from hydrostat.studio.bell import Topic
-from hydrostat.studio.face.page import WindowPage, heading
+from hydrostat.studio.face.page import WindowPage, show_heading
 from hydrostat.studio.posing import Proposal
 from hydrostat.studio.stage import format_error
 from hydrostat.units import plural
@@ -13,7 +13,7 @@ from hydrostat.units import plural
 def proposals_card(page: WindowPage) -> None:
     """Build the card."""
     proposals, poser, document = page.session.poser.proposals, page.session.poser, page.session.document
-    heading("Proposed cables")
+    show_heading("Proposed cables")
     on = ui.switch("Propose cables while dragging").props("dense").style("font-size: 13px").mark("pose-propose")
     with ui.element("div").classes("studio-card column").style("gap: 6px") as card:
         with ui.element("div").classes("studio-row").style("min-height: 32px"):
