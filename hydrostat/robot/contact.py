@@ -66,13 +66,13 @@ def closed_mesh(content: bytes, file: str, *, unit: float = 1e-3) -> ClosedMesh:
     triangles = numbers.reshape(-1)[surface.triangles]
     whole = Surface(merged, triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)])
     if not Shell(whole.vertices, whole.triangles).is_closed:
-        raise InputError(f"{file}: is not closed, or its triangles do not all turn the same way; mend it first")
+        raise InputError(f"{file}: is not closed, or its triangles do not all turn the same way; repair it first")
     if whole.volume <= 0:
         raise InputError(f"{file}: is inside out; turn its triangles round")
     crossing = crossing_pairs(whole)
     if len(crossing):
         spot = ", ".join(f"{1e3 * x:.1f}" for x in whole.vertices[whole.triangles[crossing[0, 0]]].mean(axis=0))
-        raise InputError(f"{file}: runs through itself, for instance at ({spot}) mm; mend it first")
+        raise InputError(f"{file}: runs through itself, for instance at ({spot}) mm; repair it first")
     return ClosedMesh(file=file, content=content, surface=whole)
 
 

@@ -124,7 +124,7 @@ def test_an_object_may_have_parts() -> None:
         (block(triangles=SIDES[:-1]), "object.stl: is not closed"),
         (block(triangles=SIDES[:, ::-1]), "object.stl: is inside out"),
         (block(triangles=np.vstack([SIDES[:-1], SIDES[-1:, ::-1]])), "do not all turn the same way"),
-        (two_blocks(0.5), r"object.stl: runs through itself, for instance at \(.*\) mm; mend it first$"),
+        (two_blocks(0.5), r"object.stl: runs through itself, for instance at \(.*\) mm; repair it first$"),
         (b"solid nothing", "object.stl"),
         (b"", "object.stl: the file is empty"),
     ],
