@@ -214,7 +214,9 @@ class SpacePane(Pane):
             return
         spots = self.camera.see(MILLIMETERS * nodes)
         pixel, edge = self._pixel(sheet, spots), Color.mix(Color.INK, Color.PAPER, pale)
-        for part, facets in zip(self.robot.body.parts, find_part_facets(self.robot.body), strict=True):
+        body = self.robot.body
+        found = find_part_facets(body.mesh, body.element_materials, len(body.parts))
+        for part, facets in zip(body.parts, found, strict=True):
             color = Color.mix(Color.mix(Color.INK, Color.FELT, 0.3 if part.is_rigid else 0.7), Color.PAPER, pale)
             rings = [ring + self.shift for ring in Render.silhouette(spots, facets, pixel=pixel).rings()]
             if rings:

@@ -1,7 +1,6 @@
 """`find_part_elements`, `find_part_facets`: elements and surfaces of the parts of a body."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,9 +10,6 @@ from hydrostat.geometry import Mesh, locate
 from hydrostat.given import list_choices
 from hydrostat.robot.part import BodyPart
 from hydrostat.units import quote
-
-if TYPE_CHECKING:
-    from hydrostat.robot.body import Body
 
 
 def find_part_elements(
@@ -104,12 +100,19 @@ def _place(point: Float[np.ndarray, " dim"]) -> str:
     return "[" + ", ".join(f"{1e3 * value:.0f}" for value in point + 0.0) + "] mm"
 
 
-def find_part_facets(body: "Body") -> tuple[Int[np.ndarray, "_ 3"], ...]:
-    """Facets around each part of a body in space, seen from outside it; empty for a flat body."""
-    mesh, owners = body.mesh, body.element_materials
+def find_part_facets(
+    mesh: Mesh, owners: Int[np.ndarray, " elements"], count: int
+) -> tuple[Int[np.ndarray, "_ 3"], ...]:
+    """Facets around each of the parts of a body in space, seen from outside it; empty for a flat body.
+
+    Args:
+        mesh: mesh of the body.
+        owners: part of each element, counted from 1; 0 for the body itself.
+        count: number of parts.
+    """
     if mesh.dim == 2:
         return ()
-    return tuple(Mesh(mesh.nodes, mesh.elements[owners == index + 1]).boundary for index in range(len(body.parts)))
+    return tuple(Mesh(mesh.nodes, mesh.elements[owners == index + 1]).boundary for index in range(count))
 
 
 def find_rings(edges: Int[np.ndarray, "edges 2"]) -> Iterator[Int[np.ndarray, " _"]]:

@@ -14,8 +14,8 @@ from builders import strip_robot
 from hydrostat.design import DesignRequest, Network, RouteOptions, find_network
 from hydrostat.design.network import RouteTrace
 from hydrostat.design.routes import design_routes as search
+from hydrostat.design.routes.shared_work import can_share, map_in_order
 from hydrostat.robot import PoseTarget
-from hydrostat.shared_work import can_share, map_in_order
 
 POSES = (PoseTarget(name="up", targets={"tip": (0.18, 0.06)}),)
 QUICK = RouteOptions(starts=1, exchanges=1, refine_steps=2, trials=2, steps=2, max_edges=6)

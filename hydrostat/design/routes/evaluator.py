@@ -15,12 +15,12 @@ from hydrostat.design.routes.layout_values import Values, layout_values, read_la
 from hydrostat.design.routes.reach_from_rest import reach_from_rest
 from hydrostat.design.routes.search_record import SearchRecord, Step
 from hydrostat.design.routes.search_rules import RULES
+from hydrostat.design.routes.shared_work import map_in_order
 from hydrostat.design.spread import Columns, spread_columns
 from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.ik import IKOptions, solve_ik, spool_arms, usable_spans, workspace_extent
 from hydrostat.robot import PoseTarget, Robot
-from hydrostat.shared_work import map_in_order
 from hydrostat.simulation import BodyPhysics, CableSensitivities, Equilibrium, Simulation, cable_sensitivities
 
 Found = TypeVar("Found", bound="Trial | None")

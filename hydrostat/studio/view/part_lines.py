@@ -15,7 +15,7 @@ def find_part_lines(body: Body) -> tuple[Points, ...]:
     if body.mesh.dim == 2:
         return tuple(nodes[[*loop, loop[0]]] for loops in body.part_rings for loop in loops)
     lines = list[Points]()
-    for facets in find_part_facets(body):
+    for facets in find_part_facets(body.mesh, body.element_materials, len(body.parts)):
         corners = nodes[facets]
         for axis, middle in enumerate((corners.min(axis=(0, 1)) + corners.max(axis=(0, 1))) / 2):
             lines += _find_sections(nodes, facets, axis, float(middle))

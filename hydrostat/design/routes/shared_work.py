@@ -1,4 +1,4 @@
-"""`map_in_order`: independent pieces of work, shared by two processes, with the results of one."""
+"""`map_in_order`: independent pieces of a search, shared by two processes, with the results of one."""
 
 import io
 import os
