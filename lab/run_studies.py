@@ -29,6 +29,7 @@ STUDIES: dict[str, str] = {
     "gallery_poses/gallery_poses": "trunk",
     "grasping/causes": "caging_gripper --factors friction --step 8",
     "grasping/grasp": "caging_gripper --closings 1 --step 8",
+    "grasping/objects": "",
     "house/house": "--no-flows",
     "hysteresis_and_walking/walk": "--tries 2 --cycles 3",
     "ik_methods/ik_methods": "starfish --count 5",

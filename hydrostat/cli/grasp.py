@@ -18,17 +18,21 @@ if TYPE_CHECKING:
     from hydrostat.simulation import Equilibrium, Simulation
 
 
+GraspedObject = Annotated[
+    str,
+    typer.Option(
+        "--object",
+        metavar="SHAPE:SIZES",
+        help="Object shape and size: sphere:65mm, cylinder:40mm,120mm or box:40mm,40mm,60mm. Or a closed surface in "
+        "mm, oriented as in its file: mug.stl.",
+    ),
+]
+
+
 def grasp(
     robot: RobotFolder,
     out: OutFolder,
-    obstacle: Annotated[
-        str,
-        typer.Option(
-            "--object",
-            metavar="SHAPE:SIZES",
-            help="Object shape and size: sphere:65mm, cylinder:40mm,120mm or box:40mm,40mm,60mm.",
-        ),
-    ] = "sphere:65mm",
+    obstacle: GraspedObject = "sphere:65mm",
     pose: Annotated[
         str | None, typer.Option(metavar="NAME", help="Pose that closes the robot, instead of --contract.")
     ] = None,

@@ -19,9 +19,11 @@ Surface = tuple[Points, Int[np.ndarray, "triangles 3"]]  # places of its corners
 
 
 def object_surface(obstacle: Obstacle) -> Surface:
-    """The surface of an object that has an end, as a hull of points."""
+    """The surface of an object that has an end: its own if it is a mesh, else a hull of points."""
     from scipy.spatial import ConvexHull
 
+    if obstacle.mesh is not None:
+        return np.array(obstacle.at) + obstacle.mesh.surface.vertices, obstacle.mesh.surface.triangles
     points = _points(obstacle)
     triangles = ConvexHull(points).simplices
     corners = points[triangles]

@@ -1,6 +1,6 @@
 """Causes of a weak grasp: one factor at a time, by the force that pulls a tennis ball out.
 
-    python lab/grasping/causes.py [--step 6] [--factors friction modulus] [NAME ...]
+    python lab/grasping/causes.py [--step 6] [--factors friction modulus] [--closings 1 2 3 4] [NAME ...]
 
 Around one default (friction 0.5, foam of the gallery, 60 kPa) each row changes the closing, the cable force, Young's
 modulus, friction or the position of the ball. The last rows change several together. A row states the peak of the
@@ -32,7 +32,7 @@ from hydrostat.robot import Obstacle, Robot
 DEFAULTS = {"caging_gripper": 2.0, "cupping_hand": 1.0, "extended_hand": 1.0}
 """Factor of the contractions of the pose, as in decision 0033."""
 FACTORS = ("closing", "cable force", "modulus", "friction", "position", "together")
-CLOSINGS, FRICTIONS, MODULI, ASIDE = (1.0, 2.0, 3.0, 4.0), (0.3, 0.8, 1.2), (120e3, 240e3, 1200e3), 5e-3
+FRICTIONS, MODULI, ASIDE = (0.3, 0.8, 1.2), (120e3, 240e3, 1200e3), 5e-3
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -98,10 +98,10 @@ class Grasp:
             if ends:
                 return
 
-    def cases(self, factors: list[str]) -> Iterator[Case]:
+    def cases(self, factors: list[str], closings: list[float]) -> Iterator[Case]:
         """Yield all cases, the default first."""
         yield self.case("default", f"closing x {self.closing:g}, 60 kPa, friction 0.5")
-        for closing in CLOSINGS:
+        for closing in closings:
             if closing != self.closing:
                 yield self.case("closing", f"x {closing:g}", contractions=self.taken(closing))
         if "cable force" in factors:
@@ -131,13 +131,13 @@ def motor_for(robot: Robot, tension: float) -> str:
     return next((motor.key for motor in MOTORS if motor.largest_torque() >= torque), "none")
 
 
-def study(name: str, step: float, factors: list[str]) -> None:
+def study(name: str, step: float, factors: list[str], closings: list[float]) -> None:
     """Print the rows of one robot."""
     grasp = Grasp(name)
     options, default = PullOptions(direction=grasp.direction, step=step), None
     print(f"\n{name}, thesis {grasp.thesis} N\n")
     print("| factor | value | peak N | times the default | tightest cable N | motor | end | CPU s |\n|" + 8 * "---|")
-    for case in grasp.cases(factors):
+    for case in grasp.cases(factors, closings):
         if case.factor not in ("default", *factors):
             continue
         begin, row = time.process_time(), f"| {case.factor} | {case.value}"
@@ -161,10 +161,11 @@ def main() -> None:
     parser.add_argument("names", nargs="*", default=["caging_gripper", "cupping_hand"])
     parser.add_argument("--step", type=float, default=6.0, help="of the pull [mm]")
     parser.add_argument("--factors", nargs="+", default=list(FACTORS), choices=FACTORS)
+    parser.add_argument("--closings", type=float, nargs="+", default=[1.0, 2.0, 3.0, 4.0], help="times the pose's")
     given = parser.parse_args()
     print(machine())
     for name in given.names:
-        study(name, 1e-3 * given.step, given.factors)
+        study(name, 1e-3 * given.step, given.factors, given.closings)
 
 
 if __name__ == "__main__":

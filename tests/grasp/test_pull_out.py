@@ -2,15 +2,17 @@
 
 from dataclasses import replace
 from functools import cache
+from itertools import product
+from pathlib import Path
 
 import numpy as np
 import pytest
-from builders import gallery_robot, strip_robot
+from builders import box_mesh, gallery_robot, mesh_body, strip_robot
 
 from hydrostat.errors import InputError
 from hydrostat.grasp import PullOptions, PullOut, move_object, place_object, pull_bands, pull_out, read_object
 from hydrostat.mechanics import ObstacleEnergy
-from hydrostat.robot import Contact, Obstacle, Robot
+from hydrostat.robot import Cable, Contact, Obstacle, Pin, Robot, Winch
 
 pytestmark = pytest.mark.usefixtures("unchecked")
 
@@ -123,3 +125,34 @@ def test_a_place_near_the_closed_markers_is_clear_of_the_body() -> None:
     skin = robot.body.mesh.nodes[np.unique(robot.body.mesh.boundary)]
     assert placed.field()(skin).values.min() >= 2 * robot.contact_distance - 1e-12
     assert move_object(placed, np.zeros(3)).at == pytest.approx((0.0, 0.0, 0.0))
+
+
+def bar() -> Robot:
+    """A bar 200 x 30 x 50 mm, held at its left end, that curls up."""
+    stops = tuple((float(x), 0.015, 0.015) for x in np.linspace(0.01, 0.19, 7))
+    mesh = box_mesh((10, 1, 2), size=(0.2, 0.03, 0.05))
+    return Robot(
+        name="bar",
+        body=mesh_body(replace(mesh, nodes=mesh.nodes - (0.0, 0.0, 0.025))),
+        pins=(Pin(box=((-0.001, -1.0, -1.0), (0.001, 1.0, 1.0))),),
+        winches=(Winch(name="up", at=stops[0]),),
+        cables=(Cable(winch="up", points=stops),),
+        poses={},
+        contact=Contact(distance=2e-3),
+    )
+
+
+def test_a_block_from_a_file_is_pulled_like_a_box(tmp_path: Path) -> None:
+    """The same block as a surface file and as a box, at three places of the pull."""
+    corners = "".join(f"{x} {y} {z}\n" for x, y, z in product((0, 40), (0, 60), (0, 40)))
+    sides = ("0 1 3", "0 3 2", "4 6 7", "4 7 5", "0 4 5", "0 5 1", "2 3 7", "2 7 6", "0 2 6", "0 6 4", "1 5 7", "1 7 3")
+    path = tmp_path / "block.off"
+    path.write_text("OFF\n8 12 0\n" + corners + "".join(f"3 {side}\n" for side in sides))
+    place, options = np.array([0.14, 0.015, 0.06]), PullOptions(direction=(1.0, 0.0, 0.0), step=8e-3, travel=16e-3)
+    made, box = (
+        pull_out(bar(), move_object(read_object(text, 3, mass=0.05, friction=0.4), place), {"up": 0.045}, options)
+        for text in (str(path), "box:40mm,60mm,40mm")
+    )
+    assert box.peak > 0.05
+    assert made.forces == pytest.approx(box.forces, rel=0.01, abs=1e-3 * box.peak)
+    assert np.abs(made.forces + made.contact[:, 0]).max() < 1e-6

@@ -10,8 +10,24 @@ from hydrostat.plot import draw_portrait
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import SpacePane, object_surface
 from hydrostat.plot.picture_file import figure_pixels
-from hydrostat.robot import Membrane, Obstacle, Robot, get_material, rims
+from hydrostat.robot import Membrane, Obstacle, Robot, closed_mesh, get_material, rims
 from hydrostat.simulation import with_obstacles
+
+DENTED = """OFF
+9 14 0
+0 0 0
+40 0 0
+40 60 0
+0 60 0
+0 0 30
+40 0 30
+40 60 30
+0 60 30
+20 30 15
+3 0 2 1\n3 0 3 2\n3 0 1 5\n3 0 5 4\n3 1 2 6\n3 1 6 5\n3 2 3 7\n3 2 7 6\n3 3 0 4\n3 3 4 7
+3 4 5 8\n3 5 6 8\n3 6 7 8\n3 7 4 8
+"""
+"""A block whose top is dented to the middle: no hull of its points."""
 
 AT, TO = (0.01, 0.02, 0.03), (0.05, 0.08, 0.06)
 LONG = float(np.linalg.norm(np.subtract(TO, AT)))
@@ -23,6 +39,10 @@ VOLUMES = {
     ),
     "cylinder": (Obstacle(name="a", shape="cylinder", at=AT, to=TO, radius=0.02), np.pi * 0.02**2 * LONG),
     "box": (Obstacle(name="a", shape="box", at=AT, to=TO), 0.04 * 0.06 * 0.03),
+    "mesh": (
+        Obstacle(name="a", shape="mesh", at=AT, mesh=closed_mesh(DENTED.encode(), "dented.off")),
+        0.04 * 0.06 * 0.03 * 5 / 6,
+    ),
 }
 
 
