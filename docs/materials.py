@@ -11,36 +11,37 @@ INTRODUCTION = """\
 # Materials
 
 Printed by `python docs/materials.py` from `hydrostat/robot/materials.py`; `hydrostat materials` shows the same in a
-terminal. Any of the names goes into robot.toml as `material = "ecoflex 00-30"`.
+terminal. Write one of the names into robot.toml: `material = "ecoflex 00-30"`.
 
-**What the numbers are.** Without `law = "foam"` the body is Neo-Hookean, with Young's modulus and Poisson's ratio at
-small strain. Rubbers are given so that the stress at twice the length is that of the data sheet: E = 3 / 1.75 of the
-100 % modulus. The 100 % modulus itself is *not* Young's modulus, though it is often taken for it. Foams are stiff for 5
-to 10 % of squeeze, then their walls buckle; one modulus cannot say that, a [foam law](#foam-laws) can. The range is how
-far the numbers are believed, in percent of the length: squeezed to stretched.
+**What the numbers are.** Without `law = "foam"`, the body is Neo-Hookean, with Young's modulus and Poisson's ratio at
+small strain. For rubbers, Young's modulus is chosen so that the stress at twice the length is that of the data sheet:
+E = 3 / 1.75 of the 100 % modulus. The 100 % modulus itself is *not* Young's modulus, though it is often taken for it.
+Foams are stiff for the first 5 to 10 % of compression; then their walls buckle. One modulus cannot describe this, but a
+[foam law](#foam-laws) can. The range states how far the numbers can be trusted, in percent of the length, from
+compression to stretch.
 
-**What they decide.** Where cables lead the body follows from lengths and hardly from stiffness, if nothing but cables
-pull; tensions are proportional to Young's modulus, and sag under weight is inversely so. A factor of two is a common
-difference between two sources for the same material. Measure a sample before believing a tension.
+**What they affect.** If only cables act on a body, its poses depend on lengths and hardly on stiffness. Tensions are
+proportional to Young's modulus, and sag under weight is inversely proportional to it. Two sources for the same material
+often differ by a factor of two. Measure a sample before you trust a tension.
 
 **Nearly incompressible materials** (Poisson's ratio 0.48 and above) make linear elements lock: write
 `volume = "patch"` ([decision 0012](decisions/0012-locking.md)).
 
-**What was read.** At first hand: the tensile curves of the silicones, the data sheet of the polyethylene foam, and the
-abstracts of the papers on PDMS and on Poisson's ratio of foam. At second hand, from public programs that quote them:
-the 100 % moduli and densities of the silicones, the fit to flexfoam-it v and Allard's foam. Quoted without the source
-at hand: elongations at break, NinjaFlex, the density of Mold Max 30, Gent's and Gibson's laws, how the maker names its
-foams, van Wyk's law. What is assumed is called so.
+**Sources that we read ourselves**: the tensile curves of the silicones, the data sheet of the polyethylene foam, and
+the abstracts of the papers on PDMS and on Poisson's ratio of foam. We took from public programs that quote their
+sources: the 100 % moduli and densities of the silicones, the fit to flexfoam-it v, and Allard's foam. From memory, we
+quote the elongations at break, NinjaFlex, the density of Mold Max 30, Gent's and Gibson's laws, the manufacturer's
+names for its foams, and van Wyk's law. Assumed values are marked as assumed.
 
-"The thesis" is [this one](thesis.md).
+Chang (2018) is [this thesis](thesis.md).
 """
 
 OWN = """\
 ## Own materials
 
 `hydrostat identify my_robot measured.csv --out build/fitted --save-material "gray felt"` adds the fitted material of
-the body to `~/.config/hydrostat/materials.toml` (Windows: `%LOCALAPPDATA%\\hydrostat`; or the file that
-`HYDROSTAT_MATERIALS` names). You can write it by hand too:
+the body to `~/.config/hydrostat/materials.toml` (on Windows, in `%LOCALAPPDATA%\\hydrostat`; or to the file that
+`HYDROSTAT_MATERIALS` names). You can also write this file by hand:
 
 ```toml
 [[material]]
@@ -52,22 +53,23 @@ density = "40 kg/m^3"
 source = "hydrostat identify, 10 rows of measured.csv"
 ```
 
-Other keys are those of a material in [robot.toml](robot_toml.md). Use the name like one of the table, also in the
+The other keys are those of a material in [robot.toml](robot_toml.md). Use the name like those in the table, also in the
 studio and in `robot.with_material("gray felt")`. Designs take the interval as the uncertainty of Young's modulus. A
-robot that is saved holds the values, not the name: it is the same on another computer.
+saved robot holds the values, not the name, so it is the same on another computer.
 """
 
 FOAM = """\
 ## Foam laws
 
-Write `material = {{ name = "polyurethane foam", law = "foam" }}` for a body that is squeezed by more than 20 %, or give
-terms of your own ([robot.toml](robot_toml.md#foam-laws)). Young's modulus and Poisson's ratio are those of the law.
+Write `material = {{ name = "polyurethane foam", law = "foam" }}` for a body that is compressed by more than 20 %, or
+give your own terms ([robot.toml](robot_toml.md#foam-laws)). Young's modulus and Poisson's ratio are those of the law.
 
 {table}
 
 {sources}
 
-Stress in kPa at a squeeze, sides free, by the foam law and Neo-Hookean with the numbers of the first table:
+Stress in kPa under compression with free sides, by the foam law / by the Neo-Hookean law with the numbers of the first
+table:
 
 {stresses}
 """
@@ -75,44 +77,44 @@ Stress in kPa at a squeeze, sides free, by the foam law and Neo-Hookean with the
 DAMPING = """\
 ## Damping
 
-A motion in time is undamped unless you write a [viscosity](robot_toml.md#viscous-materials). Write
-`viscosity = "material at 7 Hz"` for the one that has the loss factor of the table at 7 Hz: loss factor x shear modulus
-/ (2 pi f). `"material"` alone means 2 Hz; in Python it is `material.with_damping(7.0)`. Take the frequency at which the
-robot swings, the first of `find_modes(simulation)`: 7.2 Hz for the starfish. That mode then has half the loss factor as
-damping ratio at Poisson's ratio 0, and 17 % less in a flat body at 0.3. Damping ratios of other modes are in proportion
-to their frequencies; real loss factors change less. Air in cells, seams and cables add damping that is not in the
-table.
+Motion is undamped unless you write a [viscosity](robot_toml.md#viscous-materials). With `viscosity = "material at 7
+Hz"`, the material has the loss factor of the table at 7 Hz: the viscosity is loss factor x shear modulus / (2 pi f).
+`"material"` alone means 2 Hz. In Python, write `material.with_damping(7.0)`. Use the frequency at which the robot
+swings, the first one of `find_modes(simulation)`: 7.2 Hz for the starfish. At Poisson's ratio 0, the damping ratio of
+that mode is then half the loss factor; in a flat body at 0.3, it is 17 % less. The damping ratios of other modes are
+proportional to their frequencies; real loss factors change less. Air in cells, seams and cables add damping that is not
+in the table.
 
 {table}
 
-At second hand, from public programs or pages that quote them: Allard's and Ge's tables, natural rubber, the hobbyist's
-test and the figure on liquid crystal elastomers. Believe assumed values within a factor of three. Measure yours: let a
-limb swing and count n swings until the amplitude has halved. The loss factor is 0.22 / n.
+We know Allard's and Ge's tables, natural rubber, the hobbyist's test and the figure on liquid crystal elastomers only
+from public programs or pages that quote them. Assumed values may be off by a factor of three. Measure your material:
+let a limb swing and count n swings until the amplitude has halved. The loss factor is 0.22 / n.
 
 """
 
 HYSTERESIS = """\
 ## Hysteresis
 
-No material has [hysteresis](robot_toml.md#hysteresis) by default. `hysteresis = "material"` takes the values of
-this table, in Python `material.with_hysteresis()`; dense foam is no name of it. The sliders are shares of Young's
-modulus. The loss is the part of the work of a stretch from rest to 25 % that does not return on the way back, in closed
-form; the strain kept is the most that a bar keeps when released.
+No material has [hysteresis](robot_toml.md#hysteresis) by default. `hysteresis = "material"`, or in Python
+`material.with_hysteresis()`, takes the values of this table, except those of dense foam, which has no name. The sliders
+are shares of Young's modulus. The loss, in closed form, is the share of the work of a stretch from rest to 25 % that
+does not return on the way back. The strain kept is the maximum that a bar keeps when it is released.
 
 {table}
 
-- **foams**: a foam maker reports losses of 35 to 40 % for slabs of 20 kg/m^3, 30 to 35 % at 24 kg/m^3, 21 to 26 % for
-  dense reinforced foam, by the indentation test (quoted at second hand: we have not read the maker's paper). Shares
-  and strains are assumed, such that the loss lies within these.
-- **polyester fibre**: assumed, no loss was found. Fibres slide on each other from the first squeeze on. Believe it
-  within a factor of three.
-- **silicones, TPU**: none; their loss depends on rate: write `relaxation`.
+- **foams**: a foam manufacturer reports losses in the indentation test of 35 to 40 % for slabs of 20 kg/m^3, 30 to
+  35 % at 24 kg/m^3, and 21 to 26 % for dense reinforced foam (quoted by others; we have not read the paper). The shares
+  and strains are assumed, such that the loss lies within these ranges.
+- **polyester fibre**: assumed, because we found no loss. The fibers slide on each other from the first compression. The
+  loss may be off by a factor of three.
+- **silicones, TPU**: none. Their loss depends on the rate: write `relaxation`.
 
-The starfish of polyester fibre, its left winch at 30 mm and back: 22 % of the work is lost, and the tip keeps 6.9 of
+If the left winch of the polyester starfish goes to 30 mm and back, 22 % of the work is lost, and the tip keeps 6.9 of
 40.1 mm. [Example 28](../examples/python) prints this and draws the loop.
 
-Measure yours: pull a robot half, whole, half and to 0, and compare the markers of both strokes. Cable friction makes
-them differ, too.
+To measure your robot, pull it half way, all the way, back to half and back to 0, and compare the markers of both
+strokes. Cable friction makes them differ, too.
 """
 
 DENSE_FOAM = ((0.3, 0.02), (0.25, 0.1))
@@ -133,7 +135,7 @@ def page() -> str:
         f"- **{material.name}**: {material.source}. {material.note}".rstrip() for material in MATERIALS.values()
     )
     return (
-        f"{INTRODUCTION}\n{table}\n\n{OWN}\n## Where the numbers come from, and who disagrees\n\n{sources}\n\n"
+        f"{INTRODUCTION}\n{table}\n\n{OWN}\n## Sources, and differences between them\n\n{sources}\n\n"
         f"{foam_chapter()}\n{damping_chapter()}{hysteresis_chapter()}"
     )
 
