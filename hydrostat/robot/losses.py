@@ -4,15 +4,18 @@ from types import MappingProxyType
 
 _ALLARD = "J. F. Allard, N. Atalla, Propagation of Sound in Porous Media, 2009, table"
 _LCE = "Impact damping and vibration attenuation in nematic liquid crystal elastomers, Nature Communications 12, 2021"
-_SILICONE = 0.1, "assumed, none was found: the most of natural rubber, 0.02 to 0.1 (a page of answers without a source)"
+_SILICONE = (
+    0.1,
+    "assumed, because we found none: the maximum of natural rubber, 0.02 to 0.1 (from a page without a source)",
+)
 _CASTABLE = 0.1, "assumed: that of polyurethane foam"
-_TPU = 0.1, "assumed: none was found"
+_TPU = 0.1, "assumed, because we found none"
 
 LOSSES = MappingProxyType(
     {
         "polyester fibre": (
             0.5,
-            f"assumed: that of a carpet of 60 kg/m^3 and 20 kPa, 0.5 ({_ALLARD} 11.7). Stiff glass wool has 0.1 (11.8)",
+            f"assumed: that of a carpet of 60 kg/m^3 and 20 kPa, 0.5 ({_ALLARD} 11.7); stiff glass wool has 0.1 (11.8)",
         ),
         "flexfoam-it iii": _CASTABLE,
         "flexfoam-it v": (
@@ -38,7 +41,7 @@ LOSSES = MappingProxyType(
         "dragon skin 20": _SILICONE,
         "dragon skin 30": _SILICONE,
         "mold max 30": _SILICONE,
-        "pdms": (0.1, f"assumed, as of silicones. At 1 kHz 0.42: resonance of quality 2.4 in fig. 4 of {_LCE}"),
+        "pdms": (0.1, f"assumed, as for silicones. At 1 kHz 0.42, from a resonance of quality 2.4 in fig. 4 of {_LCE}"),
         "tpu 85a": _TPU,
         "tpu 85a gyroid 10%": _TPU,
         "tpu 85a gyroid 20%": _TPU,

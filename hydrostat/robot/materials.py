@@ -27,7 +27,7 @@ RUBBER_POISSON = 0.49
 FOAM_POISSON = 0.3
 FOAM_SQUEEZE = 0.6
 
-_BULLETIN = "density, stress at 100 % and break: technical bulletin of the maker (Smooth-On)"
+_BULLETIN = "density, stress at 100 % and break: technical bulletin of the manufacturer (Smooth-On)"
 _MARECHAL = "L. Marechal et al., Toward a common framework and database of materials, Soft Robotics 8(3), 2021"
 _HAHN = "D. Hahn, P. Banzet, J. M. Bern, S. Coros, Real2Sim, ACM Trans. Graphics 38(6), 2019"
 _GIBSON = "L. J. Gibson, M. F. Ashby, Cellular Solids, Cambridge, 1997"
@@ -50,10 +50,10 @@ def _silicone(name: str, *, gravity: float, modulus: float, breaks: float, measu
         largest_squeeze=0.5,
         source=f"{_BULLETIN}, {modulus:g} psi and {breaks:g} %; Poisson's ratio assumed",
         note=(
-            f"Stress at twice its length: {stress / 1e3:.0f} kPa in the bulletin, {measured:.0f} kPa in the tensile"
-            f" test published with {_MARECHAL}, where strain is the motion of the grips and so is overrated; by that"
-            f" test Young's modulus is {young_of_rubber(1e3 * measured) / 1e3:.0f} kPa. Stiffens beyond twice its"
-            f" length, softer after the first pull (Mullins)."
+            f"The stress at twice the length is {stress / 1e3:.0f} kPa in the bulletin and {measured:.0f} kPa in the"
+            f" tensile test published with {_MARECHAL}. That test takes strain from the motion of the grips, which"
+            f" overestimates it; its Young's modulus is {young_of_rubber(1e3 * measured) / 1e3:.0f} kPa. The material"
+            f" stiffens beyond twice its length, and is softer after the first pull (Mullins effect)."
         ),
     )
 
@@ -83,10 +83,10 @@ def _lattice(solid: Material, share: float) -> Material:
         largest_squeeze=0.5,
         source=f"scaled from {solid.name}: E = E_solid (relative density)^2, {_GIBSON}; Poisson's ratio, range assumed",
         note=(
-            "Not a measurement. The law is that of cells whose walls bend; sheets that also stretch are up to several"
-            " times stiffer, thin walls that buckle are softer, and a printer's lines make it stiffer along one axis."
+            "Not a measurement. The law holds for cells whose walls bend. Sheets that also stretch are up to several"
+            " times stiffer, thin walls that buckle are softer, and printed lines make a body stiffer along one axis."
             " D. W. Holmes et al., Additive Manufacturing 50, 102555, 2022, measured such gyroids as a replacement for"
-            " padding foams. For another infill use young = E_solid x share^2 and density = density_solid x share."
+            " padding foams. For another infill, use young = E_solid x share^2 and density = density_solid x share."
         ),
     )
 
@@ -99,7 +99,7 @@ _TPU = Material(
     largest_stretch=1.6,
     largest_squeeze=0.5,
     source="tensile modulus and density: data sheet of NinjaFlex, 85 Shore A (NinjaTek, 2016); Poisson's ratio assumed",
-    note="Solid. Yields at 65 % and breaks at 660 %; what a printer makes of it is softer across its layers.",
+    note="Solid. It yields at 65 % and breaks at 660 %. Printed bodies are softer across their layers.",
 )
 
 _TABLE = (
@@ -112,10 +112,10 @@ _TABLE = (
         largest_squeeze=FOAM_SQUEEZE,
         source="assumed: loosely stuffed toy filling in a felt skin; the thesis gives no value",
         note=(
-            "No measured modulus of a stuffed body was found. Loose filling has none of its own: its thickness under a"
-            " pressure p falls as a power of p, so it stiffens from almost nothing as it is stuffed tighter. 30 kPa is"
-            " that of a soft cushion; a tightly stuffed toy may have several times that. Poses reached by cables hardly"
-            " depend on it, tensions are proportional to it."
+            "We found no measured modulus of a stuffed body. Loose filling has no fixed modulus: its thickness under a"
+            " pressure p falls as a power of p, so it stiffens from almost nothing as it is stuffed tighter. A soft"
+            " cushion has 30 kPa; a tightly stuffed toy may have several times that. Poses reached by cables hardly"
+            " depend on this modulus; tensions are proportional to it."
         ),
     ),
     _castable_foam(
@@ -123,7 +123,7 @@ _TABLE = (
         3,
         f"modulus assumed, scaled with the square of density from flexfoam-it v ({_GIBSON})",
         110e3,
-        "None measured. Foams are stiff for the first 5 to 10 % of squeeze and then give way; see flexfoam-it v.",
+        "Not measured. Foams are stiff for the first 5 to 10 % of compression and then yield; see flexfoam-it v.",
     ),
     Material(
         name="flexfoam-it v",
@@ -137,8 +137,8 @@ _TABLE = (
             f" of a sample, as noted in a public program taken to be that of {_HAHN}; range assumed"
         ),
         note=(
-            "Fitted to fast and small motion; slow and large squeezes are softer, for the walls of a foam buckle."
-            " The one modulus of this series that was found."
+            "Fitted to fast and small motion. Under slow and large compression the foam is softer, because its walls"
+            " buckle. This is the only modulus of this series that we found."
         ),
     ),
     _castable_foam(
@@ -146,7 +146,7 @@ _TABLE = (
         7,
         f"modulus assumed, scaled with the square of density from flexfoam-it v ({_GIBSON})",
         600e3,
-        "None measured. Foams are stiff for the first 5 to 10 % of squeeze and then give way; see flexfoam-it v.",
+        "Not measured. Foams are stiff for the first 5 to 10 % of compression and then yield; see flexfoam-it v.",
     ),
     Material(
         name="flexfoam-it x",
@@ -155,12 +155,13 @@ _TABLE = (
         density=160,
         largest_stretch=1.5,
         largest_squeeze=FOAM_SQUEEZE,
-        source="density from the thesis's table; all else assumed, no modulus is published",
+        source="density from the table of Chang (2018); all else assumed, because no modulus is published",
         note=(
-            "60 kPa is a guess, kept so that saved robots keep their tensions, and probably low: the square law takes"
-            " flexfoam-it v to 1.2 MPa at this density, and the thesis's other foam, 240 kg/m^3 with 77 psi = 0.531 MPa"
-            ", to 0.24 MPa. That 0.531 MPa is not this foam's: its density differs, and in the thesis the number"
-            " stands beside coffee of 445 kg/m^3 as of similar density. Measure before believing a tension."
+            "60 kPa is a guess, kept so that saved robots keep their tensions. It is probably too low: scaled with the"
+            " square of density, flexfoam-it v would have 1.2 MPa at this density, and the other foam of Chang (2018),"
+            " 240 kg/m^3 with 77 psi = 0.531 MPa, would have 0.24 MPa. The 0.531 MPa is not this foam's: the density"
+            " differs, and Chang compares that foam with coffee of 445 kg/m^3 as one of similar density. Measure a"
+            " sample before you trust a tension."
         ),
     ),
     Material(
@@ -171,14 +172,15 @@ _TABLE = (
         largest_stretch=1.5,
         largest_squeeze=FOAM_SQUEEZE,
         source=(
-            "assumed, between what small fast vibration gives (33 kg/m^3, 130 kPa, Poisson's ratio 0.3: J. F. Allard,"
-            " N. Atalla, Propagation of Sound in Porous Media, 2009, table 11.3) and what a cushion's hardness gives"
-            " (3 to 4 kPa at 40 % squeeze, 8 to 10 kPa)"
+            "assumed, between the value from small, fast vibration (33 kg/m^3, 130 kPa, Poisson's ratio 0.3: J. F."
+            " Allard, N. Atalla, Propagation of Sound in Porous Media, 2009, table 11.3) and that from the hardness of"
+            " a cushion (3 to 4 kPa at 40 % compression, so 8 to 10 kPa)"
         ),
         note=(
-            "Upholstery and mattresses. Firmness does not follow density: at 30 kg/m^3 it varies threefold. Stiff for"
-            " the first 5 to 10 %, then nearly flat up to 60 %, then stiff again. Poisson's ratio was measured from"
-            " 0.5 at 5 % to -0.05 at 66 % of squeeze (R. D. Widdle et al., Int. J. Eng. Science 46, 2008)."
+            "Used in upholstery and mattresses. Firmness does not follow density: at 30 kg/m^3 it varies threefold. The"
+            " foam is stiff for the first 5 to 10 %, yields at nearly constant stress up to 60 %, then stiffens again."
+            " The measured Poisson's ratio falls from 0.5 at 5 % to -0.05 at 66 % compression (R. D. Widdle et al.,"
+            " Int. J. Eng. Science 46, 2008)."
         ),
     ),
     Material(
@@ -188,8 +190,8 @@ _TABLE = (
         density=33,
         largest_stretch=1.5,
         largest_squeeze=FOAM_SQUEEZE,
-        source="Plastazote LD33, data sheet (Zotefoams): 40 kPa at 25 % squeeze, breaks at 135 %; rest assumed",
-        note="Closed cells: the secant at 25 % is 160 kPa, at 50 % 230 kPa; it keeps part of a long squeeze.",
+        source="Plastazote LD33, data sheet (Zotefoams): 40 kPa at 25 % compression, breaks at 135 %; all else assumed",
+        note="Closed cells: the secant modulus is 160 kPa at 25 %, 230 kPa at 50 %. Part of a long squeeze remains.",
     ),
     _silicone("ecoflex 00-10", gravity=1.04, modulus=8, breaks=800, measured=14.8),
     _silicone("ecoflex 00-30", gravity=1.07, modulus=10, breaks=900, measured=29.7),
@@ -205,10 +207,10 @@ _TABLE = (
         largest_stretch=1.5,
         largest_squeeze=0.5,
         source=(
-            "hardness 30 Shore A and density: technical bulletin of the maker (Smooth-On); Young's modulus from the"
-            " hardness (A. N. Gent, Rubber Chem. Technol. 31, 1958); Poisson's ratio and range assumed"
+            "hardness 30 Shore A and density: technical bulletin of the manufacturer (Smooth-On); Young's modulus"
+            " from the hardness (A. N. Gent, Rubber Chem. Technol. 31, 1958); Poisson's ratio and range assumed"
         ),
-        note="The thesis's moulds are cast of it, not its robots. A hardness fixes the modulus to 20 % at best.",
+        note="Chang (2018) casts molds from it, not robots. A hardness determines the modulus to within 20 % at best.",
     ),
     Material(
         name="pdms",
@@ -219,13 +221,13 @@ _TABLE = (
         largest_squeeze=0.4,
         source=(
             "Sylgard 184, 10:1, cured at 25 C: I. D. Johnston et al., J. Micromech. Microeng. 24, 035017, 2014;"
-            " density from the thesis's table and the maker (Dow); Poisson's ratio and range assumed"
+            " density from the table of Chang (2018) and the manufacturer (Dow); Poisson's ratio and range assumed"
         ),
         note=(
-            "Curing decides: 1.32 MPa at 25 C to 2.97 MPa at 200 C (Johnston 2014); 20 MPa / ratio, so 2 MPa at 10:1,"
-            " in compression (Z. Wang, A. A. Volinsky, N. D. Gallant, J. Appl. Polym. Sci. 131, 41050, 2014). Over nine"
-            " kinds of test it spreads over two decades (H. Varner, T. Cohen, Soft Matter, 2024). Breaks at 100 to"
-            " 140 %."
+            "The modulus depends on the cure: 1.32 MPa at 25 C to 2.97 MPa at 200 C (Johnston 2014); in compression"
+            " 20 MPa / ratio, so 2 MPa at 10:1 (Z. Wang, A. A. Volinsky, N. D. Gallant, J. Appl. Polym. Sci. 131,"
+            " 41050, 2014). Nine kinds of test give values over two decades (H. Varner, T. Cohen, Soft Matter, 2024)."
+            " The material breaks at 100 to 140 %."
         ),
     ),
     _TPU,
@@ -253,22 +255,23 @@ _FOAM_TABLE = (
     _foam(
         "polyester fibre",
         (FoamTerm(share=2 / 3, exponent=-2.0), FoamTerm(share=1 / 3, exponent=1.0)),
-        "Young's modulus assumed as above; the terms make the pressure of loose fibres rise as 1 / s^3 - 1 with their"
-        " thickness s, as C. M. van Wyk found for wool (J. Textile Inst. 37, T285, 1946); Poisson's ratio assumed",
+        "Young's modulus assumed as above; with these terms the pressure of loose fibers grows as 1 / s^3 - 1 with"
+        " their thickness s, as C. M. van Wyk found for wool (J. Textile Inst. 37, T285, 1946); Poisson's ratio"
+        " assumed",
     ),
     _foam(
         "polyurethane foam",
         _CUSHION,
-        "3.5 kPa at 40 % squeeze, of a cushion's hardness; exponent 8 assumed, so Young's modulus is 16 kPa. The 40 kPa"
-        " above would take exponent 19, which is seven times too stiff at 20 % of stretch. The term of exponent -4,"
-        " assumed, makes it stiff again beyond 60 %, where the walls touch. Poisson's ratio assumed, as it falls to 0"
-        " under squeeze (R. D. Widdle et al., 2008)",
+        "3.5 kPa at 40 % compression, from the hardness of a cushion; exponent 8 assumed, so Young's modulus is 16 kPa."
+        " The 40 kPa above would need exponent 19, which is seven times too stiff at 20 % stretch. The term of exponent"
+        " -4, assumed, makes the foam stiff again beyond 60 %, where the walls touch. Poisson's ratio assumed, because"
+        " it falls to 0 under compression (R. D. Widdle et al., 2008)",
         young=16e3,
     ),
     _foam(
         "polyethylene foam",
         (FoamTerm(share=1.0, exponent=1.256),),
-        "fitted to both stresses of the data sheet of Plastazote LD33: 40 kPa at 25 % squeeze, 115 kPa at 50 %;"
+        "fitted to both stresses of the data sheet of Plastazote LD33: 40 kPa at 25 % compression, 115 kPa at 50 %;"
         " Poisson's ratio assumed",
         young=124e3,
     ),
