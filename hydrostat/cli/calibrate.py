@@ -36,7 +36,9 @@ def calibrate(
     ] = "",
     restart: Annotated[
         bool,
-        typer.Option("--restart", help="First restart motors that overload or heat switched off, after they cooled."),
+        typer.Option(
+            "--restart", help="First restart motors that were switched off by overload or heat, after they have cooled."
+        ),
     ] = False,
 ) -> None:
     """Tension each cable and record the motor zero positions.

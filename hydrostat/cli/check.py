@@ -32,7 +32,7 @@ def check(
 ) -> None:
     """Check a robot: report errors and warnings.
 
-    Without options nothing is simulated: mesh, parts, rods, cables, winches and fit of the kit are checked. `hydrostat
+    Without options, nothing is simulated: mesh, parts, rods, cables, winches and fit of the kit are checked. `hydrostat
     fabricate` also checks the motor and line loads of the poses.
 
     Exit code 1 if there is an error, 0 with warnings and notes only.

@@ -55,9 +55,8 @@ def design(
 
     Writes a robot folder, report.html with pictures of every stage, score.json, and alternatives as robot folders.
     Ctrl-C, SIGTERM, a closed terminal and --time end the search and keep the best network so far; search.json keeps its
-    steps for --resume. A constraints file
-    has lines such as clearance = "4 mm", tension = "15 N", locked_cables = ["left 1"], and tables [[keep_out]],
-    [[passive_zone]] and [[winch_zone]] with at and radius, box, or outline.
+    steps for --resume. A constraints file has lines such as clearance = "4 mm", tension = "15 N", locked_cables =
+    ["left 1"], and tables [[keep_out]], [[passive_zone]] and [[winch_zone]] with at and radius, box, or outline.
 
     Example: hydrostat design gallery:starfish --pose wave --winches 2 --cables 6 --out build/starfish
     """

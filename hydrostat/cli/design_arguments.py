@@ -88,7 +88,7 @@ class DesignArguments:
         bool,
         typer.Option(
             "--front",
-            help="Also search one winch fewer and one more, pulling one way and both ways. Takes 3 to 6 times as long.",
+            help="Also search with one winch fewer, one more, or pulling both ways. Takes 3 to 6 times as long.",
         ),
     ] = False
     symmetric: Annotated[

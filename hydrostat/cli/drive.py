@@ -51,7 +51,7 @@ def drive(
     """Drive winches by keys, gamepad, MIDI, OSC, glove or camera.
 
     Without --motors the motors are simulated, and every line starts with "simulated". With --motors, the limits of the
-    winches protect the robot, and a watchdog and a tension guard where the motors have them. Motors hold when the input
+    winches protect the robot; so do a watchdog and a tension guard, if the motors have them. Motors hold when the input
     is lost, and stop at the end, on Ctrl-C, on SIGTERM, when the terminal closes and on any error.
 
     With --markers you move markers, and inverse kinematics computes the contractions while you drive.

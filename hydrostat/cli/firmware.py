@@ -59,7 +59,7 @@ def firmware(
         float | None,
         typer.Option(
             metavar="VOLTS",
-            help="Stop the motors below this supply [V]; needs the divider of the kit.",
+            help="Stop the motors below this supply voltage [V]; needs the divider of the kit.",
             show_default="no such stop",
         ),
     ] = None,

@@ -62,9 +62,9 @@ def grasp(
 ) -> None:
     """Measure grasp strength: force to pull an object out.
 
-    Closes the robot on an object, pulls it out, and reports force vs. displacement. The object is rigid and moves in a
-    straight line. Self-contact and contact with the object are on, with friction on the object. Writes pull.csv,
-    pull.png and pull.gif; with --bands also bands.csv.
+    Closes the robot on an object, pulls the object out, and reports force vs. displacement. The object is rigid and
+    moves in a straight line. Self-contact and contact with the object are on, with friction on the object. Writes
+    pull.csv, pull.png and pull.gif; with --bands also bands.csv.
 
     Example: hydrostat grasp gallery:caging_gripper --pose close --object sphere:65mm --direction +z --out build/grasp
     """

@@ -40,9 +40,10 @@ def learn(
 ) -> None:
     """Train a surrogate model from samples.
 
-    The model predicts marker positions and solves inverse kinematics in microseconds; `hydrostat pose` needs none.
-    Writes one file. It runs without simulator and PyTorch: hydrostat pose ROBOT --model MODEL, or in Python
-    hydrostat.learning.LearnedModel.load(MODEL).solve(targets). Ctrl-C stops early and saves the best model so far.
+    The model predicts marker positions and solves inverse kinematics in microseconds; `hydrostat pose` also works
+    without a model. Writes one file, which runs without the simulator and without PyTorch: hydrostat pose ROBOT --model
+    MODEL, or in Python hydrostat.learning.LearnedModel.load(MODEL).solve(targets). Ctrl-C stops early and saves the
+    best model so far.
 
     With --fine-tune, training continues from an existing model. Train on many samples of a coarse mesh first, then
     fine-tune with a few samples of a finer mesh of the same robot.

@@ -71,8 +71,8 @@ def measure(
     """Measure marker positions in photographs or in a film.
 
     Print the board and the tags with --print. Lay the robot on the board, or in front of it, and photograph each pose
-    with one camera. File names hold contractions and hung masses: left=12mm,tip=100g.jpg, or rest.jpg for none. A film
-    needs a camera that stands still and slow moves, which --table lists.
+    with one camera. File names hold contractions and hung masses: left=12mm,tip=100g.jpg, or rest.jpg for none. For a
+    film, use a fixed camera and slow moves, and list the moves in --table.
 
     Example: hydrostat measure my_starfish photos/*.jpg --out measured.csv
     """

@@ -63,7 +63,7 @@ def new(
 ) -> None:
     """Make a robot from the gallery, a drawing, a scan or a mesh.
 
-    Repairs scans and CAD models with holes, self-intersections, flipped triangles or specks, reports the repairs, and
+    Repairs holes, self-intersections, flipped triangles and specks in scans and CAD models, reports the repairs, and
     draws them in healing.png.
 
     Example: hydrostat new my_hand --from scan.stl --size "190 mm" --nodes 900

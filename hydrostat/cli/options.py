@@ -60,7 +60,7 @@ AddedLoads = Annotated[
         "--load",
         metavar="MARKER=FORCE",
         help='Force along each axis at a marker, e.g. "tip=0,0,-1N", or hung mass, e.g. tip=100g. '
-        'Moment, in space one about each axis: "tip=moment 0.01Nm". Repeatable.',
+        'Moment, in 3D one about each axis: "tip=moment 0.01Nm". Repeatable.',
     ),
 ]
 Pulls = Annotated[

@@ -58,8 +58,8 @@ def play(
     Without --motors the motors are simulated, and every line starts with "simulated". `hydrostat trajectory` and the
     studio write such tables. Motors stop at the end, on Ctrl-C, on SIGTERM, when the terminal closes and on any error.
     With --motors, Dynamixel servos also stop if a cable tension is far above the simulated one, or missing; boards and
-    Feetech servos have no such guard. With --camera, tags that `hydrostat measure --print` writes keep the markers on
-    their simulated paths.
+    Feetech servos have no such guard. With --camera, the command reads the tags of `hydrostat measure --print` and
+    keeps the markers on their simulated paths.
 
     Example: hydrostat play gallery:starfish build/dance/trajectory.csv --repeat 3
     """

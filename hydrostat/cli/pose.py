@@ -54,7 +54,7 @@ def pose(
     folder each.
     A pose sets marker targets; --drawing sets a whole target shape. Give both to combine them. With --model, the
     command prints the error that the model predicts and the simulated error, then starts the search from there.
-    A pose counts as reached if each marker is within 0.3 % of the body's size of its target.
+    A pose counts as reached if the distance of each marker to its target is at most 0.3 % of the body size.
 
     Example: hydrostat pose gallery:starfish --pose wave --out build/wave
     """

@@ -19,7 +19,7 @@ def reproduce(
 ) -> None:
     """Reproduce tables and figures of Chang (2018).
 
-    Needs hydrostat-lab, which a checkout contains in lab/. All arguments go there: add --help to list them.
+    Needs hydrostat-lab, which a checkout contains in lab/. All arguments are passed on: add --help to list them.
 
     Example: hydrostat reproduce table-5.1 figure-5.14 --out build/thesis
     """

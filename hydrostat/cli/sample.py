@@ -47,14 +47,14 @@ def sample(
         int, typer.Option(metavar="N", help="Samples per file. An interruption loses unfinished files.")
     ] = 64,
     export: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Also write all samples to one .parquet or .zarr.")
+        Path | None, typer.Option(metavar="FILE", help="Also write all samples to one .parquet or .zarr file.")
     ] = None,
 ) -> None:
     """Sample a robot to train surrogate models.
 
     Each sample holds contractions, markers, exact Jacobians and tensions. Writes the settings to samples.json and the
     samples to .npy files. Run the same command again to resume, or with a larger --count to add samples. Results do not
-    depend on the number of processes. Read them in Python with hydrostat.learning.Samples.read.
+    depend on the number of processes. Read the samples in Python with hydrostat.learning.Samples.read.
 
     Example: hydrostat sample gallery:starfish --count 200 --contact --out build/samples
     """

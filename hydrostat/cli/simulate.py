@@ -69,8 +69,8 @@ def simulate(
     Give contractions with --contract, forces with --pull or values of drives with --move. Add --dynamic to simulate
     the motion.
 
-    Writes pose.json, pose.vtu and cables.vtu (for ParaView) and pose.png. With --dynamic these show the final
-    state, and the command also writes motion.csv, motion.pvd (for ParaView) and motion.png.
+    Writes pose.json, pose.vtu and cables.vtu (for ParaView) and pose.png. With --dynamic, these show the final state,
+    and the command also writes motion.csv, motion.pvd (for ParaView) and motion.png.
 
     Example: hydrostat simulate gallery:starfish --contract left=12mm --out build/pose
     """

@@ -95,7 +95,10 @@ def train(
     contact: Annotated[bool, typer.Option("--contact", help="Enable self-contact.")] = False,
     num_envs: Annotated[int, typer.Option(metavar="N", help="Number of parallel environments.")] = 4,
     processes: Annotated[
-        int, typer.Option(metavar="N", help="Processes that run the environments. The curve is the same.")
+        int,
+        typer.Option(
+            metavar="N", help="Number of processes that run the environments. The curve does not depend on it."
+        ),
     ] = 1,
     watch: Annotated[bool, typer.Option("--watch", help="Show evaluation episodes in the browser.")] = False,
     resume: Annotated[bool, typer.Option("--resume", help="Resume from the checkpoint in DIR.")] = False,
@@ -107,8 +110,8 @@ def train(
 
     Without --model, each action is one equilibrium of the simulator. Evaluation always runs in the simulator, on unseen
     goals. The learning curve is in curve.json and curve.png, and in DIR/tensorboard if TensorBoard is installed. Needs
-    the extra rl. For static poses, inverse kinematics and `hydrostat learn` are better and cheaper. Use
-    this command for comparison, and for tasks they cannot solve.
+    the extra rl. For static poses, inverse kinematics and `hydrostat learn` are better and cheaper. Use this command
+    for comparison, and for tasks they cannot solve.
 
     Task reach-with-hysteresis: cables have friction, and the pose depends on the loading path. A --model for it has no
     friction: a deliberate model error. Task walk: the robot stands on the ground without its pins and walks in a

@@ -95,7 +95,7 @@ class ShapeDraft:
     def click(self, place: Point) -> Zone | None:
         """Set one more corner; near the first one the polygon is closed (InputError: the body is in space)."""
         if not self._flat:
-            raise InputError("only balls can be drawn on a body in space. Drag from the center of a ball outward")
+            raise InputError("only balls can be drawn on a 3D body. Drag from the center of a ball outward")
         near = 0.02  # a click so near the first corner closes a polygon, as a share of the body
         if self.corners and math.dist(self.corners[0], place) < near * self._size:
             return self.close()

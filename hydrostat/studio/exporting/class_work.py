@@ -74,7 +74,7 @@ def _page(report: Report, pupil: PupilWork) -> tuple[str, bytes]:
 
     robot = pupil.work.robot
     if robot.body.mesh.dim != 2:
-        raise InputError("a page of a body in space takes minutes. Run hydrostat share")
+        raise InputError("a page of a 3D body takes minutes. Run hydrostat share")
     timeline, silent = pupil.work.timeline, _Silent(report)
     toy = make_toy(Simulation(robot), seconds=PAGE_TIME, timeline=timeline, jobs=1, progress=silent.progress)
     return f"{file_name(robot.name)}.html", toy.page.encode()

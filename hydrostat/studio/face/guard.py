@@ -85,7 +85,7 @@ class Guard:
         if len(hosts) != 1 or not self._is_ours(hosts[0].lower()):
             return "unknown host name. Open the address that the studio printed"
         if origins not in ([], [f"http://{hosts[0].lower()}"]) or not _is_near(scope, headers):
-            return "request from another page refused"
+            return "request from another page rejected"
         lengths = headers.getlist("content-length")
         if len(lengths) > 1 or any(not _is_count(text) or int(text) > self._largest for text in lengths):
             return "request too large"

@@ -56,7 +56,7 @@ def read_message(text: str) -> Message:
         return _ADAPTER.validate_json(text)
     except (ValidationError, RecursionError) as error:
         what = error.errors()[0]["msg"] if isinstance(error, ValidationError) else "nested too deep"
-        raise InputError(f"a message is not understood: {what}") from None
+        raise InputError(f"cannot read a message: {what}") from None
 
 
 def sent_number(value: Any) -> float | None:

@@ -60,7 +60,7 @@ def share_dialog(links: Links, pack: Callable[[], str] | None = None) -> Callabl
     ):
         show_heading("Share" if pack is not None else "Link for pupils", 1)
         if links.work and links.are_local:
-            hint = "These links open on this computer only. For others start hydrostat studio --class without --host."
+            hint = "These links open on this computer only. For others, start hydrostat studio --class without --host."
             ui.label(hint).classes("studio-hint").props('data-testid="share-local"')
         for words, hint, link, name in (
             (
@@ -94,7 +94,7 @@ def share_dialog(links: Links, pack: Callable[[], str] | None = None) -> Callabl
             except InputError as error:
                 ui.label(str(error)).classes("studio-hint").props('data-testid="share-none"')
                 return
-            hint = "A copy of the robot as it is now. Open it here, or elsewhere by hydrostat studio 'LINK'."
+            hint = "A copy of the robot as it is now. Open it here, or elsewhere with hydrostat studio 'LINK'."
             ui.label(hint).classes("studio-hint")
             _link_box("Robot in a link", link, "share-robot")
             if len(link) <= LARGEST_CODE and not links.are_local:

@@ -28,7 +28,7 @@ STAGES = {  # in the order of work
         "Edit", "edit", "Place pins, markers, winches and cables. Checks run as you edit."
     ),
     StageName.POSE: StageWords(
-        "Pose", "back_hand", "Drag the body: by muscles everywhere, or by its own winches.",
+        "Pose", "back_hand", "Drag the body, moved by muscles everywhere or by its own winches.",
         "Drag any point. The body bends as if it were full of muscle, "
         "or its own winches follow by inverse kinematics. Store a shape you like as a pose.",
     ),
@@ -44,7 +44,7 @@ STAGES = {  # in the order of work
     ),
     StageName.EXPORT: StageWords(
         "Export", "ios_share", "Download the kit, a report, pictures and the robot itself.",
-        "Build the kit: patterns or moulds, parts to print, a shopping list and an assembly sheet. "
+        "Build the kit: patterns or molds, parts to print, a shopping list and an assembly sheet. "
         "Then make the robot.",
     ),
 }  # fmt: skip

@@ -143,7 +143,7 @@ class Proposer:
         try:
             found = propose_trees(posed, request, [activation], body=self.body)
         except HydrostatError as refused:  # the knobs as wished give none that can be built
-            words = words or f"found with other knobs than yours. With yours: {refused}"
+            words = words or f"found with other settings than yours. With yours: {refused}"
             usual = replace(TreeOptions(), phis=request.tree_options.phis)
             try:
                 found = propose_trees(posed, replace(request, options=usual), [activation], body=self.body)

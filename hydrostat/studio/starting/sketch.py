@@ -144,7 +144,7 @@ def _with_pictures(
     repair = ""
     if sketch is not None and not sketch.healing.clean:
         figure = draw_healing(sketch.before, sketch.healing.surface, places=sketch.healing.places, width=width)
-        repair = inline_svg(figure, name="repair", label=f"{draft.file} as it came, and healed")
+        repair = inline_svg(figure, name="repair", label=f"{draft.file} as imported, and healed")
     clean = not lines if sketch is None else sketch.healing.clean
     return Sketch(
         draft=draft, robot=replace(robot, poses={}), lines=tuple(lines), clean=clean, picture=picture, repair=repair

@@ -28,15 +28,16 @@ def design_method(page: WindowPage) -> None:
     with ui.column().classes("w-full").style("gap: 8px") as room:
         ui.label(HINT).classes("studio-hint")
         shows = [
-            _knob(page, "Activation threshold", "threshold", "fibers", "Strongest fibers, which cables may follow."),
+            _knob(page, "Activation threshold", "threshold", "fibers", "Number of fibers that cables may follow."),
             _knob(
                 page, "Nearest-fiber distance", "distance", "edges",
                 f"Largest gap between two fibers of a cable, in mesh edges of {edge:.0f} mm.",
             ),
-            _knob(page, "Cable length", "steps", "fibers", "Most fibers that are joined to one cable."),
+            _knob(page, "Cable length", "steps", "fibers", "Maximum number of fibers that are joined to one cable."),
             _knob(
                 page, "Score weight phi", "phi", "0 to 1",
-                "Share of the mean contraction in the score of a winch. The spread among its cables has the rest.",
+                "Weight of the mean contraction in the score of a winch. The spread among its cables has the "
+                "remaining weight.",
             ),
         ]  # fmt: skip
         spread = ui.label(NO_SPREAD).classes("studio-hint").props('data-testid="design-no-spread"')

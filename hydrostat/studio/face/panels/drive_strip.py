@@ -186,8 +186,8 @@ def _tables(page: WindowPage) -> None:
     largest = 4_000_000  # no table is larger [bytes]
     with ui.dialog() as dialog, ui.card().classes("q-pa-md").style("min-width: 380px"):
         show_heading("Import contractions", 1)
-        ui.label("A table with a column time_s and one for each winch by its name, in millimeters. It takes the place "
-                 "of the keyframes; undo brings them back.").classes("studio-hint")  # fmt: skip
+        ui.label("A table with the column time_s and a column for each winch, under its name, in millimeters. "
+                 "It replaces the keyframes; undo restores them.").classes("studio-hint")  # fmt: skip
 
         async def load(event: events.UploadEventArguments) -> None:
             content = await event.file.read()

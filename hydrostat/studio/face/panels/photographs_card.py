@@ -86,7 +86,7 @@ def _draw_rows(page: WindowPage) -> None:
             if found is not None and found.errors:
                 most, error = max(found.errors.items(), key=lambda pair: pair[1])
                 figure = ui.label(format_error(error)).classes("studio-figure").style("white-space: nowrap")
-                figure.tooltip(f"Farthest from its simulated place: {most}")
+                figure.tooltip(f"Farthest from its simulated position: {most}")
             icon_button("close", f"Remove {file.name}", page.doing(photographs.remove, file.name))
     comparison = photographs.comparison
     for text in comparison.warnings if comparison else ():

@@ -25,7 +25,7 @@ def proposals_card(page: WindowPage) -> None:
             keep.tooltip("Put these cables into the robot")
         why = ui.label().classes("studio-hint").mark("pose-proposed-why")
         poses = ui.switch("Include stored poses").props("dense").style("font-size: 13px").mark("pose-propose-poses")
-        poses.tooltip("Reach the stored poses that are selected in Design, too")
+        poses.tooltip("Also reach the stored poses that are selected in Design")
 
     def switch(wanted: bool) -> None:
         page.act(proposals.switch, wanted)
@@ -61,7 +61,7 @@ def proposals_card(page: WindowPage) -> None:
 
 
 def _error(found: Proposal) -> str:
-    return "Error not known" if found.expected_error is None else f"{format_error(found.expected_error)} as-built error"
+    return "Error unknown" if found.expected_error is None else f"{format_error(found.expected_error)} as-built error"
 
 
 def _words(found: Proposal | None, *, is_asked: bool) -> str:
@@ -77,5 +77,5 @@ def _why(found: Proposal) -> str:
     """Why there is no network, or what to know about it; "" for nothing."""
     words = found.words
     if found.cables and not found.is_buildable:
-        words = "a kit of it would be refused. Keep it, then see the review in Edit"
+        words = "its kit would be rejected. Keep it, then see the review in Edit"
     return f"{words[:1].upper()}{words[1:]}" + ("." if words and not words.endswith(".") else "")
