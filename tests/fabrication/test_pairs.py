@@ -170,7 +170,7 @@ def test_the_sheet_tells_of_pairs(pairs: Kit) -> None:
         "10 cables in 5 pairs",
         "C1 C6",
         "Then the back panel, as its marks show: C6 to C10, each behind its twin",
-        "Set the two of a pair (C1 with C6, and so on) equally tight",
+        "Set the two cables of a pair (C1 with C6, and so on) equally tight",
         "the second behind it on the back",
     ):
         assert typeset(told) in words, told

@@ -15,19 +15,20 @@ def list_calibration(plan: KitPlan) -> list[str]:
         return []
     both = any(cable.reverse for cable in plan.robot.cables)
     return [
-        "Turn all winches to zero: the spool mark of each cable stands where the line meets the spool. "
+        "Turn all winches to zero: the spool mark of each cable must be where the line meets the spool. "
         + turn_words(plan),
         "Pull the first cable straight by its tail, not tight: the body must not move.",
         f"Slide its stopper along the line until it touches the {SURFACES[plan.method]} at the cable's last point; "
-        "then back by the slack of the list, and clamp it there.",
-        "Do the next cable; then take in 10 mm with every winch, one after the other. Each limb must begin to move, "
-        "and come back when you let out.",
+        "then move it back by the listed slack, and clamp it there.",
+        "Do the same for the other cables. Then reel in 10 mm with one winch after the other. Each limb must move, "
+        "and return when you pay out.",
         "If a limb moves late, retension the line and reset its stopper. If it is bent at zero, move the stopper "
         "outward. Then trim the tail to 30 mm.",
-        "A winch that pulls both ways is never slack, so hydrostat calibrate cannot measure it. Write the angle of "
-        "each winch at its spool marks as its zero in motors.toml."
+        "A winch that pulls both ways is never slack, so hydrostat calibrate cannot find its zero. Write the angle of "
+        "each such winch at its spool marks as its zero in motors.toml."
         if both
-        else "With motors on a computer, hydrostat calibrate measures where the cables of each winch begin to pull.",
+        else "If a computer drives the motors, hydrostat calibrate measures where the cables of each winch begin "
+        "to pull.",
     ]
 
 
@@ -40,16 +41,17 @@ def list_hazards(plan: KitPlan) -> list[str]:
     """Safety lines of a method, the hazard first."""
     if plan.method is Method.PLUSH:
         return [
-            "Laser: cut only felt of known fibre. Never PVC, vinyl or unknown cloth: chlorine gas. Extract the fumes, "
+            "Laser: cut only felt of known fiber. Never cut PVC, vinyl or unknown cloth: chlorine gas. Extract "
+            "the fumes, "
             "stay next to it, keep an extinguisher at hand.",
-            "Needles and blades: push away from your hand, count them before you close the zipper.",
+            "Needles and blades: push them away from your hand, and count them before you close the zipper.",
             f"Pinching: keep {_AWAY}",
             f"Motors: h{_STOP}",
             _SMALL,
         ]
     if plan.method is Method.PRINT:
         return [
-            "Hot: nozzle and bed burn. Let the bed cool before you take the body off.",
+            "Hot: the nozzle and bed burn skin. Let the bed cool before you take the body off.",
             "Fumes: print in a room with an open window.",
             f"Keep {_AWAY}",
             f"H{_STOP}",
@@ -57,7 +59,8 @@ def list_hazards(plan: KitPlan) -> list[str]:
         ]
     mould = plan.work.mould
     foam = [
-        "Foam is made of isocyanate: nitrile gloves, goggles, long sleeves, an open window or a hood. Do not pour "
+        "Foam contains isocyanate: wear nitrile gloves, goggles and long sleeves, and open a window or use a "
+        "hood. Do not pour "
         "foam if you have asthma. Cured foam is harmless.",
         "Foam rises with force and warmth: never close the last opening, never use a glass vessel.",
     ]
@@ -65,7 +68,7 @@ def list_hazards(plan: KitPlan) -> list[str]:
     return [
         *(foam if mould is None or foam_expansion(mould) else []),
         *(plaster if mould is not None and mould.kind is MoldKind.SILICONE else []),
-        "Silicone and release spray: gloves and fresh air, no flame, no food vessels.",
+        "Silicone and release spray: use gloves and fresh air, no flame, no food vessels.",
         "Spray adhesive outdoors, away from flames and motors.",
         f"Keep {_AWAY}",
         f"H{_STOP}",
@@ -79,9 +82,9 @@ def list_last_checks(plan: KitPlan) -> list[str]:
         Method.PLUSH: ["The printed bar measured 100 mm", "Needles counted, zipper closed"],
         Method.PRINT: [
             "No string or blob closes a slit",
-            "Each line slides in its hole by its own weight and a small pull",
+            "Each line slides in its hole under its own weight and a small pull",
         ],
-        Method.FOAM: ["Parts A and B weighed, not measured by eye", _whole_body(plan)],
+        Method.FOAM: ["Parts A and B weighed, not judged by eye", _whole_body(plan)],
     }[plan.method]
     if not plan.robot.cables:
         return first
@@ -100,4 +103,4 @@ def list_last_checks(plan: KitPlan) -> list[str]:
 def _whole_body(plan: KitPlan) -> str:
     mould = plan.work.mould
     words = "The body came out whole, no hole larger than a pea"
-    return words if mould is None else f"{words}, and weighs about {body_mass(plan, mould):.0f} g when it is trimmed"
+    return words if mould is None else f"{words}, and weighs about {body_mass(plan, mould):.0f} g after trimming"

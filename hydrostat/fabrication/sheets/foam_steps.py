@@ -28,25 +28,26 @@ _SILICONE_CURE = ("Mold Max 30 silicone", "24 h, or 6 h at 60 °C")
 _MODEL_CURES = (("alginate", "less than 5 min"), ("plaster", "several hours"))  # for casting a positive
 
 _OTHER_MOULD = (
-    "“hydrostat fabricate” with “--mould silicone” writes what it takes instead: positive and frames to print, "
-    "amounts, steps. positive/plate_1.3mf is the body alone: this mould does not need it."
+    "For this, run “hydrostat fabricate” with “--mould silicone”. It writes a positive and frames to print, "
+    "amounts and steps. positive/plate_1.3mf is the body alone: this mold does not need it."
 )
 
 _MODEL_FIRST = (
-    "From a model instead, as the thesis casts a hand (Fig. 4.1): hold the model still in alginate, draw it out, fill "
-    "the hole with plaster. Bed that positive to its parting line in clay in place of the first half, press keys into "
-    "the clay; after the first pour take all clay away, spray, and pour the second half. For one body alone pour the "
-    "foam straight into the alginate (4.2): it sets in less than 5 min and serves once."
+    "From a model, as Chang (2018) casts a hand (Fig. 4.1): hold the model still in alginate, draw it out, and fill "
+    "the hole with plaster. Bed this positive up to its parting line in clay instead of the first half. Press "
+    "keys into "
+    "the clay. After the first pour, remove all clay, spray, and pour the second half. For a single body, pour the "
+    "foam straight into the alginate (4.2), which sets in less than 5 min and can be used once."
 )
 
-_STIR_FOAM = "Stir with an egg mixer as long as the label says, not longer: it rises at once."
+_STIR_FOAM = "Stir with an egg mixer as long as the label says, not longer: the foam rises immediately."
 _STIR_SILICONE = "Stir slowly, scrape sides and bottom, and let the bubbles rise, in a vacuum if you have one."
-_POUR_FOAM = "At once, in a thin stream down the sprue. Tape each vent as foam appears, then the sprue."
+_POUR_FOAM = "Pour immediately, in a thin stream down the sprue. Tape each vent when foam appears, then the sprue."
 _POUR_SILICONE = (
-    "In a thin stream down the sprue, until it stands in all vents. Tap the mould; fill up what sinks as bubbles rise."
+    "Pour in a thin stream down the sprue, until silicone stands in all vents. Tap the mold; refill as bubbles rise."
 )
 _OPEN = (
-    "Lift the halves apart along the arrow, slowly. Where the body holds (hatched), squeeze it and roll it out. Trim "
+    "Slowly lift the halves apart along the arrow. Where the body sticks (hatched), squeeze it and roll it out. Trim "
     "flash, sprue and vents with scissors."
 )
 _OPEN_FOAM = " Squeeze the body all over to open its cells."
@@ -60,7 +61,7 @@ def foam_expansion(mould: Mold) -> bool:
 def other_way(mould: Mold) -> tuple[str, str]:
     """Return the title and the text on another method to make the mold."""
     if mould.kind is MoldKind.PRINTED:
-        return "Or a mould of silicone", _OTHER_MOULD
+        return "Or a mold of silicone", _OTHER_MOULD
     return "Or from a model, without a printed positive", _MODEL_FIRST
 
 
@@ -89,7 +90,7 @@ def mold_steps(plan: KitPlan, lists: Lists, mould: Mold) -> tuple[AssemblyStep, 
         AssemblyStep(
             "Spray release agent",
             10,
-            "On both halves and on keys, sprue and vents: two thin coats. Let the solvent dry.",
+            "Spray both halves, keys, sprue and vents with two thin coats. Let the solvent dry.",
             wait="10 min",
         ),
         *_tubes_first(CableDepths.of(lists.stitching, len(plan.robot.cables))),
@@ -113,22 +114,23 @@ def _in_pieces(plan: KitPlan) -> bool:
 
 def _printed_first(plan: KitPlan) -> tuple[AssemblyStep, ...]:
     glue = (
-        " A half that is in pieces is joined with glue and dowels of 3 mm in its holes; never glue half to half."
+        " Join the pieces of a half with glue and 3 mm dowels in the holes; never glue the two halves together."
         if _in_pieces(plan)
         else ""
     )
     return (
         AssemblyStep(
-            "Print the mould",
+            "Print the mold",
             20,
-            "All plates from mould/plate_1.3mf on: PLA, 0.2 mm layers, three walls, as the pieces lie, no supports "
+            "Print all plates, from mould/plate_1.3mf on: PLA, 0.2 mm layers, three walls, as the pieces lie, no "
+            "supports "
             "in the cavity." + glue,
             wait=f"about {minutes_text(60 * plan.print_hours)} of printing, all parts",
         ),
         AssemblyStep(
             "Seal the cavity",
             30,
-            "Sand the ridges of the layers. Brush on two coats of sealer or shellac, or the foam creeps between the "
+            "Sand the ridges of the layers. Brush on two coats of sealer or shellac: otherwise foam creeps between the "
             "layers.",
             wait="1 h for each coat",
         ),
@@ -136,22 +138,22 @@ def _printed_first(plan: KitPlan) -> tuple[AssemblyStep, ...]:
 
 
 def _silicone_first(plan: KitPlan, mould: Mold) -> tuple[AssemblyStep, ...]:
-    glue = " What is in pieces is joined with glue and dowels of 3 mm in its holes." if _in_pieces(plan) else ""
+    glue = " Join what is in pieces with glue and 3 mm dowels in the holes." if _in_pieces(plan) else ""
     masses = [f"{mix.mass:.0f} g" for mix in mould.casting.silicone] or ["the amount"]
     return (
         AssemblyStep(
             "Print positive and frames",
             30,
-            "All plates from mould/plate_1.3mf on: positive, two frames, four key domes."
+            "Print all plates, from mould/plate_1.3mf on: positive, two frames, four key domes."
             + glue
-            + " Fill and sand what the silicone "
+            + " Fill and sand marks that the silicone "
             "should not copy. Leave the two halves of the positive apart.",
             wait=f"about {minutes_text(60 * plan.print_hours)} of printing, all parts",
         ),
         AssemblyStep(
             "Pour the first half",
             30,
-            "Lay the lower half of the positive on a flat board, flat side down, the lower frame round it, a dome in "
+            "Lay the lower half of the positive on a flat board, flat side down, the lower frame around it, a dome in "
             "each corner. Seal frame and joints to the board with tape or clay. Spray release agent. Pour "
             f"{masses[0]} of mixed silicone in a thin stream, from one corner.",
             wait="its cure",
@@ -159,7 +161,7 @@ def _silicone_first(plan: KitPlan, mould: Mold) -> tuple[AssemblyStep, ...]:
         AssemblyStep(
             "Pour the second half",
             30,
-            "Turn frame, silicone and positive over. Take the domes out. Put the upper half of the positive on the "
+            "Turn over the frame, silicone and positive. Take the domes out. Put the upper half of the positive on the "
             "lower with dowels of 3 mm, no glue, and the upper frame on the lower; seal the joint. Spray silicone and "
             f"positive twice: silicone sticks to silicone. Pour {masses[-1]}.",
             wait="its cure",
@@ -167,7 +169,7 @@ def _silicone_first(plan: KitPlan, mould: Mold) -> tuple[AssemblyStep, ...]:
         AssemblyStep(
             "Take the positive out",
             15,
-            "Open the halves, draw the positive out, clear the sprue"
+            "Open the halves, draw the positive out, and clear the sprue"
             + (f" and punch {plural(mould.vents, 'vent')} of 3 mm at the high points." if mould.vents else "."),
         ),
     )
@@ -191,8 +193,8 @@ def _tubes_first(depths: CableDepths) -> tuple[AssemblyStep, ...]:
 
 def _closing(mould: Mold) -> str:
     if mould.bolts:
-        return f"Push the keys home and close it with {plural(mould.bolts, 'bolt')} M4; no light may shine through."
-    return "Push the keys home and strap it between two boards, not so hard that it bulges."
+        return f"Push the keys home and close the mold with {plural(mould.bolts, 'bolt')} M4; no light may pass."
+    return "Push the keys home and strap the mold between two boards, not so tightly that it bulges."
 
 
 def skin_steps(plan: KitPlan, lists: Lists) -> tuple[AssemblyStep, ...]:
@@ -240,9 +242,10 @@ def coupler_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
         AssemblyStep(
             "Couple the lines",
             4 * lines,
-            "Cut each line 30 mm behind the core plate. Tie a loop of 5 mm 10 mm behind it and one in the other piece. "
-            "Hook both into a line_coupler, at the plate when the winch is at zero. To swap the core "
-            f"({minutes} min, estimated): pay lines out, unhook them, undo the wing nuts.",
+            "Cut each line 30 mm behind the core plate. Tie a 5 mm loop, 10 mm behind the plate, and one in the "
+            "other piece. "
+            "Hook both into a line_coupler, which is at the plate when the winch is at zero. To swap the core "
+            f"({minutes} min, estimated), pay out the lines, unhook them, and undo the wing nuts.",
         ),
     )
 
@@ -273,7 +276,8 @@ def _drawn_step(depths: CableDepths, deep: list[str], *, flat: bool) -> Assembly
     pins = "points" if flat else "“skin” places"
     where = "in the middle of the thickness" if flat else "at the depth listed, under the pins"
     tubes = (
-        f" Push the tube of {cables_text(depths.tubed)} along the needle's channel, ends where the list has them."
+        f" Push the tube of {cables_text(depths.tubed)} along the needle's channel, with its ends where the list "
+        "has them."
         if depths.tubed
         else ""
     )
@@ -281,11 +285,11 @@ def _drawn_step(depths: CableDepths, deep: list[str], *, flat: bool) -> Assembly
     return AssemblyStep(
         "Draw cables through the foam",
         DRAW * len(deep),
-        f"{cables_text(deep)}, before the skin is on. Pins at the {pins} of lists/stitching.csv show the way "
-        f"(so do dents). Draw the line with a long needle from point to point, {where}."
+        f"Draw {cables_text(deep)} before the skin is on. Pins at the {pins} of lists/stitching.csv show the way "
+        f"(so do dents). Draw the line from point to point with a long needle, {where}."
         + tubes
         + laid
-        + " Sewn on the skin instead, it would have another lever than simulated.",
+        + " On the skin, a cable would have a different lever arm from the simulated one.",
     )
 
 
@@ -294,13 +298,16 @@ def _sewn_step(depths: CableDepths, ways: Mapping[str, Sequence[tuple[str, float
     pace = 30.0  # of a seam by hand [mm/min], two for each channel. Estimated, as the 5 minutes to pin one
     minutes = sum(5 + 2 * (points[-1][1] - points[0][1]) / pace for points in ways.values())
     channels = (
-        f" Or sew channels, which guide it all along, about {minutes_text(minutes)} by hand in all: cut the strips of "
-        "pattern/channels.svg, pin each line across on the point of its number, sew both seams, pull the line through."
+        f" Or sew channels, which guide the line all along (about {minutes_text(minutes)} by hand in all): cut "
+        "the strips of "
+        "pattern/channels.svg, pin each cross line to the point with its number, sew both seams, and pull the "
+        "line through."
     )
     return AssemblyStep(
         "Sew cables on the skin",
         SEW * len(depths.sewn),
         f"{cables_text(depths.sewn)}. Pull the skin over the body, pin every point of the map through it, mark it with "
-        "its number. Take the skin off over a rolled sheet of paper. Sew each line on from the winch to its stopper: a "
-        f"stitch at every number, the line free to slide{tube}." + (channels if ways else ""),
+        "its number. Take the skin off over a rolled sheet of paper. Sew each line on, from the winch to its "
+        "stopper, with a "
+        f"stitch at every number and the line free to slide{tube}." + (channels if ways else ""),
     )

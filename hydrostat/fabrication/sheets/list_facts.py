@@ -128,7 +128,7 @@ def _kind_of(part: Printed, plan: KitPlan) -> str:
     kind = part.kind or part.title
     mould = plan.work.mould
     if mould and part.name in {piece.name for piece in mould.printed} and "positive" not in kind:
-        kind = f"Mould, {kind[:1].lower()}{kind[1:]}"
+        kind = f"Mold, {kind[:1].lower()}{kind[1:]}"
     optional = ", optional" if part.name.startswith("grommet") else ""
     return shorten_text(kind[:1].upper() + kind[1:], 44) + optional
 
@@ -145,16 +145,17 @@ def power_facts(plan: PowerPlan | None, robot: Robot) -> PowerFacts | None:
     marks, is_measured = winch_marks_of(robot), not any(cable.reverse for cable in robot.cables)
     named = [f"{marks[name]} {shorten_text(name, 24)}" for name in plan.winches]
     warnings = [
-        "The fuse sits in the plus lead, at the supply. The switch for the motors stays in reach while they turn.",
-        "Minus of the supply and GND of the board are joined. Plus never goes to a pin of the board that is no supply.",
-        f"From NiMH cells use {plan.cells} in a row with the same fuse; never charge them in the robot.",
+        "The fuse sits in the plus lead, at the supply. Keep the switch for the motors within reach while they turn.",
+        "Join minus of the supply and GND of the board. Never connect plus to a pin of the board that is not a "
+        "supply pin.",
+        f"With NiMH cells, use {plan.cells} in series with the same fuse; never charge them in the robot.",
     ]
     if plan.servos:
         if plan.motor.bus == "feetech":
             warnings += [
                 "STS3215 are sold for 7.4 V and for 12 V, in one case. "
                 f"This kit needs those for {plan.motor.volts:g} V: read the label of each servo. "
-                "On the wrong supply hydrostat refuses them as it connects.",
+                "On the wrong supply, hydrostat rejects them at connection.",
                 "The bus adapter passes the supply on as it is. Read the range printed on it: some state 9 to 12.6 V.",
             ]
         return {
@@ -172,7 +173,7 @@ def power_facts(plan: PowerPlan | None, robot: Robot) -> PowerFacts | None:
             place += 1
     warnings += [
         "10 kOhm from each PWM pin to GND keeps motors off while the board starts.",
-        "A motor that runs away has its two wires swapped: the board stops it after 0.2 s.",
+        "If a motor runs away, its two wires are swapped: the board stops it after 0.2 s.",
     ]
     if not plan.resets:
         warnings.append(_encoder_warning(plan))
@@ -219,7 +220,7 @@ def _list_first_steps(plan: PowerPlan, *, is_measured: bool) -> list[str]:
         kind = "firmware"
         flash = f" --flash {','.join(['PORT'] * len(plan.boards))}" if plan.resets else ""
         ready = [
-            "Wire one winch by the table, then the others: PWM to EN of its driver, direction to PH, current to its "
+            "Wire one winch as in the table, then the others: PWM to EN of its driver, direction to PH, current to its "
             f"current sense. On a DRV8874, PMODE goes to GND and SLEEP to {'5V' if plan.resets else '3V3'}. Names "
             "differ between carriers: read the page of yours.",
             f"Run: hydrostat firmware ROBOT --board {','.join(plan.boards)} --motor {plan.motor.key} --out DIR"
@@ -238,17 +239,17 @@ def _list_first_steps(plan: PowerPlan, *, is_measured: bool) -> list[str]:
         alone = [
             f"Optional: after hydrostat firmware ROBOT --moves MOVES, {button} starts and stops these moves without a "
             f"computer. Feed the board by {feed} before you calibrate.",
-            f"Optional, if cells feed the motors: add --min-supply {plan.cells} to that command. Connect plus of the "
-            f"motors, 47 kOhm, pin {BOARDS[plan.boards[0]].supply}, 10 kOhm and GND in a row. The motors then stop at "
+            f"Optional, if cells power the motors: add --min-supply {plan.cells} to that command. Connect plus of the "
+            f"motors, 47 kOhm, pin {BOARDS[plan.boards[0]].supply}, 10 kOhm and GND in series. The motors then stop at "
             f"{plan.cells} V, and the light blinks.",
         ]
     return [
         f"Leave the switch off. Measure the supply behind the fuse: {plan.motor.volts:g} V, plus on the plus lead.",
         *ready,
         'Install the motor package: pip install -e ".[motors]" in the folder of hydrostat. Then find the port: '
-        "/dev/ttyUSB0 or /dev/ttyACM0 on Linux, COM3 or alike on Windows.",
+        "/dev/ttyUSB0 or /dev/ttyACM0 on Linux, COM3 or similar on Windows.",
         f"Keep a hand on the switch and turn it on. Run: hydrostat calibrate ROBOT --motors {kind}:PORT. Check that "
-        "the winch that turns is the one that it names."
+        "the winch that turns is the one that the command names."
         if is_measured
         else "Keep a hand on the switch and turn it on. Write the zeros of the winches, as under Calibrate.",
         f"Run: hydrostat play ROBOT MOVES --motors {kind}:PORT. Begin with small moves.",

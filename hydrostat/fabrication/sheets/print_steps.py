@@ -14,7 +14,7 @@ def print_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
             "Print body and parts",
             15,
             f"body/plate_1.3mf in {material}, as it lies: 0.2 mm layers, 100 % infill, no supports. Dry the filament. "
-            "Print slowly, 20 to 30 mm/s: thin hinges must not string. The parts (parts/plate_1.3mf) are of PLA.",
+            "Print slowly, 20 to 30 mm/s: thin hinges must not string. Print the parts (parts/plate_1.3mf) in PLA.",
             wait=f"about {minutes_text(60 * sum(part.volume for part in plan.work.printed) / 7.5e3)} of printing",
         ),
         AssemblyStep("Clear slits and holes", 15, "Cut strings in the slits. Push a wire of 1 mm through each hole."),
@@ -32,7 +32,7 @@ def print_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
                     "Thread the cables",
                     work.route,
                     "Push a thin wire through the hole from the last point to the first, tie the line to it and draw "
-                    "it through. Put the stopper on loosely at the last point.",
+                    "the line through. Put the stopper on loosely at the last point.",
                 ),
             )
             if plan.robot.cables

@@ -151,7 +151,7 @@ def _mould(mould: Mold | None) -> MoldFacts | None:
         return None
     body, casting = mould.casting.body, mould.casting
     amounts = [
-        ["closed mould", " × ".join(f"{side:.0f}" for side in mould.box) + " mm"],
+        ["closed mold", " × ".join(f"{side:.0f}" for side in mould.box) + " mm"],
         ["to be filled", f"{body.volume / 1e3:.0f} ml"],
         [f"{body.material}, part A", f"{body.part_a:.0f} g"],
         [f"{body.material}, part B", f"{body.part_b:.0f} g"],
@@ -171,7 +171,8 @@ def _mould(mould: Mold | None) -> MoldFacts | None:
 
 def _undercut(share: float) -> str:
     if share < 5e-4:
-        return "The arrow is the pull. All of the surface slides out."
+        return "The arrow is the pull direction. The whole surface slides out."
     return (
-        f"The arrow is the pull. Hatched: {100 * share:.1f} % of the surface cannot slide out. Squeeze the body there."
+        f"The arrow is the pull direction. Hatched: {100 * share:.1f} % of the surface, which cannot slide out. "
+        "Squeeze the body there."
     )

@@ -43,7 +43,7 @@ def held_text(robot: Robot) -> str:
         return ""
     places = "; ".join(_pin_text(pin) for pin in robot.pins)
     drawn = ", dotted on the map" if robot.body.mesh.dim == 2 else ""
-    return f"It was simulated as held {places}, in the coordinates of the robot file{drawn}: clamp or strap it there."
+    return f"The simulation holds the robot {places} (coordinates of the robot file{drawn}): clamp or strap it there."
 
 
 def _pin_text(pin: Pin) -> str:
@@ -52,7 +52,7 @@ def _pin_text(pin: Pin) -> str:
         spans = ", ".join(f"{axis} {_mm(min(one, two))} to {_mm(max(one, two))}" for axis, one, two in axes)
         return f"within {spans} mm"
     at = ", ".join(f"{axis} {_mm(value)}" for axis, value in zip("xyz", pin.at or (), strict=False))
-    return f"round {at} mm" + (f", up to {_mm(pin.radius)} mm from there" if pin.radius else "")
+    return f"around {at} mm" + (f", up to {_mm(pin.radius)} mm from there" if pin.radius else "")
 
 
 def _mm(value: float) -> str:
@@ -92,8 +92,8 @@ def winch_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
             AssemblyStep(
                 "Put the winches together",
                 15 * count,
-                f"Build {plural(count, 'winch')} as drawn on page 2, each with its own files (see Parts), and write "
-                f"the mark on it. Screw the plate on the motor{', the coupling on its horn' if has_horn else ''}. "
+                f"Build {plural(count, 'winch')} as drawn on page 2, each from its own files (see Parts), and write "
+                f"its mark on it. Screw the plate onto the motor{', the coupling onto its horn' if has_horn else ''}. "
                 "Push the spool on, then screw the housing on. The bill names the screws of each.",
             )
         )
@@ -104,7 +104,7 @@ def winch_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
                 "Put winches in",
                 10 * len(inside),
                 f"Push {marks_text(inside)} into {'its pocket' if len(inside) == 1 else 'their pockets'} in the foam. "
-                "Lead the wires out together; sew the skin round them.",
+                "Lead the wires out together; sew the skin around them.",
             )
         )
     if plan.rigid.seat_assembly is not None:
@@ -126,7 +126,8 @@ def _base_step(outside: tuple[str, ...], base: BasePlate | None) -> AssemblyStep
         5 + 10 * len(outside),
         f"Screw {marks_text(outside)} to the base plate (print it, or cut parts/base.svg from acrylic), legs below. "
         + held
-        + "Hold both ends: only so does the tube keep the cable's length. The base stands anywhere the tubes reach.",
+        + "Fix both ends: only then does the tube keep the cable's length. The base may stand anywhere the tubes "
+        "reach.",
     )
 
 
@@ -139,23 +140,23 @@ def _seat_step(robot: Robot, *, swapped: bool) -> AssemblyStep:
         30,
         "Screw the cup on its posts, the posts on the plate, the legs under it: screws M3. Push each tube from below "
         f"into its bore, {tubes}, with a drop of glue. Press the end of the body down to the floor of the cup, lines "
-        "through its openings, and sew it there through the holes of the cup, round and round. What hangs is hung by "
-        "the legs from a shelf, the seat upside down." + ("" if swapped else another),
+        "through its openings, and sew it there through the holes of the cup, all around. To hang the robot, hang the "
+        "seat upside down from a shelf by its legs." + ("" if swapped else another),
     )
 
 
 def turn_words(plan: KitPlan) -> str:
     """Sentences on who turns a spool before a computer does."""
     if plan.rigid.motor.bus:
-        return "With the power off, turn spools slowly by hand."
-    return "Turn a geared motor by a cell of 1.5 V at its two wires."
+        return "With the power off, turn the spools slowly by hand."
+    return "To turn a geared motor, connect a 1.5 V cell to its two wires."
 
 
 def tie_step(plan: KitPlan) -> AssemblyStep:
     """The step by which lines come on their spools."""
     robot = plan.robot
     back = [f"C{index + 1}" for index, cable in enumerate(robot.cables) if cable.reverse]
-    ways = f"all in one direction, but the other way round: {', '.join(back)}" if back else "all in one direction"
+    ways = f"all in one direction, but these in the other: {', '.join(back)}" if back else "all in one direction"
     return AssemblyStep(
         "Tie the cables on",
         5 * len(robot.cables),
@@ -184,14 +185,14 @@ def plush_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
             "Laser pattern/pattern.svg or pattern/pattern.dxf: marks first, then pinholes, edges last. Or print "
             f"pattern/pattern_{plan.options.paper}.pdf at 100 %, check that the bar measures 100 mm, cut by hand and "
             "punch the pinholes. Keep the grain arrows along the cloth. Green guides would show on the toy: draw them "
-            "with a pen that washes out, or leave them off and follow the map.",
+            "with a washable pen, or leave them out and follow the map.",
         ),
         *_decorate(plan.robot),
         *(_cables(plan) if cables else ()),
         AssemblyStep(
             "Put the zipper in",
             25,
-            "Slit the back panel along its opening mark. Sew the zipper in, its slide on the outside, and open it.",
+            "Slit the back panel along its opening mark. Sew the zipper in, its slider on the outside, and open it.",
         ),
         _sew(plan),
         *winch_steps(plan),
@@ -249,7 +250,7 @@ def _part_steps(plan: KitPlan, inserts: Sequence[Insert]) -> tuple[AssemblyStep,
     if plan.method is Method.PLUSH:
         channel = " Push each rod into a channel or tube that is sewn to the cloth along its line." if rods else ""
         tied = " Tie each part to the cloth in front and back." if len(rods) < len(inserts) else ""
-        held = f"Set them where the map has them (lists/inserts.csv).{tied}{channel}"
+        held = f"Set them where the map shows them (lists/inserts.csv).{tied}{channel}"
     else:
         held = "Hold them at their places (lists/inserts.csv) with pins or line through the wall, clear of the tubes."
     return (AssemblyStep(insert_title(inserts), 15 * len(inserts), f"Make {named}. {held}{sharp}"),)
@@ -260,7 +261,8 @@ def _pair_sentence(plan: KitPlan) -> str:
     if not plan.pairs:
         return ""
     return (
-        f"Set the two of a pair (C1 with C{plan.pairs + 1}, and so on) equally tight: a limb leans to the tighter one. "
+        f"Set the two cables of a pair (C1 with C{plan.pairs + 1}, and so on) equally tight: a limb leans to the "
+        "tighter one. "
     )
 
 
@@ -271,8 +273,9 @@ def _prints(plan: KitPlan) -> tuple[AssemblyStep, ...]:
         AssemblyStep(
             "Print the parts",
             20,
-            f"All plates from parts/plate_1.3mf on: {plan.pieces}, of "
-            "PLA, 0.2 mm layers, no supports, as they lie. Try every fit before you go on: spools turn freely, motors "
+            f"Print all plates, from parts/plate_1.3mf on: {plan.pieces}, in "
+            "PLA, 0.2 mm layers, no supports, as they lie. Check every fit before you go on: spools turn freely, "
+            "motors "
             "slide in without force.",
             wait=f"about {minutes_text(60 * plan.print_hours)} of printing",
         ),
@@ -340,8 +343,8 @@ def _sew(plan: KitPlan) -> AssemblyStep:
     return AssemblyStep(
         "Sew the body",
         45,
-        f"Lay {sides} right sides together{tucked}. {between}; sew twice along the seam line, leave no gap. "
-        "Snip the allowance in inner corners. Turn it out through the zipper.",
+        f"Lay {sides} right sides together{tucked}. {between}; sew twice along the seam line and leave no gap. "
+        "Snip the allowance in inner corners. Turn the body right side out through the zipper.",
     )
 
 
@@ -361,11 +364,11 @@ def _stuff(plan: KitPlan) -> AssemblyStep:
     full = f"about {1e3 * thickness:.0f} mm thick" if thickness else "as large as on page 1"
     them = "it" if len(inside) == 1 else "them"
     places = (
-        f"Set {marks_text(inside)} where the map has {them}{_lying_text(plan)}. Tie {them} to the cloth in front. "
+        f"Set {marks_text(inside)} where the map shows {them}{_lying_text(plan)}. Tie {them} to the front cloth. "
         if inside
         else ""
     )
-    winches = ", then round the winches," if inside else ""
-    lumps = " No lumps by the cables." if plan.robot.cables else ""
-    words = f"{places}Fill limbs first{winches} softly and evenly, until it is {full}.{lumps}"
+    winches = ", then around the winches," if inside else ""
+    lumps = " Leave no lumps next to the cables." if plan.robot.cables else ""
+    words = f"{places}Fill the limbs first{winches} softly and evenly, until the body is {full}.{lumps}"
     return AssemblyStep("Stuff the body", 30, words)

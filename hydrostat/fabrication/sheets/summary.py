@@ -100,12 +100,12 @@ def _optional(plan: KitPlan) -> list[str]:
     found = []
     if parts.grommet is not None:
         found.append(
-            f"{plural(parts.grommet.count, 'grommet')}: metal eyelets or buttonhole stitch round the holes do too"
+            f"{plural(parts.grommet.count, 'grommet')}: metal eyelets or buttonhole stitch around the holes also work"
         )
     if plan.robot.body.marks:
         found.append("decoration")
     if parts.base is not None:
-        found.append("printed base: parts/base.svg cut from acrylic does too")
+        found.append("printed base: parts/base.svg cut from acrylic also works")
     if plan.work.spare:
         found.append("the files in positive/: a mold of silicone alone needs them")
     return found
