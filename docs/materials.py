@@ -27,11 +27,11 @@ often differ by a factor of two. Measure a sample before you trust a tension.
 **Nearly incompressible materials** (Poisson's ratio 0.48 and above) make linear elements lock: write
 `volume = "patch"` ([decision 0012](decisions/0012-locking.md)).
 
-**Sources that we read ourselves**: the tensile curves of the silicones, the data sheet of the polyethylene foam, and
-the abstracts of the papers on PDMS and on Poisson's ratio of foam. We took from public programs that quote their
-sources: the 100 % moduli and densities of the silicones, the fit to flexfoam-it v, and Allard's foam. From memory, we
-quote the elongations at break, NinjaFlex, the density of Mold Max 30, Gent's and Gibson's laws, the manufacturer's
-names for its foams, and van Wyk's law. Assumed values are marked as assumed.
+**Sources.** We read the tensile curves of the silicones, the data sheet of the polyethylene foam, and the abstracts of
+the papers on PDMS and on Poisson's ratio of foam. The 100 % moduli and densities of the silicones, the fit to
+flexfoam-it v, and Allard's foam come from public programs that quote their sources. The elongations at break,
+NinjaFlex, the density of Mold Max 30, Gent's and Gibson's laws, the manufacturer's names for its foams, and van Wyk's
+law are quoted from memory. Assumed values are marked as assumed.
 
 Chang (2018) is [this thesis](thesis.md).
 """

@@ -48,7 +48,7 @@ def drive(
     ] = 1.5,
     seconds: Annotated[float, typer.Option(metavar="SECONDS", help="Duration. 0 = until you stop it.")] = 0.0,
 ) -> None:
-    """Drive winches by keys, gamepad, MIDI, OSC, glove or camera.
+    """Drive winches with keys, gamepad, MIDI, OSC, glove or camera.
 
     Without --motors the motors are simulated, and every line starts with "simulated". With --motors, the limits of the
     winches protect the robot; so do a watchdog and a tension guard, if the motors have them. Motors hold when the input

@@ -115,8 +115,9 @@ def train(
 
     Task reach-with-hysteresis: cables have friction, and the pose depends on the loading path. A --model for it has no
     friction: a deliberate model error. Task walk: the robot stands on the ground without its pins and walks in a
-    dynamic simulation. One action is 0.5 s of a gait, or contractions for 0.1 s. Tasks push and twist: keyframes move
-    an object with mass in a dynamic simulation, either an [[obstacle]] of the robot or the --object.
+    dynamic simulation. One action is 0.5 s of a gait, or contractions for 0.1 s. Tasks push and twist: the robot moves
+    an object with mass in a dynamic simulation. The object is an [[obstacle]] of the robot, or the --object. Each
+    action is a keyframe.
 
     Example: hydrostat train gallery:cupping_hand --contact --steps 2000 --out build/policy
 

@@ -189,10 +189,10 @@ less than half its thickness as it is drawn out, and comes back; but what grips 
 
 def set_upright(stance: MoldOrientation, sprue: Sprue | None, vents: tuple[Vent, ...], kind: MoldKind) -> str:
     """Return the sentences on how to set up the mold for pouring."""
-    held = ", the end that is held at the top" if stance.held_upwards else ""
+    held = ", the held end at the top" if stance.held_upwards else ""
     upward = sum(vent.upward for vent in vents)
     backward = len(vents) - upward
-    text = f"Closed, on its edge, the parting plane upright and the funnel on top{held}."
+    text = f"Stand it on its edge, the parting plane upright, the funnel on top{held}."
     if sprue is not None:
         text += f" The sprue is {2 * sprue.radius:g} mm across."
     if vents and kind is MoldKind.SILICONE:

@@ -99,7 +99,8 @@ def mold_steps(plan: KitPlan, lists: Lists, mould: Mold) -> tuple[AssemblyStep, 
         AssemblyStep(
             "Weigh and stir",
             5,
-            f"{mix.part_a:.0f} g of part A and {mix.part_b:.0f} g of part B of {mix.material}, each in its own cup, if "
+            f"Weigh {mix.part_a:.0f} g of part A and {mix.part_b:.0f} g of part B of {mix.material}, each in its "
+            "own cup, if "
             "your tins ask for this ratio. " + (_STIR_FOAM if foams else _STIR_SILICONE),
         ),
         AssemblyStep("Pour", 5, _POUR_FOAM if foams else _POUR_SILICONE, wait="its cure"),
@@ -205,9 +206,10 @@ def skin_steps(plan: KitPlan, lists: Lists) -> tuple[AssemblyStep, ...]:
         AssemblyStep(
             "Fix the skin",
             20,
-            "Spray the foam thinly with contact adhesive (3M Super 77), outdoors. Pull a knitted glove or sleeve on, "
+            "Spray the foam thinly with contact adhesive (3M Super 77), outdoors. Pull on a knitted glove or sleeve, "
             + (
-                "marks to their places, and press. Lead the end of each line out through it at its last point; put the "
+                "align its marks, and press. Lead the end of each line out through it at the last point of the "
+                "line; put the "
                 "stopper on loosely."
                 if cables
                 else "and press."
@@ -273,7 +275,7 @@ def _cable_steps(plan: KitPlan, lists: Lists) -> tuple[AssemblyStep, ...]:
 
 def _drawn_step(depths: CableDepths, deep: list[str], *, flat: bool) -> AssemblyStep:
     """Step that draws cables through the foam, of a flat body in the middle of its thickness."""
-    pins = "points" if flat else "“skin” places"
+    pins = "points" if flat else "“skin” points"
     where = "in the middle of the thickness" if flat else "at the depth listed, under the pins"
     tubes = (
         f" Push the tube of {cables_text(depths.tubed)} along the needle's channel, with its ends where the list "

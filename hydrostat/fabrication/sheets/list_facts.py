@@ -203,8 +203,9 @@ def _list_first_steps(plan: PowerPlan, *, is_measured: bool) -> list[str]:
     if plan.motor.bus == "feetech":
         kind = "feetech"
         ready = [
-            "Plug in one servo at a time, with the switch off. Turn it on. Give the servo its number with the maker's "
-            "program FD, and set both limits of angle to 0. Turn the switch off. Write the number on the servo.",
+            "Plug in one servo at a time, with the switch off. Turn it on. Give the servo its number with the "
+            "manufacturer's program FD, and set both angle limits to 0. Turn the switch off. Write the number on "
+            "the servo.",
             chain,
         ]
     elif plan.servos:

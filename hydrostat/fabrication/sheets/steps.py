@@ -93,7 +93,8 @@ def winch_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
                 "Put the winches together",
                 15 * count,
                 f"Build {plural(count, 'winch')} as drawn on page 2, each from its own files (see Parts), and write "
-                f"its mark on it. Screw the plate onto the motor{', the coupling onto its horn' if has_horn else ''}. "
+                "its mark on each. Screw the plate onto the "
+                f"motor{' and the coupling onto its horn' if has_horn else ''}. "
                 "Push the spool on, then screw the housing on. The bill names the screws of each.",
             )
         )
@@ -132,7 +133,7 @@ def _base_step(outside: tuple[str, ...], base: BasePlate | None) -> AssemblyStep
 
 
 def _seat_step(robot: Robot, *, swapped: bool) -> AssemblyStep:
-    another = " For a second core print seat_cup again: to swap them, untie the lines and undo the screws of the cup."
+    another = " For a second core, print seat_cup again. To swap cores, untie the lines and undo the screws of the cup."
     ends = any(cable.bare[0] for cable in robot.cables)
     tubes = "up to the lip, where it ends" if ends else "through the plate and on to the body"
     return AssemblyStep(
@@ -295,7 +296,8 @@ def _cables(plan: KitPlan) -> tuple[AssemblyStep, ...]:
         AssemblyStep(
             "Cut cables and sheaths" if tubes else "Cut the cables",
             work.cut,
-            "Cut each line to lists/cable_cuts.csv, pulled straight. Mark its spool mark with a pen, from the end that "
+            "Cut each line to lists/cable_cuts.csv, pulled straight. Mark its spool mark with a pen, measured "
+            "from the end that "
             "gets the stopper, and tape the cable's number to it."
             + (" Cut tubes to lists/sheath_cuts.csv, square, with a sharp blade." if tubes else ""),
         ),

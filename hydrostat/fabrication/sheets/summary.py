@@ -107,5 +107,5 @@ def _optional(plan: KitPlan) -> list[str]:
     if parts.base is not None:
         found.append("printed base: parts/base.svg cut from acrylic also works")
     if plan.work.spare:
-        found.append("the files in positive/: a mold of silicone alone needs them")
+        found.append("the files in positive/: only a mold of silicone needs them")
     return found

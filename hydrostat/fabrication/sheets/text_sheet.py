@@ -11,7 +11,7 @@ def sheet_text(facts: SheetFacts) -> str:
 
 
 def _lines(facts: SheetFacts) -> Iterator[str]:
-    yield f"{facts['title']}. {facts['kind']}, assembly sheet in words"
+    yield f"{facts['title']}. {facts['kind']}, assembly sheet as text"
     yield from _section("Before you begin", (f"{row['title']}: {' '.join(row['lines'])}" for row in facts["summary"]))
     yield from _section("Warnings", facts["mind"])
     yield from _section("Safety", facts["safety"])
@@ -35,7 +35,9 @@ def _lines(facts: SheetFacts) -> Iterator[str]:
     yield from _section("Cures", (": ".join(row) for row in facts["cures"]))
     yield from _table("Cables, in mm", facts["cables"])
     yield from _table("Tubes, in mm", facts["tubes"])
-    yield from _section("Holes", ["Their places, and on which side each cable runs on: lists/stitching.csv"])
+    yield from _section(
+        "Holes", ["For their positions, and the side on which each cable continues, see lists/stitching.csv"]
+    )
     yield from _number_lines("Calibrate", facts["calibration"])
     yield from _section("Before the first pose", facts["checklist"])
     power = facts["power"]

@@ -109,7 +109,7 @@ def _write(archive: ZipFile, entry: ZipInfo, goal: Path, shown: str) -> None:
     with archive.open(entry) as source:
         data = source.read(entry.file_size + 1)
     if len(data) > entry.file_size:
-        raise InputError(f"{shown}: {quote(entry.filename[:60])} is larger than it says")
+        raise InputError(f"{shown}: {quote(entry.filename[:60])} is larger than its header states")
     goal.write_bytes(data)
 
 
