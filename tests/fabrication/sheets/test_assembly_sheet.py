@@ -102,7 +102,7 @@ def test_what_a_plush_sheet_says(plush_sheet):
     assert "C2" in text
     assert "100 × 100 × 30 mm" in text
     assert "1 winch, 2 cables" in text
-    assert "Never PVC" in text
+    assert "Never cut PVC" in text
 
 
 @pytest.mark.slow
