@@ -71,8 +71,7 @@ def add_class_pages(app: FastAPI, classroom: Classroom, token: str | None, port:
     def teacher(request: Request, key: str) -> Response | None:
         if not is_teacher(key):
             return PlainTextResponse("hydrostat: not found\n", status_code=404)
-        asked = f"?token={token}" if token else ""
-        build_teacher(classroom, f"{request.base_url}{asked}", f"/class/{key}/picture")
+        build_teacher(classroom, f"{request.base_url}{token or ''}", f"/class/{key}/picture")
         return None
 
 

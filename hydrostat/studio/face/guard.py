@@ -2,7 +2,7 @@
 
 import re
 from ipaddress import ip_address
-from secrets import compare_digest
+from secrets import choice, compare_digest
 from urllib.parse import parse_qs
 
 from starlette.datastructures import Headers, MutableHeaders
@@ -12,6 +12,9 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 LOOPBACK = ("127.0.0.1", "localhost", "[::1]")  # names of this machine that a page may have
 COOKIE = "hydrostat_token"  # followed by the port: cookies do not know ports, and two studios may run on one machine
 LARGEST = 200_000_000  # no request has more bytes
+
+LETTERS = "abcdefghjkmnpqrstuvwxyz23456789"  # of a code: none is taken for another
+LENGTH = 8  # letters of a code: at 2,000 guesses a second, 13 years for all of them
 
 _ROOM = re.compile(r"/(room|watch|class)/[A-Za-z0-9_-]+")  # what a link with a token may lead to, beside the front
 
@@ -28,11 +31,28 @@ SAFE_HEADERS = {
 """No other page may frame this one or read of it, and it loads nothing from elsewhere. The page needs scripts within
 it and evaluation of templates. A policy of no referrer at all would make browsers hide the origin of our own forms."""
 
+NO_TOKEN = "token missing. Open the address that the studio printed"
+
 WELCOME = """<!doctype html><meta charset="utf-8"><title>hydrostat</title>
 <noscript><meta http-equiv="refresh" content="0;url={0}"></noscript>
 <script>location.replace("{0}" + location.hash)</script>"""
 """Goes on to the page. A redirection would not do: after a link of another page it goes without the strict cookie.
 What stands after "#" goes along."""
+
+
+ASK_CODE = """<!doctype html><html lang="en"><meta charset="utf-8"><title>hydrostat</title>
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<body style="font: 18px system-ui, sans-serif; max-width: 320px; margin: 20vh auto; padding: 0 24px">
+<form action="/"><p><label for="code">Class code, from the board</label></p>
+<input id="code" name="token" required autofocus autocomplete="off" autocapitalize="off" spellcheck="false"
+ style="font: inherit; padding: 10px; width: 9em"> <button style="font: inherit; padding: 10px">Start</button>
+<p role="alert">{0}</p></form></html>"""
+"""Asks for the code of a class."""
+
+
+def new_code() -> str:
+    """Return a token that pupils can copy from the board."""
+    return "".join(choice(LETTERS) for _ in range(LENGTH))
 
 
 class Guard:
@@ -50,13 +70,16 @@ class Guard:
         port: int,
         names: tuple[str, ...] = LOOPBACK,
         token: str | None = None,
+        coded: bool = False,
         largest: int = LARGEST,
     ) -> None:
         """Guard an app at a port, by names of this machine in its address; no request has more bytes than `largest`.
 
         With a token, which requests must bring then, any numeric address will do as a name: only what has letters can
-        be made to mean another machine.
+        be made to mean another machine. If `coded`, the token is a code: the path of the address may be the code, its
+        letters may be large, and browsers without it see a form.
         """
+        self._coded = coded
         self._app, self._token, self._port, self._largest = app, token, port, largest
         self._cookie = f"{COOKIE}_{port}"
         self._names = {name.lower() for name in names}
@@ -69,11 +92,15 @@ class Guard:
         headers = Headers(scope=scope)
         reason = "Bad request" if scope["type"] not in ("http", "websocket") else ""
         reason = reason or self._refusal(scope, headers)
-        if reason:
+        if reason == NO_TOKEN and self._coded and scope["type"] == "http":
+            words = "Wrong code. Try again." if "token" in _query(scope) else ""
+            page = HTMLResponse(ASK_CODE.format(words), status_code=403, headers={"cache-control": "no-store"})
+            await page(scope, receive, _with_headers(send))
+        elif reason:
             await _refuse(scope, receive, send, reason)
         elif scope["type"] == "websocket":
             await self._app(scope, receive, send)
-        elif self._token is not None and "token" in _query(scope):
+        elif self._token is not None and ("token" in _query(scope) or self._is_code(scope["path"][1:])):
             await self._welcome(scope["path"])(scope, receive, _with_headers(send))
         else:
             body = _Body(receive, _with_headers(send), self._largest)
@@ -90,7 +117,7 @@ class Guard:
         if len(lengths) > 1 or any(not _is_count(text) or int(text) > self._largest for text in lengths):
             return "request too large"
         if self._token is not None and not self._brings_token(scope, headers):
-            return "token missing. Open the address that the studio printed"
+            return NO_TOKEN
         return ""
 
     def _is_ours(self, host: str) -> bool:
@@ -104,9 +131,15 @@ class Guard:
     def _brings_token(self, scope: Scope, headers: Headers) -> bool:
         cookies = [part.strip() for text in headers.getlist("cookie") for part in text.split(";")]
         given = [part.partition("=")[2] for part in cookies if part.partition("=")[0] == self._cookie]
-        given += _query(scope).get("token", [])
-        wanted = (self._token or "").encode()
-        return any(compare_digest(text.encode(errors="replace"), wanted) for text in given)
+        given += [*_query(scope).get("token", []), *([scope["path"][1:]] if self._coded else [])]
+        return any(self._is_token(text) for text in given)
+
+    def _is_token(self, text: str) -> bool:
+        text = text.strip().lower() if self._coded else text
+        return compare_digest(text.encode(errors="replace"), (self._token or "").encode())
+
+    def _is_code(self, text: str) -> bool:
+        return self._coded and self._is_token(text)
 
     def _welcome(self, path: str) -> Response:
         """Keeps the token as a cookie and goes to the page, so that it does not stay in the address."""

@@ -20,7 +20,7 @@ from hydrostat.errors import InputError
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.class_pages import add_class_pages, ask_nickname, read_nickname, remember
 from hydrostat.studio.face.classroom import Classroom
-from hydrostat.studio.face.guard import LOOPBACK, Guard
+from hydrostat.studio.face.guard import LOOPBACK, Guard, new_code
 from hydrostat.studio.face.page import HEARTBEAT, Toasts, WindowPage
 from hydrostat.studio.face.rooms import RETRY, Room, Rooms, RoomsFullError, new_key
 from hydrostat.studio.face.share import Links
@@ -31,6 +31,9 @@ from hydrostat.studio.face.window import build_window, dress
 from hydrostat.studio.session import Session
 
 TITLE = "hydrostat studio"
+CLASS_PORTS = range(8320, 8330)
+"""A class takes the first free one, so that it has the same address in the next lesson."""
+
 ROOM = "hydrostat_room"  # the cookie of a browser's own room, followed by the port
 
 
@@ -154,22 +157,24 @@ def serve(
 ) -> None:
     """Serve rooms until Ctrl-C (InputError: the address cannot be listened at).
 
-    At another address than this machine's own a token is asked for. Port 0 is a free one; `announce` is told the
+    At another address than this machine's own a token is asked for, which is a short code for a class. Port 0 is a
+    free one, for a class the first free one of `CLASS_PORTS`; `announce` is told the
     address, that of a class and then that of its teacher; `show` opens the browser, of a class on the teacher's page.
     """
     # threads take turns so often [s]: a solver in one must not keep the pointer waiting in another
     switch = 1e-3
     sys.setswitchinterval(switch)
-    listener = _listener(host, port)
+    coded = classroom is not None
+    listener = _class_listener(host) if coded and not port else _listener(host, port)
     own = host in ("127.0.0.1", "localhost", "::1")
-    token = None if own else token_urlsafe(16)
+    token = None if own else new_code() if coded else token_urlsafe(16)
     number = listener.getsockname()[1]
     name = host if ":" not in host else f"[{host}]"
     shown = name if host not in ("0.0.0.0", "::") else socket.gethostname()
     app = make_app(rooms, token=token, port=number, classroom=classroom)
-    guarded: ASGIApp = Guard(app, port=number, names=LOOPBACK if own else (*LOOPBACK, shown), token=token)
+    guarded: ASGIApp = Guard(app, port=number, names=LOOPBACK if own else (*LOOPBACK, shown), token=token, coded=coded)
     base, asked = f"http://{shown}:{number}/", f"?token={token}" if token else ""
-    address = f"{base}{asked}"
+    address = f"{base}{(token or '') if coded else asked}"
     announce(address)
     if classroom is not None:
         address = f"{base}class/{classroom.key}{asked}"
@@ -178,6 +183,16 @@ def serve(
         webbrowser.open(address)
     config = uvicorn.Config(guarded, log_level="warning", ws_max_size=1 << 20, timeout_graceful_shutdown=2)
     uvicorn.Server(config).run(sockets=[listener])
+
+
+def _class_listener(host: str) -> socket.socket:
+    """Listen at the port of the last lesson if it is free: browsers keep their rooms by address and port."""
+    for port in CLASS_PORTS:
+        try:
+            return _listener(host, port)
+        except InputError:
+            continue
+    return _listener(host, 0)
 
 
 def _listener(host: str, port: int) -> socket.socket:

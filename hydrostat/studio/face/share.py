@@ -80,7 +80,7 @@ def share_dialog(links: Links, pack: Callable[[], str] | None = None) -> Callabl
                     ui.label(hint).classes("studio-hint")
                 _link_box(words, link, name)
                 if link == links.work and not links.are_local:
-                    _code(words, link)
+                    _code(words, link, 420 if pack is None else 160)
         robot = ui.column().classes("w-full gap-1")
         with ui.row().classes("w-full justify-end"):
             ui.button("Close", on_click=dialog.close).props("flat no-caps")
@@ -98,7 +98,7 @@ def share_dialog(links: Links, pack: Callable[[], str] | None = None) -> Callabl
             ui.label(hint).classes("studio-hint")
             _link_box("Robot in a link", link, "share-robot")
             if len(link) <= LARGEST_CODE and not links.are_local:
-                _code("Robot in a link", link)
+                _code("Robot in a link", link, 160 if len(link) < 400 else 480)
 
     return dialog.open if pack is None else lambda: (show(), dialog.open())
 
@@ -113,11 +113,9 @@ def _link_box(words: str, link: str, name: str) -> None:
         copy.tooltip("Copy").on("click", js_handler=f"() => {{ {pick} }}")
 
 
-def _code(words: str, link: str) -> None:
-    """QR code of a link, as large as there is room."""
+def _code(words: str, link: str, width: int) -> None:
+    """QR code of a link, so many pixels wide if there is room."""
     level = "m" if len(link) < 400 else "l"
     code = segno.make(link, error=level).svg_inline(omitsize=True, dark="#2b2833", light="#ffffff")
     drawn = ui.html(code, sanitize=False).classes("self-center")
-    drawn.style(f"width: min({160 if len(link) < 400 else 480}px, 100%)").props(
-        f'role="img" aria-label="{words}, QR code"'
-    )
+    drawn.style(f"width: min({width}px, 100%, 60vh)").props(f'role="img" aria-label="{words}, QR code"')

@@ -17,7 +17,7 @@ from toy_server import Server
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
-from hydrostat.studio.face.guard import Guard
+from hydrostat.studio.face.guard import Guard, new_code
 
 pytestmark = pytest.mark.slow
 
@@ -134,8 +134,11 @@ def test_a_length_that_is_too_much_or_no_number_is_refused(server: Server) -> No
 
 
 @contextmanager
-def small_app() -> Iterator[tuple[int, list[int]]]:
-    """An app that reads whole bodies behind a guard that allows few bytes; its port, and what it has read."""
+def small_app(token: str | None = None) -> Iterator[tuple[int, list[int]]]:
+    """An app that reads whole bodies behind a guard that allows few bytes; its port, and what it has read.
+
+    With a token, which is a code of a class.
+    """
     read: list[int] = []
 
     async def swallow(request: Request) -> PlainTextResponse:
@@ -146,7 +149,8 @@ def small_app() -> Iterator[tuple[int, list[int]]]:
     listener.bind(("127.0.0.1", 0))
     listener.listen()
     port = listener.getsockname()[1]
-    app = Guard(Starlette(routes=[Route("/", swallow, methods=["POST"])]), port=port, largest=LIMIT)
+    inner = Starlette(routes=[Route("/", swallow, methods=["POST"])])
+    app = Guard(inner, port=port, token=token, coded=token is not None, largest=LIMIT)
     running = uvicorn.Server(uvicorn.Config(app, log_level="critical", lifespan="off"))
     thread = threading.Thread(target=running.run, kwargs={"sockets": [listener]})
     thread.start()
@@ -166,6 +170,25 @@ def test_a_body_that_never_ends_is_cut_off() -> None:
         status, _, body = raw(port, head.format(port=port).encode() + 6 * chunk)
         assert (status, read) == (413, [LIMIT])
         assert b"too much" in body
+
+
+def test_a_code_from_the_board_leads_in() -> None:
+    """Oracle: status and cookie; letters may be large, and a browser without the code sees a form, not more."""
+    code = new_code()
+    assert len(set(code)) > 1
+    with small_app(code) as (port, read):
+        for path in (f"/{code}", f"/{code.upper()}", f"/?token={code}", f"/?token=+{code.title()}+"):
+            status, headers, body = ask(port, path)
+            assert (status, code in headers["set-cookie"], code.encode() in body) == (200, True, False), path
+        cookie = f"hydrostat_token_{port}={code}"
+        assert ask(port, method="POST", Cookie=cookie)[0] == 200
+        for path in ("/", f"/{code[:-1]}", f"/{code}x", "/?token=", "/?token=%00", f"/room/{code}"):
+            status, headers, body = ask(port, path)
+            assert (status, "set-cookie" in headers, b"Class code" in body) == (403, False, True), path
+        assert b"Wrong code" in ask(port, "/?token=%3Cscript%3E")[2]
+        assert b"<script" not in ask(port, "/?token=%3Cscript%3E")[2]
+        assert b"Class code" not in ask(port, f"/{code}", host="evil.example")[2]
+    assert read == [0]
 
 
 @pytest.fixture(scope="module")
