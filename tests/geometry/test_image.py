@@ -106,6 +106,19 @@ def test_line_drawing_is_filled() -> None:
         assert drawing.notes[0].startswith("a drawing of lines: filled to its outer line")
 
 
+@pytest.mark.parametrize("cut", [0, 60])
+def test_a_sheet_of_paper_on_a_table_is_the_ground(cut: float) -> None:
+    """Oracle: the circle that is drawn on the sheet, which ends within the picture or runs beyond it."""
+    sheet = shape(np.array([(60, 70), (560 + cut, 50), (545 + cut, 545), (75, 530)]), (225, 222, 215))
+    drawn = disc("black", 150), disc((225, 222, 215), 145)
+    photo = picture(noisy(lit(canvas(sheet, *drawn, ground=(110, 80, 60)), 0.2), 4), "JPEG", quality=80)
+    drawing = read_drawing(photo, name="a.jpg", size=SIZE)
+    assert drawing.outline.area == pytest.approx(np.pi * 0.01, rel=1e-2)
+    assert drawing.notes[0] == "a sheet of paper was taken for the ground, and the table around it left out"
+    bare = read_drawing(picture(canvas(sheet, ground=(110, 80, 60))), name="a.png", size=SIZE)
+    assert bare.outline.area > 0.03, "a pillow without a drawing is a body"
+
+
 @pytest.mark.parametrize("radius", [40, 90, 200])
 def test_holes(radius: float) -> None:
     """Oracle: the ring's area; a hole in a filled body is kept, and counted."""

@@ -5,10 +5,12 @@ import warnings
 from typing import TYPE_CHECKING
 
 import numpy as np
+from shapely import Polygon
 
 from hydrostat.arrays import Float
 from hydrostat.errors import OutlineError
 from hydrostat.geometry.files.drawing_body import Inner, drawn_picture
+from hydrostat.geometry.files.paper import leave_table_out
 from hydrostat.geometry.files.rings import Drawing, Page, one_line, outline_on_page, page_about
 from hydrostat.geometry.files.silhouette import (
     Contrast,
@@ -119,7 +121,25 @@ def _find_body(
         raise OutlineError(
             f"{name}: the picture is too small, {opacity.shape[1]} x {opacity.shape[0]} pixels: take a larger one"
         )
-    seen = contrast(pixels[..., :3])
+    found, shadow, notes = _find_on_ground(pixels[..., :3], name)
+    bare = leave_table_out(pixels[..., :3], found)
+    if bare is None:
+        return found, shadow, notes
+    try:
+        drawn, shade, more = _find_on_ground(bare, name)
+    except OutlineError:  # a body that looks like a sheet
+        return found, shadow, notes
+    least_drawn = 0.03
+    if Polygon(drawn.body).area < least_drawn * Polygon(found.body).area:
+        return found, shadow, notes
+    return drawn, shade, ("a sheet of paper was taken for the ground, and the table around it left out", *more)
+
+
+def _find_on_ground(
+    pixels: Float[np.ndarray, "rows columns 3"], name: str
+) -> tuple[Silhouette, ShadedPart | None, tuple[str, ...]]:
+    """Return the same for a picture without transparent parts (OutlineError: its ground is not plain)."""
+    seen = contrast(pixels)
     edge = 0.35
     uneven = 80.0
     if seen.edge > edge or seen.faint > uneven:

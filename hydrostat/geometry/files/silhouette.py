@@ -39,10 +39,10 @@ def contrast(pixels: Float[np.ndarray, "rows columns 3"]) -> Contrast:
     grain = np.abs(np.diff(pixels, axis=0)).max(axis=2)[border[1:] & border[:-1]]
     if float(np.median(grain)) > _GRAIN:
         pixels = gaussian_filter(pixels, (0.8, 0.8, 0.0))
-    ground, noise = _ground(pixels, border, np.median(pixels[border], axis=0))
+    ground, noise = fit_ground(pixels, border, np.median(pixels[border], axis=0))
     field = np.linalg.norm(pixels - ground, axis=2)
     for _ in range(2):
-        ground, noise = _ground(pixels, field < _faint(noise), ground)
+        ground, noise = fit_ground(pixels, field < _faint(noise), ground)
         field = np.linalg.norm(pixels - ground, axis=2)
     faint = _faint(noise)
     edge = float((field[border] > faint).mean())
@@ -54,7 +54,7 @@ def _faint(noise: float) -> float:
     return max(faint, 2.5 * noise)
 
 
-def _ground(
+def fit_ground(
     pixels: Float[np.ndarray, "rows columns 3"],
     like: Bool[np.ndarray, "rows columns"],
     first: Float[np.ndarray, "... 3"],
