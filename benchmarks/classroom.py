@@ -3,7 +3,8 @@
 Each pupil enters a room of its own in `hydrostat studio --class`, drags a marker of the starfish round, 30 moves a
 second, and takes frames as a browser does. A frame is counted if it answers a newer move. `waits` is the share of
 frames that tell the pupil how many drags come first, `least` that of the pupil who gets the fewest. The pupils
-share the machine with the studio, or with several (`--studios`), each a process of its own.
+share the machine with the studio, or with several (`--studios`), each a process of its own. `CPU` is the processor
+time of the studios for each answer: other programs on the machine do not change it much.
 """
 
 import argparse
@@ -19,6 +20,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
 from math import cos, pi, sin
+from pathlib import Path
 from secrets import token_urlsafe
 from tempfile import TemporaryDirectory
 
@@ -44,8 +46,8 @@ class Pupil:
 
 
 @contextmanager
-def studio() -> Iterator[int]:
-    """A class that runs; its port."""
+def studio() -> Iterator[tuple[int, int]]:
+    """A class that runs; its port and process."""
     command = [sys.executable, "-c", "from hydrostat.cli.main import main; main()", "studio", "gallery:starfish"]
     command += ["--class", "--host", "127.0.0.1", "--no-browser"]
     with (
@@ -58,7 +60,7 @@ def studio() -> Iterator[int]:
         found = None
         while found is None:
             found = re.search(r"http://127\.0\.0\.1:(\d+)/class/", process.stdout.readline())
-        yield int(found[1])
+        yield int(found[1]), process.pid
         process.terminate()
 
 
@@ -110,9 +112,24 @@ async def take_part(port: int, number: int, seconds: float) -> Pupil:
     return pupil
 
 
-async def run_class(ports: list[int], pupils: int, seconds: float) -> list[Pupil]:
-    """All pupils at once, spread over the studios."""
-    return await asyncio.gather(*(take_part(ports[number % len(ports)], number, seconds) for number in range(pupils)))
+def processor_time(processes: list[int]) -> float:
+    """Processor time that processes have taken so far [s]."""
+    told = [Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split() for process in processes]
+    return sum(int(words[11]) + int(words[12]) for words in told) / os.sysconf("SC_CLK_TCK")
+
+
+async def run_class(ports: list[int], processes: list[int], pupils: int, seconds: float) -> tuple[list[Pupil], float]:
+    """All pupils at once, spread over the studios, and the processor time of these [s]."""
+
+    async def follow_processors() -> float:
+        await asyncio.sleep(WARM)
+        before = processor_time(processes)
+        await asyncio.sleep(seconds)
+        return processor_time(processes) - before
+
+    following = asyncio.create_task(follow_processors())
+    parts = (take_part(ports[number % len(ports)], number, seconds) for number in range(pupils))
+    return await asyncio.gather(*parts), await following
 
 
 def main() -> None:
@@ -124,20 +141,21 @@ def main() -> None:
     asked = parser.parse_args()
     print(f"{machine()}; load {os.getloadavg()[0]:.1f} at the start\n")
     print(
-        "| pupils | frames a second: slowest | median | all | ms to the answer: median | 95 % | waits | least | load |"
+        "| pupils | frames a second: slowest | median | all | ms to the answer: median | 95 % | waits | least "
+        "| CPU, ms an answer | load |"
     )
-    print("|---" * 9 + "|")
+    print("|---" * 10 + "|")
     for count in asked.pupils:
         with ExitStack() as stack:
-            ports = [stack.enter_context(studio()) for _ in range(asked.studios)]
-            found = asyncio.run(run_class(ports, count, asked.seconds))
+            ports, processes = zip(*(stack.enter_context(studio()) for _ in range(asked.studios)), strict=True)
+            found, spent = asyncio.run(run_class(list(ports), list(processes), count, asked.seconds))
         rates = np.array([pupil.answered for pupil in found]) / asked.seconds
         times = 1e3 * np.concatenate([pupil.latencies for pupil in found])
         waits = np.array([pupil.waits / max(pupil.frames, 1) for pupil in found])
         print(
             f"| {count} | {rates.min():.1f} | {np.median(rates):.1f} | {rates.sum():.0f} | {np.median(times):.0f} | "
             f"{np.percentile(times, 95):.0f} | {100 * waits.mean():.0f} % | {100 * waits.min():.0f} % | "
-            f"{os.getloadavg()[0]:.1f} |",
+            f"{1e3 * spent / max(1, sum(pupil.answered for pupil in found)):.1f} | {os.getloadavg()[0]:.1f} |",
             flush=True,
         )
 
