@@ -1,14 +1,16 @@
 """`Classroom`: what a teacher decides for all rooms of a class; nicknames; all that a class made, to take home."""
 
+from contextlib import suppress
 from dataclasses import dataclass, field
 
-from hydrostat.errors import InputError
+from hydrostat.errors import HydrostatError, InputError
 from hydrostat.project import Work
 from hydrostat.studio.bell import Bell
 from hydrostat.studio.exporting.class_work import PupilWork, pack_class
 from hydrostat.studio.exporting.download import Download
 from hydrostat.studio.face.rooms import Room, Rooms, new_key
 from hydrostat.studio.jobs import Jobs
+from hydrostat.studio.starting.autosave import RecoveredWork
 
 
 @dataclass(eq=False)
@@ -41,7 +43,11 @@ class Classroom:
         """Show a robot, with the text of its robot.toml, in all rooms, now and later; each pupil can undo it."""
         self.rooms.first = work, text
         for room in self.rooms.list_rooms():
-            room.session.receive(work)
+            _give(room, work, "handed out")
+
+    def give_back(self, room: Room, left: RecoveredWork) -> None:
+        """Show work of an earlier lesson in a room; the pupil can undo it (InputError: it cannot be read)."""
+        _give(room, Work.open(left.folder / "work"), "gave back")
 
     def pack(self, *, kits: bool = False, pages: bool = False) -> None:
         """Begin to pack all robots as one zip (InputError: it is being packed, or there is no robot)."""
@@ -58,3 +64,10 @@ class Classroom:
 
     def _keep(self, made: Download) -> None:
         self.made = made
+
+
+def _give(room: Room, work: Work, deed: str) -> None:
+    """Show a robot in a room, and set a copy of the pupil's own aside, as undo ends with the studio."""
+    with suppress(OSError, HydrostatError):  # of a full disk, autosave tells the pupil
+        room.session.starter.autosave.set_aside()
+    room.session.receive(work, deed=deed)

@@ -20,6 +20,7 @@ from hydrostat.studio.face.pulse import Pulse
 from hydrostat.studio.face.stream import Stream
 from hydrostat.studio.jobs import Slots
 from hydrostat.studio.session import Session
+from hydrostat.studio.starting.autosave import RecoveredWork, find_left
 
 MOST = 48  # so many rooms are open at a time
 IDLE = 120.0  # a room that nobody looked at for so long [s] may be closed for another; its work is kept
@@ -113,6 +114,12 @@ class Rooms:
         others = {other.name.casefold() for other in self.list_rooms() if other is not room}
         named = (name if n == 1 else f"{name} {n}" for n in range(1, len(others) + 2))
         room.name = next(each for each in named if each.casefold() not in others)
+        room.session.starter.autosave.owner = room.name
+
+    def list_earlier(self) -> list[RecoveredWork]:
+        """Work of earlier lessons, or that a hand-out replaced, the newest first; none of it is shown in a room."""
+        home = None if self._state is None else self._state / "rooms"
+        return [] if home is None or not home.is_dir() else find_left(room / "work" for room in home.iterdir())
 
     def enter(self, key: str = "", *, address: str = "", name: str = "", visit: bool = False) -> Room:
         """The room of a key, made where there is none yet.
@@ -135,8 +142,9 @@ class Rooms:
             room = self._rooms.get(key)
             if room is None:
                 self._make_way(address)
-                room = self._rooms[key] = Room(key, self._session(key), address, turns=self._turns)
-                self.rename(room, name or "Pupil")
+                session = self._session(key)
+                room = self._rooms[key] = Room(key, session, address, turns=self._turns)
+                self.rename(room, session.starter.autosave.owner or name or "Pupil")
                 if self._open:
                     room.pulse.start()
             room.seen, room.visited = time.monotonic(), room.visited or visit
@@ -153,6 +161,7 @@ class Rooms:
         session = Session(state, guest=True, slots=self.slots)
         with suppress(HydrostatError, OSError):  # work that cannot be read stays in Start
             for left in session.starter.autosave.find_recovered()[:1]:
+                session.starter.autosave.owner = left.owner
                 session.starter.autosave.restore(left)
         if not session.document.is_open and self.first is not None:
             work, text = self.first

@@ -1,6 +1,7 @@
 """`build_teacher`: the page of a teacher: a wall of all robots, what is handed out, the lock, all to take home."""
 
 from collections.abc import Callable
+from functools import partial
 
 from nicegui import events, run, ui
 
@@ -14,6 +15,7 @@ from hydrostat.studio.face.share import Links, share_dialog
 from hydrostat.studio.face.tour import STAGES
 from hydrostat.studio.face.window import dress
 from hydrostat.studio.session import Tone
+from hydrostat.studio.starting.autosave import RecoveredWork
 from hydrostat.studio.starting.starter import unpack_robot
 from hydrostat.units import plural
 
@@ -80,6 +82,15 @@ class _TeacherPage:
             card.show()
         self._show_packing()
 
+    async def act_slowly(self, done: str, action: Callable[..., object], *arguments: object) -> None:
+        """Do something in a thread, then say that it is done; what was wrong is told."""
+        try:
+            await run.io_bound(action, *arguments)
+        except HydrostatError as error:
+            self.tell(str(error), Tone.BAD)
+        else:
+            self.tell(done, Tone.GOOD)
+
     def act(self, action: Callable[..., object], *arguments: object) -> None:
         """Do something; what was wrong is told."""
         try:
@@ -95,10 +106,31 @@ class _TeacherPage:
         self._class.lock(on)
         self.tell("All robots are locked" if on else "Robots are unlocked")
 
-    def hand_out(self, work: Work, text: str = "") -> None:
+    async def hand_out(self, work: Work, text: str = "") -> None:
         """Give a robot to all."""
-        self._class.hand_out(work, text)
-        self.tell(f"Handed out {work.robot.name}", Tone.GOOD)
+        await self.act_slowly(f"Handed out {work.robot.name}", self._class.hand_out, work, text)
+
+    async def give_back(self, room: Room) -> None:
+        """Let the teacher choose a robot of an earlier lesson for a pupil; own ones come first."""
+        most, own = 200, room.name.casefold()
+        earlier = await run.io_bound(self._class.rooms.list_earlier) or []
+        if not earlier:
+            self.tell("No earlier robots on this laptop")
+            return
+        listed = sorted(earlier, key=lambda left: left.owner.casefold() != own)[:most]
+        with self.wall, _named_dialog("Earlier robots") as dialog, ui.card().classes("q-pa-md class-dialog"):
+            show_heading(f"Earlier robots, for {room.name}", 1)
+            with ui.column().classes("w-full gap-0").style("max-height: 50vh; overflow: auto; flex-wrap: nowrap"):
+                for left in listed:
+                    words = f"{left.owner or 'Pupil'}, {left.words}"
+                    row = ui.button(words, color=None, on_click=partial(dialog.submit, left))
+                    row.props('flat no-caps align=left data-testid="earlier"').classes("w-full")
+            with ui.row().classes("w-full justify-end"):
+                ui.button("Cancel", on_click=dialog.close).props("flat no-caps")
+        chosen = await dialog
+        dialog.delete()
+        if isinstance(chosen, RecoveredWork):
+            await self.act_slowly(f"Gave {chosen.name} to {room.name}", self._class.give_back, room, chosen)
 
     def rename(self, room: Room, name: str) -> None:
         """Give a pupil another nickname (InputError: nothing is left of it)."""
@@ -107,16 +139,16 @@ class _TeacherPage:
     def _hand_out_dialog(self) -> Callable[[], object]:
         with _named_dialog("Hand out") as dialog, ui.card().classes("q-pa-md gap-3 class-dialog"):
             show_heading("Hand out a robot", 1)
-            ui.label("Everybody gets a copy. Undo brings their own robot back. New pupils start with it.").classes(
-                "studio-hint"
-            )
+            ui.label(
+                "Everybody gets a copy. Undo brings their own robot back; Start keeps it too. New pupils start with it."
+            ).classes("studio-hint")
             chosen = ui.select(list_gallery(), value="starfish", label="Gallery").classes("w-full")
 
             async def give() -> None:
                 dialog.close()
                 robot = await run.io_bound(load_robot, gallery_folder(str(chosen.value)))
                 if robot is not None:  # else the studio ends
-                    self.act(self.hand_out, Work(robot=robot))
+                    await self.hand_out(Work(robot=robot))
 
             async def brought(event: events.UploadEventArguments) -> None:
                 content = await event.file.read()
@@ -126,8 +158,9 @@ class _TeacherPage:
                     found = await run.io_bound(unpack_robot, event.file.name, content)
                 except HydrostatError as error:
                     self.tell(str(error), Tone.BAD)
-                else:
-                    self.act(self.hand_out, *(found or ()))
+                    return
+                if found is not None:  # else the studio ends
+                    await self.hand_out(*found)
 
             upload = ui.upload(label="Or a robot as .zip", max_files=1, max_file_size=20_000_000, auto_upload=True)
             upload.props("accept=.zip flat bordered").classes("w-full").on_upload(brought)
@@ -194,6 +227,7 @@ class _PupilCard:
                 with self._menu, ui.menu():
                     ui.menu_item("Rename", self._rename)
                     ui.menu_item("Hand out to all", self._hand_out)
+                    ui.menu_item("Restore earlier", lambda: page.give_back(room)).props('data-testid="restore-earlier"')
                     ui.menu_item("Stop job", room.session.jobs.stop)
             self._state = ui.label().classes("studio-hint class-state")
 
@@ -229,6 +263,9 @@ class _PupilCard:
         if found is not None:
             self._page.act(self._page.rename, self._room, str(found))
 
-    def _hand_out(self) -> None:
+    async def _hand_out(self) -> None:
         document = self._room.session.document
-        self._page.act(lambda: self._page.hand_out(document.work, document.text))
+        if document.is_open:
+            await self._page.hand_out(document.work, document.text)
+        else:
+            self._page.tell(f"{self._room.name} has no robot yet")

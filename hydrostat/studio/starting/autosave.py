@@ -7,6 +7,7 @@ both cases what was done while a copy is written.
 import json
 import logging
 import os
+from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -69,6 +70,7 @@ class RecoveredWork:
     name: str  # of the robot
     time: datetime  # when it was kept
     origin: Path | None  # where the robot had been saved before; None: nowhere
+    owner: str = ""  # nickname of the pupil; "": none
     stamp: str = ""  # of that folder when the robot was opened or saved last
 
     @property
@@ -92,9 +94,10 @@ class Autosave:
 
         Of a guest, who has no other folder, saved work is kept too.
         """
+        self.owner = ""  # nickname of the pupil whose work it is; "": none
         self._document, self._folder, self._guest = document, folder, guest
         self._held: HeldFolder | None = None
-        self._seen = self._kept = (0, True, b"")
+        self._seen = self._kept = (0, True, b"", "")
         self._changed = self._asked = 0.0
         self.problem = ""  # why the work cannot be kept, a line; "" if it can
         self._count = 0
@@ -133,8 +136,23 @@ class Autosave:
         """Return the work recovered from studios that no longer run, the newest first."""
         if self._folder is None or not self._folder.is_dir():
             return []
-        found = [_left_in(folder) for folder in self._folder.iterdir() if folder.is_dir() and not is_held(folder)]
-        return sorted((left for left in found if left is not None), key=lambda left: left.time, reverse=True)
+        return find_left([self._folder])
+
+    def set_aside(self) -> None:
+        """Keep a copy of the work that later work does not replace; Start offers it. Nothing of an untouched robot.
+
+        Raises:
+            OSError: it cannot be written.
+        """
+        with self._lock:
+            state = self._state()
+            if self._folder is None or not self._document.is_open or self._is_over(state):
+                return
+            kept = HeldFolder(self._folder)
+            try:
+                self._write_copy(kept.path / "1", self._document.work, state[2])
+            finally:
+                kept.let_go()
 
     def restore(self, left: RecoveredWork) -> None:
         """Open what was left; it is kept on as work of this studio (InputError: it cannot be read any more)."""
@@ -149,12 +167,12 @@ class Autosave:
         """Remove what was left."""
         rmtree(left.folder.parent, ignore_errors=True)
 
-    def _state(self) -> tuple[int, bool, bytes]:
-        return (self._document.serial, self._document.is_saved, self._document.designs)
+    def _state(self) -> tuple[int, bool, bytes, str]:
+        return (self._document.serial, self._document.is_saved, self._document.designs, self.owner)
 
-    def _is_over(self, state: tuple[int, bool, bytes]) -> bool:
+    def _is_over(self, state: tuple[int, bool, bytes, str]) -> bool:
         """True if nothing of it is to be kept; the first robot of a guest is there again anyway."""
-        serial, is_saved, designs = state
+        serial, is_saved, designs, _ = state
         return is_saved and not designs and not (self._guest and (serial > 1 or self._count))
 
     def _keep(self) -> bool:
@@ -186,7 +204,14 @@ class Autosave:
             self._held = HeldFolder(folder)
         self._count += 1
         home = self._held.path
-        part, whole = home / f"{self._count}.part", home / str(self._count)
+        whole = home / str(self._count)
+        self._write_copy(whole, work, designs)
+        for path in home.iterdir():  # the one before, and what could not be written whole
+            if path.is_dir() and path != whole:
+                rmtree(path, ignore_errors=True)
+
+    def _write_copy(self, whole: Path, work: Work, designs: bytes) -> None:
+        part = whole.with_suffix(".part")
         work.save(part / "work", self._document.text)
         origin, stamp = self._document.folder, self._document.stamp
         meta = {
@@ -195,19 +220,24 @@ class Autosave:
             "origin": None if origin is None else str(origin.resolve()),
             "stamp": stamp,
             "process": os.getpid(),
+            "owner": self.owner,
         }
         if designs:
             (part / DESIGNS).write_bytes(designs)
         (part / "meta.json").write_text(json.dumps(meta), encoding="utf-8")
         part.rename(whole)
-        for path in home.iterdir():  # the one before, and what could not be written whole
-            if path.is_dir() and path != whole:
-                rmtree(path, ignore_errors=True)
 
     def _remove(self) -> None:
         if self._held is not None:
             self._held.remove()
             self._held = None
+
+
+def find_left(folders: Iterable[Path]) -> list[RecoveredWork]:
+    """Return the work that no living studio holds in such folders, the newest first."""
+    homes = [home for folder in folders if folder.is_dir() for home in folder.iterdir()]
+    found = [_left_in(home) for home in homes if home.is_dir() and not is_held(home)]
+    return sorted((left for left in found if left is not None), key=lambda left: left.time, reverse=True)
 
 
 def _left_in(folder: Path) -> RecoveredWork | None:
@@ -233,4 +263,5 @@ def _read(path: Path) -> RecoveredWork:
         time=datetime.fromisoformat(meta["time"]),
         origin=None if origin is None else Path(origin),
         stamp=str(meta.get("stamp", "")),
+        owner=str(meta.get("owner", ""))[:60],
     )

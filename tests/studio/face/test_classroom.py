@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import replace
 from io import BytesIO
+from pathlib import Path
 from zipfile import ZipFile
 
 import pytest
@@ -24,8 +25,8 @@ def starfish() -> Robot:
 
 
 @pytest.fixture
-def classroom() -> Iterator[Classroom]:
-    made = Classroom(Rooms(first=gallery_folder("starfish")))
+def classroom(tmp_path: Path) -> Iterator[Classroom]:
+    made = Classroom(Rooms(state=tmp_path, first=gallery_folder("starfish")))
     yield made
     made.close()
     made.rooms.close()
@@ -92,6 +93,32 @@ def test_a_robot_is_handed_out_and_undone(classroom: Classroom, starfish: Robot)
     classroom.lock(False)
     here.session.undo()
     assert here.session.document.robot is mine
+
+
+def test_a_robot_that_a_hand_out_replaced_is_there_in_the_next_lesson(
+    classroom: Classroom, starfish: Robot, tmp_path: Path
+) -> None:
+    """Oracle: names of robots, after a restart; a browser that forgot its room gets the robot from the teacher."""
+    (ada,) = enter(classroom, "\U0001f4a9")
+    classroom.rooms.rename(ada, "Ada")
+    ada.session.document.change("rename", robot=replace(starfish, name="mine"))
+    classroom.hand_out(Work(robot=replace(starfish, name="task")))
+    assert [(left.owner, left.name) for left in classroom.rooms.list_earlier()] == [("Ada", "mine")]
+    classroom.rooms.close()
+    later = Classroom(Rooms(state=tmp_path, first=gallery_folder("starfish")))
+    again = later.rooms.enter(ada.key, name="\U0001f4a9")
+    assert (again.name, again.session.document.robot.name) == ("Ada", "task")
+    assert [left.name for left in again.session.starter.autosave.find_recovered()] == ["mine"]
+    (forgotten,) = enter(later, "Ada")
+    (left,) = later.rooms.list_earlier()
+    later.lock(True)
+    later.give_back(forgotten, left)
+    assert forgotten.session.document.robot.name == "mine"
+    later.lock(False)
+    forgotten.session.undo()
+    assert forgotten.session.document.robot.name == "starfish"
+    assert [left.name for left in later.rooms.list_earlier()] == ["mine"], "it is kept, and an untouched robot is not"
+    later.rooms.close()
 
 
 class Silent:
