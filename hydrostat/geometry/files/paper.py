@@ -1,7 +1,6 @@
 """`leave_table_out`: the sheet of paper in a photograph as its ground, where the table around it is seen too."""
 
 import numpy as np
-from PIL import Image, ImageDraw
 from shapely import Polygon, get_coordinates
 
 from hydrostat.arrays import Float
@@ -18,6 +17,8 @@ def leave_table_out(
 
     A sheet is pale, large, and bounded by at most seven straight lines: four sides, cut at corners of the picture.
     """
+    from PIL import Image, ImageDraw
+
     shape = Polygon(found.body)
     extent = float(np.ptp(found.body, axis=0).max())
     hull = shape.convex_hull
