@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result_folder
+from hydrostat.cli.option_errors import naming_option
 from hydrostat.cli.options import PictureWidth, check_width
 from hydrostat.cli.waiting import prepare_physics, progress_bar, read_robot
 from hydrostat.errors import InputError
@@ -64,7 +65,8 @@ def animate(
     check_width(width)
     loaded = read_robot(robot)
     for pose in name or []:
-        loaded.pose(pose)
+        with naming_option(f"--pose {pose}"):
+            loaded.pose(pose)
     if not loaded.cables:
         raise InputError(f"{robot}: no cables. Add winches and cables, or run `hydrostat design`.")
     simulation = prepare_physics(loaded)

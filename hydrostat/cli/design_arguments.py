@@ -2,19 +2,20 @@
 
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_type_hints
 
 import typer
 
+from hydrostat.cli.option_errors import naming_fields, naming_option
 from hydrostat.cli.options import Budget, DefaultText, MotorOption, positive
 from hydrostat.closed_set import parse_choice
 from hydrostat.errors import HydrostatWarning, InputError
 
 if TYPE_CHECKING:
     from hydrostat.design import BuildTolerances, Constraints, DesignMethod, DesignRequest, RouteOptions, TreeOptions
-    from hydrostat.robot import Robot
+    from hydrostat.robot import PoseTarget, Robot
 
 _Read = TypeVar("_Read")
 _LIMITS = ("cables_per_winch", "clearance", "depth", "tension", "slack")  # fields of `Constraints` that are options
@@ -168,18 +169,19 @@ def parse_request(robot: "Robot", typed: DesignArguments, *, measured: Path | No
     method = None if typed.method is None else parse_choice(DesignMethod, typed.method, what="method")
     given = {"winches": winches, "cables": typed.cables, "method": method}
     given = {name: value for name, value in given.items() if value is not None}
-    poses = [robot.pose(name) for name in typed.pose or ()] or list(robot.poses.values())
-    request = DesignRequest(
-        poses=tuple(poses),
-        constraints=_constraints(robot, typed),
-        options=_options(typed, method=method or DesignMethod.ROUTES, open_winches=isinstance(winches, str)),
-        warm_start=typed.warm_start,
-        stuffed=typed.stuffed,
-        front=typed.front,
-        seconds=None if typed.time is None else positive("--time", typed.time, TIME),
-        uncertainty=_uncertainty(robot, typed, measured),
-        **given,
-    )
+    poses = [_pose(name, robot) for name in typed.pose or ()] or list(robot.poses.values())
+    with naming_fields(*(each.name for each in fields(typed) if getattr(typed, each.name) is not None)):
+        request = DesignRequest(
+            poses=tuple(poses),
+            constraints=_constraints(robot, typed),
+            options=_options(typed, method=method or DesignMethod.ROUTES, open_winches=isinstance(winches, str)),
+            warm_start=typed.warm_start,
+            stuffed=typed.stuffed,
+            front=typed.front,
+            seconds=None if typed.time is None else positive("--time", typed.time, TIME),
+            uncertainty=_uncertainty(robot, typed, measured),
+            **given,
+        )
     request.fit_robot(robot)  # raises before anything begins
     return request
 
@@ -313,17 +315,18 @@ def _tree_option(text: str) -> tuple[str, Any]:
         raise InputError(f"--tree-option {text}: must be {'a whole number' if kind is int else 'a number'}") from None
 
 
+def _pose(name: str, robot: "Robot") -> "PoseTarget":
+    with naming_option(f"--pose {name}"):
+        return robot.pose(name)
+
+
 def _winch(name: str, robot: "Robot") -> str:
-    try:
+    with naming_option(f"--lock-winch {name}"):
         return robot.winch(name).name
-    except InputError as error:
-        raise InputError(f"--lock-winch {name}: {error}") from None
 
 
 def _cable(name: str, robot: "Robot") -> str:
     from hydrostat.design import cable_name
 
-    try:
+    with naming_option(f"--lock-cable {name}"):
         return cable_name(name, robot)
-    except InputError as error:
-        raise InputError(f"--lock-cable {name}: {error}") from None

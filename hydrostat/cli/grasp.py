@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result_folder
+from hydrostat.cli.given_object import parse_object
+from hydrostat.cli.option_errors import naming_option
 from hydrostat.cli.options import Contract, contractions, middle, positive
 from hydrostat.cli.waiting import progress_bar, read_robot
 from hydrostat.errors import InputError
@@ -69,19 +71,19 @@ def grasp(
     Example: hydrostat grasp gallery:caging_gripper --pose close --object sphere:65mm --direction +z --out build/grasp
     """
     from hydrostat.files import replace_file
-    from hydrostat.grasp import PullOptions, pull_bands, pull_out, read_object
+    from hydrostat.grasp import PullOptions, pull_bands, pull_out
     from hydrostat.plot import draw_pull, pull_frames, save_gif, save_png
-    from hydrostat.units import LENGTH, MASS
+    from hydrostat.units import LENGTH
 
     require_folder(out)
-    weight, stride = positive("--mass", mass, MASS), positive("--increment", step, LENGTH)
-    loaded = _feeling(read_robot(robot))
-    held = read_object(obstacle, loaded.body.mesh.dim, mass=weight, friction=friction)
+    stride, loaded = positive("--increment", step, LENGTH), _feeling(read_robot(robot))
+    held = parse_object(obstacle, loaded.body.mesh.dim, mass=mass, friction=friction)
     options = PullOptions(direction=_direction(direction, loaded.body.mesh.dim), step=stride)
     with progress_bar() as progress:
         closing, closed = _close_robot(loaded, pose, contractions(loaded, contract))
         placed = _place_object(loaded, held, at, closed)
-        found = pull_out(loaded, placed, closing, options, progress=progress)
+        with naming_option(f"--at {_numbers(placed)}"):
+            found = pull_out(loaded, placed, closing, options, progress=progress)
         cases = pull_bands(loaded, placed, closing, options, progress=progress) if bands else ()
         with result_folder(out) as folder:
             files = [replace_file(folder / "pull.csv", _table(found).encode())]
@@ -89,8 +91,13 @@ def grasp(
             files.append(save_gif(loaded, pull_frames(found), folder / "pull.gif", step=0.1, progress=progress))
             if cases:
                 files.append(replace_file(folder / "bands.csv", _bands(cases).encode()))
-    _print(found, placed, cases)
+    _print(loaded, found, placed, cases)
     print("Wrote " + ", ".join(str(out / file.relative_to(folder)) for file in files))
+
+
+def _numbers(obstacle: "Obstacle") -> str:
+    """Center of an object as --at has it."""
+    return ",".join(f"{1e3 * value:.4g}" for value in obstacle.frame()[0])
 
 
 def _feeling(robot: "Robot") -> "Robot":
@@ -172,12 +179,17 @@ def _bands(cases: "tuple[PullCase, ...]") -> str:
     return "\n".join(lines) + "\n"
 
 
-def _print(pull: "PullOut", obstacle: "Obstacle", cases: "tuple[PullCase, ...]") -> None:
-    """Print the most that the pull took, and how it changes with what nobody knows well."""
+def _print(robot: "Robot", pull: "PullOut", obstacle: "Obstacle", cases: "tuple[PullCase, ...]") -> None:
+    """Print the highest force of the pull, and its changes by uncertain parameters."""
+    from hydrostat.grasp import find_overlaps
+
     place = ", ".join(f"{1e3 * value:z.1f}" for value in obstacle.frame()[0])
     print(f"object at ({place}) mm")
+    for name in find_overlaps(robot, obstacle):
+        print(f'warning: the object overlaps obstacle "{name}". They do not touch one another: move one, e.g. by --at')
     hardest = 1e3 * float(pull.moved[int(pull.forces.argmax())])
-    print(f"peak force {pull.peak:.3g} N at {hardest:.1f} mm, work {1e3 * pull.work:.3g} mJ; {pull.reason}")
+    words = "highest force so far" if pull.is_rising else "peak force"
+    print(f"{words} {pull.peak:.3g} N at {hardest:.1f} mm, work {1e3 * pull.work:.3g} mJ; {pull.reason}")
     for case in cases:
         print(f"  {case.name:<14} " + (case.trouble if case.pull is None else f"{case.pull.peak:.3g} N"))
     if pull.peak <= 0:

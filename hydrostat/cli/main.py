@@ -3,6 +3,7 @@
 import gc
 import logging
 import os
+import re
 import sys
 import warnings
 from collections.abc import Callable
@@ -143,7 +144,8 @@ def main() -> None:
 
 
 def _print_usage_error(error: Any, *_: object) -> None:
-    words = " ".join(error.format_message().split()).rstrip(".")
+    words = " ".join(error.format_message().split()).rstrip(".").replace("Value error, ", "")
+    words = re.sub(r"^Invalid value for '(-[^']+)':", r"\1:", words)
     words += "" if words.endswith("?") else "."
     print(f"hydrostat: error: {words} See {error.ctx.command_path if error.ctx else 'hydrostat'} -h.", file=sys.stderr)
 

@@ -386,11 +386,6 @@ def check_contraction(robot: "Robot", name: str, value: float, *, option: str = 
         winch = robot.winch(name)
     except InputError as error:
         raise InputError(f"{option} {name}: {error}") from None
-    if not -winch.release <= value <= winch.travel:
-        print(
-            f"warning: winch {name}: contraction {1e3 * value:g} mm is outside its range "
-            f"({0.0 - 1e3 * winch.release:g} to {1e3 * winch.travel:g} mm)"
-        )
     for cable, ratio in zip(robot.cables, robot.spool_ratios, strict=True):
         if cable.winch == name and ratio * value >= cable.length:
             spool = "" if ratio == 1 else f" at spool ratio {ratio:.3g}"
@@ -398,3 +393,8 @@ def check_contraction(robot: "Robot", name: str, value: float, *, option: str = 
                 f"{option} {name}: {1e3 * value:g} mm{spool} takes in the whole cable ({1e3 * cable.length:.3g} mm). "
                 f"Winch travel is {1e3 * winch.travel:g} mm."
             )
+    if not -winch.release <= value <= winch.travel:
+        print(
+            f"warning: winch {name}: contraction {1e3 * value:g} mm is outside its range "
+            f"({0.0 - 1e3 * winch.release:g} to {1e3 * winch.travel:g} mm)"
+        )

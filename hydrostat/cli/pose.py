@@ -11,6 +11,7 @@ import typer
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result_folder
 from hydrostat.cli.learned import learned_start, read_model
 from hydrostat.cli.limits import print_exceeded
+from hydrostat.cli.option_errors import naming_option
 from hydrostat.cli.options import EqualWinches, MostTension, MostTorque, parse_optional, pose_limits
 from hydrostat.cli.waiting import read_robot, show_search
 from hydrostat.errors import InputError
@@ -100,7 +101,8 @@ def _targets(
 ) -> "Sequence[tuple[str, PoseTarget | None]]":
     """Poses with their names; None where only a drawing is given (InputError: there is nothing to reach)."""
     if name:
-        return [(name, loaded.pose(name))]
+        with naming_option(f"--pose {name}"):
+            return [(name, loaded.pose(name))]
     if drawing is not None:
         return [(drawing.stem, None)]
     if not loaded.poses:

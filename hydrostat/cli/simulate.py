@@ -91,7 +91,7 @@ def simulate(
     if dynamic and jacobian:
         raise InputError("--jacobian: not available with --dynamic. Remove one of them.")
     if not dynamic and (play is not None or duration is not None):
-        raise InputError("--play and --duration: need --dynamic. Add it.")
+        raise InputError(f"{'--duration' if play is None else '--play'}: needs --dynamic. Add it.")
     if dynamic and timeout is not None:
         raise InputError("--timeout: not available with --dynamic. Remove one of them.")
     limit = parse_optional("--timeout", timeout, TIME)

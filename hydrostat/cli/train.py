@@ -201,14 +201,12 @@ def train(
 
 def _read_object(robot: "Robot", text: str, at: str | None, mass: str, friction: float | None) -> "Obstacle":
     """Return the object to push or turn, at its position."""
-    from hydrostat.cli.options import middle, positive
-    from hydrostat.grasp import move_object, read_object
-    from hydrostat.units import MASS
+    from hydrostat.cli.given_object import parse_object
+    from hydrostat.cli.options import middle
+    from hydrostat.grasp import move_object
 
     dim = robot.body.mesh.dim
-    obstacle = read_object(
-        text, dim, mass=positive("--mass", mass, MASS), friction=0.8 if friction is None else friction
-    )
+    obstacle = parse_object(text, dim, mass=mass, friction=0.8 if friction is None else friction)
     return obstacle if at is None else move_object(obstacle, middle(at, dim))
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result_folder
+from hydrostat.cli.option_errors import naming_option
 from hydrostat.cli.options import (
     EqualWinches,
     MostTension,
@@ -121,7 +122,8 @@ def _keyframe_names(robot: Any, poses: str | None) -> list[str]:
         raise InputError('--poses: no pose named. Write e.g. "wave,rest".')
     for name in names:
         if name != REST:
-            robot.pose(name)
+            with naming_option(f"--poses {poses}"):
+                robot.pose(name)
     return names
 
 

@@ -9,8 +9,8 @@ from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.files import read_stranger
 from hydrostat.geometry import SURFACE_SUFFIXES, locate
-from hydrostat.robot import Obstacle, Robot, closed_mesh
-from hydrostat.units import LENGTH, parse_quantity
+from hydrostat.robot import Obstacle, Robot, closed_mesh, rims
+from hydrostat.units import LENGTH, parse_quantity, plural, quote
 
 FORMS = ("sphere:65mm", "cylinder:40mm,120mm", "capsule:40mm,120mm", "box:40mm,40mm,60mm", "mug.stl")
 """Forms of an object: a diameter, a diameter and a length along the last axis, the sides, or a surface file in mm."""
@@ -33,14 +33,14 @@ def read_object(text: str, dim: int, *, mass: float, friction: float) -> Obstacl
     shape, _, rest = text.partition(":")
     counts = {"sphere": 1, "cylinder": 2, "capsule": 2, "box": dim}
     if shape not in counts:
-        raise InputError(f'unknown object "{text}". Write e.g. {", ".join(FORMS)}.')
-    sizes = [parse_quantity(part.strip(), LENGTH) for part in rest.split(",")]
-    if len(sizes) != counts[shape]:
-        raise InputError(
-            f'"{text}": a {shape} has {counts[shape]} sizes, for example {FORMS[list(counts).index(shape)]}'
-        )
+        raise InputError(f'unknown shape "{shape}". Write e.g. {", ".join(FORMS)}.')
+    given = [part.strip() for part in rest.split(",") if part.strip()]
+    if len(given) != counts[shape]:
+        example = "box:40mm,40mm" if shape == "box" and dim == 2 else FORMS[list(counts).index(shape)]
+        raise InputError(f"a {shape} has {plural(counts[shape], 'size')}, not {len(given)}. Write e.g. {example}.")
+    sizes = [parse_quantity(part, LENGTH) for part in given]
     if min(sizes) <= 0:
-        raise InputError(f'"{text}": sizes must be above 0')
+        raise InputError(f"sizes must be above 0, not {quote(rest)}")
     known = {"name": "object", "shape": shape, "mass": mass, "friction": friction}
     if shape == "sphere":
         return Obstacle(**known, at=(0.0,) * dim, radius=0.5 * sizes[0])
@@ -48,7 +48,7 @@ def read_object(text: str, dim: int, *, mass: float, friction: float) -> Obstacl
         return Obstacle(**known, at=tuple(-0.5 * size for size in sizes), to=tuple(0.5 * size for size in sizes))
     long = sizes[1] - (sizes[0] if shape == "capsule" else 0.0)
     if long <= 0:
-        raise InputError(f'"{text}": the length of a capsule, its ends included, must be more than its diameter')
+        raise InputError("the length of a capsule, its ends included, must be more than its diameter")
     end = 0.5 * long * np.eye(dim)[-1]
     return Obstacle(**known, at=tuple(-end), to=tuple(end), radius=0.5 * sizes[0])
 
@@ -67,6 +67,19 @@ def move_object(obstacle: Obstacle, place: Vector) -> Obstacle:
     ends = (None if end is None else tuple((np.array(end) + shift).tolist()) for end in (obstacle.at, obstacle.to))
     at, to = ends
     return replace(obstacle, at=at or (), to=to)
+
+
+def find_overlaps(robot: Robot, obstacle: Obstacle) -> list[str]:
+    """Names of the robot's obstacles that an object overlaps; a pull has no contact between them."""
+
+    def samples(one: Obstacle) -> Points:
+        return np.concatenate([*rims(one, robot), one.spine()])
+
+    return [
+        other.name
+        for other in robot.obstacles
+        if min(other.field()(samples(obstacle)).values.min(), obstacle.field()(samples(other)).values.min()) < 0
+    ]
 
 
 def place_object(robot: Robot, obstacle: Obstacle, closed: Points) -> Obstacle:

@@ -90,6 +90,11 @@ class PullOut:
         return float(self.forces.max())
 
     @property
+    def is_rising(self) -> bool:
+        """True if the force was still at its largest when the pull ended with the object not free."""
+        return not self.released and int(self.forces.argmax()) == len(self.forces) - 1
+
+    @property
     def work(self) -> float:
         """Largest work done by the pull up to any position [J]: without friction, the energy to escape."""
         done = 0.5 * (self.forces[1:] + self.forces[:-1]) * np.diff(self.moved)
@@ -138,7 +143,7 @@ def pull_out(
     closing = Simulation(full, body=body, energies=[held])
     pose = closing.solve(contractions)
     if not obstacle_forces(closing, pose)[-1].any():
-        raise InputError(f'"{obstacle.name}" is touched by nothing when the robot has closed; put it elsewhere')
+        raise InputError(f'nothing touches "{obstacle.name}" in the closed robot. Move it, or close the robot further')
     straight = np.outer(unit, unit)
     springs = options.along * straight + options.across * (whole - straight)
     rows: list[tuple[float, Equilibrium, Vector, Vector]] = []

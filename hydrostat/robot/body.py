@@ -74,7 +74,7 @@ class Body:
         if self.plane is Plane.STRESS and self.mesh.dim == 3:
             raise InputError('plane = "stress" is for flat bodies; remove it')
         if self.plane is Plane.STRESS and self.volume is Volume.PATCH:
-            raise InputError('volume = "patch" is for plane strain; in plane stress nothing locks. Remove volume')
+            raise InputError('volume = "patch" is for plane strain; plane stress does not lock. Remove volume or plane')
         if (self.elements is ElementKind.QUADRATIC) != (self.mesh.quadratic is not None):
             raise InputError('elements do not fit the mesh; use body.with_elements("quadratic")')
         if self.elements is ElementKind.QUADRATIC and self.volume is Volume.PATCH:

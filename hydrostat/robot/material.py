@@ -123,7 +123,7 @@ class Material:
         check_number("poisson", self.poisson, "")
         if not 0 <= self.poisson < 0.5:
             raise InputError(
-                f"poisson must be at least 0 and below 0.5, not {self.poisson:g}; nearly incompressible is 0.45"
+                f"poisson must be at least 0 and below 0.5, not {self.poisson:g}; nearly incompressible is 0.49"
             )
         check_positive("density", self.density, "kg/m^3")
         check_not_negative("viscosity", self.viscosity, "Pa s")

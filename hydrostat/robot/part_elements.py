@@ -29,7 +29,8 @@ def find_part_elements(
         if part.name in [other.name for other in parts[:index]]:
             raise InputError(f'{where}.name: there are two of the name "{part.name}"; names must be unique')
         if part.dim > mesh.dim:
-            raise InputError(f"{where}: has {part.dim} coordinates, but the body has {mesh.dim}")
+            key = "points[0]" if part.at is None else "at"
+            raise InputError(f"{where}.{key} has {part.dim} coordinates, but the body has {mesh.dim}")
         held = part.holds(middles) if part.label is None else _find_labeled(where, part.label, labels, len(middles))
         if not held.any():
             raise InputError(

@@ -97,12 +97,30 @@ class TablesFile(ABC):
         except tomllib.TOMLDecodeError as error:
             what, _, place = str(error).partition(" (at line ")
             line = re.match(r"\d+", place)
-            hint = '; a text on this line is not closed, " is missing' if what == r"Illegal character '\n'" else ""
-            self.fail("", f"not TOML: {what}{hint}", int(line[0]) if line else None)
+            number = int(line[0]) if line else None
+            hint = _hint_at(what, self.text.split("\n")[number - 1] if number else "")
+            self.fail("", f"not TOML: {what}{hint}", number)
         except RecursionError:
             self.fail("", f"not TOML of {self.kind}: brackets are nested too deep")
         except (ValueError, ArithmeticError):
             self.fail("", f"not TOML of {self.kind}: a number is too large or has too many digits")
+
+
+_BARE_TEXT = re.compile(r"""\s*([\w.-]+)\s*=\s*([^\W\d][^"'#\[\]{}]*?|\d[^"'#\[\]{},]*?[^\W\d]\w*)\s*(?:#.*)?""")
+_AFTER_TEXT = re.compile(r"""\s*([\w.-]+)\s*=\s*("[^"]*"|'[^']*')\s*([^\s#].*)""")
+
+
+def _hint_at(what: str, line: str) -> str:
+    """Fix for a line that is no TOML; empty if none is known."""
+    if what == r"Illegal character '\n'":
+        return '; a text on this line is not closed, " is missing'
+    if len(line) > 200:
+        return ""
+    if bare := _BARE_TEXT.fullmatch(line):
+        return f'; write text in quotes: {bare[1]} = "{bare[2]}"'
+    if after := _AFTER_TEXT.fullmatch(line):
+        return f"; remove {units.quote(after[3].strip())} after the quotes: {after[1]} = {after[2]}"
+    return ""
 
 
 _HEADER = re.compile(r"""\s*\[\[?\s*["']?([A-Za-z_][\w.]*)["']?\s*\]""")

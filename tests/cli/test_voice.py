@@ -83,7 +83,7 @@ def test_a_bad_text_is_found(text: str, fault: str) -> None:
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (("studio", "--port", "abc"), "Invalid value for '--port'"),
+        (("studio", "--port", "abc"), "error: --port: Input should be a valid integer"),
         (("studio", "--port", "99999"), "less than or equal to 65535. See hydrostat studio -h."),
         (("share",), "Missing argument 'ROBOT'. See hydrostat share -h."),
     ],

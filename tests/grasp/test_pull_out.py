@@ -10,7 +10,16 @@ import pytest
 from builders import box_mesh, gallery_robot, mesh_body, strip_robot
 
 from hydrostat.errors import InputError
-from hydrostat.grasp import PullOptions, PullOut, move_object, place_object, pull_bands, pull_out, read_object
+from hydrostat.grasp import (
+    PullOptions,
+    PullOut,
+    find_overlaps,
+    move_object,
+    place_object,
+    pull_bands,
+    pull_out,
+    read_object,
+)
 from hydrostat.mechanics import ObstacleEnergy
 from hydrostat.robot import Cable, Contact, Obstacle, Pin, Robot, Winch
 
@@ -92,7 +101,7 @@ def test_a_case_for_each_quantity_that_nobody_knows_well() -> None:
     [
         (replace(PUCK, mass=None), "has no mass; give it one"),
         (replace(PUCK, at=(0.1, 0.0)), "stands in the body|the body at rest stands in"),
-        (replace(PUCK, at=(0.0, 0.5)), "is touched by nothing when the robot has closed"),
+        (replace(PUCK, at=(0.0, 0.5)), 'nothing touches "puck" in the closed robot. Move it'),
     ],
 )
 def test_what_cannot_be_pulled_is_told(obstacle: Obstacle, words: str) -> None:
@@ -112,9 +121,29 @@ def test_objects_are_read_from_words() -> None:
     assert read_object("box:4cm,40mm,60mm", 3, **known).to == pytest.approx((0.02, 0.02, 0.03))
     rod = read_object("capsule:40mm,120mm", 3, **known)
     assert (rod.to, rod.radius) == (pytest.approx((0, 0, 0.04)), pytest.approx(0.02))
-    for wrong, words in (("cone:3mm", "unknown object"), ("sphere:3mm,4mm", "has 1 sizes"), ("sphere:3", "no unit")):
+    for wrong, words in (
+        ("cone:3mm", 'unknown shape "cone"'),
+        ("sphere:3mm,4mm", "has 1 size, not 2. Write e.g. sphere:65mm"),
+        ("sphere", "has 1 size, not 0"),
+        ("sphere:3", "no unit"),
+    ):
         with pytest.raises(InputError, match=words):
             read_object(wrong, 3, **known)
+
+
+def test_a_force_that_still_rises_is_no_peak() -> None:
+    """Oracle: a pull cut off before its peak, which the whole pull has at 10 mm or more."""
+    assert not pulled().is_rising
+    cut = PullOptions(direction=(1.0, 0.0), step=2e-3, travel=4e-3)
+    assert pull_out(curler(distance=1e-3), PUCK, CURLED, cut).is_rising
+
+
+def test_obstacles_in_the_object_are_found() -> None:
+    """Oracle: distances of two discs by hand; the last one is in the middle of the other."""
+    disc = Obstacle(name="disc", shape="sphere", at=(0.17, 0.06), radius=0.004)
+    for radius, x, found in ((0.004, 0.17, []), (0.006, 0.17, ["disc"]), (0.004, 0.14, ["disc"])):
+        robot = replace(curler(), obstacles=(replace(disc, at=(x, 0.06), radius=radius),))
+        assert find_overlaps(robot, PUCK) == found
 
 
 def test_a_place_near_the_closed_markers_is_clear_of_the_body() -> None:

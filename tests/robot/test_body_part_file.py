@@ -166,7 +166,7 @@ def test_a_robot_keeps_its_parts_when_scaled_and_blown_up(tmp_path: Path) -> Non
         (edit(JOINT, "radius = 8", "radius = 0.1"), "is thinner than an element"),
         (BONE + edit(JOINT, "[-12, 0]", "[0, 0]"), r'body.part\[1\]: "joint" overlaps "bone" in \d+ elements'),
         (BONE + edit(JOINT, '"joint"', '"bone"'), r'body.part\[1\].name: there are two of the name "bone"'),
-        (edit(JOINT, "[-12, 0]", "[-12, 0, 0]"), r"body.part\[0\]: has 3 coordinates, but the body has 2"),
+        (edit(JOINT, "[-12, 0]", "[-12, 0, 0]"), r"line 14: body.part\[0\].at has 3 coordinates, but"),
         (edit(JOINT, "radius = 8", "radius = -8"), r"body.part\[0\].radius must be finite and above 0"),
         (edit(JOINT, "radius = 8\n", ""), "a sphere needs a radius"),
         (edit(JOINT, '"sphere"', '"cone"'), r'body.part\[0\].shape: "cone" is not known'),

@@ -90,7 +90,7 @@ LINES = [
     (
         '"polyester fibre"',
         '{ young = "1 kPa", poisson = 0.5, density = "9 kg/m^3" }',
-        "line 9: body.material.poisson must",
+        "line 9: body.material.poisson must be at least 0 and below 0.5, not 0.5; nearly incompressible is 0.49",
     ),
     (
         '"polyester fibre"',
@@ -351,6 +351,14 @@ LINES = [
     ('name = "wave"', 'name = " wave"', 'line 43: pose[0].name: " wave" begins with " "'),
     # TOML
     ("format = 1", "format 1", "line 2: not TOML: Expected '='"),
+    ("[body]", "[body]\nplane = stress", 'line 6: not TOML: Invalid value; write text in quotes: plane = "stress"'),
+    ('"20 mm"', "20 mm", 'write text in quotes: thickness = "20 mm"'),
+    ('"20 mm"', '"20 mm" mm', 'a statement; remove "mm" after the quotes: thickness = "20 mm"'),
+    (
+        "[body]",
+        '[body]\nplane = "stress"\nvolume = "patch"',
+        'line 7: body.volume = "patch" is for plane strain; plane stress does not lock. Remove volume or plane',
+    ),
     ("format = 1", "format = 1\nformat = 1", "line 3: not TOML: Cannot overwrite a value"),
     ("format = 1", "format = " + 5000 * "[", "not TOML of a robot: brackets are nested too deep"),
     ("format = 1", "a." * 200_000 + "b = 1", "not TOML of a robot: a key has more than 30 parts"),
