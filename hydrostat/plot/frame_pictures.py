@@ -8,13 +8,13 @@ from matplotlib.artist import Artist
 
 from hydrostat.arrays import UInt8
 from hydrostat.drawing import Color
+from hydrostat.plot.drawn_parts import draw_loads, draw_rods, load_reach
 from hydrostat.plot.frame import Attachments, Frame
 from hydrostat.plot.hardware import draw_hardware
 from hydrostat.plot.labels import shorten
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import SpacePane, fit_pixel
 from hydrostat.plot.picture_file import figure_pixels
-from hydrostat.plot.robot_figures import draw_loads, draw_rods, load_reach
 from hydrostat.plot.sheet import Spread
 from hydrostat.plot.skin import outer_points
 from hydrostat.plot.strokes import StrokeLayers

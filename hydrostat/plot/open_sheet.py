@@ -196,8 +196,8 @@ def draw_rules(sheet: PictureSheet, camera: Camera, low: Place, high: Place, ori
             sheet.text((spot[0], spot[1]), words, fontsize=6.5, color=Color.MUTED, **look)
         name = f"{'xyz'[axis]} [mm]"
         corner = np.array([high[0], low[1] - 11 * sheet.scale]) if side == 0 else np.array([low[0], high[1]])
-        corner += np.array([0.0, 0.0] if side == 0 else [-4.0, 4.0]) * sheet.scale
+        corner += np.array([0.0, 0.0] if side == 0 else [-8.0, 4.0]) * sheet.scale  # off a winch in the corner
         sheet.text(
-            (corner[0], corner[1]), name, fontsize=6.5, color=Color.MUTED, ha="right" if side == 0 else "center",
+            (corner[0], corner[1]), name, fontsize=6.5, color=Color.MUTED, ha="right",
             va="top" if side == 0 else "bottom",
         )  # fmt: skip

@@ -4,20 +4,20 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.patches import FancyArrowPatch
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.drawing import Color
-from hydrostat.geometry import Outline, Ring, locate
+from hydrostat.geometry import Outline, Ring
 from hydrostat.given import check_positive, check_type
 from hydrostat.ik import IKResult, IKStatus
 from hydrostat.plot.drawn_body import DrawnBody
+from hydrostat.plot.drawn_parts import draw_loads, draw_rods, load_reach, name_loads, name_parts, obstacle_reach
 from hydrostat.plot.frame import Attachments
 from hydrostat.plot.hardware import DrawnRobot, draw_hardware, draw_numbers, name_winches
-from hydrostat.plot.labels import HALO, Labels, shorten
+from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import Pane
-from hydrostat.plot.sheet import WIDTH, PictureSheet, Place, Places, Spread
+from hydrostat.plot.sheet import WIDTH, PictureSheet, Places, Spread
 from hydrostat.plot.skin import outer_points
 from hydrostat.plot.targets import (
     draw_arrows,
@@ -29,7 +29,7 @@ from hydrostat.plot.targets import (
     target_points,
 )
 from hydrostat.plot.tension_scale import TensionScale
-from hydrostat.robot import Load, Obstacle, PoseTarget, Robot
+from hydrostat.robot import Obstacle, PoseTarget, Robot
 from hydrostat.simulation import Equilibrium, check_pose, obstacles_in_pose
 from hydrostat.units import MILLIMETERS, plural
 
@@ -46,6 +46,7 @@ def draw_rest(robot: Robot, *, title: str | None = None, width: float = WIDTH) -
     sheet, panes, bodies = _at_rest(robot, head, count, width, mesh=True)
     drawn, labels = _draw_parts(sheet, robot, panes, bodies)
     name_winches(labels, robot, drawn.winches)
+    name_parts(labels, panes[0], robot, robot.body.mesh.nodes)
     for name, place in drawn.pane.locate_points(rest_markers(robot)).items():
         labels.place(place, shorten(name))
     return sheet.figure
@@ -88,6 +89,7 @@ def draw_network(robot: Robot, *, title: str | None = None, width: float = WIDTH
     colors = Color.of_winches(robot.winches)
     draw_numbers(sheet, drawn.runs, [colors[cable.winch] for cable in robot.cables], labels)
     name_winches(labels, robot, drawn.winches)
+    name_parts(labels, panes[0], robot, robot.body.mesh.nodes)
     return sheet.figure
 
 
@@ -104,7 +106,7 @@ def _at_rest(
     nodes = robot.body.mesh.nodes
     extra = [] if also is None else [also]
     fixed = np.array([winch.at for winch in robot.winches], dtype=float).reshape(-1, nodes.shape[1])
-    points = [*Attachments(robot).cables(nodes), fixed, load_reach(robot, nodes), *extra]
+    points = [*Attachments(robot).cables(nodes), fixed, load_reach(robot, nodes), obstacle_reach(robot), *extra]
     sheet, panes = open_sheet(robot, [nodes], points, title=title, subtitle=subtitle, width=width)
     return sheet, panes, [pane.draw_body(sheet, nodes, mesh=mesh, pins=True) for pane in panes]
 
@@ -270,7 +272,7 @@ def _in_pose(
     sheet, panes = open_sheet(
         robot,
         [pose.nodes, rest],
-        [*carried.cables(pose.nodes), goals, *rings, load_reach(robot, pose.nodes)],
+        [*carried.cables(pose.nodes), goals, *rings, load_reach(robot, pose.nodes), obstacle_reach(robot)],
         title=title,
         subtitle=subtitle,
         width=width,
@@ -296,6 +298,7 @@ def _in_pose(
         for bead, tension in zip(beads, pose.tensions, strict=True):
             words = f"{tension:.1f} N" if tension > 0 else "slack"
             labels.place(bead, words, size=6.5, weight="bold", outside=0.1)
+    name_parts(labels, panes[0], robot, pose.nodes)
     return sheet, panes, labels
 
 
@@ -313,85 +316,3 @@ def _note(contraction: float) -> str:
     """A contraction [m] in millimeters, with its sign."""
     number = f"{MILLIMETERS * contraction:+.1f}".replace("-", "\N{MINUS SIGN}")
     return "0 mm" if number[1:] == "0.0" else f"{number} mm"
-
-
-def draw_rods(sheet: PictureSheet, pane: Pane, robot: Robot, nodes: Nodes) -> None:
-    """A line along each rod of a body with its nodes at `nodes` [m]."""
-    for rod in robot.rods:
-        corners = np.array(rod.points)
-        shares = np.linspace(0, len(corners) - 1, 100 * (len(corners) - 1) + 1)
-        line = np.stack([np.interp(shares, np.arange(len(corners)), column) for column in corners.T], axis=1)
-        places = pane.places(locate(robot.body.mesh, line).positions(nodes))
-        for color, width, order in ((Color.LIGHT, 3.4, 8), (Color.MUTED, 2.0, 8.1)):
-            sheet.curve(places, color=color, linewidth=width, zorder=order)
-
-
-def load_reach(robot: Robot, nodes: Nodes) -> Spread:
-    """Points behind the arrows of loads, which a picture must hold [m], (loads, dim)."""
-    if not robot.loads:
-        return nodes[:0]
-    forces = robot.load_forces()
-    sizes = np.linalg.norm(forces, axis=1, keepdims=True)
-    along = forces / np.maximum(sizes, 1e-300)
-    reach = 0.15  # share of the body's size that an arrow and its label take
-    return locate(robot.body.mesh, robot.load_points()).positions(nodes) + reach * robot.body.mesh.size * along
-
-
-def draw_loads(sheet: PictureSheet, pane: Pane, robot: Robot, nodes: Nodes) -> dict[str, tuple[Place, Place]]:
-    """Draw an arrow along the force of each load on a body with its nodes at `nodes` [m]; return its ends by name."""
-    drawn: dict[str, tuple[Place, Place]] = {}
-    if not robot.loads:
-        return drawn
-    places, forces = locate(robot.body.mesh, robot.load_points()).positions(nodes), robot.load_forces()
-    largest = max(float(np.linalg.norm(forces, axis=1).max()), 1e-300)
-    for load, at, force in zip(robot.loads, places, forces, strict=True):
-        if load.pressure is not None:
-            _draw_pressure(sheet, pane, robot, nodes, load)
-        if load.moment is not None:
-            drawn[load.name] = _draw_moment(sheet, pane.places(at[None])[0], load)
-        size = float(np.linalg.norm(force))
-        if size == 0.0:
-            continue
-        length = 1e-3 * sheet.scale * (18 + 20 * size / largest)  # [m], as points on the picture
-        start, end = pane.places(np.array([at, at + length * force / size]))
-        arrow = FancyArrowPatch(
-            tuple(start), tuple(end), arrowstyle="-|>,head_length=5,head_width=2.5", shrinkA=0, shrinkB=0,
-            color=Color.ERROR, linewidth=1.8, zorder=17.5, clip_on=False,
-        )  # fmt: skip
-        sheet.axes.add_patch(arrow)
-        drawn[load.name] = (start, end)
-    return drawn
-
-
-def _draw_pressure(sheet: PictureSheet, pane: Pane, robot: Robot, nodes: Nodes, load: Load) -> None:
-    """Write a pressure in the middle of its cavity."""
-    facets = robot.body.mesh.cavity(np.array(load.at))
-    x, y = pane.places(nodes[np.unique(facets)].mean(axis=0)[None])[0]
-    words = f"{1e-3 * (load.pressure or 0.0):.3g} kPa"
-    style = {"fontsize": 7, "color": Color.ERROR, "weight": "bold", "ha": "center", "va": "center", "gid": HALO}
-    sheet.text((float(x), float(y)), words, zorder=30, **style)
-
-
-def _draw_moment(sheet: PictureSheet, at: Place, load: Load) -> tuple[Place, Place]:
-    """Draw an arrow around a place, counterclockwise if the moment turns from x to y; return the place and its top."""
-    ahead, reach = (load.moment or (0.0,))[-1] >= 0, 14 * sheet.scale
-    angles = np.radians(np.linspace(-140, 110, 41) * (1 if ahead else -1) + (0 if ahead else 180))
-    line = np.array(at) + reach * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    sheet.curve(line[:-3], color=Color.ERROR, linewidth=1.8, zorder=17.5)
-    arrow = FancyArrowPatch(
-        tuple(line[-5]), tuple(line[-1]), arrowstyle="-|>,head_length=5,head_width=2.5", shrinkA=0, shrinkB=0,
-        color=Color.ERROR, linewidth=0.5, zorder=17.5, clip_on=False,
-    )  # fmt: skip
-    sheet.axes.add_patch(arrow)
-    return at, np.array(at) + 0.7 * reach
-
-
-def name_loads(labels: Labels, robot: Robot, arrows: Mapping[str, tuple[Place, Place]]) -> None:
-    """Write the size of each force and moment next to its arrow."""
-    forces = zip(robot.loads, np.linalg.norm(robot.load_forces(), axis=1), strict=True)
-    sizes = {
-        load.name: f"{force:.3g} N" if load.moment is None else f"{np.linalg.norm(load.moment):.3g} N m"
-        for load, force in forces
-    }
-    for name, (_, end) in arrows.items():
-        labels.place(end, sizes[name], size=7, weight="bold", outside=0.1, color=Color.ERROR)
