@@ -1,10 +1,12 @@
 """`hydrostat calibrate`."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from hydrostat.cli.design_results import kit_motor
 from hydrostat.cli.folders import OwnRobotFolder, folder_of, require_writable
 from hydrostat.cli.waiting import one_interrupt, patiently, read_robot
 from hydrostat.errors import InputError
@@ -90,7 +92,7 @@ def calibrate(
 
     truth = control.add_cable_layers(calibration.assume_zeros()) if port == control.EMULATED else calibration
     with one_interrupt(f"{kind}: stopped"):
-        bus = control.open_bus(port, loaded, truth, tensions)
+        bus = control.open_bus(port, replace(loaded, motor=kit_motor(loaded, folder)), truth, tensions)
         try:
             if restart:
                 calibration = _restart(kind, bus, folder / file, calibration)

@@ -105,6 +105,15 @@ def designed_motor(robot: "Robot", folder: Path) -> str:
     return _design_value(robot, folder, "motor", str) or "auto" if robot.motor == "auto" else "auto"
 
 
+def kit_motor(robot: "Robot", folder: Path) -> str:
+    """Key of the motor that the kit of a robot takes: that of robot.toml, else of the design next to it; or "auto"."""
+
+    def take(card: "Any", network: "Any") -> str:
+        return str(network["craft"]["motor"] if card["motor"] == "auto" else card["motor"])
+
+    return robot.motor if robot.motor != "auto" else _of_design(robot, folder, take) or "auto"
+
+
 def designed_cost(robot: "Robot", folder: Path) -> "BuildCost | None":
     """The cost to build that a design computed for a robot, with the motors of its poses; None without a design."""
     from hydrostat.design import BuildCost

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from hydrostat.cli.design_results import kit_motor
 from hydrostat.cli.folders import RobotFolder, folder_of
 from hydrostat.cli.learned import read_model
 from hydrostat.cli.options import MotorPort
@@ -129,7 +130,15 @@ def _motors(folder: Path, robot: "Robot", port: str | None, way: "CommandMapper"
     if port is None:
         return control.Motors(robot.winches, control.SimulatedLink(way.contractions))
     pulls = way.known
-    return control.arm_motors(folder, robot, port, pulls.nearest, known=pulls, log=lambda line: print(line, flush=True))
+    return control.arm_motors(
+        folder,
+        robot,
+        port,
+        pulls.nearest,
+        known=pulls,
+        motor=kit_motor(robot, folder),
+        log=lambda line: print(line, flush=True),
+    )
 
 
 class _Shown:

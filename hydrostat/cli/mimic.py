@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from hydrostat.cli.design_results import kit_motor
 from hydrostat.cli.folders import OutFolder, RobotFolder, folder_of, require_folder
 from hydrostat.cli.options import MotorPort
 from hydrostat.cli.waiting import one_interrupt, prepare_physics, read_robot
@@ -133,7 +134,9 @@ class _Session:
             self.motors = control.Motors(robot.winches, control.SimulatedLink(rest))
             if port is not None:
                 known = self._way.known
-                self.motors = control.arm_motors(folder, robot, port, known.nearest, known=known, log=print)
+                self.motors = control.arm_motors(
+                    folder, robot, port, known.nearest, known=known, motor=kit_motor(robot, folder), log=print
+                )
         except BaseException:
             self._way.close()
             raise

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from hydrostat.cli.design_results import kit_motor
 from hydrostat.cli.folders import RobotFolder, folder_of
 from hydrostat.cli.measure import KnownLens, TagHeight, TagSide, photo_options
 from hydrostat.cli.options import MotorPort
@@ -99,7 +100,8 @@ def play(
     with one_interrupt(""), eye as seen:  # arming turns motors, too
         if port is not None and pulls is not None:
             log = partial(print, flush=True)
-            motors = control.arm_motors(folder_of(robot), loaded, port, pulls, known=known, log=log)
+            chosen = kit_motor(given, robot)
+            motors = control.arm_motors(folder_of(robot), loaded, port, pulls, known=known, motor=chosen, log=log)
         try:
             if seen is not None:
                 require_rest(motors)

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -27,6 +28,7 @@ def arm_motors(
     pulls: Pulls,
     *,
     known: Pulls | None = None,
+    motor: str | None = None,
     log: Callable[[str], None] = lambda _: None,
 ) -> Motors:
     """Armed motors that follow commands, supervised by a deadline and a guard.
@@ -39,6 +41,7 @@ def arm_motors(
         port: motor connection, as for `open_bus`.
         pulls: total cable tension of each winch [N] by contractions [m].
         known: the same for the guard, NaN where it shall not judge; the same ones if left out.
+        motor: key of the motor that emulated ones are; that of the robot if left out.
         log: hears each line about them.
 
     Raises:
@@ -52,13 +55,15 @@ def arm_motors(
     if correction is not None:
         felt, known = (_follow(correction, each) for each in (pulls, known))
         log("correction.json corrects contractions")
-    bus = open_bus(port, robot, calibration, felt)
+    emulated = robot if motor is None else replace(robot, motor=motor)
+    bus = open_bus(port, emulated, calibration, felt)
     link = BusLink(bus, robot.winches, calibration, log=log)
     try:
         facts = link.identify()
         if port == EMULATED:
             models = ", ".join(sorted({fact.model for fact in facts}))
-            log(f'{port}: motors are {models} (motor = "{robot.motor}" in robot.toml)')
+            source = "in robot.toml" if motor in (None, robot.motor) else "of its design"
+            log(f'{port}: motors are {models} (motor = "{emulated.motor}" {source})')
         constants = np.array([fact.constant for fact in facts])
         link.guard = TensionGuard(known, constants, calibration.labels)
         link.arm()
