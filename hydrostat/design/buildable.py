@@ -30,7 +30,8 @@ def violations(robot: Robot, constraints: Constraints, region: Region) -> list[s
       radii from holes of cables that others pull.
     - Cables keep the `cable_gap` from each other all along, and two spool radii from winches of others. Two of one
       winch may be nearer within two spool radii of it.
-    - The turn where a cable enters from the world does not count: its tube hangs there as it likes.
+    - The turn where a cable enters from the world does not count: its tube hangs there as it likes. A way back past its
+      own winch is refused.
     - The bend at a point is the arc that touches both segments half-way along the shorter.
     - Whether a winch in the world stands where one may is not looked at.
     """

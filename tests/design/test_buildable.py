@@ -317,6 +317,15 @@ def test_winches_in_the_world_may_stand_close() -> None:
     assert "(70 mm). Minimum winch_gap: 80 mm" in told
 
 
+def test_a_cable_from_the_world_does_not_come_back_past_its_winch() -> None:
+    """Oracle: a way back at 3 mm from the winch, and one at 37 mm."""
+    for aside, count in ((0.004, 1), (0.045, 0)):
+        into: Points = ((0.03, 0.0), (0.15, 0.0), (0.01, aside))
+        told = broken(network(into, winch={"mount": Mount.WORLD}))
+        words = "cable[0].points[1]: the cable turns back past its own winch (by 178"
+        assert sum(line.startswith(words) for line in told) == count
+
+
 def test_a_cable_may_pass_its_own_winch() -> None:
     assert broken(network(more=[("down", (DOWN[0], (0.032, -0.038), (0.06, -0.039)))])) == []
 

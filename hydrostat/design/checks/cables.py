@@ -289,12 +289,32 @@ def _sharp_bends(parts: Parts, index: int) -> Iterator[str]:
     for corner, (turn, arc) in enumerate(zip(np.degrees(turns), arcs, strict=True)):
         name = f"cable[{index}].points[{corner + 1}]"
         enters = corner == 0 and parts.outside(parts.robot.cables[index])
+        if enters and turn > _HAIRPIN and (gap := _gap_behind(parts, index)) is not None:
+            yield (
+                f"{name}: the cable turns back past its own winch (by {turn:.4g} degrees, {mm(gap)} from it). "
+                f"Maximum there: {_HAIRPIN:g} degrees. Move the winch."
+            )
         if turn > limits.max_turn + ANGLE and not enters:
             most = f"{limits.max_turn:g} degrees"
             yield f"{name}: turn too sharp ({turn:.4g} degrees). Maximum turn: {most}. Move the point."
         if limits.bend_radius * gentler[corner] > tangents[corner] + LENGTH:
             least = mm(limits.bend_radius)
             yield f"{name}: bend too sharp (radius {mm(arc)}). Minimum bend_radius: {least}. Move the point."
+
+
+_HAIRPIN = 150.0  # a larger turn [degrees] where a cable enters is no way around an edge, but a way back
+_BEHIND = 4.0  # spool radii within which a cable passes its winch
+
+
+def _gap_behind(parts: Parts, index: int) -> float | None:
+    """Distance [m] at which a cable passes its own winch after it has entered the body; None if it does not."""
+    points, winch = parts.points[index], parts.winch_of(parts.robot.cables[index])
+    centers = np.tile(np.array(winch.at, dtype=float), (len(points) - 2, 2, 1))
+    runs = np.stack([points[1:-1], points[2:]], axis=1)
+    shares = nearest_shares(runs, centers)[0]
+    nearest = runs[:, 0] + shares[:, None] * (runs[:, 1] - runs[:, 0])
+    gap = float(np.linalg.norm(nearest - winch.at, axis=1).min())
+    return gap if gap < _BEHIND * winch.spool_radius else None
 
 
 def _wrong_lengths(parts: Parts, index: int) -> Iterator[str]:

@@ -216,7 +216,7 @@ def limit_travels(robot: Robot, kept: Collection[str] = ()) -> Robot:
 
 def _round_down(length: float, most: float) -> float:
     """A length [m], or a millimeter or more below its maximum."""
-    return length if most >= length else max(1e-3 * int(1e3 * most), 1e-3)
+    return length if most >= length else max(int(1e3 * most) / 1e3, 1e-3)
 
 
 def _squeezing_travel(robot: Robot, cable: Cable, ratio: float) -> float:
