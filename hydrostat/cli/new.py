@@ -304,7 +304,14 @@ def _print_made(made: "Robot", name: Path, lines: list[str], *, chosen: bool, fr
     for risk in (*find_risks(made), *(() if from_gallery else _pinned_drawings(made))):
         mild = coarse and "elements across" in risk
         lines.append(f"{'note: coarse for speed' if mild else 'warning'}: {in_words(risk)}")
-    large = 0.8  # longer bodies are named, as centimeters may have been meant to be millimeters [m]
+    large, small, thin = 0.8, 0.02, 0.001  # bodies beyond these may be in a wrong unit [m]
+    if mesh.size < small:
+        lines.append(
+            f"warning: --size: the body is {1e3 * mesh.size:.2g} mm long, less than any motor. Give e.g. 150mm"
+        )
+    if made.body.thickness is not None and made.body.thickness < thin:
+        thickness = f"{1e3 * made.body.thickness:.2g} mm"
+        lines.append(f"warning: --thickness: {thickness} is less than a sheet of felt. Give e.g. 40mm")
     if mesh.size > large:
         lines.append(f"note: the body is {mesh.size:.2g} m long. For a smaller one, give --size in mm, e.g. 150mm")
     for line in lines:
