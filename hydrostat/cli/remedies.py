@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from hydrostat.fabrication import KitOptions
     from hydrostat.robot import Robot
 
-_SILICONE = "mould of silicone"  # in reasons that a mold of silicone does not have
+_SILICONE = "mold of silicone"  # in reasons that a mold of silicone does not have
 
 
 def kit_remedy(robot: "Robot", folder: Path, out: Path, *, options: "KitOptions", reasons: Iterable[str]) -> str:
@@ -87,7 +87,7 @@ def _cheaper(robot: "Robot", reason: str, budget: float, place: str, out: Path) 
 def design_remedy(
     network: "Network", source: Path, out: Path, *, budget: float | None = None, over: Iterable[str] = ()
 ) -> str:
-    """Command to continue with if the kit of a design would be rejected: an alternative, or fewer winches.
+    """Command to continue with if the kit of a design would be rejected: an alternative, more time, or fewer winches.
 
     All keep to the budget [USD], for which `over` are the problems. It is `hydrostat check` if no kit can be made of
     the body itself, or if fewer winches were what was asked for or what was found and rejected.
@@ -104,6 +104,10 @@ def design_remedy(
     if reasons := tuple(over):
         options = kit_options(network, budget)
         return kit_remedy(network.robot, out / "robot", out / "kit", options=options, reasons=reasons)
+    asked = network.request
+    if not network.complete and asked.seconds is not None:
+        count = f"--winches {asked.winches} --cables {asked.cables} --time {4 * asked.seconds:.0f}s"
+        return f"hydrostat design {quote(str(source))} {count}{spend} --out {quote(str(out))}"
     found = len(network.robot.winches), len(network.robot.cables)
     winches, cables = (max(number - 1, 1) for number in found)
     if (winches, cables) in (found, (network.request.winches, network.request.cables)):

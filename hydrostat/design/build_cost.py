@@ -9,7 +9,7 @@ import numpy as np
 
 from hydrostat.design.checks.cables import SAME
 from hydrostat.design.polyline import nearest_shares, turns
-from hydrostat.fabrication import PRICES, CableWork, KitOptions, Method, find_motor, motors_price, shaft_torques
+from hydrostat.fabrication import CableWork, KitOptions, Method, drive_price, find_motor, shaft_torques
 from hydrostat.ik import IKResult
 from hydrostat.robot import Cable, Mount, Robot, sewn_robot, sewn_sides
 from hydrostat.units import plural
@@ -64,16 +64,12 @@ class BuildCost:
         cables, work = (sewn_robot(robot) if plush else robot).cables, CableWork.of_robot(robot)
         motors = len({cable.winch for cable in cables})
         length = float(sum(cable.length for cable in cables))
-        tube = float(sum(cable.segments[~cable.bare].sum() for cable in cables))
-        price, key = PRICES["line"].amount * length + PRICES["tube"].amount * tube, ""
+        price, key = 0.0, ""
         if motors:
             rows = [shaft_torques(robot, pose.pose.tensions) for pose in reached]
             torques = np.array(rows).reshape(-1, len(robot.winches)).max(axis=0, initial=0.0).tolist()
             chosen = find_motor(robot, torques, KitOptions())
-            used = {cable.winch for cable in cables}
-            pulled = [each for winch, each in zip(robot.winches, torques, strict=True) if winch.name in used]
-            price += motors_price(pulled, chosen)
-            key = chosen.key
+            price, key = drive_price(robot, torques, chosen, options=KitOptions()), chosen.key
         return BuildCost(
             holes=work.holes,
             crossings=(len(sewn_sides(robot)) if plush else 1) * _crossings(robot),

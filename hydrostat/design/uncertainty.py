@@ -53,7 +53,7 @@ class BuildTolerances:
 
     @classmethod
     def of(cls, body: Body) -> Self:
-        """Return the usual tolerances of a body: sewn where it is flat, cast with tubes in the mould in space.
+        """Return the usual tolerances of a body: sewn where it is flat, cast with tubes in the mold in space.
 
         The deviation of Young's modulus is that of the material's interval, if it was measured.
         """

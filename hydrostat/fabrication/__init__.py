@@ -22,9 +22,8 @@ if TYPE_CHECKING:
         PartOptions,
         PatternOptions,
     )
-    from hydrostat.fabrication.lists.bill import PRICES
     from hydrostat.fabrication.lists.stitching import depth_table
-    from hydrostat.fabrication.motor_choice import find_motor, fit_motor, motor_offers, motors_price
+    from hydrostat.fabrication.motor_choice import drive_price, find_motor, fit_motor, motor_offers, motors_price
     from hydrostat.fabrication.moulds.mould import make_mold
     from hydrostat.fabrication.moulds.pocket_room import PocketRoom
     from hydrostat.fabrication.parts.motor import ALL_MOTORS, MOTORS, Motor
@@ -47,7 +46,6 @@ __all__ = [
     "MOTORS",
     "OVER_BUDGET",
     "PAPERS",
-    "PRICES",
     "STUFFINGS",
     "TOUCHES",
     "CableWork",
@@ -71,6 +69,7 @@ __all__ = [
     "build_kit",
     "check_board",
     "depth_table",
+    "drive_price",
     "find_motor",
     "find_refusals",
     "find_weak_lines",

@@ -1,4 +1,4 @@
-"""`plush_work`, `foam_work`: the pattern of a body of felt (R10), the mould and mixes of one of foam (R50 to R54)."""
+"""`plush_work`, `foam_work`: the pattern of a body of felt (R10), the mold and mixes of one of foam (R50 to R54)."""
 
 from collections.abc import Iterable
 from dataclasses import replace
@@ -33,11 +33,11 @@ from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import CableSide, Mount, Robot
 from hydrostat.units import plural
 
-MANY_PIECES = 40  # more pieces of a mould than that are a warning: a judgement, each is some hours on a printer
+MANY_PIECES = 40  # more pieces of a mold than that are a warning: a judgement, each is some hours on a printer
 
 
 def foam_work(robot: Robot, options: KitOptions, units: Iterable[WinchUnit]) -> BodyWork:
-    """Make the mould of a body, with room for the winches that sit in it (InputError: the body is not closed)."""
+    """Make the mold of a body, with room for the winches that sit in it (InputError: the body is not closed)."""
     pockets = {
         unit.winch: WinchRoom(low=unit.room.low, high=unit.room.high) for unit in units if unit.mount is Mount.BODY
     }
@@ -62,7 +62,7 @@ def foam_work(robot: Robot, options: KitOptions, units: Iterable[WinchUnit]) -> 
         ),
         mould=mould,
         summary=(
-            f"Mould: {plural(pieces, 'piece')}, closed {sides} mm; {held:.1f} % of the skin is undercut",
+            f"Mold: {plural(pieces, 'piece')}, closed {sides} mm; {held:.1f} % of the skin is undercut",
             f"Pour: {body.mass:.0f} g of {body.material}",
         ),
         problems=(*mould.problems, *channel_problems(robot, options.parts)),
@@ -85,12 +85,12 @@ def _inside(robot: Robot) -> tuple[str, ...]:
 def _effort(printed: tuple[Printed, ...]) -> tuple[str, ...]:
     """Return a warning if a mold takes much printing."""
     pieces, mass = sum(part.count for part in printed), sum(part.count * part.mass for part in printed)
-    # more plastic for a mould than that is a warning [g]: five of the usual spools, a judgement too
+    # more plastic for a mold than that is a warning [g]: five of the usual spools, a judgement too
     much_plastic = 5e3
     if pieces <= MANY_PIECES and mass <= much_plastic:
         return ()
     return (
-        f"the mould needs {plural(pieces, 'piece')} and {1e-3 * mass:.1f} kg of plastic. Make the body smaller, use "
+        f"the mold needs {plural(pieces, 'piece')} and {1e-3 * mass:.1f} kg of plastic. Make the body smaller, use "
         "a printer with a larger bed, or cut the body out of a block of foam",
     )
 

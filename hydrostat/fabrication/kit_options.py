@@ -41,7 +41,7 @@ class Corner(StrEnum):
 
 
 class MoldKind(StrEnum):
-    """Material that the mould is made of."""
+    """Material that the mold is made of."""
 
     PRINTED = "printed"
     SILICONE = "silicone"
@@ -161,7 +161,7 @@ class PartOptions:
 
 @dataclass(frozen=True, kw_only=True)
 class MoldOptions:
-    """Choices for a mould; lengths in millimeters.
+    """Choices for a mold; lengths in millimeters.
 
     Attributes:
         kind: material of the mold: printed halves, or silicone cast round a printed positive (R52).
@@ -173,7 +173,7 @@ class MoldOptions:
         mark_depth: maximum depth of the cable points that are marked [mm].
 
     Raises:
-        InputError: a length that is not above 0 (a clearance of pockets may be 0), or a text that is no kind of mould.
+        InputError: a length that is not above 0 (a clearance of pockets may be 0), or a text that is no kind of mold.
     """
 
     kind: MoldKind = MoldKind.PRINTED
@@ -211,7 +211,7 @@ class KitOptions:
         force: True to write a kit that cannot be built well, with the reasons on the sheet.
         pattern: options for the pattern of a plush robot; its `force` is that of the kit.
         parts: options for the printed parts.
-        mould: options for the mold of a foam robot.
+        mold: options for the mold of a foam robot.
 
     Raises:
         InputError: a text that is no method, paper or board, a tension, torque or budget that is not above 0.

@@ -35,11 +35,11 @@ class FoamNeeds:
     volume: float  # volume of the cavity [mm^3]
     part_a: float  # mass of part A of the foam [g]
     part_b: float  # mass of part B of the foam [g]
-    silicone: float = 0.0  # for the mould [mm^3]; 0 for a printed one
+    silicone: float = 0.0  # for the mold [mm^3]; 0 for a printed one
     silicone_mass: float = 0.0  # [g]
     material: str = ""  # name of the foam; empty: that of the robot's body
-    bolts: int = 0  # number of M4 bolts that hold the mould, each with a nut
-    dowels: int = 0  # number of dowels of 3 mm that join pieces of the mould
+    bolts: int = 0  # number of M4 bolts that hold the mold, each with a nut
+    dowels: int = 0  # number of dowels of 3 mm that join pieces of the mold
 
     def __post_init__(self) -> None:
         for name in ("bolts", "dowels"):
@@ -49,10 +49,10 @@ class FoamNeeds:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class BodyWork:
-    """Results of planning the soft body: of felt its pattern (R10), of foam its mould and mixes (R50 to R54)."""
+    """Results of planning the soft body: of felt its pattern (R10), of foam its mold and mixes (R50 to R54)."""
 
     files: Mapping[str, bytes] = field(default_factory=dict)  # content by path in the kit
-    printed: tuple[Printed, ...] = ()  # pieces of a mould, or the positive for a silicone one
+    printed: tuple[Printed, ...] = ()  # pieces of a mold, or the positive for a silicone one
     spare: tuple[Printed, ...] = ()  # pieces that are printed only if the body is to be cast in another way
     assemblies: tuple[PartAssembly, ...] = ()  # assemblies of the mold
     holes: int = 0  # pinholes in the cloth, each for a grommet
@@ -96,6 +96,11 @@ class KitPlan:
     def method(self) -> Method:
         """Method by which the body is made."""
         return self.options.method_for(self.drawn.body)
+
+    @property
+    def is_silicone(self) -> bool:
+        """True if the body is cast of silicone, which does not expand as foam does."""
+        return self.work.mould is not None and self.work.mould.casting.expansion <= 1
 
     @cached_property
     def printed(self) -> tuple[Printed, ...]:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from hydrostat.fabrication.kit_options import KitOptions, Method
+from hydrostat.fabrication.lists.bill import PRICES
 from hydrostat.fabrication.lists.motors import SLOW, power_plan, travel_time, turns_of
 from hydrostat.fabrication.lists.needs import control_needs
 from hydrostat.fabrication.moulds.pocket import WinchRoom, clashes, make_pockets
@@ -101,6 +102,22 @@ def motors_price(torques: Sequence[float], motor: Motor) -> float:
     """Price of a motor for each torque [N m], with boards, drivers, supply and their cables, as used up [USD]."""
     plan = power_plan({str(number): 1e3 * torque for number, torque in enumerate(torques)}, motor)
     return len(torques) * motor.price + sum(item.cost for item in control_needs(plan))
+
+
+def drive_price(robot: Robot, torques: Sequence[float], motor: Motor, *, options: KitOptions) -> float:
+    """Price of the motors of a network, with boards, drivers and supply, and of its line and tube, as used up [USD].
+
+    Args:
+        robot: robot as it is drawn, at least one of whose winches has cables.
+        torques: largest torque of each winch [N m].
+        motor: motor of each winch.
+        options: choices of the kit.
+    """
+    cables = (sewn_robot(robot) if options.method_for(robot.body) is Method.PLUSH else robot).cables
+    length = float(sum(cable.length for cable in cables))
+    tube = float(sum(cable.segments[~cable.bare].sum() for cable in cables))
+    line = PRICES["line"].amount * length + PRICES["tube"].amount * tube
+    return line + motors_price(pulled_torques(robot, torques), motor)
 
 
 def pulled_torques(robot: Robot, torques: Sequence[float]) -> list[float]:

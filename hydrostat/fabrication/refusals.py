@@ -19,7 +19,7 @@ def find_refusals(robot: Robot, demand: Demand | None = None, *, options: KitOpt
     They cover units and pockets that do not fit, holes that cannot be cut, sheaths too near the skin, and lines that
     break. Without a demand the motor is the cheapest that fits and no line breaks: these problems then hold for all
     poses. The demand is that of the robot as it is drawn, or as its cables are sewn in pairs. `Sewing.find` judges the
-    skin of bodies in space. Moulds, pieces too large for the printer and the checks of finished files are judged only
+    skin of bodies in space. Molds, pieces too large for the printer and the checks of finished files are judged only
     as the kit is made. Raises InputError: an unknown motor, a demand of another robot.
     """
     options = options or KitOptions()

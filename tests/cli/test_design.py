@@ -156,6 +156,8 @@ def test_a_design_that_no_kit_can_be_made_of_is_an_error(
     least = replace(found.robot, winches=found.robot.winches[:1], cables=found.robot.cables[:1])
     small = replace(found, robot=least, alternatives=())
     assert design_remedy(small, strip, out) == f"hydrostat check {out}/robot"
+    hasty = replace(found, alternatives=(), complete=False, request=replace(found.request, seconds=8.0))
+    assert " --time 32s --out " in design_remedy(hasty, strip, out)
     for fits, remedy in (
         (lambda network: network is other, f"hydrostat fabricate {out}/alternatives/02_1_winches_1_cables "),
         (lambda network: False, f"hydrostat design {strip} --winches 1 --cables 1 "),

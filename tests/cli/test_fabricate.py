@@ -20,6 +20,7 @@ from hydrostat.cli.design_results import (
     designed_torque,
     find_over_budget,
     find_refused_better,
+    kit_motor,
 )
 from hydrostat.cli.remedies import design_remedy, kit_remedy, note_room
 from hydrostat.design import Alternative, BuildCost, Constraints, Network
@@ -164,6 +165,14 @@ def test_the_tension_of_its_design_is_beside_a_robot(tmp_path: Path) -> None:
     assert designed_motor(robot, out / "robot") == "xl330"
     assert designed_motor(replace(robot, motor="n20"), out / "robot") == "auto"
     assert designed_motor(robot, tmp_path / "alone") == "auto"
+    open_card = card | {"motor": "auto", "craft": {"motor": "sts3215"}}
+    (tmp_path / "open").mkdir()
+    (tmp_path / "open" / "score.json").write_text(json.dumps(open_card))
+    assert [kit_motor(robot, tmp_path / place / "robot") for place in ("open", "out", "alone")] == [
+        "sts3215",
+        "xl330",
+        "auto",
+    ]
     assert designed_tension(robot.with_network(robot.winches, robot.cables[:1]), out / "robot") is None
     assert designed_tension(robot, tmp_path / "alone" / "robot" / "deep") is None
     card |= {"robot": "other", "alternatives": [{"robot": robot_hash(robot)}]}

@@ -1,4 +1,4 @@
-"""Plans of kits from a few facts, without winches and moulds being made."""
+"""Plans of kits from a few facts, without winches and molds being made."""
 
 from types import MappingProxyType
 from typing import Any
@@ -37,7 +37,7 @@ _OF_OPTIONS = {"method", "paper"}
 
 
 def make_plan(robot: Robot, demand: Demand, **facts: Any) -> KitPlan:
-    """A plan of a robot; facts of its parts, its body and its options go by their names, "pieces" are of a mould."""
+    """A plan of a robot; facts of its parts, its body and its options go by their names, "pieces" are of a mold."""
     plan = KitPlan(drawn=robot, robot=robot, options=KitOptions(), demand=demand, rigid=FewParts(), work=BodyWork())
     return change_plan(plan, **facts)
 

@@ -192,7 +192,7 @@ def test_a_body_of_foam_is_not_stuffed_unless_forced():
 
 @pytest.mark.slow
 def test_a_flat_body_can_be_cast():
-    """Oracle: the volume of its mould's cavity is its area times its thickness."""
+    """Oracle: the volume of its mold's cavity is its area times its thickness."""
     body = replace(crossed().body, material=MATERIALS["flexfoam-it x"])
     kit = build_kit(replace(crossed(), body=body, cables=()), options=KitOptions(method=Method.FOAM))
     assert [check.what for check in kit.checks if not check.passed] == []

@@ -1,4 +1,4 @@
-"""Checks whether a mould leaves room for just the body that was simulated."""
+"""Checks whether a mold leaves room for just the body that was simulated."""
 
 import math
 
@@ -22,7 +22,7 @@ def _account(mould: Mold) -> Check:
     """Pieces as they are printed, and all that is no piece, each measured on its own solid, against the block."""
     volumes = mould.volumes
     if mould.kind is MoldKind.PRINTED:
-        what = "pieces, cavity, sprue, vents, key gaps and holes of the mould add up to its block"
+        what = "pieces, cavity, sprue, vents, key gaps and holes of the mold add up to its block"
         parts = _pieces(mould, "mould") + _body(mould) + sum(volumes[void] for void in _VOIDS)
     else:
         what = "pieces of the positive and silicone of both pours add up to the room in the frames"
@@ -54,7 +54,7 @@ def _check_connected(mould: Mold) -> Check:
     sprue = mould.volumes["sprue"]
     measured = "no sprue" if sprue <= 0 else "one room" if rooms == 1 else f"{rooms} rooms"
     return Check(
-        what="sprue, cavity and vents of the mould are one room, which the foam fills",
+        what="sprue, cavity and vents of the mold are one room, which the foam fills",
         measured=f"{measured}, {1e-3 * float(mould.poured.volume()):.0f} cm^3",
         allowed="one room with a sprue",
         passed=rooms == 1 and sprue > 0,

@@ -130,7 +130,7 @@ class BillGroup(StrEnum):
     CABLES = "cables"
     WINCHES = "winches"
     CONTROL = "control"
-    MOULD = "mould"
+    MOULD = "mold"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -40,7 +40,7 @@ from hydrostat.fabrication.lists.stitching import (
 from hydrostat.fabrication.lists.table import Table, number_column, text_column
 from hydrostat.simulation import Simulation
 
-_MOULD_COST = "For hands of foam the thesis gives about 100 USD for a silicone mould and a few dollars for each core"
+_MOULD_COST = "For hands of foam the thesis gives about 100 USD for a silicone mold and a few dollars for each core"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,11 +108,11 @@ def make_lists(plan: KitPlan) -> Lists:
 
 
 def _bill_notes(plan: KitPlan, items: tuple[Item, ...]) -> tuple[str, ...]:
-    """Cost of a mould against that of the bodies that come out of it (N2)."""
+    """Cost of a mold against that of the bodies that come out of it (N2)."""
     if plan.work.foam is None:
         return ()
     core, mould = sum(item.cost for item in items if item.is_poured), cost_of(items, BillGroup.MOULD)
-    return (f"The mould costs about {mould:.0f} USD, each core of foam {core:.2f} USD. {_MOULD_COST}.",)
+    return (f"The mold costs about {mould:.0f} USD, each core of foam {core:.2f} USD. {_MOULD_COST}.",)
 
 
 def _sewing(plan: KitPlan) -> tuple[Stitching | None, tuple[str, ...]]:

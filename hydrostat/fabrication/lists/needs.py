@@ -212,20 +212,20 @@ def control_needs(plan: PowerPlan | None) -> list[Item]:
 
 
 def _mould(plan: KitPlan) -> list[Item]:
-    """Material of a mould, and what joins, holds and seals its pieces."""
+    """Material of a mold, and what joins, holds and seals its pieces."""
     foam = plan.work.foam
     if foam is None:
         return []
     poured = foam.silicone_mass
-    litres = f"for moulds, Mold Max 30 or alike, both parts, {1e-6 * foam.silicone:.2f} l"
-    nut = "and two washers, longer than the closed mould is thick; or threaded rod"
+    litres = f"for molds, Mold Max 30 or alike, both parts, {1e-6 * foam.silicone:.2f} l"
+    nut = "and two washers, longer than the closed mold is thick; or threaded rod"
     dowel = 15.0  # length of a dowel [mm]: a little less than the holes in both pieces are deep
     rod = f"wood or steel, for {foam.dowels} dowels of {dowel:g} mm"
-    varnish = "shellac or acrylic varnish, two coats on the printed mould"
+    varnish = "shellac or acrylic varnish, two coats on the printed mold"
     sealed = bool(plan.work.printed) and not poured > 0
     return [
         _item(BillGroup.MOULD, "silicone", litres, 1e-3 * poured, "silicone", poured),
-        _plastic(BillGroup.MOULD, "PLA for the mould", plan.work.printed),
+        _plastic(BillGroup.MOULD, "PLA for the mold", plan.work.printed),
         _item(BillGroup.MOULD, "bolt M4 with nut", nut, float(foam.bolts), "bolts"),
         _item(BillGroup.MOULD, "rod of 3 mm", rod, 1e-3 * dowel * foam.dowels, "rod"),
         _item(

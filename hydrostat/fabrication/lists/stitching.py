@@ -159,8 +159,8 @@ def depth_table(robot: Robot) -> Table[DepthRow]:
             "Depth is that under the skin, below 0 outside the body; skin is the nearest place of the surface, where a "
             "pin marks it.",
             f"Up to {SKIN:g} mm deep the cable is sewn to the skin, up to {NEEDLE:g} mm it is drawn through with a "
-            "long needle; deeper, a tube is laid before the foam is cast.",
-            "Tubes of the cut list that run deeper than the skin are laid in the mould too, with a rod in them.",
+            "long needle; deeper, a tube is laid before the body is cast.",
+            "Tubes of the cut list that run deeper than the skin are laid in the mold too, with a rod in them.",
         ),
     )
 
@@ -186,8 +186,8 @@ def plane_table(robot: Robot) -> Table[PlaneRow]:
         notes=(
             "All points lie in the middle of the thickness; x and y count from the middle of the drawing, seen from "
             "the front.",
-            "If the mould is parted there, lay tubes with a rod in them along these points before the foam is poured; "
-            "else draw the line through the foam with a long needle, from point to point.",
+            "If the mold is parted there, lay tubes with a rod in them along these points before you cast the body; "
+            "else draw the line through the body with a long needle, from point to point.",
         ),
     )
 
@@ -292,6 +292,6 @@ def deep_warnings(table: Table[DepthRow]) -> tuple[str, ...]:
             deep[row.cable] = max(deep.get(row.cable, 0.0), row.depth)
     return tuple(
         f"cable {cable} runs up to {depth:.0f} mm under the skin, too deep for a needle ({NEEDLE:g} mm). Lay a tube in "
-        "the mould before you pour the foam"
+        "the mold before you cast the body"
         for cable, depth in deep.items()
     )

@@ -1,1 +1,1 @@
-"""Moulds for bodies of foam."""
+"""Molds for bodies of foam."""

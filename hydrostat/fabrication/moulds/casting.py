@@ -79,7 +79,7 @@ def _inhibition_problem(material: Material, *, silicone: bool) -> tuple[str, ...
         return ()
     return (
         f"{material.name} is cured by platinum and does not cure against Mold Max 30, which is cured by tin (its maker "
-        "Smooth-On, FAQ 129: neither cures against the other). Print the mould (--mould printed)",
+        "Smooth-On, FAQ 129: neither cures against the other). Print the mold (--mould printed)",
     )
 
 
@@ -92,7 +92,7 @@ def _castable(material: Material) -> tuple[Material, tuple[str, ...]]:
         return foam, (block_problem(material.name),)
     name = f'"{material.name}"' if material.name else "the body's material, given by its numbers,"
     problem = (
-        f"{name} ({material.density:.0f} kg/m^3) is not cast from two parts. This mould is sized for {foam.name} "
+        f"{name} ({material.density:.0f} kg/m^3) is not cast from two parts. This mold is sized for {foam.name} "
         f"({foam.density:.0f} kg/m^3), so the robot would differ from the simulated one. {MATERIAL_FIX} "
         f"what you pour, such as {foam.name}, and simulate again, or choose plush if the body is flat"
     )
@@ -120,7 +120,7 @@ def _ratio_in_words(material: Material) -> str:
 def _times(material: Material, *, silicone: bool) -> tuple[tuple[str, str], ...]:
     cures = {
         "flexfoam-it x": f"2 h at 25 C ({THESIS})",
-        "ecoflex 00-30": f"4 h at 25 C in the mould; out of it, as PLA softens near 60 C, 2 h at 80 C and 1 h at 100 C "
+        "ecoflex 00-30": f"4 h at 25 C in the mold; out of it, as PLA softens near 60 C, 2 h at 80 C and 1 h at 100 C "
         f"({THESIS})",
     }
     body = (f"{material.name} cures", cures.get(material.name, "as the tin says; no source was found"))
@@ -147,7 +147,7 @@ def _casting_notes(foams: bool, *, silicone: bool) -> tuple[str, ...]:
     notes = []
     if foams:
         notes.append(
-            "Expansion is the density of the liquid, assumed 1100 kg/m^3, over that of the foam; in a closed mould "
+            "Expansion is the density of the liquid, assumed 1100 kg/m^3, over that of the foam; in a closed mold "
             "foam comes out denser. Open holes let the pressure of the rising foam out (Smooth-On's gallery: "
             "FlexFoam-iT! X cast in Mold Max 30)."
         )
@@ -155,6 +155,6 @@ def _casting_notes(foams: bool, *, silicone: bool) -> tuple[str, ...]:
     if silicone:
         notes.append(
             f"Silicone at {SILICONE_PRICE:g} USD a kilogram: measured on none, check yours; the thesis paid about "
-            "100 USD for a mould."
+            "100 USD for a mold."
         )
     return tuple(notes)

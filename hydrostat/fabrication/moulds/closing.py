@@ -1,6 +1,6 @@
 """Keys, bolt holes and pry slots of a mold, all in the rim round the cavity.
 
-In the coordinates of the mould: x across, y upwards as it stands when poured, z along the pull, parted at z = 0.
+In the coordinates of the mold: x across, y upwards as it stands when poured, z along the pull, parted at z = 0.
 """
 
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ Spot = tuple[float, float]  # a place in the parting plane [mm]
 
 @dataclass(frozen=True)
 class MoldBlock(Cuboid):
-    """Outside of a mould [mm]."""
+    """Outside of a mold [mm]."""
 
     x_cuts: tuple[float, ...] = ()  # places of cuts across x that make it fit the printer
     y_cuts: tuple[float, ...] = ()  # places of cuts across y

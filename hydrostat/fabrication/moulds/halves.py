@@ -15,7 +15,7 @@ from hydrostat.fabrication.solids.printed import Printed
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Halves:
-    """A mould, closed, in its own coordinates."""
+    """A mold, closed, in its own coordinates."""
 
     upper: Manifold  # half that is drawn along the pull
     lower: Manifold  # half that stays
@@ -26,7 +26,7 @@ class Halves:
 
 
 def make_cavity(body: Manifold, dents: Manifold, pockets: tuple[Pocket, ...]) -> Manifold:
-    """The body without what the mould reaches into it."""
+    """The body without what the mold reaches into it."""
     cavity = body - dents
     for pocket in pockets:
         cavity = cavity - pocket.core
@@ -111,10 +111,10 @@ _OVER: _Lying = (180.0, 0.0, 0.0)
 def mold_prints(
     halves: Halves, positive: Positive, frames: Frames | None, block: MoldBlock, bed: tuple[float, float, float]
 ) -> tuple[tuple[Printed, ...], int, float]:
-    """All pieces, how many dowels join those of the mould, and what cutting takes [mm^3].
+    """All pieces, how many dowels join those of the mold, and what cutting takes [mm^3].
 
-    Of a printed mould the positive is spare: its dowels do not count. What cutting takes is taken from the halves of
-    the mould, or of the positive where the mould is of silicone.
+    Of a printed mold the positive is spare: its dowels do not count. What cutting takes is taken from the halves of
+    the mold, or of the positive where the mold is of silicone.
     """
     printed: list[Printed] = []
     dowels, holes = (positive.dowels, positive.lost) if frames else (0, 0.0)

@@ -1,4 +1,4 @@
-"""`interlock_count`: through how many holes of the body a half of its mould reaches and closes behind them.
+"""`interlock_count`: through how many holes of the body a half of its mold reaches and closes behind them.
 
 Such a half and the body are like two links of a chain: neither comes off the other, however soft the body is. Loops
 that generate all loops of a solid are found on its surface (Eppstein 2003), and each of the half is tested against each

@@ -29,13 +29,13 @@ TOP_RIM = 20.0  # height of the rim above the body [mm]: the funnel is in it
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Mold:
-    """A mould in two halves; lengths in millimeters."""
+    """A mold in two halves; lengths in millimeters."""
 
     kind: MoldKind  # printed halves, or silicone round a printed positive
     pull: Pull  # directions in which the halves come off, in the coordinates of the robot
     stance: MoldOrientation  # orientation in these coordinates, and the upward direction for pouring
     printed: tuple[Printed, ...]  # printed parts, as they lie on the bed
-    # halves and body; of a mould of silicone: positive and frames. In coordinates of the mould: x across, y upwards as
+    # halves and body; of a mold of silicone: positive and frames. In coordinates of the mold: x across, y upwards as
     # it stands, z along the pull, parted at z = 0.
     assembly: PartAssembly
     # volumes in the block [mm^3], each measured on its own solid. Printed: upper + lower + cavity + sprue + vents +
@@ -43,8 +43,8 @@ class Mold:
     # the bed. Silicone: cavity + sprue + silicone_lower + silicone_upper = box; "cutting" is what the positive loses.
     # Both: cavity = body - dents - pockets.
     volumes: dict[str, float]
-    poured: Manifold  # all that is filled with foam, in coordinates of the mould
-    box: tuple[float, float, float]  # sides of the closed mould: across, upwards as it stands, along the pull [mm]
+    poured: Manifold  # all that is filled with foam, in coordinates of the mold
+    box: tuple[float, float, float]  # sides of the closed mold: across, upwards as it stands, along the pull [mm]
     bolts: int  # number of M4 bolts that hold it; 0 for silicone
     dowels: int  # number of 3 mm dowels that join pieces
     vents: int  # number of vents
@@ -69,7 +69,7 @@ class _Inside:
 
 
 def make_mold(robot: Robot, options: MoldOptions, *, pockets: Mapping[str, Sides | WinchRoom] | None = None) -> Mold:
-    """The mould for a robot's body.
+    """The mold for a robot's body.
 
     `pockets` are what winches that sit in the body take up, by name; three sides [mm] if the shaft is in the middle.
     Raises InputError: the body is not closed, or a pocket is of a winch that is not there.
@@ -177,13 +177,13 @@ def _assembly(name: str, halves: Halves, frames: Frames | None, positive: Positi
             Placed(name="positive_upper", title="upper half of the positive", solid=positive.upper),
             Placed(name="frame_upper", title="upper frame", solid=frames.upper, pulled=ahead),
         )
-    return PartAssembly(name=f"mould of {name}", pieces=pieces)
+    return PartAssembly(name=f"mold of {name}", pieces=pieces)
 
 
 UNNOTICED = 0.05  # share of undercut that nobody notices: foam is pressed past it
 
 TOLERATED = 0.3
-"""Share of undercut beyond which a rigid mould is a problem. A judgement, measured on none: soft foam is squeezed to
+"""Share of undercut beyond which a rigid mold is a problem. A judgement, measured on none: soft foam is squeezed to
 less than half its thickness as it is drawn out, and comes back; but what grips all round tears it."""
 
 
@@ -226,19 +226,19 @@ def mold_problems(
         found.append(
             f"{_reaches(links)} and closes behind it like a link of a chain, so it cannot come off. Close "
             f"{'that hole' if sum(links) == 1 else 'these holes'} in the surface and cut the foam out afterwards, or "
-            "choose a mould of silicone, which is cut open there"
+            "choose a mold of silicone, which is cut open there"
         )
     stiff = 1e6  # Young's modulus from which on a body is not squeezed past an undercut by hand [Pa]
     if rigid and (pull.share > TOLERATED or (pull.share > UNNOTICED and material.young > stiff)):
         found.append(
             f"{100 * pull.share:.0f} % of the surface is undercut along the best of {len(pull.shares)} pulls: the body "
-            "would tear as a rigid mould comes off. Choose a mould of silicone, which yields"
+            "would tear as a rigid mold comes off. Choose a mold of silicone, which yields"
         )
     if sprue is None:
         found.append("the parting plane does not cross the body, so it cannot be poured. Simplify its surface")
     if rigid:
         found += [
-            f"the {half} half of the mould falls into {len(parts)} pieces: the body reaches through its walls"
+            f"the {half} half of the mold falls into {len(parts)} pieces: the body reaches through its walls"
             for half, parts in (("upper", halves.upper.decompose()), ("lower", halves.lower.decompose()))
             if sum(part.volume() > 0 for part in parts) > 1
         ]
@@ -251,7 +251,7 @@ def mold_problems(
 def _reaches(links: tuple[int, int]) -> str:
     """Return the words on how many holes of the body each half reaches through."""
     parts = [
-        f"the {half} half of the mould reaches through {plural(count, 'hole')} of the body"
+        f"the {half} half of the mold reaches through {plural(count, 'hole')} of the body"
         for half, count in zip(("lower", "upper"), links, strict=True)
         if count
     ]
@@ -275,5 +275,5 @@ def mold_notes(pull: Pull, material: Material, kind: MoldKind) -> tuple[str, ...
         return ()
     return (
         f"{100 * pull.share:.0f} % of the surface is undercut: {material.name or 'the body'} is squeezed past it. Use "
-        "plenty of release agent, open the mould slowly and draw the body out part by part",
+        "plenty of release agent, open the mold slowly and draw the body out part by part",
     )

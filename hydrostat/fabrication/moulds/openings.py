@@ -1,6 +1,6 @@
 """Sprue and vents: where foam goes in and air comes out.
 
-In the coordinates of the mould: x across, y upwards as it stands when poured, z along the pull, parted at z = 0.
+In the coordinates of the mold: x across, y upwards as it stands when poured, z along the pull, parted at z = 0.
 """
 
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ class Sprue:
     x: float  # x of its axis [mm]
     mouth: float  # height at which it meets the body [mm]
     radius: float  # radius of its neck [mm]
-    funnel: float  # radius at the top of the mould [mm]
+    funnel: float  # radius at the top of the mold [mm]
     solid: Manifold  # all of it, reaching into the body
 
 
@@ -45,7 +45,7 @@ class Vent:
 def make_sprue(body: Manifold, *, top: float, room: tuple[float, float], deep: float) -> Sprue | None:
     """The widest sprue over the highest place of the parting plane that is wide enough; None if there is none.
 
-    In the coordinates of the mould [mm]: its funnel ends at the `top` and reaches over the x in `room`; `deep` is the
+    In the coordinates of the mold [mm]: its funnel ends at the `top` and reaches over the x in `room`; `deep` is the
     way from the parting plane to the nearer back.
     """
     across, tops = roof(body)

@@ -1,4 +1,4 @@
-"""`Pocket`: room in the foam for a winch, left by a core of the mould; and dents in the foam where cables run."""
+"""`Pocket`: room in the foam for a winch, left by a core of the mold; and dents in the foam where cables run."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -121,7 +121,7 @@ def _spot(at: tuple[float, ...]) -> Float[np.ndarray, "3"]:
 
 @dataclass(frozen=True, kw_only=True)
 class LyingWinch:
-    """One way to lay a winch, with its sides along those of the mould."""
+    """One way to lay a winch, with its sides along those of the mold."""
 
     sides: Sides  # sides of the winch along x, y, z of the mold [mm]
     middle: Sides  # middle of its box [mm]
@@ -255,7 +255,7 @@ def clashes(pockets: tuple[Pocket, ...]) -> list[str]:
 
 
 def cable_dents(robot: Robot, surface: FineSurface, stance: MoldOrientation, *, deepest: float) -> Manifold:
-    """Cones on the wall of the mould at the spot nearest to each cable point that is no deeper than `deepest` [mm]."""
+    """Cones on the wall of the mold at the spot nearest to each cable point that is no deeper than `deepest` [mm]."""
     points = [_spot(point) for cable in robot.cables for point in cable.points]
     if not points:
         return Manifold()

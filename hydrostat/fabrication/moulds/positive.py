@@ -21,7 +21,7 @@ SILICONE_WALL = 12.0  # silicone round the body [mm]: it keeps its shape and is 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Positive:
-    """The body to be printed, parted like the mould, in its coordinates."""
+    """The body to be printed, parted like the mold, in its coordinates."""
 
     upper: Manifold  # above the parting plane
     lower: Manifold  # below it
@@ -32,7 +32,7 @@ class Positive:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Frames:
-    """Frames that hold the silicone, in the coordinates of the mould."""
+    """Frames that hold the silicone, in the coordinates of the mold."""
 
     lower: Manifold  # round the lower half
     upper: Manifold  # round the upper half

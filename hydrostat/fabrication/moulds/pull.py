@@ -1,4 +1,4 @@
-"""`find_pull`: the direction along which a mould of two halves comes off with the least undercut."""
+"""`find_pull`: the direction along which a mold of two halves comes off with the least undercut."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -11,7 +11,7 @@ from hydrostat.arrays import Bool, Float, Vector
 from hydrostat.fabrication.moulds.release import FineSurface, Release, axes_along, fine_surface, release
 
 _DEPTH = 0.05
-"""Share of undercut that a mould may have more for being flat instead of as deep as the body is long: deep moulds are
+"""Share of undercut that a mold may have more for being flat instead of as deep as the body is long: deep molds are
 hard to print and to fill."""
 
 
@@ -63,7 +63,7 @@ def best_height(surface: FineSurface, freed: Release) -> tuple[float, float]:
 def find_pull(solid: Manifold, *, count: int = 150) -> Pull:
     """The best direction and height for a flat parting of a body [mm]: of `count` on half a sphere, and then nearby.
 
-    The results of the last bodies are kept: other options of a mould need no new search.
+    The results of the last bodies are kept: other options of a mold need no new search.
     """
     surface = fine_surface(solid)
     return _find_pull(surface.vertices.tobytes(), surface.triangles.tobytes(), count)
@@ -99,7 +99,7 @@ def _find_pull(vertices: bytes, triangles: bytes, count: int) -> Pull:
 
 
 def _rate_directions(surface: FineSurface, directions: Float[np.ndarray, "tried 3"]) -> tuple[Vector, Vector]:
-    """Share of undercut of each direction, and what it costs with the depth of the mould."""
+    """Share of undercut of each direction, and what it costs with the depth of the mold."""
     shares = np.array([best_height(surface, release(surface, direction))[1] for direction in directions])
     depths = np.ptp(surface.vertices @ directions.T, axis=0)
     return shares, shares + _DEPTH * depths / surface.size

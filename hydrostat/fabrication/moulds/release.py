@@ -1,4 +1,4 @@
-"""`Release`: which parts of a surface come out of a mould that is drawn off in a direction.
+"""`Release`: which parts of a surface come out of a mold that is drawn off in a direction.
 
 A spot comes out upwards if it does not face down and nothing of the body is straight above it; downwards likewise.
 This is asked of a point just outside the middle of each triangle.
@@ -64,7 +64,7 @@ class Release:
 
 
 def release(surface: FineSurface, direction: Float[np.ndarray, "3"]) -> Release:
-    """Find what comes out when the mould of a body is drawn off along a unit vector."""
+    """Find what comes out when the mold of a body is drawn off along a unit vector."""
     turned = axes_along(direction).T
     facing = surface.normals @ direction
     # distance of a test point from its triangle, in sizes of the body: shallower overhangs do not count

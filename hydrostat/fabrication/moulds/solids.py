@@ -1,4 +1,4 @@
-"""Solids that moulds are made of: rods, sums of several; in millimeters."""
+"""Solids that molds are made of: rods, sums of several; in millimeters."""
 
 from collections.abc import Iterable
 

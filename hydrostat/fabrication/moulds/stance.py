@@ -13,13 +13,13 @@ from hydrostat.fabrication.solids.printed import TriangleMesh, root_of
 
 SMALLEST_TRAP = 1.0  # a bubble no higher than that is left to the foam, which pushes it into its cells [mm]
 _HELD_UPWARDS = 3.0  # a held end at the top is worth so many vents: nobody sees there where the sprue was cut off
-_TALL = 0.5  # vents that a mould may have more for being once less as tall as it is wide
+_TALL = 0.5  # vents that a mold may have more for being once less as tall as it is wide
 _TOP = 0.5  # maximum depth below a high point of points that belong to it [mm]
 
 
 @dataclass(frozen=True, eq=False)
 class MoldOrientation:
-    """Axes of a mould; its parting plane is z = 0."""
+    """Axes of a mold; its parting plane is z = 0."""
 
     # unit vectors across, upwards when poured, and along the pull, as rows, in the body's coordinates
     axes: Float[np.ndarray, "3 3"]
@@ -27,24 +27,24 @@ class MoldOrientation:
     held_upwards: bool = False  # True if the pinned end is at the top: the foam is poured in there
 
     def into(self, points: Float[np.ndarray, "points 3"]) -> Float[np.ndarray, "points 3"]:
-        """Points of the body [mm] in the mould."""
+        """Points of the body [mm] in the mold."""
         return points @ self.axes.T - [0.0, 0.0, self.height]
 
     def enter(self, solid: Manifold) -> Manifold:
-        """A solid of the body's coordinates in those of the mould."""
+        """A solid of the body's coordinates in those of the mold."""
         return solid.transform(np.column_stack([self.axes, [0.0, 0.0, -self.height]]))
 
     def leave(self, solid: Manifold) -> Manifold:
-        """A solid of the mould's coordinates in those of the body."""
+        """A solid of the mold's coordinates in those of the body."""
         return solid.transform(np.column_stack([self.axes.T, self.height * self.axes[2]]))
 
 
 def find_stance(pull: Pull, held: Float[np.ndarray, "held 3"]) -> MoldOrientation:
-    """Find the way to stand the closed mould on an edge, parting plane upright, so that little air is caught.
+    """Find the way to stand the closed mold on an edge, parting plane upright, so that little air is caught.
 
     Sides of the box are along axes of the robot or those of the smallest box. That edge is chosen that needs the fewest
     vents, has what is held at the top (nodes at pins, in the body's coordinates [mm]), is not too narrow to stand on
-    and does not make the mould much larger.
+    and does not make the mold much larger.
     """
     first, second, along = axes_along(pull.direction)
     flat = pull.surface.vertices @ np.column_stack([first, second])
@@ -99,7 +99,7 @@ def high_points(
     """Vertices of a cavity's surface that are its local high points, the highest first.
 
     Only those that rise from the highest pass to a higher one by `rise` [mm] or more, and only ceilings: the top of a
-    bump of the mould into the cavity holds no air.
+    bump of the mold into the cavity holds no air.
     """
     heights = vertices @ up
     neighbors = _neighbors(len(vertices), triangles)

@@ -285,14 +285,14 @@ def patch_problems(
         if give > MOST_GIVE:
             problems.append(
                 f"patch {name} would have to stretch or shrink by {give:.1%} to fit the body, more than "
-                f"felt allows ({MOST_GIVE:.0%}). Cast this body in a mould or simplify its shape"
+                f"felt allows ({MOST_GIVE:.0%}). Cast this body in a mold or simplify its shape"
             )
         if not patch.outline.is_valid:
-            problems.append(f"patch {name} overlaps itself when flat. Cast this body in a mould")
+            problems.append(f"patch {name} overlaps itself when flat. Cast this body in a mold")
         elif is_narrow(patch.outline):
             problems.append(
                 f"patch {name} is narrower than {NARROWEST:g} mm somewhere and cannot be sewn and turned. Cast this "
-                "body in a mould or make it larger"
+                "body in a mold or make it larger"
             )
         problems += [f"patch {name}: {problem}" for problem in skin.problems]
     worst = max(seams, key=lambda seam: seam.mismatch)
@@ -301,7 +301,7 @@ def patch_problems(
         lengths = " and ".join(f"{length:.0f} mm" for length in worst.lengths)
         problems.append(
             f"the seam between patches {one} and {other} is {lengths} long on them, {worst.mismatch:.0%} apart. You "
-            f"cannot ease in more than {MOST_EASE:.0%}. Cast this body in a mould or simplify its shape"
+            f"cannot ease in more than {MOST_EASE:.0%}. Cast this body in a mold or simplify its shape"
         )
     return tuple(problems)
 

@@ -178,7 +178,7 @@ def find_surface_runs(robot: Robot, patches: tuple[Patch, ...], holes: tuple[Ski
         if depth > DEEPEST:
             problems[one.cable] = (
                 f"cable {one.cable} would run outside from point {one.point} to point {other.point}, but was simulated "
-                f"{depth:.0f} mm under the skin there. Cast this body in a mould or lay the cable "
+                f"{depth:.0f} mm under the skin there. Cast this body in a mold or lay the cable "
                 "along the skin"
             )
     return tuple(problems.values())

@@ -107,9 +107,7 @@ def skin_of_surface(surface: Surface) -> SkinMesh:
     if mesh.pieces(mesh.patch).max() > 0:
         raise InputError("the body is hollow or in several pieces. A sewn skin needs one closed surface")
     if len(mesh.vertices) - len(edges) + len(mesh.triangles) != 2:
-        raise InputError(
-            "a hole goes through the body, so its skin cannot be cut into flat patches. Cast it in a mould"
-        )
+        raise InputError("a hole goes through the body, so its skin cannot be cut into flat patches. Cast it in a mold")
     share = 0.03  # longest edge, as a share of the diagonal of the body: fine enough for smooth seams
     return _fine(_coarse(mesh), share * float(np.linalg.norm(np.ptp(mesh.vertices, axis=0))))
 

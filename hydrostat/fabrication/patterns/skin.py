@@ -52,7 +52,7 @@ def skin_of(seam: Polygon, options: PatternOptions) -> Skin:
 def silhouette(body: Body) -> Polygon:
     """The drawn outline [m], or the boundary of a mesh."""
     if body.mesh.dim != 2:
-        raise InputError("a body in space has no flat pattern: draw one for a flat body, or cast this one in a mould")
+        raise InputError("a body in space has no flat pattern: draw one for a flat body, or cast this one in a mold")
     if body.outline is not None:
         return body.outline.polygon
     edges = [shapely.LineString(ends) for ends in body.mesh.nodes[body.mesh.boundary]]

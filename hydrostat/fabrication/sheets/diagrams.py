@@ -49,8 +49,8 @@ def stitch_scheme(sewn: CableStitches, mark: str, *, width: float, height: float
     return canvas
 
 
-def skin_scheme(*, sewn: bool, drawn: bool, tubes: bool, width: float) -> Canvas:
-    """A cut through foam and skin: cables sewn to the skin, cables drawn through the foam, with or without tubes."""
+def skin_scheme(*, sewn: bool, drawn: bool, tubes: bool, width: float, body: str = "foam") -> Canvas:
+    """A cut through body and skin: cables sewn to the skin, cables drawn through the body, with or without tubes."""
     top = 9.5 if sewn else 7.0
     canvas = Canvas(width, top + (20.0 if drawn else 9.0))
     canvas.box((0, top, width - 12, canvas.height - 1), grey=0.9)
@@ -58,9 +58,9 @@ def skin_scheme(*, sewn: bool, drawn: bool, tubes: bool, width: float) -> Canvas
     if sewn:
         _put_sewn(canvas, top, tubes=tubes, width=width - 12.0)
     if drawn:
-        _put_drawn(canvas, top, tubes=tubes, width=width - 12.0)
+        _put_drawn(canvas, top, tubes=tubes, width=width - 12.0, body=body)
     canvas.text((width - 11.0, top + 0.8), "skin", size=8, anchor="start")
-    canvas.text((width - 11.0, canvas.height - 3.0), "foam", size=8, anchor="start")
+    canvas.text((width - 11.0, canvas.height - 3.0), body, size=8, anchor="start")
     return canvas
 
 
@@ -79,8 +79,8 @@ def _put_sewn(canvas: Canvas, top: float, *, tubes: bool, width: float) -> None:
     canvas.text((stopper, line - 4.4), "on the skin: a stitch at every number", size=8, anchor="end")
 
 
-def _put_drawn(canvas: Canvas, top: float, *, tubes: bool, width: float) -> None:
-    """A line within the foam, first in its tube, then bare from pin to pin, out through the skin to its stopper."""
+def _put_drawn(canvas: Canvas, top: float, *, tubes: bool, width: float, body: str) -> None:
+    """A line within the body, first in its tube, then bare from pin to pin, out through the skin to its stopper."""
     deep, out = top + 11.0, width - 10.0
     tube_end = 0.33 * width if tubes else 0.0
     bends: list[Spot] = [(0.46 * width, deep - 1.5), (0.62 * width, deep), (0.77 * width, deep - 2.5)]
@@ -96,7 +96,7 @@ def _put_drawn(canvas: Canvas, top: float, *, tubes: bool, width: float) -> None
     canvas.text((bends[0][0] - 1.6, top + 4.4), "pin", size=8, anchor="end")
     if tubes:
         canvas.text((tube_end / 2, deep + 3.4), "tube", size=8)
-    canvas.text(((tube_end + out) / 2, deep + 4.2), "through the foam, from point to point", size=8)
+    canvas.text(((tube_end + out) / 2, deep + 4.2), f"through the {body}, from point to point", size=8)
     canvas.text((out, top - 4.6), "stopper", size=8)
 
 

@@ -73,7 +73,7 @@ class CheckFacts(TypedDict):
 
 
 class MoldFacts(TypedDict):
-    """A mould and its fill."""
+    """A mold and its fill."""
 
     undercut: str  # sentences on the surface that does not slide out
     amounts: list[list[str]]  # names and amounts of materials
@@ -128,7 +128,7 @@ class SheetFacts(TypedDict):
     checks: list[CheckFacts]
     mould: MoldFacts | None
     power: PowerFacts | None
-    other_way: list[str]  # title and text of another way to a mould; empty without a mould
+    other_way: list[str]  # title and text of another way to a mold; empty without a mold
     cures: list[list[str]]  # materials and times of cure
 
 

@@ -1,4 +1,4 @@
-"""`mold_steps`, `skin_steps`: from the files of a mould to a robot of foam.
+"""`mold_steps`, `skin_steps`: from the files of a mold to a robot of foam.
 
 Times of cure are those of R52 and N5, all others are estimates.
 """
@@ -82,7 +82,7 @@ def body_mass(plan: KitPlan, mould: Mold) -> float:
 
 
 def mold_steps(plan: KitPlan, lists: Lists, mould: Mold) -> tuple[AssemblyStep, ...]:
-    """Steps from the files of the mould to a body of foam."""
+    """Steps from the files of the mold to a body of foam."""
     printed = mould.kind is MoldKind.PRINTED
     mix, foams = mould.casting.body, foam_expansion(mould)
     return (

@@ -45,7 +45,7 @@ def sheet_facts(plan: KitPlan, lists: Lists, findings: KitFindings, *, letters: 
         "pairs": plan.pairs,
         "inserts": bool(plan.inserts),
         "flat": plan.robot.body.mesh.dim == 2,
-        "kind": _KINDS[plan.method],
+        "kind": "Silicone robot" if plan.is_silicone else _KINDS[plan.method],
         "facts": _about(plan, lists, steps),
         "summary": [{"title": title, "lines": list(lines)} for title, lines in summary_rows(plan, lists)],
         "mind": note_lines(findings.problems, told, plan.robot),
@@ -146,7 +146,7 @@ def _step(step: AssemblyStep) -> StepFacts:
 
 
 def _mould(mould: Mold | None) -> MoldFacts | None:
-    """Facts of a mould that are not in its steps."""
+    """Facts of a mold that are not in its steps."""
     if mould is None:
         return None
     body, casting = mould.casting.body, mould.casting

@@ -1,4 +1,4 @@
-"""Pictures of solids on a sheet: an assembly drawn apart, a body with what holds in its mould, a robot in small."""
+"""Pictures of solids on a sheet: an assembly drawn apart, a body with what holds in its mold, a robot in small."""
 
 from collections.abc import Mapping, Sequence
 

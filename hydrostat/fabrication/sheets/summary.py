@@ -1,9 +1,13 @@
 """`all_steps`, `summary_rows`: the steps of a kit, and what building it asks of a person, on one page."""
 
+import re
+from dataclasses import replace
+
+from hydrostat.fabrication.cable_work import CableWork
 from hydrostat.fabrication.kit_options import Method
 from hydrostat.fabrication.kit_plan import KitPlan
-from hydrostat.fabrication.lists.bill import BillGroup
 from hydrostat.fabrication.lists.lists import Lists
+from hydrostat.fabrication.motor_choice import drive_price
 from hydrostat.fabrication.sheets.foam_steps import mold_steps, skin_steps
 from hydrostat.fabrication.sheets.legible import sentence
 from hydrostat.fabrication.sheets.print_steps import print_steps
@@ -12,7 +16,22 @@ from hydrostat.units import plural
 
 
 def all_steps(plan: KitPlan, lists: Lists) -> list[tuple[AssemblyStep, ...]]:
-    """The steps, page by page."""
+    """The steps, page by page; those of a silicone body speak of silicone."""
+    pages = _pages(plan, lists)
+    if not plan.is_silicone:
+        return pages
+    named = ((re.compile(r"\bfoam\b"), "silicone"), (re.compile(r"\bFoam\b"), "Silicone"))
+    for pattern, word in named:
+        pages = [
+            tuple(
+                replace(step, title=pattern.sub(word, step.title), text=pattern.sub(word, step.text)) for step in page
+            )
+            for page in pages
+        ]
+    return pages
+
+
+def _pages(plan: KitPlan, lists: Lists) -> list[tuple[AssemblyStep, ...]]:
     if plan.method is Method.PLUSH:
         return [plush_steps(plan)]
     if plan.method is Method.PRINT:
@@ -30,9 +49,9 @@ def summary_rows(plan: KitPlan, lists: Lists) -> tuple[tuple[str, tuple[str, ...
     first = longest.text.partition(". ")[0].removesuffix(".")
     rows = (
         ("Difficulty", [find_difficulty(plan, lists, busy)]),
-        ("Work", [f"about {minutes_text(busy)} in {plural(len(steps), 'step')}. No step was timed"]),
+        ("Work", [f"about {minutes_text(busy)} in {plural(len(steps), 'step')}{_cable_work(plan)}. No step was timed"]),
         ("Waiting", [f"{step.title}: {step.wait}" for step in steps if step.wait]),
-        ("Money", _money(lists)),
+        ("Money", _money(plan, lists)),
         ("To print", [f"{plan.pieces}, {mass:.0f} g"] if plan.printed else []),
         ("To sew", _sewing(plan)),
         ("Hardest step", [f"{longest.title}: {minutes_text(longest.minutes)}, the longest. {first}"]),
@@ -49,7 +68,7 @@ def find_difficulty(plan: KitPlan, lists: Lists, minutes: float) -> str:
     reasons = {
         "several days of work": 2 * (minutes > days),
         "more work than an afternoon": afternoon < minutes <= days,
-        "foam or silicone to weigh and pour": plan.method is Method.FOAM,
+        f"{'silicone' if plan.is_silicone else 'foam'} to weigh and pour": plan.method is Method.FOAM,
         "motors to wire pin by pin": lists.power is not None and not lists.power.servos,
     }
     level = ("easy", "medium", "medium", "hard", "hard")[sum(reasons.values())]
@@ -57,12 +76,22 @@ def find_difficulty(plan: KitPlan, lists: Lists, minutes: float) -> str:
     return f"{level}: {', '.join(told) or 'one afternoon'}"
 
 
-def _money(lists: Lists) -> list[str]:
+def _cable_work(plan: KitPlan) -> str:
+    """Share of the work that cables take, the minutes that `design` and `check` print."""
+    if not plan.drawn.cables:
+        return ""
+    return f", {CableWork.of_robot(plan.drawn, plan.options).minutes:.0f} min of them on cables"
+
+
+def _money(plan: KitPlan, lists: Lists) -> list[str]:
+    """Price of all, and of motors, power and cables, the one that `design` and `check` print."""
     used, packs = lists.cost
-    driven = {BillGroup.WINCHES, BillGroup.CONTROL}
-    drive = sum(row.cost_packs for row in lists.bill.rows if row.is_total and row.group in driven)
-    share = f", {drive:.0f} USD of them for winches, boards and power" if drive else ""
-    return [f"about {used:.0f} USD used up, {packs:.0f} USD in whole packs{share}"]
+    share = ""
+    if plan.drawn.cables:
+        torques = plan.demand.torques.tolist()
+        price = drive_price(plan.drawn, torques, plan.rigid.motor, options=plan.options)
+        share = f": {price:.0f} USD of them for {plural(plan.num_motors, 'motor')}, power and cables"
+    return [f"about {packs:.0f} USD in whole packs, {used:.0f} USD used up{share}"]
 
 
 def _sewing(plan: KitPlan) -> list[str]:

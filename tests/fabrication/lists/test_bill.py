@@ -158,7 +158,7 @@ def test_a_printed_mould_needs_no_silicone() -> None:
     robot = box((-0.05, 0.08, 0.08), (0.1, 0.08, 0.08))
     found = needs(given(robot, foam=FoamNeeds(volume=4e5, part_a=32.0, part_b=32.0), pieces=(CUBE,)))
     assert "silicone" not in found
-    assert found["PLA for the mould"].mass == pytest.approx(CUBES)
+    assert found["PLA for the mold"].mass == pytest.approx(CUBES)
 
 
 def test_every_price_says_where_it_is_from() -> None:

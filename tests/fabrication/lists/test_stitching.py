@@ -79,7 +79,7 @@ def test_a_flat_body_of_foam_has_its_points_in_the_plane() -> None:
     assert tuple(row.x for row in table.rows) == pytest.approx((-20.0, 10.0, 40.0))
     assert tuple(row.y for row in table.rows) == pytest.approx((-10.0, 30.0, 30.0))
     assert tuple(row.along for row in table.rows) == pytest.approx((0.0, 50.0, 80.0))
-    assert "before the foam is poured" in " ".join(table.notes)
+    assert "before you cast the body" in " ".join(table.notes)
     foam = FoamNeeds(volume=3e5, part_a=20.0, part_b=20.0)
     lists = make_lists(given(robot, method=Method.FOAM, foam=foam))
     assert lists.stitching is not None

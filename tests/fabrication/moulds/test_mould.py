@@ -1,4 +1,4 @@
-"""Whole moulds: oracles are closed forms, boolean intersection, trimesh, and a search for air slice by slice."""
+"""Whole molds: oracles are closed forms, boolean intersection, trimesh, and a search for air slice by slice."""
 
 from dataclasses import replace
 from functools import cache
@@ -70,7 +70,7 @@ def failed(robot: Robot, mould: Mold) -> list[str]:
 
 @pytest.mark.slow
 def test_checks_of_a_mould_hold_and_fail_on_geometry(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Keys that fill the cavity, a sprue beside the mould, one that ends in the wall, a half with a hole too many."""
+    """Keys that fill the cavity, a sprue beside the mold, one that ends in the wall, a half with a hole too many."""
     robot = foam_robot(slab_body())
     for kind in MoldKind:
         assert failed(robot, make_mold(robot, MoldOptions(kind=kind, bed=BIG))) == []

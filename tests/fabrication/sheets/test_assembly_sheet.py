@@ -2,6 +2,7 @@
 
 import io
 import pickle
+import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import cache
@@ -169,7 +170,7 @@ def test_what_a_foam_sheet_says(foam_sheet):
 
 @pytest.mark.slow
 def test_a_mould_of_silicone_is_poured_round_the_printed_positive(foam_sheet):
-    """Oracle: the parts of such a mould: a positive in halves, frames and domes; clay is for the thesis's way."""
+    """Oracle: the parts of such a mold: a positive in halves, frames and domes; clay is for the thesis's way."""
     text = words(assembly_sheet(*foam(silicone=True)))
     for part in ("mold max 30, second pour", "Take the domes out", "dowels of 3 mm, no glue", "24 h, or 6 h at 60 °C"):
         assert part in text
@@ -187,6 +188,7 @@ def test_a_body_of_silicone_is_not_told_of_foam(foam_sheet):
     casting, _ = make_casting(MATERIALS["ecoflex 00-30"], 480e3, pours=())
     text = words(assembly_sheet(*foam(mould=replace(given.plan.work.mould, casting=casting))))
     assert "isocyanate" not in text
+    assert not re.search(r"\bfoam\b", text, re.IGNORECASE)
     assert "let the bubbles rise" in text
     assert "4 h at 25 °C" in text
     assert "egg mixer as long" in words(foam_sheet)

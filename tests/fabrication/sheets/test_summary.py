@@ -1,23 +1,34 @@
 """What building a robot asks: the first page of a sheet, and its words as a text."""
 
+from dataclasses import replace
 from io import BytesIO
+from types import SimpleNamespace
+from typing import cast
 
 import pytest
 from pypdf import PdfReader
 from sheet_inputs import foam, lists, plush
 
+from hydrostat.design import BuildCost
 from hydrostat.fabrication.lists.motors import power_plan
 from hydrostat.fabrication.parts.motor import ALL_MOTORS
 from hydrostat.fabrication.sheets.assembly_sheet import assembly_sheet
 from hydrostat.fabrication.sheets.sheet_facts import sheet_facts
 from hydrostat.fabrication.sheets.summary import find_difficulty, summary_rows
 from hydrostat.fabrication.sheets.text_sheet import sheet_text
+from hydrostat.ik import IKResult
 
 
+@pytest.mark.usefixtures("unchecked")
 def test_the_first_page_says_what_building_asks():
-    """Oracle: sums by hand: 8 items of 3 USD, 2 printed pieces a winch and 2 a cable, 2 cables."""
-    rows = dict(summary_rows(plush().plan, lists(2)))
-    assert rows["Money"] == ("About 24 USD used up, 24 USD in whole packs.",)
+    """Oracle: sums by hand: 8 items of 3 USD, 2 printed pieces a winch and 2 a cable; cost of a design."""
+    plan = plush().plan
+    rows = dict(summary_rows(plan, lists(2)))
+    loads = SimpleNamespace(pose=SimpleNamespace(tensions=plan.demand.tensions))
+    cost = BuildCost.of_robot(replace(plan.drawn, motor=plan.rigid.motor.key), [cast(IKResult, loads)])
+    share = f"{cost.price:.0f} USD of them for 1 motor, power and cables."
+    assert rows["Money"] == (f"About 24 USD in whole packs, 24 USD used up: {share}",)
+    assert f", {cost.minutes:.0f} min of them on cables. No step was timed." in rows["Work"][0]
     assert rows["To print"][0].startswith("6 pieces, ")
     assert rows["To sew"] == ("2 cables.",)
     assert rows["Difficulty"] == ("Easy: one afternoon.",)

@@ -33,7 +33,7 @@ def export_panel(page: WindowPage) -> None:
 
 def _kit_card(page: WindowPage) -> None:
     exporter = page.session.exporter
-    with _card("Kit", "All files to build the robot: patterns or moulds, parts to print, lists and an assembly sheet."):
+    with _card("Kit", "All files to build the robot: patterns or molds, parts to print, lists and an assembly sheet."):
         bare = ui.column().classes("w-full gap-2")
         with bare:
             ui.label("No cables yet. A kit needs winches and cables.").classes("studio-hint")
