@@ -211,7 +211,7 @@ class KitOptions:
         force: True to write a kit that cannot be built well, with the reasons on the sheet.
         pattern: options for the pattern of a plush robot; its `force` is that of the kit.
         parts: options for the printed parts.
-        mold: options for the mold of a foam robot.
+        mould: options for the mold of a foam robot.
 
     Raises:
         InputError: a text that is no method, paper or board, a tension, torque or budget that is not above 0.

@@ -426,14 +426,14 @@ def test_few_elements_across_a_limb_warn_where_they_move_the_markers(
         assert said.endswith(f": quadratic elements move the markers by {1e3 * coarse.element_error:.2g} mm rms")
 
 
-STARTS = 'method "trees" needs a number of winches and cannot improve a network. Use method "routes".'
+STARTS = '--method "trees" needs a number of winches and cannot improve a network. Use method "routes".'
 BAD = {
-    ("--winches", "many"): "winches must be a whole number from 1 to 20 or \"auto\", not 'many'",
-    ("--winches", "0"): 'winches must be a whole number from 1 to 20 or "auto", not 0',
-    ("--winches", "²"): "winches must be a whole number from 1 to 20 or \"auto\", not '²'",
+    ("--winches", "many"): "--winches must be a whole number from 1 to 20 or \"auto\", not 'many'",
+    ("--winches", "0"): '--winches must be a whole number from 1 to 20 or "auto", not 0',
+    ("--winches", "²"): "--winches must be a whole number from 1 to 20 or \"auto\", not '²'",
     ("--method", "magic"): 'method must be one of routes, trees, chang2018, not "magic"',
     ("--time", "0 s"): "--time 0 s: must be above 0, e.g. 2 s",
-    ("--method", "trees", "--time", "5 s"): 'method "trees" has no time limit. Use method "routes".',
+    ("--method", "trees", "--time", "5 s"): '--method "trees" has no time limit. Use method "routes".',
     ("--method", "trees", "--fibres", "hairs"): '--fibres must be one of edges, elements, not "hairs"',
     ("--fibres", "edges"): "--fibres: needs --method trees or chang2018. Add it.",
     ("--tree-option", "phi=0.3"): "--tree-option: needs --method trees or chang2018. Add it.",
@@ -447,10 +447,10 @@ BAD = {
     ): "--tree-option psi=3: unknown setting. Write threshold, distance, steps or phi with a value, e.g. phi=0.5.",
     ("--tolerance", "1 mm"): "--tolerance: needs --winches auto. Add it.",
     ("--winches", "auto", "--tolerance", "0 mm"): "--tolerance 0 mm: must be above 0, e.g. 12 mm",
-    ("--cables", "61"): "cables must be a whole number from 1 to 60, not 61",
+    ("--cables", "61"): "--cables must be a whole number from 1 to 60, not 61",
     ("--method", "trees", "--winches", "auto"): STARTS,
     ("--method", "trees", "--warm-start"): STARTS,
-    ("--method", "trees", "--stepped-spools"): 'method "trees" does not keep spool_ratio. Use method "routes", '
+    ("--method", "trees", "--stepped-spools"): '--method "trees" does not keep spool_ratio. Use method "routes", '
     "which does.",
     ("--clearance", "5"): '--clearance 5: "5" has no unit; write for example "12 mm"',
     ("--tension", "0 N"): "--tension 0 N: must be above 0, e.g. 20 N",
@@ -461,7 +461,7 @@ BAD = {
     ("--lock-winch", "bob"): '--lock-winch bob: unknown winch "bob". Available: up, down.',
     ("--lock-cable", "3"): '--lock-cable 3: unknown cable "3". Available: up 1, down 1.',
     ("--constraints", "none.toml"): "none.toml: there is no such file",
-    ("--pose", "dance"): 'unknown pose "dance". Available: up.',
+    ("--pose", "dance"): '--pose dance: unknown pose "dance". Available: up.',
 }
 
 

@@ -228,7 +228,7 @@ def test_pieces_fit_the_bed_and_are_watertight_for_trimesh(trunk: Mold) -> None:
 
 @pytest.mark.slow
 def test_trunk_is_poured_into_its_held_end(trunk: Mold) -> None:
-    assert "held at the top" in trunk.stands
+    assert "held end at the top" in trunk.stands
     assert trunk.stance.axes[1] @ [0, 0, 1] > 0.9  # it is held at z = 0 and hangs down
     assert trunk.pull.share < 0.01
     assert trunk.problems == ()
