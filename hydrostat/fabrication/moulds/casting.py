@@ -113,8 +113,8 @@ def _mix(name: str, volume: float, density: float, share: float, ratio: str) -> 
 
 def _ratio_in_words(material: Material) -> str:
     if _is_foam(material):
-        return "equal parts are assumed, no source was found: take the ratio that is printed on your tins"
-    return "equal parts A and B: take the ratio that is printed on your tins"
+        return "equal parts are assumed, because we found no source: use the ratio printed on your cans"
+    return "equal parts A and B: use the ratio printed on your cans"
 
 
 def _times(material: Material, *, silicone: bool) -> tuple[tuple[str, str], ...]:

@@ -101,7 +101,7 @@ def mold_steps(plan: KitPlan, lists: Lists, mould: Mold) -> tuple[AssemblyStep, 
             5,
             f"Weigh {mix.part_a:.0f} g of part A and {mix.part_b:.0f} g of part B of {mix.material}, each in its "
             "own cup, if "
-            "your tins ask for this ratio. " + (_STIR_FOAM if foams else _STIR_SILICONE),
+            "your cans ask for this ratio. " + (_STIR_FOAM if foams else _STIR_SILICONE),
         ),
         AssemblyStep("Pour", 5, _POUR_FOAM if foams else _POUR_SILICONE, wait="its cure"),
         AssemblyStep("Open", 20, _OPEN + (_OPEN_FOAM if foams else "")),

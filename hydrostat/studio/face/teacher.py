@@ -172,7 +172,7 @@ class _TeacherPage:
     def _pack_dialog(self) -> Callable[[], object]:
         with _named_dialog("Take home") as dialog, ui.card().classes("q-pa-md gap-3 class-dialog"):
             show_heading("Take home", 1)
-            ui.label("One .zip with a folder for each pupil. class.txt in it lists what could not be made.").classes(
+            ui.label("One .zip with a folder for each pupil. Its class.txt lists what could not be made.").classes(
                 "studio-hint"
             )
             ui.checkbox("Robots", value=True).props("disable")
