@@ -88,6 +88,22 @@ class Stage(ABC):
         return False
 
 
+ARROWS = {
+    "arrowleft": (-1, 0), "arrowright": (1, 0), "arrowdown": (-1, -1), "arrowup": (1, -1), "pageup": (1, 1),
+    "pagedown": (-1, 1),
+}  # fmt: skip
+"""Sign and axis by which each key moves the selection; the last axis points up, the second away from the viewer."""
+
+
+def parse_arrow(key: str) -> tuple[float, int] | None:
+    """Step [m] and axis of an arrow key: 1 mm, with "shift " before its name 10 mm. None for other keys."""
+    arrow = key.removeprefix("shift ")
+    if arrow not in ARROWS:
+        return None
+    sign, axis = ARROWS[arrow]
+    return sign * (1e-3 if arrow == key else 1e-2), axis
+
+
 def format_error(error: float) -> str:
     """Text of an error [m]; nobody builds a robot that is better than a tenth of a millimeter."""
     if error < 1e-4:

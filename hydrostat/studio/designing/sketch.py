@@ -71,7 +71,7 @@ class BodySketch:
             parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="7" class="sketch-winch" fill="{colors[winch.name]}"/>')
         left, top, wide, high = self._frame(robot)
         box = f"{left:.0f} {top:.0f} {wide:.0f} {high:.0f}"
-        return f'<svg viewBox="{box}" class="sketch" role="img">{"".join(parts)}</svg>'
+        return f'<svg viewBox="{box}" class="sketch" aria-hidden="true">{"".join(parts)}</svg>'
 
     def _frame(self, robot: Robot) -> tuple[float, float, float, float]:
         """Left, top, width and height of the body with all winches, which may stand beside it."""

@@ -20,9 +20,9 @@ from hydrostat.studio.editing.hold import Hold, below_skin, inside, snap_to_grid
 from hydrostat.studio.editing.part import Mirror, find_part, keys_of, name_of, place_of, title_of
 from hydrostat.studio.editing.part_brush import PartBrush, add_body_part
 from hydrostat.studio.editing.place import add_marker, add_pin, add_winch, move, remove
-from hydrostat.studio.editing.tools import ARROWS, KEYS, NUDGE, PUSH, Findings, Ruler, Tool, look_over
+from hydrostat.studio.editing.tools import KEYS, Findings, Ruler, Tool, look_over
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.stage import Hit, Stage
+from hydrostat.studio.stage import Hit, Stage, parse_arrow
 from hydrostat.studio.view.robot_items import diagnostic_items, robot_items
 from hydrostat.studio.view.scene_items import RobotShape, SceneItem, rest_shape
 from hydrostat.units import plural
@@ -290,12 +290,10 @@ class Editor(Stage):
     def key(self, name: str) -> bool:
         """Heed delete, escape, enter, arrows, the words of copying, and a letter for each tool."""
         words = {"all": self.choose_all, "copy": self.copy, "paste": self.paste, "duplicate": self.duplicate}
-        arrow = name.removeprefix("shift ")
         if name in words:
             words[name]()
-        elif arrow in ARROWS:
-            sign, last = ARROWS[arrow]
-            self.nudge(sign * (NUDGE if arrow == name else PUSH), -1 if last else 0)
+        elif (arrow := parse_arrow(name)) is not None:
+            self.nudge(*arrow)
         elif name == "delete" and self.draft is not None:
             self.draft = self.draft.shorter()
             self._ring()

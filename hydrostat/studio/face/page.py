@@ -120,11 +120,18 @@ class WindowPage:
 
 
 def pressable(kind: str, action: Callable[[], Any], *, role: str = "button") -> ui.element:
-    """A field of a kind (CSS classes) that a click or Enter presses."""
+    """A field of a kind (CSS classes) that a click, Enter or Space presses."""
     field = ui.element("div").classes(kind).props(f'role="{role}" tabindex="0"')
-    for event in ("click", "keydown.enter"):
+    for event in ("click", "keydown.enter", "keydown.space.prevent.stop"):
         field.on(event, action)
     return field
+
+
+def name_upload(upload: ui.upload, words: str) -> ui.upload:
+    """Name the hidden input of an upload and the button that opens it, for screen readers."""
+    parts = "node.el.querySelectorAll('input[type=file], .q-uploader__header [role=button]')"
+    upload.on("vnodeMounted", js_handler=f"(node) => {parts}.forEach((part) => (part.ariaLabel = '{words}'))")
+    return upload
 
 
 def show_heading(words: str, level: int = 2) -> ui.label:
@@ -151,7 +158,7 @@ class Toasts:
 
     def __init__(self) -> None:
         """Fills the element that it is made in; it may be moved."""
-        self.room = ui.element("div").classes("studio-toasts")
+        self.room = ui.element("div").classes("studio-toasts").props('aria-live="polite"')
         self._shown: list[tuple[ui.element, Tone, str]] = []
 
     def show(self, text: str, tone: Tone = Tone.PLAIN) -> None:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from nicegui import events, ui
 
+from hydrostat.studio.face.page import show_heading
 from hydrostat.studio.stage import StageName
 
 
@@ -60,6 +61,9 @@ KEYS = (  # and what they do
     (("Shift", "click"), "select several parts; Ctrl A: all"),
     (("Ctrl", "C"), "copy the selection; Ctrl V: paste, Ctrl D: duplicate"),
     (("\u2190", "\u2192", "\u2191", "\u2193"), "move the selection by 1 mm; with Shift by 10 mm"),
+    (("PgUp", "PgDn"), "move the selection away, nearer; on the timeline: previous, next keyframe"),
+    (("Tab",), "next control; Enter or Space presses it"),
+    (("+", "-"), "zoom the view; Ctrl with an arrow turns it"),
     (("Delete",), "delete the selection"),
     (("Esc",), "clear the selection; cancel"),
     (("Ctrl", "S"), "save; with Shift: save as"),
@@ -171,7 +175,7 @@ def help_dialog(tour: Tour) -> Callable[[], object]:
 
     with ui.dialog() as dialog, ui.card().classes("help"):
         with ui.element("div").classes("studio-row"):
-            ui.label("Help").classes("help-title flex-1")
+            show_heading("Help", 1).classes("help-title flex-1", remove="studio-title")
             ui.button("Show the tour", icon="explore", on_click=begin).props('flat no-caps data-testid="help-tour"')
             ui.button(icon="close", on_click=dialog.close).props('flat round dense aria-label="Close"')
         with ui.element("div").classes("help-columns"):
@@ -179,7 +183,7 @@ def help_dialog(tour: Tour) -> Callable[[], object]:
                 for words in STAGES.values():
                     ui.icon(words.icon).classes("tour-icon")
                     with ui.column().classes("gap-0"):
-                        ui.label(words.title).classes("help-head")
+                        show_heading(words.title).classes("help-head", remove="studio-section")
                         ui.label(words.line).classes("studio-hint")
             with ui.element("div").classes("help-keys"):
                 for keys, what in KEYS:

@@ -23,7 +23,7 @@ def view_bar(page: WindowPage, *, colors: bool = True) -> None:
     """Buttons in a corner of the view, that for colors, which all windows share, if wanted; a legend in another."""
     _legend(page)
     view = page.viewport
-    with ui.element("div").classes("studio-view-bar"):
+    with ui.element("div").classes("studio-view-bar").props('role="toolbar" aria-label="View"'):
         icon_button("fit_screen", "Fit", view.fit)
         space = ui.element("div").classes("column gap-1")
         with space:
@@ -70,10 +70,12 @@ def _space_menu(page: WindowPage) -> None:
     with ui.menu(), ui.column().classes("q-pa-md gap-2").style("min-width: 220px"):
         ui.switch("Perspective", value=True, on_change=lambda event: view.orthographic(not event.value))
         ui.label("Opacity").classes("studio-section")
-        ui.slider(min=0.1, max=1.0, step=0.05, value=1.0, on_change=lambda event: view.opacity(event.value or 1.0))
+        ui.slider(
+            min=0.1, max=1.0, step=0.05, value=1.0, on_change=lambda event: view.opacity(event.value or 1.0)
+        ).props('aria-label="Opacity"')
         ui.label("Section").classes("studio-section")
-        share = ui.slider(min=0.0, max=1.0, step=0.01, value=0.5)
-        axis = ui.toggle(list(AXES), value="off").props("dense no-caps")
+        share = ui.slider(min=0.0, max=1.0, step=0.01, value=0.5).props('aria-label="Place of the section"')
+        axis = ui.toggle(list(AXES), value="off").props('dense no-caps role="group" aria-label="Section"')
         for control in (share, axis):
             control.on_value_change(lambda: view.section(AXES[axis.value], share.value or 0.0))
 
@@ -89,4 +91,5 @@ def _color_menu(page: WindowPage) -> None:
 def _toggle_mesh(page: WindowPage, button: ui.button) -> None:
     shown = "flat" in button.props
     button.props(remove="flat" if shown else "outline", add="outline" if shown else "flat")
+    button.props(f'aria-pressed="{str(shown).lower()}"')
     page.viewport.mesh(shown)

@@ -47,6 +47,13 @@ class Viewport(ui.element, component="static/viewport.js"):
         self._props["palette"] = COLORS
         self._props["dark"] = dark
         self._props["brush"] = brush
+        self._props["words"] = ""
+
+    def describe(self, words: str) -> None:
+        """Set the content in words, for screen readers."""
+        if words != self._props["words"]:
+            self._props["words"] = words
+            self.update()
 
     def set_dark(self, dark: bool | None) -> None:
         """Dark or light; None: as the page is."""

@@ -22,6 +22,7 @@ from hydrostat.studio.face.rooms import Room
 from hydrostat.studio.face.share import Links, share_dialog
 from hydrostat.studio.face.tour import STAGES, Tour, help_dialog, offer_tour
 from hydrostat.studio.face.view_bar import view_bar
+from hydrostat.studio.face.view_words import describe_view
 from hydrostat.studio.face.viewport import Side, Viewport
 from hydrostat.studio.robot_link import LINK_MARK
 from hydrostat.studio.session import Session
@@ -36,30 +37,8 @@ def dress() -> ui.dark_mode:
               dark="#2a2732")  # fmt: skip
     for style in sorted(STATIC.glob("*.css")):
         ui.add_css(style.read_text(encoding="utf-8"))
-    ui.add_head_html(HABITS)
+    ui.add_head_html(f'<script type="module">{(STATIC / "habits.js").read_text(encoding="utf-8")}</script>')
     return ui.dark_mode(None)
-
-
-HABITS = """
-<script>
-addEventListener("click", (event) => {
-  const letGo = () => document.activeElement?.closest("button, [role=button]") && document.activeElement.blur();
-  if (event.detail) setTimeout(letGo);
-});
-const isMounted = () => document.getElementById("app")?.__vue_app__; // before, emitEvent has no page to ask
-setInterval(() => document.hidden || (isMounted() && window.emitEvent("hydrostat_alive")), 150);
-addEventListener("keydown", (event) => {
-  const typing = event.target.closest?.("input, textarea, select, [contenteditable=true]");
-  const word = (event.ctrlKey || event.metaKey) && "acdsv".includes(event.key.toLowerCase());
-  if (word && !typing && !String(getSelection())) event.preventDefault();
-  if (event.key.startsWith("Arrow") && event.target === document.body) event.preventDefault();
-});
-</script>
-"""
-"""Scripts of the page. A clicked button does not keep the keyboard focus, or Space would press it instead of
-starting playback. A button that is reached by Tab keeps it.
-
-A page that is seen gives signs of life, without which motors hold."""
 
 
 PANELS = {
@@ -99,7 +78,7 @@ def build_window(
                 view_bar(page)
                 page.toasts = Toasts()
             page.bottom = ui.column().classes("studio-bottom")
-        page.panel = ui.column().classes("studio-panel")
+        page.panel = ui.column().classes("studio-panel").props('role="region" aria-label="Controls"')
 
     def show_stage() -> None:
         start = session.stage is StageName.START
@@ -132,8 +111,9 @@ def build_window(
     page.on((Topic.STAGE, Topic.SCENE), follow_brush, lasting=True)
     page.on(Topic.LOCK, show_lock, lasting=True)
     dark.on_value_change(lambda: page.viewport.set_dark(bool(dark.value)))
-    ui.keyboard(on_key=lambda event: _key(page, event, ask_save, ask_help), repeating=False)
+    ui.keyboard(on_key=lambda event: _key(page, event, ask_save, ask_help))
     ui.timer(HEARTBEAT, page.beat)
+    ui.timer(1.0, lambda: page.viewport.describe(describe_view(session)))
     ui.on("hydrostat_alive", session.hardware.beat)
     ui.timer(0.0, partial(_recall, dark), once=True)
     ui.timer(0.0, partial(_open_link, page), once=True)
@@ -152,10 +132,10 @@ def _header(
             ui.label().classes("studio-pupil").bind_text_from(pupil, "name").props('data-testid="pupil"')
         name = ui.label().classes("studio-name")
         ui.space()
-        with ui.element("div").classes("studio-stages"):
+        with ui.element("nav").classes("studio-stages").props('aria-label="Stages"'):
             buttons = {
                 stage: ui.button(words.title, icon=words.icon, color=None, on_click=partial(page.go, stage))
-                .props(f'flat no-caps dense data-testid="stage-{stage}"')
+                .props(f'flat no-caps dense data-testid="stage-{stage}" aria-label="{words.title}"')
                 .classes("studio-stage")
                 for stage, words in STAGES.items()
             }
@@ -244,9 +224,9 @@ SIDES: dict[str, Side] = {"1": "front", "3": "side", "7": "top"}
 
 def _key(page: WindowPage, event: events.KeyEventArguments, ask_save: SaveDialog, ask_help: Ask) -> Any:
     """Handle a key; see `tour.KEYS`. Return what is still to be awaited, if anything."""
-    if not event.action.keydown:
-        return None
     name = str(event.key.name)
+    if not event.action.keydown or (event.action.repeat and not name.startswith("Arrow")):
+        return None
     if name in SIDES and not event.modifiers.ctrl:
         page.viewport.view(SIDES[name])
     elif name.lower() == "z":

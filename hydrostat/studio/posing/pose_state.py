@@ -1,7 +1,7 @@
 """Targets of posing as frozen records, points under the pointer, poses of a robot, and undo of drags."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
@@ -91,6 +91,24 @@ class PoseState:
         found = name in self.targets.held or any(marker.name == name for marker in self.robot.markers)
         return name if found else ""
 
+    def place(self, name: str, point: HeldPoint) -> Point:
+        """Return the position of a point of the body [m]."""
+        return tuple(Anchored(self.robot.body.mesh).places({name: point}, self.shape.nodes)[0].tolist())
+
+    def with_target(self, name: str, point: HeldPoint, target: Sequence[float]) -> "PoseState":
+        """Hold a point at a target, at most one size of the body away from the box of the body at rest."""
+        mesh = self.robot.body.mesh
+        near = np.clip(target, mesh.nodes.min(axis=0) - mesh.size, mesh.nodes.max(axis=0) + mesh.size)
+        held = {**self.targets.held, name: replace(point, target=tuple(near.tolist()))}
+        return replace(self, targets=replace(self.targets, held=held))
+
+    def nudge(self, name: str, step: float, axis: int) -> "PoseState":
+        """Move the target of a held point or marker along an axis [m]; a marker that is free begins where it is."""
+        point = point_of(self, name)
+        target = list(point.target if name in self.targets.held else self.place(name, point))
+        target[axis] += step
+        return self.with_target(name, point, target)
+
     def adapt_to(self, robot: Robot) -> "PoseState":
         """Return the state for a robot of the same nodes; it releases points held at lost markers, not plain points."""
         names, places = renamed_markers(self.robot, robot), {marker.name: marker.at for marker in robot.markers}
@@ -143,13 +161,14 @@ def name_under(now: PoseState, hit: Hit) -> str:
     return fresh_name("point", [*now.targets.held, *markers])
 
 
-def point_of(now: PoseState, name: str, hit: Hit) -> HeldPoint:
-    """A point by name, held where it is if it is not held yet."""
+def point_of(now: PoseState, name: str, hit: Hit | None = None) -> HeldPoint:
+    """A point by name, held where it is if it is not held yet; a new one is under the pointer."""
     if name in now.targets.held:
         return now.targets.held[name]
     for marker in now.robot.markers:
         if marker.name == name:
             return HeldPoint(at=marker.at, target=marker.at, marker=True)
+    assert hit is not None
     assert hit.rest is not None
     mesh = now.robot.body.mesh
     at = tuple(locate(mesh, np.array([hit.rest])).positions(mesh.nodes)[0].tolist())
@@ -245,7 +264,9 @@ class Trail:
         return self._label(self._future)
 
     def note(self, label: str, held: Mapping[str, HeldPoint]) -> None:
-        """Note that something is done now to what was held."""
+        """Note that something is done now to what was held; nudges in a row of one point are one step."""
+        if label.startswith("nudge ") and label == self.undo_label:
+            return
         self._past.append(_Step(label=label, work=self._document.work, held=held))
         most_steps = 200  # so many drags can be undone
         del self._past[:-most_steps]

@@ -34,7 +34,7 @@ from hydrostat.studio.posing.pose_state import (
     without_pose,
 )
 from hydrostat.studio.posing.reach import MarkerReach
-from hydrostat.studio.stage import Hit, Stage
+from hydrostat.studio.stage import Hit, Stage, parse_arrow
 from hydrostat.studio.view.contact_items import contact_items
 from hydrostat.studio.view.robot_items import (
     MARKER,
@@ -148,7 +148,7 @@ class Poser(Stage):
         if not name:
             return False
         point = point_of(now, name, hit)
-        start = hit.world if armed else self._place(now, name, point)
+        start = hit.world if armed else now.place(name, point)
         if hit.key == f"target:{name}":
             start = point.target
         offset = tuple((np.array(start) - np.array(hit.world)).tolist())
@@ -184,18 +184,27 @@ class Poser(Stage):
             self._chosen = now.find_name(name) if kind in ("marker", "target", "point") else ""
 
     def key(self, name: str) -> bool:
-        """Heed r: rest; delete: let go of what is chosen; g: the next click or drag moves it; escape: choose none."""
+        """Heed r, delete, g (the next click or drag moves the chosen point), arrows (move its target), escape."""
         if name == "r":
             self.rest()
         elif name == "delete" and self._chosen in self.held_points:
             self.clear(self._chosen)
         elif name == "g" and self._chosen:
             self._armed = self._chosen
+        elif self._chosen and (arrow := parse_arrow(name)) is not None:
+            self._nudge(*arrow)
         elif name == "escape":
             self._chosen = self._armed = ""
         else:
             return False
         return True
+
+    def _nudge(self, step: float, axis: int) -> None:
+        """Move the target of the chosen point by a step [m] along an axis."""
+        with self._lock:
+            self._note(f"nudge {self._chosen}")
+            self._now = self._fit().nudge(self._chosen, step, axis)
+        self._ring()
 
     def choose(self, name: str) -> None:
         """Select a held point or marker."""
@@ -386,14 +395,6 @@ class Poser(Stage):
             gone = hold.point.marker and not now.find_name(name)
             self._hold = None if gone else replace(hold, name=name)
 
-    def _place(self, now: PoseState, name: str, point: HeldPoint) -> tuple[float, ...]:
-        """Position of a point of the body [m]."""
-        return tuple(Anchored(now.robot.body.mesh).places({name: point}, now.shape.nodes)[0].tolist())
-
     def _hold_at(self, name: str, point: HeldPoint, target: np.ndarray) -> None:
-        """Set the target of a point, at most one size of the body away from the box of the body at rest."""
-        now = self._fit()
-        mesh = now.robot.body.mesh
-        near = np.clip(target, mesh.nodes.min(axis=0) - mesh.size, mesh.nodes.max(axis=0) + mesh.size)
-        held = {**now.targets.held, name: replace(point, target=tuple(near.tolist()))}
-        self._now = replace(now, targets=replace(now.targets, held=held))
+        """Set the target of a point."""
+        self._now = self._fit().with_target(name, point, target.tolist())

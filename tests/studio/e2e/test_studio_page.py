@@ -148,7 +148,7 @@ def test_from_the_gallery_to_a_kit_and_back(rooms: str, window: Open, tmp_path: 
     start = place(page, "marker:right")
     drag(page, "marker:right", -30, -60)
     # the held marker has a target, an error in millimeters, and cables that pull it most of the way there
-    page.get_by_label("Release right").wait_for()
+    page.get_by_label("Release right", exact=True).wait_for()
     page.wait_for_function(
         "([x, y]) => { const [marker, target] = ['marker', 'target'].map("
         "kind => __app.items.find(t => t.key === kind + ':right'));"

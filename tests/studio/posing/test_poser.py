@@ -301,3 +301,17 @@ def test_drags_are_undone_between_the_changes_of_the_robot(starfish: Robot, docu
     assert poser.undo_label == "rest"
     poser.undo()
     assert poser.held_points == first
+
+
+def test_arrows_move_the_chosen_target_in_one_step_to_undo(poser: Poser, starfish: Robot) -> None:
+    assert not poser.key("arrowup")  # nothing is chosen
+    poser.choose("right")
+    for name in ("arrowup", "arrowup", "shift arrowleft"):
+        assert poser.key(name)
+    at = at_of(starfish, "right")
+    assert np.allclose(poser.held_points["right"].target, (at[0] - 0.010, at[1] + 0.002))
+    assert poser.undo_label == "nudge right"
+    poser.undo()
+    assert not poser.held_points
+    poser.redo()
+    assert set(poser.held_points) == {"right"}

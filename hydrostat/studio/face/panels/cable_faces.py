@@ -24,7 +24,11 @@ def face_choice(page: WindowPage) -> None:
     document, exporter = page.session.document, page.session.exporter
     with ui.element("div").classes("export-form") as row:
         ui.label("Cable side")
-        choice = ui.select(FACES, value="").props("dense outlined options-dense").props('data-testid="cable-face"')
+        choice = (
+            ui.select(FACES, value="")
+            .props("dense outlined options-dense")
+            .props('data-testid="cable-face" aria-label="Cable side"')
+        )
         choice.tooltip(HINT)
 
     def show() -> None:

@@ -38,6 +38,7 @@ def design_paint(page: WindowPage) -> None:
         painter = designer.painter
         for paint, button in buttons.items():
             button.classes(**{"add" if paint is painter.paint else "remove": "design-paint-on"})
+            button.props(f'aria-pressed="{str(paint is painter.paint).lower()}"')
         flat = document.robot.body.mesh.dim == 2
         hint.set_text((FLAT if flat else SPACE) if painter.paint else CHOSEN if painter.chosen is not None else "")
         hint.set_visibility(bool(hint.text))
@@ -59,12 +60,13 @@ def _take(page: WindowPage, paint: Paint) -> None:
 def _zone(page: WindowPage, index: int, paint: Paint, size: str, *, chosen: bool) -> None:
     designer = page.session.designer
     row = ui.element("div").classes("studio-row design-zone" + (" design-zone-on" if chosen else ""))
-    row.on("click", page.doing(designer.choose_zone, index))
     with row.style(f"--tint: {COLORS[paint]}"):
-        ui.element("span").classes("design-spot")
-        ui.label(WORDS[paint] + size).classes("flex-1").style("font-size: 13px")
+        line = pressable("studio-row", page.doing(designer.choose_zone, index))
+        with line.props(f'aria-pressed="{str(chosen).lower()}"'):
+            ui.element("span").classes("design-spot")
+            ui.label(WORDS[paint] + size).style("font-size: 13px")
         remove = ui.button(icon="close", color=None).props('flat round dense size=sm aria-label="Delete zone"')
-        remove.on("click.stop", page.doing(designer.painter.remove, index))
+        remove.on("click", page.doing(designer.painter.remove, index))
 
 
 OPEN = {"depth": "anywhere"}
@@ -154,7 +156,7 @@ def _mirror(page: WindowPage) -> Show:
         choice = ui.toggle(choices, value="").props('dense no-caps unelevated padding="2px 12px"')
         choice.props("toggle-color=primary color=transparent text-color=primary toggle-text-color=white")
         choice.classes("design-toggle")
-        choice.props('data-testid="wish-mirror"')
+        choice.props('data-testid="wish-mirror" role="group" aria-label="Mirror symmetry"')
     choice.on_value_change(lambda event: page.act(lambda: designer.wish(mirror=event.value or None)))
     return lambda wishes: choice.set_value(wishes.constraints.mirror or "")
 

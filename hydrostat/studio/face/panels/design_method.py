@@ -23,7 +23,7 @@ def design_method(page: WindowPage) -> None:
         ui.label("Search").classes("flex-1")
         choice = ui.toggle(METHODS).props('dense no-caps unelevated padding="2px 10px"')
         choice.props("toggle-color=primary color=transparent text-color=primary toggle-text-color=white")
-        choice.classes("design-toggle").props('data-testid="wish-method"')
+        choice.classes("design-toggle").props('data-testid="wish-method" role="group" aria-label="Search"')
     edge = 1e3 * float(document.robot.body.mesh.edge_lengths.mean())
     with ui.column().classes("w-full").style("gap: 8px") as room:
         ui.label(HINT).classes("studio-hint")

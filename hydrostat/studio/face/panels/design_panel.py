@@ -105,7 +105,7 @@ def _simplicity(page: WindowPage) -> None:
         choice = ui.toggle(choices, value=wanted if wanted in choices else None)
         choice.props('dense no-caps unelevated padding="2px 10px"')
         choice.props("toggle-color=primary color=transparent text-color=primary toggle-text-color=white")
-        choice.classes("design-toggle").props('data-testid="wish-simplicity"')
+        choice.classes("design-toggle").props('data-testid="wish-simplicity" role="group" aria-label="Complexity"')
         with choice:  # above, for the button to begin with is below
             ui.tooltip("Simple: fewer cables and holes to sew, larger error. Exact: smallest error.").props(
                 'anchor="top middle" self="bottom middle"'
@@ -130,7 +130,7 @@ def _stepper(page: WindowPage, words: str, name: str, *, least: int) -> ui.label
     def step(change: int) -> None:
         page.act(lambda: designer.wish(**{name: max(least, getattr(designer.wishes, name) + change)}))
 
-    number = ui.label().classes("design-number").props(f'data-testid="design-{name}"')
+    number = ui.label().classes("design-number").props(f'data-testid="design-{name}" role="status"')
     with ui.element("div").classes("design-count") as row:
         ui.label(words).classes("design-name")
         for icon, change in (("remove", -1), ("add", 1)):
@@ -168,14 +168,15 @@ def _progress(page: WindowPage) -> None:
             stop.props('flat no-caps color=negative data-testid="design-stop"')
             stop.tooltip("End the search and list its best network")
         chart = ui.html("", sanitize=False).classes("w-full")
-        bar = ui.linear_progress(value=0.0, show_value=False).props("rounded size=6px")
+        bar = ui.linear_progress(value=0.0, show_value=False).props('rounded size=6px aria-label="Search"')
         with ui.element("div").classes("studio-row").style("align-items: flex-start"):
             stage = ui.label().classes("studio-hint flex-1").style("min-width: 0").props('data-testid="design-stage"')
+            stage.props("role=status")
             left = ui.label().classes("studio-hint studio-figure").props('data-testid="design-left"')
         take = ui.button("Take best", icon="check", on_click=page.doing(designer.take_best)).classes("w-full")
         take.props('unelevated no-caps data-testid="design-take"')
         take.tooltip("End the search and put its best network into the robot")
-    outcome = ui.label().props('data-testid="design-outcome"')
+    outcome = ui.label().props('data-testid="design-outcome" role="status"')
     told: dict[float, float] = {}  # share of the search that was shown, by when it began: it never falls
 
     def show() -> None:
@@ -276,6 +277,7 @@ def _pose_chip(page: WindowPage, chosen: Candidate, pose: str | None, words: str
     designer = page.session.designer
     kind = "design-pose" + (" design-pose-on" if designer.pose == pose else "")
     chip = pressable(kind, page.doing(designer.show, chosen.number, pose))
+    chip.props(f'aria-pressed="{str(designer.pose == pose).lower()}"')
     with chip.props(f'data-testid="design-show-{"rest" if pose is None else "pose"}"'):
         ui.label(words)
 
@@ -288,6 +290,7 @@ def _cards(page: WindowPage, candidates: tuple[Candidate, ...], own: tuple[int, 
             pose = designer.pose if now or designer.pose in {reach.pose.name for reach in one.reaches} else None
             show = page.doing(designer.show, one.number, pose)
             card = pressable("design-card" + (" design-card-on" if now else ""), show)
+            card.props(f'aria-pressed="{str(now).lower()}"')
             with card.props('data-testid="design-card"').tooltip(_more(one)):
                 ui.html(designer.sketch(one), sanitize=False).classes("w-full")
                 ui.html(

@@ -35,6 +35,7 @@ def drive_panel(page: WindowPage) -> None:
         names = ", ".join(drive.name for drive in drives)
         ui.label(f"Drives stay at 0 here: {names}. Use hydrostat simulate --move.").classes("studio-hint").mark("still")
     notes = ui.label().classes("studio-hint").style(f"color: {Color.ERROR}; white-space: pre-line").mark("drive-notes")
+    notes.props("role=alert")
     box = ui.column().classes("w-full").style("gap: 8px")
     cards: list[_Card] = []
 

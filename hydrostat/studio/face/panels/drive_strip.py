@@ -10,7 +10,7 @@ from hydrostat.studio.bell import Topic
 from hydrostat.studio.driving.film import FilmKind, film_kinds
 from hydrostat.studio.face.elements import TimelineView
 from hydrostat.studio.face.messages import sent_number
-from hydrostat.studio.face.page import WindowPage, icon_button, show_heading
+from hydrostat.studio.face.page import WindowPage, icon_button, name_upload, show_heading
 from hydrostat.studio.session import Tone
 
 SPEEDS = {0.1: "0.1x", 0.25: "0.25x", 0.5: "0.5x", 1.0: "1x", 2.0: "2x", 4.0: "4x"}
@@ -69,6 +69,7 @@ def _player(page: WindowPage) -> None:
         player = driver.player
         play.set_icon("pause" if player.playing else "play_arrow")
         loop.style(f"color: var(--{'accent' if player.loop else 'muted'})")
+        loop.props(f'aria-pressed="{str(player.loop).lower()}"')
         time.set_text(f"{player.time:.2f} s")
         if player.speed in SPEEDS:
             speed.set_value(player.speed)
@@ -93,6 +94,7 @@ def _keys(page: WindowPage) -> None:
     smooth.props(
         "dense no-caps unelevated toggle-color=primary color=transparent text-color=grey padding='2px 9px'"
     ).style("border: 1px solid var(--line); border-radius: 8px; margin-left: 6px")
+    smooth.props('role="group" aria-label="Between keyframes"')
     release_focus(smooth).on_value_change(lambda event: page.act(driver.keyframes.set_smooth, bool(event.value)))
 
     def show() -> None:
@@ -199,6 +201,7 @@ def _tables(page: WindowPage) -> None:
             label="Choose or drop a CSV", auto_upload=True, max_file_size=largest, on_upload=load,
             on_rejected=lambda: page.tell("a table may have 4 MB", Tone.BAD),
         ).props("accept=.csv flat bordered").classes("w-full")  # fmt: skip
+        name_upload(upload, "Choose a CSV")
     with _button("table_view", "Contraction table", None), _menu():
         ui.menu_item("Export CSV", on_click=export).mark("drive-export")
         ui.menu_item("Import CSV", on_click=dialog.open)

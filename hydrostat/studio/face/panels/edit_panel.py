@@ -57,7 +57,7 @@ def _tools(page: WindowPage) -> None:
             button.props(f'unelevated no-caps padding="8px 0" aria-label="{name}"').classes("flex-1")
             button.style("border-radius: 10px")
             buttons[tool] = button.tooltip(f"{name} ({letters[tool]})").mark(f"edit-{tool}")
-    hint = ui.label().classes("studio-hint").style("min-height: 38px")
+    hint = ui.label().classes("studio-hint").style("min-height: 38px").props("role=status")
     _brush(page)
     with ui.element("div").classes("studio-row") as laying:
         done = ui.button("Done", icon="check", on_click=page.doing(editor.finish)).classes("flex-1")
@@ -70,6 +70,7 @@ def _tools(page: WindowPage) -> None:
             now = tool is editor.tool
             button.props(f"color={'primary' if now else 'transparent'} text-color={'white' if now else 'primary'}")
             button.props(add="" if now else "flat", remove="flat" if now else "")
+            button.props(f'aria-pressed="{str(now).lower()}"')
         measured = "" if editor.ruler is None else editor.ruler.words
         hint.set_text(measured or TOOLS[editor.tool][2])
         corners = editor.brush.drawn.corners
@@ -107,7 +108,7 @@ def _mirror(page: WindowPage) -> None:
     """Build the choice of the mirror axis, and for a body in space the depth at which parts are placed."""
     editor, document = page.session.editor, page.session.document
     axes = "xyz"[: document.robot.body.mesh.dim]
-    with ui.element("div").classes("studio-row"):
+    with ui.element("div").classes("studio-row").props('role="group" aria-label="Mirror"'):
         ui.icon("flip", size="20px").style("color: var(--muted)")
         ui.label("Mirror").style("font-size: 13px")
         ui.space()
@@ -155,7 +156,7 @@ def _choice(
     chosen: Callable[[], Any],
 ) -> None:
     """A row of chips, one of which is chosen: for each value its word, its mark for tests, and a tooltip."""
-    with ui.element("div").classes("studio-row"):
+    with ui.element("div").classes("studio-row").props(f'role="group" aria-label="{title}"'):
         ui.icon(icon, size="20px").style("color: var(--muted)")
         ui.label(title).style("font-size: 13px")
         ui.space()
@@ -232,7 +233,7 @@ def _part_row(page: WindowPage, robot: Robot, key: str, words: str, number: str)
         page.act(lambda: editor.choose(key, also=also or editor.several))
 
     row = ui.element("div").classes("studio-row cursor-pointer").mark(f"part-{key}").props('role="option" tabindex="0"')
-    for kind_of_press in ("click", "keydown.enter"):
+    for kind_of_press in ("click", "keydown.enter", "keydown.space.prevent.stop"):
         row.on(kind_of_press, press, args=["shiftKey"])
     row.style(
         f"padding: 3px 8px 3px {24 if kind is Kind.CABLE else 8}px; border-radius: 8px; font-size: 13px; flex-shrink: 0"

@@ -12,7 +12,7 @@ from hydrostat.studio.editing.body_parts import RIGID, filling_of
 from hydrostat.studio.editing.change import sheathed_segments, sheaths
 from hydrostat.studio.editing.part import Kind, Part, find_part, name_of, place_of, title_of
 from hydrostat.studio.face.messages import sent_number
-from hydrostat.studio.face.page import WindowPage, icon_button
+from hydrostat.studio.face.page import WindowPage, icon_button, show_heading
 
 
 def chip(words: str, press: Callable[[], Any]) -> ui.button:
@@ -23,6 +23,7 @@ def chip(words: str, press: Callable[[], Any]) -> ui.button:
 
 def light(button: ui.button, on: bool) -> None:
     """Show whether a chip is on."""
+    button.props(f'aria-pressed="{str(on).lower()}"')
     button.style(f"background: {'#0b5fa5' if on else 'transparent'}; color: {'white' if on else 'var(--ink)'}")
 
 
@@ -120,7 +121,7 @@ def _build(page: WindowPage, key: str, part: Part) -> Shows:
     """The rows for a part."""
     editor = page.session.editor
     with ui.element("div").classes("studio-row"):
-        ui.label(_title(key)).style("font-weight: 600")
+        show_heading(_title(key)).style("margin-top: 0; font-size: 14px")
         ui.space()
         if part.kind is not Kind.VIA:
             icon_button("content_copy", "Duplicate (Ctrl D)", page.doing(editor.duplicate)).mark("edit-duplicate")

@@ -119,10 +119,10 @@ def _maker(
     button.props(f'data-testid="make-{export}"')
     with ui.column().classes("w-full gap-1") as progress:
         with ui.element("div").classes("studio-row"):
-            stage = ui.label().classes("studio-hint flex-1")
+            stage = ui.label().classes("studio-hint flex-1").props("role=status")
             stop = ui.button("Stop", on_click=jobs.stop).props("flat dense no-caps size=sm")
-        bar = ui.linear_progress(value=0.0, show_value=False).props("rounded size=6px")
-    failed = ui.label().classes("export-failed").props(f'data-testid="failed-{export}"')
+        bar = ui.linear_progress(value=0.0, show_value=False).props(f'rounded size=6px aria-label="{words}"')
+    failed = ui.label().classes("export-failed").props(f'data-testid="failed-{export}" role="alert"')
 
     def show() -> None:
         busy, state = exporter.busy is export, jobs.state
@@ -199,11 +199,13 @@ def kit_choices(page: WindowPage) -> None:
     motors = {"auto": "Auto: the robot's, or the cheapest", **{motor.key: motor.title for motor in ALL_MOTORS}}
     with ui.element("div").classes("export-form"):
         ui.label("Body")
-        given["method"] = ui.toggle(METHODS).props("dense no-caps unelevated").props('data-testid="kit-method"')
+        given["method"] = ui.toggle(METHODS).props('dense no-caps unelevated data-testid="kit-method"')
+        given["method"].props('role="group" aria-label="Body"')
         ui.label("Motor")
-        given["motor"] = ui.select(motors).props("dense outlined options-dense").props('data-testid="kit-motor"')
+        given["motor"] = ui.select(motors).props('dense outlined options-dense data-testid="kit-motor"')
+        given["motor"].props('aria-label="Motor"')
         ui.label("Paper")
-        given["paper"] = ui.toggle(PAPERS).props("dense no-caps unelevated")
+        given["paper"] = ui.toggle(PAPERS).props('dense no-caps unelevated role="group" aria-label="Paper"')
     given |= _more_choices()
 
     def show() -> None:
@@ -229,7 +231,7 @@ def _more_choices() -> dict[str, Any]:
             for axis in "xyz":
                 given[f"bed_{axis}"] = _length(f"bed along {axis}", 10.0)
         ui.label("Mold")
-        given["mould"] = ui.toggle(MOULDS).props("dense no-caps unelevated")
+        given["mould"] = ui.toggle(MOULDS).props('dense no-caps unelevated role="group" aria-label="Mold"')
         ui.label("Seam [mm]")
         given["seam"] = _length("cloth between seam and cut", 1.0)
         ui.label("Cable [mm]")

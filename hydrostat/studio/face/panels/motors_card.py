@@ -7,7 +7,7 @@ from nicegui import ui
 from hydrostat.control import EMULATED, LinkState
 from hydrostat.drawing import Color
 from hydrostat.studio.bell import Topic
-from hydrostat.studio.face.page import WindowPage
+from hydrostat.studio.face.page import WindowPage, show_heading
 
 WORDS = {
     LinkState.CLOSED: "not connected",
@@ -30,9 +30,9 @@ def motors_card(page: WindowPage) -> None:
         return
     with ui.element("div").classes("studio-card").style("display: flex; flex-direction: column; gap: 8px"):
         with ui.element("div").classes("studio-row"):
-            ui.label("Motors").style("font-weight: 600")
+            show_heading("Motors").style("margin-top: 0; font-size: 14px")
             ui.space()
-            state = ui.label().classes("studio-hint").mark("motors-state")
+            state = ui.label().classes("studio-hint").props("role=status").mark("motors-state")
         with ui.element("div").classes("studio-row").style("gap: 8px") as before:
             port = ui.input(value=hardware.port or EMULATED, autocomplete=list(KINDS))
             port.props('dense outlined aria-label="Port of the motors"').style("flex: 1; min-width: 0").mark(

@@ -6,7 +6,7 @@ from functools import partial
 from nicegui import events, ui
 
 from hydrostat.studio.bell import Topic
-from hydrostat.studio.face.page import WindowPage, icon_button, show_heading
+from hydrostat.studio.face.page import WindowPage, icon_button, name_upload, show_heading
 from hydrostat.studio.posing import MOST_BYTES, Mode, PhotographFit
 from hydrostat.studio.session import Tone
 from hydrostat.studio.stage import format_error
@@ -39,9 +39,10 @@ def photographs_card(page: WindowPage) -> None:
                 label="Choose or drop", multiple=True, auto_upload=True, max_file_size=MOST_BYTES, on_upload=load,
                 on_rejected=lambda: page.tell(f"a photograph may have {MOST_BYTES // 10**6} MB", Tone.BAD),
             ).props("accept=image/* flat bordered").classes("w-full").style("max-height: 130px")  # fmt: skip
-            upload.mark("pose-photographs")
+            name_upload(upload, "Choose photographs").mark("pose-photographs")
             rows = ui.column().classes("w-full").style("gap: 2px")
             error = ui.label().classes("studio-hint").style("color: var(--q-negative)").mark("pose-photographs-error")
+            error.props("role=alert")
             with ui.element("div").classes("studio-row"):
                 look = ui.button("Compare", icon="compare", on_click=compare).props("unelevated no-caps size=sm")
                 look.tooltip("Find the tags and draw the simulated robot into each photograph")

@@ -6,7 +6,7 @@ from hydrostat.drawing import Color
 from hydrostat.project import fresh_name
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.elements import winch_badge
-from hydrostat.studio.face.page import WindowPage, icon_button, show_heading
+from hydrostat.studio.face.page import WindowPage, icon_button, pressable, show_heading
 from hydrostat.studio.face.panels.edit_body import contact_switch, touch_label
 from hydrostat.studio.face.panels.motors_card import motors_card
 from hydrostat.studio.face.panels.photographs_card import photographs_card
@@ -57,7 +57,7 @@ def pose_panel(page: WindowPage) -> None:
         rest.tooltip("Clear targets and release all cables (R)").mark("pose-rest")
     choice = ui.toggle(MODES, value=poser.mode).props("spread no-caps unelevated toggle-color=primary")
     choice.classes("w-full").style("flex: none; border-radius: 10px; overflow: hidden; border: 1px solid var(--line)")
-    choice.mark("pose-mode")
+    choice.mark("pose-mode").props('role="group" aria-label="Moved by"')
     hint = ui.label().classes("studio-hint").style("min-height: 38px")
 
     def choose() -> None:
@@ -90,34 +90,36 @@ def held_card(page: WindowPage) -> None:
     """Build the list."""
     poser = page.session.poser
     with ui.element("div").classes("studio-card"):
-        empty = ui.label("No targets yet. Drag a point to add one.").classes("studio-hint")
+        empty = ui.label("No targets yet. Drag a point, or select a marker and press arrow keys.").classes(
+            "studio-hint"
+        )
         rows = ui.column().classes("w-full").style("gap: 2px")
         told = ui.label().classes("studio-hint studio-figure").style("margin-top: 6px").mark("pose-prediction")
         notes = ui.label().classes("studio-hint").style("white-space: pre-line; margin-top: 6px").mark("pose-notes")
-    figures: dict[str, ui.label] = {}
+        notes.props("role=status")
+    shown: list[_PointRow] = []
+
+    def list_points() -> tuple[str, ...]:
+        markers = [marker.name for marker in page.session.document.robot.markers]
+        return *markers, *(name for name in poser.held_points if name not in markers)
 
     def build() -> None:
-        figures.clear()
-        empty.set_visibility(not poser.held_points)
-        for name in poser.held_points:
-            figures[name] = _held_row(page, name, poser.chosen_name == name)
+        shown[:] = [_PointRow(page, name) for name in list_points()]
 
     def show() -> None:
         shape = poser.shape()
-        for name, label in figures.items():
-            error = shape.errors.get(name)
-            words = "" if error is None else format_error(error)
-            if label.text != words:
-                label.set_text(words)
-                near = error is not None and error < NEAR
-                label.style(f"color: {'var(--q-positive)' if near else 'inherit'}")
+        empty.set_visibility(not poser.held_points)
+        for row in shown:
+            row.show(
+                shape.errors.get(row.name), held=row.name in poser.held_points, chosen=row.name == poser.chosen_name
+            )
         told.set_text(prediction_words(shape))
         told.set_visibility(shape.prediction is not None)
         words = "\n".join(f"{note[:1].upper()}{note[1:]}" for note in shape.notes)
         notes.set_text(words)
         notes.set_visibility(bool(words))
 
-    page.on_new((Topic.SCENE, Topic.SHAPE), lambda: (tuple(poser.held_points), poser.chosen_name), rows, build)
+    page.on_new((Topic.SCENE, Topic.SHAPE), list_points, rows, build)
     page.on((Topic.SCENE, Topic.SHAPE), show)
 
 
@@ -133,20 +135,36 @@ def prediction_words(shape: RobotShape) -> str:
     return f"Dots by surrogate model: {known}. Exact solve in progress: mean error {left}."
 
 
-def _held_row(page: WindowPage, name: str, chosen: bool) -> ui.label:
-    """One point: a click chooses it, the cross lets it go."""
-    poser = page.session.poser
-    with ui.element("div").classes("studio-row").style("min-height: 30px"):
-        ui.icon("radio_button_unchecked", size="16px").style(f"color: var(--{'accent' if chosen else 'muted'})")
-        label = ui.label(name).style(
-            f"font-weight: {600 if chosen else 400}; cursor: pointer; overflow: hidden; text-overflow: ellipsis;"
-            "white-space: nowrap; min-width: 0"
-        )
-        label.on("click", page.doing(poser.choose, name))
-        ui.space()
-        figure = ui.label().classes("studio-figure").mark(f"pose-error-{name}")
-        icon_button("close", f"Release {name}", page.doing(poser.clear, name)).style("color: var(--muted)")
-    return figure
+class _PointRow:
+    """A marker or held point: pressed, it is chosen, and arrow keys move its target; the cross releases it."""
+
+    def __init__(self, page: WindowPage, name: str) -> None:
+        self.name, self._state = name, None
+        poser = page.session.poser
+        with ui.element("div").classes("studio-row").style("gap: 2px; min-height: 28px"):
+            self._line = pressable("studio-row studio-nudges cursor-pointer", page.doing(poser.choose, name))
+            with self._line.style("min-width: 0; padding: 2px 4px; border-radius: 8px").mark(f"pose-point-{name}"):
+                self._ring = ui.icon("radio_button_unchecked", size="16px")
+                ui.label(name).style("overflow: hidden; text-overflow: ellipsis; white-space: nowrap; min-width: 0")
+                ui.space()
+                self._error = ui.label().classes("studio-figure").mark(f"pose-error-{name}")
+            self._release = icon_button("close", f"Release {name}", page.doing(poser.clear, name))
+            self._release.style("color: var(--muted)")
+
+    def show(self, error: float | None, *, held: bool, chosen: bool) -> None:
+        """Show the distance from the target [m], if it is held; only what has changed is sent."""
+        words = format_error(error) if held and error is not None else ""
+        state = (words, held, chosen)
+        if state == self._state:
+            return
+        self._state = state
+        self._line.props(f'aria-pressed="{str(chosen).lower()}"')
+        self._line.style(f"font-weight: {600 if chosen else 400}; color: var(--{'ink' if held or chosen else 'muted'})")
+        self._ring.style(f"color: var(--{'accent' if chosen else 'muted'}); opacity: {1 if held or chosen else 0.4}")
+        self._error.set_text(words)
+        near = error is not None and error < NEAR
+        self._error.style(f"color: {'var(--q-positive)' if near else 'inherit'}")
+        self._release.set_visibility(held)
 
 
 FULL = 0.999  # a bar this full is at its limit
@@ -204,7 +222,7 @@ class _BarRow:
         if state == self._shown:
             return
         self._shown = state
-        self._length.set_text(f"{1e3 * bar.contraction + 0.0:.1f} mm")
+        self._length.set_text(f"{round(1e3 * bar.contraction, 1) + 0.0:.1f} mm")
         self._pull.set_text(f"{bar.tension:.1f} N")
         _fill(self._taken, max(bar.contraction, 0.0) / bar.travel, bar.color)
         _fill(self._tension, bar.tension / bar.limit, bar.color)

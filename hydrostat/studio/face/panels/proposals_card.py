@@ -20,7 +20,7 @@ def proposals_card(page: WindowPage) -> None:
             with ui.column().classes("flex-1").style("gap: 0; min-width: 0"):
                 error = ui.label().style("font-weight: 600").classes("studio-figure").mark("pose-proposed-error")
                 words = ui.label().classes("studio-hint studio-figure").mark("pose-proposed")
-            busy = ui.spinner(size="18px").mark("pose-proposing")
+            busy = ui.spinner(size="18px").props('role="status" aria-label="Searching"').mark("pose-proposing")
             keep = ui.button("Keep", icon="check").props("unelevated no-caps size=sm").mark("pose-keep")
             keep.tooltip("Put these cables into the robot")
         why = ui.label().classes("studio-hint").mark("pose-proposed-why")

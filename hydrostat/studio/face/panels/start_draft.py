@@ -13,7 +13,7 @@ from hydrostat.geometry import Inner
 from hydrostat.robot import MATERIALS, get_material, own_materials
 from hydrostat.studio.face.dialogs import may_leave
 from hydrostat.studio.face.messages import sent_number
-from hydrostat.studio.face.page import WindowPage
+from hydrostat.studio.face.page import WindowPage, show_heading
 from hydrostat.studio.skins import SewnSkin
 from hydrostat.studio.stage import StageName
 from hydrostat.studio.starting.draft import SMOOTHINGS, THRESHOLDS, BodyDraft, PhotoReading, material_words
@@ -38,7 +38,7 @@ def draft_view(page: WindowPage) -> Callable[[], None]:
     with ui.row().classes("items-center no-wrap w-full gap-3"):
         back = ui.button(icon="arrow_back", on_click=page.doing(starter.drop)).mark("back")
         back.props('flat round aria-label="Back"')
-        title = ui.label().classes("start-title")
+        title = show_heading("", 1).classes("start-title", remove="studio-title")
     with ui.element("div").classes("start-split"):
         with ui.column().classes("w-full gap-4"):
             show_state = _state(page)
@@ -67,12 +67,12 @@ def _state(page: WindowPage) -> Callable[[], None]:
     starter, jobs = page.session.starter, page.session.jobs
     with ui.element("div").classes("start-card") as busy, ui.row().classes("items-center w-full no-wrap"):
         ui.spinner(size="20px")
-        stage = ui.label()
+        stage = ui.label().props("role=status")
         ui.space()
         ui.button("Stop", on_click=page.doing(starter.stop)).props("flat no-caps dense padding='2px 12px'")
     with ui.element("div").classes("start-card") as wrong, ui.element("div").classes("start-problem"):
         ui.icon("error_outline").classes("text-lg")
-        problem = ui.label().props('data-testid="problem"')
+        problem = ui.label().props('data-testid="problem" role="alert"')
 
     def refresh() -> None:
         busy.set_visibility(starter.is_meshing)
@@ -258,20 +258,24 @@ class _Fields:
 
     def __init__(self, page: WindowPage) -> None:
         self._page, self._starter = page, page.session.starter
-        spread = "no-caps spread unelevated"
+        spread = "no-caps spread unelevated role=group"
         materials = {key: f"{key}, {found.young_text}" for key, found in MATERIALS.items()}
         with suppress(InputError):  # a file of own materials that is wrong
             materials |= {key: f"{key}, {found.young_text}" for key, found in own_materials().items()}
         with ui.element("div").classes("start-fields"):
             self._name = ui.input("Name").props("outlined dense debounce=500")
             self._size = _Length("Longest side", lambda value: self._ask(size=value), "size")
-            self._kind = ui.toggle({"flat": "Flat", "round": "Inflated"}).props(spread).classes("w-full")
+            self._kind = (
+                ui.toggle({"flat": "Flat", "round": "Inflated"}).props(f'{spread} aria-label="Form"').classes("w-full")
+            )
             self._thick = _Length("Thickness", self._thicken, "thickness")
             with ui.element("div").classes("w-full") as self._within:
                 ui.label("Shapes inside the outline").classes("start-small")
-                self._inner = ui.toggle({Inner.HOLES: "Holes", Inner.DRAWN: "Surface lines"}).props(spread)
+                self._inner = ui.toggle({Inner.HOLES: "Holes", Inner.DRAWN: "Surface lines"}).props(
+                    f'{spread} aria-label="Inside"'
+                )
                 self._inner.classes("w-full").props('data-testid="inner"')
-            self._fine = ui.toggle(list(LEVELS)).props(spread).classes("w-full")
+            self._fine = ui.toggle(list(LEVELS)).props(f'{spread} aria-label="Mesh"').classes("w-full")
             self._element = _Length(
                 "Element size", lambda value: self._ask(element_size=value, nodes=None), "element-size"
             )

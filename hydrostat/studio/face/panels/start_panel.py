@@ -12,7 +12,7 @@ from hydrostat.errors import HydrostatError
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.dialogs import ask, may_leave
 from hydrostat.studio.face.elements import OutlineEditor
-from hydrostat.studio.face.page import WindowPage, icon_button
+from hydrostat.studio.face.page import WindowPage, icon_button, name_upload, show_heading
 from hydrostat.studio.face.panels.start_draft import draft_view
 from hydrostat.studio.stage import StageName
 from hydrostat.studio.starting.autosave import RecoveredWork
@@ -32,7 +32,8 @@ def outline_view(page: WindowPage) -> Callable[[], None]:
         back = ui.button(icon="arrow_back", on_click=page.doing(starter.outline_cancel)).mark("back")
         back.props('flat round aria-label="Back"')
         title = "New outline" if outlining.behind is None else "Edit outline"
-        ui.label(title if robot is None else f"Outline of {robot.name}").classes("start-title")
+        title = title if robot is None else f"Outline of {robot.name}"
+        show_heading(title, 1).classes("start-title", remove="studio-title")
         ui.space()
         tools = ui.row().classes("items-center no-wrap gap-1")
         done = ui.button("Next" if robot is None else "Apply", icon="check")
@@ -42,7 +43,7 @@ def outline_view(page: WindowPage) -> Callable[[], None]:
         editor.style("width: 100%; height: 100%")
     with ui.row().classes("items-center no-wrap w-full gap-2"):
         sign = ui.icon("check_circle").classes("text-lg")
-        words = ui.label().classes("start-small studio-figure").props('data-testid="outline-words"')
+        words = ui.label().classes("start-small studio-figure").props('data-testid="outline-words" role="status"')
         ui.space()
         hint = ui.label("Click: add corner. Drag: move. Double-click: round or sharp. Delete: remove. Wheel: zoom.")
         hint.classes("start-small")
@@ -114,7 +115,7 @@ def shelf_view(page: WindowPage) -> Callable[[], None]:
     most_left = 4  # so many works that a crash left are offered at once, the newest
     for left in starter.autosave.find_recovered()[:most_left]:
         _show_recovered(page, left)
-    ui.label("New robot").classes("start-title")
+    show_heading("New robot", 1).classes("start-title", remove="studio-title")
     with ui.element("div").classes("start-ways"):
         _drop(page)
         _draw(page)
@@ -122,11 +123,11 @@ def shelf_view(page: WindowPage) -> Callable[[], None]:
             _folder(page)
     recent = [] if page.session.guest else starter.recent()
     if recent:
-        ui.label("Your robots").classes("start-section")
+        show_heading("Your robots").classes("start-section", remove="studio-section")
         with ui.element("div").classes("start-chips"):
             for card in recent:
                 _chip(page, card)
-    ui.label("Gallery").classes("start-section")
+    show_heading("Gallery").classes("start-section", remove="studio-section")
     with ui.element("div").classes("start-gallery"):
         for card in gallery_cards():
             _robot(page, card)
@@ -177,13 +178,14 @@ def _drop(page: WindowPage) -> None:
         _head("upload_file", "Import a drawing or scan")
         words = "Drop a file or click to choose one. You see its mesh and repairs first. A .zip opens a saved robot."
         ui.label(words).classes("start-small")
-        wrong = ui.label().classes("start-problem").props('data-testid="upload-wrong"')
+        wrong = ui.label().classes("start-problem").props('data-testid="upload-wrong" role="alert"')
         wrong.bind_visibility_from(wrong, "text", bool)
         ui.space()
         with ui.element("div").classes("start-kinds"):
             for kind in KINDS:
                 ui.label(kind).classes("start-kind")
         upload = ui.upload(max_file_size=MOST_BYTES, max_files=1, auto_upload=True).props('data-testid="upload"')
+        name_upload(upload, "File")
 
     def complain(words: str) -> None:
         if _rest(card):
@@ -209,7 +211,8 @@ def _drop(page: WindowPage) -> None:
     upload.on_rejected(lambda: complain(f"file refused. Import one file at a time, at most {MOST_BYTES // 10**6} MB"))
     pick = f"() => getElement({upload.id}).$refs.qRef.pickFiles()"
     card.on("click", js_handler=pick)
-    card.on("keydown.enter", js_handler=pick)
+    for key in ("enter", "space.prevent.stop"):
+        card.on(f"keydown.{key}", js_handler=pick)
 
 
 def _draw(page: WindowPage) -> None:
@@ -264,7 +267,7 @@ def _robot(page: WindowPage, card: Card) -> None:
 def _head(icon: str, words: str) -> None:
     with ui.element("div").classes("start-head"):
         ui.icon(icon)
-        ui.label(words)
+        show_heading(words).classes(remove="studio-section")
 
 
 VIEWS = {"shelf": shelf_view, "draft": draft_view, "outline": outline_view}  # each gives what shows it again

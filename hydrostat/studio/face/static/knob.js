@@ -18,7 +18,8 @@ const arc = (from, to, radius) => {
 export default /** @type {Component} */ ({
   template: `
     <svg viewBox="0 0 64 64" role="slider" tabindex="0" :aria-label="label" :aria-valuemin="least" :aria-valuemax="most"
-      :aria-valuenow="shown" :style="{ cursor: held === null ? 'grab' : 'grabbing', touchAction: 'none', outline: 'none' }"
+      :aria-valuenow="shown" :aria-valuetext="shown.toFixed(1) + ' mm'"
+      :style="{ cursor: held === null ? 'grab' : 'grabbing', touchAction: 'none', borderRadius: '50%' }"
       @pointerdown="grab" @pointermove="drag" @pointerup="letGo" @pointercancel="letGo" @dblclick="rest"
       @wheel.prevent="wheel" @keydown="key" @keyup="$emit('letgo')" @focus="focused = true" @blur="focused = false">
       <path :d="track" fill="none" stroke="var(--line)" stroke-width="4.5" stroke-linecap="round" />

@@ -4,7 +4,8 @@ const NEAR = 11; // pixels within which a click means a corner
 
 export default /** @type {Component} */ ({
   template: `
-    <svg class="outline-editor" :class="{faulty: fault, drawing: open}" tabindex="0" aria-label="Outline"
+    <svg class="outline-editor" :class="{faulty: fault, drawing: open}" tabindex="0" role="application" aria-label="Outline"
+         aria-roledescription="editor" :aria-description="spoken"
          @pointerdown="down" @pointermove="move" @pointerup="up" @pointercancel="up" @dblclick="twice" @wheel.prevent="zoom"
          @keydown="key" @contextmenu.prevent>
       <image v-if="behind" :href="behind.address" :x="px(behind.left)" :y="py(behind.top)" :width="behind.wide * scale"
@@ -48,6 +49,11 @@ export default /** @type {Component} */ ({
     clearTimeout(this.later);
   },
   computed: {
+    spoken() {
+      const count = this.loops.flat().length, corner = this.chosen && this.at(this.chosen);
+      const state = corner ? `Corner ${this.chosen[1] + 1} at ${corner[0]}, ${corner[1]} mm` : `${count} corners`;
+      return `${state}. N and P choose a corner, arrows move it, Space makes it round or sharp, Delete removes it.`;
+    },
     step() { return STEPS.find((step) => step * this.scale >= 9) || 1000; },
     shown() { return this.open ? [...this.loops, this.open] : this.loops; },
     body() { return this.loops.map((loop) => this.path(loop)).join(" "); },
@@ -209,6 +215,10 @@ export default /** @type {Component} */ ({
       if (this.open) return;
       const corner = this.cornerAt(event);
       if (!corner) return;
+      this.turn(corner);
+    },
+    /** Make a corner round, or sharp again. */
+    turn(corner) {
       this.remember(this.state());
       const smooth = !this.at(corner)[2], partner = this.partner(corner);
       this.at(corner)[2] = smooth;
@@ -222,9 +232,17 @@ export default /** @type {Component} */ ({
       else if (name === "enter") this.close();
       else if (name === "escape") { this.open = this.loops.length ? null : []; this.chosen = null; }
       else if (arrows[name] && this.chosen) this.nudge(arrows[name]);
+      else if (name === " " && this.chosen) this.turn(this.chosen);
+      else if ((name === "n" || name === "p") && !event.ctrlKey) this.chooseNext(name === "n" ? 1 : -1);
       else return;
       event.preventDefault();
       event.stopPropagation();
+    },
+    /** Choose the corner after the chosen one, or before it. */
+    chooseNext(step) {
+      const all = this.loops.flatMap((loop, l) => loop.map((_, c) => [l, c]));
+      const now = all.findIndex((corner) => same(corner, this.chosen));
+      this.chosen = all[now < 0 ? (step > 0 ? 0 : all.length - 1) : (now + step + all.length) % all.length] ?? null;
     },
     // changes
     at([l, c]) { return this.loops[l][c]; },

@@ -8,6 +8,9 @@ declare module "nicegui-scene" {
 interface Window {
   /** What tests may look at, while there is a view. */
   __app?: import("./view/probe.js").Probe;
+
+  /** NiceGUI's. */
+  emitEvent: (name: string) => void;
 }
 
 /** A Vue component as NiceGUI takes it: options, whose methods see its data as `this`. */

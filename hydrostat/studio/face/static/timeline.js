@@ -11,7 +11,8 @@ const STEPS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 30, 60, 120];
 
 export default /** @type {Component} */ ({
   template: `
-    <svg :height="height" width="100%" tabindex="0" aria-label="Timeline" style="display: block; outline: none; --head: color-mix(in oklab, #c8243f, white var(--lift, 0%));
+    <svg :height="height" width="100%" tabindex="0" role="slider" aria-label="Timeline" aria-valuemin="0" :aria-valuemax="seconds"
+      :aria-valuenow="time" :aria-valuetext="spoken" style="display: block; --head: color-mix(in oklab, #c8243f, white var(--lift, 0%));
       touch-action: none; user-select: none; font-size: 13px" @pointerdown="grab" @pointermove="drag" @pointerup="letGo"
       @pointercancel="letGo" @dblclick="$emit('add', { time: timeAt($event) })" @keydown="key">
       <rect :x="left" :y="ruler" :width="span" :height="height - ruler - 2" rx="6" fill="var(--room)" />
@@ -60,6 +61,10 @@ export default /** @type {Component} */ ({
   emits: ["seek", "choose", "move", "drop", "add"],
   data: () => ({ width: 600, held: null, clock: 0, height: HEIGHT, ruler: RULER, curves: CURVES, keyroom: KEYS, left: PAD }),
   computed: {
+    spoken() {
+      const key = this.keys[this.chosen];
+      return `${this.time.toFixed(2)} s${key ? `, keyframe ${this.chosen + 1} of ${this.keys.length}` : ""}`;
+    },
     span() {
       return Math.max(this.width - 2 * PAD, 50);
     },
@@ -211,9 +216,20 @@ export default /** @type {Component} */ ({
       this.word = null;
       this.told = performance.now();
     },
+    /** Choose the keyframe after the playhead, or with PageUp the one before it. */
+    next(event) {
+      const order = [...this.keys.keys()].sort((one, other) => this.keys[one].time - this.keys[other].time);
+      const late = (index) => this.keys[index].time - this.time;
+      const ahead = order.filter((index) => late(index) > 1e-3 && index !== this.chosen);
+      const behind = order.filter((index) => late(index) < -1e-3 && index !== this.chosen);
+      const index = event.key === "PageDown" ? ahead[0] : behind[behind.length - 1];
+      if (index !== undefined) this.$emit("choose", { index });
+      event.preventDefault();
+    },
     key(event) {
       const steps = { ArrowLeft: -0.05, ArrowRight: 0.05 };
       let time = null;
+      if (event.key === "PageUp" || event.key === "PageDown") return this.next(event);
       if (event.key in steps) time = this.time + steps[event.key] * (event.shiftKey ? 10 : 1);
       else if (event.key === "Home") time = 0;
       else if (event.key === "End") time = this.seconds;

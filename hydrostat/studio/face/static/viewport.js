@@ -4,14 +4,20 @@ import { View } from "hydrostat-view";
 
 const FILL = "position:absolute;inset:0;width:100%;height:100%;display:block;pointer-events:none";
 
+const ZOOM = 1.2; // by a key
+const TURN = 24; // by a key [pixels of a drag]
+
+let made = 0; // so many views were made on this page
+
 export default /** @type {Component} */ ({
   template: `
-    <div ref="root" tabindex="-1" role="img" aria-label="The body"
-         style="position:relative;width:100%;height:100%;overflow:hidden;touch-action:none;user-select:none;outline:none">
-      <canvas ref="under" style="${FILL}"></canvas>
-      <canvas ref="body" style="${FILL}"></canvas>
-      <canvas ref="over" style="${FILL}"></canvas>
-      <div v-if="failure" style="position:absolute;inset:0;display:grid;place-items:center;padding:24px;text-align:center">
+    <div ref="root" tabindex="0" role="application" aria-roledescription="view" aria-label="Robot view" :aria-describedby="id"
+         @keydown="key" style="position:relative;width:100%;height:100%;overflow:hidden;touch-action:none;user-select:none">
+      <canvas ref="under" aria-hidden="true" style="${FILL}"></canvas>
+      <canvas ref="body" aria-hidden="true" style="${FILL}"></canvas>
+      <canvas ref="over" aria-hidden="true" style="${FILL}"></canvas>
+      <p :id="id" class="studio-unseen" aria-live="polite">{{ words }}</p>
+      <div v-if="failure" role="alert" style="position:absolute;inset:0;display:grid;place-items:center;padding:24px;text-align:center">
         {{ failure }}</div>
       <div v-if="!connected && !failure" role="status"
            style="position:absolute;top:14px;left:50%;transform:translateX(-50%);padding:5px 14px;border-radius:14px;
@@ -23,9 +29,9 @@ export default /** @type {Component} */ ({
         {{ before === 1 ? "1 drag is" : before + " drags are" }} ahead of yours</div>
     </div>`,
 
-  props: { stream: String, palette: Object, dark: { default: null }, brush: Boolean },
+  props: { stream: String, palette: Object, dark: { default: null }, brush: Boolean, words: String },
 
-  data: () => ({ connected: true, met: false, failure: "", before: 0 }),
+  data: () => ({ id: `view-words-${++made}`, connected: true, met: false, failure: "", before: 0 }),
 
   mounted() {
     const { root, under, body, over } = this.$refs;
@@ -66,6 +72,22 @@ export default /** @type {Component} */ ({
       } else {
         this.$emit(name, value);
       }
+    },
+    /** Plus and minus zoom, arrows with Ctrl turn a body in space and shift a flat one. */
+    key(event) {
+      const view = this.view_;
+      const ways = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+      const zooms = { "+": 1 / ZOOM, "=": 1 / ZOOM, "-": ZOOM };
+      if (!view || event.target !== this.$refs.root) return;
+      if (event.key in zooms) view.camera.zoom(view.camera.width / 2, view.camera.height / 2, zooms[event.key]);
+      else if (event.ctrlKey && event.key in ways) {
+        const [dx, dy] = ways[event.key].map((way) => way * TURN);
+        if (view.camera.flat) view.camera.pan(dx, dy);
+        else view.camera.orbit(dx, dy);
+      } else return;
+      event.preventDefault();
+      event.stopPropagation();
+      view.mark("camera");
     },
     view(name) {
       this.view_?.look(name);

@@ -11,14 +11,14 @@ def test_what_is_held_is_listed_stored_and_let_go(starfish: Robot) -> None:
     async def act(desk: Desk) -> None:
         desk.go(StageName.POSE)
         poser = desk.session.poser
-        assert "No targets yet. Drag a point to add one." in desk.words
+        assert "No targets yet. Drag a point, or select a marker and press arrow keys." in desk.words
         assert not desk.one("pose-store").enabled
         at = next(marker.at for marker in starfish.markers if marker.name == "top")
         desk.session.grab("a", Hit(key="marker:top", rest=at, world=at))
         desk.session.drag("a", Hit(world=(at[0] + 0.01, at[1])))
         desk.session.release("a")
         desk.beat()
-        assert "No targets yet. Drag a point to add one." not in desk.words
+        assert "No targets yet. Drag a point, or select a marker and press arrow keys." not in desk.words
         await desk.choose("pose-name", "hello")
         await desk.press("pose-store")
         assert desk.robot.poses["hello"].targets == {"top": poser.held_points["top"].target}
