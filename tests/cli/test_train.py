@@ -43,7 +43,7 @@ def test_a_few_actions_are_judged_and_counted(run: Run, starfish: Path, tmp_path
         (["--task", "walk", "--actions", "hops"], 'actions must be one of gait, contractions, not "hops"'),
         (["--task", "walk", "--marker", "top"], "this task has no markers: leave it out"),
         (["--task", "twist"], "has nothing to move: give an [[obstacle]] a mass, or give an object (--object)"),
-        (["--task", "push", "--object", "egg:3mm"], 'unknown object "egg:3mm"'),
+        (["--task", "push", "--object", "egg:3mm"], '--object egg:3mm: unknown shape "egg"'),
         (["--task", "push", "--object", "sphere:9mm", "--at", "3"], "--at 3: 1 coordinate for a body with 2 axes"),
         (["--task", "push", "--at", "3,4"], "--at: needs --object"),
         (["--model", "none.model"], "none.model: there is no such file; name a file that hydrostat learn wrote"),
