@@ -102,6 +102,11 @@ class KitPlan:
         """True if the body is cast of silicone, which does not expand as foam does."""
         return self.work.mould is not None and self.work.mould.casting.expansion <= 1
 
+    @property
+    def poured(self) -> str:
+        """Word for the casting material of the body."""
+        return "silicone" if self.is_silicone else "foam"
+
     @cached_property
     def printed(self) -> tuple[Printed, ...]:
         """All pieces for a 3D printer."""

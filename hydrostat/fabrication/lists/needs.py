@@ -85,16 +85,22 @@ def _plush(plan: KitPlan, cloth: Cloth) -> list[Item]:
     ]
 
 
+def _cast_name(plan: KitPlan, foam: FoamNeeds) -> str:
+    """Name of the casting material of the body."""
+    return foam.material or plan.robot.body.material.name or "as the robot file says"
+
+
 def _foam(plan: KitPlan, foam: FoamNeeds) -> list[Item]:
-    kind = foam.material or plan.robot.body.material.name or "as the robot file says"
-    what = "silicone" if kind.startswith(_SILICONES) else "foam"
+    kind = _cast_name(plan, foam)
+    foams = not kind.startswith(_SILICONES)
+    what = "foam" if foams else "silicone"
     return [
         *(
             replace(_item(BillGroup.BODY, f"{what}, part {part}", kind, 1e-3 * mass, what, mass), is_poured=True)
             for part, mass in (("A", foam.part_a), ("B", foam.part_b))
         ),
         _item(BillGroup.BODY, "skin", "knitted glove or sleeve", 1.0, "skin"),
-        _item(BillGroup.BODY, "spray glue", "3M Super 77, between foam and skin", 1.0, "glue"),
+        _item(BillGroup.BODY, "spray glue", "3M Super 77, between foam and skin", float(foams), "glue"),
         _NEEDLES,
     ]
 
@@ -223,6 +229,7 @@ def _mould(plan: KitPlan) -> list[Item]:
     rod = f"wood or steel, for {foam.dowels} dowels of {dowel:g} mm"
     varnish = "shellac or acrylic varnish, two coats on the printed mold"
     sealed = bool(plan.work.printed) and not poured > 0
+    cast = "silicone" if _cast_name(plan, foam).startswith(_SILICONES) else "polyurethane foam"
     return [
         _item(BillGroup.MOULD, "silicone", litres, 1e-3 * poured, "silicone", poured),
         _plastic(BillGroup.MOULD, "PLA for the mold", plan.work.printed),
@@ -243,5 +250,5 @@ def _mould(plan: KitPlan) -> list[Item]:
             "clay",
         ),
         _item(BillGroup.MOULD, "sealer", varnish, float(sealed), "sealer"),
-        _item(BillGroup.MOULD, "release agent", "for polyurethane foam", 1.0, "release"),
+        _item(BillGroup.MOULD, "release agent", f"for {cast}", 1.0, "release"),
     ]

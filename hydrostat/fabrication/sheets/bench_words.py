@@ -69,7 +69,7 @@ def list_hazards(plan: KitPlan) -> list[str]:
         *(foam if mould is None or foam_expansion(mould) else []),
         *(plaster if mould is not None and mould.kind is MoldKind.SILICONE else []),
         "Silicone and release spray: use gloves and fresh air, no flame, no food vessels.",
-        "Spray adhesive outdoors, away from flames and motors.",
+        *([] if plan.is_silicone else ["Spray adhesive outdoors, away from flames and motors."]),
         f"Keep {_AWAY}",
         f"H{_STOP}",
         _SMALL,

@@ -1,4 +1,4 @@
-"""`mold_steps`, `skin_steps`: from the files of a mold to a robot of foam.
+"""`mold_steps`, `skin_steps`: from the files of a mold to a robot of foam or silicone.
 
 Times of cure are those of R52 and N5, all others are estimates.
 """
@@ -49,6 +49,14 @@ _POUR_SILICONE = (
 _OPEN = (
     "Slowly lift the halves apart along the arrow. Where the body sticks (hatched), squeeze it and roll it out. Trim "
     "flash, sprue and vents with scissors."
+)
+_GLUE_FOAM = (
+    "Spray the foam thinly with contact adhesive (3M Super 77), outdoors. "
+    "Pull on a knitted glove or sleeve, {}and press."
+)
+_SLIP_SILICONE = (
+    "Pull on a knitted glove or sleeve that fits tightly, {}and sew its opening closed around the body. Use no spray "
+    "adhesive: it does not hold on silicone."
 )
 _OPEN_FOAM = " Squeeze the body all over to open its cells."
 
@@ -131,8 +139,8 @@ def _printed_first(plan: KitPlan) -> tuple[AssemblyStep, ...]:
         AssemblyStep(
             "Seal the cavity",
             30,
-            "Sand the ridges of the layers. Brush on two coats of sealer or shellac: otherwise foam creeps between the "
-            "layers.",
+            "Sand the ridges of the layers. Brush on two coats of sealer or shellac: otherwise "
+            f"{plan.poured} creeps between the layers.",
             wait="1 h for each coat",
         ),
     )
@@ -199,22 +207,16 @@ def _closing(mould: Mold) -> str:
 
 
 def skin_steps(plan: KitPlan, lists: Lists) -> tuple[AssemblyStep, ...]:
-    """Steps from a body of foam to a robot."""
-    cables = len(plan.robot.cables)
+    """Steps from a cast body to a robot."""
+    cables, fixed = len(plan.robot.cables), _SLIP_SILICONE if plan.is_silicone else _GLUE_FOAM
+    ends = " Lead the end of each line out through it at the last point of the line; put the stopper on loosely."
     return (
         *(_cable_steps(plan, lists) if cables else ()),
         AssemblyStep(
             "Fix the skin",
             20,
-            "Spray the foam thinly with contact adhesive (3M Super 77), outdoors. Pull on a knitted glove or sleeve, "
-            + (
-                "align its marks, and press. Lead the end of each line out through it at the last point of the "
-                "line; put the "
-                "stopper on loosely."
-                if cables
-                else "and press."
-            ),
-            wait="15 min",
+            fixed.format("align its marks, " if cables else "") + (ends if cables else ""),
+            wait="" if plan.is_silicone else "15 min",
         ),
         *winch_steps(plan),
         *((tie_step(plan),) if cables else ()),
@@ -267,14 +269,14 @@ def _cable_steps(plan: KitPlan, lists: Lists) -> tuple[AssemblyStep, ...]:
         )
     ]
     if deep:
-        steps.append(_drawn_step(depths, deep, flat=plan.robot.body.mesh.dim == 2))
+        steps.append(_drawn_step(depths, deep, plan.poured, flat=plan.robot.body.mesh.dim == 2))
     if depths.sewn:
         steps.append(_sewn_step(depths, channel_ways(lists.stitching, len(plan.robot.cables)), tubes=tubes))
     return tuple(steps)
 
 
-def _drawn_step(depths: CableDepths, deep: list[str], *, flat: bool) -> AssemblyStep:
-    """Step that draws cables through the foam, of a flat body in the middle of its thickness."""
+def _drawn_step(depths: CableDepths, deep: list[str], poured: str, *, flat: bool) -> AssemblyStep:
+    """Step that draws cables through what was poured, of a flat body in the middle of its thickness."""
     pins = "points" if flat else "“skin” points"
     where = "in the middle of the thickness" if flat else "at the depth listed, under the pins"
     tubes = (
@@ -285,7 +287,7 @@ def _drawn_step(depths: CableDepths, deep: list[str], *, flat: bool) -> Assembly
     )
     laid = " Where a tube was laid, pull the line through it." if depths.laid else ""
     return AssemblyStep(
-        "Draw cables through the foam",
+        f"Draw cables through the {poured}",
         DRAW * len(deep),
         f"Draw {cables_text(deep)} before the skin is on. Pins at the {pins} of lists/stitching.csv show the way "
         f"(so do dents). Draw the line from point to point with a long needle, {where}."

@@ -104,8 +104,8 @@ def winch_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
             AssemblyStep(
                 "Put winches in",
                 10 * len(inside),
-                f"Push {marks_text(inside)} into {'its pocket' if len(inside) == 1 else 'their pockets'} in the foam. "
-                "Lead the wires out together; sew the skin around them.",
+                f"Push {marks_text(inside)} into {'its pocket' if len(inside) == 1 else 'their pockets'} in the "
+                f"{plan.poured}. Lead the wires out together; sew the skin around them.",
             )
         )
     if plan.rigid.seat_assembly is not None:

@@ -1,8 +1,5 @@
 """`all_steps`, `summary_rows`: the steps of a kit, and what building it asks of a person, on one page."""
 
-import re
-from dataclasses import replace
-
 from hydrostat.fabrication.cable_work import CableWork
 from hydrostat.fabrication.kit_options import Method
 from hydrostat.fabrication.kit_plan import KitPlan
@@ -16,22 +13,7 @@ from hydrostat.units import plural
 
 
 def all_steps(plan: KitPlan, lists: Lists) -> list[tuple[AssemblyStep, ...]]:
-    """The steps, page by page; those of a silicone body speak of silicone."""
-    pages = _pages(plan, lists)
-    if not plan.is_silicone:
-        return pages
-    named = ((re.compile(r"\bfoam\b"), "silicone"), (re.compile(r"\bFoam\b"), "Silicone"))
-    for pattern, word in named:
-        pages = [
-            tuple(
-                replace(step, title=pattern.sub(word, step.title), text=pattern.sub(word, step.text)) for step in page
-            )
-            for page in pages
-        ]
-    return pages
-
-
-def _pages(plan: KitPlan, lists: Lists) -> list[tuple[AssemblyStep, ...]]:
+    """The steps, page by page."""
     if plan.method is Method.PLUSH:
         return [plush_steps(plan)]
     if plan.method is Method.PRINT:
@@ -68,7 +50,7 @@ def find_difficulty(plan: KitPlan, lists: Lists, minutes: float) -> str:
     reasons = {
         "several days of work": 2 * (minutes > days),
         "more work than an afternoon": afternoon < minutes <= days,
-        f"{'silicone' if plan.is_silicone else 'foam'} to weigh and pour": plan.method is Method.FOAM,
+        f"{plan.poured} to weigh and pour": plan.method is Method.FOAM,
         "motors to wire pin by pin": lists.power is not None and not lists.power.servos,
     }
     level = ("easy", "medium", "medium", "hard", "hard")[sum(reasons.values())]

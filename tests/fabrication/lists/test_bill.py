@@ -152,6 +152,11 @@ def test_the_foam_that_is_poured_may_be_another_than_was_simulated() -> None:
     found = needs(given(robot, foam=foam))
     assert found["foam, part A"].specification == "flexfoam-it x"
     assert (found["foam, part A"].mass, found["foam, part B"].mass) == (30.0, 35.0)
+    assert "polyurethane" in found["release agent"].specification
+    cast = needs(given(robot, foam=replace(foam, material="ecoflex 00-30")))
+    assert cast["release agent"].specification == "for silicone"
+    assert "spray glue" in found
+    assert "spray glue" not in cast
 
 
 def test_a_printed_mould_needs_no_silicone() -> None:

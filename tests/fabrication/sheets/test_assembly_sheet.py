@@ -189,6 +189,9 @@ def test_a_body_of_silicone_is_not_told_of_foam(foam_sheet):
     text = words(assembly_sheet(*foam(mould=replace(given.plan.work.mould, casting=casting))))
     assert "isocyanate" not in text
     assert not re.search(r"\bfoam\b", text, re.IGNORECASE)
+    assert "contact adhesive" not in text
+    assert "does not hold on silicone" in text
+    assert "contact adhesive" in words(foam_sheet)
     assert "let the bubbles rise" in text
     assert "4 h at 25 °C" in text
     assert "egg mixer as long" in words(foam_sheet)
