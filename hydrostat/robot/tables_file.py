@@ -114,9 +114,13 @@ def _hint_at(what: str, line: str) -> str:
     """Fix for a line that is no TOML; empty if none is known."""
     if what == r"Illegal character '\n'":
         return '; a text on this line is not closed, " is missing'
-    if len(line) > 200:
+    if what == "Cannot overwrite a value":
+        return "; the key is there twice. Remove one"
+    if len(line) > 200 or not what.startswith(("Invalid value", "Expected newline")):
         return ""
     if bare := _BARE_TEXT.fullmatch(line):
+        if (small := bare[2].lower()) in ("true", "false", "inf", "nan"):
+            return f"; write {bare[1]} = {small}"
         return f'; write text in quotes: {bare[1]} = "{bare[2]}"'
     if after := _AFTER_TEXT.fullmatch(line):
         return f"; remove {units.quote(after[3].strip())} after the quotes: {after[1]} = {after[2]}"
