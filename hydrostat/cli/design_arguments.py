@@ -89,7 +89,7 @@ class DesignArguments:
         bool,
         typer.Option(
             "--front",
-            help="Also search with one winch fewer, one more, or pulling both ways. Takes 3 to 6 times as long.",
+            help="Also search with one winch fewer, one more, and pulling both ways. Takes 3 to 6 times as long.",
         ),
     ] = False
     symmetric: Annotated[
@@ -166,7 +166,7 @@ def parse_request(robot: "Robot", typed: DesignArguments, *, measured: Path | No
     from hydrostat.units import TIME
 
     winches = _winch_count(typed.winches)
-    method = None if typed.method is None else parse_choice(DesignMethod, typed.method, what="method")
+    method = None if typed.method is None else parse_choice(DesignMethod, typed.method, what="--method")
     given = {"winches": winches, "cables": typed.cables, "method": method}
     given = {name: value for name, value in given.items() if value is not None}
     poses = [_pose(name, robot) for name in typed.pose or ()] or list(robot.poses.values())

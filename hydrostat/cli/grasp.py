@@ -71,7 +71,7 @@ def grasp(
     Example: hydrostat grasp gallery:caging_gripper --pose close --object sphere:65mm --direction +z --out build/grasp
     """
     from hydrostat.files import replace_file
-    from hydrostat.grasp import PullOptions, pull_bands, pull_out
+    from hydrostat.grasp import PullOptions, find_overlaps, pull_bands, pull_out
     from hydrostat.plot import draw_pull, pull_frames, save_gif, save_png
     from hydrostat.units import LENGTH
 
@@ -82,22 +82,23 @@ def grasp(
     with progress_bar() as progress:
         closing, closed = _close_robot(loaded, pose, contractions(loaded, contract))
         placed = _place_object(loaded, held, at, closed)
-        with naming_option(f"--at {_numbers(placed)}"):
+        place = ", ".join(f"{1e3 * value:z.1f}" for value in placed.frame()[0])
+        for name in find_overlaps(loaded, placed):
+            print(
+                f'warning: the object overlaps obstacle "{name}". They have no contact in the pull. Move it with --at.'
+            )
+        with naming_option(f"object at ({place}) mm" if at is None else f"--at {at}"):
             found = pull_out(loaded, placed, closing, options, progress=progress)
-        cases = pull_bands(loaded, placed, closing, options, progress=progress) if bands else ()
+            cases = pull_bands(loaded, placed, closing, options, progress=progress) if bands else ()
         with result_folder(out) as folder:
             files = [replace_file(folder / "pull.csv", _table(found).encode())]
             files.append(save_png(draw_pull(loaded, found, cases), folder / "pull.png"))
             files.append(save_gif(loaded, pull_frames(found), folder / "pull.gif", step=0.1, progress=progress))
             if cases:
                 files.append(replace_file(folder / "bands.csv", _bands(cases).encode()))
-    _print(loaded, found, placed, cases)
+    print(f"object at ({place}) mm")
+    _print(found, cases)
     print("Wrote " + ", ".join(str(out / file.relative_to(folder)) for file in files))
-
-
-def _numbers(obstacle: "Obstacle") -> str:
-    """Center of an object as --at has it."""
-    return ",".join(f"{1e3 * value:.4g}" for value in obstacle.frame()[0])
 
 
 def _feeling(robot: "Robot") -> "Robot":
@@ -179,14 +180,8 @@ def _bands(cases: "tuple[PullCase, ...]") -> str:
     return "\n".join(lines) + "\n"
 
 
-def _print(robot: "Robot", pull: "PullOut", obstacle: "Obstacle", cases: "tuple[PullCase, ...]") -> None:
+def _print(pull: "PullOut", cases: "tuple[PullCase, ...]") -> None:
     """Print the highest force of the pull, and its changes by uncertain parameters."""
-    from hydrostat.grasp import find_overlaps
-
-    place = ", ".join(f"{1e3 * value:z.1f}" for value in obstacle.frame()[0])
-    print(f"object at ({place}) mm")
-    for name in find_overlaps(robot, obstacle):
-        print(f'warning: the object overlaps obstacle "{name}". They do not touch one another: move one, e.g. by --at')
     hardest = 1e3 * float(pull.moved[int(pull.forces.argmax())])
     words = "highest force so far" if pull.is_rising else "peak force"
     print(f"{words} {pull.peak:.3g} N at {hardest:.1f} mm, work {1e3 * pull.work:.3g} mJ; {pull.reason}")

@@ -307,11 +307,11 @@ def _print_made(made: "Robot", name: Path, lines: list[str], *, chosen: bool, fr
     large, small, thin = 0.8, 0.02, 0.001  # bodies beyond these may be in a wrong unit [m]
     if mesh.size < small:
         lines.append(
-            f"warning: --size: the body is {1e3 * mesh.size:.2g} mm long, less than any motor. Give e.g. 150mm"
+            f"warning: the body is {1e3 * mesh.size:.2g} mm long, shorter than any motor. Give e.g. --size 150mm"
         )
     if made.body.thickness is not None and made.body.thickness < thin:
         thickness = f"{1e3 * made.body.thickness:.2g} mm"
-        lines.append(f"warning: --thickness: {thickness} is less than a sheet of felt. Give e.g. 40mm")
+        lines.append(f"warning: the body is {thickness} thick, thinner than felt. Give e.g. --thickness 40mm")
     if mesh.size > large:
         lines.append(f"note: the body is {mesh.size:.2g} m long. For a smaller one, give --size in mm, e.g. 150mm")
     for line in lines:

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from hydrostat.fabrication import KitOptions
     from hydrostat.robot import Robot
 
+_SHORT = 600.0  # longest search that its time limit ended and that more time may help [s]: assumed
 _SILICONE = "mold of silicone"  # in reasons that a mold of silicone does not have
 
 
@@ -90,7 +91,8 @@ def design_remedy(
     """Command to continue with if the kit of a design would be rejected: an alternative, more time, or fewer winches.
 
     All keep to the budget [USD], for which `over` are the problems. It is `hydrostat check` if no kit can be made of
-    the body itself, or if fewer winches were what was asked for or what was found and rejected.
+    the body itself, or if fewer winches were what was asked for or what was found and rejected. More time is advised if
+    a limit of at most 10 min ended the search.
     """
     from hydrostat.design import kit_fits
 
@@ -105,8 +107,8 @@ def design_remedy(
         options = kit_options(network, budget)
         return kit_remedy(network.robot, out / "robot", out / "kit", options=options, reasons=reasons)
     asked = network.request
-    if not network.complete and asked.seconds is not None:
-        count = f"--winches {asked.winches} --cables {asked.cables} --time {4 * asked.seconds:.0f}s"
+    if not network.complete and asked.seconds is not None and asked.seconds <= _SHORT:
+        count = f"--winches {asked.winches} --cables {asked.cables} --time {4 * asked.seconds:g}s"
         return f"hydrostat design {quote(str(source))} {count}{spend} --out {quote(str(out))}"
     found = len(network.robot.winches), len(network.robot.cables)
     winches, cables = (max(number - 1, 1) for number in found)

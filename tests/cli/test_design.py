@@ -156,8 +156,11 @@ def test_a_design_that_no_kit_can_be_made_of_is_an_error(
     least = replace(found.robot, winches=found.robot.winches[:1], cables=found.robot.cables[:1])
     small = replace(found, robot=least, alternatives=())
     assert design_remedy(small, strip, out) == f"hydrostat check {out}/robot"
-    hasty = replace(found, alternatives=(), complete=False, request=replace(found.request, seconds=8.0))
-    assert " --time 32s --out " in design_remedy(hasty, strip, out)
+    hasty = replace(found, alternatives=(), complete=False)
+    for seconds, advised in ((8.0, " --time 32s --out "), (0.1, " --time 0.4s --out "), (2400.0, " --winches ")):
+        told = design_remedy(replace(hasty, request=replace(found.request, seconds=seconds)), strip, out)
+        assert advised in told
+        assert ("--time" in told) is ("--time" in advised)
     for fits, remedy in (
         (lambda network: network is other, f"hydrostat fabricate {out}/alternatives/02_1_winches_1_cables "),
         (lambda network: False, f"hydrostat design {strip} --winches 1 --cables 1 "),
@@ -431,7 +434,7 @@ BAD = {
     ("--winches", "many"): "--winches must be a whole number from 1 to 20 or \"auto\", not 'many'",
     ("--winches", "0"): '--winches must be a whole number from 1 to 20 or "auto", not 0',
     ("--winches", "²"): "--winches must be a whole number from 1 to 20 or \"auto\", not '²'",
-    ("--method", "magic"): 'method must be one of routes, trees, chang2018, not "magic"',
+    ("--method", "magic"): '--method must be one of routes, trees, chang2018, not "magic"',
     ("--time", "0 s"): "--time 0 s: must be above 0, e.g. 2 s",
     ("--method", "trees", "--time", "5 s"): '--method "trees" has no time limit. Use method "routes".',
     ("--method", "trees", "--fibres", "hairs"): '--fibres must be one of edges, elements, not "hairs"',

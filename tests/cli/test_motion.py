@@ -4,11 +4,13 @@ import csv
 import json
 from collections.abc import Callable
 from pathlib import Path
+from shutil import copytree
 
 import numpy as np
 import pytest
 
 import hydrostat as hs
+from hydrostat.robot import gallery_folder
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -108,3 +110,18 @@ def test_an_object_that_nothing_holds_is_told(run: Run, tmp_path: Path) -> None:
     assert (code, "warning: the robot does not hold the object" in out) == (0, True)
     rows = (tmp_path / "out" / "pull.csv").read_text().splitlines()[2:]
     assert all(float(row.split(",")[2]) == 0 for row in rows)
+
+
+@pytest.mark.parametrize(
+    ("at", "begins"), [((), "object at ("), (("--at", "500,500"), "--at 500,500: nothing touches")]
+)
+def test_at_is_named_where_it_was_typed(run: Run, tmp_path: Path, at: tuple[str, ...], begins: str) -> None:
+    """Oracle: a place that was computed is no option."""
+    options = ("--contract", "left=1mm", "--object", "sphere:3mm", "--direction", "+y")
+    robot = (gallery_folder("starfish") / "robot.toml").read_text()
+    folder = copytree(gallery_folder("starfish"), tmp_path / "robot")
+    obstacle = '\n[[obstacle]]\nname = "object"\nshape = "plane"\nat = [0, -400]\nnormal = [0, 1]\n'
+    (folder / "robot.toml").write_text(robot + ("" if at else obstacle))
+    code, _, err = run("grasp", folder, *options, *at, "--out", tmp_path / "out")
+    assert code == 2
+    assert err.startswith(f"hydrostat: error: {begins}")

@@ -65,5 +65,5 @@ def test_a_size_in_centimeters_is_named(run: Run, tmp_path: Path) -> None:
     assert "warning: body: no room for the motor" in out  # its 20 mm are too thin
     made = ("--from", tmp_path / "bar.svg", "--size", "15mm", "--thickness", "0.2mm")
     out = run("new", tmp_path / "tiny", *made)[1]
-    assert "warning: --size: the body is 15 mm long, less than any motor" in out
-    assert "warning: --thickness: 0.2 mm is less than a sheet of felt" in out
+    assert "warning: the body is 15 mm long, shorter than any motor. Give e.g. --size 150mm" in out
+    assert "warning: the body is 0.2 mm thick, thinner than felt. Give e.g. --thickness 40mm" in out

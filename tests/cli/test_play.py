@@ -1,7 +1,9 @@
 """`hydrostat play`. Oracles: exit codes, a clock that waits for nobody, real signals, and what each line says."""
 
+import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -17,7 +19,7 @@ from own_time import PROGRAM, run_in_own_time
 from hydrostat.cli.play_camera import require_rest
 from hydrostat.control import Motors, SimulatedLink
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.robot import Winch, gallery_folder
+from hydrostat.robot import Winch, gallery_folder, load_robot, robot_hash
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -55,6 +57,17 @@ def test_it_plays_on_emulated_motors(starfish: Path, wave: Path) -> None:
     places = [float(word) for word in re.findall(r"(-?[0-9.]+) mm", played)]
     assert places == pytest.approx([0.0, 3.0, 0.0], abs=0.4)
     assert [line.rpartition(" s: ")[2] for line in lines[-3:-1]] == ["stopped", "closed"], "and by nobody's hand"
+
+
+@pytest.mark.slow
+def test_it_emulates_the_motor_of_the_design(starfish: Path, wave: Path, tmp_path: Path) -> None:
+    """Oracle: the motor in score.json next to a robot that names none."""
+    robot = shutil.copytree(starfish, tmp_path / "robot")
+    card = {"robot": robot_hash(load_robot(robot)), "alternatives": [], "motor": "xc330"}
+    (tmp_path / "score.json").write_text(json.dumps(card))
+    code, out, err = run_in_own_time("play", robot, wave, "--motors", "emulated")
+    assert (code, err) == (0, "")
+    assert 'emulated: motors are XC330-M288 (motor = "xc330" of its design)' in out
 
 
 @pytest.mark.parametrize(
