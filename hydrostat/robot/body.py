@@ -72,7 +72,7 @@ class Body:
         make_member(self, "elements", ElementKind)
         make_member(self, "plane", Plane)
         if self.plane is Plane.STRESS and self.mesh.dim == 3:
-            raise InputError('plane = "stress" is for flat bodies; remove it')
+            raise InputError("plane is only for flat bodies; remove it")
         if self.plane is Plane.STRESS and self.volume is Volume.PATCH:
             raise InputError('volume = "patch" is for plane strain; plane stress does not lock. Remove volume or plane')
         if (self.elements is ElementKind.QUADRATIC) != (self.mesh.quadratic is not None):

@@ -267,8 +267,6 @@ class RobotReader(TablesFile):
             grading = self.at("body.grading", lambda: Grading(content=content, file=entry.grading))
             body = self.at("body.grading", lambda: replace(body, grading=grading))
         if entry.plane is not None:
-            if body.mesh.dim == 3:
-                self.fail("body.plane", "is for flat bodies; remove it")
             body = self.at("body", partial(replace, body, plane=entry.plane))
         kind = entry.elements
         return body if kind is None else self.at("body.elements", lambda: body.with_elements(kind))

@@ -139,7 +139,7 @@ def test_load_save_load(extra: str, tmp_path: Path) -> None:
     [
         ('element_size = "15 mm"\n', "", 'line 4: body: the key "element_size" is missing; a body from a surface'),
         ('"15 mm"', '"15 mm"\nthickness = "3 mm"', "line 7: body.thickness is only for flat bodies; remove it"),
-        ('"15 mm"', '"15 mm"\nplane = "strain"', "line 7: body.plane: is for flat bodies; remove it"),
+        ('"15 mm"', '"15 mm"\nplane = "stress"', "line 7: body.plane is only for flat bodies; remove it"),
         ('"15 mm"', '"300 mm"', "line 6: body.element_size: elements of 300 mm are too large for a body of 72 cm^3"),
         ('"15 mm"', '"0.1 mm"', "line 6: body.element_size: elements of 0.1 mm would be about "),
         ('"15 mm"', '"0 mm"', "line 6: body.element_size must be finite and above 0, not 0 mm"),
