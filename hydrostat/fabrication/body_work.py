@@ -33,7 +33,7 @@ from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import CableSide, Mount, Robot
 from hydrostat.units import plural
 
-MANY_PIECES = 40  # more pieces of a mold than that are a warning: a judgement, each is some hours on a printer
+MANY_PIECES = 40  # more pieces of a mold than that are a warning: a judgment, each is some hours on a printer
 
 
 def foam_work(robot: Robot, options: KitOptions, units: Iterable[WinchUnit]) -> BodyWork:
@@ -85,7 +85,7 @@ def _inside(robot: Robot) -> tuple[str, ...]:
 def _effort(printed: tuple[Printed, ...]) -> tuple[str, ...]:
     """Return a warning if a mold takes much printing."""
     pieces, mass = sum(part.count for part in printed), sum(part.count * part.mass for part in printed)
-    # more plastic for a mold than that is a warning [g]: five of the usual spools, a judgement too
+    # more plastic for a mold than that is a warning [g]: five of the usual spools, a judgment too
     much_plastic = 5e3
     if pieces <= MANY_PIECES and mass <= much_plastic:
         return ()

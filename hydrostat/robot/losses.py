@@ -6,10 +6,10 @@ _ALLARD = "J. F. Allard, N. Atalla, Propagation of Sound in Porous Media, 2009, 
 _LCE = "Impact damping and vibration attenuation in nematic liquid crystal elastomers, Nature Communications 12, 2021"
 _SILICONE = (
     0.1,
-    "assumed, because we found none: the maximum of natural rubber, 0.02 to 0.1 (from a page without a source)",
+    "assumed, as no source was found: the maximum of natural rubber, 0.02 to 0.1 (from a page without a source)",
 )
 _CASTABLE = 0.1, "assumed: that of polyurethane foam"
-_TPU = 0.1, "assumed, because we found none"
+_TPU = 0.1, "assumed, as no source was found"
 
 LOSSES = MappingProxyType(
     {

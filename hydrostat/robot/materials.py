@@ -110,9 +110,9 @@ _TABLE = (
         density=40,
         largest_stretch=1.5,
         largest_squeeze=FOAM_SQUEEZE,
-        source="assumed: loosely stuffed toy filling in a felt skin; the thesis gives no value",
+        source="assumed: loosely stuffed toy filling in a felt skin; Chang (2018) gives no value",
         note=(
-            "We found no measured modulus of a stuffed body. Loose filling has no fixed modulus: its thickness under a"
+            "No measured modulus of a stuffed body was found. Loose filling has no fixed modulus: its thickness under a"
             " pressure p falls as a power of p, so it stiffens from almost nothing as it is stuffed tighter. A soft"
             " cushion has 30 kPa; a tightly stuffed toy may have several times that. Poses reached by cables hardly"
             " depend on this modulus; tensions are proportional to it."
@@ -138,7 +138,7 @@ _TABLE = (
         ),
         note=(
             "Fitted to fast and small motion. Under slow and large compression the foam is softer, because its walls"
-            " buckle. This is the only modulus of this series that we found."
+            " buckle. No source for another modulus of this series was found."
         ),
     ),
     _castable_foam(

@@ -40,7 +40,7 @@ from hydrostat.fabrication.lists.stitching import (
 from hydrostat.fabrication.lists.table import Table, number_column, text_column
 from hydrostat.simulation import Simulation
 
-_MOULD_COST = "For hands of foam the thesis gives about 100 USD for a silicone mold and a few dollars for each core"
+_MOULD_COST = "For hands of foam Chang (2018) gives about 100 USD for a silicone mold and a few dollars for each core"
 
 
 @dataclass(frozen=True, kw_only=True)

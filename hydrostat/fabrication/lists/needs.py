@@ -71,7 +71,7 @@ def _plush(plan: KitPlan, cloth: Cloth) -> list[Item]:
     spool = 100e3  # thread on a spool [mm]
     return [
         _item(BillGroup.BODY, "felt", felt, 1e-6 * cloth.felt, "felt"),
-        _item(BillGroup.BODY, "fibre filling", filling, 1e-3 * mass, "filling", mass),
+        _item(BillGroup.BODY, "fiber filling", filling, 1e-3 * mass, "filling", mass),
         _item(
             BillGroup.BODY,
             "all-purpose thread",
@@ -129,7 +129,7 @@ def _insert_item(insert: Insert) -> Item:
 
 def _cables(plan: KitPlan, line: FishingLine, cuts: tuple[CableCut, ...], tubes: tuple[SheathCut, ...]) -> list[Item]:
     length, tube = sum(cut.cut_length for cut in cuts), sum(cut.length for cut in tubes)
-    # density of the fibres of braided line [g/mm^3] (gel-spun polyethylene floats: 0.97 g/cm^3)
+    # density of the fibers of braided line [g/mm^3] (gel-spun polyethylene floats: 0.97 g/cm^3)
     polyethylene = 0.97e-3
     thread = polyethylene * math.pi / 4 * line.diameter**2 * length
     ring = math.pi / 4 * (plan.options.parts.tube**2 - plan.options.parts.bore**2)
@@ -223,7 +223,7 @@ def _mould(plan: KitPlan) -> list[Item]:
     if foam is None:
         return []
     poured = foam.silicone_mass
-    litres = f"for molds, Mold Max 30 or alike, both parts, {1e-6 * foam.silicone:.2f} l"
+    litres = f"for molds, Mold Max 30 or alike, both parts, {1e-6 * foam.silicone:.2f} L"
     nut = "and two washers, longer than the closed mold is thick; or threaded rod"
     dowel = 15.0  # length of a dowel [mm]: a little less than the holes in both pieces are deep
     rod = f"wood or steel, for {foam.dowels} dowels of {dowel:g} mm"
@@ -245,7 +245,7 @@ def _mould(plan: KitPlan) -> list[Item]:
         _item(
             BillGroup.MOULD,
             "modeling clay",
-            "without sulphur, seals the frames of the silicone",
+            "without sulfur, seals the frames of the silicone",
             float(poured > 0),
             "clay",
         ),

@@ -8,8 +8,7 @@ from hydrostat.robot import MATERIALS, Material
 SILICONE_PRICE = 40.0  # price of a kilogram of Mold Max 30 [USD]: not measured, check yours
 _PLATINUM = ("ecoflex", "dragon skin")  # silicones that are cured by platinum
 
-# R52, N2, N5
-THESIS = "thesis on cable-driven soft robots"
+THESIS = "Chang (2018)"  # R52, N2, N5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -113,7 +112,7 @@ def _mix(name: str, volume: float, density: float, share: float, ratio: str) -> 
 
 def _ratio_in_words(material: Material) -> str:
     if _is_foam(material):
-        return "equal parts are assumed, because we found no source: use the ratio printed on your cans"
+        return "equal parts are assumed, as no source was found: use the ratio printed on your cans"
     return "equal parts A and B: use the ratio printed on your cans"
 
 
@@ -123,12 +122,12 @@ def _times(material: Material, *, silicone: bool) -> tuple[tuple[str, str], ...]
         "ecoflex 00-30": f"4 h at 25 C in the mold; out of it, as PLA softens near 60 C, 2 h at 80 C and 1 h at 100 C "
         f"({THESIS})",
     }
-    body = (f"{material.name} cures", cures.get(material.name, "as the tin says; no source was found"))
+    body = (f"{material.name} cures", cures.get(material.name, "as your cans say; no source was found"))
     if not silicone:
         return (body,)
     mould = (
         ("mold max 30 cures, each of two pours", f"24 h at room temperature, or 6 h at 60 C ({THESIS})"),
-        ("instead of a printed positive: alginate round a model", f"less than 5 min ({THESIS})"),
+        ("instead of a printed positive: alginate around a model", f"less than 5 min ({THESIS})"),
         ("and plaster of Paris poured into it", f"several hours ({THESIS})"),
     )
     return (*mould, body)
@@ -151,10 +150,12 @@ def _casting_notes(foams: bool, *, silicone: bool) -> tuple[str, ...]:
             "foam comes out denser. Open holes let the pressure of the rising foam out (Smooth-On's gallery: "
             "FlexFoam-iT! X cast in Mold Max 30)."
         )
-        notes.append("Pot life of the foam: no source was found; pour at once, and read your tins before you begin.")
+        notes.append(
+            "Pot life of the foam: no source was found; pour immediately, and read your cans before you begin."
+        )
     if silicone:
         notes.append(
-            f"Silicone at {SILICONE_PRICE:g} USD a kilogram: measured on none, check yours; the thesis paid about "
+            f"Silicone at {SILICONE_PRICE:g} USD a kilogram: measured on none, check yours; {THESIS} paid about "
             "100 USD for a mold."
         )
     return tuple(notes)

@@ -21,7 +21,7 @@ class Halves:
     lower: Manifold  # half that stays
     cavity: Manifold  # the body less pockets and dents: what the foam becomes
     poured: Manifold  # all that is filled with foam: the cavity with sprue and vents, as far as they are in the block
-    # volume of each part [mm^3], see `Mould.volumes`; each is measured on its own solid, none is a remainder
+    # volume of each part [mm^3], see `Mold.volumes`; each is measured on its own solid, none is a remainder
     volumes: dict[str, float]
 
 

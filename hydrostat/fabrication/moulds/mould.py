@@ -183,7 +183,7 @@ def _assembly(name: str, halves: Halves, frames: Frames | None, positive: Positi
 UNNOTICED = 0.05  # share of undercut that nobody notices: foam is pressed past it
 
 TOLERATED = 0.3
-"""Share of undercut beyond which a rigid mold is a problem. A judgement, measured on none: soft foam is squeezed to
+"""Share of undercut beyond which a rigid mold is a problem. A judgment, measured on none: soft foam is squeezed to
 less than half its thickness as it is drawn out, and comes back; but what grips all round tears it."""
 
 

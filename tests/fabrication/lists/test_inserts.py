@@ -37,9 +37,9 @@ def test_what_is_put_in_is_bought_listed_and_told() -> None:
     body, (pad, filling) = robot.body, (float(robot.body.element_masses[one].sum()) for one in _own(robot))
     bought = needs(plan)
     assert filling_mass(plan) == pytest.approx(1e3 * filling)
-    assert bought["fibre filling"].mass == pytest.approx(1e3 * filling)
+    assert bought["fiber filling"].mass == pytest.approx(1e3 * filling)
     assert sum(
-        item.mass or 0.0 for name, item in bought.items() if name.startswith(("fibre", "part"))
+        item.mass or 0.0 for name, item in bought.items() if name.startswith(("fiber", "part"))
     ) == pytest.approx(1e3 * body.mass)
     assert bought["part P2 pad"].quantity == pytest.approx(pad)
     assert bought["rod R1 wire"].quantity == pytest.approx(0.1)  # 50 mm twice
