@@ -84,6 +84,8 @@ class Stream:
 
     def _handle_event(self, name: str, screen: "_Screen", text: str) -> None:
         message = read_message(text)
+        if isinstance(message, Pointer) and message.kind == "grab":
+            screen.fresh.set()  # a refused grab is answered too, by the latest picture
         if isinstance(message, Seen):
             screen.saw(message.count)
         elif screen.watching:

@@ -2,19 +2,19 @@
 
 const SOONEST = 200;
 const LATEST = 3000;
-const SILENT = 10000; // a grab is answered sooner, or the other end sleeps or is out of reach
+const SILENT = 10000; // the server answers each grab sooner, unless it sleeps or is out of reach
 
 export class Link {
   /**
    * @param {string} path of the websocket, such as "/stream"
    * @param {(buffer: ArrayBuffer) => void} receive is handed each message
-   * @param {(connected: boolean) => void} tell is told when the way opens or closes
+   * @param {(connected: boolean) => void} onChange is called when the connection opens or closes
    */
-  constructor(path, receive, tell) {
+  constructor(path, receive, onChange) {
     this.url = new URL(path, window.location.href);
     this.url.protocol = this.url.protocol === "https:" ? "wss:" : "ws:";
     this.receive = receive;
-    this.tell = tell;
+    this.onChange = onChange;
     this.wait = SOONEST;
     this.open();
   }
@@ -29,30 +29,30 @@ export class Link {
     socket.binaryType = "arraybuffer";
     socket.onopen = () => {
       this.wait = SOONEST;
-      this.tell(true);
+      this.onChange(true);
     };
     socket.onmessage = (event) => {
-      this.hear();
+      this.noteAnswer();
       if (event.data instanceof ArrayBuffer) this.receive(event.data);
     };
     socket.onclose = () => this.retry();
   }
 
-  hear() {
-    clearTimeout(this.silence);
-    this.silence = undefined;
+  noteAnswer() {
+    clearTimeout(this.silentTimer);
+    this.silentTimer = undefined;
   }
 
   retry() {
-    this.hear();
+    this.noteAnswer();
     if (this.ended) return;
-    this.tell(false);
+    this.onChange(false);
     this.timer = setTimeout(() => this.open(), this.wait);
     this.wait = Math.min(LATEST, 1.6 * this.wait);
   }
 
-  /** Leave a way whose other end says nothing; a browser alone notices that after minutes. */
-  leave() {
+  /** Close a connection that sends no answer, and open it again; a browser alone notices after minutes. */
+  reconnect() {
     this.socket.onopen = this.socket.onmessage = this.socket.onclose = null;
     this.socket.close();
     this.retry();
@@ -62,13 +62,13 @@ export class Link {
   send(message) {
     if (!this.connected) return;
     this.socket.send(JSON.stringify(message));
-    if (message.kind === "grab") this.silence ??= setTimeout(() => this.leave(), SILENT);
+    if (message.kind === "grab") this.silentTimer ??= setTimeout(() => this.reconnect(), SILENT);
   }
 
   close() {
     this.ended = true;
     clearTimeout(this.timer);
-    this.hear();
+    this.noteAnswer();
     this.socket.close();
   }
 }
