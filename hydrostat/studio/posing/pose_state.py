@@ -265,7 +265,7 @@ class Trail:
 
     def note(self, label: str, held: Mapping[str, HeldPoint]) -> None:
         """Note that something is done now to what was held; nudges in a row of one point are one step."""
-        if label.startswith("nudge ") and label == self.undo_label:
+        if label.startswith("nudge ") and label == self.undo_label and not self._future:
             return
         self._past.append(_Step(label=label, work=self._document.work, held=held))
         most_steps = 200  # so many drags can be undone

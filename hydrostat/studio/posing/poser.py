@@ -191,7 +191,7 @@ class Poser(Stage):
             self.clear(self._chosen)
         elif name == "g" and self._chosen:
             self._armed = self._chosen
-        elif self._chosen and (arrow := parse_arrow(name)) is not None:
+        elif (arrow := parse_arrow(name)) is not None and self._fit().find_name(self._chosen):
             self._nudge(*arrow)
         elif name == "escape":
             self._chosen = self._armed = ""

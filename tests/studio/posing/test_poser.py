@@ -315,3 +315,18 @@ def test_arrows_move_the_chosen_target_in_one_step_to_undo(poser: Poser, starfis
     assert not poser.held_points
     poser.redo()
     assert set(poser.held_points) == {"right"}
+    poser.grab(Hit(key="marker:top", world=at_of(starfish, "top")))
+    poser.drag(Hit(key="marker:top", world=(0.0, 0.2)))
+    poser.release()
+    poser.undo()
+    poser.choose("right")
+    poser.key("arrowup")
+    assert poser.redo_label == "", "what was undone is on another line"
+
+
+def test_arrows_leave_a_point_that_is_grabbed_but_not_held(poser: Poser, starfish: Robot) -> None:
+    place = tuple(starfish.body.mesh.nodes.mean(axis=0))
+    assert poser.grab(Hit(key="body", rest=place, world=place))
+    assert poser.chosen_name
+    assert not poser.held_points
+    assert not poser.key("arrowup")
