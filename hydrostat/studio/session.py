@@ -243,7 +243,7 @@ class Session:
             self.document.is_locked = on
         self.bell.ring(Topic.LOCK, Topic.SHAPE)
 
-    def receive(self, work: Work, *, deed: str = "handed out") -> None:
+    def receive(self, work: Work, *, verb: str = "hand out", past: str = "handed out") -> None:
         """Show a robot that a teacher hands out, or gives back; one step to undo where a robot is open."""
         with self._lock:
             self._let_go()
@@ -251,14 +251,15 @@ class Session:
             try:
                 if self.document.is_open:
                     parts = {"robot": work.robot, "timeline": work.timeline, "wishes": work.wishes}
-                    self.document.change(f"{deed} {work.robot.name}", **parts)
+                    self.document.change(f"{verb} {work.robot.name}", **parts)
                 else:
                     self.document.open(work)
             finally:
                 self.document.is_locked = locked
         if self.stage is StageName.START:
             self.go(StageName.POSE)
-        self.tell(f"your teacher {deed} {work.robot.name}. Undo brings your robot back")
+        undo = ". Undo brings your robot back" if self.document.undo_label else ""
+        self.tell(f"your teacher {past} {work.robot.name}{undo}")
 
     def save(self, folder: Path | None = None) -> None:
         """Save the robot where it was, or in another folder (InputError: it has none yet, or cannot be written)."""

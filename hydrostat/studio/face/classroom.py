@@ -43,11 +43,11 @@ class Classroom:
         """Show a robot, with the text of its robot.toml, in all rooms, now and later; each pupil can undo it."""
         self.rooms.first = work, text
         for room in self.rooms.list_rooms():
-            _give(room, work, "handed out")
+            _give(room, work)
 
     def give_back(self, room: Room, left: RecoveredWork) -> None:
         """Show work of an earlier lesson in a room; the pupil can undo it (InputError: it cannot be read)."""
-        _give(room, Work.open(left.folder / "work"), "gave back")
+        _give(room, Work.open(left.folder / "work"), verb="give back", past="gave back")
 
     def pack(self, *, kits: bool = False, pages: bool = False) -> None:
         """Begin to pack all robots as one zip (InputError: it is being packed, or there is no robot)."""
@@ -66,8 +66,9 @@ class Classroom:
         self.made = made
 
 
-def _give(room: Room, work: Work, deed: str) -> None:
+def _give(room: Room, work: Work, *, verb: str = "hand out", past: str = "handed out") -> None:
     """Show a robot in a room, and set a copy of the pupil's own aside, as undo ends with the studio."""
     with suppress(OSError, HydrostatError):  # of a full disk, autosave tells the pupil
         room.session.starter.autosave.set_aside()
-    room.session.receive(work, deed=deed)
+    room.session.receive(work, verb=verb, past=past)
+    room.session.starter.autosave.note_received()

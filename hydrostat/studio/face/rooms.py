@@ -119,7 +119,11 @@ class Rooms:
     def list_earlier(self) -> list[RecoveredWork]:
         """Work of earlier lessons, or that a hand-out replaced, the newest first; none of it is shown in a room."""
         home = None if self._state is None else self._state / "rooms"
-        return [] if home is None or not home.is_dir() else find_left(room / "work" for room in home.iterdir())
+        if home is None or not home.is_dir():
+            return []
+        return find_left(
+            (room / "work" for room in home.iterdir()), clean=False
+        )  # rooms that are open have folders here
 
     def enter(self, key: str = "", *, address: str = "", name: str = "", visit: bool = False) -> Room:
         """The room of a key, made where there is none yet.
@@ -143,8 +147,9 @@ class Rooms:
             if room is None:
                 self._make_way(address)
                 session = self._session(key)
-                room = self._rooms[key] = Room(key, session, address, turns=self._turns)
-                self.rename(room, session.starter.autosave.owner or name or "Pupil")
+                room = Room(key, session, address, turns=self._turns)
+                self._name_first(room, name)
+                self._rooms[key] = room
                 if self._open:
                     room.pulse.start()
             room.seen, room.visited = time.monotonic(), room.visited or visit
@@ -154,6 +159,16 @@ class Rooms:
         """Return the room of a watch key; None if there is none, or nobody has opened it yet."""
         rooms = [self._only] if self._only is not None else list(self._rooms.values())
         return next((room for room in rooms if room.watch_key == key), None)
+
+    def _name_first(self, room: Room, typed: str) -> None:
+        """Give a new room the nickname stored with its work, else the typed one, else "Pupil", which is not stored."""
+        autosave = room.session.starter.autosave
+        for name in (autosave.owner, typed):
+            with suppress(InputError):  # it is empty, or its file is damaged
+                self.rename(room, name)
+                return
+        self.rename(room, "Pupil")
+        autosave.owner = ""
 
     def _session(self, key: str) -> Session:
         name = sha256(key.encode()).hexdigest()[:24]

@@ -86,7 +86,7 @@ class _TeacherPage:
         """Do something in a thread, then say that it is done; what was wrong is told."""
         try:
             await run.io_bound(action, *arguments)
-        except HydrostatError as error:
+        except (HydrostatError, OSError) as error:
             self.tell(str(error), Tone.BAD)
         else:
             self.tell(done, Tone.GOOD)
@@ -113,7 +113,11 @@ class _TeacherPage:
     async def give_back(self, room: Room) -> None:
         """Let the teacher choose a robot of an earlier lesson for a pupil; own ones come first."""
         most, own = 200, room.name.casefold()
-        earlier = await run.io_bound(self._class.rooms.list_earlier) or []
+        try:
+            earlier = await run.io_bound(self._class.rooms.list_earlier) or []
+        except OSError as error:
+            self.tell(str(error), Tone.BAD)
+            return
         if not earlier:
             self.tell("No earlier robots on this laptop")
             return

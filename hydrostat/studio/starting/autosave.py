@@ -22,6 +22,7 @@ from hydrostat.project import Work, text_of
 from hydrostat.studio.document import Document
 
 LOCK = "lock"
+_LOCKING = Lock()  # held while a folder is made and locked, or looked at, as rooms of a class share a process
 DESIGNS, LARGEST = "designs.json", 20_000_000  # networks that were found; the file may have this many bytes
 
 
@@ -31,9 +32,10 @@ class HeldFolder:
     def __init__(self, parent: Path) -> None:
         """Make it (OSError: it cannot be made)."""
         self.path = parent / f"{os.getpid()}-{token_hex(4)}"  # of the folder
-        self.path.mkdir(parents=True)
-        self._file: IO[bytes] = (self.path / LOCK).open("wb")
-        lock_file(self._file)
+        with _LOCKING:
+            self.path.mkdir(parents=True)
+            self._file: IO[bytes] = (self.path / LOCK).open("wb")
+            lock_file(self._file)
 
     def remove(self) -> None:
         """Remove the folder with all that is in it."""
@@ -60,6 +62,7 @@ def is_held(folder: Path) -> bool:
 QUIET_TIME = 2.0  # work is kept when nothing has changed for so long [s]
 LONGEST = 5.0  # and so often while changes go on [s]
 AGAIN = 10.0  # what could not be written is tried again after so long [s]
+MOST_ASIDE = 10  # copies of a room that a teacher's robots replaced; the oldest goes first
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,6 +104,7 @@ class Autosave:
         self._changed = self._asked = 0.0
         self.problem = ""  # why the work cannot be kept, a line; "" if it can
         self._count = 0
+        self._received: Work | None = None
         self._writer: Thread | None = None
         self._lock = Lock()
 
@@ -134,12 +138,12 @@ class Autosave:
 
     def find_recovered(self) -> list[RecoveredWork]:
         """Return the work recovered from studios that no longer run, the newest first."""
-        if self._folder is None or not self._folder.is_dir():
-            return []
-        return find_left([self._folder])
+        return [] if self._folder is None else find_left([self._folder])
 
     def set_aside(self) -> None:
         """Keep a copy of the work that later work does not replace; Start offers it. Nothing of an untouched robot.
+
+        Only the newest `MOST_ASIDE` are kept.
 
         Raises:
             OSError: it cannot be written.
@@ -148,11 +152,19 @@ class Autosave:
             state = self._state()
             if self._folder is None or not self._document.is_open or self._is_over(state):
                 return
+            if self._document.work is self._received:
+                return
             kept = HeldFolder(self._folder)
             try:
                 self._write_copy(kept.path / "1", self._document.work, state[2])
             finally:
                 kept.let_go()
+        for left in self.find_recovered()[MOST_ASIDE:]:
+            self.forget(left)
+
+    def note_received(self) -> None:
+        """Note that the work as it is now is a teacher's: `set_aside` keeps no copy until it is changed."""
+        self._received = self._document.work
 
     def restore(self, left: RecoveredWork) -> None:
         """Open what was left; it is kept on as work of this studio (InputError: it cannot be read any more)."""
@@ -233,22 +245,33 @@ class Autosave:
             self._held = None
 
 
-def find_left(folders: Iterable[Path]) -> list[RecoveredWork]:
-    """Return the work that no living studio holds in such folders, the newest first."""
-    homes = [home for folder in folders if folder.is_dir() for home in folder.iterdir()]
-    found = [_left_in(home) for home in homes if home.is_dir() and not is_held(home)]
+def find_left(folders: Iterable[Path], *, clean: bool = True) -> list[RecoveredWork]:
+    """Return the work that no living studio holds in such folders, the newest first; clean: remove empty ones."""
+    found = [_left_in(home, clean) for folder in folders for home in _list_folders(folder)]
     return sorted((left for left in found if left is not None), key=lambda left: left.time, reverse=True)
 
 
-def _left_in(folder: Path) -> RecoveredWork | None:
-    """The newest whole copy in the folder of a studio that is gone; one without any is removed."""
-    numbers = sorted((path for path in folder.iterdir() if path.name.isdecimal()), key=lambda path: int(path.name))
-    for path in reversed(numbers):
-        try:
-            return _read(path)
-        except (OSError, ValueError, KeyError, TypeError, InputError):
-            continue
-    rmtree(folder, ignore_errors=True)
+def _list_folders(folder: Path) -> list[Path]:
+    """Folders in a folder; none if it is missing or has just been removed."""
+    try:
+        return [path for path in folder.iterdir() if path.is_dir()]
+    except OSError:
+        return []
+
+
+def _left_in(folder: Path, clean: bool) -> RecoveredWork | None:
+    """The newest whole copy in the folder of a studio that is gone; clean: one without any is removed."""
+    with _LOCKING:
+        if is_held(folder):
+            return None
+        numbers = [path for path in _list_folders(folder) if path.name.isdecimal()]
+        for path in sorted(numbers, key=lambda path: int(path.name), reverse=True):
+            try:
+                return _read(path)
+            except (OSError, ValueError, KeyError, TypeError, InputError):
+                continue
+        if clean:
+            rmtree(folder, ignore_errors=True)
     return None
 
 

@@ -50,6 +50,26 @@ def test_a_nickname_is_letters_that_are_seen(text: str, name: str) -> None:
     assert clean_name(text) == name
 
 
+def test_only_a_given_nickname_is_stored(classroom: Classroom, starfish: Robot, tmp_path: Path) -> None:
+    """Oracle: a name typed in a later lesson wins over the one that a room without a name was shown with."""
+    nameless, ada = enter(classroom, "", "Ada")
+    for room in (nameless, ada):
+        room.session.document.change("rename", robot=replace(starfish, name="mine"))
+    classroom.rooms.close()
+    (file,) = (path for path in tmp_path.glob("rooms/*/work/*/*/meta.json") if "Ada" in path.read_text())
+    file.write_text(file.read_text().replace("Ada", "\\u200b"))  # damaged
+    later = Rooms(state=tmp_path)
+    assert [later.enter(room.key, name=name).name for room, name in ((nameless, "Bo"), (ada, ""))] == ["Bo", "Pupil"]
+    later.close()
+
+
+def test_looking_for_earlier_robots_removes_nothing(classroom: Classroom, tmp_path: Path) -> None:
+    empty = tmp_path / "rooms/other/work/1-a"
+    empty.mkdir(parents=True)
+    assert classroom.rooms.list_earlier() == []
+    assert empty.is_dir()
+
+
 def test_nobody_takes_the_nickname_of_another(classroom: Classroom) -> None:
     first, second, third = enter(classroom, "Ada", "ada", "")
     assert [first.name, second.name, third.name] == ["Ada", "ada 2", "Pupil"]
@@ -93,6 +113,8 @@ def test_a_robot_is_handed_out_and_undone(classroom: Classroom, starfish: Robot)
     classroom.lock(False)
     here.session.undo()
     assert here.session.document.robot is mine
+    assert here.session.redo_label == "hand out task"
+    assert here.session.notes[0].text == "your teacher handed out task. Undo brings your robot back"
 
 
 def test_a_robot_that_a_hand_out_replaced_is_there_in_the_next_lesson(

@@ -4,16 +4,28 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 from dataclasses import replace
 from pathlib import Path
+from typing import IO
 
 import pytest
 
+from hydrostat.files import lock_file
 from hydrostat.project import Work
 from hydrostat.robot import Marker, gallery_folder, load_robot
 from hydrostat.studio.bell import Bell
 from hydrostat.studio.document import Document
-from hydrostat.studio.starting.autosave import AGAIN, LONGEST, QUIET_TIME, Autosave
+from hydrostat.studio.starting.autosave import (
+    AGAIN,
+    LONGEST,
+    MOST_ASIDE,
+    QUIET_TIME,
+    Autosave,
+    HeldFolder,
+    find_left,
+    is_held,
+)
 
 CRASHES = """
 import sys
@@ -142,6 +154,37 @@ def test_half_written_and_foreign_things_are_not_offered(tmp_path: Path) -> None
     _, autosave = opened(tmp_path)
     assert autosave.find_recovered() == []
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+def test_a_folder_that_is_being_made_is_not_removed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Oracle: it is there and held, though another thread looks for left work before it is locked."""
+    looks = [threading.Thread(target=find_left, args=([tmp_path],))]
+
+    def lock_late(file: IO[bytes]) -> None:
+        if threading.current_thread() is threading.main_thread() and looks[0].ident is None:
+            looks[0].start()
+            looks[0].join(0.2)
+        lock_file(file)
+
+    monkeypatch.setattr("hydrostat.studio.starting.autosave.lock_file", lock_late)
+    held = HeldFolder(tmp_path)
+    looks[0].join()
+    assert is_held(held.path)
+    held.let_go()
+
+
+def test_only_what_was_changed_is_set_aside_and_not_for_ever(tmp_path: Path, work: Work) -> None:
+    """Oracle: names of what is left, the newest first."""
+    document, autosave = opened(tmp_path)
+    document.open(work, saved=False)
+    for number in range(MOST_ASIDE + 2):
+        changed(document, f"mine_{number}")
+        autosave.set_aside()
+        changed(document, "task")
+        autosave.note_received()
+        autosave.set_aside()
+    names = [left.name for left in autosave.find_recovered()]
+    assert names == [f"mine_{number}" for number in range(MOST_ASIDE + 1, 1, -1)]
 
 
 def test_a_disk_that_cannot_be_written_is_no_reason_to_stop(tmp_path: Path, work: Work) -> None:
