@@ -13,10 +13,11 @@ LOOPBACK = ("127.0.0.1", "localhost", "[::1]")  # names of this machine that a p
 COOKIE = "hydrostat_token"  # followed by the port: cookies do not know ports, and two studios may run on one machine
 LARGEST = 200_000_000  # no request has more bytes
 
-LETTERS = "abcdefghjkmnpqrstuvwxyz23456789"  # of a code: none is taken for another
+LETTERS = "abcdefghjkmnpqrstuvwxyz23456789"  # of a code: without i, l, o, 0 and 1
 LENGTH = 8  # letters of a code: at 2,000 guesses a second, 13 years for all of them
 
 _ROOM = re.compile(r"/(room|watch|class)/[A-Za-z0-9_-]+")  # what a link with a token may lead to, beside the front
+_TYPED = re.compile(r"/[^/.]+")  # a path that may be meant as a code
 
 SAFE_HEADERS = {
     "content-security-policy": (
@@ -43,11 +44,11 @@ What stands after "#" goes along."""
 ASK_CODE = """<!doctype html><html lang="en"><meta charset="utf-8"><title>hydrostat</title>
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <body style="font: 18px system-ui, sans-serif; max-width: 320px; margin: 20vh auto; padding: 0 24px">
-<form action="/"><p><label for="code">Class code, from the board</label></p>
+<form><p><label for="code">Class code, from the board</label></p>
 <input id="code" name="token" required autofocus autocomplete="off" autocapitalize="off" spellcheck="false"
  style="font: inherit; padding: 10px; width: 9em"> <button style="font: inherit; padding: 10px">Start</button>
 <p role="alert">{0}</p></form></html>"""
-"""Asks for the code of a class."""
+"""Asks for the code of a class, at the address that was asked for, so that a link of a room leads there."""
 
 
 def new_code() -> str:
@@ -93,7 +94,8 @@ class Guard:
         reason = "Bad request" if scope["type"] not in ("http", "websocket") else ""
         reason = reason or self._refusal(scope, headers)
         if reason == NO_TOKEN and self._coded and scope["type"] == "http":
-            words = "Wrong code. Try again." if "token" in _query(scope) else ""
+            is_wrong = "token" in _query(scope) or _TYPED.fullmatch(scope["path"])
+            words = "Wrong code. Try again." if is_wrong else ""
             page = HTMLResponse(ASK_CODE.format(words), status_code=403, headers={"cache-control": "no-store"})
             await page(scope, receive, _with_headers(send))
         elif reason:

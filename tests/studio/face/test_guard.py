@@ -186,6 +186,9 @@ def test_a_code_from_the_board_leads_in() -> None:
             status, headers, body = ask(port, path)
             assert (status, "set-cookie" in headers, b"Class code" in body) == (403, False, True), path
         assert b"Wrong code" in ask(port, "/?token=%3Cscript%3E")[2]
+        told = [b"Wrong code" in ask(port, path)[2] for path in ("/", f"/{code}x", "/room/abcdefghijklmnopq")]
+        assert told == [False, True, False]
+        assert b"action=" not in ask(port, "/room/abcdefghijklmnopq")[2], "the code leads on to the room"
         assert b"<script" not in ask(port, "/?token=%3Cscript%3E")[2]
         assert b"Class code" not in ask(port, f"/{code}", host="evil.example")[2]
     assert read == [0]
