@@ -92,7 +92,7 @@ ARROWS = {
     "arrowleft": (-1, 0), "arrowright": (1, 0), "arrowdown": (-1, -1), "arrowup": (1, -1), "pageup": (1, 1),
     "pagedown": (-1, 1),
 }  # fmt: skip
-"""Sign and axis by which each key moves the selection; the last axis points up, the second away from the viewer."""
+"""Sign and axis by which each key moves the selection; the last axis points up, the second of three away."""
 
 
 def parse_arrow(key: str) -> tuple[float, int] | None:

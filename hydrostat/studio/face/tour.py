@@ -61,7 +61,10 @@ KEYS = (  # and what they do
     (("Shift", "click"), "select several parts; Ctrl A: all"),
     (("Ctrl", "C"), "copy the selection; Ctrl V: paste, Ctrl D: duplicate"),
     (("\u2190", "\u2192", "\u2191", "\u2193"), "move the selection by 1 mm; with Shift by 10 mm"),
-    (("PgUp", "PgDn"), "move the selection away, nearer; on the timeline: previous, next keyframe"),
+    (
+        ("PgUp", "PgDn"),
+        "move the selection away, nearer (flat robots: up, down); on the timeline: previous, next keyframe",
+    ),
     (("Tab",), "next control; Enter or Space presses it"),
     (("+", "-"), "zoom the view; Ctrl with an arrow turns it"),
     (("Delete",), "delete the selection"),

@@ -22,8 +22,8 @@ def _describe_stage(session: Session) -> list[str]:
     if session.stage is StageName.EDIT:
         count = len(session.editor.selection)
         return [f"Selected: {plural(count, 'part')}" if count else "Nothing selected"]
-    if session.stage is StageName.DESIGN and session.designer.candidate is not None:
-        return [f"Network {session.designer.candidate.counts}, {format_error(session.designer.candidate.error)} error"]
+    if session.stage is StageName.DESIGN and (network := session.designer.candidate) is not None:
+        return [f"Network {network.counts}, {format_error(network.expected_error)} as-built error"]
     if session.stage is StageName.DRIVE:
         taken = [f"{name} {round(1e3 * value, 1) + 0.0:.1f} mm" for name, value in session.driver.commands().items()]
         return [f"Contractions: {', '.join(taken)}"] if taken else []

@@ -47,13 +47,14 @@ class Viewport(ui.element, component="static/viewport.js"):
         self._props["palette"] = COLORS
         self._props["dark"] = dark
         self._props["brush"] = brush
-        self._props["words"] = ""
+        self._props["words"] = self._words = ""
 
     def describe(self, words: str) -> None:
-        """Set the content in words, for screen readers."""
-        if words != self._props["words"]:
+        """Set the content in words, for screen readers: at first, and then once they are the same twice in a row."""
+        if words != self._props["words"] and (words == self._words or not self._props["words"]):
             self._props["words"] = words
             self.update()
+        self._words = words
 
     def set_dark(self, dark: bool | None) -> None:
         """Dark or light; None: as the page is."""

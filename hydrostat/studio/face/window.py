@@ -26,7 +26,7 @@ from hydrostat.studio.face.view_words import describe_view
 from hydrostat.studio.face.viewport import Side, Viewport
 from hydrostat.studio.robot_link import LINK_MARK
 from hydrostat.studio.session import Session
-from hydrostat.studio.stage import StageName
+from hydrostat.studio.stage import ARROWS, StageName
 
 STATIC = Path(__file__).parent / "static"
 
@@ -225,20 +225,23 @@ SIDES: dict[str, Side] = {"1": "front", "3": "side", "7": "top"}
 def _key(page: WindowPage, event: events.KeyEventArguments, ask_save: SaveDialog, ask_help: Ask) -> Any:
     """Handle a key; see `tour.KEYS`. Return what is still to be awaited, if anything."""
     name = str(event.key.name)
-    if not event.action.keydown or (event.action.repeat and not name.startswith("Arrow")):
+    held, arrow = event.modifiers, name.lower() in ARROWS
+    if not event.action.keydown or (event.action.repeat and not (arrow and page.session.stage is StageName.POSE)):
+        return None  # a held arrow key repeats for targets only: a change of the robot takes longer than a repeat
+    if held.alt:
         return None
-    if name in SIDES and not event.modifiers.ctrl:
+    if name in SIDES and not held.ctrl and not held.meta:
         page.viewport.view(SIDES[name])
     elif name.lower() == "z":
-        page.session.redo() if event.modifiers.shift else page.session.undo()
-    elif name.lower() == "s" and (event.modifiers.ctrl or event.modifiers.meta):
-        return ask_save.save_as() if event.modifiers.shift and not page.session.guest else ask_save.save()
+        page.session.redo() if held.shift else page.session.undo()
+    elif name.lower() == "s" and (held.ctrl or held.meta):
+        return ask_save.save_as() if held.shift and not page.session.guest else ask_save.save()
     elif name == "?":
         return ask_help()
-    elif event.modifiers.ctrl or event.modifiers.meta:
+    elif held.ctrl or held.meta:
         if name.lower() in WORDS:
             page.session.key(WORDS[name.lower()])
-    elif not event.modifiers.alt:
-        shifted = "shift " if event.modifiers.shift and name.startswith("Arrow") else ""
+    else:
+        shifted = "shift " if held.shift and arrow else ""
         page.session.key(shifted + {" ": "space", "Backspace": "delete"}.get(name, name.lower()))
     return None

@@ -20,7 +20,8 @@ addEventListener("keydown", (event) => {
   if (word && !typing && !String(getSelection())) event.preventDefault();
   // arrows move the selection, not the page
   const moves = at === document.body || at.closest(".studio-nudges, [role=option], .studio-viewport");
-  if (/^(Arrow|Page)/.test(event.key) && moves) event.preventDefault();
+  const plain = !event.ctrlKey && !event.metaKey && !event.altKey;
+  if (plain && /^(Arrow|Page)/.test(event.key) && moves) event.preventDefault();
 });
 
 // Who works by keys keeps their place when what had the focus is drawn again, hidden or removed.
@@ -54,8 +55,8 @@ function successor() {
 }
 
 addEventListener("keydown", () => (byKeys = true), true);
-addEventListener("pointerdown", () => (byKeys = false), true);
-addEventListener("focusin", remember);
+addEventListener("pointerdown", () => { byKeys = false; last = null; }, true);
+addEventListener("focusin", (event) => byKeys && remember(event));
 setInterval(() => {
   if (!byKeys || !last || document.activeElement !== document.body || isSeen(last.target)) return;
   const next = successor();

@@ -144,6 +144,7 @@ export default /** @type {Component} */ ({
     },
     key(event) {
       const steps = { ArrowUp: 1, ArrowRight: 1, ArrowDown: -1, ArrowLeft: -1, PageUp: 10, PageDown: -10 };
+      if (event.altKey || event.ctrlKey || event.metaKey) return; // the browser's
       if (event.key in steps) this.nudge(this.shown + steps[event.key] * this.step);
       else if (event.key === "Home") this.nudge(this.least);
       else if (event.key === "End") this.nudge(this.most);

@@ -226,6 +226,7 @@ export default /** @type {Component} */ ({
       this.tell();
     },
     key(event) {
+      if (event.altKey || ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() !== "z")) return; // the browser's
       const name = event.key.toLowerCase(), arrows = { arrowleft: [-1, 0], arrowright: [1, 0], arrowup: [0, 1], arrowdown: [0, -1] };
       if (name === "delete" || name === "backspace") this.open ? this.open.pop() : this.removeCorner();
       else if (name === "z") event.shiftKey ? this.redo() : this.undo();
@@ -233,7 +234,7 @@ export default /** @type {Component} */ ({
       else if (name === "escape") { this.open = this.loops.length ? null : []; this.chosen = null; }
       else if (arrows[name] && this.chosen) this.nudge(arrows[name]);
       else if (name === " " && this.chosen) this.turn(this.chosen);
-      else if ((name === "n" || name === "p") && !event.ctrlKey) this.chooseNext(name === "n" ? 1 : -1);
+      else if (name === "n" || name === "p") this.chooseNext(name === "n" ? 1 : -1);
       else return;
       event.preventDefault();
       event.stopPropagation();

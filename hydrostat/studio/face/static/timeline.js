@@ -229,6 +229,7 @@ export default /** @type {Component} */ ({
     key(event) {
       const steps = { ArrowLeft: -0.05, ArrowRight: 0.05 };
       let time = null;
+      if (event.altKey || event.ctrlKey || event.metaKey) return; // the browser's
       if (event.key === "PageUp" || event.key === "PageDown") return this.next(event);
       if (event.key in steps) time = this.time + steps[event.key] * (event.shiftKey ? 10 : 1);
       else if (event.key === "Home") time = 0;

@@ -79,8 +79,9 @@ export default /** @type {Component} */ ({
       const ways = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
       const zooms = { "+": 1 / ZOOM, "=": 1 / ZOOM, "-": ZOOM };
       if (!view || event.target !== this.$refs.root) return;
-      if (event.key in zooms) view.camera.zoom(view.camera.width / 2, view.camera.height / 2, zooms[event.key]);
-      else if (event.ctrlKey && event.key in ways) {
+      const plain = !event.ctrlKey && !event.metaKey && !event.altKey; // the browser zooms by Ctrl with plus
+      if (plain && event.key in zooms) view.camera.zoom(view.camera.width / 2, view.camera.height / 2, zooms[event.key]);
+      else if (event.ctrlKey && !event.metaKey && !event.altKey && event.key in ways) {
         const [dx, dy] = ways[event.key].map((way) => way * TURN);
         if (view.camera.flat) view.camera.pan(dx, dy);
         else view.camera.orbit(dx, dy);
