@@ -16,10 +16,11 @@ if TYPE_CHECKING:
 
 _SHORT = 600.0  # longest search that its time limit ended and that more time may help [s]: assumed
 _SILICONE = "mold of silicone"  # in reasons that a mold of silicone does not have
+_PRINT = "(--mould printed)"  # in reasons that a printed mold does not have
 
 
 def kit_remedy(robot: "Robot", folder: Path, out: Path, *, options: "KitOptions", reasons: Iterable[str]) -> str:
-    """Command that makes a rejected kit buildable: another motor, a mold of silicone, a seam, or a new design.
+    """Command that makes a rejected kit buildable: another motor, another mold, a seam, or a new design.
 
     It is `hydrostat materials` if the material is a cause, `hydrostat check` if no kit can be made of the body itself,
     and empty where no design has room for a motor either.
@@ -29,8 +30,8 @@ def kit_remedy(robot: "Robot", folder: Path, out: Path, *, options: "KitOptions"
 
     place, kit = quote(str(folder)), quote(str(out))
     told = list(reasons)
-    if options.method_for(robot.body) is Method.FOAM and all(_SILICONE in reason for reason in told):
-        return f"hydrostat fabricate {place} --mould silicone --out {kit}"
+    if mold := _other_mold(told, foam=options.method_for(robot.body) is Method.FOAM):
+        return f"hydrostat fabricate {place} --mould {mold} --out {kit}"
     if any(MATERIAL_FIX in reason for reason in told):
         return f"hydrostat materials, then edit material in {place}"
     if found := next((reason for reason in told if OVER_BUDGET in reason), ""):
@@ -49,6 +50,13 @@ def kit_remedy(robot: "Robot", folder: Path, out: Path, *, options: "KitOptions"
         return ""
     winches, cables = max(len(robot.winches), 1), max(len(robot.cables), 1)
     return f"hydrostat design {place} --winches {winches} --cables {cables} --out {quote(f'{out}_design')}"
+
+
+def _other_mold(reasons: list[str], *, foam: bool) -> str:
+    """Kind of mold that all reasons ask for; empty if there is none."""
+    if reasons and all(_PRINT in reason for reason in reasons):
+        return "printed"
+    return "silicone" if foam and all(_SILICONE in reason for reason in reasons) else ""
 
 
 def note_room(robot: "Robot", place: str, *, options: "KitOptions", reasons: Iterable[str]) -> str:

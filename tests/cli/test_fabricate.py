@@ -323,3 +323,9 @@ def test_a_pair_of_cables_is_counted_once_and_sewn_twice() -> None:
     robot = replace(gallery_robot("starfish"), face=CableSide.PAIRS)
     assert count_cables(robot) == "5 pairs of cables, 10 to sew"
     assert count_cables(replace(robot, face=CableSide.FRONT)) == "5 cables"
+
+
+def test_a_body_that_cannot_cure_in_its_mould_is_poured_into_a_printed_one() -> None:
+    reasons = ["ecoflex 00-30 does not cure against Mold Max 30. Print the mold (--mould printed)"]
+    tried = kit_remedy(near_the_edge(), Path("robot"), Path("kit"), options=KitOptions(), reasons=reasons)
+    assert tried == "hydrostat fabricate robot --mould printed --out kit"

@@ -72,9 +72,14 @@ def make_casting(material: Material, fill: float, *, pours: tuple[float, ...]) -
     return casting, (*problems, *_inhibition_problem(cast, silicone=bool(pours)))
 
 
+def cures_in_silicone(material: str) -> bool:
+    """Return True if a material cures in a mold of Mold Max 30, which is cured by tin."""
+    return not material.startswith(_PLATINUM)
+
+
 def _inhibition_problem(material: Material, *, silicone: bool) -> tuple[str, ...]:
     """Return a problem if the mold keeps the body from curing; else nothing."""
-    if not (silicone and material.name.startswith(_PLATINUM)):
+    if not silicone or cures_in_silicone(material.name):
         return ()
     return (
         f"{material.name} is cured by platinum and does not cure against Mold Max 30, which is cured by tin (its maker "

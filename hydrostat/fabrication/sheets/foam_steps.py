@@ -12,6 +12,7 @@ from hydrostat.fabrication.kit_options import MoldKind
 from hydrostat.fabrication.kit_plan import KitPlan
 from hydrostat.fabrication.lists.lists import Lists
 from hydrostat.fabrication.lists.stitching import CableDepths, DepthRow, PointAccess, Stitching
+from hydrostat.fabrication.moulds.casting import cures_in_silicone
 from hydrostat.fabrication.moulds.mould import Mold
 from hydrostat.fabrication.sheets.steps import (
     AssemblyStep,
@@ -40,6 +41,7 @@ _MODEL_FIRST = (
     "foam straight into the alginate (4.2), which sets in less than 5 min and can be used once."
 )
 
+_PARTS_TOO = " Print the parts of the robot too: all plates, from parts/plate_1.3mf on, in PLA, without supports."
 _STIR_FOAM = "Stir with an egg mixer as long as the label says, not longer: the foam rises immediately."
 _STIR_SILICONE = "Stir slowly, scrape sides and bottom, and let the bubbles rise, in a vacuum if you have one."
 _POUR_FOAM = "Pour immediately, in a thin stream down the sprue. Tape each vent when foam appears, then the sprue."
@@ -66,10 +68,10 @@ def foam_expansion(mould: Mold) -> bool:
     return mould.casting.expansion > 1
 
 
-def other_way(mould: Mold) -> tuple[str, str]:
-    """Return the title and the text on another method to make the mold."""
+def other_way(mould: Mold) -> tuple[str, ...]:
+    """Return the title and the text on another method to make the mold; empty if there is none."""
     if mould.kind is MoldKind.PRINTED:
-        return "Or a mold of silicone", _OTHER_MOULD
+        return ("Or a mold of silicone", _OTHER_MOULD) if cures_in_silicone(mould.casting.body.material) else ()
     return "Or from a model, without a printed positive", _MODEL_FIRST
 
 
@@ -132,8 +134,7 @@ def _printed_first(plan: KitPlan) -> tuple[AssemblyStep, ...]:
             "Print the mold",
             20,
             "Print all plates, from mould/plate_1.3mf on: PLA, 0.2 mm layers, three walls, as the pieces lie, no "
-            "supports "
-            "in the cavity." + glue,
+            "supports in the cavity." + glue + _PARTS_TOO,
             wait=f"about {minutes_text(60 * plan.print_hours)} of printing, all parts",
         ),
         AssemblyStep(
@@ -155,8 +156,8 @@ def _silicone_first(plan: KitPlan, mould: Mold) -> tuple[AssemblyStep, ...]:
             30,
             "Print all plates, from mould/plate_1.3mf on: positive, two frames, four key domes."
             + glue
-            + " Fill and sand marks that the silicone "
-            "should not copy. Leave the two halves of the positive apart.",
+            + " Fill and sand marks that the silicone should not copy. Leave the two halves of the positive apart."
+            + _PARTS_TOO,
             wait=f"about {minutes_text(60 * plan.print_hours)} of printing, all parts",
         ),
         AssemblyStep(

@@ -179,6 +179,7 @@ def test_a_mould_of_silicone_is_poured_round_the_printed_positive(foam_sheet):
     printed = words(foam_sheet)
     assert "--mould silicone" in printed
     assert "alginate" not in printed
+    assert all("parts/plate_1.3mf" in sheet for sheet in (text, printed))
 
 
 @pytest.mark.slow
@@ -191,6 +192,7 @@ def test_a_body_of_silicone_is_not_told_of_foam(foam_sheet):
     assert not re.search(r"\bfoam\b", text, re.IGNORECASE)
     assert "contact adhesive" not in text
     assert "does not hold on silicone" in text
+    assert "--mould silicone" not in text  # it does not cure there
     assert "contact adhesive" in words(foam_sheet)
     assert "let the bubbles rise" in text
     assert "4 h at 25 °C" in text
