@@ -30,7 +30,7 @@ def run_bounded(work: Callable[[], _Result], *, file: str, words: str, seconds: 
         file: name of the file for error messages.
         words: said when it takes long.
         seconds: the most processor time.
-        memory: the most [bytes].
+        memory: the most beyond that of this process [bytes].
 
     Raises:
         InputError: it took longer or more; and all that the work raises.
@@ -83,7 +83,7 @@ def _read_child(child: int, reader: int, file: str, words: str, seconds: float, 
     """Return the bytes that the child sends; end it when it takes longer or more memory."""
     parts: list[bytes] = []
     began = told = time.monotonic()
-    usage = Path(f"/proc/{child}")
+    usage, inherited = Path(f"/proc/{child}"), _usage_of(Path("/proc/self"), 0.0)[1]
     look, again = 0.05, 5.0  # seconds between looks, and between words
     while True:
         ready, _, _ = select.select([reader], [], [], look)
@@ -99,7 +99,7 @@ def _read_child(child: int, reader: int, file: str, words: str, seconds: float, 
             raise InputError(
                 f"{file}: time limit reached ({seconds:.3g} s). Simplify it or allow more time, e.g. --timeout 2min."
             )
-        if taken > memory:
+        if taken - inherited > memory:
             raise InputError(f"{file}: memory limit reached ({1e-9 * memory:.2g} GB). Simplify the file.")
         if now - told > (NOTICE_DELAY if told == began else again):
             told = now

@@ -270,6 +270,7 @@ def test_cables_are_proposed_for_what_was_dragged_before(rooms: str, window: Ope
     for state in ("visible", "hidden", "visible"):
         switch.click()
         error.wait_for(state=state)
+    page.get_by_role("status", name="Searching").wait_for(state="hidden")  # or a better network takes its place
     page.evaluate(COLLECT_NOTES)
     page.get_by_role("button", name="Keep", exact=True).click()
     kept = page.get_by_role("button", name="Kept", exact=True)
