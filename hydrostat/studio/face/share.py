@@ -114,7 +114,7 @@ def _link_box(words: str, link: str, name: str) -> None:
 
 
 def _code(words: str, link: str, width: int) -> None:
-    """QR code of a link, so many pixels wide if there is room."""
+    """QR code of a link, of a width [pixels] if there is room."""
     level = "m" if len(link) < 400 else "l"
     code = segno.make(link, error=level).svg_inline(omitsize=True, dark="#2b2833", light="#ffffff")
     drawn = ui.html(code, sanitize=False).classes("self-center")

@@ -83,7 +83,7 @@ class _TeacherPage:
         self._show_packing()
 
     async def act_slowly(self, done: str, action: Callable[..., object], *arguments: object) -> None:
-        """Do something in a thread, then say that it is done; what was wrong is told."""
+        """Run an action in a thread, then report that it is done, or its error."""
         try:
             await run.io_bound(action, *arguments)
         except (HydrostatError, OSError) as error:

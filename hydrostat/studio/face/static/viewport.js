@@ -7,7 +7,7 @@ const FILL = "position:absolute;inset:0;width:100%;height:100%;display:block;poi
 const ZOOM = 1.2; // by a key
 const TURN = 24; // by a key [pixels of a drag]
 
-let made = 0; // so many views were made on this page
+let made = 0; // number of views made on this page
 
 export default /** @type {Component} */ ({
   template: `
