@@ -103,7 +103,7 @@ class KitPlan:
         return self.work.mould is not None and self.work.mould.casting.expansion <= 1
 
     @property
-    def poured(self) -> str:
+    def cast_material(self) -> str:
         """Word for the casting material of the body."""
         return "silicone" if self.is_silicone else "foam"
 

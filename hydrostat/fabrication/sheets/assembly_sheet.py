@@ -98,7 +98,8 @@ def _schemes(plan: KitPlan, lists: Lists) -> dict[PictureName, Canvas]:
         depths = CableDepths.of(lists.stitching, len(cables))
         drawn = bool(depths.drawn or depths.laid or depths.tubed)
         tubes = any(cable.sheathed for cable in cables)
-        return {"skin": skin_scheme(sewn=bool(depths.sewn), drawn=drawn, tubes=tubes, width=HALF, body=plan.poured)}
+        body = plan.cast_material
+        return {"skin": skin_scheme(sewn=bool(depths.sewn), drawn=drawn, tubes=tubes, width=HALF, body=body)}
     shown = shown_stitches(plan)
     if shown is None:
         return {}

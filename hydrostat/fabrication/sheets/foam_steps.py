@@ -141,7 +141,7 @@ def _printed_first(plan: KitPlan) -> tuple[AssemblyStep, ...]:
             "Seal the cavity",
             30,
             "Sand the ridges of the layers. Brush on two coats of sealer or shellac: otherwise "
-            f"{plan.poured} creeps between the layers.",
+            f"{plan.cast_material} creeps between the layers.",
             wait="1 h for each coat",
         ),
     )
@@ -270,7 +270,7 @@ def _cable_steps(plan: KitPlan, lists: Lists) -> tuple[AssemblyStep, ...]:
         )
     ]
     if deep:
-        steps.append(_drawn_step(depths, deep, plan.poured, flat=plan.robot.body.mesh.dim == 2))
+        steps.append(_drawn_step(depths, deep, plan.cast_material, flat=plan.robot.body.mesh.dim == 2))
     if depths.sewn:
         steps.append(_sewn_step(depths, channel_ways(lists.stitching, len(plan.robot.cables)), tubes=tubes))
     return tuple(steps)

@@ -105,7 +105,7 @@ def winch_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
                 "Put winches in",
                 10 * len(inside),
                 f"Push {marks_text(inside)} into {'its pocket' if len(inside) == 1 else 'their pockets'} in the "
-                f"{plan.poured}. Lead the wires out together; sew the skin around them.",
+                f"{plan.cast_material}. Lead the wires out together; sew the skin around them.",
             )
         )
     if plan.rigid.seat_assembly is not None:

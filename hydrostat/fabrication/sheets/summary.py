@@ -50,7 +50,7 @@ def find_difficulty(plan: KitPlan, lists: Lists, minutes: float) -> str:
     reasons = {
         "several days of work": 2 * (minutes > days),
         "more work than an afternoon": afternoon < minutes <= days,
-        f"{plan.poured} to weigh and pour": plan.method is Method.FOAM,
+        f"{plan.cast_material} to weigh and pour": plan.method is Method.FOAM,
         "motors to wire pin by pin": lists.power is not None and not lists.power.servos,
     }
     level = ("easy", "medium", "medium", "hard", "hard")[sum(reasons.values())]

@@ -158,7 +158,7 @@ def serve(
     """Serve rooms until Ctrl-C (InputError: the address cannot be listened at).
 
     At another address than this machine's own a token is asked for, which is a short code for a class. Port 0 is a
-    free one, for a class the first free one of `CLASS_PORTS`; `announce` is told the
+    free one, for a class the first free one of `CLASS_PORTS`; `announce` takes the
     address, that of a class and then that of its teacher; `show` opens the browser, of a class on the teacher's page.
     """
     # threads take turns so often [s]: a solver in one must not keep the pointer waiting in another

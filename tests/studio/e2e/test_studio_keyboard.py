@@ -101,7 +101,7 @@ def test_all_stages_by_keys_alone(rooms: str, window: Open) -> None:
 
 
 def nodes(page: "Page") -> list[dict[str, Any]]:
-    """What a screen reader is told: role, name and level of all that is not hidden from it."""
+    """Tree of a screen reader: role, name and level of each element that is not hidden from it."""
     session = page.context.new_cdp_session(page)
     tree = session.send("Accessibility.getFullAXTree")["nodes"]
     session.detach()
