@@ -54,7 +54,7 @@ def main() -> None:
     parser.add_argument("--finer", type=float, default=0.6)
     given = parser.parse_args()
     print(machine())
-    print("| design | nodes | nodes, finer | difference mm | of the moves | warning |\n|---|---|---|---|---|---|")
+    print("| design | nodes | nodes, finer mesh | shift mm | of the motion | warning |\n|---|---|---|---|---|---|")
     for design in given.designs:
         print(row(design, given.finer), flush=True)
 

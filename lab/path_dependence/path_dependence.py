@@ -73,7 +73,7 @@ def main() -> None:
         for name in names:
             print(branch_row(name, Simulation(load_robot(EXAMPLES / name))), flush=True)
         return
-    print("| example | nodes | size mm | contractions | poses | starts that led to each | lost | mm apart | CPU s |")
+    print("| example | nodes | size mm | contractions | poses | paths to each pose | lost | mm apart | CPU s |")
     print("|---|---|---|---|---|---|---|---|---|", flush=True)
     for name in names:
         simulation = Simulation(load_robot(EXAMPLES / name))
