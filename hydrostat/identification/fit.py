@@ -63,7 +63,7 @@ class FittedModel:
         covariance: covariance of `numbers` if errors were independent; 1 on the diagonal where the measurements tell
             nothing.
         spread: factor of the errors' variance by `spread_error`, as those of a model are alike in all rows.
-        mesh_shift: change of `numbers` that finer elements would make; 0 if it was not estimated.
+        mesh_shift: changes of `numbers` that finer meshes would make, (shifts, parameters); 0 if not estimated.
         build_variance: variance of `numbers` if points of cables and Poisson's ratio are unknown as well; 0 if it was
             not estimated.
         noise: standard deviation of a measured coordinate or length about the model [m], from the residuals.
@@ -80,7 +80,7 @@ class FittedModel:
     numbers: Vector
     covariance: Float[np.ndarray, "parameters parameters"]
     spread: float
-    mesh_shift: Vector
+    mesh_shift: Float[np.ndarray, "shifts parameters"]
     build_variance: Vector
     noise: float
     error: float
@@ -107,8 +107,8 @@ class FittedModel:
         half = 1.96 * np.sqrt(np.diag(self.interval_covariance))
         low, high = (self.numbers - half, self.numbers + half) if self.ends is None else self.ends
         half = 1.96 * np.sqrt(self.build_variance)
-        low = np.minimum(low, self.numbers - half) + np.minimum(self.mesh_shift, 0.0)
-        high = np.maximum(high, self.numbers + half) + np.maximum(self.mesh_shift, 0.0)
+        low = np.minimum(low, self.numbers - half) + self.mesh_shift.min(axis=0, initial=0.0)
+        high = np.maximum(high, self.numbers + half) + self.mesh_shift.max(axis=0, initial=0.0)
         return {
             parameter.name: (parameter.from_fitted(one), parameter.from_fitted(other))
             for parameter, one, other in zip(self.model.parameters, low, high, strict=True)
@@ -192,7 +192,7 @@ def fit_model(
         numbers=numbers,
         covariance=np.linalg.inv(jacobian.T @ jacobian),
         spread=spread_error(fit.errors, fit.noise, len(measurements.commands), is_known=noise is not None),
-        mesh_shift=estimate_mesh_shift(*known) if refine else nothing,
+        mesh_shift=estimate_mesh_shift(*known) if refine else nothing[None],
         build_variance=estimate_build_variance(*known) if refine else nothing,
         noise=fit.noise,
         error=rms(fit.distances),

@@ -142,7 +142,7 @@ def start_of(model: IdentificationModel) -> FittedModel:
         numbers=np.zeros(count),
         covariance=np.eye(count),
         spread=1.0,
-        mesh_shift=np.zeros(count),
+        mesh_shift=np.zeros((1, count)),
         build_variance=np.zeros(count),
         noise=np.nan,
         error=np.nan,

@@ -436,7 +436,7 @@ def test_tolerances_are_the_deviations_of_the_intervals() -> None:
         start_of(model),
         covariance=np.diag([1 / (1 + each) for each in informed]),
         spread=4.0,
-        mesh_shift=np.full(count, 2.0),
+        mesh_shift=np.full((1, count), 2.0),
     )
     nothing = np.zeros((0, 2))
     found = IdentifiedRobot(
