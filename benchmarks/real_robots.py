@@ -87,6 +87,7 @@ def opencr(lengths: list[float], angles: list[float], radius: float) -> Identifi
     parameters = [
         Parameter(name="young", start=4e5, spread=1.0, unit="Pa", log=True),
         Parameter(name="bending", start=1.5e-3, spread=0.5, unit="N m^2", log=True),
+        Parameter(name="torsion", start=1.5e-3, spread=1.0, unit="N m^2", log=True),
         Parameter(name="marker", start=4.0, spread=4.0, unit="mm", low=0.0, high=beyond),
         *(Parameter(name=f"gravity {axis}", start=0.0, spread=5.0, unit="m/s^2") for axis in "xyz"),
         *frame_parameters((0.0, 0.0, 0.0), 3.0),
@@ -114,7 +115,7 @@ def opencr(lengths: list[float], angles: list[float], radius: float) -> Identifi
             body(values["young"], 1e3),
             cables,
             gravity=tuple(values[f"gravity {axis}"] for axis in "xyz"),
-            rods=[rod("backbone", 0.0, top, axial=2e4, bending=values["bending"])],
+            rods=[rod("backbone", 0.0, top, axial=2e4, bending=values["bending"], torsion=values["torsion"])],
             markers={"tip": top + values["marker"]},
         )
 
@@ -256,10 +257,10 @@ def polar(radius: float, angle: float, heights: np.ndarray) -> tuple[tuple[float
     return tuple((float(x), float(y), MM * height) for height in heights.tolist())
 
 
-def rod(name: str, start: float, end: float, *, axial: float, bending: float) -> Rod:
+def rod(name: str, start: float, end: float, *, axial: float, bending: float, torsion: float | None = None) -> Rod:
     """Rod on the axis between two heights [mm]."""
     points = ((0.0, 0.0, MM * start), (0.0, 0.0, MM * end))
-    return Rod(name=name, points=points, axial_stiffness=axial, bending_stiffness=bending)
+    return Rod(name=name, points=points, axial_stiffness=axial, bending_stiffness=bending, torsional_stiffness=torsion)
 
 
 def tendon_robot(

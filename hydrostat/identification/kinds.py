@@ -198,10 +198,9 @@ def _with_gravity(robot: Robot, values: Values) -> Robot:
 
 
 def _rods(robot: Robot) -> list[Parameter]:
-    return [
-        Parameter(name=f"{rod.name}.bending", start=rod.stiffnesses[1], spread=0.7, log=True, unit="N m^2")
-        for rod in robot.rods
-    ]
+    numbers = [(f"{rod.name}.bending", rod.stiffnesses[1]) for rod in robot.rods]
+    numbers += [(f"{rod.name}.torsion", rod.torsional_stiffness) for rod in robot.rods if rod.torsional_stiffness]
+    return [Parameter(name=name, start=start, spread=0.7, log=True, unit="N m^2") for name, start in numbers]
 
 
 def _with_rods(robot: Robot, values: Values) -> Robot:
@@ -212,6 +211,7 @@ def _with_rods(robot: Robot, values: Values) -> Robot:
             young=None,
             axial_stiffness=rod.stiffnesses[0],
             bending_stiffness=values[f"{rod.name}.bending"],
+            torsional_stiffness=values.get(f"{rod.name}.torsion"),
         )
         for rod in robot.rods
     )

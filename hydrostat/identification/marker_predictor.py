@@ -317,6 +317,7 @@ def robot_numbers(robot: Robot, gravity: tuple[float, ...] | None) -> dict[str, 
         "gravity": np.zeros(dim) if robot.gravity is None else np.array(robot.gravity),
         "rod_axial": np.array([rod.stiffnesses[0] for rod in robot.rods]),
         "rod_bending": np.array([rod.stiffnesses[1] for rod in robot.rods]),
+        "rod_torsion": np.array([rod.torsional_stiffness or 0.0 for rod in robot.rods]),
         "sheet_young": np.array([sheet.material.young for sheet in robot.sheets]),
     }
 
@@ -351,5 +352,6 @@ SENSITIVITIES = (
     "gravity",
     "rod_axial",
     "rod_bending",
+    "rod_torsion",
     "sheet_young",
 )

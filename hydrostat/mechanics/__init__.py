@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from hydrostat.mechanics.quadratic_solid import MAX_POINTWISE_RATIO, QuadraticSolid
     from hydrostat.mechanics.rigid import GuideEnergy, RigidBodyDofs, RigidBodyWarp, RigidEnergy
     from hydrostat.mechanics.rod_energy import RodEnergy, rod_points
+    from hydrostat.mechanics.rod_twist_energy import RodTwistEnergy
     from hydrostat.mechanics.self_contact import SelfContactEnergy
     from hydrostat.mechanics.sheet_energy import SheetEnergy
     from hydrostat.mechanics.tension_law import TensionLaw
@@ -80,6 +81,7 @@ __all__ = [
     "RigidBodyWarp",
     "RigidEnergy",
     "RodEnergy",
+    "RodTwistEnergy",
     "RoundOff",
     "SelfContactEnergy",
     "SheetEnergy",

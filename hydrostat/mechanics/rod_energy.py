@@ -16,8 +16,7 @@ class RodEnergy(Energy):
     E = sum over segments of EA/2 (l/L - 1)^2 L + sum over joints of EI / (2 D) |k - k0|^2, where l is the length of a
     segment and L that at rest, D the mean L of the segments at a joint, and |k|^2 = 4 (1 - c) / (1 + c) the square of
     its curvature times D, with c the cosine between the two segments. A joint that is bent at rest counts by the
-    difference of the magnitudes alone, so that its mirrored bend costs nothing. A round rod without moments about its
-    axis does not twist, so nothing is missing then.
+    difference of the magnitudes alone, so that its mirrored bend costs nothing. Twist is `RodTwistEnergy`.
     """
 
     convex: ClassVar[bool] = False

@@ -202,7 +202,7 @@ class RobotReader(TablesFile):
         )
 
     def _rod(self, entry: Any) -> Rod:
-        given = given_keys(entry, "diameter", "young", "axial_stiffness", "bending_stiffness")
+        given = given_keys(entry, "diameter", "young", "axial_stiffness", "bending_stiffness", "torsional_stiffness")
         return Rod(name=entry.name, points=tuple(self.point(point) for point in entry.points), **given)
 
     def _sensor(self, entry: Any) -> Sensor:

@@ -17,9 +17,10 @@ SHARPEST = 100.0
 
 @dataclass(frozen=True, kw_only=True)
 class Rod:
-    """Elastic rod along a polyline of the body, which moves with it; it resists stretch and bending, not twist.
+    """Elastic rod along a polyline of the body, which moves with it; it resists stretch, bending and, if given, twist.
 
-    A round rod follows from its diameter and Young's modulus: EA = E pi d^2 / 4, EI = E pi d^4 / 64.
+    A round rod follows from its diameter and Young's modulus: EA = E pi d^2 / 4, EI = E pi d^4 / 64. One that is glued
+    in has GJ = EI / (1 + nu), 0.77 EI for steel; one that turns in its sheath resists no twist.
 
     Attributes:
         name: name, unique in the robot.
@@ -29,6 +30,7 @@ class Rod:
         young: Young's modulus of a round rod [Pa]; None with stiffnesses.
         axial_stiffness: EA [N]; None for a round rod.
         bending_stiffness: EI [N m^2]; None for a round rod.
+        torsional_stiffness: GJ [N m^2], only in space; None for a rod that resists no twist.
 
     Raises:
         InputError: too few points, a number out of its range, or neither diameter and young nor both stiffnesses.
@@ -40,6 +42,7 @@ class Rod:
     young: float | None = None
     axial_stiffness: float | None = None
     bending_stiffness: float | None = None
+    torsional_stiffness: float | None = None
 
     def __post_init__(self) -> None:
         check_name(self.name)
@@ -67,6 +70,8 @@ class Rod:
         for key, unit in _UNITS.items():
             if (value := getattr(self, key)) is not None:
                 check_positive(key, value, unit)
+        if self.torsional_stiffness is not None and len(self.points[0]) == 2:
+            raise InputError("torsional_stiffness: a rod in a flat body does not twist; remove it")
 
     @property
     def length(self) -> float:
@@ -107,4 +112,10 @@ def check_rods_inside(rods: Iterable[Rod], body: Body, text: Callable[[Point | f
 
 
 _FORMS = ([True, False, True, False], [False, True, False, True])
-_UNITS = {"diameter": "m", "young": "Pa", "axial_stiffness": "N", "bending_stiffness": "N m^2"}
+_UNITS = {
+    "diameter": "m",
+    "young": "Pa",
+    "axial_stiffness": "N",
+    "bending_stiffness": "N m^2",
+    "torsional_stiffness": "N m^2",
+}

@@ -240,6 +240,7 @@ class RodTable(TomlTable):
     young: Pressure | None = None
     axial_stiffness: Force | None = None
     bending_stiffness: BendingStiffness | None = None
+    torsional_stiffness: BendingStiffness | None = None
 
 
 class SheetTable(RegionTable):

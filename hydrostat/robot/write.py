@@ -281,6 +281,7 @@ class _Writer:
             "young": units.PRESSURE,
             "axial_stiffness": units.FORCE,
             "bending_stiffness": units.BENDING,
+            "torsional_stiffness": units.BENDING,
         }
         given = {key: getattr(rod, key) for key in units_of}
         return entry | {

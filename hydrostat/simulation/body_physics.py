@@ -36,7 +36,7 @@ from hydrostat.mechanics import (
 )
 from hydrostat.robot import Body, Obstacle, Plane, Robot, Volume, check_winch_bodies
 from hydrostat.simulation.load_energies import hung_masses, make_load_energies
-from hydrostat.simulation.reinforcements import make_rod_energy, make_sheet_energies, sheet_masses
+from hydrostat.simulation.reinforcements import make_rod_energy, make_sheet_energies, make_twist_energy, sheet_masses
 
 
 class BodyPhysics:
@@ -104,7 +104,9 @@ class BodyPhysics:
         if robot.gravity is not None:
             energies.append(DeadLoadEnergy(self.rest_unknowns, self._heavy[:, None] * np.array(robot.gravity)))
         self.rods = [make_rod_energy(robot, rod, self.rest_unknowns) for rod in robot.rods]
-        energies += [*self.rods, *chain.from_iterable(self.sheets)]
+        self.twists = [make_twist_energy(robot, rod, self.rest_unknowns) for rod in robot.rods]
+        self._reinforcements = [*self.rods, *filter(None, self.twists), *chain.from_iterable(self.sheets)]
+        energies += self._reinforcements
         loads, paths = make_load_energies(robot, self.rest_unknowns)
         self.load_paths = {len(energies) + index: load for index, load in paths.items()}
         energies += loads
@@ -233,7 +235,7 @@ class BodyPhysics:
         scale = float((2 * mu + lame) @ body.mesh.volumes) * (body.thickness or 1.0)
         reach = max(float(np.abs(body.mesh.nodes).max()), body.mesh.size)
         springs = [pin.stiffness for pin in pins]
-        springs += [energy.stiffest for energy in (*self.rods, *chain.from_iterable(self.sheets))]
+        springs += [energy.stiffest for energy in self._reinforcements]
         rigid = np.isin(body.element_materials, [i for i, part in enumerate(body.parts, start=1) if part.is_rigid])
         springs += _spring_rates(body, rigid).tolist()
         lengths = [carriage.length for carriage in self.rigid_dofs.values()]  # of axes, at which A A^T - I pulls

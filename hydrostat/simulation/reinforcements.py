@@ -4,7 +4,7 @@ import numpy as np
 
 from hydrostat.arrays import Float, Nodes
 from hydrostat.geometry import locate
-from hydrostat.mechanics import RodEnergy, SheetEnergy, rod_points
+from hydrostat.mechanics import RodEnergy, RodTwistEnergy, SheetEnergy, rod_points
 from hydrostat.robot import Membrane, Plane, Robot, Rod
 
 
@@ -13,6 +13,15 @@ def make_rod_energy(robot: Robot, rod: Rod, rest: Nodes) -> RodEnergy:
     mesh, (axial, bending) = robot.body.mesh, rod.stiffnesses
     anchors = locate(mesh, rod_points(mesh, np.array(rod.points)))
     return RodEnergy(rest, anchors, axial_stiffness=axial, bending_stiffness=bending)
+
+
+def make_twist_energy(robot: Robot, rod: Rod, rest: Nodes) -> RodTwistEnergy | None:
+    """Energy by which a rod resists twist, on unknowns that are at `rest` [m]; None if it resists none."""
+    if rod.torsional_stiffness is None:
+        return None
+    mesh = robot.body.mesh
+    points = rod_points(mesh, np.array(rod.points))
+    return RodTwistEnergy(rest, mesh, points, torsional_stiffness=rod.torsional_stiffness)
 
 
 def make_sheet_energies(robot: Robot, sheet: Membrane, rest: Nodes) -> list[SheetEnergy]:

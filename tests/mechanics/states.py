@@ -22,6 +22,7 @@ from hydrostat.mechanics import (
     PrandtlEnergy,
     PressureEnergy,
     RodEnergy,
+    RodTwistEnergy,
     SheetEnergy,
     TensionLaw,
     rod_points,
@@ -111,6 +112,13 @@ def rod(dim: int, random: np.random.Generator, *, bent: bool) -> State:
     ends[1] = 0.4 * ends[0] + 0.6 * ends[2] + (0.2 * (ends[1] - ends[0]) if bent else 0.0)
     anchors = locate(mesh, rod_points(mesh, ends))
     energy = RodEnergy(mesh.nodes, anchors, axial_stiffness=30.0, bending_stiffness=4e-3)
+    return State(energy, deform(mesh, random), np.zeros(CONTROLS))
+
+
+def rod_twist(random: np.random.Generator) -> State:
+    mesh = rough_mesh(3, random)
+    ends = random.uniform(0.2, 0.8, (2, 3)) * SIZE[3]
+    energy = RodTwistEnergy(mesh.nodes, mesh, rod_points(mesh, ends), torsional_stiffness=4e-3)
     return State(energy, deform(mesh, random), np.zeros(CONTROLS))
 
 

@@ -1,5 +1,6 @@
 """Rods in robot.toml. Oracle: what was written, and the line that tells each fault."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,8 @@ GIVEN = (
     'bending_stiffness = "2500 N mm^2"\n'
 )
 
+SPINE = Path(__file__).parents[2] / "examples" / "spine"
+
 
 def test_what_is_written_is_read(tmp_path: Path) -> None:
     robot = load(tmp_path / "a", f"{GOOD}\n{WIRE}{GIVEN}")
@@ -21,6 +24,13 @@ def test_what_is_written_is_read(tmp_path: Path) -> None:
     save_robot(robot, tmp_path / "b")
     assert load_robot(tmp_path / "b") == robot
     assert scaled_robot(robot, 2.0).rods[0].diameter == pytest.approx(1.6e-3)
+
+
+def test_a_rod_in_space_may_resist_twist(tmp_path: Path) -> None:
+    robot = load_robot(SPINE)
+    robot = replace(robot, rods=(replace(robot.rods[0], torsional_stiffness=2.3e-3),))
+    save_robot(robot, tmp_path)
+    assert load_robot(tmp_path).rods == robot.rods
 
 
 @pytest.mark.parametrize(
@@ -34,6 +44,7 @@ def test_what_is_written_is_read(tmp_path: Path) -> None:
         (WIRE.replace("0.8 mm", "0 mm"), r"rod\[0\].diameter must be finite and above 0"),
         (WIRE.replace('young = "200 GPa"', ""), r"rod\[0\]: give diameter and young, or axial_stiffness"),
         (GIVEN.replace("N mm^2", "N"), r"rod\[0\].bending_stiffness: .* does not measure a bending stiffness"),
+        (WIRE + 'torsional_stiffness = "9 N mm^2"\n', r"rod\[0\].torsional_stiffness: a rod in a flat body does not"),
         (WIRE + WIRE, r'rod\[1\].name: there are two of the name "spine"'),
     ],
 )

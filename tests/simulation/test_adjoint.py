@@ -416,7 +416,11 @@ def test_the_page_on_derivatives_is_true(monkeypatch: pytest.MonkeyPatch) -> Non
 def test_by_gravity_and_stiffness_of_rods(unchecked: None) -> None:
     heavy = heavy_patches(box())
     wire = Rod(
-        name="wire", points=((0.0, 0.021, 0.019), (0.12, 0.021, 0.019)), axial_stiffness=50.0, bending_stiffness=2e-3
+        name="wire",
+        points=((0.0, 0.021, 0.019), (0.12, 0.021, 0.019)),
+        axial_stiffness=50.0,
+        bending_stiffness=2e-3,
+        torsional_stiffness=3e-3,
     )
     loss = Loss(
         replace(heavy, rods=(wire,), loads=(Load(name="nut", marker="tip", mass=0.004),)), np.array([0.006, 0.002])
@@ -431,6 +435,7 @@ def test_by_gravity_and_stiffness_of_rods(unchecked: None) -> None:
     for key, slope, step in (
         ("axial_stiffness", slopes.rod_axial, 0.5),
         ("bending_stiffness", slopes.rod_bending, 2e-5),
+        ("torsional_stiffness", slopes.rod_torsion, 3e-5),
     ):
         found = loss.difference(
             lambda h, key=key: replace(robot, rods=(replace(wire, **{key: getattr(wire, key) + h}),)), step

@@ -7,7 +7,7 @@ import pytest
 from builders import box_mesh, mesh_body
 from scipy.integrate import solve_bvp
 
-from hydrostat.robot import Load, Marker, Material, Pin, Robot, Rod
+from hydrostat.robot import BodyPart, Load, Marker, Material, Pin, Robot, Rod
 from hydrostat.simulation import Simulation
 
 LENGTH, EI = 0.2, 2.5e-3
@@ -67,3 +67,19 @@ def test_a_rod_that_is_bent_at_rest_has_no_force() -> None:
     pose = Simulation(bent).solve([])
     assert pose.nodes == pytest.approx(robot.body.mesh.nodes, abs=1e-9)
     assert bent.rods[0].stiffnesses == pytest.approx((2e11 * np.pi * 1e-6 / 4, 2e11 * np.pi * 1e-12 / 64))
+
+
+@pytest.mark.parametrize(("count", "free"), [(10, 0.8), (20, 0.85)])
+def test_a_rod_is_twisted_by_a_moment_about_it(count: int, free: float) -> None:
+    """Oracle: the angle M L / GJ over the share of the length between the clamp and a rigid end."""
+    stiffness, moment = 4e-3, 0.01
+    robot = cantilever(count)
+    rod = replace(robot.rods[0], torsional_stiffness=stiffness)
+    end = BodyPart(name="end", shape="box", at=(0.899 * LENGTH, -1, -1), to=(1.1 * LENGTH, 1, 1), density=1.0)
+    load = Load(name="p", at=(0.95 * LENGTH, *MIDDLE), moment=(moment, 0.0, 0.0))
+    body = replace(robot.body, parts=(end,), material=replace(SOFT, young=5e3))
+    pose = Simulation(replace(robot, body=body, rods=(rod,), loads=(load,))).solve([])
+    last = np.flatnonzero(robot.body.mesh.nodes[:, 0] > LENGTH - 1e-9)
+    rest, now = ((nodes[last] - nodes[last].mean(axis=0))[:, 1:] for nodes in (robot.body.mesh.nodes, pose.nodes))
+    angle = np.arctan2((rest[:, 0] * now[:, 1] - rest[:, 1] * now[:, 0]).sum(), (rest * now).sum())
+    assert angle == pytest.approx(moment * free * LENGTH / stiffness, rel=0.02)

@@ -75,6 +75,7 @@ class Sensitivity:
         gravity: derivative by each component of gravity [s^2/m], (dim,), with hung masses.
         rod_axial: derivative by EA of each rod [1/N], (rods,).
         rod_bending: derivative by EI of each rod [1/(N m^2)], (rods,).
+        rod_torsion: derivative by GJ of each rod [1/(N m^2)], (rods,); 0 for one that resists no twist.
         sheet_young: derivative by Young's modulus of each sheet [1/Pa], (sheets,).
     """
 
@@ -96,6 +97,7 @@ class Sensitivity:
     gravity: Vector
     rod_axial: Vector
     rod_bending: Vector
+    rod_torsion: Vector
     sheet_young: Vector
     drives: Vector = field(default_factory=lambda: np.zeros(0))
 
@@ -194,6 +196,7 @@ def by_body(body: BodyPhysics, pose: Equilibrium, field: Nodes) -> dict[str, Any
     rigid = np.array([False, *(part.is_rigid for part in pose.robot.body.parts)])
     stiffness = np.array([material.young for material in materials]) / body.material.young  # what rigid parts keep
     rods = np.array([rod.stiffness_work(pose.nodes, field) for rod in body.rods]).reshape(-1, 2)
+    twists = [0.0 if twist is None else twist.stiffness_work(pose.nodes, field) for twist in body.twists]
     return {
         "young": float(young[0] + stiffness[rigid] @ young[rigid]),
         "poisson": float(poisson[0]),
@@ -208,6 +211,7 @@ def by_body(body: BodyPhysics, pose: Equilibrium, field: Nodes) -> dict[str, Any
         "gravity": body.heavy_masses @ field,
         "rod_axial": -rods[:, 0],
         "rod_bending": -rods[:, 1],
+        "rod_torsion": -np.array(twists),
         "sheet_young": np.array(
             [
                 -sum(energy.stiffness_work(pose.nodes, field) for energy in energies) / sheet.material.young
