@@ -28,6 +28,9 @@ from hydrostat.robot import (
 MM = 1e-3
 SHIFT = 20.0  # slack of every tendon at zero [mm], as a cable's slack is not below 0
 
+COILED = 1.15
+"""Torsional over bending stiffness of a closely coiled spring of round steel wire, (2 + nu) / 2 (Wahl 1963)."""
+
 
 def prism(planes: np.ndarray, side: float) -> Mesh:
     """Tetrahedra of a square prism about the z axis, two cells across, with nodes on planes [mm]."""
@@ -87,7 +90,7 @@ def opencr(lengths: list[float], angles: list[float], radius: float) -> Identifi
     parameters = [
         Parameter(name="young", start=4e5, spread=1.0, unit="Pa", log=True),
         Parameter(name="bending", start=1.5e-3, spread=0.5, unit="N m^2", log=True),
-        Parameter(name="torsion", start=1.5e-3, spread=1.0, unit="N m^2", log=True),
+        Parameter(name="torsion over bending", start=COILED, spread=0.3, log=True),
         Parameter(name="marker", start=4.0, spread=4.0, unit="mm", low=0.0, high=beyond),
         *(Parameter(name=f"gravity {axis}", start=0.0, spread=5.0, unit="m/s^2") for axis in "xyz"),
         *frame_parameters((0.0, 0.0, 0.0), 3.0),
@@ -111,11 +114,12 @@ def opencr(lengths: list[float], angles: list[float], radius: float) -> Identifi
             angle = values[f"angle {segment}"] + 2 * np.pi / 3 * tendon + values[f"angle {segment}{tendon}"]
             heights = np.array([-5.0, *middles[: count * (segment + 1)]])
             cables.append((polar(values[f"radius {segment}"], angle, heights), values[f"stiffness {segment}"]))
+        bending, ratio = values["bending"], values["torsion over bending"]
         return tendon_robot(
             body(values["young"], 1e3),
             cables,
             gravity=tuple(values[f"gravity {axis}"] for axis in "xyz"),
-            rods=[rod("backbone", 0.0, top, axial=2e4, bending=values["bending"], torsion=values["torsion"])],
+            rods=[rod("backbone", 0.0, top, axial=2e4, bending=bending, torsion=ratio * bending)],
             markers={"tip": top + values["marker"]},
         )
 
