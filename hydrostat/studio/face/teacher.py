@@ -186,20 +186,23 @@ class _TeacherPage:
             with ui.row().classes("w-full justify-end"):
                 ui.button("Close", on_click=dialog.close).props("flat no-caps")
                 self._stop = ui.button("Stop", on_click=self._class.jobs.stop).props("flat no-caps color=negative")
-                self._pack = ui.button(
-                    "Pack",
-                    on_click=lambda: self.act(lambda: self._class.pack(kits=bool(kits.value), pages=bool(pages.value))),
-                ).props('unelevated no-caps data-testid="pack"')
+                pack = ui.button("Pack", on_click=lambda: self._begin_packing(bool(kits.value), bool(pages.value)))
+                self._pack = pack.props('unelevated no-caps data-testid="pack"')
                 self._download = ui.button("Download", on_click=self._take).props(
                     'unelevated no-caps data-testid="take-zip"'
                 )
         return dialog.open
 
+    def _begin_packing(self, kits: bool, pages: bool) -> None:
+        if not self._class.jobs.is_running:  # a second click of a double click
+            self.act(lambda: self._class.pack(kits=kits, pages=pages))
+            self._show_packing()
+
     def _show_packing(self) -> None:
         state, made = self._class.jobs.state, self._class.made
         running = state is not None and state.running
         self._stop.set_visibility(running)
-        self._pack.set_visibility(not running)
+        self._pack.set_enabled(not running)  # it keeps its place: a double click must not press Stop
         self._download.set_visibility(made is not None)
         if state is not None and running:
             self._packing.set_text(f"{state.done + 1} of {state.total}: {state.stage}" if state.total else state.stage)
