@@ -10,12 +10,12 @@ from starlette.requests import HTTPConnection, Request
 from starlette.responses import HTMLResponse, PlainTextResponse, RedirectResponse, Response
 
 from hydrostat.errors import InputError
+from hydrostat.studio.face.class_code import KEPT
 from hydrostat.studio.face.classroom import Classroom
 from hydrostat.studio.face.rooms import LONGEST_NAME, clean_name
 from hydrostat.studio.face.teacher import build_teacher
 
 NAME = "hydrostat_name"  # the cookie of a nickname, followed by the port
-KEPT = 90 * 24 * 3600  # a browser remembers its room and nickname so long [s]
 MOST_BYTES = 4096  # of the form
 
 

@@ -2,19 +2,18 @@
 
 import re
 from ipaddress import ip_address
-from secrets import choice, compare_digest
+from secrets import compare_digest
 from urllib.parse import parse_qs
 
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import HTMLResponse, PlainTextResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from hydrostat.studio.face.class_code import KEPT
+
 LOOPBACK = ("127.0.0.1", "localhost", "[::1]")  # names of this machine that a page may have
 COOKIE = "hydrostat_token"  # followed by the port: cookies do not know ports, and two studios may run on one machine
 LARGEST = 200_000_000  # no request has more bytes
-
-LETTERS = "abcdefghjkmnpqrstuvwxyz23456789"  # of a code: without i, l, o, 0 and 1
-LENGTH = 8  # letters of a code: at 2,000 guesses a second, 13 years for all of them
 
 _ROOM = re.compile(r"/(room|watch|class)/[A-Za-z0-9_-]+")  # what a link with a token may lead to, beside the front
 _TYPED = re.compile(r"/[^/.]+")  # a path that may be meant as a code
@@ -49,11 +48,6 @@ ASK_CODE = """<!doctype html><html lang="en"><meta charset="utf-8"><title>hydros
  style="font: inherit; padding: 10px; width: 9em"> <button style="font: inherit; padding: 10px">Start</button>
 <p role="alert">{0}</p></form></html>"""
 """Asks for the code of a class, at the address that was asked for, so that a link of a room leads there."""
-
-
-def new_code() -> str:
-    """Return a token that pupils can copy from the board."""
-    return "".join(choice(LETTERS) for _ in range(LENGTH))
 
 
 class Guard:
@@ -147,7 +141,8 @@ class Guard:
         """Keeps the token as a cookie and goes to the page, so that it does not stay in the address."""
         here = path if _ROOM.fullmatch(path) else "/"
         response = HTMLResponse(WELCOME.format(here), headers={"cache-control": "no-store"})
-        response.set_cookie(self._cookie, self._token or "", httponly=True, samesite="strict")
+        lasts = KEPT if self._coded else None  # pupils need not type the code again in the next lesson
+        response.set_cookie(self._cookie, self._token or "", httponly=True, samesite="strict", max_age=lasts)
         return response
 
 

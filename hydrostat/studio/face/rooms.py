@@ -80,7 +80,7 @@ class Rooms:
         self.first = None if first is None else (Work(robot=load_robot(first)), text_of(first))  # with its robot.toml
         self.slots = Slots(works)
         self.locked = False  # whether rooms that open are locked
-        self._state, self._turns = state, Slots(os.cpu_count() or 1)
+        self.state, self._turns = state, Slots(os.cpu_count() or 1)
         self._lock, self._open = Lock(), False
         self._rooms: dict[str, Room] = {}
         self._only = None if only is None else Room(new_key(), only)
@@ -118,7 +118,7 @@ class Rooms:
 
     def list_earlier(self) -> list[RecoveredWork]:
         """Work of earlier lessons, or that a hand-out replaced, the newest first; none of it is shown in a room."""
-        home = None if self._state is None else self._state / "rooms"
+        home = None if self.state is None else self.state / "rooms"
         if home is None or not home.is_dir():
             return []
         return find_left(
@@ -172,7 +172,7 @@ class Rooms:
 
     def _session(self, key: str) -> Session:
         name = sha256(key.encode()).hexdigest()[:24]
-        state = None if self._state is None else self._state / "rooms" / name
+        state = None if self.state is None else self.state / "rooms" / name
         session = Session(state, guest=True, slots=self.slots)
         with suppress(HydrostatError, OSError):  # work that cannot be read stays in Start
             for left in session.starter.autosave.find_recovered()[:1]:

@@ -18,9 +18,10 @@ from starlette.websockets import WebSocket
 
 from hydrostat.errors import InputError
 from hydrostat.studio.bell import Topic
+from hydrostat.studio.face.class_code import recall_code
 from hydrostat.studio.face.class_pages import add_class_pages, ask_nickname, read_nickname, remember
 from hydrostat.studio.face.classroom import Classroom
-from hydrostat.studio.face.guard import LOOPBACK, Guard, new_code
+from hydrostat.studio.face.guard import LOOPBACK, Guard
 from hydrostat.studio.face.page import HEARTBEAT, Toasts, WindowPage
 from hydrostat.studio.face.rooms import RETRY, Room, Rooms, RoomsFullError, new_key
 from hydrostat.studio.face.share import Links
@@ -167,7 +168,7 @@ def serve(
     coded = classroom is not None
     listener = _class_listener(host) if coded and not port else _listener(host, port)
     own = host in ("127.0.0.1", "localhost", "::1")
-    token = None if own else new_code() if coded else token_urlsafe(16)
+    token = None if own else recall_code(rooms.state) if coded else token_urlsafe(16)
     number = listener.getsockname()[1]
     name = host if ":" not in host else f"[{host}]"
     shown = name if host not in ("0.0.0.0", "::") else socket.gethostname()

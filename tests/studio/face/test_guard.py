@@ -17,7 +17,8 @@ from toy_server import Server
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
-from hydrostat.studio.face.guard import Guard, new_code
+from hydrostat.studio.face.class_code import new_code
+from hydrostat.studio.face.guard import Guard
 
 pytestmark = pytest.mark.slow
 
@@ -180,6 +181,7 @@ def test_a_code_from_the_board_leads_in() -> None:
         for path in (f"/{code}", f"/{code.upper()}", f"/?token={code}", f"/?token=+{code.title()}+"):
             status, headers, body = ask(port, path)
             assert (status, code in headers["set-cookie"], code.encode() in body) == (200, True, False), path
+            assert "Max-Age" in headers["set-cookie"], "not typed again in the next lesson"
         cookie = f"hydrostat_token_{port}={code}"
         assert ask(port, method="POST", Cookie=cookie)[0] == 200
         for path in ("/", f"/{code[:-1]}", f"/{code}x", "/?token=", "/?token=%00", f"/room/{code}"):
