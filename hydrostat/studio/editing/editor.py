@@ -16,11 +16,12 @@ from hydrostat.studio.document import Document
 from hydrostat.studio.editing.cable_draft import CableDraft, begin_cable, end_cable, overlay
 from hydrostat.studio.editing.change import change, remesh, rename, set_contact, set_gravity
 from hydrostat.studio.editing.copies import paste_parts, shift_parts
-from hydrostat.studio.editing.hold import Hold, below_skin, inside, snap_to_grid, take_hold
+from hydrostat.studio.editing.cross_hair import CrossHair
+from hydrostat.studio.editing.hold import Hold, find_place, take_hold
 from hydrostat.studio.editing.part import Mirror, find_part, keys_of, name_of, place_of, title_of
 from hydrostat.studio.editing.part_brush import PartBrush, add_body_part
 from hydrostat.studio.editing.place import add_marker, add_pin, add_winch, move, remove
-from hydrostat.studio.editing.tools import KEYS, Findings, Ruler, Tool, look_over
+from hydrostat.studio.editing.tools import KEYS, Findings, Ruler, Tool, lay_ruler, look_over
 from hydrostat.studio.jobs import Jobs
 from hydrostat.studio.stage import Hit, Stage, parse_arrow
 from hydrostat.studio.view.robot_items import diagnostic_items, robot_items
@@ -41,6 +42,7 @@ class Editor(Stage):
         self.ruler: Ruler | None = None  # laid with its tool; None: it is not
         self.several = False  # whether a press adds to what is selected, as with Shift: fingers have none
         self.brush = PartBrush(document)  # paints regions of another material
+        self.cross_hair = CrossHair(document)  # where Enter uses the tool
         self._chosen: tuple[str, ...] = ()
         self._copied: tuple[Robot, tuple[str, ...]] | None = None
         self._hold: Hold | None = None
@@ -80,12 +82,14 @@ class Editor(Stage):
         ruler = [] if self.ruler is None else self.ruler.scene_items()
         parts = robot_items(robot, vias=True, chosen=chosen)
         regions = self.brush.scene_items(chosen, pickable=self.tool is Tool.MOVE)
-        return [*regions, *parts, *flags, *overlay(robot, self.draft, self.mirror), *ruler]
+        laid = overlay(robot, self.draft, self.mirror)
+        return [*regions, *parts, *flags, *laid, *ruler, *self.cross_hair.scene_items()]
 
     def leave(self) -> None:
         """Drop what was begun: another stage is shown."""
         self.draft, self.ruler, self._hold, self._refused = None, None, None, ""
         self.brush.drawn.clear()
+        self.cross_hair.hide()
 
     def choose(self, key: str, *, also: bool = False) -> None:
         """Select a part, "" for none; with `also` beside what is selected, or no longer if it is."""
@@ -148,6 +152,8 @@ class Editor(Stage):
         """Take another tool; a cable that was begun is dropped (InputError: there is no tool of this name)."""
         self.tool, self.draft, self.ruler = parse_choice(Tool, tool, what="tool"), None, None
         self.brush.drawn.clear()
+        if self.tool is Tool.MOVE:
+            self.cross_hair.hide()
         self._ring()
 
     def mirror_about(self, axis: str) -> None:
@@ -277,7 +283,8 @@ class Editor(Stage):
         if self.tool is Tool.CABLE:
             self._lay(hit)
         elif self.tool is Tool.RULER:
-            self._measure(hit)
+            self.ruler = lay_ruler(self.ruler, place_of(self._document.robot, hit.key) or hit.rest)
+            self._ring()
         elif self.tool is Tool.PART:
             self._paint(None if hit.rest is None else self.brush.drawn.click(hit.rest))
         elif self.tool is Tool.MOVE or find_part(self._document.robot, hit.key) is not None:
@@ -289,6 +296,11 @@ class Editor(Stage):
 
     def key(self, name: str) -> bool:
         """Heed delete, escape, enter, arrows, the words of copying, and a letter for each tool."""
+        begun = self.draft is not None or bool(self.brush.drawn.corners)
+        start = place_of(self._document.robot, self.selected_key)
+        if self.cross_hair.press(name, self.click, start, can_show=self.tool is not Tool.MOVE and not begun):
+            self._ring()
+            return True
         words = {"all": self.choose_all, "copy": self.copy, "paste": self.paste, "duplicate": self.duplicate}
         if name in words:
             words[name]()
@@ -304,7 +316,7 @@ class Editor(Stage):
                 self.finish()
             else:
                 self.cancel()
-        elif name == "enter" and (self.draft is not None or self.brush.drawn.corners):
+        elif name == "enter" and begun:
             self.finish()
         elif name in KEYS:
             self.take(KEYS[name])
@@ -346,21 +358,12 @@ class Editor(Stage):
             return move(robot, hold.places(at))
         return shift_parts(robot, self.selection, tuple(np.subtract(at, before).tolist()), self.mirror)
 
-    def _measure(self, hit: Hit) -> None:
-        """Lay the ruler on a part, or on a place of the body."""
-        at = place_of(self._document.robot, hit.key) or hit.rest
-        if at is None:
-            raise InputError("click a part or the body to measure from there")
-        self.ruler = Ruler((at,)) if self.ruler is None else self.ruler.to(at)
-        self._ring()
-
     def _clicked_place(self, hit: Hit, *, skin: bool) -> Point:
         """The place in the body that a click means."""
         robot = self._document.robot
         if hit.rest is None:
-            raise InputError(f"click the body to place a {self.tool}")
-        asked = snap_to_grid(hit.rest, self.snap)
-        at = inside(robot.body, asked) if skin else below_skin(robot.body, asked, self.depth)
+            raise InputError(f"no body here. Choose a point of the body to place a {self.tool}")
+        at = find_place(robot.body, hit.rest, self.snap, None if skin else self.depth)
         return self.mirror.on_plane(at) if self.mirror is not None and self.mirror.near(robot, at) else at
 
     def _add(self, add: Callable[[Robot, Point], Robot], at: Point) -> None:

@@ -47,6 +47,12 @@ def below_skin(body: Body, at: Point, depth: float) -> Point:
     return inside(body, at)
 
 
+def find_place(body: Body, at: Point, snap: float, depth: float | None) -> Point:
+    """Place in the body [m] for a part that is asked for at a place, on a grid; `depth` as in `below_skin` or None."""
+    asked = snap_to_grid(at, snap)
+    return inside(body, asked) if depth is None else below_skin(body, asked, depth)
+
+
 def tidy(at: Point) -> Point:
     """A place in whole tenths of a millimeter."""
     digits = 4  # places are whole tenths of a millimeter: decimals of a meter

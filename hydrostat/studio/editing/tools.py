@@ -6,6 +6,7 @@ from enum import StrEnum
 import numpy as np
 
 from hydrostat.drawing import Color
+from hydrostat.errors import InputError
 from hydrostat.given import Point
 from hydrostat.robot import Robot
 from hydrostat.studio.view.scene_items import Dot, Look, SceneItem, Strand, Stroke
@@ -72,6 +73,13 @@ class Ruler:
         if len(self.points) < 2:
             return dots
         return [Strand(points=self.points, stroke=Stroke.PATH, color=Color.INK, loose=-1), *dots]
+
+
+def lay_ruler(ruler: Ruler | None, at: Point | None) -> Ruler:
+    """Lay a ruler on one more place [m] (InputError: None, as neither part nor body is there)."""
+    if at is None:
+        raise InputError("click a part or the body to measure from there")
+    return Ruler((at,)) if ruler is None else ruler.to(at)
 
 
 class Tool(StrEnum):

@@ -65,6 +65,7 @@ KEYS = (  # and what they do
         ("PgUp", "PgDn"),
         "move the selection away, nearer (flat robots: up, down); on the timeline: previous, next keyframe",
     ),
+    (("Enter",), "in Edit: show a cross-hair for the tool; arrows move it, Enter places"),
     (("Tab",), "next control; Enter or Space presses it"),
     (("+", "-"), "zoom the view; Ctrl with an arrow turns it"),
     (("Delete",), "delete the selection"),

@@ -1,5 +1,6 @@
 """`describe_view`: content of the view in words, for screen readers."""
 
+from hydrostat.studio.editing.part import title_of
 from hydrostat.studio.session import Session
 from hydrostat.studio.stage import StageName, format_error
 from hydrostat.units import plural
@@ -20,8 +21,7 @@ def _describe_stage(session: Session) -> list[str]:
     if session.stage is StageName.POSE:
         return _describe_targets(session)
     if session.stage is StageName.EDIT:
-        count = len(session.editor.selection)
-        return [f"Selected: {plural(count, 'part')}" if count else "Nothing selected"]
+        return _describe_edit(session)
     if session.stage is StageName.DESIGN and (network := session.designer.candidate) is not None:
         return [f"Network {network.counts}, {format_error(network.expected_error)} as-built error"]
     if session.stage is StageName.DRIVE:
@@ -37,3 +37,13 @@ def _describe_targets(session: Session) -> list[str]:
     held = [f"{name} {format_error(errors[name])} off" if name in errors else name for name in poser.held_points]
     chosen = [f"Chosen: {poser.chosen_name}"] if poser.chosen_name else []
     return [f"Targets: {', '.join(held)}" if held else "At rest, no targets", *chosen]
+
+
+def _describe_edit(session: Session) -> list[str]:
+    """Selection, the points of a cable that is being laid, and the place of the cross-hair."""
+    editor = session.editor
+    count = len(editor.selection)
+    chosen = title_of(editor.selected_key) if count == 1 else plural(count, "part")
+    laid = [] if editor.draft is None else [f"Cable of {plural(len(editor.draft.points), 'point')}"]
+    aimed = [f"Cross-hair: {editor.cross_hair.words}"] if editor.cross_hair.words else []
+    return [f"Selected: {chosen}" if count else "Nothing selected", *laid, *aimed]

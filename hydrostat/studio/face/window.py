@@ -226,8 +226,8 @@ def _key(page: WindowPage, event: events.KeyEventArguments, ask_save: SaveDialog
     """Handle a key; see `tour.KEYS`. Return what is still to be awaited, if anything."""
     name = str(event.key.name)
     held, arrow = event.modifiers, name.lower() in ARROWS
-    if not event.action.keydown or (event.action.repeat and not (arrow and page.session.stage is StageName.POSE)):
-        return None  # a held arrow key repeats for targets only: a change of the robot takes longer than a repeat
+    if not event.action.keydown or (event.action.repeat and not (arrow and _repeats_arrows(page.session))):
+        return None
     if held.alt:
         return None
     if name in SIDES and not held.ctrl and not held.meta:
@@ -245,3 +245,10 @@ def _key(page: WindowPage, event: events.KeyEventArguments, ask_save: SaveDialog
         shifted = "shift " if held.shift and arrow else ""
         page.session.key(shifted + {" ": "space", "Backspace": "delete"}.get(name, name.lower()))
     return None
+
+
+def _repeats_arrows(session: Session) -> bool:
+    """True if a held arrow key repeats: for targets and the cross-hair; a change of the robot takes longer."""
+    if session.stage is StageName.EDIT:
+        return session.editor.cross_hair.at is not None
+    return session.stage is StageName.POSE

@@ -72,6 +72,18 @@ def test_all_stages_by_keys_alone(rooms: str, window: Open) -> None:
     page.keyboard.press("Enter")
     page.get_by_label("Rename hello").wait_for()
 
+    press(page, stage(page, "edit"))
+    view = page.get_by_role("application", name="Robot view")
+    reach(page, view)
+    page.keyboard.press("m")
+    page.get_by_role("button", name="Place markers", pressed=True).wait_for()
+    page.keyboard.press("Enter")
+    view.get_by_text(re.compile(r"Cross-hair: x .*, y .* mm")).wait_for(state="attached")
+    page.keyboard.press("Shift+ArrowUp")
+    page.keyboard.press("Enter")
+    page.wait_for_function("__app.items.some(item => item.key === 'marker:marker_1')")
+    view.get_by_text(re.compile(r"6 markers.*Selected: marker marker_1\. Cross-hair")).wait_for(state="attached")
+
     press(page, stage(page, "design"))
     for other in ("wave", "star_jump"):
         press(page, page.get_by_role("checkbox", name=other, checked=True), "Space")

@@ -24,13 +24,15 @@ TOOLS = {  # icon, name and what to do with each tool
         "Select and move",
         "Drag a part, or a cable to add a via point. Shift-click, or switch on Multiple, to select several.",
     ),
-    Tool.PIN: ("push_pin", "Place pins", "Click the body where it should be fixed."),
-    Tool.MARKER: ("my_location", "Place markers", "Click a point to track."),
-    Tool.WINCH: ("album", "Place winches", "Click the body where a winch should sit."),
+    Tool.PIN: ("push_pin", "Place pins", "Click the body where it should be fixed. Enter shows a cross-hair."),
+    Tool.MARKER: ("my_location", "Place markers", "Click a point to track. Enter shows a cross-hair."),
+    Tool.WINCH: ("album", "Place winches", "Click the body where a winch should sit. Enter shows a cross-hair."),
     Tool.CABLE: ("polyline", "Lay cables", "Click a winch, then point after point. Enter or double-click to finish."),
     Tool.PART: ("texture", "Paint regions", "Draw a region of another material or a rigid one on the body."),
     Tool.RULER: ("straighten", "Measure", "Click two parts or points to measure their distance at rest."),
 }
+
+AIM = "Arrows move the cross-hair by 1 mm, with Shift by 10 mm. Enter places. Esc ends."
 
 
 def edit_panel(page: WindowPage) -> None:
@@ -72,7 +74,7 @@ def _tools(page: WindowPage) -> None:
             button.props(add="" if now else "flat", remove="flat" if now else "")
             button.props(f'aria-pressed="{str(now).lower()}"')
         measured = "" if editor.ruler is None else editor.ruler.words
-        hint.set_text(measured or TOOLS[editor.tool][2])
+        hint.set_text(measured or (TOOLS[editor.tool][2] if editor.cross_hair.at is None else AIM))
         corners = editor.brush.drawn.corners
         laying.set_visibility(editor.draft is not None or bool(corners))
         done.set_enabled(len(corners) > 2 if editor.draft is None else len(editor.draft.points) > 1)
