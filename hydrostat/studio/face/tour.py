@@ -17,12 +17,15 @@ class StageWords:
     icon: str  # likewise
     line: str  # for the help
     tour: str = ""  # for who is here for the first time; "": the tour passes it by
+    guest: str = ""  # the same for guests, who cannot open folders of the server; "": no other text
 
 
 STAGES = {  # in the order of work
     StageName.START: StageWords(
         "Start", "home", "Choose a robot, or import a drawing, a picture or a scan.",
         "Choose a robot from the gallery, open a folder, or import a drawing, a picture or a scan. "
+        "It becomes a soft body.",
+        "Choose a robot from the gallery, open a .zip, or import a drawing, a picture or a scan. "
         "It becomes a soft body.",
     ),
     StageName.EDIT: StageWords(
@@ -102,8 +105,10 @@ requestAnimationFrame(() => {
 class Tour:
     """A small card that goes from stage to stage and says what each is for."""
 
-    def __init__(self) -> None:
+    def __init__(self, *, guest: bool = False) -> None:
+        """A tour for the owner of the studio, or for a guest."""
         self._stops = [(stage, words) for stage, words in STAGES.items() if words.tour]
+        self._guest = guest
         self._step = 0
         self._ring = ui.element("div").classes("tour-ring")
         self._card = ui.element("div").classes("tour").props('role="dialog" aria-label="Tour" data-testid="tour"')
@@ -131,7 +136,7 @@ class Tour:
         stage, words = self._stops[self._step]
         self._icon.set_name(words.icon)
         self._title.set_text(words.title)
-        self._words.set_text(words.tour)
+        self._words.set_text((self._guest and words.guest) or words.tour)
         self._count.set_text(f"{self._step + 1} of {len(self._stops)}")
         self._back.set_visibility(self._step > 0)
         self._next.set_text("Next" if self._step + 1 < len(self._stops) else "Start")

@@ -66,7 +66,7 @@ def build_window(
     """
     page = WindowPage(session)
     dark = dress()
-    tour = Tour()
+    tour = Tour(guest=session.guest)
     ask_save, ask_help = SaveDialog(page), help_dialog(tour)
     page.save = ask_save.save
     _header(page, dark, ask_save, ask_help, links, pupil)
@@ -87,6 +87,7 @@ def build_window(
         page.whole.set_visibility(start)
         page.toasts.room.move(body if start else view)
         page.show_panel(PANELS[session.stage])
+        ui.run_javascript(f"document.getElementById('{page.panel.html_id}')?.scrollTo(0, 0)")
 
     with body, ui.element("div").classes("class-lock").props('role="status" data-testid="locked"') as banner:
         ui.icon("lock", size="18px")
