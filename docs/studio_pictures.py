@@ -44,8 +44,10 @@ def studio(robot: str | None, *options: str) -> Iterator[list[str]]:
         found: list[str] = []
         while len(found) < 1 + ("--class" in options):
             found += [word for word in process.stdout.readline().split() if word.startswith("http://")]
-        yield found
-        process.terminate()
+        try:
+            yield found
+        finally:
+            process.terminate()
 
 
 @contextmanager
