@@ -6,7 +6,7 @@ At the end you know how hard a starfish holds a ball: the force that pulls it ou
 """
 
 # %%
-# The ball lies between two arms, clear of them. Contact is on; the friction coefficient is 0.8.
+# At rest the ball lies between two arms, clear of them. Contact is on; the friction coefficient is 0.8.
 from dataclasses import replace
 
 import numpy as np
