@@ -285,8 +285,9 @@ def _opening_warnings(plan: KitPlan) -> tuple[str, ...]:
         return ()
     sides = " x ".join(f"{side:.0f}" for side in sorted(unit.room.size))
     return (
-        f'the opening of {opening.slit.length:.0f} mm is too short for the unit of winch "{unit.winch}", {sides} mm, '
-        f"which needs {needed:.0f} mm. Choose a smaller motor, or move the winch to a wider place",
+        f'zipper: the unit of winch "{unit.winch}" ({sides} mm) does not pass through its opening of '
+        f"{opening.slit.length:.0f} mm (minimum {needed:.0f} mm). Choose a smaller motor, or move the winch to a wider "
+        "part of the body",
     )
 
 

@@ -281,7 +281,10 @@ def close_warnings(robot: Robot) -> tuple[str, ...]:
         return ()
     cables = f"cable{'s' if len(close) > 1 else ''} {', '.join(close)}"
     least = min(close.values())
-    return (f"{cables}: points less than {CLOSE:g} mm apart (minimum {least:.1f} mm) share one stitch",)
+    return (
+        f"{cables}: some points are only {least:.1f} mm apart, too close for two stitches (minimum {CLOSE:g} mm). Sew "
+        "one stitch for both",
+    )
 
 
 def deep_warnings(table: Table[DepthRow]) -> tuple[str, ...]:

@@ -42,7 +42,7 @@ _MODEL_FIRST = (
 )
 
 _PARTS_TOO = " Print the parts of the robot too: all plates, from parts/plate_1.3mf on, in PLA, without supports."
-_STIR_FOAM = "Stir with an egg mixer as long as the label says, not longer: the foam rises immediately."
+_STIR_FOAM = "Stir with a whisk on a drill as long as the label says, not longer: the foam rises immediately."
 _STIR_SILICONE = "Stir slowly, scrape sides and bottom, and let the bubbles rise, in a vacuum if you have one."
 _POUR_FOAM = "Pour immediately, in a thin stream down the sprue. Tape each vent when foam appears, then the sprue."
 _POUR_SILICONE = (

@@ -245,10 +245,11 @@ def _list_first_steps(plan: PowerPlan, *, is_measured: bool) -> list[str]:
             f"{plan.cells} V, and the light blinks.",
         ]
     return [
-        f"Leave the switch off. Measure the supply behind the fuse: {plan.motor.volts:g} V, plus on the plus lead.",
+        "Leave the switch off. The supply gives 1.5 times the current of all motors at full torque, and enough for two "
+        f"that stall. Measure it behind the fuse: {plan.motor.volts:g} V, plus on the plus lead.",
         *ready,
         'Install the motor package: pip install -e ".[motors]" in the folder of hydrostat. Then find the port: '
-        "/dev/ttyUSB0 or /dev/ttyACM0 on Linux, COM3 or similar on Windows.",
+        "/dev/ttyUSB0 or /dev/ttyACM0 on Linux, and in WSL after usbipd has attached it.",
         f"Keep a hand on the switch and turn it on. Run: hydrostat calibrate ROBOT --motors {kind}:PORT. Check that "
         "the winch that turns is the one that the command names."
         if is_measured

@@ -157,13 +157,14 @@ def tie_step(plan: KitPlan) -> AssemblyStep:
     """The step by which lines come on their spools."""
     robot = plan.robot
     back = [f"C{index + 1}" for index, cable in enumerate(robot.cables) if cable.reverse]
+    then = "" if plan.method is Method.PLUSH else " Then calibrate."  # plush is calibrated once it is stuffed
     ways = f"all in one direction, but these in the other: {', '.join(back)}" if back else "all in one direction"
     return AssemblyStep(
         "Tie the cables on",
         5 * len(robot.cables),
         "Lead each line through its own channel of the housing; push its tube, if it has one, into the seat. Knot it "
         f"at the spool's tie hole so that the spool mark meets the spool. Wind the spare turns on, {ways}. "
-        f"{turn_words(plan)} Then calibrate.",
+        f"{turn_words(plan)}{then}",
     )
 
 
@@ -175,6 +176,12 @@ def marks_text(marks: tuple[str, ...]) -> str:
     return marks[0] if len(marks) == 1 else f"{', '.join(marks[:-1])} and {marks[-1]}"
 
 
+def _sheet_size(plan: KitPlan) -> str:
+    """Sentence on the size of the sheet of felt that holds all panels."""
+    pattern = plan.work.pattern
+    return "" if pattern is None else f"All panels fit on felt of {pattern.width:.0f} × {pattern.height:.0f} mm. "
+
+
 def plush_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
     """Steps from the folder of files to a robot that is sewn up."""
     cables = len(plan.robot.cables)
@@ -183,6 +190,7 @@ def plush_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
         AssemblyStep(
             "Cut the cloth",
             20,
+            f"{_sheet_size(plan)}"
             "Laser pattern/pattern.svg or pattern/pattern.dxf: marks first, then pinholes, edges last. Or print "
             f"pattern/pattern_{plan.options.paper}.pdf at 100 %, check that the bar measures 100 mm, cut by hand and "
             "punch the pinholes. Keep the grain arrows along the cloth. Green guides would show on the toy: draw them "

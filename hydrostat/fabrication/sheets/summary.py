@@ -96,7 +96,8 @@ def _tools(plan: KitPlan, lists: Lists) -> list[str]:
             "sewing machine, or a needle and twice the time",
         ]
     elif plan.method is Method.FOAM:
-        tools += ["scale that reads 1 g", "gloves and goggles", "egg mixer on a drill", "cups and a sharp knife"]
+        stirrer = "sticks to stir with" if plan.is_silicone else "whisk on a drill"
+        tools += ["scale that reads 1 g", "gloves and goggles", stirrer, "cups and a sharp knife"]
     if sizes := {title.partition(" ")[0] for title in plan.rigid.screws if "screw" in title}:
         tools.append(f"screwdriver for {' and '.join(sorted(sizes))} screws")
     if lists.power is not None:

@@ -120,4 +120,4 @@ def test_a_zipper_too_short_for_a_winch_is_told() -> None:
 
     assert told(66.0) == told(47.0, Mount.WORLD) == ()
     (words,) = told(47.0)
-    assert 'the opening of 47 mm is too short for the unit of winch "left", 27 x 39 x 41 mm, which needs 66 mm' in words
+    assert 'unit of winch "left" (27 x 39 x 41 mm) does not pass through its opening of 47 mm (minimum 66 mm)' in words

@@ -89,6 +89,8 @@ def test_another_robot_gives_other_bytes(plush_sheet):
 
 def test_what_a_plush_sheet_says(plush_sheet):
     text = words(plush_sheet)
+    assert "Then calibrate" not in text  # only once it is stuffed
+    assert "Close and calibrate" in text
     for part in (
         "You need",
         "Where the cables run",
@@ -196,7 +198,9 @@ def test_a_body_of_silicone_is_not_told_of_foam(foam_sheet):
     assert "contact adhesive" in words(foam_sheet)
     assert "let the bubbles rise" in text
     assert "4 h at 25 °C" in text
-    assert "egg mixer as long" in words(foam_sheet)
+    assert "whisk on a drill as long" in words(foam_sheet)
+    assert "whisk" not in text
+    assert "Then calibrate" in text
 
 
 @pytest.mark.slow
