@@ -235,9 +235,14 @@ def _body_lines(body: "Body") -> list[str]:
         f"{name}: {_mass_text(float(body.element_masses[own].sum()))}, {_volume_text(volume)}",
         *(_part_line(body, index) for index in range(len(body.parts))),
         *([f"body with its parts: {_mass_text(body.mass)}"] if body.parts else []),
-        f"{across} from {1e3 * thin:.0f} mm ({few:.1f} elements across){flat}; {angle}",
+        f"{across} from {1e3 * thin:.0f} mm ({_across_words(few)}){flat}; {angle}",
         *_plane_lines(body),
     ]
+
+
+def _across_words(count: float) -> str:
+    """Words for the number of elements across the thinnest twentieth of the boundary; below 1 it is no limb."""
+    return f"{count:.1f} elements across" if count >= 1 else "less than 1 element across, as at tips and corners"
 
 
 def _material_name(material: "Material") -> str:

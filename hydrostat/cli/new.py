@@ -303,7 +303,8 @@ def _print_made(made: "Robot", name: Path, lines: list[str], *, chosen: bool, fr
     coarse = not flat and not chosen  # fewer elements than would be exact, so that all is quick at first
     for risk in (*find_risks(made), *(() if from_gallery else _pinned_drawings(made))):
         mild = coarse and "elements across" in risk
-        lines.append(f"{'note: coarse for speed' if mild else 'warning'}: {in_words(risk)}")
+        words = in_words(risk)
+        lines.append(f"note: coarse mesh for speed: {words.removeprefix('body: ')}" if mild else f"warning: {words}")
     large, small, thin = 0.8, 0.02, 0.001  # bodies beyond these may be in a wrong unit [m]
     if mesh.size < small:
         lines.append(

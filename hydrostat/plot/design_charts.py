@@ -51,12 +51,13 @@ def draw_growth(
 
 
 def stage_runs(stages: Sequence[DesignStage]) -> list[list[int]]:
-    """Indices of stages, a list for each network that was begun: with far fewer cables than the one before."""
+    """Indices of stages, a list for each network that was begun: drawn, from trees, or with far fewer cables."""
     runs: list[list[int]] = []
     before = np.inf
     for index, stage in enumerate(stages):
         count = len(stage.robot.cables)
-        if not runs or count < before - 1 or count < 2 <= before:
+        is_begun = stage.words.startswith(("drawn along", "winch trees"))
+        if not runs or is_begun or count < before - 1 or count < 2 <= before:
             runs.append([])
         runs[-1].append(index)
         before = count
@@ -64,12 +65,17 @@ def stage_runs(stages: Sequence[DesignStage]) -> list[list[int]]:
 
 
 def _draw_level(axes: Axes, error: float, words: str, color: str, lift: int) -> None:
-    """A line across at an error [mm], with its words below or above it."""
+    """A line across at an error [mm], with its words: below it at the right, above it at the left.
+
+    The curve falls from left to right, so the words are where it is not.
+    """
     axes.axhline(error, color=color, linewidth=1.0, linestyle=(0, (3, 2)), zorder=2)
+    right = lift < 0
     axes.annotate(
-        f"{words}: {error:.3g} mm", (1.0, error), xycoords=("axes fraction", "data"), xytext=(-2, lift),
-        textcoords="offset points", fontsize=8, color=color, ha="right", va="top" if lift < 0 else "bottom",
-        weight="bold" if lift > 0 else "normal",
+        f"{words}: {error:.3g} mm", (float(right), error), xycoords=("axes fraction", "data"),
+        xytext=(-2 if right else 2, lift), textcoords="offset points", fontsize=8, color=color,
+        ha="right" if right else "left", va="top" if right else "bottom", weight="normal" if right else "bold",
+        gid=HALO, zorder=5,
     )  # fmt: skip
 
 

@@ -93,6 +93,8 @@ def sketch_robot(
     from shapely import Point as ShapelyPoint
     from shapely import maximum_inscribed_circle
 
+    from hydrostat.robot.pin_place import move_off_drawings
+
     drawing = read_drawing(content, name=file, size=size, inner=inner, part=drawing_part)
     outline, drawing_part = drawing.outline, drawing.part if drawing.part > 1 else None
     asked, reading = bool(element_size or nodes), {"size": size, "inner": inner, "drawing_part": drawing_part}
@@ -117,6 +119,7 @@ def sketch_robot(
     center = np.array(maximum_inscribed_circle(outline.polygon).coords[0])
     depth = outline.polygon.boundary.distance(ShapelyPoint(center))
     pin = Pin(at=_point(center), radius=_round(max(0.4 * depth, 1.3 * spacing)))
+    pin = move_off_drawings(pin, body, outline.polygon)
     corners = body.mesh.elements if body.mesh.quadratic is None else body.mesh.quadratic[:, :3]
     within = np.setdiff1d(corners, body.mesh.boundary_nodes)
     insides = body.mesh.nodes[within], body.mesh.nodes[corners].mean(axis=1)

@@ -110,8 +110,13 @@ _BARE_TEXT = re.compile(r"""\s*([\w.-]+)\s*=\s*([^\W\d][^"'#\[\]{}]*?|\d[^"'#\[\
 _AFTER_TEXT = re.compile(r"""\s*([\w.-]+)\s*=\s*("[^"]*"|'[^']*')\s*([^\s#].*)""")
 
 
+_SPACED_KEY = re.compile(r"(?:^|[{,])\s*([\w-]+(?: +[\w-]+)+)\s*=")
+
+
 def _hint_at(what: str, line: str) -> str:
     """Fix for a line that is no TOML; empty if none is known."""
+    if what.startswith("Expected '='") and len(line) <= 200 and (spaced := _SPACED_KEY.search(line)):
+        return f'; a key with a space needs quotes: "{spaced[1]}" = ...'
     if what == r"Illegal character '\n'":
         return '; a text on this line is not closed, " is missing'
     if what == "Cannot overwrite a value":

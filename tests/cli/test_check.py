@@ -12,6 +12,7 @@ import pytest
 from builders import box_mesh
 from manifold3d import Manifold
 
+from hydrostat.cli.check import _across_words
 from hydrostat.cli.main import main
 from hydrostat.design import BuildCost
 from hydrostat.geometry import Surface, write_ply, write_vtu
@@ -76,6 +77,11 @@ def check(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -
 
 
 NO_CABLES = "OK: 0 errors, 0 warnings (body only: no cables yet)."
+
+
+def test_tips_are_no_limbs_of_part_of_an_element() -> None:
+    assert _across_words(2.25) == "2.2 elements across"
+    assert _across_words(0.4) == "less than 1 element across, as at tips and corners"
 
 
 def test_flat_body(check: Check, tmp_path: Path) -> None:

@@ -118,6 +118,13 @@ def test_the_curve_of_growth_holds_every_stage() -> None:
     assert (axes.get_yscale(), axes.get_ylim()[0]) == ("linear", 0.0)
 
 
+def test_networks_drawn_one_after_the_other_are_separate() -> None:
+    """Each has as many cables as the one before, and is no later stage of it."""
+    words = ("drawn along the limbs", "drawn along the limbs", "via points moved")
+    stages = [replace(stage, words=each) for stage, each in zip(staged(3, 3, 3), words, strict=True)]
+    assert stage_runs(stages) == [[0], [1, 2]]
+
+
 def test_errors_that_differ_much_are_on_a_logarithmic_scale() -> None:
     assert draw_growth(staged(1, 2), final=1e-5).axes[0].get_yscale() == "log"
     assert draw_growth(staged(1, 2), final=0.0).axes[0].get_yscale() == "linear"

@@ -353,6 +353,7 @@ LINES = [
     ("format = 1", "format 1", "line 2: not TOML: Expected '='"),
     ("[body]", "[body]\nplane = stress", 'line 6: not TOML: Invalid value; write text in quotes: plane = "stress"'),
     ('"20 mm"', "20 mm", 'write text in quotes: thickness = "20 mm"'),
+    ("thickness =", "thick ness =", 'a key with a space needs quotes: "thick ness" = ...'),
     ('"20 mm"', '"20 mm" mm', 'a statement; remove "mm" after the quotes: thickness = "20 mm"'),
     (
         "[body]",

@@ -1,7 +1,7 @@
 """Robots from drawings that are no SVG: saved and read again, with what was left out told by the command."""
 
 import io
-from math import cos, pi, sin
+from math import cos, dist, pi, sin
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +9,7 @@ import pytest
 from PIL import Image, ImageDraw
 
 from hydrostat.errors import OutlineError
+from hydrostat.geometry import Inner
 from hydrostat.robot import Plane, find_risks, load_robot, save_robot, sketch_robot
 
 
@@ -75,3 +76,13 @@ def test_each_thin_arm_has_a_marker_at_its_own_tip() -> None:
     away = np.linalg.norm(spots[:, None] - 0.112 * np.array(turns), axis=2)
     assert sorted(away.argmin(axis=1)) == list(range(8))
     assert away.min(axis=1).max() < 0.012
+
+
+def test_the_first_pin_covers_no_face() -> None:
+    """Eyes in the middle of an ellipse, where the pin would be. Oracle: distances of their centers from the pin."""
+    eyes = "".join(f'<circle cx="{x}" cy="90" r="4"/>' for x in (140, 160))
+    page = '<svg xmlns="http://www.w3.org/2000/svg" width="300mm" height="200mm" viewBox="0 0 300 200">'
+    svg = f'{page}<ellipse cx="150" cy="100" rx="140" ry="60"/>{eyes}</svg>'.encode()
+    (pin,) = sketch_robot(svg, file="face.svg", name="face", inner=Inner.DRAWN).pins
+    assert pin.at is not None
+    assert min(dist(pin.at, (x, 0.010)) for x in (-0.010, 0.010)) >= pin.radius
