@@ -294,7 +294,7 @@ def _held_parts(robot: "Robot") -> list[str]:
             if part.is_rigid and np.any(held & (body.element_materials == index))
         ]
         verb = "holds" if pin.drive is None else f"moves by drive {pin.drive}"
-        lines += [f"pin[{number}] touches rigid part {name} and {verb} all of it" for name in names]
+        lines += [f"pin {number + 1} touches rigid part {name} and {verb} all of it" for name in names]
     return lines
 
 

@@ -25,6 +25,7 @@ from hydrostat.cli.design_results import (
 )
 from hydrostat.cli.fabricate import print_kit
 from hydrostat.cli.folders import OutFolder, RobotFolder, folder_of, note_others, require_folder, result_folder
+from hydrostat.cli.limits import print_far_targets
 from hydrostat.cli.options import parse_budget
 from hydrostat.cli.records import take_records
 from hydrostat.cli.remedies import body_refusals, design_remedy
@@ -70,6 +71,7 @@ def design(
     request = parse_request(source, asked, measured=folder_of(robot) / "tolerances.toml")
     _refuse_body(source, request)
     _tell_left_out(source)
+    print_far_targets(source, request.poses)
     spend = parse_budget(asked.budget)
     _refuse_budget(request, request.motor_for(source), spend)
     record = open_record(out, source, request, resume=resume)

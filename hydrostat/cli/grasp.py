@@ -2,6 +2,9 @@
 
 import csv
 import io
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -87,7 +90,7 @@ def grasp(
             print(
                 f'warning: the object overlaps obstacle "{name}". They have no contact in the pull. Move it with --at.'
             )
-        with naming_option(f"object at ({place}) mm" if at is None else f"--at {at}"):
+        with naming_option(f"object at ({place}) mm" if at is None else f"--at {at}"), _naming_object():
             found = pull_out(loaded, placed, closing, options, progress=progress)
             cases = pull_bands(loaded, placed, closing, options, progress=progress) if bands else ()
         with result_folder(out) as folder:
@@ -99,6 +102,15 @@ def grasp(
     print(f"object at ({place}) mm")
     _print(found, cases)
     print("Wrote " + ", ".join(str(out / file.relative_to(folder)) for file in files))
+
+
+@contextmanager
+def _naming_object() -> Iterator[None]:
+    """Call the object by its name alone: it is in no robot.toml, where obstacles have numbers."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(re.sub(r'obstacle\[\d+\]: "object"', "the object", str(error))) from None
 
 
 def _feeling(robot: "Robot") -> "Robot":

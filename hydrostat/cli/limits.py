@@ -2,10 +2,22 @@
 
 from typing import TYPE_CHECKING
 
+from hydrostat.errors import in_words
+
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from hydrostat.arrays import Vector
-    from hydrostat.robot import Robot
+    from hydrostat.robot import PoseTarget, Robot
     from hydrostat.simulation import Equilibrium
+
+
+def print_far_targets(robot: "Robot", poses: "Iterable[PoseTarget]") -> None:
+    """Print a warning of targets that the body cannot reach, before a search spends its time on them."""
+    from hydrostat.robot import find_far_targets
+
+    for words in find_far_targets(robot, poses):
+        print(f"warning: {in_words(words)}", flush=True)
 
 
 def print_exceeded(pose: "Equilibrium", indent: str = "") -> None:

@@ -41,7 +41,7 @@ from hydrostat.cli.studio import studio
 from hydrostat.cli.train import train
 from hydrostat.cli.trajectory import trajectory
 from hydrostat.cli.waiting import heed_interrupts, outlive_readers
-from hydrostat.errors import HydrostatError, HydrostatWarning, InputError
+from hydrostat.errors import HydrostatError, HydrostatWarning, InputError, in_words
 
 app = typer.Typer(
     name="hydrostat",
@@ -132,9 +132,9 @@ def main() -> None:
     try:
         _run()
     except InputError as error:
-        _stop(f"error: {error}", 2)
+        _stop(f"error: {in_words(str(error))}", 2)
     except HydrostatError as error:
-        _stop(f"error: {error}", 1)
+        _stop(f"error: {in_words(str(error))}", 1)
     except BrokenPipeError:
         _close_quietly()
     except OSError as error:

@@ -10,7 +10,7 @@ import typer
 
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result_folder
 from hydrostat.cli.learned import learned_start, read_model
-from hydrostat.cli.limits import print_exceeded
+from hydrostat.cli.limits import print_exceeded, print_far_targets
 from hydrostat.cli.option_errors import naming_option
 from hydrostat.cli.options import EqualWinches, MostTension, MostTorque, parse_optional, pose_limits
 from hydrostat.cli.waiting import read_robot, show_search
@@ -72,7 +72,7 @@ def pose(
     outline = None if drawing is None else load_target_outline(loaded, drawing)
     wishes = [] if outline is None else [ShapeTarget(outline=outline)]
     asked_for: dict[str, Any] = {"limits": limits, "objectives": wishes, "options": options, "seconds": seconds}
-    targets = _targets(loaded, robot, name, drawing)
+    targets = _asked_targets(loaded, robot, name, drawing)
     learned, loaded = (None, loaded) if model is None else read_model(model, loaded)
     simulation = Simulation(loaded)
     stuck = False
@@ -94,6 +94,15 @@ def pose(
         stuck |= reached.status not in (IKStatus.REACHED, IKStatus.LOCAL_OPTIMUM)
     if stuck:
         raise typer.Exit(1)
+
+
+def _asked_targets(
+    loaded: "Robot", folder: Path, name: str | None, drawing: Path | None
+) -> "Sequence[tuple[str, PoseTarget | None]]":
+    """Poses with their names, as `_targets` has them; print a warning of those that the body cannot reach."""
+    targets = _targets(loaded, folder, name, drawing)
+    print_far_targets(loaded, [target for _, target in targets if target is not None])
+    return targets
 
 
 def _targets(

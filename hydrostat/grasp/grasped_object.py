@@ -9,7 +9,7 @@ from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.files import read_stranger
 from hydrostat.geometry import SURFACE_SUFFIXES, locate
-from hydrostat.robot import Obstacle, Robot, closed_mesh, rims
+from hydrostat.robot import Obstacle, Robot, closed_mesh, edge_points, rims
 from hydrostat.units import LENGTH, parse_quantity, plural, quote
 
 FORMS = ("sphere:65mm", "cylinder:40mm,120mm", "capsule:40mm,120mm", "box:40mm,40mm,60mm", "mug.stl")
@@ -95,6 +95,7 @@ def place_object(robot: Robot, obstacle: Obstacle, closed: Points) -> Obstacle:
     """
     mesh, room = robot.body.mesh, 2.0 * robot.contact_distance
     skin, place = mesh.nodes[np.unique(mesh.boundary)], closed.mean(axis=0)
+    between = edge_points(mesh, 7)
     trials = 400
     some = 0.25  # Moves in search of a place, and how far each goes, as a share of what is needed
     for _ in range(trials):
@@ -103,7 +104,10 @@ def place_object(robot: Robot, obstacle: Obstacle, closed: Points) -> Obstacle:
         lacks = np.maximum(room - found.values, 0.0)
         inside = locate(mesh, tried.spine()).inside.any()
         if not lacks.any() and not inside:
-            return tried
+            found = tried.field()(between)  # a small object fits between the nodes of an edge that runs through it
+            lacks = np.maximum(0.5 * room - found.values, 0.0) * (found.values <= 0)
+            if not lacks.any():
+                return tried
         way = -(lacks[:, None] * found.normals).sum(axis=0)
         if inside or not way.any():
             way = place - mesh.nodes.mean(axis=0)

@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from hydrostat.robot.body import Body, Source
     from hydrostat.robot.cable import Cable
     from hydrostat.robot.cable_side import CableSide
-    from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape, closed_mesh
+    from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape, closed_mesh, edge_points
     from hydrostat.robot.element_kind import ElementKind, Plane, Volume
     from hydrostat.robot.fixed_drives import with_fixed_drives
     from hydrostat.robot.gravity import DIRECTIONS, direction_of, gravity_along
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from hydrostat.robot.pin import Pin
     from hydrostat.robot.pin_drive import PinDrive
     from hydrostat.robot.read import FILE, GALLERY, RobotReader, gallery_folder, is_of_gallery, list_gallery, load_robot
-    from hydrostat.robot.risks import SEWN_DEPTH, find_risks, limit_travels
+    from hydrostat.robot.risks import SEWN_DEPTH, find_far_targets, find_risks, limit_travels
     from hydrostat.robot.risks.body_risks import FEW_ELEMENTS, MIN_ELEMENTS_ACROSS
     from hydrostat.robot.robot import Robot
     from hydrostat.robot.rod import Rod
@@ -91,6 +91,8 @@ __all__ = [
     "describe_cable_side",
     "describe_filled_holes",
     "direction_of",
+    "edge_points",
+    "find_far_targets",
     "find_part_facets",
     "find_rings",
     "find_risks",

@@ -327,6 +327,16 @@ _MOMENTS: dict[ObstacleShape, Callable[[Obstacle], Vector]] = {
 }
 
 
+def edge_points(mesh: Mesh, count: int) -> Points:
+    """Points inside each edge of the boundary [m], evenly spaced; with a count of 1 its middle, where obstacles act."""
+    corners = mesh.nodes[mesh.boundary]
+    pairs = [(0, 1)] if mesh.dim == 2 else [(0, 1), (1, 2), (2, 0)]
+    shares = np.arange(1, count + 1) / (count + 1)
+    return np.concatenate(
+        [(1 - share) * corners[:, one] + share * corners[:, two] for one, two in pairs for share in shares]
+    )
+
+
 def check_obstacles(obstacles: Iterable[Obstacle], mesh: Mesh, distance: float) -> None:
     """Reject obstacles that do not fit a body or stand in it, and a large distance of contact [m] (InputError)."""
     if distance > 0.1 * mesh.size:
@@ -334,7 +344,7 @@ def check_obstacles(obstacles: Iterable[Obstacle], mesh: Mesh, distance: float) 
             f"contact.distance of {1e3 * distance:.4g} mm is large beside a body of {1e3 * mesh.size:.4g} mm; "
             f"it is usually {DISTANCE:.1%} of that"
         )
-    skin = mesh.nodes[np.unique(mesh.boundary)]
+    skin = np.concatenate([mesh.nodes[np.unique(mesh.boundary)], edge_points(mesh, 1)])
     for index, obstacle in enumerate(obstacles):
         if len(obstacle.at) != mesh.dim:
             raise InputError(f"obstacle[{index}].at has {len(obstacle.at)} entries, but the body has {mesh.dim} axes")

@@ -109,8 +109,8 @@ def test_check_names_the_pin_of_a_rigid_part_and_a_rod_too_short(bar: Path, run:
     (bar / "robot.toml").write_text(TEXT + part + 'density = "1 g/cm^3"\n' + rod)
     code, out, _ = run("check", str(bar))
     assert code == 0, out
-    assert "pin[0] touches rigid part horn and moves by drive servo all of it" in out
-    assert "rod[0] wire: 3 mm long, shorter than an element" in out
+    assert "pin 1 touches rigid part horn and moves by drive servo all of it" in out
+    assert "rod 1 wire: 3 mm long, shorter than an element" in out
 
 
 def test_branches_move_drives(bar: Path, run: Run) -> None:

@@ -25,6 +25,8 @@ WHALE = (
         ("cable[1] between points 2 and 3 crosses cable[0]", "cable 2 between points 3 and 4 crosses cable 1"),
         ("winch[0] left: pulls no cable", "winch left: pulls no cable"),
         ("pin[0]: holds nothing; element_size[m]", "pin 1: holds nothing; element_size[m]"),
+        ("line 13: pin[1].radius must be above 0", "line 13: pin 2, radius must be above 0"),
+        ("obstacle[0]: the body stands in it", "obstacle 1: the body stands in it"),
     ],
 )
 def test_parts_are_counted_from_one(said: str, words: str) -> None:

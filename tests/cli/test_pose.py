@@ -57,6 +57,18 @@ def test_markers_and_a_drawing_together(run: Run, starfish: Path, drawing: Path,
 
 
 @pytest.mark.slow
+def test_a_target_beyond_the_body_is_told_before_the_search(run: Run, starfish: Path, tmp_path: Path) -> None:
+    """Oracle: the distance of 700 mm to the marker, more than the 279 mm of the body."""
+    robot = hs.load_robot(starfish)
+    place = next(marker.at for marker in robot.markers if marker.name == "left")
+    target = (place[0] - 0.7, place[1])
+    far = replace(robot, poses={"far": hs.PoseTarget(name="far", targets={"left": target})})
+    hs.save_robot(far, tmp_path / "far")
+    out = run("pose", tmp_path / "far", "--restarts", "0", "--out", tmp_path / "out")[1]
+    assert out.startswith("warning: pose far: left should move 700 mm, farther than the body is long\n")
+
+
+@pytest.mark.slow
 def test_a_limit_on_the_tension_holds_and_is_told(run: Run, starfish: Path, tmp_path: Path) -> None:
     code, out, _ = run("pose", starfish, "--pose", "wave", "--tension", "8 N", "--out", tmp_path / "out")
     assert code == 0

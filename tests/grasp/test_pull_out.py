@@ -156,6 +156,15 @@ def test_a_place_near_the_closed_markers_is_clear_of_the_body() -> None:
     assert move_object(placed, np.zeros(3)).at == pytest.approx((0.0, 0.0, 0.0))
 
 
+def test_a_small_object_is_clear_of_the_edges_between_nodes() -> None:
+    """A disc of 3 mm on a limb of coarse edges. Oracle: its distance to points all along the boundary."""
+    robot = replace(gallery_robot("starfish"), contact=Contact())
+    placed = place_object(robot, read_object("sphere:3mm", 2, mass=0.01, friction=0.5), np.array([[-0.0124, 0.0966]]))
+    corners = robot.body.mesh.nodes[robot.body.mesh.boundary]
+    along = corners[:, :1] + np.linspace(0.0, 1.0, 9)[:, None] * (corners[:, 1:] - corners[:, :1])
+    assert placed.field()(along.reshape(-1, 2)).values.min() > 0
+
+
 def bar() -> Robot:
     """A bar 200 x 30 x 50 mm, held at its left end, that curls up."""
     stops = tuple((float(x), 0.015, 0.015) for x in np.linspace(0.01, 0.19, 7))
