@@ -75,6 +75,11 @@ def near_the_edge() -> Robot:
     return strip().with_network([Winch(name="mine", at=(0.02, 0.023))], [])
 
 
+def over_the_body() -> Robot:
+    """With one winch in the world over the body, which each good cable would pass on its way back; and no cable."""
+    return strip().with_network([Winch(name="mine", at=(0.06, 0.0), mount=Mount.WORLD)], [])
+
+
 LIMITS: dict[str, tuple[Case, dict[str, Any]]] = {
     "usual": (Case(robot=deep_and_bare()), {}),
     "still across, with slack": (
@@ -116,6 +121,7 @@ LIMITS: dict[str, tuple[Case, dict[str, Any]]] = {
     "locked cable": (Case(2, 3, robot=deep()), {"locked_cables": ("down 1",)}),
     "locked cable alone": (Case(1, 1, robot=strip()), {"locked_cables": ("down 1",)}),
     "world": (Case(1, 2, (UP,), strip_robot(columns=10, rows=3, mount=Mount.WORLD)), {"mount": Mount.WORLD}),
+    "world, over the body": (Case(1, 2, (UP,), over_the_body()), {"mount": Mount.WORLD}),
     "improved beside a locked cable": (Case(2, 2, robot=deep(), warm_start=True), {"locked_cables": ("down 1",)}),
 }
 

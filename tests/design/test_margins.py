@@ -5,12 +5,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from builders import mesh_body, strip_mesh, strip_robot
+from builders import box_mesh, mesh_body, strip_mesh, strip_robot
 
 from hydrostat.design.buildable import violations
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.region import Region
 from hydrostat.design.routes.begin import layout_of
+from hydrostat.design.routes.hairpins import hairpin_margins
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.routes.margins import margins
 from hydrostat.design.routes.refine import pushed_back
@@ -81,6 +82,16 @@ BROKEN: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "a lead through a forbidden zone": ({"sheathed": ((0, 1),)}, {"keep_out": (Zone(at=(0.05, 0.028), radius=0.006),)}),
     "from the world through a zone": (
         {"up": ((-0.03, 0.04), *UP[1:]), "mount": Mount.WORLD}, {"keep_out": (Zone(at=(0.02, 0.034), radius=0.004),)}
+    ),
+    "from the world and back past its winch": (
+        {"up": ((0.03, 0.0), (0.15, 0.0), (0.01, 0.004)), "mount": Mount.WORLD}, {}
+    ),
+    "from the world and back through its winch": (
+        {"up": ((0.03, 0.0), (0.15, 0.0), (0.01, 0.0)), "mount": Mount.WORLD}, {}
+    ),
+    "from the world and around its winch": (
+        {"up": ((0.06, 0.0), (0.15, 0.0), (0.1, 0.01), (0.05, 0.014), (0.035, -0.012), (0.07, -0.015)),
+         "mount": Mount.WORLD}, {"max_turn": 120.0, "bend_radius": 0.0}
     ),
     "a turn": ({"up": moved(UP, 2, 0.085, 0.0)}, {"max_turn": 60.0}),
     "a bend": ({"up": moved(UP, 2, 0.11, 0.012)}, {"bend_radius": 0.05}),
@@ -177,6 +188,51 @@ def test_rows_are_the_slopes_of_what_they_limit(name: str, unchecked: None) -> N
     smooth = np.abs(slopes + rows).max(axis=1) < 1e-4
     assert smooth.mean() > 0.97
     assert len(rows) > 50
+
+
+BACK: dict[str, tuple[Track, int]] = {  # a cable from the world, and its limits within 1 m
+    "past its winch": (((0.03, 0.0), (0.15, 0.0), (0.08, 0.001), (0.01, 0.004)), 2),
+    "far from its winch": (((0.03, 0.0), (0.15, 0.0), (0.12, 0.01)), 1),
+    "by 160 degrees, along a short way back": (((0.03, 0.0), (0.06, 0.0), (0.0506, 0.0034)), 1),
+    "by 149 degrees": (((0.03, 0.0), (0.06, 0.0), (0.0429, 0.0104)), 1),
+    "little turned, near its winch": (((0.03, 0.0), (0.04, 0.0), (0.038, 0.01)), 1),
+}
+
+
+@pytest.mark.parametrize("name", BACK)
+@pytest.mark.parametrize("dim", [2, 3])
+def test_ways_back_have_exact_slopes(name: str, dim: int, unchecked: None) -> None:
+    """Oracle: central differences, of the first limits alone. In space the cable leaves its plane."""
+    track, count = BACK[name]
+    robot = network(track, mount=Mount.WORLD) if dim == 2 else _in_space(track)
+    start = layout_of(robot, Constraints())
+
+    def find(numbers: np.ndarray) -> list[tuple[np.ndarray, float]]:
+        return list(hairpin_margins(start.at(numbers), reach=1.0, hair=5e-5, degrees=0.5))
+
+    numbers = start.numbers + np.random.default_rng(3).uniform(-5e-4, 5e-4, start.size)
+    found, step = find(numbers), 1e-7
+    assert len(found) == count
+    for which, (row, _) in enumerate(found):
+        slopes = [
+            (find(numbers + one)[which][1] - find(numbers - one)[which][1]) / (2 * step)
+            for one in step * np.eye(start.size)
+        ]
+        np.testing.assert_allclose(-row, slopes, atol=1e-5)
+
+
+def _in_space(track: Track) -> Robot:
+    """A box 200 x 50 x 50 mm with a cable from the world."""
+    points = tuple((x, y, 0.002 * index) for index, (x, y) in enumerate(track))
+    return Robot(
+        name="box",
+        body=mesh_body(box_mesh((4, 1, 1), size=(0.2, 0.05, 0.05))),
+        pins=(Pin(box=((-0.001, -1.0, -1.0), (0.001, 1.0, 1.0))),),
+        winches=(Winch(name="up", at=points[0], mount=Mount.WORLD),),
+        cables=(Cable(winch="up", points=points),),
+        markers=(Marker(name="tip", at=(0.2, 0.0, 0.0)),),
+        poses={},
+    )
 
 
 def test_only_limits_within_reach_are_told() -> None:

@@ -289,10 +289,10 @@ def _sharp_bends(parts: Parts, index: int) -> Iterator[str]:
     for corner, (turn, arc) in enumerate(zip(np.degrees(turns), arcs, strict=True)):
         name = f"cable[{index}].points[{corner + 1}]"
         enters = corner == 0 and parts.outside(parts.robot.cables[index])
-        if enters and turn > _HAIRPIN and (gap := _gap_behind(parts, index)) is not None:
+        if enters and turn > HAIRPIN and (gap := _gap_behind(parts, index)) is not None:
             yield (
                 f"{name}: the cable turns back past its own winch (by {turn:.4g} degrees, {mm(gap)} from it). "
-                f"Maximum there: {_HAIRPIN:g} degrees. Move the winch."
+                f"Maximum there: {HAIRPIN:g} degrees. Move the winch."
             )
         if turn > limits.max_turn + ANGLE and not enters:
             most = f"{limits.max_turn:g} degrees"
@@ -302,8 +302,8 @@ def _sharp_bends(parts: Parts, index: int) -> Iterator[str]:
             yield f"{name}: bend too sharp (radius {mm(arc)}). Minimum bend_radius: {least}. Move the point."
 
 
-_HAIRPIN = 150.0  # a larger turn [degrees] where a cable enters is no way around an edge, but a way back
-_BEHIND = 4.0  # spool radii within which a cable passes its winch
+HAIRPIN = 150.0  # a larger turn [degrees] where a cable enters is no way around an edge, but a way back
+BEHIND = 4.0  # spool radii within which a cable passes its winch
 
 
 def _gap_behind(parts: Parts, index: int) -> float | None:
@@ -314,7 +314,7 @@ def _gap_behind(parts: Parts, index: int) -> float | None:
     shares = nearest_shares(runs, centers)[0]
     nearest = runs[:, 0] + shares[:, None] * (runs[:, 1] - runs[:, 0])
     gap = float(np.linalg.norm(nearest - winch.at, axis=1).min())
-    return gap if gap < _BEHIND * winch.spool_radius else None
+    return gap if gap < BEHIND * winch.spool_radius else None
 
 
 def _wrong_lengths(parts: Parts, index: int) -> Iterator[str]:

@@ -7,6 +7,7 @@ import numpy as np
 from hydrostat.arrays import Float, Int, Points, Vector
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.region import Region
+from hydrostat.design.routes.hairpins import hairpin_margins
 from hydrostat.design.routes.layout import Layout
 from hydrostat.design.zone import Zone
 from hydrostat.kernel import native
@@ -33,8 +34,11 @@ class _MarginRows:
         self.found_left: list[Vector] = []
 
     def collect(self) -> Margins:
-        """Collect all margins: by depth and zones, between parts of the network, and of slack and spools."""
+        """Collect all margins: by depth and zones, of ways back, between parts of the network, of slack and spools."""
         self._depths()
+        for row, left in hairpin_margins(self.layout, reach=self.reach, hair=_HAIR, degrees=_DEGREE):
+            self.found_rows.append(row[None])
+            self.found_left.append(np.array([left]))
         for part in (self._between_parts(), self._bounds()):
             self.found_rows.append(part.rows)
             self.found_left.append(part.left)
