@@ -12,7 +12,11 @@ LAY = 1.25
 
 _RIM = 0.8
 _SKIN = 0.6  # material outside the hole for the knot, and below it [mm]
-_STEP = 0.5  # widths of grooves are multiples of this [mm], so that winches of nearly the same travel share a spool
+SHARED_STEP = 0.5
+"""Widths of grooves are multiples of this [mm], so that winches of nearly the same travel share a spool."""
+
+FINE_STEP = 0.05
+"""Or of this [mm], less than half a printed layer, where a cable then needs a layer less."""
 
 
 def spool_turns(length: float, radius: float, spare: float) -> float:
@@ -20,9 +24,9 @@ def spool_turns(length: float, radius: float, spare: float) -> float:
     return length / (2 * math.pi * radius) + spare
 
 
-def width_for(turns: float, cable: float) -> float:
-    """Width of a groove [mm] for a number of turns of a cable [mm] in one layer, rounded up."""
-    return _STEP * math.ceil((turns * LAY * cable + cable) / _STEP - 1e-9)
+def width_for(turns: float, cable: float, step: float = SHARED_STEP) -> float:
+    """Width of a groove [mm] for a number of turns of a cable [mm] in one layer, rounded up to multiples of a step."""
+    return step * math.ceil((turns * LAY * cable + cable) / step - 1e-9)
 
 
 def capacity(width: float, radius: float, cable: float, layers: int) -> float:

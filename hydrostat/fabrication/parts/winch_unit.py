@@ -12,7 +12,7 @@ from hydrostat.fabrication.parts.arrangement import LaidUnit, arrange_units
 from hydrostat.fabrication.parts.housing import Housing, coupling_wall, drive_of, roof_of
 from hydrostat.fabrication.parts.motor import Motor
 from hydrostat.fabrication.parts.places import UnitBox, UnitPlace, seam_of
-from hydrostat.fabrication.parts.spool import Groove, Spool, capacity, spool_turns, width_for
+from hydrostat.fabrication.parts.spool import FINE_STEP, SHARED_STEP, Groove, Spool, capacity, spool_turns, width_for
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
 from hydrostat.fabrication.solids.construct import Construction, Cuboid, solid_of
 from hydrostat.fabrication.solids.printed import Printed
@@ -49,8 +49,8 @@ def spool_for(
 ) -> tuple[Spool, tuple[str, ...], tuple[str, ...]]:
     """Return the spool of a winch, its problems and its warnings.
 
-    Each cable lies in one layer if the spool then is short enough, else all in as few layers as make it so. A radius
-    too small for the shaft is made as small as it can be, one of the problems.
+    Each cable lies in one layer if the spool then is short enough, else all in as few layers as make it so, in grooves
+    of finer widths where that saves a layer. A radius too small for the shaft is made as small as possible: a problem.
     """
     drive = drive_of(motor, options)
     problems = []
@@ -64,8 +64,9 @@ def spool_for(
     kinds = [(len(cables), robot.cables[cables[0]].reverse) for cables in wound]
     turns = spool_turns(1e3 * (winch.travel + winch.release), 1e3 * winch.spool_radius, options.spare_wraps)
     grooves = [
-        [_groove(radius, turns, layers, options.cable, *kind) for radius, kind in zip(radii, kinds, strict=True)]
+        [_groove(radius, turns, layers, options.cable, *kind, step) for radius, kind in zip(radii, kinds, strict=True)]
         for layers in range(1, _MOST_LAYERS + 1)
+        for step in (SHARED_STEP, FINE_STEP)
     ]
     sizes = [_spool(each, drive.inside, options, motor) for each in grooves]
     spool = next((each for each in sizes if each.body <= _LONGEST), sizes[-1])
@@ -126,11 +127,12 @@ def _spool(grooves: Sequence[Groove], inside: float, options: PartOptions, motor
     )
 
 
-def _groove(radius: float, turns: float, layers: int, cable: float, lines: int, reverse: bool) -> Groove:
+def _groove(radius: float, turns: float, layers: int, cable: float, lines: int, reverse: bool, step: float) -> Groove:
     """The narrowest that takes so many turns of the first layer's length of each line in these layers."""
     length = lines * turns * 2 * math.pi * radius
     one_turn = capacity(cable * 2.25, radius, cable, layers)
-    return Groove(radius=radius, width=width_for(length / one_turn, cable), layers=layers, lines=lines, reverse=reverse)
+    width = width_for(length / one_turn, cable, step)
+    return Groove(radius=radius, width=width, layers=layers, lines=lines, reverse=reverse)
 
 
 _SPOOL = "Stands on its wide face with the bore, no support; 0.12 mm layers, 4 walls or more."

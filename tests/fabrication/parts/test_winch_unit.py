@@ -15,7 +15,7 @@ from hydrostat.fabrication.parts.motor import MOTORS, Motor
 from hydrostat.fabrication.parts.spool import capacity
 from hydrostat.fabrication.parts.winch_unit import WinchUnit, find_crowded_units, winch_units
 from hydrostat.fabrication.solids.assembly import PartAssembly, interferences
-from hydrostat.robot import Mount, Robot, list_gallery
+from hydrostat.robot import Cable, Mount, Robot, list_gallery
 
 N20, XL330, POLOLU_25D = MOTORS
 
@@ -128,6 +128,22 @@ def test_long_travel_lies_in_layers_and_says_how_much_the_radius_grows():
     spare = 2.0 * 2 * math.pi * 6
     for groove in unit.spool.grooves:
         assert capacity(groove.width, groove.radius, 0.4, layers) >= 800 + 10 + spare - 1e-9
+    assert interferences(unit.assembly) == ()
+
+
+@pytest.mark.parametrize(("travel", "widths", "layers"), [(22e-3, 3.0, 1), (35e-3, 3.35, 1), (40e-3, 2.0, 2)])
+def test_grooves_are_narrower_where_that_saves_a_layer(travel: float, widths: float, layers: int) -> None:
+    """Four pairs on one spool. Oracle: turns, two of them spare, at half a millimeter each, and four flanges."""
+    robot = gallery_robot("starfish")
+    (winch,) = with_winches(robot, travel=travel, release=0.0).winches[:1]
+    pairs = [Cable(winch=winch.name, points=(winch.at, (0.005 * n, 0.02))) for n in (1, 2, 3, 4) for _ in "ab"]
+    unit = units_of(thick(robot.with_network([winch], pairs)))[0]
+    turns = 2 * (1e3 * travel / (2 * math.pi * 6.0) + 2.0)
+    assert [groove.width for groove in unit.spool.grooves] == pytest.approx([widths] * 4)
+    assert {groove.layers for groove in unit.spool.grooves} == {layers}
+    assert widths * layers >= 0.5 * turns
+    assert unit.spool.body <= 30.0
+    assert bool(unit.warnings) == (layers > 1)
     assert interferences(unit.assembly) == ()
 
 
