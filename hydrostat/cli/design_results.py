@@ -159,7 +159,7 @@ def print_poses(network: "Network", seconds: float) -> tuple[str, ...]:
     from rich.console import Console
     from rich.table import Table
 
-    from hydrostat.design import BuildCost, corrected_error
+    from hydrostat.design import corrected_error
     from hydrostat.geometry import find_crossings
     from hydrostat.ik import unconstrained_motion
     from hydrostat.robot import describe_cable_side
@@ -189,7 +189,7 @@ def print_poses(network: "Network", seconds: float) -> tuple[str, ...]:
         f"expected as-built error {1e3 * network.expected_error:.2f} mm{after} "
         f"({plural(network.num_evaluated, 'candidate')}, {seconds:.1f} s)"
     )
-    print(f"build: {BuildCost.of_robot(robot, network.ik_results)}")
+    print(f"build: {network.cost}")
     if words := describe_cable_side(robot):
         print(f"cables: {words}")
     _print_stuffed(network)

@@ -4,10 +4,12 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from hydrostat.arrays import Int
+from hydrostat.design.build_cost import BuildCost
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.muscles.activation import Activation
 from hydrostat.design.polyline import Route
@@ -78,6 +80,11 @@ class Alternative:
     ik_results: tuple[IKResult, ...]  # what it reaches of each pose
     expected_error: float  # rms error expected of a robot as it is built, its commands played open loop [m]
 
+    @cached_property
+    def cost(self) -> BuildCost:
+        """Work and money that its robot takes."""
+        return BuildCost.of_robot(self.robot, self.ik_results)
+
     @property
     def rms_error(self) -> float:
         """Root of the mean squared marker error over all poses [m]."""
@@ -125,6 +132,11 @@ class Network:
     def _repr_html_(self) -> str:
         """Summary and a picture, for a notebook."""
         return html_repr(repr(self), draw_record("network", self.robot))
+
+    @cached_property
+    def cost(self) -> BuildCost:
+        """Work and money that its robot takes."""
+        return BuildCost.of_robot(self.robot, self.ik_results)
 
     @property
     def constraints(self) -> Constraints:

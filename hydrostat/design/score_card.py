@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 
-from hydrostat.design.build_cost import BuildCost
 from hydrostat.design.corrected_error import expected_corrected_error
 from hydrostat.design.network import Alternative, Network, RouteTrace, TreeTrace
 from hydrostat.design.uncertainty import BuildTolerances
@@ -24,7 +23,7 @@ def score_card(network: Network, *, version: str) -> dict[str, Any]:
         "rms_error_as_built": network.expected_error,
         "rms_error_corrected": corrected_error(network),
         "rms_error_at_rest": network.rest_error,
-        "craft": BuildCost.of_robot(robot, network.ik_results).as_values,
+        "craft": network.cost.as_values,
         "tension_limit": network.constraints.tension_limit,
         "torque_limit": network.constraints.torque,
         "motor": robot.motor,
@@ -124,7 +123,7 @@ def _alternative(other: Alternative) -> dict[str, Any]:
         "cables": len(other.robot.cables),
         "rms_error": other.rms_error,
         "rms_error_as_built": other.expected_error,
-        "craft": BuildCost.of_robot(other.robot, other.ik_results).as_values,
+        "craft": other.cost.as_values,
         "poses": {pose.pose_target.name: pose.rms_error for pose in other.ik_results},
         "robot": robot_hash(other.robot),
     }

@@ -48,7 +48,7 @@ def winch_front(network: Network) -> tuple[FrontRow, ...]:
     best: dict[tuple[int, bool], Alternative | Network] = {}
     for one in (*sorted(network.alternatives, key=lambda one: -one.expected_error), network):  # the last one stays
         best[len(one.robot.winches), any(cable.reverse for cable in one.robot.cables)] = one
-    costs = {kind: BuildCost.of_robot(one.robot, one.ik_results) for kind, one in best.items()}
+    costs = {kind: one.cost for kind, one in best.items()}
     points = {kind: (one.expected_error, costs[kind].price, costs[kind].minutes) for kind, one in best.items()}
     return tuple(
         FrontRow(

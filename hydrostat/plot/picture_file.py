@@ -13,7 +13,6 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.image import AxesImage
 from matplotlib.patheffects import withStroke
 from matplotlib.text import Text
 
@@ -78,7 +77,7 @@ def figure_pixels(figure: Figure, *, dpi: float | None = None) -> UInt8[np.ndarr
 @contextmanager
 def _sharp(figure: Figure) -> Iterator[None]:
     """Images of bodies pixel by pixel, while an SVG is made; else they would be sampled again, and coarser."""
-    images = [image for image in figure.findobj(AxesImage) if image.get_label() == BODY]
+    images = [image for axes in figure.axes for image in axes.images if image.get_label() == BODY]
     for image in images:
         image.set_interpolation("none")
     try:

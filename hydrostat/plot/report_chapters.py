@@ -351,8 +351,7 @@ def _pictures(network: Network, others: Sequence[Alternative]) -> Html:
         robot = other.robot
         head = f"{plural(len(robot.winches), 'winch')}, {plural(len(robot.cables), 'cable')}"
         figure = draw_stage(robot, like=network.robot, frame=frame)
-        effort = BuildCost.of_robot(robot, other.ik_results)
-        told = f": {_rms_text(other.expected_error)} once built; {effort}"
+        told = f": {_rms_text(other.expected_error)} once built; {other.cost}"
         pictures.append(picture(figure, f"alternative-{index}", head, told))
     return grid(*pictures, kind="tiny")
 

@@ -15,6 +15,7 @@ from hydrostat.painters import draw_record, html_repr
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable, given_names, name_cables
 from hydrostat.robot.cable_side import CableSide
+from hydrostat.robot.checked_parts import checked_parts
 from hydrostat.robot.contact import DISTANCE, Contact, Obstacle, ObstacleShape, check_obstacles
 from hydrostat.robot.grading import Grading
 from hydrostat.robot.gravity import check_gravity, gravity_along
@@ -278,8 +279,11 @@ class Robot:
             yield from ((f"pose[{index}].targets.{name}", point) for name, point in pose.targets.items())
 
     def _take_pins(self) -> None:
+        checked = checked_parts(self.body)
         if self.pins:
-            object.__setattr__(self, "pins", take_pins(self.pins, self.body))
+            if checked.get("pins") is not self.pins:
+                object.__setattr__(self, "pins", take_pins(self.pins, self.body))
+                checked["pins"] = self.pins
         elif not any(map(self._carries, self.obstacles)):
             raise InputError(
                 "no [[pin]]: the body is unconstrained. Add a pin with at and radius, or gravity and a ground plane "
@@ -293,7 +297,9 @@ class Robot:
 
     def _check_markers_and_poses(self) -> None:
         names = [marker.name for marker in self.markers]
-        self._check_inside([(f'marker[{i}].at ("{each.name}")', each.at) for i, each in enumerate(self.markers)])
+        if checked_parts(self.body).get("markers") is not self.markers:
+            self._check_inside([(f'marker[{i}].at ("{each.name}")', each.at) for i, each in enumerate(self.markers)])
+            checked_parts(self.body)["markers"] = self.markers
         for index, pose in enumerate(self.poses.values()):
             for name in pose.targets:
                 if name not in names:

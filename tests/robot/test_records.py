@@ -268,6 +268,23 @@ def test_with_network() -> None:
         robot.with_network(robot.winches[:1], robot.cables)
 
 
+def test_pins_and_markers_of_a_body_are_checked_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Another network does not check them again; others are checked, also after such as were refused."""
+    robot, asked, distances = strip_robot(columns=4, rows=2), [], Body.distances
+    monkeypatch.setattr(Body, "distances", lambda body, points: asked.append(len(points)) or distances(body, points))
+    robot.with_network(robot.winches, robot.cables)
+    assert asked == [len(robot.winches) + sum(len(cable.points) for cable in robot.cables)]
+    outside = (Marker(name="tip", at=(0.3, 0.0)),)
+    for _ in range(2):
+        with pytest.raises(InputError, match="outside the body"):
+            replace(robot, markers=outside)
+        with pytest.raises(InputError, match=r"pin\[0\]"):
+            replace(robot, pins=(Pin(at=(0.5, 0.0), radius=0.001),))
+    assert replace(robot, poses={}).pins is robot.pins
+    with pytest.raises(InputError, match="outside the body"):
+        replace(robot, body=mesh_body(strip_mesh(4, 2, size=(0.1, 0.05))))
+
+
 @pytest.mark.parametrize("mesh", [strip_mesh(8, 4), box_mesh((3, 2, 2))], ids=["triangles", "tetrahedra"])
 @pytest.mark.parametrize("seed", range(3))
 def test_pin_holds_nodes(mesh, seed: int) -> None:

@@ -114,7 +114,7 @@ def solution(found: Network | Alternative, torque: float | None) -> Solution:
         reaches=tuple(map(_reach, found.ik_results)),
         error=rms_error(found.ik_results),
         expected_error=found.expected_error,
-        craft=BuildCost.of_robot(found.robot, found.ik_results),
+        craft=found.cost,
         demand=Demand.of_results(found.robot, found.ik_results),
         torque=torque,
     )
