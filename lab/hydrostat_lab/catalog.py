@@ -267,7 +267,7 @@ CATALOG = {
             "identified strip of 200 mm",
             "measured",
             "0.49 mm held out",
-            "| long, 200 mm | 100 | 0.49 mm |",
+            "| long, 200 mm | 50 | 0.49 mm |",
         ),
         _script(
             "python benchmarks/real.py FOLDER",
