@@ -3,7 +3,7 @@
 Usage: python benchmarks/moves_alone.py [BOARD] [SECONDS]
 
 BOARD is esp32s3 (default: a stand-in, compiled by g++, half a minute of CPU an hour) or uno (in simavr, which needs
-gcc-avr, avr-libc, libsimavr-dev and libelf-dev, and two to three hours of CPU an hour).
+gcc-avr, avr-libc, libsimavr-dev and libelf-dev, and five minutes of CPU an hour).
 """
 
 import sys

@@ -3,6 +3,7 @@
 #include <avr/interrupt.h>
 #include <avr/io.h>
 #include <avr/pgmspace.h>
+#include <avr/sleep.h>
 #include <avr/wdt.h>
 #include <stdlib.h>
 #include <util/atomic.h>
@@ -231,6 +232,16 @@ static uint8_t pass_tick(void) {
     return 1;
 }
 
+/* Sleep until an interrupt if no tick and no byte waits: timers, converter and watchdog go on. */
+static void rest(void) {
+    cli();
+    if (!ticks && in_tail == in_head) {
+        sei(); /* an interrupt comes after the next instruction at the earliest, so none is slept through */
+        sleep_cpu();
+    }
+    sei();
+}
+
 /* Each servo has a slot of 2.5 ms: its pulse, then rest. */
 #if SERVOS
 static volatile uint16_t pulses[SERVOS];
@@ -289,6 +300,7 @@ static void start_board(void) {
     for (uint8_t i = 0; i < SERVOS; i++)
         *(servo_pins[i].port - 1) |= 1 << servo_pins[i].pin; /* the register before a port is its direction */
 #endif
+    SMCR = 1 << SE; /* the instruction sleep stops the processor alone */
     wdt_enable(WDTO_120MS);
     sei();
 }

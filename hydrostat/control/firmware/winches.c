@@ -437,7 +437,9 @@ void loop(void) {
 #ifdef __AVR__
 int main(void) {
     setup();
-    for (;;)
+    for (;;) {
         loop();
+        rest();
+    }
 }
 #endif
