@@ -79,12 +79,12 @@ def firmware(
     from hydrostat.robot import PinDrive
 
     known = {each.key: each for each in MOTORS if each.counts}
-    if motor is not None and motor not in known:
-        raise InputError(f"--motor {motor}: unknown motor. Available: {', '.join(known)}. Or give --counts and --rpm.")
+    _check_motor("--motor", motor or "auto", known)
     _check_alone(moves, rate, min_supply)
     folder = robot if robot.is_dir() else robot.parent
     loaded = read_robot(robot)
     PinDrive.require_none(loaded.drives, "firmware, whose boards turn winches")
+    _check_motor(f"{robot}: motor", loaded.motor if motor is None and counts is None else "auto", known)
     if not loaded.winches:
         raise InputError(f"{robot}: no winches. Add winches and cables, or run `hydrostat design`.")
     if (folder / control.CALIBRATION).exists():
@@ -125,6 +125,19 @@ def firmware(
     _tell_supply(boards[: given.boards], min_supply, alone=baked is not None)
     if ports:
         print(f"{port}: flashed. Pay out all cables, then: hydrostat calibrate {folder} --motors firmware:{port}")
+
+
+def _check_motor(where: str, key: str, known: "Mapping[str, Motor]") -> None:
+    """Reject a motor that boards do not drive: a servo on a bus, or an unknown one."""
+    from hydrostat.fabrication import ALL_MOTORS
+
+    if bus := next((each.bus for each in ALL_MOTORS if each.key == key), ""):
+        raise InputError(
+            f"{where} {key}: boards drive no bus servos. Run `hydrostat play ROBOT MOVES --motors {bus}:PORT`, or "
+            "build with --motor n20 or 25d."
+        )
+    if key != "auto" and key not in known:
+        raise InputError(f"{where} {key}: unknown motor. Available: {', '.join(known)}. Or give --counts and --rpm.")
 
 
 def _check_alone(moves: Path | None, rate: int, min_supply: float | None) -> None:

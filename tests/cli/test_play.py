@@ -263,6 +263,20 @@ def test_a_camera_that_cannot_correct_is_refused(
     assert words in err
 
 
+def test_boards_drive_no_bus_servos(run: Run, starfish: Path, tmp_path: Path) -> None:
+    """They play no moves alone: neither for the motor of the command nor for that of robot.toml."""
+    made, own = tmp_path / "made", Path(shutil.copytree(starfish, tmp_path / "own"))
+    code, _, err = run("firmware", own, "--motor", "scs0009", "--board", "esp32s3", "--out", made)
+    assert code == 2
+    assert "boards drive no bus servos. Run `hydrostat play ROBOT MOVES --motors scs:PORT`, or build with" in err
+    file = own / "robot.toml"
+    file.write_text(file.read_text().replace("format = 1", 'format = 1\nmotor = "sts3215"', 1))
+    code, _, err = run("firmware", own, "--out", made)
+    assert code == 2
+    assert "motor sts3215: boards drive no bus servos" in err
+    assert not made.exists()
+
+
 def test_boards_turn_no_drives(run: Run, tmp_path: Path) -> None:
     code, _, err = run("firmware", gallery_folder("emio"), "--out", tmp_path / "made")
     assert code == 2
