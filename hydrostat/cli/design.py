@@ -127,12 +127,12 @@ def _tell_left_out(source: "Robot") -> None:
 def _refuse_budget(request: "DesignRequest", key: str, budget: float | None) -> None:
     """Stop before the search if a budget does not buy the motors of the winches that are asked for (InputError)."""
     from hydrostat.errors import InputError
-    from hydrostat.fabrication import ALL_MOTORS, motors_price
+    from hydrostat.fabrication import ALL_MOTORS, AUTO_MOTORS, motors_price
 
     if budget is None:
         return
     least = request.winches if isinstance(request.winches, int) else 1
-    motors = [motor for motor in ALL_MOTORS if key in ("auto", motor.key)]
+    motors = [motor for motor in ALL_MOTORS if motor.key == key] or AUTO_MOTORS
     price, cheapest = min((motors_price([0.0] * least, motor), motor.key) for motor in motors)
     if price > budget:
         count = plural(least, "motor")

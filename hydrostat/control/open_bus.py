@@ -10,14 +10,15 @@ from hydrostat.arrays import Vector
 from hydrostat.control.bus import Bus, Port
 from hydrostat.control.calibration import Calibration
 from hydrostat.control.dynamixel_bus import MODELS, DynamixelBus
-from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedSts
+from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedScs, EmulatedSts
 from hydrostat.control.emulated_servos import EmulatedServo, LiveChain
 from hydrostat.control.feetech_bus import MODELS as FEETECH_MODELS
 from hydrostat.control.feetech_bus import STALL, FeetechBus
 from hydrostat.control.firmware_build import robot_word
 from hydrostat.control.firmware_bus import FirmwareBus
 from hydrostat.control.joined_bus import JoinedBus
-from hydrostat.control.scs_bus import ScsBus
+from hydrostat.control.scs_bus import SCS_STALL, ScsBus
+from hydrostat.control.servo_bus import ServoBus
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.fabrication import Motor
 from hydrostat.robot import Robot
@@ -44,8 +45,14 @@ class EmulatedFeetechBus(FeetechBus):
     kind = EMULATED
 
 
+class EmulatedScsBus(ScsBus):
+    """The same with servos of the SCS series."""
+
+    kind = EMULATED
+
+
 class LiveFeetechChain(LiveChain, EmulatedFeetechChain):
-    """Servos of the STS series in real time."""
+    """Servos of the STS and SCS series in real time."""
 
 
 def add_cable_layers(calibration: Calibration) -> Calibration:
@@ -130,15 +137,19 @@ def _make_emulated_bus(motor: str, calibration: Calibration, tensions: Callable[
     calibration = calibration.assume_zeros()
     angles = [each.angle(0.0) for each in calibration.motors]
     servos: list[EmulatedServo]
-    if is_sts := motor in _LIKE_STS:
-        supply, allowed = _LIKE_STS[motor]
-        servos = [EmulatedSts(n, angle=each, supply=supply, allowed=allowed) for n, each in enumerate(angles, 1)]
+    make: type[ServoBus] = EmulatedBus
+    if motor == "scs0009":
+        make, servos = EmulatedScsBus, [EmulatedScs(n, angle=each) for n, each in enumerate(angles, 1)]
+        ratio = Motor.choose(motor).stall_torque * 1e-3 / SCS_STALL
+    elif motor in _LIKE_STS:
+        make, facts = EmulatedFeetechBus, _LIKE_STS[motor]
+        servos = [EmulatedSts(n, angle=each, **facts) for n, each in enumerate(angles, 1)]
         ratio = Motor.choose(motor).stall_torque * 1e-3 / STALL
     else:
         model = _LIKE_X.get(motor, _LIKE_X["xl330"])
         servos = [EmulatedServo(n, angle=each, model=model) for n, each in enumerate(angles, 1)]
         ratio = MODELS[model].torque / MODELS[model].stall
-    chain = (LiveFeetechChain if is_sts else LiveChain)(servos, longest=HELD_UP)
+    chain = (LiveChain if make is EmulatedBus else LiveFeetechChain)(servos, longest=HELD_UP)
     known, torques = -1.0, np.zeros(len(servos))
 
     def load(index: int) -> Callable[[float], float]:
@@ -153,15 +164,18 @@ def _make_emulated_bus(motor: str, calibration: Calibration, tensions: Callable[
 
     for index, servo in enumerate(servos):
         servo.load, servo.constant = load(index), ratio
-    make = EmulatedFeetechBus if is_sts else EmulatedBus
     return make(chain, [servo.number for servo in servos], clock=chain.clock, wait=chain.sleep)
 
 
 _LIKE_X = {"xl330": 1200, "xc330": 1240}
 """Numbers of the models of Dynamixel servos, by the motor of robot.toml; any other motor is emulated as the first."""
 
-_LIKE_STS = {"sts3215": (7.4, (4.0, 8.0)), "sts3215-12v": (12.0, (8.0, 14.0))}
-"""Supply of each kind of STS3215, and the least and greatest in its memory [V]."""
+_LIKE_STS: dict[str, dict[str, Any]] = {
+    "sts3215": {"supply": 7.4, "allowed": (4.0, 8.0)},
+    "sts3215-12v": {"supply": 12.0, "allowed": (8.0, 14.0)},
+    "st3020": {"model": 1289, "supply": 12.0, "allowed": (6.0, 14.0)},
+}
+"""Emulated servos of the STS series: number of the model, supply, and least and greatest supply in the memory [V]."""
 
 
 def open_line(name: str, baud: int) -> Port:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from hydrostat.fabrication.motor_choice import drive_price, find_motor, fit_motor, motor_offers, motors_price
     from hydrostat.fabrication.moulds.mould import make_mold
     from hydrostat.fabrication.moulds.pocket_room import PocketRoom
-    from hydrostat.fabrication.parts.motor import ALL_MOTORS, MOTORS, Motor
+    from hydrostat.fabrication.parts.motor import ALL_MOTORS, AUTO_MOTORS, MOTORS, Motor
     from hydrostat.fabrication.parts.places import GIVES, TOUCHES, UnitBox, seam_of
     from hydrostat.fabrication.parts.winch_unit import unit_room
     from hydrostat.fabrication.patches.skin_mesh import skin_of_surface
@@ -40,6 +40,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ALL_MOTORS",
+    "AUTO_MOTORS",
     "BOARDS",
     "GIVES",
     "MATERIAL_FIX",

@@ -222,7 +222,14 @@ def test_emulated_motors_live_slower_on_a_late_computer(monkeypatch: pytest.Monk
 
 @pytest.mark.parametrize(
     ("motor", "model"),
-    [("auto", "XL330-M288"), ("n20", "XL330-M288"), ("xc330", "XC330-M288"), ("sts3215-12v", "STS3215")],
+    [
+        ("auto", "XL330-M288"),
+        ("n20", "XL330-M288"),
+        ("xc330", "XC330-M288"),
+        ("sts3215-12v", "STS3215"),
+        ("st3020", "STS3020"),
+        ("scs0009", "SCS0009"),
+    ],
 )
 def test_emulated_motors_are_those_of_the_robot(
     motor: str, model: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path

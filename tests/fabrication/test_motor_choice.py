@@ -38,6 +38,8 @@ def test_auto_is_the_cheapest_that_does(torque: float) -> None:
         if MARGIN * 1e3 * torque > motor.rated_torque:
             continue
         turns = max(each.travel / (2 * math.pi * each.spool_radius) for each in robot.winches)
+        if turns > motor.turns:
+            continue
         if turns / (motor.speed / 60) * -math.log(1 - share) / share > SLOW:
             continue
         items = control_needs(power_plan({each.name: 1e3 * torque for each in robot.winches}, motor))

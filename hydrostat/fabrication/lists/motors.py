@@ -286,7 +286,7 @@ class PowerPlan:
     @property
     def cells(self) -> int:
         """NiMH cells in a row that come nearest to the motors' volts without going beyond."""
-        return int(self.motor.volts / (FRESH if self.motor.bus == "feetech" else CELL) + 1e-9)
+        return int(self.motor.volts / (FRESH if self.motor.is_feetech else CELL) + 1e-9)
 
     @property
     def hours(self) -> float:

@@ -47,7 +47,8 @@ class Drive:
 def drive_of(motor: Motor, options: PartOptions) -> Drive:
     """Find where a spool stands on a motor."""
     floor = motor.screw.floor(options.wall)
-    plate = floor + motor.screw.head_height
+    ridge = motor.ridge.high[2] + options.clearance if motor.ridge is not None else 0.0
+    plate = max(floor + motor.screw.head_height, ridge)
     if motor.horn is None:
         start = max(plate, motor.shaft.boss_height) + options.clearance
         return Drive(floor=floor, plate=plate, disc=0.0, start=start, tip=motor.shaft.length)
@@ -132,7 +133,16 @@ class Housing:
             return False
         slots = [(abs(x + side), abs(y)) for x, y in self.motor.holes for side in (-self.motor.slot, self.motor.slot)]
         head = self.motor.screw.head / 2 + self.options.fit
-        return min(math.dist(slot, (post, post)) for slot in slots) < head + mine + self.options.wall / 2
+        apart = mine + self.options.wall / 2
+        return min(math.dist(slot, (post, post)) for slot in slots) < head + apart or self._is_over_ridge(post, apart)
+
+    def _is_over_ridge(self, post: float, apart: float) -> bool:
+        """Return True if a screw would be nearer [mm] to the part of the case that goes through the plate."""
+        if self.motor.ridge is None:
+            return False
+        (x, y, _), (right, top, _) = self.motor.ridge.low, self.motor.ridge.high
+        cut = Polygon([(x, y), (right, y), (right, top), (x, top)]).buffer(self.options.clearance)
+        return MultiPoint([(side, along) for side in (-post, post) for along in (-post, post)]).distance(cut) < apart
 
     @cached_property
     def half(self) -> float:
@@ -196,8 +206,11 @@ class Housing:
     @cached_property
     def tongue(self) -> tuple[Corner, Corner]:
         """Corners of what the plate covers, seen along the shaft: the box, and all screws in the face with a wall."""
-        edge = self.motor.screw.hole / 2 + self.options.wall
+        wall = self.options.wall
+        edge = self.motor.screw.hole / 2 + wall
         xs = [abs(x) + self.motor.slot + edge for x, _ in self.motor.holes] if self.motor.horn is not None else []
+        if self.motor.ridge is not None:
+            xs.append(self.motor.ridge.high[0] + self.options.clearance + wall)
         low = min([-self.half, *(y - edge for _, y in self.motor.holes)])
         side = max(xs, default=self.half)
         return (-side, low), (side, self.half)
@@ -216,13 +229,16 @@ class Housing:
         if motor.horn is not None:
             (low_x, low_y), (high_x, _) = self.tongue
             body = body + Box((high_x - low_x, -low_y, drive.floor)).move(low_x, low_y, 0)
-            body = body - Cylinder(drive.plate + 2, self.recess).move(0, 0, -1)
+            under = motor.horn.under - self.options.clearance if motor.horn.under else -1.0
+            body = body - Cylinder(drive.plate + 2, self.recess).move(0, 0, under)
+            body = body - Cylinder(drive.plate + 2, motor.shaft.boss + self.options.clearance).move(0, 0, -1)
         else:
             body = body - Cylinder(drive.plate, self.recess).move(0, 0, drive.floor)
             body = body - Cylinder(drive.plate, motor.shaft.boss + self.options.clearance).move(0, 0, -1)
         if motor.ridge is not None:
             wide, deep, tall = (side + 2 * self.options.clearance for side in motor.ridge.size)
             x, y, _ = (low - self.options.clearance for low in motor.ridge.low)
+            tall = max(tall, drive.plate + 1)  # no thin skin is left above it
             body = body - Box((wide, deep, tall)).move(x, y, -self.options.clearance)
         for x, y in motor.holes:
             body = body - self._slot(motor.screw.hole / 2).move(x, y, -1)

@@ -20,6 +20,7 @@ class FaceScrew:
     head: float  # diameter of its head [mm], ISO 7045
     head_height: float  # height of its head [mm], ISO 7045
     depth: float  # maximum depth in the motor [mm]
+    end: str = ""  # words after its name, such as for a nut; empty: the motor has a thread for it
 
     def length(self, wall: float) -> float:
         """The shortest standard length [mm] that reaches two thirds of its depth through a wall [mm]."""
@@ -31,7 +32,7 @@ class FaceScrew:
 
     def title(self, wall: float) -> str:
         """Name by which it is bought, for a wall [mm]."""
-        return f"{self.size} x {self.length(wall):g} mm pan head screw"
+        return f"{self.size} x {self.length(wall):g} mm pan head screw{self.end}"
 
 
 _LENGTHS = (3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0)
@@ -64,7 +65,8 @@ class Horn:
     circle: float  # radius of the circle of its screw holes [mm]
     count: int  # number of its screw holes, the first at +x
     screw: FaceScrew  # screws in these holes
-    hub: float = 0.0  # radius of the hub that stands on the disc; 0: there is none
+    under: float = 0.0  # height of the lower side of the disc above the face, where a boss lifts it; 0: near the face
+    hub: float = 0.0  # radius of the hub or screw head that stands on the disc; 0: there is none
     hub_height: float = 0.0  # height of that hub above the disc
 
 
@@ -97,6 +99,7 @@ class Motor:
     price_source: str  # source of the price, with its date
     price_month: str  # month of that price, or in which it was noted where the source has no date
     bus: str = ""  # bus of a servo, by the name that --motors takes; empty for a geared motor
+    caution: str = ""  # warning on the page of the wires; empty if there is none
     source: str  # sources of its figures, and those that are uncertain
 
     @property
@@ -107,7 +110,8 @@ class Motor:
             body = body + Box(self.ridge.size).move(*self.ridge.low)
         if self.horn is not None:
             hub = Cylinder(self.horn.height + self.horn.hub_height, self.horn.hub or self.shaft.diameter / 2)
-            return body + Cylinder(self.horn.height, self.horn.radius) + hub
+            disc = Cylinder(self.horn.height - self.horn.under, self.horn.radius).move(0, 0, self.horn.under)
+            return body + disc + hub + Cylinder(max(self.horn.under, 0.1), self.shaft.boss)
         boss = Cylinder(self.shaft.boss_height, self.shaft.boss)
         return body + boss + self.shaft.shape(self.shaft.length)
 
@@ -117,6 +121,11 @@ class Motor:
         Outside the body for long, inside for seconds.
         """
         return 1e-3 * (BRIEF * self.stall_torque if inside else self.rated_torque) / MARGIN
+
+    @property
+    def is_feetech(self) -> bool:
+        """True for servos of Feetech, which hang on a bus adapter."""
+        return self.bus in ("feetech", "scs")
 
     @property
     def volume(self) -> float:
@@ -154,6 +163,8 @@ def _disc_outline(radius: float) -> tuple[Corner, ...]:
 _M1_6 = FaceScrew(size="M1.6", hole=1.9, head=3.2, head_height=1.3, depth=1.3)
 _M2 = FaceScrew(size="M2", hole=2.4, head=4.0, head_height=1.6, depth=4.0)
 _M2_HORN = FaceScrew(size="M2", hole=2.4, head=4.0, head_height=1.6, depth=2.5)
+_M2_NUT = replace(_M2, depth=5.0, end=" with nut")  # through an ear of 1.6 mm
+_M2_DRILLED = replace(_M2, depth=2.0)
 _M3_HORN = FaceScrew(size="M3", hole=3.4, head=5.6, head_height=2.4, depth=2.5)
 _M3 = FaceScrew(size="M3", hole=3.4, head=5.6, head_height=2.4, depth=3.0)
 
@@ -279,6 +290,8 @@ _STS3215 = Motor(
     price_source="parts list of SO-ARM100 1.3 (TheRobotStudio): 15 USD, 13 EUR each, no date",
     price_month="2026-11",
     bus="feetech",
+    caution="STS3215 are sold for 7.4 V and for 12 V, in one case. This kit needs those for 7.4 V: read the label of "
+    "each servo. On the wrong supply, hydrostat rejects them at connection.",
     source="Little Bird Electronics, SER0069: 19.5 kg cm and 52 rpm at 7.4 V, 0.15 A without load, 4 to 7.4 V. Case, "
     "horn (20 x 2.5 mm, 4 holes of 2.5 mm on a circle of 14 mm, M3 cut into them), ridge and depth: table of verified "
     "parts of the robot Nova SM3, from Feetech's own model, 2026-07. Holes of the upper face: an OpenSCAD file of the "
@@ -296,6 +309,7 @@ _STS3215_12V = replace(
     speed=45.0,
     volts=12.0,
     free_current=0.2,
+    caution=_STS3215.caution.replace("those for 7.4 V", "those for 12 V"),
     price=17.6,
     price_source="105.66 USD for six with an adapter (Alibaba) in the list of mhered/my_SO100ARM, no date",
     source="Robonine, test of STS3215 C018: 30 kg cm and 45 rpm at 12 V by the data sheet; measured 35 kg cm, 46 rpm, "
@@ -304,11 +318,76 @@ _STS3215_12V = replace(
     "Case, horn, holes: as of the 7.4 V variant; current without load: estimate, check yours.",
 )
 
+_ST3020 = Motor(
+    key="st3020",
+    title="Waveshare ST3020, 12 V, 25 kg cm (Feetech STS3020)",
+    body=Box((20.2, 40.2, 40.5)).move(-10.1, -30.0, -40.5)
+    + Cylinder(1.4, 6.25).move(0, 0, -41.9)
+    + Cylinder(4.0, 3.1).move(0, 0, -45.9),
+    outline=_box_outline((-10.1, -30.0), (10.1, 10.2)),
+    depth=45.9,
+    shaft=Shaft(diameter=6.0, across=5.0, length=0.0, boss=6.25, boss_height=1.4),
+    horn=Horn(radius=10.0, height=6.2, under=3.7, circle=7.0, count=4, screw=_M3_HORN, hub=3.0, hub_height=2.4),
+    holes=((-8.0, -6.7), (8.0, -6.7), (-7.0, -20.15), (7.0, -20.15)),
+    slot=0.5,
+    screw=_M2,
+    stall_torque=2452.0,
+    rated_torque=490.0,
+    speed=60.0,
+    volts=12.0,
+    stall_current=2.7,
+    free_current=0.2,
+    mass=65.0,
+    price=29.6,
+    price_source="2,618 INR at Robu in the notes of thenar-jx1 (nickthelegend) of 2026-09-24, at 0.0113 USD",
+    price_month="2026-09",
+    bus="feetech",
+    source="Waveshare's wiki, ST3020 Servo: 25 kg cm at 2.7 A and 60 rpm at 12 V, 0.2 A without load, 6 to 14 V, "
+    "40.2 x 20.2 x 40 mm, two shafts. Case, holes, boss, rear pin and horn (20 x 2.5 mm, 4 holes on a circle of "
+    "14 mm): a public OpenSCAD file of the like case of SCS20 (N. Hendrich, 2020), measured by hand to 0.1 mm. Load at "
+    "most a fifth of stall, as for the other servos. Height of the horn, head of its screw: drawn from that file. "
+    "Mass: estimate. Measured on none, check yours: the holes for the case are slots.",
+)
+
+_SCS0009 = Motor(
+    key="scs0009",
+    title="Feetech SCS0009, 6 V, 2.3 kg cm (Waveshare: SC09)",
+    body=Box((12.4, 23.4, 19.1)).move(-6.2, -17.7, -19.1) + Box((12.4, 32.4, 1.6)).move(-6.2, -22.2, -1.6),
+    outline=_box_outline((-6.2, -22.2), (6.2, 10.2)),
+    depth=19.1,
+    ridge=Cuboid(low=(-6.2, -17.7, 0.0), high=(6.2, 5.7, 2.5)),
+    shaft=Shaft(diameter=6.0, across=5.0, length=0.0, boss=5.95, boss_height=6.2),
+    horn=Horn(radius=8.0, height=9.5, under=7.0, circle=6.0, count=4, screw=_M2_DRILLED, hub=2.2, hub_height=1.6),
+    holes=((0.0, 8.5), (0.0, -20.5)),
+    slot=0.5,
+    screw=_M2_NUT,
+    stall_torque=226.0,
+    rated_torque=45.0,
+    speed=100.0,
+    volts=6.0,
+    stall_current=1.0,
+    free_current=0.15,
+    turns=280 / 360,
+    mass=13.2,
+    price=12.1,
+    price_source="1,074.91 INR at Evelta in the notes of thenar-jx1 (nickthelegend) of 2026-09-24, at 0.0113 USD",
+    price_month="2026-09",
+    bus="scs",
+    caution="SCS0009 turn by 300 degrees only, of which this kit uses 280. Screw on each coupling at position 34 of "
+    "the servo, with all cable paid out. Drill the four holes of the horn (1.6 mm) through the coupling.",
+    source="Waveshare's wiki, SC09 Servo: 2.3 kg cm and 100 rpm at 6 V, 0.15 A without load, 1.0 A at stall, 23.2 x "
+    "12.0 x 25.5 mm, 300 degrees; that Feetech's SCS0009 is the same servo is assumed. Case, ears, boss: a public "
+    "OpenSCAD file of SCS09 (N. Hendrich, 2020), measured by hand to 0.1 mm. Mass: a public CAD model (botcad). Load "
+    "at most a fifth of stall, as for the other servos. Horn: no source has its holes or height. A round "
+    "one of 16 mm, its top 3.3 mm above the boss, is assumed: check yours, and drill it through the coupling.",
+)
+
 MOTORS = (_N20, _XL330, _POLOLU_25D)
 """From the weakest to the strongest: designs look for room in the body for the strongest of these that has it."""
 AUTO_MOTORS = (*MOTORS, _STS3215, _STS3215_12V)
-"""Motors that "auto" chooses among: an XC330 costs four times as much as any other servo, so it is taken by its key."""
-ALL_MOTORS = (*MOTORS, _XC330, _STS3215, _STS3215_12V)
+"""Motors that "auto" chooses among, but no XC330 (four times the price), no ST3020 (dearer than a stronger STS3215), no
+SCS0009 (its horn has no source)."""
+ALL_MOTORS = (*MOTORS, _XC330, _STS3215, _STS3215_12V, _ST3020, _SCS0009)
 """All that kits mount."""
 
 MARGIN = 2.0

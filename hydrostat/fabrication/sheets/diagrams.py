@@ -192,7 +192,7 @@ def _put_power(canvas: Canvas, plan: PowerPlan) -> None:
 
 def _put_chain(canvas: Canvas, plan: PowerPlan, places: list[float], step: float, top: float) -> None:
     """A board that speaks to servos which hang on one another."""
-    _put_board(canvas, "bus adapter" if plan.motor.bus == "feetech" else "OpenRB-150", top)
+    _put_board(canvas, "bus adapter" if plan.motor.is_feetech else "OpenRB-150", top)
     line = top + 6.0
     ends = [38.0, *places]
     for one, other in zip(ends, places, strict=False):

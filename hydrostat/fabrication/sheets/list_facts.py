@@ -151,11 +151,9 @@ def power_facts(plan: PowerPlan | None, robot: Robot) -> PowerFacts | None:
         f"With NiMH cells, use {plan.cells} in series with the same fuse; never charge them in the robot.",
     ]
     if plan.servos:
-        if plan.motor.bus == "feetech":
+        if plan.motor.is_feetech:
             warnings += [
-                "STS3215 are sold for 7.4 V and for 12 V, in one case. "
-                f"This kit needs those for {plan.motor.volts:g} V: read the label of each servo. "
-                "On the wrong supply, hydrostat rejects them at connection.",
+                *([plan.motor.caution] if plan.motor.caution else []),
                 "The bus adapter passes the supply on as it is. Read the range printed on it: some state 9 to 12.6 V.",
             ]
         return {
@@ -200,16 +198,15 @@ def _encoder_warning(plan: PowerPlan) -> str:
 def _list_first_steps(plan: PowerPlan, *, is_measured: bool) -> list[str]:
     """Steps from the first volt to the first move, each with its check."""
     chain = "Chain the servos in the order of the table, then plug the board into the computer."
-    if plan.motor.bus == "feetech":
-        kind = "feetech"
+    kind = plan.motor.bus or "firmware"
+    if plan.motor.is_feetech:
+        limits = "set both angle limits to 0" if kind == "feetech" else "move it to position 34"
         ready = [
             "Plug in one servo at a time, with the switch off. Turn it on. Give the servo its number with the "
-            "manufacturer's program FD, and set both angle limits to 0. Turn the switch off. Write the number on "
-            "the servo.",
+            f"manufacturer's program FD, and {limits}. Turn the switch off. Write the number on the servo.",
             chain,
         ]
     elif plan.servos:
-        kind = "dynamixel"
         ready = [
             "Load the example usb_to_dynamixel onto the OpenRB-150 with the Arduino IDE. Leave its power jumper on 5 V "
             "and cut the plus wire of the cable between board and chain: USB then feeds the board alone.",
@@ -218,7 +215,6 @@ def _list_first_steps(plan: PowerPlan, *, is_measured: bool) -> list[str]:
             chain,
         ]
     else:
-        kind = "firmware"
         flash = f" --flash {','.join(['PORT'] * len(plan.boards))}" if plan.resets else ""
         ready = [
             "Wire one winch as in the table, then the others: PWM to EN of its driver, direction to PH, current to its "

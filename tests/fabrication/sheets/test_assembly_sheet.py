@@ -131,7 +131,8 @@ def test_the_first_start_ends_in_commands_that_the_robot_and_its_motors_take(key
     """Oracle: the kinds of motors of the command line, and its refusal of winches that pull both ways."""
     robot, motor = plush().plan.robot, next(one for one in ALL_MOTORS if one.key == key)
     power = power_plan(dict.fromkeys((winch.name for winch in robot.winches), 40.0), motor)
-    kind = {"xl330": "dynamixel", "xc330": "dynamixel"}.get(key, "feetech" if key.startswith("sts") else "firmware")
+    kinds = {"xl330": "dynamixel", "xc330": "dynamixel", "scs0009": "scs", "n20": "firmware", "25d": "firmware"}
+    kind = kinds.get(key, "feetech")
     first, *others = robot.cables
     both = robot.with_network(robot.winches, [replace(first, reverse=True), *others])
     for one, calibrated in ((robot, True), (both, False)):
