@@ -52,6 +52,7 @@ _BAG = 32 * 0.0283495  # mass of a bag of fibre filling, 32 oz [kg]
 _ANGLER = 91.44  # line on a spool, 100 yards [m]
 
 _PUPPETS = "a puppet maker's list of costs (The Tucson Puppet Lady)"
+_ROVER = "estimate in the parts list of a printed rover (Johnny 5)"
 _BEARS = "a sewing group's list of costs (Crafting 4 Jesus)"
 
 PRICES = MappingProxyType(
@@ -93,21 +94,43 @@ PRICES = MappingProxyType(
             source="parts list of SO-ARM100 1.3 (TheRobotStudio): Waveshare's bus servo adapter, 11 USD, 12 EUR",
         ),
         "driver": Price(amount=5.0),
-        "supply": Price(amount=10.0),
-        "fuse": Price(amount=2.0),
-        "switch": Price(amount=3.0),
-        "lead": Price(amount=1.0, unit="m"),
+        "supply": Price(
+            amount=10.0,
+            month="2025-04",
+            source="parts list of SO-ARM100 1.3 (TheRobotStudio): power supply, 10 USD, 13 EUR",
+        ),
+        "fuse": Price(amount=3.0, month="2026-06", source=f"{_ROVER}: blade fuse with holder in the lead"),
+        "switch": Price(amount=3.0, month="2026-06", source=f"{_ROVER}: toggle switch for 10 A or more"),
+        "lead": Price(
+            amount=1.1,
+            unit="m",
+            month="2026-09",
+            source="notes of thenar-jx1 (nickthelegend): two wires AWG 16, 49 INR/m each at Robu, at 0.0113 USD",
+        ),
         "servo cable": Price(amount=2.0),
-        "encoder": Price(amount=5.0),
+        "servo's own cable": Price(
+            amount=0.0,
+            source="package of DFRobot's SER0069 (Little Bird Electronics) and an assembly guide of SO-ARM101 "
+            "(Robonine): a cable comes with each STS3215",
+        ),
+        "encoder": Price(
+            amount=4.475, pack=2.0, source="order list of the team ASROB-sumo: Pololu's kit of two for 8.95"
+        ),
         "small parts": Price(amount=1.0, unit="set"),
         "screws": Price(amount=0.08, pack=100.0, source="parts list of a printed robot hand: M3 screws, 8 for 100"),
         "pla": Price(
             amount=19.99, unit="kg", month="2023-05", source="parts list of SCUTTLE mini (D. Malawey): filament, 1 kg"
         ),
-        "flexible filament": Price(amount=50.0, unit="kg"),
+        "flexible filament": Price(
+            amount=41.99, unit="kg", source="slicer profile of a TPU of 95 Shore A (BambuStudio): price of a kilogram"
+        ),
         "foam": Price(amount=40.0, unit="kg", pack=0.5),
         "silicone": Price(amount=SILICONE_PRICE, unit="kg"),
-        "release": Price(amount=15.0, unit="can"),
+        "release": Price(
+            amount=12.8,
+            unit="can",
+            source="a model maker's notes (D. Neat): wax release spray, 10 GBP for 400 ml at Tiranti, at 1.28 USD",
+        ),
         "glue": Price(amount=15.0, unit="can"),
         "sealer": Price(amount=8.0, unit="can"),
         "clay": Price(amount=8.0, unit="pack"),
@@ -143,13 +166,14 @@ class Item:
     quantity: float  # in the unit of its price
     price: Price  # price of one unit
     mass: float | None = None  # total mass [g]; None if it is unknown
+    is_tool: bool = False  # True for a tool, of which a robot uses up nothing
     is_poured: bool = False  # True for foam or silicone of the body
     is_named_by_kind: bool = False  # True if the sheet names it by the beginning of its specification
 
     @property
     def cost(self) -> float:
         """Cost of what is used up, in the currency of its price."""
-        return self.quantity * self.price.amount
+        return 0.0 if self.is_tool else self.quantity * self.price.amount
 
     @property
     def cost_packs(self) -> float:

@@ -58,7 +58,7 @@ def _item(
     return Item(group=group, what=what, specification=specification, quantity=quantity, price=known, mass=mass)
 
 
-_NEEDLES = _item(BillGroup.BODY, "needles", "sewing, and a long doll needle", 1.0, "needle")
+_NEEDLES = replace(_item(BillGroup.BODY, "needles", "sewing, and a long doll needle", 1.0, "needle"), is_tool=True)
 
 
 def _plush(plan: KitPlan, cloth: Cloth) -> list[Item]:
@@ -182,11 +182,12 @@ def control_needs(plan: PowerPlan | None) -> list[Item]:
         _item(BillGroup.CONTROL, "switch", f"for {plan.fuse:g} A, large enough to be hit", 1.0, "switch"),
         _item(BillGroup.CONTROL, "twin lead", f"{area:g} mm^2 (AWG {gauge}) or thicker", 2.0, "lead"),
     ]
-    if plan.motor.bus == "feetech":
+    if plan.motor.is_feetech:
         adapter = "Waveshare bus servo adapter or alike, USB to the three wires of ST and SC servos"
         chain = "of three wires with plugs of 2.54 mm (5264-3), one from servo to servo"
         board = _item(BillGroup.CONTROL, "bus servo adapter", adapter, 1.0, "bus adapter")
-        return [board, _item(BillGroup.CONTROL, "servo cable", chain, max(count - 1, 1), "servo cable"), *feed]
+        price = "servo's own cable" if plan.motor.key.startswith("sts3215") else "servo cable"
+        return [board, _item(BillGroup.CONTROL, "servo cable", chain, max(count - 1, 1), price), *feed]
     if plan.servos:
         bus = "OpenRB-150 or alike, drives the servos by their bus"
         chain = "of three wires with JST EH plugs (X3P), one from servo to servo"
