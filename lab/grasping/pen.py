@@ -24,6 +24,7 @@ from hydrostat.mechanics import GuideEnergy, NewtonOptions
 from hydrostat.plot import Frame, save_gif
 from hydrostat.robot import Body, Cable, Contact, Material, Obstacle, Pin, Robot, Source, Winch
 from hydrostat.simulation import BodyPhysics, Motion, Simulation, StepOptions
+from hydrostat_lab.keyframes import ease
 
 LENGTH, BREADTH, ROOM = 80e-3, 12e-3, 4e-3
 """Length and breadth of a finger, and its distance from the pen [m]."""
@@ -123,12 +124,10 @@ class Held:
 def run(friction: float, step: float, films: Path | None) -> None:
     """Print a row for each keyframe, and write a film if asked."""
     held, frames, began = Held(friction), [], time.process_time()
-    goal, count = np.zeros(4), max(1, round(SECONDS / step))
+    goal = np.zeros(4)
     for key, taken in KEYS.items():
         begin, goal = goal, 1e-3 * np.array(taken, dtype=float)
-        for number in range(1, count + 1):
-            share = number / count
-            motion = held.go(begin + share * share * (3 - 2 * share) * (goal - begin), SECONDS / count)
+        for motion in ease(held.go, begin, goal, seconds=SECONDS, step=step):
             words = f"friction {friction:g}, {key}: turned by {held.turned:.0f} degrees"
             frames.append(Frame.of(motion, words=words, obstacles=held.drawn()))
         x, y = 1e3 * (held.place - held.begun)

@@ -28,6 +28,7 @@ from hydrostat.mechanics import GuideEnergy
 from hydrostat.plot import Frame, save_gif
 from hydrostat.robot import Contact, Obstacle, Robot
 from hydrostat.simulation import BodyPhysics, Motion, Simulation, StepOptions
+from hydrostat_lab.keyframes import ease
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 HOLD, VISCOSITY, DRAG, SECONDS = 100.0, 400.0, 5.0, 0.5
@@ -173,12 +174,9 @@ def run(name: str, friction: float, step: float, films: Path | None) -> None:
     robot = hs.load_robot(EXAMPLES / (twist.robot or name))
     held, frames, began = Held(robot, twist, friction), [], time.process_time()
     goal = np.zeros(len(robot.winches))
-    count = max(1, round(SECONDS / step))
     for key in twist.keys:
         begin, goal = goal, twist.contractions(robot, key)
-        for number in range(1, count + 1):
-            share = number / count
-            motion = held.go(begin + share * share * (3 - 2 * share) * (goal - begin), SECONDS / count)
+        for motion in ease(held.go, begin, goal, seconds=SECONDS, step=step):
             words = f"{key}: the ball has turned by {np.linalg.norm(held.turned):.0f} degrees"
             frames.append(Frame.of(motion, words=words, obstacles=held.drawn()))
         x, y, z = held.turned
