@@ -63,14 +63,38 @@ class HydrostatWarning(UserWarning):
 NO_KIT = "no kit can be made of this body: "
 """Before a reason that holds whatever the winches and cables of a robot are."""
 
-_NAMED = re.compile(r"\b(winch|marker)\[\d+\](?= )")
-_POINT = re.compile(r"\bcable\[(\d+)\]\.points\[(\d+)\]")
-_RUN = re.compile(r"\bcable\[(\d+)\] between points (\d+) and (\d+)")
-_PART = re.compile(r"\b(pin|winch|cable|marker|pose|part|rod|load|sensor|drive|obstacle)\[(\d+)\](\.(?=\w))?")
+_START = r"(?<![\w./\\~\"'-])"
+"""Start of a word that is no part of a path or a quote."""
+
+_END = r"(?=[:,;)\s]|\.?$|\.\s)"
+"""End of a word that is no part of a path."""
+
+PART_KEYS = (
+    "name|at|axis|slide|min|max|radius|box|stiffness|drive|spool_radius|travel|release|mount|body|winch|"
+    "points|smoothing|slack|sheathed|friction|reverse|targets|shape|to|normal|mass|path|file|marker|force|"
+    "pressure|moment|diameter|young|axial_stiffness|bending_stiffness|torsional_stiffness|material|thickness|"
+    "on|wrinkles|kind|noise|label|rigid|density"
+)
+"""Keys of the parts of a robot in its file. Other words after a part and a dot may be the name of a file."""
+
+_QUOTED = re.compile(r'("[^"]*")')
+_NAMED = re.compile(_START + r"(winch|marker)\[\d+\](?= )")
+_POINT = re.compile(_START + r"cable\[(\d+)\]\.points\[(\d+)\]" + _END)
+_RUN = re.compile(_START + r"cable\[(\d+)\] between points (\d+) and (\d+)")
+_KINDS = "pin|winch|cable|marker|pose|part|rod|load|sensor|drive|obstacle|sheet"
+_KEY = rf"\.(?=(?:{PART_KEYS})\b|\w+: unknown key)"
+_PART = re.compile(_START + rf"(?:body\.)?({_KINDS})\[(\d+)\](?:({_KEY})|{_END})")
 
 
 def in_words(text: str) -> str:
-    """Sentence in plain words: "cable 1, point 3" for "cable[0].points[2]", "winch left" for "winch[0] left"."""
+    """Sentence in plain words: "cable 1, point 3" for "cable[0].points[2]", "winch left" for "winch[0] left".
+
+    Paths and quoted words stay as they are.
+    """
+    return "".join(words if words.startswith('"') else _count_from_one(words) for words in _QUOTED.split(text))
+
+
+def _count_from_one(text: str) -> str:
     text = _POINT.sub(lambda match: f"cable {_next(match[1])}, point {_next(match[2])}", _NAMED.sub(r"\1", text))
     text = _RUN.sub(lambda run: f"cable {_next(run[1])} between points {_next(run[2])} and {_next(run[3])}", text)
     return _PART.sub(lambda match: f"{match[1]} {_next(match[2])}{', ' if match[3] else ''}", text)

@@ -27,10 +27,35 @@ WHALE = (
         ("pin[0]: holds nothing; element_size[m]", "pin 1: holds nothing; element_size[m]"),
         ("line 13: pin[1].radius must be above 0", "line 13: pin 2, radius must be above 0"),
         ("obstacle[0]: the body stands in it", "obstacle 1: the body stands in it"),
+        ("line 13: pin[0].radios: unknown key", "line 13: pin 1, radios: unknown key"),
+        ("pose[0].targets.tip: must be finite", "pose 1, targets.tip: must be finite"),
+        ("sheet[0]: overlaps sheet[1].", "sheet 1: overlaps sheet 2."),
+        ("body.part[0].at: is outside", "part 1, at: is outside"),
+        ('body.part[1] "bone": overlaps (cable[0])', 'part 2 "bone": overlaps (cable 1)'),
     ],
 )
 def test_parts_are_counted_from_one(said: str, words: str) -> None:
     assert in_words(said) == words
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "rod[1].dir: there is no such file. Begin a robot: hydrostat new rod[1].dir --from gallery:starfish",
+        "../rod[1]/winch[0].toml: there is no such file",
+        "my.pin[0]: is a folder",
+        'stands in "winch[0] left", not in "rod[1].at"',
+        "'load[0]' is a folder",
+    ],
+)
+def test_paths_and_quotes_stay(said: str) -> None:
+    assert in_words(said) == said
+
+
+def test_a_missing_folder_keeps_its_name(run: Run) -> None:
+    code, _, err = run("check", "rod[1].dir")
+    assert code == 2
+    assert "hydrostat new rod[1].dir " in err
 
 
 def test_a_new_robot_is_commented_and_not_risky(run: Run, tmp_path: Path) -> None:

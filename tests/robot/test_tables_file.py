@@ -1,5 +1,8 @@
 import pytest
 
+from hydrostat.errors import PART_KEYS
+from hydrostat.robot.schema import RobotTable
+from hydrostat.robot.schema_errors import allowed_keys
 from hydrostat.robot.tables_file import find_line
 
 TEXT = """\
@@ -78,3 +81,9 @@ def test_line(key: str, line: int | None) -> None:
     """Oracle: the lines counted by hand."""
     assert find_line(TEXT, key) == line
     assert find_line(TEXT.replace("\n", "\r\n"), key) == line
+
+
+def test_errors_know_all_keys_of_parts() -> None:
+    """Oracle: the schema of the tables that repeat."""
+    kinds = ("pin", "drive", "winch", "cable", "marker", "pose", "obstacle", "load", "rod", "sheet", "sensor")
+    assert set().union(*(allowed_keys(kind, RobotTable) for kind in (*kinds, "body.part"))) == set(PART_KEYS.split("|"))
