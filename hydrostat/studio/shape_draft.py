@@ -7,6 +7,7 @@ from hydrostat.design import Zone
 from hydrostat.errors import InputError
 from hydrostat.given import Point
 from hydrostat.studio.document import Document
+from hydrostat.studio.stage import SAME_CLICK
 from hydrostat.studio.view.scene_items import Area, Dot, Look, SceneItem, Strand, Stroke
 
 LEAST = 0.015  # the smallest radius or half side of what is drawn, as a share of the body
@@ -93,11 +94,13 @@ class ShapeDraft:
         return lasso(line, self._size) if line else zone
 
     def click(self, place: Point) -> Zone | None:
-        """Set one more corner; near the first one the polygon is closed (InputError: the body is in space)."""
+        """Set one more corner; at the first or last one the polygon is closed (InputError: the body is in space)."""
         if not self._flat:
             raise InputError("only balls can be drawn on a 3D body. Drag from the center of a ball outward")
         near = 0.02  # a click so near the first corner closes a polygon, as a share of the body
         if self.corners and math.dist(self.corners[0], place) < near * self._size:
+            return self.close()
+        if self.corners and math.dist(self.corners[-1], place) <= SAME_CLICK * self._size:
             return self.close()
         self.corners = (*self.corners, place)
         return None

@@ -88,6 +88,10 @@ class Stage(ABC):
         return False
 
 
+SAME_CLICK = 0.005
+"""Distance between two clicks that ends a cable or a polygon, as a share of the body: a double click."""
+
+
 ARROWS = {
     "arrowleft": (-1, 0), "arrowright": (1, 0), "arrowdown": (-1, -1), "arrowup": (1, -1), "pageup": (1, 1),
     "pagedown": (-1, 1),

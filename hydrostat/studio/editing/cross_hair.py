@@ -75,7 +75,7 @@ class CrossHair:
         return self.at is not None and not self._document.robot.body.distances(np.array([self.at])).any()
 
     def scene_items(self) -> list[Dot]:
-        """A cross with its place beside it."""
+        """A cross with its place next to it."""
         if self.at is None:
             return []
         return [Dot(at=self.at, look=Look.TARGET, color=Color.INK, label=self.words, chosen=True, stuck=False)]

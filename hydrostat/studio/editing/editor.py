@@ -23,7 +23,7 @@ from hydrostat.studio.editing.part_brush import PartBrush, add_body_part
 from hydrostat.studio.editing.place import add_marker, add_pin, add_winch, move, remove
 from hydrostat.studio.editing.tools import KEYS, Findings, Ruler, Tool, lay_ruler, look_over
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.stage import Hit, Stage, parse_arrow
+from hydrostat.studio.stage import SAME_CLICK, Hit, Stage, parse_arrow
 from hydrostat.studio.view.robot_items import diagnostic_items, robot_items
 from hydrostat.studio.view.scene_items import RobotShape, SceneItem, rest_shape
 from hydrostat.units import plural
@@ -150,9 +150,9 @@ class Editor(Stage):
 
     def take(self, tool: Tool | str) -> None:
         """Take another tool; a cable that was begun is dropped (InputError: there is no tool of this name)."""
-        self.tool, self.draft, self.ruler = parse_choice(Tool, tool, what="tool"), None, None
+        before, self.tool, self.draft, self.ruler = self.tool, parse_choice(Tool, tool, what="tool"), None, None
         self.brush.drawn.clear()
-        if self.tool is Tool.MOVE:
+        if self.tool is Tool.MOVE or self.tool is not before:
             self.cross_hair.hide()
         self._ring()
 
@@ -279,7 +279,11 @@ class Editor(Stage):
         self._paint(self.brush.drawn.end())
 
     def click(self, hit: Hit) -> None:
-        """Select, place a new part, or lay a cable one point further."""
+        """Select, place a new part, or lay a cable one point further; a pointer needs no cross-hair."""
+        self.cross_hair.hide()
+        self._use_tool(hit)
+
+    def _use_tool(self, hit: Hit) -> None:
         if self.tool is Tool.CABLE:
             self._lay(hit)
         elif self.tool is Tool.RULER:
@@ -298,7 +302,7 @@ class Editor(Stage):
         """Heed delete, escape, enter, arrows, the words of copying, and a letter for each tool."""
         begun = self.draft is not None or bool(self.brush.drawn.corners)
         start = place_of(self._document.robot, self.selected_key)
-        if self.cross_hair.press(name, self.click, start, can_show=self.tool is not Tool.MOVE and not begun):
+        if self.cross_hair.press(name, self._use_tool, start, can_show=self.tool is not Tool.MOVE and not begun):
             self._ring()
             return True
         words = {"all": self.choose_all, "copy": self.copy, "paste": self.paste, "duplicate": self.duplicate}
@@ -311,12 +315,9 @@ class Editor(Stage):
             self._ring()
         elif name == "delete":
             self.delete()
-        elif name == "escape":
-            if self.draft is not None and len(self.draft.points) > 1:
-                self.finish()
-            else:
-                self.cancel()
-        elif name == "enter" and begun:
+        elif name == "escape" and (self.draft is None or len(self.draft.points) < 2):
+            self.cancel()
+        elif name == "escape" or (name == "enter" and begun):
             self.finish()
         elif name in KEYS:
             self.take(KEYS[name])
@@ -336,11 +337,10 @@ class Editor(Stage):
     def _lay(self, hit: Hit) -> None:
         """One more point of the cable that is being laid."""
         robot, at = self._document.robot, self._clicked_place(hit, skin=False)
-        same_click = 0.005  # a click so near to the last one, as a share of the body, ends a cable: a double click
         if self.draft is None:
             self.draft = begin_cable(robot, at, hit.key)
             self._chosen = ()
-        elif np.linalg.norm(np.subtract(at, self.draft.points[-1])) <= same_click * robot.body.mesh.size:
+        elif np.linalg.norm(np.subtract(at, self.draft.points[-1])) <= SAME_CLICK * robot.body.mesh.size:
             if len(self.draft.points) > 1:
                 self.finish()
         else:

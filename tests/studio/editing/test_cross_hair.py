@@ -13,6 +13,7 @@ from hydrostat.studio.editing.editor import Editor, Tool
 from hydrostat.studio.editing.part import keys_of
 from hydrostat.studio.face.view_words import describe_view
 from hydrostat.studio.session import Session
+from hydrostat.studio.stage import Hit
 from hydrostat.studio.view.scene_items import Dot, Look
 
 pytestmark = pytest.mark.filterwarnings("error")
@@ -100,6 +101,37 @@ def test_the_state_is_told_and_escape_ends_it(session: Session, editor: Editor) 
     editor.choose("marker:top")
     press(editor, "arrowup")
     assert session.document.undo_label == "nudge marker top"
+
+
+def test_a_click_of_the_pointer_hides_it(editor: Editor, session: Session, starfish: Robot) -> None:
+    """Enter then finishes the cable of the pointer, without a point at the old place."""
+    press(editor, "m", "enter", "c")
+    assert editor.cross_hair.at is None, "another tool was taken"
+    press(editor, "enter")
+    winch = starfish.winches[0]
+    for key, way in ((f"winch:{winch.name}", 0.0), ("body", 0.006), ("body", 0.016)):
+        at = (winch.at[0] + way, *winch.at[1:])
+        session.click("screen", Hit(key=key, rest=at, world=at))
+        assert editor.cross_hair.at is None
+    press(editor, "enter")
+    assert editor.draft is None
+    assert len(session.document.robot.cables[-1].points) == 3
+    session.undo()
+    assert session.document.robot is starfish
+
+
+@pytest.mark.parametrize("way_back", [(), ("shift arrowright", "shift arrowup", "shift arrowup")])
+def test_enter_at_the_last_or_first_corner_ends_a_region(
+    session: Session, editor: Editor, way_back: tuple[str, ...]
+) -> None:
+    press(editor, "b", "enter", "enter", "enter")
+    assert len(editor.brush.drawn.corners) == 1, "a second Enter in place sets no corner"
+    press(editor, "shift arrowdown", "shift arrowdown", "enter", "shift arrowleft", "enter")
+    assert len(editor.brush.drawn.corners) == 3
+    press(editor, *way_back, "enter")
+    assert editor.brush.drawn.corners == ()
+    (part,) = session.document.robot.body.parts
+    assert len(part.points or ()) == 3
 
 
 def test_it_is_hidden_in_another_body_and_another_stage(session: Session, editor: Editor) -> None:
