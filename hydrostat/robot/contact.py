@@ -329,12 +329,11 @@ _MOMENTS: dict[ObstacleShape, Callable[[Obstacle], Vector]] = {
 
 def edge_points(mesh: Mesh, count: int) -> Points:
     """Points inside each edge of the boundary [m], evenly spaced; with a count of 1 its middle, where obstacles act."""
-    corners = mesh.nodes[mesh.boundary]
-    pairs = [(0, 1)] if mesh.dim == 2 else [(0, 1), (1, 2), (2, 0)]
-    shares = np.arange(1, count + 1) / (count + 1)
-    return np.concatenate(
-        [(1 - share) * corners[:, one] + share * corners[:, two] for one, two in pairs for share in shares]
-    )
+    ends = mesh.boundary
+    if mesh.dim == 3:  # two triangles share an edge
+        ends = np.unique(np.sort(ends[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1), axis=0)
+    one, two = mesh.nodes[ends[:, 0]], mesh.nodes[ends[:, 1]]
+    return np.concatenate([(1 - share) * one + share * two for share in np.arange(1, count + 1) / (count + 1)])
 
 
 def check_obstacles(obstacles: Iterable[Obstacle], mesh: Mesh, distance: float) -> None:

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from builders import gallery_robot
+from builders import box_mesh, gallery_robot, strip_mesh
 
 from hydrostat.errors import InputError
-from hydrostat.robot import Contact, Obstacle, Robot, find_risks, load_robot, save_robot
+from hydrostat.robot import Contact, Obstacle, Robot, edge_points, find_risks, load_robot, save_robot
 from hydrostat.robot.merge import merged_text
 
 WALL = Obstacle(name="wall", shape="plane", at=(0.0, -0.16), normal=(0.0, 1.0))
@@ -46,6 +46,14 @@ def test_contact_comes_and_goes_in_a_text_that_keeps_its_comments(tmp_path: Path
     gone = merged_text(changed, starfish())
     assert "contact" not in gone
     assert "obstacle" not in gone
+
+
+def test_each_edge_of_the_skin_has_its_points_once() -> None:
+    """Oracle: a closed skin has 3 edges for each 2 triangles; a closed line as many edges as corners."""
+    for mesh, edges in ((box_mesh((3, 2, 2)), 1.5), (strip_mesh(4, 2), 1.0)):
+        points = edge_points(mesh, 2)
+        assert len(points) == 2 * edges * len(mesh.boundary)
+        assert len(np.unique(points.round(9), axis=0)) == len(points)
 
 
 def test_the_distance_is_a_share_of_the_size() -> None:

@@ -1,5 +1,6 @@
 """The frozen records and what they check of themselves."""
 
+import pickle
 from dataclasses import FrozenInstanceError, replace
 from pathlib import Path
 from typing import Any
@@ -283,6 +284,12 @@ def test_pins_and_markers_of_a_body_are_checked_once(monkeypatch: pytest.MonkeyP
     assert replace(robot, poses={}).pins is robot.pins
     with pytest.raises(InputError, match="outside the body"):
         replace(robot, body=mesh_body(strip_mesh(4, 2, size=(0.1, 0.05))))
+
+
+def test_a_pickled_body_holds_no_parts_of_a_robot() -> None:
+    robot = strip_robot(columns=4, rows=2)
+    assert b"hydrostat.robot.pin" in pickle.dumps(robot)
+    assert b"hydrostat.robot.pin" not in pickle.dumps(robot.body)
 
 
 @pytest.mark.parametrize("mesh", [strip_mesh(8, 4), box_mesh((3, 2, 2))], ids=["triangles", "tetrahedra"])
