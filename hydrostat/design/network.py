@@ -50,6 +50,7 @@ class DesignStage:
     robot: Robot  # with the network as it was then
     error: float  # rms marker error over all poses: for routes that expected once built, for trees in the model [m]
     num_evaluated: int = 0  # number of networks with solved poses until then
+    is_begun: bool = False  # True for a network that is no later stage of the one before
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -56,8 +56,7 @@ def stage_runs(stages: Sequence[DesignStage]) -> list[list[int]]:
     before = np.inf
     for index, stage in enumerate(stages):
         count = len(stage.robot.cables)
-        is_begun = stage.words.startswith(("drawn along", "winch trees"))
-        if not runs or is_begun or count < before - 1 or count < 2 <= before:
+        if not runs or stage.is_begun or count < before - 1 or count < 2 <= before:
             runs.append([])
         runs[-1].append(index)
         before = count

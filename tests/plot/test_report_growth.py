@@ -120,8 +120,8 @@ def test_the_curve_of_growth_holds_every_stage() -> None:
 
 def test_networks_drawn_one_after_the_other_are_separate() -> None:
     """Each has as many cables as the one before, and is no later stage of it."""
-    words = ("drawn along the limbs", "drawn along the limbs", "via points moved")
-    stages = [replace(stage, words=each) for stage, each in zip(staged(3, 3, 3), words, strict=True)]
+    begun = (True, True, False)
+    stages = [replace(stage, is_begun=each) for stage, each in zip(staged(3, 3, 3), begun, strict=True)]
     assert stage_runs(stages) == [[0], [1, 2]]
 
 

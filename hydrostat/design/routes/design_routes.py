@@ -222,7 +222,7 @@ class RouteSearch:
         def note(trial: Trial) -> None:
             self.progress("Drawing networks", min(len(self.stages), count), count)
             if trial.cost < worse:
-                self._note_network("drawn along the limbs", trial)
+                self._note_network("drawn along the limbs", trial, is_begun=True)
 
         screened: list[Trial] = []  # reversed cables gain by refinement only: they are screened by themselves
         for back in (False, True):
@@ -268,7 +268,7 @@ class RouteSearch:
             trial = self.evaluator.reach_poses(pushed, None)
             if trial is not None:
                 trials.append(growth.refine(trial))
-                self._note_network("winch trees, their via points moved", trials[-1])
+                self._note_network("winch trees, their via points moved", trials[-1], is_begun=True)
         return trials
 
     @staticmethod
@@ -327,7 +327,7 @@ class RouteSearch:
                     f"{present}"
                 )
 
-    def _note_network(self, words: str, trial: Trial) -> None:
+    def _note_network(self, words: str, trial: Trial, *, is_begun: bool = False) -> None:
         """Note a network on the way: the best so far is returned if the search is interrupted."""
         if words.startswith(("cable", "the first")):
             self.grown += 1
@@ -340,6 +340,7 @@ class RouteSearch:
             robot=trial.layout.robot(digits=DIGITS),
             error=trial.built_error,
             num_evaluated=self.evaluator.solves,
+            is_begun=is_begun,
         )
         self.stages.append(stage)
         self.passed.append((trial.cost, trial.layout))
