@@ -22,7 +22,7 @@ MODEL, LOW, BOUND, LOCK, STATE, STATE_BYTES = 3, 9, 16, 48, 56, 8
 """Registers: model, least and greatest angle, bound of torque, lock, present angle (speed, load, supply, heat)."""
 NUMBER = 1284  # of the model
 SCS_TICK = 300.0 / 1024 * pi / 180  # angle of a step [rad]
-SCS_STALL = 1.0  # current at stall [A], of Waveshare's SC09: load is told as a share, torque bounded by one
+SCS_STALL = 1.0  # current at stall [A], of Waveshare's SC09: load is reported as a share, torque limited by one
 
 
 class ScsBus(FeetechBus):

@@ -88,7 +88,7 @@ static avr_cycle_count_t turn(avr_t *unused, avr_cycle_count_t when, void *param
     return when + STEP;
 }
 
-/* Pass the time of a sleeping processor at once; simavr's own waits as long. */
+/* Skip the time of a sleeping processor; simavr's own function waits as long. */
 static void pass_sleep(avr_t *unused, avr_cycle_count_t cycles) { (void)unused, (void)cycles; }
 
 int bench_start(const char *path, const char *chip, int full) {
