@@ -90,9 +90,10 @@ def calibrate(
         places = [min(max(int(1e4 * taken), 0), 999) for taken in contractions.tolist()]
         return np.array([load[place] for load, place in zip(loads, places, strict=True)])
 
-    truth = control.add_cable_layers(calibration.assume_zeros()) if port == control.EMULATED else calibration
+    emulated = replace(loaded, motor=kit_motor(loaded, folder))
+    truth = control.add_cable_layers(calibration.assume_zeros(emulated)) if port == control.EMULATED else calibration
     with one_interrupt(f"{kind}: stopped"):
-        bus = control.open_bus(port, replace(loaded, motor=kit_motor(loaded, folder)), truth, tensions)
+        bus = control.open_bus(port, emulated, truth, tensions)
         try:
             if restart:
                 calibration = _restart(kind, bus, folder / file, calibration)

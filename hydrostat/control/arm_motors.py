@@ -50,12 +50,12 @@ def arm_motors(
     """
     correction = ContractionMap.read(folder, robot)
     found = Calibration.emulate if port == EMULATED else Calibration.read
-    calibration = found(folder, robot)
+    emulated = robot if motor is None else replace(robot, motor=motor)
+    calibration = found(folder, emulated)
     felt, known = pulls, known or pulls
     if correction is not None:
         felt, known = (_follow(correction, each) for each in (pulls, known))
         log("correction.json corrects contractions")
-    emulated = robot if motor is None else replace(robot, motor=motor)
     bus = open_bus(port, emulated, calibration, felt)
     link = BusLink(bus, robot.winches, calibration, log=log)
     try:

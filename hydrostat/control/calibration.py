@@ -12,7 +12,9 @@ import numpy as np
 from hydrostat import units
 from hydrostat.arrays import Vector
 from hydrostat.control.motors import LEVER, DriveAxis
+from hydrostat.control.scs_bus import KIT_STEP, SCS_STEPS, SCS_TICK
 from hydrostat.errors import InputError
+from hydrostat.fabrication import Motor
 from hydrostat.files import read_stranger, replace_file
 from hydrostat.robot import PinDrive, Robot
 from hydrostat.units import quote
@@ -100,9 +102,22 @@ class Calibration:
 
     motors: tuple[WinchMotor, ...]
 
-    def assume_zeros(self) -> "Calibration":
-        """Return a copy in which motors without a known zero count from 0: for emulated motors."""
-        return Calibration(tuple(replace(each, zero=each.zero or 0.0) for each in self.motors))
+    def assume_zeros(self, robot: Robot) -> "Calibration":
+        """Return a copy in which motors without a known zero count from 0: for emulated motors.
+
+        A servo that turns less than a turn (`motor` of the robot) stands as kits mount it: with all cable paid out it
+        is `KIT_STEP` steps from its end.
+        """
+        payouts = {winch.name: winch.release for winch in robot.winches}
+        limited = robot.motor != "auto" and Motor.choose(robot.motor).turns < 1
+        motors = []
+        for each in self.motors:
+            begin = 0.0
+            if limited:
+                end = KIT_STEP if each.turns > 0 else SCS_STEPS - KIT_STEP
+                begin = end * SCS_TICK + each.turns * payouts[each.winch] / each.radius
+            motors.append(replace(each, zero=begin if each.zero is None else each.zero))
+        return Calibration(tuple(motors))
 
     @property
     def boards(self) -> int:
@@ -197,7 +212,7 @@ class Calibration:
 
     @staticmethod
     def emulate(folder: Path | None, robot: Robot) -> "Calibration":
-        """Emulated motors: as calibrated, or as in motors.toml; without either they stand at 0.
+        """Emulated motors: as calibrated, or as in motors.toml; without either their zeros are assumed.
 
         Raises:
             InputError: a file that is wrong.
@@ -205,7 +220,7 @@ class Calibration:
         for name in (EMULATED_CALIBRATION, CALIBRATION):
             if folder is not None and (folder / name).exists():
                 return Calibration.read(folder, robot, name=name)
-        return Calibration.usual(robot).assume_zeros()
+        return Calibration.usual(robot).assume_zeros(robot)
 
     def write(self, folder: Path, *, name: str = CALIBRATION) -> Path:
         """Write the motors of a robot next to its robot.toml, whole or not at all; returns the path."""

@@ -87,7 +87,7 @@ def open_bus(text: str, robot: Robot, calibration: Calibration, tensions: Callab
     """
     check_port(text)
     if text == EMULATED:
-        return _make_emulated_bus(robot.motor, calibration, tensions)
+        return _make_emulated_bus(robot, calibration, tensions)
     kind, _, rest = text.partition(":")
     make, usual = _KINDS[kind]
     ports, buses = rest.split(","), list[Bus]()
@@ -132,9 +132,9 @@ def servo_ratings() -> dict[str, Any]:
     }
 
 
-def _make_emulated_bus(motor: str, calibration: Calibration, tensions: Callable[[Vector], Vector]) -> Bus:
-    """Servos of a motor that stand where nothing is taken in, each with the load of its cables."""
-    calibration = calibration.assume_zeros()
+def _make_emulated_bus(robot: Robot, calibration: Calibration, tensions: Callable[[Vector], Vector]) -> Bus:
+    """Servos of the robot's motor that stand where nothing is taken in, each with the load of its cables."""
+    motor, calibration = robot.motor, calibration.assume_zeros(robot)
     angles = [each.angle(0.0) for each in calibration.motors]
     servos: list[EmulatedServo]
     make: type[ServoBus] = EmulatedBus

@@ -21,7 +21,9 @@ from hydrostat.errors import HydrostatError
 MODEL, LOW, BOUND, LOCK, STATE, STATE_BYTES = 3, 9, 16, 48, 56, 8
 """Registers: model, least and greatest angle, bound of torque, lock, present angle (speed, load, supply, heat)."""
 NUMBER = 1284  # of the model
-SCS_TICK = 300.0 / 1024 * pi / 180  # angle of a step [rad]
+SCS_STEPS = 1024  # of its 300 degrees
+SCS_TICK = 300.0 / SCS_STEPS * pi / 180  # angle of a step [rad]
+KIT_STEP = 34  # from its end, where kits let mount the spool with all cable paid out
 SCS_STALL = 1.0  # current at stall [A], of Waveshare's SC09: load is reported as a share, torque limited by one
 
 

@@ -293,7 +293,8 @@ def _starfish():
 def _motors(path: Path) -> None:
     from hydrostat.control import Calibration
 
-    found = Calibration.read(path.parent, _starfish()).assume_zeros()
+    robot = _starfish()
+    found = Calibration.read(path.parent, robot).assume_zeros(robot)
     found.contractions(found.angles(np.full(3, 0.01)))
 
 

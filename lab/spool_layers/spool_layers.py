@@ -35,7 +35,7 @@ def main() -> None:
     parser.add_argument("robot")
     folder = parser.parse_args().robot
     robot = hs.load_robot(folder)
-    known = Calibration.usual(robot).assume_zeros()
+    known = Calibration.usual(robot).assume_zeros(robot)
     true = add_cable_layers(known)
     curves = measured(known, true, [winch.travel for winch in robot.winches])
     simulation = hs.Simulation(robot)

@@ -221,7 +221,7 @@ def measure(robot: Robot, way: CommandMapper, known: HandMap, given: argparse.Na
     )
     work.start()
     line, glove = ours.recv()
-    calibration = Calibration.usual(robot).assume_zeros()
+    calibration = Calibration.usual(robot).assume_zeros(robot)
     come_first()
     bus = DynamixelBus(open_line(line, baud), [motor.number for motor in calibration.motors])
     link = BusLink(bus, robot.winches, calibration)

@@ -47,7 +47,8 @@ def test_emulated_motors_are_calibrated_and_saved(copy: Path) -> None:
     assert "Nothing stands out." in page
     assert page.count("<svg") == 4
     assert [bool(motor.curve) for motor in motors] == [True, False, False]
-    known = Calibration.usual(load_robot(copy)).assume_zeros()
+    robot = load_robot(copy)
+    known = Calibration.usual(robot).assume_zeros(robot)
     true, ends = add_cable_layers(known).motors[0], np.linspace(0.0, 0.06, 50).tolist()
     beside = [[true.contraction(each.angle(end)) - end for end in ends] for each in (known.motors[0], motors[0])]
     told, measured = np.abs(beside).max(axis=1)
@@ -81,7 +82,7 @@ def test_a_restarted_motor_has_no_zero_until_it_is_measured(
 ) -> None:
     """A Dynamixel loses its count of turns. Calibration ends before it is measured: no program may arm it."""
     robot = load_robot(copy)
-    known = Calibration.usual(robot).assume_zeros()
+    known = Calibration.usual(robot).assume_zeros(robot)
     known.write(copy, name=EMULATED_CALIBRATION)
 
     def open_overloaded(*arguments: object) -> object:

@@ -50,7 +50,7 @@ def test_a_degree_counts_as_a_millimeter(robot: Robot) -> None:
     np.testing.assert_allclose(1e3 * motors.high[2:], [np.degrees(1.0), 20.0])
     np.testing.assert_allclose(1e3 * motors.low[2:], [-np.degrees(0.5), -10.0])
     assert motors.ask(np.array([0.0, 0.0, 0.07, 0.0])) == "base is at its limit of 57.3 deg and was asked for 70.0 deg"
-    angles = Calibration.usual(stand).assume_zeros().angles(table.profile.values[1])
+    angles = Calibration.usual(stand).assume_zeros(stand).angles(table.profile.values[1])
     assert angles[2] == pytest.approx(radians(10))
 
 

@@ -12,7 +12,7 @@ import pytest
 from builders import gallery_robot, strip_robot
 
 from hydrostat.arrays import Vector
-from hydrostat.control import EMULATED, Link, Motors, Player, SimulatedLink, arm_motors
+from hydrostat.control import EMULATED, Calibration, Link, Motors, Player, SimulatedLink, arm_motors
 from hydrostat.control.link import SILENCE
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.identification import ContractionMap
@@ -218,6 +218,31 @@ def test_emulated_motors_live_slower_on_a_late_computer(monkeypatch: pytest.Monk
     player.run(motors, profile, wait=lambda _: clock.sleep(0.6))
     assert motors.places == pytest.approx(ends[1], abs=3e-4)
     motors.link.close()
+
+
+def test_an_emulated_servo_of_300_degrees_pays_out(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Its spool is mounted as the kit says: at step 34 all 14 mm are paid out. Oracle: the end of the move."""
+    clock = own_time(monkeypatch)
+    robot = replace(gallery_robot("finger"), motor="auto")
+    motors = arm_motors(tmp_path, robot, EMULATED, lambda taken: 0 * taken, motor="scs0009")
+    assert [motor.model for motor in motors.link.facts] == ["SCS0009"] * 2  # type: ignore[attr-defined]
+    ends = np.array([[0.0, 0.0], [13.9e-3, -13.9e-3]])
+    player = Player()
+    player.rounds = 1
+    profile = ContractionProfile(times=np.array([0.0, 2.0]), values=ends)
+    player.run(motors, profile, wait=lambda _: clock.sleep(0.02))
+    assert motors.places == pytest.approx(ends[1], abs=3e-4)
+    motors.link.close()
+
+
+@pytest.mark.parametrize("turns", [1, -1])
+def test_an_assumed_zero_leaves_room_for_payout_and_travel(turns: int) -> None:
+    """Oracle: steps 34 to 990 of 1024 on 300 degrees."""
+    robot = replace(gallery_robot("finger"), motor="scs0009")
+    usual = Calibration.usual(robot).motors
+    motors = Calibration(tuple(replace(motor, turns=turns) for motor in usual)).assume_zeros(robot)
+    steps = motors.angles(np.full(2, -14e-3)) * 180 / np.pi / 300 * 1024
+    assert steps == pytest.approx(34 if turns > 0 else 990)
 
 
 @pytest.mark.parametrize(

@@ -1,10 +1,12 @@
 """`recall_code`: the code of a class, the same in each lesson."""
 
+import os
 import time
 from contextlib import suppress
 from pathlib import Path
 from secrets import choice
 
+from hydrostat.errors import InputError
 from hydrostat.files import replace_file
 
 LETTERS = "abcdefghjkmnpqrstuvwxyz23456789"  # of a code: without i, l, o, 0 and 1
@@ -18,18 +20,30 @@ def new_code() -> str:
 
 
 def recall_code(state: Path | None) -> str:
-    """Return the code of the last lesson, kept in a folder; a new one if that is lost, damaged or too old."""
+    """Return the code of the last lesson, kept in a folder.
+
+    It is a new one if that is lost, damaged or too old, or if other people on this computer could read it.
+    """
     if state is None:
         return new_code()
-    file = state / "class_code"
+    file = code_file(state)
     with suppress(OSError, ValueError):
         code = file.read_text(encoding="ascii")
-        age = time.time() - file.stat().st_mtime
-        if 0 <= age < KEPT and len(code) == LENGTH and set(code) <= set(LETTERS):
+        facts = file.stat()
+        is_private = os.name != "posix" or not facts.st_mode & 0o077
+        if is_private and 0 <= time.time() - facts.st_mtime < KEPT and _is_code(code):
             return code
     code = new_code()
-    with suppress(OSError):  # of a full disk: the next lesson has another code
-        state.mkdir(parents=True, exist_ok=True)
-        replace_file(file, code.encode())
-        file.chmod(0o600)
+    with suppress(OSError, InputError):  # a full disk, a folder in its place: the next lesson has another code
+        state.mkdir(mode=0o700, parents=True, exist_ok=True)
+        replace_file(file, code.encode(), mode=0o600)
     return code
+
+
+def code_file(state: Path) -> Path:
+    """Return the file that keeps the code; without it, a class gets a new code."""
+    return state / "class_code"
+
+
+def _is_code(text: str) -> bool:
+    return len(text) == LENGTH and set(text) <= set(LETTERS)
