@@ -12,6 +12,7 @@ import threading
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from errno import EISDIR
+from functools import partial
 from hashlib import sha256
 from io import StringIO
 from pathlib import Path
@@ -163,16 +164,17 @@ def _lives(process: int) -> bool:
     return True
 
 
-def replace_file(path: Path, content: bytes) -> Path:
-    """Write a file whole or not at all (InputError: it cannot be written)."""
-    replace_files({path: content})
+def replace_file(path: Path, content: bytes, *, mode: int = 0o666) -> Path:
+    """Write a file whole or not at all, with at most these rights (InputError: it cannot be written)."""
+    replace_files({path: content}, mode=mode)
     return path
 
 
-def replace_files(contents: Mapping[Path, bytes], *, outdated: Path | None = None) -> None:
+def replace_files(contents: Mapping[Path, bytes], *, outdated: Path | None = None, mode: int = 0o666) -> None:
     """Write files, all or none of them, once all are on the disk; the last one comes last.
 
-    The file `outdated` is removed before the first one is replaced. InputError: a file cannot be written.
+    They have their rights, `mode` without those that the umask takes, from their first byte. The file `outdated` is
+    removed before the first one is replaced. InputError: a file cannot be written.
     """
     parts = {
         path: temporary_path(path.with_name(f"{number}-{path.name}")) for number, path in enumerate(contents, start=1)
@@ -182,7 +184,9 @@ def replace_files(contents: Mapping[Path, bytes], *, outdated: Path | None = Non
         for path, part in parts.items():
             if path.is_dir():
                 raise IsADirectoryError(EISDIR, os.strerror(EISDIR))
-            part.write_bytes(contents[path])
+            part.unlink(missing_ok=True)
+            with open(part, "xb", opener=partial(os.open, mode=mode)) as file:
+                file.write(contents[path])
         if outdated is not None:
             outdated.unlink(missing_ok=True)
         for path, part in parts.items():

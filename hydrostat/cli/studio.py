@@ -42,6 +42,10 @@ def studio(
         bool,
         typer.Option("--class", help="Give each browser of the network its own robot; print the link and its QR code."),
     ] = False,
+    new_code: Annotated[
+        bool,
+        typer.Option("--new-code", help="Make a new class code. Old links and codes then no longer work."),
+    ] = False,
     browser: Annotated[bool, typer.Option(help="Open the browser.")] = True,
 ) -> None:
     """Open the studio: pose, design, drive and export a robot.
@@ -59,13 +63,17 @@ def studio(
         if package == "hydrostat":
             raise
         raise InputError(f"studio: package {package} not found. Install it: {install_command('studio')}") from None
-    from hydrostat.studio import LINK_MARK, Classroom, Session, state_folder
+    from hydrostat.studio import LINK_MARK, Classroom, Session, forget_code, state_folder
 
+    if new_code and not classroom:
+        raise InputError("--new-code: only a class has a code. Add --class.")
     rooms = rooms or classroom
     if model is not None and (robot is None or rooms or LINK_MARK in str(robot)):
         raise InputError("--model: needs the folder of its ROBOT, and is not available with --rooms or --class.")
     if rooms and LINK_MARK in str(robot):
         raise InputError("--rooms, --class: not available with a link. Open it alone and save its robot first.")
+    if new_code:
+        forget_code(state_folder())
     host = host or (find_network_address() if classroom else "127.0.0.1")
     session = None if rooms else Session(state_folder())
     if session is None:
@@ -110,3 +118,16 @@ def _announce(classroom: bool, address: str) -> None:
             print("note: opens on this computer only. Leave out --host for a class.", flush=True)
         else:
             print(write_qr_text(address), flush=True)
+            _print_keeping()
+
+
+def _print_keeping() -> None:
+    """Print the age of the class code, and the folder of the robots and nicknames."""
+    from hydrostat.studio import find_code_date, state_folder
+
+    made = find_code_date(state_folder())
+    if made is None:
+        print("warning: the class code cannot be kept. The next lesson will have another one.", flush=True)
+    else:
+        print(f"Code: made on {made}, the same for all classes for 90 days. --new-code makes a new one.", flush=True)
+    print(f"Robots and nicknames: {state_folder() / 'rooms'}", flush=True)

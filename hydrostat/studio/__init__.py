@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from hydrostat.studio.designing.run import wished_request
     from hydrostat.studio.document import Document
     from hydrostat.studio.exporting.kit_work import page_pictures
+    from hydrostat.studio.face.class_code import find_code_date, forget_code
     from hydrostat.studio.face.classroom import Classroom
     from hydrostat.studio.face.rooms import Rooms
     from hydrostat.studio.face.serve import serve
@@ -50,7 +51,9 @@ __all__ = [
     "Proposer",
     "Rooms",
     "Session",
+    "find_code_date",
     "find_network_address",
+    "forget_code",
     "held_of",
     "page_pictures",
     "serve",

@@ -29,6 +29,7 @@ OPEN += b'<path fill="none" stroke="red" d="M0 0H60V40"/></svg>'
             ("studio", "http://127.0.0.1/#robot=AAAA", "--rooms"),
             ("--rooms, --class: not available with a link.",),
         ),
+        (("studio", "--new-code"), ("--new-code: only a class has a code.", "Add --class.")),
         (("simulate", "STARFISH", "--contract", "left=12", "--out", "OUT"), ("left=12", "no unit")),
         (
             ("simulate", "STARFISH", "--contract", "left=2mm", "--contract", "left=3mm", "--out", "OUT"),

@@ -3,6 +3,7 @@
 import os
 import time
 from contextlib import suppress
+from datetime import date
 from pathlib import Path
 from secrets import choice
 
@@ -11,6 +12,7 @@ from hydrostat.files import replace_file
 
 LETTERS = "abcdefghjkmnpqrstuvwxyz23456789"  # of a code: without i, l, o, 0 and 1
 LENGTH = 8  # letters of a code: at 2,000 guesses a second, 13 years for all of them
+FILE = "class_code"
 KEPT = 90 * 24 * 3600  # browsers keep their code, room and nickname so long, and a laptop its code [s]
 
 
@@ -26,7 +28,7 @@ def recall_code(state: Path | None) -> str:
     """
     if state is None:
         return new_code()
-    file = code_file(state)
+    file = state / FILE
     with suppress(OSError, ValueError):
         code = file.read_text(encoding="ascii")
         facts = file.stat()
@@ -40,9 +42,20 @@ def recall_code(state: Path | None) -> str:
     return code
 
 
-def code_file(state: Path) -> Path:
-    """Return the file that keeps the code; without it, a class gets a new code."""
-    return state / "class_code"
+def forget_code(state: Path) -> None:
+    """Remove the code of the last lesson from a folder (InputError: it cannot be removed)."""
+    try:
+        (state / FILE).unlink(missing_ok=True)
+    except OSError as error:
+        raise InputError(f"--new-code: {state / FILE} cannot be removed ({error.strerror}).") from None
+
+
+def find_code_date(state: Path) -> date | None:
+    """Return the day on which the code in a folder was made; None if none is kept."""
+    try:
+        return date.fromtimestamp((state / FILE).stat().st_mtime)
+    except OSError:
+        return None
 
 
 def _is_code(text: str) -> bool:
