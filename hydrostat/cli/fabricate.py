@@ -205,7 +205,7 @@ def _print_motors(robot: "Robot", kit: "Kit", options: "KitOptions") -> None:
     for name, justify in (("motor", "left"), ("price", "right"), ("full travel in", "right"), ("", "left")):
         table.add_column(name, justify=justify)  # type: ignore[arg-type]
     for offer in motor_offers(robot, kit.torques, options):
-        words = offer.problem or (f"no better than {offer.better}" if offer.better else "")
+        words = offer.remark
         chosen = "chosen" + (f", {words}" if words else "") if offer.motor.key == kit.motor else words
         seconds = "stalls" if offer.seconds is None else f"{offer.seconds:.1f} s"
         table.add_row(offer.motor.key, f"{offer.price:.0f} USD", seconds, chosen)

@@ -33,6 +33,14 @@ class MotorOffer:
     problem: str = ""
     better: str = ""
 
+    @property
+    def remark(self) -> str:
+        """Reason why "auto" does not choose it; empty if only its price can be one."""
+        if self.problem:
+            return self.problem
+        words = () if self.motor in AUTO_MOTORS else ("only by --motor",)
+        return ", ".join((*words, *((f"no better than {self.better}",) if self.better else ())))
+
     def beats(self, other: "MotorOffer") -> bool:
         """Return True if it is cheaper than another, and not slower, weaker or larger."""
         mine, theirs = self.motor, other.motor

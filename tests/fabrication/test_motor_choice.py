@@ -88,6 +88,13 @@ def test_a_motor_beaten_in_everything_is_named() -> None:
     assert motors_price([], Motor.choose("n20")) == 0.0
 
 
+def test_what_auto_never_takes_says_so() -> None:
+    """Oracle: what docs/fabrication.md says that auto never chooses, and what fails anyway."""
+    offers = offers_of(gallery_robot("trunk"), 0.06)
+    assert {key for key, offer in offers.items() if offer.remark.startswith("only by --motor")} == {"xc330", "st3020"}
+    assert offers["scs0009"].remark == offers["scs0009"].problem != ""
+
+
 def test_what_is_optional_is_not_priced() -> None:
     """Oracle: prices of the table, two winches of N20."""
     items = control_needs(power_plan({"one": 10.0, "two": 10.0}, Motor.choose("n20")))

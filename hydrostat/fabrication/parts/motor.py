@@ -374,7 +374,8 @@ _SCS0009 = Motor(
     price_month="2026-09",
     bus="scs",
     caution="SCS0009 turn by 300 degrees only, of which this kit uses 280. Screw on each coupling at position 34 of "
-    "the servo, with all cable paid out. Drill the four holes of the horn (1.6 mm) through the coupling.",
+    "the servo, with all cable paid out. Then raise the position by 100: the spool must take in cable. If it pays out, "
+    "screw the coupling on at position 990. Drill the four holes of the horn (1.6 mm) through the coupling.",
     source="Waveshare's wiki, SC09 Servo: 2.3 kg cm and 100 rpm at 6 V, 0.15 A without load, 1.0 A at stall, 23.2 x "
     "12.0 x 25.5 mm, 300 degrees; that Feetech's SCS0009 is the same servo is assumed. Case, ears, boss: a public "
     "OpenSCAD file of SCS09 (N. Hendrich, 2020), measured by hand to 0.1 mm. Mass: a public CAD model (botcad). Load "
