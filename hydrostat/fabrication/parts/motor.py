@@ -373,9 +373,9 @@ _SCS0009 = Motor(
     price_source="1,074.91 INR at Evelta in the notes of thenar-jx1 (nickthelegend) of 2026-09-24, at 0.0113 USD",
     price_month="2026-09",
     bus="scs",
-    caution="SCS0009 turn by 300 degrees only, of which this kit uses 280. Screw on each coupling at position 34 of "
-    "the servo, with all cable paid out. Then raise the position by 100: the spool must take in cable. If it pays out, "
-    "screw the coupling on at position 990. Drill the four holes of the horn (1.6 mm) through the coupling.",
+    caution="SCS0009 turn by 300 degrees only, of which this kit uses 280. Screw on each coupling at position 34, with "
+    "all cable paid out. Raise the position by 100: the spool must take in cable. If not, screw the coupling on at "
+    "990. Drill the four holes of the horn (1.6 mm) through the coupling.",
     source="Waveshare's wiki, SC09 Servo: 2.3 kg cm and 100 rpm at 6 V, 0.15 A without load, 1.0 A at stall, 23.2 x "
     "12.0 x 25.5 mm, 300 degrees; that Feetech's SCS0009 is the same servo is assumed. Case, ears, boss: a public "
     "OpenSCAD file of SCS09 (N. Hendrich, 2020), measured by hand to 0.1 mm. Mass: a public CAD model (botcad). Load "
@@ -397,5 +397,4 @@ one that turns by 360 degrees in all at mu = 0.1 needs exp(0.1 * 2 pi) = 1.9 tim
 Bodies also differ from their assumed stiffness, and motors age."""
 
 BRIEF = 0.5
-"""Share of its stall torque that a motor bears for seconds: its coils warm up faster than they cool, but have not burnt
-by then. Assumed, measured on none."""
+"""Share of its stall torque that a motor bears for seconds, as coils warm up slowly. Assumed, measured on none."""
