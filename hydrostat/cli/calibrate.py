@@ -76,11 +76,10 @@ def calibrate(
         raise InputError(
             f'{robot}: winch "{back[0]}" pulls both ways, so it is never slack. Write its zero in motors.toml.'
         )
-    chosen = _winch_indices(spools, loaded)
+    chosen, kind = _winch_indices(spools, loaded), port.partition(":")[0]
     file = control.EMULATED_CALIBRATION if port == control.EMULATED else control.CALIBRATION
     new = not (folder / file).exists()
     calibration = control.Calibration.usual(loaded) if new else control.Calibration.read(folder, loaded, name=file)
-    kind = port.partition(":")[0]
     with patiently(f"{kind}: computing expected tensions ..."):
         model = control.WinchPull.of_robot(loaded)
 

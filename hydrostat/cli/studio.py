@@ -14,6 +14,11 @@ if TYPE_CHECKING:
     from hydrostat.studio import Session
 
 
+NewCode = Annotated[
+    bool, typer.Option("--new-code", help="Make a new class code. Old links and codes then no longer work.")
+]
+
+
 def studio(
     robot: Annotated[
         Path | None,
@@ -42,10 +47,7 @@ def studio(
         bool,
         typer.Option("--class", help="Give each browser of the network its own robot; print the link and its QR code."),
     ] = False,
-    new_code: Annotated[
-        bool,
-        typer.Option("--new-code", help="Make a new class code. Old links and codes then no longer work."),
-    ] = False,
+    new_code: NewCode = False,
     browser: Annotated[bool, typer.Option(help="Open the browser.")] = True,
 ) -> None:
     """Open the studio: pose, design, drive and export a robot.
@@ -63,17 +65,14 @@ def studio(
         if package == "hydrostat":
             raise
         raise InputError(f"studio: package {package} not found. Install it: {install_command('studio')}") from None
-    from hydrostat.studio import LINK_MARK, Classroom, Session, forget_code, state_folder
+    from hydrostat.studio import LINK_MARK, Classroom, Session, state_folder
 
-    if new_code and not classroom:
-        raise InputError("--new-code: only a class has a code. Add --class.")
     rooms = rooms or classroom
     if model is not None and (robot is None or rooms or LINK_MARK in str(robot)):
         raise InputError("--model: needs the folder of its ROBOT, and is not available with --rooms or --class.")
     if rooms and LINK_MARK in str(robot):
         raise InputError("--rooms, --class: not available with a link. Open it alone and save its robot first.")
-    if new_code:
-        forget_code(state_folder())
+    _forget_code(new_code, classroom)
     host = host or (find_network_address() if classroom else "127.0.0.1")
     session = None if rooms else Session(state_folder())
     if session is None:
@@ -89,6 +88,17 @@ def studio(
         problem = session and session.starter.autosave.problem
         print(f"Studio ended. {problem}." if problem else ENDED)
         raise typer.Exit(130) from None
+
+
+def _forget_code(new_code: bool, classroom: bool) -> None:
+    """Remove the code of the last lesson if a new one is asked for (InputError: not a class)."""
+    from hydrostat.studio import forget_code, state_folder
+
+    if not new_code:
+        return
+    if not classroom:
+        raise InputError("--new-code: only a class has a code. Add --class.")
+    forget_code(state_folder())
 
 
 def _open(session: "Session", robot: Path, model: Path | None) -> None:
