@@ -116,13 +116,22 @@ def covered(fitted: FittedModel, asked: Measurements) -> float:
     return float((away <= 1.96 * np.sqrt(variance + fitted.noise**2))[known].mean())
 
 
-def run_opencr(folder: Path, samples: int, pictures: Path | None, *, history: str = "", profile: bool = False) -> None:
+def run_opencr(
+    folder: Path,
+    samples: int,
+    pictures: Path | None,
+    *,
+    history: str = "",
+    resists_twist: bool = True,
+    profile: bool = False,
+) -> None:
     """OpenCR v4: fitted on train.csv, judged on val.csv; `history` is "play" of tendons or "hysteresis" of the gaps."""
     facts: dict[str, Any] = json.loads((folder / "robot.json").read_text(encoding="utf-8"))
     model = opencr(
         facts["segment_lengths_mm"],
         facts["tendon_angles"]["segment_offset_rad_authors_fit_2026_03"],
         facts["tendon_circle_radius_mm"],
+        resists_twist=resists_twist,
     )
     train, val = (numbers(folder / f"{name}.csv")[1] for name in ("train", "val"))
     known, asked = (
@@ -336,8 +345,9 @@ RUNS = {
     "emio": (run_emio, "emio", 0),
     "emio_yielding": (partial(run_emio, yielded=(0.0, 1.5)), "emio", 0),
     "opencr": (run_opencr, "opencr_v4", 90),
-    "opencr_play": (partial(run_opencr, history="play"), "opencr_v4", 90),
-    "opencr_hysteresis": (partial(run_opencr, history="hysteresis"), "opencr_v4", 90),
+    "opencr_no_twist": (partial(run_opencr, resists_twist=False), "opencr_v4", 90),
+    "opencr_play": (partial(run_opencr, history="play", resists_twist=False), "opencr_v4", 90),
+    "opencr_hysteresis": (partial(run_opencr, history="hysteresis", resists_twist=False), "opencr_v4", 90),
     "trunk": (run_trunk, "trunk_payload", 200),
 }
 """Function, folder and number of rows that a model is fitted to."""

@@ -77,7 +77,9 @@ def frame_parameters(base: tuple[float, float, float], spread: float) -> list[Pa
     return [*moved, *(Parameter(name=f"tilt {axis}", start=0.0, spread=0.05, unit="rad") for axis in "xy")]
 
 
-def opencr(lengths: list[float], angles: list[float], radius: float) -> IdentificationModel:
+def opencr(
+    lengths: list[float], angles: list[float], radius: float, *, resists_twist: bool = True
+) -> IdentificationModel:
     """OpenCR v4: disks on an elastic rod, nine tendons; from the lengths of its segments and its circle [mm, rad]."""
     count, thickness, beyond = 10, 2.0, 12.0  # disks of a segment, a disk, room for the marker beyond the last one
     ends = np.cumsum([0.0, *lengths])
@@ -90,7 +92,7 @@ def opencr(lengths: list[float], angles: list[float], radius: float) -> Identifi
     parameters = [
         Parameter(name="young", start=4e5, spread=1.0, unit="Pa", log=True),
         Parameter(name="bending", start=1.5e-3, spread=0.5, unit="N m^2", log=True),
-        Parameter(name="torsion over bending", start=COILED, spread=0.3, log=True),
+        *([Parameter(name="torsion over bending", start=COILED, spread=0.3, log=True)] if resists_twist else []),
         Parameter(name="marker", start=4.0, spread=4.0, unit="mm", low=0.0, high=beyond),
         *(Parameter(name=f"gravity {axis}", start=0.0, spread=5.0, unit="m/s^2") for axis in "xyz"),
         *frame_parameters((0.0, 0.0, 0.0), 3.0),
@@ -114,12 +116,13 @@ def opencr(lengths: list[float], angles: list[float], radius: float) -> Identifi
             angle = values[f"angle {segment}"] + 2 * np.pi / 3 * tendon + values[f"angle {segment}{tendon}"]
             heights = np.array([-5.0, *middles[: count * (segment + 1)]])
             cables.append((polar(values[f"radius {segment}"], angle, heights), values[f"stiffness {segment}"]))
-        bending, ratio = values["bending"], values["torsion over bending"]
+        bending = values["bending"]
+        torsion = values["torsion over bending"] * bending if resists_twist else None
         return tendon_robot(
             body(values["young"], 1e3),
             cables,
             gravity=tuple(values[f"gravity {axis}"] for axis in "xyz"),
-            rods=[rod("backbone", 0.0, top, axial=2e4, bending=bending, torsion=ratio * bending)],
+            rods=[rod("backbone", 0.0, top, axial=2e4, bending=bending, torsion=torsion)],
             markers={"tip": top + values["marker"]},
         )
 

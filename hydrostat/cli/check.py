@@ -304,7 +304,8 @@ def _rod_line(rod: "Rod") -> str:
     thick = "" if rod.diameter is None else f", {1e3 * rod.diameter:.3g} mm thick"
     stretch = f"{axial:.3g} N" if axial < 1000 else f"{1e-3 * axial:.4g} kN"
     bend = f"{1e6 * bending:.3g} N mm²" if bending < 1e-3 else f"{1e6 * bending:.0f} N mm²"
-    return f"rod {rod.name}: {1e3 * rod.length:.0f} mm long{thick}, EA {stretch}, EI {bend}"
+    twist = "" if rod.torsional_stiffness is None else f", GJ {1e6 * rod.torsional_stiffness:.3g} N mm²"
+    return f"rod {rod.name}: {1e3 * rod.length:.0f} mm long{thick}, EA {stretch}, EI {bend}{twist}"
 
 
 def _sheet_line(body: "Body", sheet: "Membrane") -> str:

@@ -145,6 +145,8 @@ def _insert_of_rod(rod: Rod, number: int) -> Insert:
         known = [entry for entry in _ROD_MATERIALS if entry[1] <= rod.young <= entry[2]]
         material = f"{known[0][0]} or alike ({modulus})" if known else f"Young's modulus {modulus}"
         mass = 1e-6 * known[0][3] * volume if known else None
+    if rod.torsional_stiffness is not None:
+        material += f", GJ {_number(1e6 * rod.torsional_stiffness)} N mm^2: glue it in along its whole length"
     return Insert(
         mark=f"R{number}",
         name=rod.name,

@@ -68,7 +68,8 @@ def soften_cables(robot: Robot) -> Robot:
 
     By Kelvin's solution for a point force the displacement grows by (3 - 4 nu) ln 2 / (8 pi mu (1 - nu) t) of the force
     in a flat body of thickness t, in space by (10/3 - 4 nu) / (8 pi mu (1 - nu) h) with the length h of edges, averaged
-    over directions. A cable of tension T presses by T times the change of its direction.
+    over directions and taken half an edge from the point. A cable of tension T presses by T times the change of its
+    direction; it presses with all of T at the end of a sheath.
     """
     compliances = _dent_compliances(robot.body)
     cables = []
@@ -76,6 +77,8 @@ def soften_cables(robot: Robot) -> Robot:
         points = np.array(cable.points)
         spans = np.diff(points, axis=0)
         spans /= np.linalg.norm(spans, axis=1)[:, None]
+        for first, last in cable.sheathed:
+            spans[first:last] = 0.0
         presses = (np.concatenate([spans[:1], np.diff(spans, axis=0), -spans[-1:]]) ** 2).sum(axis=1)
         if robot.winch(cable.winch).mount is Mount.WORLD:
             presses[0] = 0.0
@@ -86,8 +89,8 @@ def soften_cables(robot: Robot) -> Robot:
 
 
 def _dent_compliances(body: Body) -> Vector:
-    """Displacement per force that a halved element adds at each node, the mean of the elements around it [m/N]."""
-    mesh, (mu, lame) = body.mesh, body.lame()
+    """Displacement per force that halved elements add at each node, by the stiffest element around it [m/N]."""
+    mesh, (mu, lame) = body.mesh, (body.stiffness_factors * modulus for modulus in body.lame())
     poisson = 0.5 * lame / (lame + mu)
     scale = 8 * np.pi * mu * (1 - poisson)
     if body.thickness is not None:
@@ -95,10 +98,9 @@ def _dent_compliances(body: Body) -> Vector:
     else:
         edges = mesh.nodes[mesh.elements[:, 1:]] - mesh.nodes[mesh.elements[:, :1]]
         each = (10 / 3 - 4 * poisson) / (scale * np.linalg.norm(edges, axis=2).mean(axis=1))
-    total, count = np.zeros((2, len(mesh.nodes)))
-    np.add.at(total, mesh.elements, each[:, None])
-    np.add.at(count, mesh.elements, 1.0)
-    return total / np.maximum(count, 1.0)
+    least = np.full(len(mesh.nodes), np.inf)
+    np.minimum.at(least, mesh.elements, np.broadcast_to(each[:, None], mesh.elements.shape))
+    return np.where(np.isfinite(least), least, 0.0)
 
 
 def _refine(robot: Robot) -> Robot:

@@ -12,80 +12,95 @@ LARGEST_TWIST = 3.0
 """Twist of a segment from which on the energy is infinite [rad]; at pi its sense is lost."""
 
 OFFSET = 0.5
-"""Distance of the points beside the rod that follow its rotation, in mean edges of the mesh."""
+"""Distance of the points of the body that follow the rotation of the rod, in mean edges of the mesh."""
 
-Vectors = Float[np.ndarray, "segments 3 dim"]
+Vectors = Float[np.ndarray, "terms 3 dim"]
 
 
 class RodTwistEnergy(Energy):
     """Twist of a discrete elastic rod: E = sum over segments of GJ / (2 L) (a - a0)^2 (cf. Bergou et al. 2008).
 
-    The directors of a rod lead from its points to points of the body beside it. a is the angle between the directors at
-    both ends of a segment of length L, seen along the segment, and a0 the one at rest.
+    Two directors lead from each point of the rod to points of the body, at right angles to the rod and to one another
+    at rest. a is the angle between the directors at the ends of a segment of length L, seen along the segment: the mean
+    of both pairs, so that a shear of the section counts as no twist. a0 is the one at rest. As bending, twist needs two
+    or more elements across the body.
     """
 
     convex: ClassVar[bool] = False
 
     def __init__(self, nodes: Nodes, mesh: Mesh, points: Points, *, torsional_stiffness: float) -> None:
         """Rod through at least two points of a body in space [m], with GJ [N m^2]; `nodes` are the rest shape [m]."""
-        ends = locate(mesh, points)
-        spans = np.diff(points, axis=0)
-        beside = locate(mesh, _points_beside(mesh, points))
-        segments = np.arange(len(spans))
-        pairs = [(anchors, segments + end) for anchors in (ends, beside) for end in (0, 1)]
+        segments = np.arange(len(points) - 1)
+        held = [locate(mesh, places) for places in (points, *_director_points(mesh, points))]
+        pairs = [(anchors, segments + end) for anchors in held for end in (0, 1)]
         self.stencils = np.concatenate([anchors.stencils[which] for anchors, which in pairs], axis=1)
-        corners = ends.stencils.shape[1]
-        # Vectors of a segment are the directors at its ends and itself, from the points x0, x1, y0, y1.
-        signs = np.array([[-1.0, 0.0, 1.0, 0.0], [0.0, -1.0, 0.0, 1.0], [-1.0, 1.0, 0.0, 0.0]])
-        weights = np.stack([anchors.weights[which] for anchors, which in pairs], axis=1)  # (segments, 4, corners)
-        self._weights = (signs[None, :, :, None] * weights[:, None]).reshape(len(spans), 3, 4 * corners)
+        weights = np.stack([anchors.weights[which] for anchors, which in pairs], axis=1)  # (segments, 6, corners)
+        self._weights = np.einsum("pvk,skc->spvkc", _VECTORS, weights).reshape(len(segments), 2, 3, -1)
         rest = self._vectors(nodes)
-        self._scales = 1.0 / np.linalg.norm(rest, axis=2)
-        self._stiffness = torsional_stiffness * self._scales[:, 2]
-        self._rest = _twist(rest * self._scales[:, :, None])
+        self._scales = 1.0 / np.linalg.norm(rest, axis=3)
+        self._stiffness = torsional_stiffness * self._scales[:, 0, 2]
+        self._rest = _twist(_flat(rest * self._scales[..., None]))
         self._whole = torsional_stiffness
-        arms = 1.0 / self._scales[:, :2].max(axis=1)
+        arms = 1.0 / self._scales[:, :, :2].max(axis=(1, 2))
         self.stiffest = float((self._stiffness / arms**2).max())
 
-    def _vectors(self, nodes: Nodes) -> Vectors:
-        return np.einsum("svc,scd->svd", self._weights, nodes[self.stencils])
+    def _vectors(self, nodes: Nodes) -> Float[np.ndarray, "segments 2 3 dim"]:
+        """Directors at both ends of each segment and the segment, for the first and the second director [m]."""
+        return np.einsum("spvc,scd->spvd", self._weights, nodes[self.stencils])
 
-    def _angles(self, nodes: Nodes) -> tuple[Vectors, Vector]:
-        """Vectors of each segment, about 1 long, and its twist since rest, from -pi to pi [rad]."""
-        vectors = self._vectors(nodes) * self._scales[:, :, None]
-        return vectors, (_twist(vectors) - self._rest + np.pi) % (2 * np.pi) - np.pi
+    def _angles(self, nodes: Nodes) -> tuple[Vectors, Vector, np.ndarray]:
+        """Vectors of both directors, about 1 long, twists of segments since rest [rad], and if all are allowed."""
+        vectors = _flat(self._vectors(nodes) * self._scales[..., None])
+        angles = (_twist(vectors) - self._rest + np.pi) % (2 * np.pi) - np.pi
+        return vectors, angles.reshape(-1, 2).mean(axis=1), (np.abs(angles) < LARGEST_TWIST).all()
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
-        angles = self._angles(nodes)[1]
-        if not (np.abs(angles) < LARGEST_TWIST).all():
-            return np.inf
-        return 0.5 * float(self._stiffness @ angles**2)
+        _, angles, allowed = self._angles(nodes)
+        return 0.5 * float(self._stiffness @ angles**2) if allowed else np.inf
 
     def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
-        vectors, angles = self._angles(nodes)
-        slopes = (self._stiffness * angles)[:, None, None] * _twist_gradient(vectors) * self._scales[:, :, None]
-        return np.einsum("svc,svd->scd", self._weights, slopes)
+        vectors, angles, _ = self._angles(nodes)
+        slopes = (self._stiffness * angles)[:, None, None, None] * self._slopes(vectors)
+        return np.einsum("spvc,spvd->scd", self._weights, slopes)
 
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
-        vectors, angles = self._angles(nodes)
-        slopes, curvatures = _twist_gradient(vectors), _twist_hessian(vectors)
-        blocks = slopes[:, :, :, None, None] * slopes[:, None, None]
-        blocks = self._stiffness[:, None, None, None, None] * (blocks + angles[:, None, None, None, None] * curvatures)
-        weights = self._weights * self._scales[:, :, None]
-        found = np.einsum("sva,swb,svdwe->sadbe", weights, weights, blocks, optimize=True)
-        size = self.stencils.shape[1] * nodes.shape[1]
-        return found.reshape(len(found), size, size)
+        vectors, angles, _ = self._angles(nodes)
+        by_corners = np.einsum("spvc,spvd->scd", self._weights, self._slopes(vectors))
+        by_corners = by_corners.reshape(len(angles), -1)
+        curvatures = 0.5 * _twist_hessian(vectors).reshape(-1, 2, 3, 3, 3, 3)
+        weights = self._weights * self._scales[..., None]
+        bent = np.einsum("spva,spwb,spvdwe->sadbe", weights, weights, curvatures, optimize=True)
+        bent = bent.reshape(len(angles), by_corners.shape[1], by_corners.shape[1])
+        outer = by_corners[:, :, None] * by_corners[:, None]
+        return self._stiffness[:, None, None] * (outer + angles[:, None, None] * bent)
 
     def stiffness_work(self, nodes: Nodes, field: Nodes) -> float:
         """d(dE/dx . field) / dGJ."""
-        vectors, angles = self._angles(nodes)
-        moves = self._vectors(field) * self._scales[:, :, None]
-        turns = (_twist_gradient(vectors) * moves).sum(axis=(1, 2))
+        vectors, angles, _ = self._angles(nodes)
+        turns = (self._slopes(vectors) * self._vectors(field)).sum(axis=(1, 2, 3))
         return float((self._stiffness * angles) @ turns) / self._whole
 
+    def _slopes(self, vectors: Vectors) -> Float[np.ndarray, "segments 2 3 dim"]:
+        """Derivatives of the twist of each segment by its vectors [1/m]."""
+        return 0.5 * _twist_gradient(vectors).reshape(-1, 2, 3, 3) * self._scales[..., None]
 
-def _points_beside(mesh: Mesh, points: Points) -> Points:
-    """A point beside each point of a rod, on the side where most of them are in the body."""
+
+_SEGMENT = [-1.0, 1.0, 0.0, 0.0, 0.0, 0.0]
+_VECTORS = np.array(
+    [
+        [[-1.0, 0.0, 1.0, 0.0, 0.0, 0.0], [0.0, -1.0, 0.0, 1.0, 0.0, 0.0], _SEGMENT],
+        [[-1.0, 0.0, 0.0, 0.0, 1.0, 0.0], [0.0, -1.0, 0.0, 0.0, 0.0, 1.0], _SEGMENT],
+    ]
+)
+"""Vectors of each director, at both ends and the segment, from points at both ends: of the rod and both directors."""
+
+
+def _flat(vectors: np.ndarray) -> Vectors:
+    return vectors.reshape(-1, *vectors.shape[2:])
+
+
+def _director_points(mesh: Mesh, points: Points) -> tuple[Points, Points]:
+    """Points next to each point of a rod, in two directions across it, on the sides that lie deeper in the body."""
     spans = np.diff(points, axis=0)
     tangents = spans / np.linalg.norm(spans, axis=1)[:, None]
     tangents = np.concatenate([tangents[:1], tangents[1:] + tangents[:-1], tangents[-1:]])
@@ -94,11 +109,14 @@ def _points_beside(mesh: Mesh, points: Points) -> Points:
     for tangent in tangents[1:]:
         normals.append(normals[-1] - (normals[-1] @ tangent) * tangent)
     first = np.array(normals) / np.linalg.norm(normals, axis=1)[:, None]
-    second = np.cross(tangents, first)
     edges = mesh.nodes[mesh.elements[:, 1:]] - mesh.nodes[mesh.elements[:, :1]]
     reach = OFFSET * float(np.linalg.norm(edges, axis=2).mean())
-    sides = [points + reach * side for side in (first, second, -first, -second)]
-    return min(sides, key=lambda side: float(locate(mesh, side).distances.max()))
+
+    def deeper(side: Points) -> Points:
+        sides = [points + reach * side, points - reach * side]
+        return min(sides, key=lambda each: float(locate(mesh, each).distances.max()))
+
+    return deeper(first), deeper(np.cross(tangents, first))
 
 
 def _twist(vectors: Vectors) -> Vector:

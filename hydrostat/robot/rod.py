@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -77,6 +77,15 @@ class Rod:
     def length(self) -> float:
         """Length at rest [m]."""
         return float(np.linalg.norm(np.diff(np.array(self.points), axis=0), axis=1).sum())
+
+    def with_transform(self, move: Callable[[Point], Point], factor: float) -> "Rod":
+        """Rod with its points moved by `move` and its diameter scaled by `factor`, and GJ with it; EA and EI stay."""
+        given: dict[str, float] = {}
+        if self.diameter is not None:
+            given["diameter"] = factor * self.diameter
+            if self.torsional_stiffness is not None:
+                given["torsional_stiffness"] = factor**4 * self.torsional_stiffness
+        return replace(self, points=tuple(map(move, self.points)), **given)
 
     @property
     def stiffnesses(self) -> tuple[float, float]:

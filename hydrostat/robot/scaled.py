@@ -78,9 +78,7 @@ def scaled_robot(robot: Robot, factor: float) -> Robot:
             for name, pose in robot.poses.items()
         },
         obstacles=tuple(map(scale_obstacle, robot.obstacles)),
-        rods=tuple(
-            replace(rod, points=tuple(map(point, rod.points)), diameter=maybe(rod.diameter)) for rod in robot.rods
-        ),
+        rods=tuple(rod.with_transform(point, factor) for rod in robot.rods),
         sheets=tuple(sheet.with_transform(point, factor) for sheet in robot.sheets),
         sensors=tuple(sensor.with_transform(point, length) for sensor in robot.sensors),
         loads=tuple(replace(load, at=None if load.at is None else point(load.at)) for load in robot.loads),

@@ -31,6 +31,7 @@ def test_a_rod_in_space_may_resist_twist(tmp_path: Path) -> None:
     robot = replace(robot, rods=(replace(robot.rods[0], torsional_stiffness=2.3e-3),))
     save_robot(robot, tmp_path)
     assert load_robot(tmp_path).rods == robot.rods
+    assert scaled_robot(robot, 2.0).rods[0].torsional_stiffness == pytest.approx(16 * 2.3e-3)  # as EI, by diameter^4
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ import pytest
 from builders import box_mesh, mesh_body
 from scipy.integrate import solve_bvp
 
+from hydrostat.mechanics import RodTwistEnergy
 from hydrostat.robot import BodyPart, Load, Marker, Material, Pin, Robot, Rod
 from hydrostat.simulation import Simulation
 
@@ -77,9 +78,25 @@ def test_a_rod_is_twisted_by_a_moment_about_it(count: int, free: float) -> None:
     rod = replace(robot.rods[0], torsional_stiffness=stiffness)
     end = BodyPart(name="end", shape="box", at=(0.899 * LENGTH, -1, -1), to=(1.1 * LENGTH, 1, 1), density=1.0)
     load = Load(name="p", at=(0.95 * LENGTH, *MIDDLE), moment=(moment, 0.0, 0.0))
-    body = replace(robot.body, parts=(end,), material=replace(SOFT, young=5e3))
+    body = replace(robot.body, parts=(end,))
     pose = Simulation(replace(robot, body=body, rods=(rod,), loads=(load,))).solve([])
     last = np.flatnonzero(robot.body.mesh.nodes[:, 0] > LENGTH - 1e-9)
     rest, now = ((nodes[last] - nodes[last].mean(axis=0))[:, 1:] for nodes in (robot.body.mesh.nodes, pose.nodes))
     angle = np.arctan2((rest[:, 0] * now[:, 1] - rest[:, 1] * now[:, 0]).sum(), (rest * now).sum())
     assert angle == pytest.approx(moment * free * LENGTH / stiffness, rel=0.02)
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_a_shear_of_the_section_is_no_twist(axis: int) -> None:
+    """Oracles: 0 for a shear that grows along the rod, of either direction; GJ a^2 / (2 L) for a rotation by a."""
+    mesh, stiffness, angle = box_mesh((10, 4, 4), size=(LENGTH, 0.04, 0.04)), 4e-3, 0.1
+    points = np.linspace((0.0, 0.02, 0.02), (LENGTH, 0.02, 0.02), 11)
+    energy = RodTwistEnergy(mesh.nodes, mesh, points, torsional_stiffness=stiffness)
+    across, grown = mesh.nodes[:, 1:] - 0.02, angle * mesh.nodes[:, :1] / LENGTH
+    shears = np.array([[[0.0, 1.0], [1.0, 0.0]], [[1.0, 0.0], [0.0, -1.0]]])
+    sheared, turned = mesh.nodes.copy(), mesh.nodes.copy()
+    sheared[:, 1:] += grown * (across @ shears[axis])
+    turned[:, 1:] += np.sin(grown) * across @ [[0.0, 1.0], [-1.0, 0.0]] + (np.cos(grown) - 1.0) * across
+    twist = stiffness * angle**2 / (2 * LENGTH)
+    assert energy.value(sheared, np.zeros(0)) < 1e-3 * twist
+    assert energy.value(turned, np.zeros(0)) == pytest.approx(twist, rel=2e-2)
