@@ -45,7 +45,7 @@ TIME = Dimension("a time", "s", "s", "2 s")
 FORCE = Dimension("a force", "N", "N", "20 N")
 SPEED = Dimension("a speed", "m/s", "mm/s", "50 mm/s")
 TORQUE = Dimension("a torque", "N*m", "N m", "0.1 N m")
-BENDING = Dimension("a bending stiffness", "N*m^2", "N mm^2", "2500 N mm^2")
+BENDING = Dimension("a bending or torsional stiffness", "N*m^2", "N mm^2", "2500 N mm^2")
 ANGLE = Dimension("an angle", "deg", "deg", "75 deg")
 
 COMMON = {

@@ -263,7 +263,7 @@ def spine() -> Sheet:
     rod = (
         comment("The backbone: nitinol wire, glued into base and disks.")
         + f'\n[[rod]]\nname = "backbone"\npoints = [[0, 0, {-BASE:g}], [0, 0, {tops[-1]:g}]]\ndiameter = "1 mm"\n'
-        'young = "60 GPa"'
+        'young = "60 GPa"\ntorsional_stiffness = "2300 N mm^2"   # EI / (1 + nu)'
     )
     lines, bends = [], ("its root", "its middle", "its tip")
     for segment in range(SEGMENTS):

@@ -286,8 +286,8 @@ def _opening_warnings(plan: KitPlan) -> tuple[str, ...]:
     sides = " x ".join(f"{side:.0f}" for side in sorted(unit.room.size))
     return (
         f'zipper: the unit of winch "{unit.winch}" ({sides} mm) does not pass through its opening of '
-        f"{opening.slit.length:.0f} mm (minimum {needed:.0f} mm). Choose a smaller motor, or move the winch to a wider "
-        "part of the body",
+        f"{int(opening.slit.length)} mm (minimum {needed:.0f} mm). Choose a smaller motor, or move the winch to a "
+        "wider part of the body",
     )
 
 

@@ -112,7 +112,7 @@ class _Columns:
         places, masses = np.full((len(self.markers), len(self._axes)), np.nan), np.zeros(len(self.markers))
         lengths = []
         for column, (kind, name, *more) in self._meanings.items():
-            value = self._number(row, column, where, may_lack=kind in MEASURED)
+            value = self._number(row, column, where, may_lack=kind in EMPTY)
             if kind in POSITIVE and value < 0:
                 raise InputError(f"{where}, column {self._head[column]}: must be 0 or more, not {value:g}")
             if kind == "winch":
@@ -120,7 +120,7 @@ class _Columns:
             elif kind == "force":
                 forces[self._winches.index(name)] = value
             elif kind == "load":
-                masses[self.markers.index(name)] = 1e-3 * value
+                masses[self.markers.index(name)] = 0.0 if math.isnan(value) else 1e-3 * value
             elif kind == "length":
                 lengths.append(MM * value)
             else:
@@ -142,8 +142,8 @@ class _Columns:
         return number
 
 
-MEASURED, POSITIVE = ("place", "length", "force"), ("load", "length")
-"""Kinds of columns whose cells may be empty, and whose numbers are not below 0."""
+EMPTY, POSITIVE = ("place", "length", "force", "load"), ("load", "length")
+"""Kinds of columns whose cells may be empty (no mass hung, else not measured), and whose numbers are not below 0."""
 
 _SKIPPED = ("time_s", "pose", "row")
 """Columns that are not read."""

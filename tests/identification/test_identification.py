@@ -286,6 +286,8 @@ def test_a_table_is_read_and_refused_by_line(tmp_path: Path) -> None:
     assert found.commands.tolist() == [[0.0035, 0.0], [0.002, 0.0]]
     assert found.markers == ("tip",)
     assert np.isnan(found.places[1]).all()
+    file.write_text("up_mm,tip_x_mm,tip_y_mm,tip_load_g\n3,198,-4,20\n2,198,-4,\n")
+    assert read_measurements(file, robot).hung_masses.ravel().tolist() == [0.02, 0.0]
     for text, words in (
         ("up_mm\n3\n", "no column of a marker"),
         ("side_mm,tip_x_mm,tip_y_mm\n1,2,3\n", 'unknown column "side_mm"'),

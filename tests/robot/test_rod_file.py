@@ -44,7 +44,10 @@ def test_a_rod_in_space_may_resist_twist(tmp_path: Path) -> None:
         (WIRE.replace("[20, 0]", "[20, 0, 0]"), r"rod\[0\].points\[1\] has 3 coordinates, points\[0\] has 2"),
         (WIRE.replace("0.8 mm", "0 mm"), r"rod\[0\].diameter must be finite and above 0"),
         (WIRE.replace('young = "200 GPa"', ""), r"rod\[0\]: give diameter and young, or axial_stiffness"),
-        (GIVEN.replace("N mm^2", "N"), r"rod\[0\].bending_stiffness: .* does not measure a bending stiffness"),
+        (
+            GIVEN.replace("N mm^2", "N"),
+            r"rod\[0\].bending_stiffness: .* does not measure a bending or torsional stiffness",
+        ),
         (WIRE + 'torsional_stiffness = "9 N mm^2"\n', r"rod\[0\].torsional_stiffness: a rod in a flat body does not"),
         (WIRE + WIRE, r'rod\[1\].name: there are two of the name "spine"'),
     ],
