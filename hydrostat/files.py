@@ -12,7 +12,6 @@ import threading
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from errno import EISDIR
-from functools import partial
 from hashlib import sha256
 from io import StringIO
 from pathlib import Path
@@ -185,8 +184,8 @@ def replace_files(contents: Mapping[Path, bytes], *, outdated: Path | None = Non
             if path.is_dir():
                 raise IsADirectoryError(EISDIR, os.strerror(EISDIR))
             part.unlink(missing_ok=True)
-            with open(part, "xb", opener=partial(os.open, mode=mode)) as file:
-                file.write(contents[path])
+            part.touch(mode=mode, exist_ok=False)
+            part.write_bytes(contents[path])
         if outdated is not None:
             outdated.unlink(missing_ok=True)
         for path, part in parts.items():
