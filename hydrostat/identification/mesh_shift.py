@@ -1,6 +1,7 @@
 """`estimate_mesh_shift`: changes of fitted values that a finer mesh would make."""
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -50,10 +51,10 @@ def estimate_mesh_shift(
         jacobian = (coarse.jacobian / scales[:, None])[known]
         return -np.linalg.solve(jacobian.T @ jacobian + np.eye(len(numbers)), jacobian.T @ (moved / scales)[known])
 
-    try:
-        by_elements = shift(_refine)
-    except InputError:
-        by_elements = np.zeros(len(numbers))
+    by_elements = np.zeros(len(numbers))
+    if model.robot(model.values(numbers)).body.mesh.quadratic is None:
+        with suppress(InputError):  # a body that has no quadratic elements
+            by_elements = shift(_refine)
     return np.stack([by_elements, by_elements + shift(soften_cables)])
 
 

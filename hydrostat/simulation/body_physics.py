@@ -36,7 +36,7 @@ from hydrostat.mechanics import (
 )
 from hydrostat.robot import Body, Obstacle, Plane, Robot, Volume, check_winch_bodies
 from hydrostat.simulation.load_energies import hung_masses, make_load_energies
-from hydrostat.simulation.reinforcements import make_rod_energy, make_sheet_energies, make_twist_energy, sheet_masses
+from hydrostat.simulation.reinforcements import make_rod_energies, make_sheet_energies, sheet_masses
 
 
 class BodyPhysics:
@@ -103,8 +103,8 @@ class BodyPhysics:
         energies += _barriers(body, self.elastic, self.rest_unknowns)
         if robot.gravity is not None:
             energies.append(DeadLoadEnergy(self.rest_unknowns, self._heavy[:, None] * np.array(robot.gravity)))
-        self.rods = [make_rod_energy(robot, rod, self.rest_unknowns) for rod in robot.rods]
-        self.twists = [make_twist_energy(robot, rod, self.rest_unknowns) for rod in robot.rods]
+        rods = [make_rod_energies(robot, rod, self.rest_unknowns) for rod in robot.rods]
+        self.rods, self.twists = [bent for bent, _ in rods], [twist for _, twist in rods]
         self._reinforcements = [*self.rods, *filter(None, self.twists), *chain.from_iterable(self.sheets)]
         energies += self._reinforcements
         loads, paths = make_load_energies(robot, self.rest_unknowns)

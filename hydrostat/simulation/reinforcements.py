@@ -8,20 +8,12 @@ from hydrostat.mechanics import RodEnergy, RodTwistEnergy, SheetEnergy, rod_poin
 from hydrostat.robot import Membrane, Plane, Robot, Rod
 
 
-def make_rod_energy(robot: Robot, rod: Rod, rest: Nodes) -> RodEnergy:
-    """Energy of a rod on unknowns that are at `rest` [m]."""
-    mesh, (axial, bending) = robot.body.mesh, rod.stiffnesses
-    anchors = locate(mesh, rod_points(mesh, np.array(rod.points)))
-    return RodEnergy(rest, anchors, axial_stiffness=axial, bending_stiffness=bending)
-
-
-def make_twist_energy(robot: Robot, rod: Rod, rest: Nodes) -> RodTwistEnergy | None:
-    """Energy by which a rod resists twist, on unknowns that are at `rest` [m]; None if it resists none."""
-    if rod.torsional_stiffness is None:
-        return None
-    mesh = robot.body.mesh
+def make_rod_energies(robot: Robot, rod: Rod, rest: Nodes) -> tuple[RodEnergy, RodTwistEnergy | None]:
+    """Energies of a rod on unknowns that are at `rest` [m]: of stretch and bending, and of twist if it resists that."""
+    mesh, (axial, bending), torsion = robot.body.mesh, rod.stiffnesses, rod.torsional_stiffness
     points = rod_points(mesh, np.array(rod.points))
-    return RodTwistEnergy(rest, mesh, points, torsional_stiffness=rod.torsional_stiffness)
+    bent = RodEnergy(rest, locate(mesh, points), axial_stiffness=axial, bending_stiffness=bending)
+    return bent, None if torsion is None else RodTwistEnergy(rest, mesh, points, torsional_stiffness=torsion)
 
 
 def make_sheet_energies(robot: Robot, sheet: Membrane, rest: Nodes) -> list[SheetEnergy]:

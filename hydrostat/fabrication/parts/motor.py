@@ -397,4 +397,4 @@ one that turns by 360 degrees in all at mu = 0.1 needs exp(0.1 * 2 pi) = 1.9 tim
 Bodies also differ from their assumed stiffness, and motors age."""
 
 BRIEF = 0.5
-"""Share of its stall torque that a motor bears for seconds, as coils warm up slowly. Assumed, measured on none."""
+"""Share of its stall torque that a motor gives for seconds, as coils warm up slowly. Assumed, measured on none."""
