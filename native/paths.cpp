@@ -201,57 +201,63 @@ void grow_labels(Counts<1> turns, Counts<1> before, Counts<1> sources, Counts<1>
                (Int)chosen.shape(0) == all.slots, "shapes of edges and slots");
     const Int *begin = demand_range(turns, 0, (Int)before.shape(0) + 1, "no such turn"), *came = demand_range(before, 0, all.edges, "no such edge");
     demand_within(parents.data(), hop * count, -1, count, "no such label");
-    const Int *from = sources.data(), *to = targets.data();
-    double* gains = values.data();
-    Slots slots{all.slots, (all.slots + 1) / 2, best.data(), ranked.data(), chosen.data()};
+    // Plain pointers, which the loops need not fetch again after each number that they write.
+    const Int *from = sources.data(), *to = targets.data(), *mark = marks.data();
+    const double *rows_of = labels.data(), *sums_of = sums.data(), *before_gains = values.data() + (hop - 1) * count;
+    const double *edge_lengths = all.lengths, *ridge_of = all.ridge;
+    const Int own_slots = all.slots, rows = all.rows, *edge_number = all.edge_of;
+    double *gains = values.data() + hop * count, *longer_rows = longer.data(), *longer_sums_of = longer_sums.data();
+    Int *parent = parents.data(), *longer_mark = longer_marks.data();
+    Slots slots{own_slots, (own_slots + 1) / 2, best.data(), ranked.data(), chosen.data()};
 
     auto visits = [&](Int label, Int point) {  // whether the path of a label runs through a point
-        if (to[label / all.slots] == point) return true;
+        if (to[label / own_slots] == point) return true;
         for (Int step = hop - 1;; step--) {
-            if (from[label / all.slots] == point) return true;
+            if (from[label / own_slots] == point) return true;
             if (step == 0) return false;
-            label = parents.data()[step * count + label];
+            label = parent[step * count + label];
         }
     };
-    Free others((double)before.shape(0) * (double)(all.slots * size));
+    Free others((double)before.shape(0) * (double)(own_slots * size));
     for (Int edge = 0; edge < all.edges; edge++) {
-        const Int own = all.edge_of[edge];
+        const Int own = edge_number[edge], end = to[edge], end_bit = bit(end);
         const double *pull_of = all.pulls + own * poses, *square_of = all.squares + own * poses, *move = all.moves + own * size;
+        const double length = edge_lengths[own];
         auto square_with = [&](Int label, Int pose) {
-            const double cross = dot(labels.data() + label * size + pose * all.rows, move + pose * all.rows, all.rows);
-            return sums.data()[label * width + poses + pose] + 2.0 * cross + square_of[pose];
+            const double cross = dot(rows_of + label * size + pose * rows, move + pose * rows, rows);
+            return sums_of[label * width + poses + pose] + 2.0 * cross + square_of[pose];
         };
         slots.clear();
         if (!blocked.data()[edge])
-            for (Int place = begin[edge]; place < begin[edge + 1]; place++)
-                for (Int label = came[place] * all.slots; label < (came[place] + 1) * all.slots; label++) {
-                    const double* sum = sums.data() + label * width;
-                    if (gains[(hop - 1) * count + label] == NONE || all.lengths[own] > sum[2 * poses]) continue;
+            for (Int place = begin[edge], last = begin[edge + 1]; place < last; place++)
+                for (Int label = came[place] * own_slots, stop = label + own_slots; label < stop; label++) {
+                    const double* sum = sums_of + label * width;
+                    if (before_gains[label] == NONE || length > sum[2 * poses]) continue;
                     double value = 0.0, price = 0.0;
                     for (Int pose = 0; pose < poses; pose++) {
                         const double pull = sum[pose] + pull_of[pose];
-                        value += decrease(pull, square_with(label, pose), all.ridge[pose], most);
+                        value += decrease(pull, square_with(label, pose), ridge_of[pose], most);
                         price += pull;
                     }
                     value *= sum[2 * poses + 1], price *= sum[2 * poses + 1];
                     if (!slots.wants(value, price)) continue;
-                    if (marks.data()[label] & bit(to[edge]) && visits(label, to[edge])) continue;
+                    if (mark[label] & end_bit && visits(label, end)) continue;
                     slots.insert(label, value, price);
                 }
-        for (Int slot = 0; slot < all.slots; slot++) {
-            const Int label = slots.chosen[slot], grown = edge * all.slots + slot;
-            gains[hop * count + grown] = slots.best[slot];
-            parents.data()[hop * count + grown] = label;
+        for (Int slot = 0; slot < own_slots; slot++) {
+            const Int label = slots.chosen[slot], grown = edge * own_slots + slot;
+            gains[grown] = slots.best[slot];
+            parent[hop * count + grown] = label;
             if (label < 0) continue;
-            const double* sum = sums.data() + label * width;
-            double* found = longer_sums.data() + grown * width;
+            const double *sum = sums_of + label * width, *rows_before = rows_of + label * size;
+            double *found = longer_sums_of + grown * width, *grown_rows = longer_rows + grown * size;
             for (Int pose = 0; pose < poses; pose++) {
                 found[pose] = sum[pose] + pull_of[pose];
                 found[poses + pose] = square_with(label, pose);
             }
-            found[2 * poses] = sum[2 * poses] - all.lengths[own], found[2 * poses + 1] = sum[2 * poses + 1];
-            longer_marks.data()[grown] = marks.data()[label] | bit(to[edge]);
-            for (Int row = 0; row < size; row++) longer.data()[grown * size + row] = labels.data()[label * size + row] + move[row];
+            found[2 * poses] = sum[2 * poses] - length, found[2 * poses + 1] = sum[2 * poses + 1];
+            longer_mark[grown] = mark[label] | end_bit;
+            for (Int row = 0; row < size; row++) grown_rows[row] = rows_before[row] + move[row];
         }
     }
 }

@@ -1,8 +1,10 @@
 """`Canvas`: a picture as SVG, in millimeters of paper, so that lines and letters have the same size on all of them."""
 
 import html
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 from typing import Self
 
 import numpy as np
@@ -52,9 +54,17 @@ def number(value: float, digits: int) -> str:
 
 
 def path(lines: Iterable[Iterable[Sequence[float] | np.ndarray]], *, digits: int, closed: bool = False) -> str:
-    """Path data of straight lines through points; y counts down."""
-    end = "Z" if closed else ""
-    return "".join("M" + "L".join(f"{number(x, digits)} {number(y, digits)}" for x, y in line) + end for line in lines)
+    """Path data of straight lines through points, with numbers as `number` writes them; y counts down."""
+    end, point = "Z" if closed else "", f"%.{digits}f %.{digits}f"
+    words = []
+    for line in lines:
+        places = np.round(line, digits).tolist() if isinstance(line, np.ndarray) else list(line)
+        values = [value if type(value) is float else round(value, digits) for value in chain.from_iterable(places)]
+        words.append("M" + "L".join([point] * len(places)) % tuple(values) + end)
+    return _MINUS_NOUGHT.sub("0", _LAST_NOUGHTS.sub("", "".join(words)))
+
+
+_LAST_NOUGHTS, _MINUS_NOUGHT = re.compile(r"\.?0+(?![.\d])"), re.compile(r"-0(?![.\d])")
 
 
 Spot = tuple[float, float]  # a place on the canvas [mm]: to the right, down

@@ -78,9 +78,9 @@ class Shell:
 
     def nearest(self, points: Points) -> Nearest:
         """Place of the shell nearest to each point (ValueError: nodes or points that are not finite)."""
-        if not (np.isfinite(self.nodes).all() and np.isfinite(points).all()):
+        if not (self._is_finite and np.isfinite(points).all()):
             raise ValueError("a distance needs finite places")
-        _, found, places = self._tree.squared_distance(_in_space(self.nodes), self.facets, _in_space(points))
+        _, found, places = self._tree.squared_distance(self._nodes_in_space, self.facets, _in_space(points))
         facets = found.astype(np.int64)  # from long long, another type to NumPy
         places = places[:, : points.shape[1]]
         corners = self.nodes[self.facets[facets]]
@@ -139,8 +139,17 @@ class Shell:
         import igl
 
         tree = igl.AABB()
-        tree.init(_in_space(self.nodes), self.facets)
+        tree.init(self._nodes_in_space, self.facets)
         return tree
+
+    @cached_property
+    def _nodes_in_space(self) -> Float[np.ndarray, "nodes 3"]:
+        """Nodes as the tree takes them."""
+        return _in_space(self.nodes)
+
+    @cached_property
+    def _is_finite(self) -> bool:
+        return bool(np.isfinite(self.nodes).all())
 
     def field(self) -> DistanceField:
         """Signed distance from a closed shell [m]; far away it may be too small by a quarter of the shell's size."""
@@ -206,7 +215,9 @@ _TOUCHING = 1e-12
 
 def _in_space(points: Points) -> Float[np.ndarray, "points 3"]:
     """Points of the plane at height 0: the tree is 3D only, but takes segments as well as triangles."""
-    return np.ascontiguousarray(np.pad(points, ((0, 0), (0, 3 - points.shape[1]))), dtype=float)
+    raised = np.zeros((len(points), 3))
+    raised[:, : points.shape[1]] = points
+    return raised
 
 
 def _or_one(lengths: Float[np.ndarray, " some"]) -> Float[np.ndarray, " some"]:

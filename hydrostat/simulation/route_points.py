@@ -1,7 +1,7 @@
 """`RoutePoints`: points of all cables of a robot, and their motion with their rest positions."""
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -151,3 +151,9 @@ def route_points(robot: Robot) -> RoutePoints:
         cables=np.repeat(np.arange(len(cables)), [len(own) for own in bare]),
         counts=counts,
     )
+
+
+@lru_cache(maxsize=4)
+def hold_markers(mesh: Mesh, places: tuple[tuple[float, ...], ...]) -> Anchors:
+    """Anchors of markers at rest positions [m]; the last answers are kept, as networks on a body share its markers."""
+    return locate(mesh, np.array(places).reshape(-1, mesh.dim))

@@ -9,7 +9,7 @@ import numpy as np
 
 from hydrostat.arrays import Float, Nodes, Vector
 from hydrostat.errors import InputError, NotConvergedError
-from hydrostat.geometry import Anchors, locate
+from hydrostat.geometry import Anchors
 from hydrostat.given import check_type
 from hydrostat.mechanics import Assembly, Energy, FactorizedHessian, FrictionCableEnergy, NewtonOptions, NewtonResult
 from hydrostat.robot import Robot
@@ -19,7 +19,7 @@ from hydrostat.simulation.contraction_profile import ContractionProfile, check_p
 from hydrostat.simulation.controls import Contractions, contraction_values, split_controls
 from hydrostat.simulation.drive_energies import drive_energies
 from hydrostat.simulation.equilibrium import Equilibrium, check_apart, check_pose, warn_beyond_travel
-from hydrostat.simulation.route_points import RoutePoints, route_points
+from hydrostat.simulation.route_points import RoutePoints, hold_markers, route_points
 from hydrostat.simulation.sensitivities.adjoint import Sensitivity, cotangents, response, sensitivity
 from hydrostat.simulation.sensitivities.friction import FrictionSensitivities, friction_adjoint, friction_sensitivities
 from hydrostat.simulation.static_obstacles import require_static_obstacles
@@ -320,8 +320,7 @@ class Simulation:
     @cached_property
     def marker_anchors(self) -> Anchors:
         """Nodes and weights that hold the markers."""
-        mesh = self.robot.body.mesh
-        return locate(mesh, np.array([marker.at for marker in self.robot.markers]).reshape(-1, mesh.dim))
+        return hold_markers(self.robot.body.mesh, tuple(marker.at for marker in self.robot.markers))
 
     def tensions(self, nodes: Nodes, contractions: Vector, history: Vector | None = None) -> Vector:
         """Tension of each cable [N]; at its winch if it has friction and remembers its slips in `history` [m]."""

@@ -54,7 +54,9 @@ class UnitBox(Cuboid):
         shapely.prepare(seam)
         beyond = ~shapely.covers(seam, footprints)
         outside = np.zeros(len(ways))
-        outside[beyond] = shapely.area(shapely.difference(footprints[beyond], seam))
+        left, bottom, right, top = shapely.total_bounds(footprints).tolist()
+        near = shapely.clip_by_rect(seam, left - 1.0, bottom - 1.0, right + 1.0, top + 1.0)
+        outside[beyond] = shapely.area(shapely.difference(footprints[beyond], near))
         return [
             UnitPlace(
                 box=self, across=across, turn=turn, flipped=flipped, slid=slid, footprint=footprint, outside=float(area)
