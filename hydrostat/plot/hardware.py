@@ -141,19 +141,18 @@ def draw_numbers(sheet: PictureSheet, runs: list[Places], colors: Sequence[str],
 
 def _cable_dots(sheet: PictureSheet, runs: list[Places]) -> Places:
     """Points all along the cables, so close that no label between them can cover a cable."""
-    dots = [
-        _along(run, share) for run in runs for share in np.linspace(0, 1, 2 + int(_length(run) / (6 * sheet.scale)))
-    ]
-    return np.array(dots).reshape(-1, 2)
+    dots = [_along(run, np.linspace(0, 1, 2 + int(_length(run) / (6 * sheet.scale)))) for run in runs]
+    return np.concatenate([np.zeros((0, 2)), *dots])
 
 
 def _beads(runs: list[Places], gap: float) -> list[Place]:
     """A point on each run beyond its middle, if possible further than `gap` from other beads, runs and winches."""
     beads: list[Place] = []
+    along = [_along(run, SHARES) for run in runs]
     for index, run in enumerate(runs):
-        others = [_along(other, share) for place, other in enumerate(runs) if place != index for share in SHARES]
+        others = [point for place, other in enumerate(along) if place != index for point in other]
         seen = np.array([*beads, *beads, run[0], *others])
-        spots = [_along(run, share) for share in SHARES]
+        spots = along[index]
         crowds = [float(np.maximum(1 - np.linalg.norm(seen - spot, axis=1) / gap, 0).sum()) for spot in spots]
         costs = np.array(crowds) + np.abs(SHARES - 0.62)
         beads.append(spots[int(np.argmin(costs))])
@@ -164,11 +163,11 @@ def _length(run: Places) -> float:
     return float(np.linalg.norm(np.diff(run, axis=0), axis=1).sum())
 
 
-def _along(run: Places, share: float) -> Place:
-    """The point of a run at a share of its length."""
+def _along(run: Places, shares: Vector) -> Places:
+    """The points of a run at shares of its length."""
     lengths = np.linalg.norm(np.diff(run, axis=0), axis=1)
     places = np.concatenate([[0.0], np.cumsum(lengths)])
-    return np.array([np.interp(share * places[-1], places, run[:, side]) for side in range(2)])
+    return np.column_stack([np.interp(shares * places[-1], places, run[:, side]) for side in range(2)])
 
 
 def _draw_spool(sheet: PictureSheet, winch: Winch, center: Place, color: str, fade: float) -> None:

@@ -75,16 +75,22 @@ class Labels:
         return centers[best]
 
     def _costs(self, boxes: np.ndarray, outside: float) -> np.ndarray:
-        rectangles = shapely.box(*boxes.T)
-        areas = shapely.area(rectangles)
-        costs = outside * shapely.area(shapely.intersection(rectangles, self._body)) / areas
-        if self._taken:
-            others = shapely.box(*np.array(self._taken).T)
-            costs = costs + 12 * sum(shapely.area(shapely.intersection(rectangles, other)) / areas for other in others)
+        areas = _shared_areas(boxes, boxes)
+        costs = np.zeros(len(boxes))
+        if outside:
+            rectangles = shapely.box(*boxes.T)
+            costs = outside * shapely.area(shapely.intersection(rectangles, self._body)) / areas
+        for other in self._taken:
+            costs = costs + 12 * _shared_areas(boxes, other) / areas
         covered = ((self._avoid >= boxes[:, None, :2]) & (self._avoid <= boxes[:, None, 2:])).all(axis=2)
-        frame = shapely.box(*self._sheet.low, *self._sheet.high)
-        beyond = 1 - shapely.area(shapely.intersection(rectangles, frame)) / areas
+        beyond = 1 - _shared_areas(boxes, np.concatenate([self._sheet.low, self._sheet.high])) / areas
         return costs + 0.2 * np.minimum(covered.sum(axis=1), 8) + 20 * beyond
+
+
+def _shared_areas(boxes: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Area that each box (left, lower, right, upper) shares with one other, or with its own of as many."""
+    sides = np.minimum(boxes[:, 2:], other[..., 2:]) - np.maximum(boxes[:, :2], other[..., :2])
+    return np.maximum(sides, 0.0).prod(axis=1)
 
 
 def shorten(words: str) -> str:

@@ -95,8 +95,8 @@ def _tight_bays(seam: Polygon, cut: Polygon, slits: MultiLineString, options: Pa
     edges = shapely.union_all([cut.boundary, slits])
     shapely.prepare(edges)
     rings = (seam.exterior, *seam.interiors)
-    corners = [shapely.Point(corner) for ring in rings for corner in ring.coords]
-    far = [corner for corner in corners if edges.distance(corner) > 3 * options.seam_allowance]
+    corners = shapely.points([corner for ring in rings for corner in ring.coords])
+    far = corners[~shapely.dwithin(edges, corners, 3 * options.seam_allowance)].tolist()
     bays = shapely.union_all([corner.buffer(options.seam_allowance) for corner in far])
     ends = [max(far, key=lambda corner: edges.distance(corner) * bay.covers(corner)) for bay in _polygons(bays)]
     if not ends:

@@ -107,12 +107,12 @@ class Printed:
         """Part that is made of simple shapes."""
         return cls(name=name, title=title, solid=solid_of(model), count=count, note=note, model=model)
 
-    @property
+    @cached_property
     def volume(self) -> float:
         """Volume of one, filled [mm^3]."""
         return float(self.solid.volume())
 
-    @property
+    @cached_property
     def mass(self) -> float:
         """Mass of one in PLA [g], estimated: a whole shell under its surface, little inside; at most all plastic."""
         shell = min(SHELL * float(self.solid.surface_area()), self.volume)
