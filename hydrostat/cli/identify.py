@@ -75,8 +75,10 @@ def identify(
     if names == ():
         raise InputError('--fit "": name at least one parameter')
     if suggest is not None:
-        if measurements is not None or out is not None or in_order or profile or save_material is not None:
-            raise InputError("--suggest: plans measurements and writes nothing. Remove TABLE.csv and options of a fit.")
+        given = {"TABLE.csv": measurements, "--out": out, "--save-material": save_material}
+        given |= {"--in-order": in_order or None, "--profile": profile or None}
+        if extra := [name for name, value in given.items() if value is not None]:
+            raise InputError(f"--suggest: plans measurements and writes nothing. Remove {', '.join(extra)}.")
         _suggest(read_robot(robot), suggest, names, hang or [], tension)
         return
     if hang or tension is not None:

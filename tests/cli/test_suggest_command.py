@@ -39,7 +39,7 @@ def test_pulls_are_bounded_by_the_usual_limit_of_designs(
 def test_fit_or_suggest(run: Run, starfish: Path, tmp_path: Path) -> None:
     for arguments, words in (
         ((), "or --suggest N to plan"),
-        (("--suggest", 3, "--out", tmp_path), "Remove TABLE.csv and options of a fit"),
+        (("--suggest", 3, "--out", tmp_path), "Remove --out"),
         ((tmp_path / "a.csv", "--out", tmp_path / "b", "--hang", "5g"), "need --suggest"),
         (("--suggest", 3, "--hang", "50g"), "has no gravity"),
     ):
