@@ -72,7 +72,8 @@ def note_room(robot: "Robot", place: str, *, options: "KitOptions", reasons: Ite
         larger = scaled_robot(robot, factor)
         if found := [motor.key for motor in motors if not fit_motor(larger, options, motor)[0]]:
             words = f"a body {factor:g} times as large has room for {', '.join(found)}"
-            return "" if factor == 1.0 else f"note: {words}: hydrostat scale {place} {factor:g}, then a new design"
+            scale = f"hydrostat scale {place} {factor:g}, then fabricate the larger robot"
+            return "" if factor == 1.0 else f"note: {words}: {scale}"
     from hydrostat.design import find_no_room
 
     return f"note: {find_no_room(robot) or 'a body 3 times as large has no room for these motors there either'}"

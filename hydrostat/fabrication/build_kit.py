@@ -17,6 +17,7 @@ from hydrostat.fabrication.lists.lists import Lists, make_lists
 from hydrostat.fabrication.motor_choice import find_motor, motors_price, pulled_torques
 from hydrostat.fabrication.parts.motor import Motor
 from hydrostat.fabrication.parts.rigid_parts import RigidParts, rigid_parts
+from hydrostat.fabrication.passage import passage_warnings
 from hydrostat.fabrication.patterns.channels import channel_strips
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.pattern import cut_sheet
@@ -35,7 +36,7 @@ from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.fabrication.solids.step import require_cad, step_bytes
 from hydrostat.given import check_type, path_of
 from hydrostat.progress import Progress, no_progress
-from hydrostat.robot import CableSide, Mount, Robot, describe_cable_side, sewn_robot, sewn_sides
+from hydrostat.robot import CableSide, Robot, describe_cable_side, sewn_robot, sewn_sides
 from hydrostat.simulation import is_stuffed_motion_fast, solve_stuffed_motion
 from hydrostat.units import plural
 
@@ -210,7 +211,7 @@ def _findings(plan: KitPlan, lists: Lists) -> KitFindings:
         checks=checks,
         problems=tuple(dict.fromkeys((*_problems(plan, lists), *failed))),
         warnings=(
-            *(*_cable_warnings(plan), *_bending_warnings(plan), *_part_warnings(plan), *_opening_warnings(plan)),
+            *(*_cable_warnings(plan), *_bending_warnings(plan), *_part_warnings(plan), *passage_warnings(plan)),
             *(*work.warnings, *rigid.warnings, *lists.warnings),
         ),
         notes=(*work.notes, *rigid.notes, *plan.demand.far),
@@ -272,23 +273,6 @@ def _part_warnings(plan: KitPlan) -> tuple[str, ...]:
     made = [insert for insert in plan.inserts if not (flat and insert.kind is InsertKind.SHEET)]
     names = ", ".join(f"{insert.mark} {insert.name}" for insert in made)
     return (f"the kit has no files for {names}: make them to the sizes of lists/inserts.csv",) if made else ()
-
-
-def _opening_warnings(plan: KitPlan) -> tuple[str, ...]:
-    """Warn of a zipper that is too short for a winch: a slit opens to a ring of twice its length."""
-    opening = None if plan.work.pattern is None else plan.work.pattern.opening
-    inside = [unit for unit in plan.rigid.units if unit.mount is Mount.BODY]
-    if opening is None or not inside:
-        return ()
-    needed, unit = max(((sum(sorted(unit.room.size)[:2]), unit) for unit in inside), key=lambda pair: pair[0])
-    if opening.slit.length >= needed:
-        return ()
-    sides = " x ".join(f"{side:.0f}" for side in sorted(unit.room.size))
-    return (
-        f'zipper: the unit of winch "{unit.winch}" ({sides} mm) does not pass through its opening of '
-        f"{int(opening.slit.length)} mm (minimum {needed:.0f} mm). Choose a smaller motor, or move the winch to a "
-        "wider part of the body",
-    )
 
 
 def _files(plan: KitPlan, lists: Lists, findings: KitFindings) -> dict[str, bytes]:

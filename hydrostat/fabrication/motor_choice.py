@@ -178,9 +178,10 @@ def _seconds(robot: Robot, torques: Sequence[float], motor: Motor) -> float | No
 def _turn_problems(robot: Robot, motor: Motor) -> tuple[str, ...]:
     """A line for each winch that asks for more turns than a motor has."""
     return tuple(
-        f'winch "{winch.name}" turns by {360 * turns_of(winch):.0f} degrees for its travel, {motor.title} by '
-        f"{360 * motor.turns:.0f}. Choose another motor, or a spool radius of "
-        f"{1e3 * (winch.travel + winch.release) / (2 * math.pi * motor.turns):.1f} mm or more"
+        f'winch "{winch.name}" needs {360 * turns_of(winch):.0f} degrees for its travel, {motor.key} turns by '
+        f"{360 * motor.turns:.0f}. Choose another motor, or a spool radius of at least "
+        f"{math.ceil(1e4 * (winch.travel + winch.release) / (2 * math.pi * motor.turns)) / 10:.1f} mm, which takes "
+        f"{turns_of(winch) / motor.turns:.1f} times the torque"
         for winch in robot.winches
         if turns_of(winch) > motor.turns + 1e-9
     )

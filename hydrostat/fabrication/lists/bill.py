@@ -53,6 +53,7 @@ _ANGLER = 91.44  # line on a spool, 100 yards [m]
 
 _PUPPETS = "a puppet maker's list of costs (The Tucson Puppet Lady)"
 _ROVER = "estimate in the parts list of a printed rover (Johnny 5)"
+_LUGGAGE = "hardware report of a luggage robot (SmoothOperator)"
 _BEARS = "a sewing group's list of costs (Crafting 4 Jesus)"
 
 PRICES = MappingProxyType(
@@ -75,9 +76,8 @@ PRICES = MappingProxyType(
             source="an angler's notes (Singlebarbed): braided Dyneema line, 6.95 for 100 yd",
         ),
         "tube": Price(amount=2.0, unit="m"),
-        "controller": Price(
-            amount=5.44, source="parts list of a drawing robot (RISE STEM kits): board like the Arduino Nano"
-        ),
+        "uno board": Price(amount=14.99, source=f"{_LUGGAGE}: Arduino Uno R3"),
+        "mega board": Price(amount=22.99, source=f"{_LUGGAGE}: Arduino Mega 2560 R3"),
         "esp32 board": Price(
             amount=10.0,
             month="2026-11",

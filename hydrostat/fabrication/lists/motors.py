@@ -270,6 +270,12 @@ class PowerPlan:
         return max(1, math.ceil(min(self.fuse, len(self.winches) * self.motor.stall_current) / PLUG))
 
     @property
+    def fed(self) -> tuple[int, ...]:
+        """Numbers of the servos, from 1, at which the chain is fed, with as many servos after each."""
+        count = min(self.feeds, len(self.winches))
+        return tuple(1 + group * len(self.winches) // count for group in range(count))
+
+    @property
     def boards(self) -> tuple[str, ...]:
         """Boards for DC motors."""
         rest, found = len(self.winches), list[str]()
@@ -297,16 +303,20 @@ class PowerPlan:
     def table(self) -> Table[PowerRow]:
         """Parts and settings of the supply, as a list."""
         area, gauge = self.wire
+        hours = f"{self.hours:.0f}" if self.hours >= 10 else f"{self.hours:.1f}"
         rows: list[tuple[str, str]] = [
             ("supply", f"{self.motor.volts:g} V, {self.supply:g} A or more"),
             ("all motors at their largest at once", f"{self.largest:.1f} A"),
             ("fuse, in the plus lead at the supply", f"{self.fuse:g} A"),
             ("leads from the supply", f"{area:g} mm^2 (AWG {gauge}) or thicker"),
             ("switch for the motors, in reach", f"in the plus lead, for {self.fuse:g} A"),
-            ("without a wall socket", f"{self.cells} NiMH cells AA in a row, about {self.hours:.1f} h"),
+            (
+                "without a wall socket",
+                f"{self.cells} NiMH cells AA in a row, about {hours} h",
+            ),
         ]
         if self.servos:
-            rows.append(("places to feed the chain at", str(self.feeds)))
+            rows.append(("feed the chain at", " and ".join(f"ID {number}" for number in self.fed)))
         return Table(
             name="power",
             title="Power",

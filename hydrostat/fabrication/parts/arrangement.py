@@ -161,7 +161,8 @@ def _piles(places: Sequence[UnitPlace]) -> list[tuple[int, ...]]:
 def _describe_pile(pile: Sequence[UnitPlace], thickness: float) -> tuple[str, bool]:
     """Return the sentence on units above each other, and True if they can be built."""
     high = sum(place.depth for place in pile)
-    names = " and ".join(f'"{place.box.winch}"' for place in pile) + _sizes(pile)
+    *first, last = (f'"{place.box.winch}"' for place in pile)
+    names = f"{', '.join(first)} and {last}{_sizes(pile)}"
     possible = high <= (1 + GIVES) * thickness
     if possible:
         bulge = f", so it bulges by {high - thickness:.0f} mm" if high > thickness else ""
@@ -182,7 +183,7 @@ def _sizes(pile: Sequence[UnitPlace]) -> str:
     sides = [sides_text(place.box.size) for place in pile]
     alike = len(set(sides)) == 1
     apart = f", {math.dist(pile[0].box.at, pile[1].box.at):.0f} mm apart" if len(pile) == 2 else ""
-    return f" ({sides[0]} mm each{apart})" if alike else f" ({' and '.join(sides)} mm{apart})"
+    return f" ({sides[0]} mm each{apart})" if alike else f" ({', '.join(sides[:-1])} and {sides[-1]} mm{apart})"
 
 
 def _alone(place: UnitPlace, thickness: float) -> list[str]:

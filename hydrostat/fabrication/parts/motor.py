@@ -170,7 +170,7 @@ _M3 = FaceScrew(size="M3", hole=3.4, head=5.6, head_height=2.4, depth=3.0)
 
 _N20 = Motor(
     key="n20",
-    title="Pololu micro metal gearmotor LP 6V, 298:1 (N20)",
+    title="Pololu micro metal gearmotor LP 6V with extended motor shaft, 298:1 (N20)",
     body=Box((12, 10, 9)).move(-6, -5, -9) + (Cylinder(16, 6) & Box((12, 10, 16)).move(-6, -5, 0)).move(0, 0, -25),
     outline=_box_outline((-6, -5), (6, 5)),
     depth=25.0,
@@ -188,6 +188,8 @@ _N20 = Motor(
     price=18.0,
     price_source="of its sister HPCB 75:1, 17.95 in an order list of the team ASROB-sumo, which has no date",
     price_month="2026-11",
+    caution="The encoder stands on the extended shaft, behind the motor. The drawings are without it: leave 10 mm "
+    "there. No source has its length, measure yours.",
     source="Pololu, Micro Metal Gearmotors, Rev 2.0, May 2018: stall 20 kg mm (extrapolated), 45 rpm, 10 g, gearbox "
     "9 mm, M1.6 screws at most 1.3 mm deep; LP 6V: 0.36 A at stall, 0.02 A without load, 297.92:1. Pololu, product "
     "page 5215: section 10 x 12 mm, D shaft 3 x 9 mm. Load at most a quarter of stall: Pololu's forum, thread 14572 "

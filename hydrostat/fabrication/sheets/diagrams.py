@@ -1,5 +1,7 @@
 """Diagrams: how a cable is stitched, put in and stopped, and how supply, board and motors are wired."""
 
+import math
+
 from hydrostat.drawing import Canvas, Spot
 from hydrostat.fabrication.board_kind import BOARDS
 from hydrostat.fabrication.lists.motors import PowerPlan
@@ -164,7 +166,7 @@ def wiring_scheme(plan: PowerPlan, marks: tuple[str, ...], *, width: float) -> C
     places = [left + step * (place + 0.5) for place in range(len(shown))]
     (_put_chain if plan.servos else _put_drivers)(canvas, plan, places, step, top)
     for place, mark in zip(places, shown, strict=True):
-        canvas.balloon((place, top + 20.0), mark, dark=True)
+        canvas.balloon((place, top + 21.5), mark, dark=True)
     if len(marks) > max_motors:
         canvas.text((right, top + 26.5), f"and so on to {marks[-1]}", size=8, anchor="end", grey=0.25)
     return canvas
@@ -181,11 +183,11 @@ def _put_power(canvas: Canvas, plan: PowerPlan) -> None:
     canvas.line([[(26.0, _GROUND), (end, _GROUND)], [(53.0, _RAIL), (end, _RAIL)]], width=Canvas.THICK)
     canvas.line([[(31.0, 12.4), (39.0, 12.4), (39.0, 15.6), (31.0, 15.6)]], width=Canvas.MIDDLE, closed=True)
     canvas.line([[(31.0, _RAIL), (39.0, _RAIL)]], width=Canvas.THIN)
-    canvas.text((35.0, 9.6), f"fuse {plan.fuse:g} A", size=8)
+    canvas.text((35.0, 8.0), f"fuse {plan.fuse:g} A", size=8)
     canvas.line([[(44.0, _RAIL), (52.0, 10.6)]], width=Canvas.THICK)
     canvas.disc((44.0, _RAIL), 0.7, grey=0.0)
     canvas.disc((53.0, _RAIL), 0.7, grey=0.0)
-    canvas.text((49.0, 7.4), "switch, in reach", size=8)
+    canvas.text((43.5, 8.0), "switch, in reach", size=8, anchor="start")
     canvas.text((end, _RAIL - 2.6), f"+ {plan.motor.volts:g} V, {plan.wire[0]:g} mm²", size=8, anchor="end")
     canvas.text((29.5, _GROUND + 2.8), "minus joins GND", size=8, anchor="start")
 
@@ -200,12 +202,10 @@ def _put_chain(canvas: Canvas, plan: PowerPlan, places: list[float], step: float
         canvas.line([[(begin, line), (other - 0.3 * step, line)]], width=Canvas.MIDDLE)
     for number, place in enumerate(places, start=1):
         _box(canvas, (place - 0.3 * step, top, place + 0.3 * step, top + 12.0), f"ID {number}", "")
-    groups = min(plan.feeds, len(places))
-    for group in range(groups):
-        place = places[group * len(places) // groups]
-        _drop(canvas, (place - 1.5, _RAIL), (place - 1.5, top))
-        _drop(canvas, (place + 1.5, _GROUND), (place + 1.5, top))
-    words = "plus and minus go into the chain" + (f" in {plan.feeds} places" if plan.feeds > 1 else "")
+    for number in plan.fed:
+        if number <= len(places):
+            _put_feed(canvas, places[number - 1], top)
+    words = "plus and minus go into the chain at " + " and ".join(f"ID {number}" for number in plan.fed)
     canvas.text((canvas.width, top - 5.0), words, size=8, anchor="end", grey=0.25)
 
 
@@ -219,18 +219,18 @@ def _put_drivers(canvas: Canvas, plan: PowerPlan, places: list[float], step: flo
     for place in places:
         _box(canvas, (place - wide, top - 12.0, place + wide, top - 3.0), "driver", "")
         _box(canvas, (place - wide, top + 4.0, place + wide, top + 13.0), "motor", "encoder")
-        _drop(canvas, (place - 1.5, _RAIL), (place - 1.5, top - 12.0))
-        _drop(canvas, (place + 1.5, _GROUND), (place + 1.5, top - 12.0))
+        _put_feed(canvas, place, top - 12.0)
         canvas.line([[(place - 1.5, top - 3.0), (place - 1.5, top + 4.0)]], width=Canvas.THICK)
         canvas.line([[(place + 1.5, top - 3.0), (place + 1.5, top + 4.0)]], width=Canvas.THICK)
         canvas.line([[(place - wide, top - 7.5), (place - wide - 1.5, top - 7.5)]], width=Canvas.THIN)
         canvas.line([[(place - wide, top + 8.5), (place - wide - 1.5, top + 8.5)]], width=Canvas.THIN)
-    canvas.text((44.5, top - 1.6), "signals", size=8)
-    canvas.line([[(38.0, top + 0.5), (places[-1] - wide - 1.5, top + 0.5)]], width=Canvas.THIN, dash=(1.2, 0.8))
+    row = top + 15.5  # below the motors, so that the signals cross no other wire
+    canvas.text((50.0, row + 2.6), "signals", size=8, anchor="start")
+    way: list[Spot] = [(38.0, top + 9.0), (43.0, top + 9.0), (43.0, row), (places[-1] - wide - 1.5, row)]
+    canvas.line([way], width=Canvas.THIN, dash=(1.2, 0.8))
     for place in places:
-        canvas.line(
-            [[(place - wide - 1.5, top - 7.5), (place - wide - 1.5, top + 8.5)]], width=Canvas.THIN, dash=(1.2, 0.8)
-        )
+        across = place - wide - 1.5
+        canvas.line([[(across, top - 7.5), (across, row)]], width=Canvas.THIN, dash=(1.2, 0.8))
 
 
 def _put_board(canvas: Canvas, name: str, top: float) -> None:
@@ -242,6 +242,18 @@ def _put_board(canvas: Canvas, name: str, top: float) -> None:
     canvas.line([[(28.0, 23.0), (28.0, _GROUND)]], width=Canvas.MIDDLE)
     canvas.disc((28.0, _GROUND), 0.5, grey=0.0)
     canvas.text((27.0, top - 3.0), "GND", size=8, anchor="end")
+
+
+def _put_feed(canvas: Canvas, place: float, end: float) -> None:
+    """Wires from plus and minus down to a driver or servo; plus passes over minus in a bow, which does not join it."""
+    plus, bow = place - 1.5, 1.3
+    arc = [
+        (plus - bow * math.sin(math.radians(angle)), _GROUND - bow * math.cos(math.radians(angle)))
+        for angle in range(0, 181, 20)
+    ]
+    canvas.line([[(plus, _RAIL), *arc, (plus, end)]], width=Canvas.MIDDLE)
+    canvas.disc((plus, _RAIL), 0.5, grey=0.0)
+    _drop(canvas, (place + 1.5, _GROUND), (place + 1.5, end))
 
 
 def _drop(canvas: Canvas, begin: Spot, end: Spot, *, dot: bool = True) -> None:

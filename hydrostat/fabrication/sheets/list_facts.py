@@ -20,7 +20,7 @@ _UNITS = {"piece": "", "m^2": "m²"}
 def bill_facts(lists: Lists) -> TableFacts:
     """Names, amounts and costs of what is bought, and the totals."""
     items = [row for row in lists.bill.rows if not row.is_total]
-    rows = [[shorten_text(row.short_name, 40), _amount(row), _dollars(row.cost_used)] for row in items]
+    rows = [[shorten_text(row.short_name, 40), _amount(row), _cost_words(row)] for row in items]
     return {
         "file": f"lists/{lists.bill.name}.csv",
         "heads": ["what", "amount", "USD"],
@@ -38,9 +38,11 @@ def _amount(row: BillRow) -> str:
     return f"{row.amount:.3g} {_UNITS.get(row.unit, row.unit)}".strip()
 
 
-def _dollars(cost: float) -> str:
-    """A cost in full dollars."""
-    return "<1" if 0 < cost < 0.5 else f"{cost:.0f}"
+def _cost_words(row: BillRow) -> str:
+    """Cost of an item in full dollars; a tool is kept."""
+    if row.cost_used == 0 < row.cost_packs:
+        return "0 (kept)"
+    return "<1" if 0 < row.cost_used < 0.5 else f"{row.cost_used:.0f}"
 
 
 def _costs(lists: Lists) -> list[tuple[str, float]]:
@@ -150,10 +152,10 @@ def power_facts(plan: PowerPlan | None, robot: Robot) -> PowerFacts | None:
         "supply pin.",
         f"With NiMH cells, use {plan.cells} in series with the same fuse; never charge them in the robot.",
     ]
+    warnings += [plan.motor.caution] if plan.motor.caution else []
     if plan.servos:
         if plan.motor.is_feetech:
             warnings += [
-                *([plan.motor.caution] if plan.motor.caution else []),
                 "The bus adapter passes the supply on as it is. Read the range printed on it: some state 9 to 12.6 V.",
             ]
         return {
@@ -197,7 +199,10 @@ def _encoder_warning(plan: PowerPlan) -> str:
 
 def _list_first_steps(plan: PowerPlan, *, is_measured: bool) -> list[str]:
     """Steps from the first volt to the first move, each with its check."""
-    chain = "Chain the servos in the order of the table, then plug the board into the computer."
+    chain = (
+        "Chain the servos in the order of the table. Where the drawing feeds the chain, join the leads to plus and "
+        "minus of the servo cable. Then plug the board into the computer."
+    )
     kind = plan.motor.bus or "firmware"
     if plan.motor.is_feetech:
         limits = "set both angle limits to 0" if kind == "feetech" else "move it to position 34"

@@ -8,6 +8,7 @@ from hydrostat.fabrication.inserts import Insert, InsertKind, insert_title
 from hydrostat.fabrication.kit_options import Method
 from hydrostat.fabrication.kit_plan import KitPlan
 from hydrostat.fabrication.parts.base_plate import BasePlate
+from hydrostat.fabrication.passage import open_seam, stuck_units
 from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.robot import Mount, Pin, Robot, SheetSide
 from hydrostat.units import plural
@@ -95,7 +96,7 @@ def winch_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
                 f"Build {plural(count, 'winch')} as drawn on page 2, each from its own files (see Parts), and write "
                 "its mark on each. Screw the plate onto the "
                 f"motor{' and the coupling onto its horn' if has_horn else ''}. "
-                "Push the spool on, then screw the housing on. The bill names the screws of each.",
+                f"Push the spool on, then screw the housing on: {_housing_screws(plan)}.",
             )
         )
     steps += [_base_step(outside, plan.rigid.base)] if outside else []
@@ -113,6 +114,17 @@ def winch_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
     elif (held := held_text(plan.robot)) and plan.method is not Method.PLUSH:
         steps.append(AssemblyStep("Hold it", 5, held))
     return tuple(steps)
+
+
+def _housing_screws(plan: KitPlan) -> str:
+    """Screws of the housings, such as "M2 x 12 mm for W1, M2 x 18 mm for W2 and W3"."""
+    marks = winch_marks_of(plan.robot)
+    kinds: dict[str, list[str]] = {}
+    for unit in plan.rigid.units:
+        kinds.setdefault(unit.housing.screw.title.partition(" mm")[0] + " mm", []).append(marks[unit.winch])
+    if len(kinds) == 1:
+        return next(iter(kinds))
+    return ", ".join(f"{screw} for {marks_text(tuple(own))}" for screw, own in kinds.items())
 
 
 def _base_step(outside: tuple[str, ...], base: BasePlate | None) -> AssemblyStep:
@@ -350,10 +362,11 @@ def _sew(plan: KitPlan) -> AssemblyStep:
     sides = "front and back" if _flat(plan) else "neighboring patches"
     between = "Sew the gusset strips between them, notch to notch" if plan.work.gusset else "Match the notches"
     tucked = ", all lines tucked inside, clear of the seam" if plan.robot.cables else ""
+    gap = f"but for {open_seam(plan)} mm next to the winches" if stuck_units(plan) else "and leave no gap"
     return AssemblyStep(
         "Sew the body",
         45,
-        f"Lay {sides} right sides together{tucked}. {between}; sew twice along the seam line and leave no gap. "
+        f"Lay {sides} right sides together{tucked}. {between}; sew twice along the seam line {gap}. "
         "Snip the allowance in inner corners. Turn the body right side out through the zipper.",
     )
 
@@ -369,16 +382,24 @@ def _lying_text(plan: KitPlan) -> str:
     return f", seen from the front: {lying}" if lying else ""
 
 
+def _stuck_text(plan: KitPlan) -> str:
+    """Marks of the winches that do not pass through the zipper."""
+    stuck = {unit.winch for unit in stuck_units(plan)}
+    return marks_text(tuple(mark for name, mark in winch_marks_of(plan.robot).items() if name in stuck))
+
+
 def _stuff(plan: KitPlan) -> AssemblyStep:
     inside, thickness = marks_on(plan, Mount.BODY), plan.robot.body.thickness
     full = f"about {1e3 * thickness:.0f} mm thick" if thickness else "as large as on page 1"
     them = "it" if len(inside) == 1 else "them"
+    ways = f"Bring {_stuck_text(plan)} in through the open seam. " if stuck_units(plan) else ""
     places = (
-        f"Set {marks_text(inside)} where the map shows {them}{_lying_text(plan)}. Tie {them} to the front cloth. "
+        f"{ways}Set {marks_text(inside)} where the map shows {them}{_lying_text(plan)}. Tie {them} to the front cloth. "
         if inside
         else ""
     )
     winches = ", then around the winches," if inside else ""
     lumps = " Leave no lumps next to the cables." if plan.robot.cables else ""
-    words = f"{places}Fill the limbs first{winches} softly and evenly, until the body is {full}.{lumps}"
+    last = " Close the open seam by hand with ladder stitch." if stuck_units(plan) else ""
+    words = f"{places}Fill the limbs first{winches} softly and evenly, until the body is {full}.{lumps}{last}"
     return AssemblyStep("Stuff the body", 30, words)

@@ -159,7 +159,7 @@ def test_two_in_one_place_lie_above_each_other_or_are_refused():
     assert refused.count("20 x 20 x ") == 2, "of two sizes both"
     assert " mm, 5 mm apart)" in refused
     (three,) = problems(arrange_units([*pair, brick("c", 0, 0, deep=10.0)], narrow, 40.0))
-    assert '"a" and "b" and "c"' in three
+    assert '"a", "b" and "c"' in three
     assert "60 mm in a body of 40 mm" in three
 
 

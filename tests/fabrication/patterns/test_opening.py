@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 import shapely
 from plush_robots import drawn_body, plush_robot
-from shapely import LineString
 
 from hydrostat.fabrication import PatternOptions, plush_pattern
-from hydrostat.fabrication.build_kit import _opening_warnings
-from hydrostat.fabrication.patterns.opening import ZIPPERS, Opening, opening_at
+from hydrostat.fabrication.passage import _find_stuck, _warning
+from hydrostat.fabrication.patterns.opening import ZIPPERS, opening_at
 from hydrostat.fabrication.patterns.pattern import Pattern
 from hydrostat.fabrication.patterns.shape import Layer, PatternPart
 from hydrostat.robot import Cable, Mount, Robot, Winch
@@ -109,15 +108,10 @@ def test_a_zipper_too_short_for_a_winch_is_told() -> None:
     """A slit opens to a ring of twice its length. Oracle: the girth 2 (27 + 39) of a box of 27 x 39 x 41 mm."""
     unit = SimpleNamespace(winch="left", mount=Mount.BODY, room=SimpleNamespace(size=(41.0, 27.0, 39.0)))
 
-    def told(length: float, mount: Mount = Mount.BODY) -> tuple[str, ...]:
-        opening = Opening(LineString([(0, 0), (length, 0)]), 100)
-        unit.mount = mount
-        return _opening_warnings(
-            SimpleNamespace(
-                work=SimpleNamespace(pattern=SimpleNamespace(opening=opening)), rigid=SimpleNamespace(units=(unit,))
-            )
-        )
-
-    assert told(66.0) == told(47.0, Mount.WORLD) == ()
-    (words,) = told(47.0)
+    assert _find_stuck([unit], 66.0) == ()
+    assert _find_stuck([unit], 47.0) == (unit,)
+    words = _warning(unit, 47.0)
+    assert "Leave 80 mm of seam open" in words  # 66 mm and a tenth, in full tens
     assert 'unit of winch "left" (27 x 39 x 41 mm) does not pass through its opening of 47 mm (minimum 66 mm)' in words
+    unit.mount = Mount.WORLD
+    assert _find_stuck([unit], 47.0) == ()
