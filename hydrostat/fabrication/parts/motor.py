@@ -170,7 +170,7 @@ _M3 = FaceScrew(size="M3", hole=3.4, head=5.6, head_height=2.4, depth=3.0)
 
 _N20 = Motor(
     key="n20",
-    title="Pololu micro metal gearmotor LP 6V with extended motor shaft, 298:1 (N20)",
+    title="Pololu micro metal gearmotor LP 6V, 298:1, with extended motor shaft (N20)",
     body=Box((12, 10, 9)).move(-6, -5, -9) + (Cylinder(16, 6) & Box((12, 10, 16)).move(-6, -5, 0)).move(0, 0, -25),
     outline=_box_outline((-6, -5), (6, 5)),
     depth=25.0,
