@@ -17,7 +17,7 @@ from hydrostat.fabrication.lists.lists import Lists, make_lists
 from hydrostat.fabrication.motor_choice import find_motor, motors_price, pulled_torques
 from hydrostat.fabrication.parts.motor import Motor
 from hydrostat.fabrication.parts.rigid_parts import RigidParts, rigid_parts
-from hydrostat.fabrication.passage import passage_warnings
+from hydrostat.fabrication.passage import find_passage_warnings
 from hydrostat.fabrication.patterns.channels import channel_strips
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.pattern import cut_sheet
@@ -211,7 +211,7 @@ def _findings(plan: KitPlan, lists: Lists) -> KitFindings:
         checks=checks,
         problems=tuple(dict.fromkeys((*_problems(plan, lists), *failed))),
         warnings=(
-            *(*_cable_warnings(plan), *_bending_warnings(plan), *_part_warnings(plan), *passage_warnings(plan)),
+            *(*_cable_warnings(plan), *_bending_warnings(plan), *_part_warnings(plan), *find_passage_warnings(plan)),
             *(*work.warnings, *rigid.warnings, *lists.warnings),
         ),
         notes=(*work.notes, *rigid.notes, *plan.demand.far),

@@ -1,27 +1,34 @@
-"""`stuck_units`: winch units that do not pass through the zipper, and the seam to leave open for them."""
+"""`find_stuck_units`: winch units that do not pass through the zipper, and the seam to leave open for them."""
 
 import math
 from collections.abc import Sequence
 
 from hydrostat.fabrication.kit_plan import KitPlan
 from hydrostat.fabrication.parts.winch_unit import WinchUnit
+from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.robot import Mount
 
 
-def stuck_units(plan: KitPlan) -> tuple[WinchUnit, ...]:
+def find_stuck_units(plan: KitPlan) -> tuple[WinchUnit, ...]:
     """Units in the body that do not pass through its zipper, the largest first."""
     return _find_stuck(plan.rigid.units, _slit(plan))
 
 
-def open_seam(plan: KitPlan) -> int:
+def find_stuck_marks(plan: KitPlan) -> tuple[str, ...]:
+    """Marks of the winches that do not pass through the zipper, in their order."""
+    stuck = {unit.winch for unit in find_stuck_units(plan)}
+    return tuple(mark for name, mark in winch_marks_of(plan.robot).items() if name in stuck)
+
+
+def find_open_seam(plan: KitPlan) -> int:
     """Length of seam to leave open for the winches [mm]; 0 if all pass through the zipper."""
-    stuck = stuck_units(plan)
+    stuck = find_stuck_units(plan)
     return _seam_for(stuck[0]) if stuck else 0
 
 
-def passage_warnings(plan: KitPlan) -> tuple[str, ...]:
+def find_passage_warnings(plan: KitPlan) -> tuple[str, ...]:
     """Warn of a zipper that is too short for a winch."""
-    return tuple(_warning(unit, _slit(plan)) for unit in stuck_units(plan)[:1])
+    return tuple(_warning(unit, _slit(plan)) for unit in find_stuck_units(plan)[:1])
 
 
 def _slit(plan: KitPlan) -> float:
@@ -31,24 +38,24 @@ def _slit(plan: KitPlan) -> float:
 
 
 def _find_stuck(units: Sequence[WinchUnit], slit: float) -> tuple[WinchUnit, ...]:
-    stuck = [unit for unit in units if unit.mount is Mount.BODY and _needed(unit) > slit]
-    return tuple(sorted(stuck, key=_needed, reverse=True))
+    stuck = [unit for unit in units if unit.mount is Mount.BODY and _slit_for(unit) > slit]
+    return tuple(sorted(stuck, key=_slit_for, reverse=True))
 
 
-def _needed(unit: WinchUnit) -> float:
+def _slit_for(unit: WinchUnit) -> float:
     """Length of the shortest slit that a unit passes [mm]: a slit opens to a ring of twice its length."""
     return float(sum(sorted(unit.room.size)[:2]))
 
 
 def _seam_for(unit: WinchUnit) -> int:
     """Length of seam that a unit passes, with a tenth to spare, in full tens [mm]."""
-    return 10 * math.ceil(1.1 * _needed(unit) / 10)
+    return 10 * math.ceil(1.1 * _slit_for(unit) / 10)
 
 
 def _warning(unit: WinchUnit, slit: float) -> str:
     sides = " x ".join(f"{side:.0f}" for side in sorted(unit.room.size))
     return (
         f'zipper: the unit of winch "{unit.winch}" ({sides} mm) does not pass through its opening of {int(slit)} mm '
-        f"(minimum {_needed(unit):.0f} mm). Leave {_seam_for(unit)} mm of seam open, and close it by hand. To reach "
+        f"(minimum {_slit_for(unit):.0f} mm). Leave {_seam_for(unit)} mm of seam open, and close it by hand. To reach "
         "the motor later, undo this seam"
     )

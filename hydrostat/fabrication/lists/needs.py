@@ -58,7 +58,7 @@ def _item(
     return Item(group=group, what=what, specification=specification, quantity=quantity, price=known, mass=mass)
 
 
-def _named(group: BillGroup, what: str, specification: str, quantity: float, price: str) -> Item:
+def _item_by_kind(group: BillGroup, what: str, specification: str, quantity: float, price: str) -> Item:
     """An item that the sheet names by the beginning of its specification."""
     return replace(_item(group, what, specification, quantity, price), is_named_by_kind=True)
 
@@ -84,7 +84,7 @@ def _plush(plan: KitPlan, cloth: Cloth) -> list[Item]:
             math.ceil(thread / spool),
             "thread",
         ),
-        _named(BillGroup.BODY, "zipper", zipper, float(cloth.zipper > 0), "zipper"),
+        _item_by_kind(BillGroup.BODY, "zipper", zipper, float(cloth.zipper > 0), "zipper"),
         _item(BillGroup.BODY, "felt scraps and embroidery thread", drawn, float(bool(marks)), "decoration"),
         _NEEDLES,
     ]
@@ -190,18 +190,18 @@ def control_needs(plan: PowerPlan | None) -> list[Item]:
     if plan.motor.is_feetech:
         adapter = "Waveshare bus servo adapter or alike, USB to the three wires of ST and SC servos"
         chain = "of three wires with plugs of 2.54 mm (5264-3), one from servo to servo"
-        board = _named(BillGroup.CONTROL, "bus servo adapter", adapter, 1.0, "bus adapter")
+        board = _item_by_kind(BillGroup.CONTROL, "bus servo adapter", adapter, 1.0, "bus adapter")
         price = "servo's own cable" if plan.motor.key.startswith("sts3215") else "servo cable"
         return [board, _item(BillGroup.CONTROL, "servo cable", chain, max(count - 1, 1), price), *feed]
     if plan.servos:
         bus = "OpenRB-150 or alike, drives the servos by their bus"
         chain = "of three wires with JST EH plugs (X3P), one from servo to servo"
         plugs = [_item(BillGroup.CONTROL, "servo cable", chain, count, "servo cable")]
-        return [_named(BillGroup.CONTROL, "controller board for servos", bus, 1.0, "servo board"), *plugs, *feed]
+        return [_item_by_kind(BillGroup.CONTROL, "controller board for servos", bus, 1.0, "servo board"), *plugs, *feed]
     kinds = {name: plan.boards.count(name) for name in dict.fromkeys(plan.boards)}
     bridge = f"carrier of a DRV8874 or alike, for {plan.motor.stall_current:g} A, current sense of 1.1 V/A"
     parts = [
-        _named(
+        _item_by_kind(
             BillGroup.CONTROL,
             "controller board",
             f"{BOARDS[name].title} or alike",
@@ -220,7 +220,7 @@ def control_needs(plan: PowerPlan | None) -> list[Item]:
             shifter = "4 channels, 5 V to 3.3 V, for two encoders"
             parts.append(_item(BillGroup.CONTROL, "level shifter", shifter, float(math.ceil(count / 2)), "shifter"))
     parts.append(_item(BillGroup.CONTROL, "capacitor and resistors", small, 1.0, "small parts"))
-    return [*parts, _named(BillGroup.CONTROL, "motor driver", bridge, count, "driver"), *feed]
+    return [*parts, _item_by_kind(BillGroup.CONTROL, "motor driver", bridge, count, "driver"), *feed]
 
 
 def _mould(plan: KitPlan) -> list[Item]:

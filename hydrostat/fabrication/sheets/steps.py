@@ -8,7 +8,7 @@ from hydrostat.fabrication.inserts import Insert, InsertKind, insert_title
 from hydrostat.fabrication.kit_options import Method
 from hydrostat.fabrication.kit_plan import KitPlan
 from hydrostat.fabrication.parts.base_plate import BasePlate
-from hydrostat.fabrication.passage import open_seam, stuck_units
+from hydrostat.fabrication.passage import find_open_seam, find_stuck_marks
 from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.robot import Mount, Pin, Robot, SheetSide
 from hydrostat.units import plural
@@ -362,7 +362,7 @@ def _sew(plan: KitPlan) -> AssemblyStep:
     sides = "front and back" if _flat(plan) else "neighboring patches"
     between = "Sew the gusset strips between them, notch to notch" if plan.work.gusset else "Match the notches"
     tucked = ", all lines tucked inside, clear of the seam" if plan.robot.cables else ""
-    gap = f"but for {open_seam(plan)} mm next to the winches" if stuck_units(plan) else "and leave no gap"
+    gap = f"but for {find_open_seam(plan)} mm next to the winches" if find_stuck_marks(plan) else "and leave no gap"
     return AssemblyStep(
         "Sew the body",
         45,
@@ -382,17 +382,11 @@ def _lying_text(plan: KitPlan) -> str:
     return f", seen from the front: {lying}" if lying else ""
 
 
-def _stuck_text(plan: KitPlan) -> str:
-    """Marks of the winches that do not pass through the zipper."""
-    stuck = {unit.winch for unit in stuck_units(plan)}
-    return marks_text(tuple(mark for name, mark in winch_marks_of(plan.robot).items() if name in stuck))
-
-
 def _stuff(plan: KitPlan) -> AssemblyStep:
     inside, thickness = marks_on(plan, Mount.BODY), plan.robot.body.thickness
     full = f"about {1e3 * thickness:.0f} mm thick" if thickness else "as large as on page 1"
     them = "it" if len(inside) == 1 else "them"
-    ways = f"Bring {_stuck_text(plan)} in through the open seam. " if stuck_units(plan) else ""
+    ways = f"Bring {marks_text(find_stuck_marks(plan))} in through the open seam. " if find_stuck_marks(plan) else ""
     places = (
         f"{ways}Set {marks_text(inside)} where the map shows {them}{_lying_text(plan)}. Tie {them} to the front cloth. "
         if inside
@@ -400,6 +394,6 @@ def _stuff(plan: KitPlan) -> AssemblyStep:
     )
     winches = ", then around the winches," if inside else ""
     lumps = " Leave no lumps next to the cables." if plan.robot.cables else ""
-    last = " Close the open seam by hand with ladder stitch." if stuck_units(plan) else ""
+    last = " Close the open seam by hand with ladder stitch." if find_stuck_marks(plan) else ""
     words = f"{places}Fill the limbs first{winches} softly and evenly, until the body is {full}.{lumps}{last}"
     return AssemblyStep("Stuff the body", 30, words)
