@@ -1,6 +1,7 @@
 """The motor of a kit: the cheapest that fits, holds the poses for long, turns far enough and is not slow."""
 
 import math
+import re
 from dataclasses import replace
 
 import pytest
@@ -9,7 +10,7 @@ from builders import gallery_robot
 from hydrostat.fabrication import KitOptions
 from hydrostat.fabrication.lists.motors import SLOW, power_plan
 from hydrostat.fabrication.lists.needs import control_needs
-from hydrostat.fabrication.motor_choice import MotorOffer, find_motor, motor_offers, motors_price
+from hydrostat.fabrication.motor_choice import MotorOffer, find_motor, fit_motor, motor_offers, motors_price
 from hydrostat.fabrication.parts.motor import ALL_MOTORS, MARGIN, Motor
 from hydrostat.robot import Robot
 
@@ -78,6 +79,17 @@ def test_a_shaft_that_turns_less_than_the_spool_is_refused(monkeypatch: pytest.M
     assert find_motor(robot, [0.01] * 10, AUTO).key == "xl330"
     offer(monkeypatch, replace(short, turns=most), Motor.choose("xl330"))
     assert find_motor(robot, [0.01] * 10, AUTO).key == "sts3215"
+
+
+def test_the_spool_radius_that_a_refusal_names_is_enough() -> None:
+    """Oracle: the refusal itself, of the same robot with that radius."""
+    robot, servo = gallery_robot("starfish"), Motor.choose("scs0009")
+    (line, *_), _ = fit_motor(robot, AUTO, servo)
+    named = re.search(r"at least ([\d.]+) mm, which takes 2\.4 times the torque", line)
+    assert named, line
+    wider = tuple(replace(winch, spool_radius=1e-3 * float(named[1])) for winch in robot.winches)
+    problems, _ = fit_motor(robot.with_network(wider, robot.cables), AUTO, servo)
+    assert not any("turns by" in problem for problem in problems)
 
 
 def test_a_motor_beaten_in_everything_is_named() -> None:

@@ -1,5 +1,6 @@
 """What feeds the motors. Oracle: cases by hand."""
 
+import numpy as np
 import pytest
 
 from hydrostat.errors import InputError
@@ -51,6 +52,10 @@ def test_ten_strong_servos_are_fed_in_several_places() -> None:
     assert plan.largest == pytest.approx(14.7)
     assert (plan.supply, plan.fuse, plan.wire) == (30.0, 25.0, (2.5, 14))
     assert plan.feeds * PLUG >= 14.7
+    gaps = np.diff((*plan.fed, 11))
+    assert plan.fed[0] == 1
+    assert len(gaps) == plan.feeds
+    assert max(gaps) - min(gaps) <= 1, "about as many servos after each feed"
 
 
 @pytest.mark.parametrize(("count", "boards"), [(2, ("uno",)), (3, ("mega",)), (6, ("mega",)), (8, ("mega", "uno"))])
