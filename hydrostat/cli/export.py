@@ -22,23 +22,35 @@ def export(
         int,
         typer.Option(metavar="N", min=0, max=1000, help="Number of random poses that test the MuJoCo model. 0 = none."),
     ] = 5,
+    fit_poses: Annotated[
+        int,
+        typer.Option(
+            metavar="N",
+            min=0,
+            max=1000,
+            help="Number of poses that the MuJoCo model is fitted to, 3 or more. 0 = no fit.",
+        ),
+    ] = 0,
 ) -> None:
     """Write a robot for other simulators and renderers.
 
     The MuJoCo model holds the body as deformable elements and the cables as tendons. Its first lines state its error
-    against hydrostat. The USD scene shows the film of `animate`. Measuring needs the extra export (MuJoCo).
+    against hydrostat. --fit-poses fits a few numbers to poses of hydrostat. The USD scene shows the film of `animate`.
+    Measuring and fitting need the extra export (MuJoCo).
 
     Example: hydrostat export gallery:starfish --mjcf --out build/starfish
     """
     if not mjcf and not usd:
         raise InputError("export needs --mjcf or --usd, or both")
+    if fit_poses and not (mjcf and trials):
+        raise InputError("--fit-poses needs --mjcf and --trials, which find the share of the travel to fit")
     require_folder(out)
     loaded = read_robot(robot)
     if not loaded.cables:
         raise InputError(f"{robot}: no cables. Add winches and cables, or run `hydrostat design`.")
     texts = {}
     if mjcf:
-        texts["robot.xml"] = _mjcf(loaded, trials)
+        texts["robot.xml"] = _mjcf(loaded, trials, fit_poses)
     if usd:
         texts["robot.usda"] = _usd(loaded)
     with result_folder(out) as folder:
@@ -47,23 +59,31 @@ def export(
     print("Wrote " + ", ".join(str(out / name) for name in texts))
 
 
-def _mjcf(robot: "Robot", trials: int) -> str:
+def _mjcf(robot: "Robot", trials: int, fit: int) -> str:
     """Model with its error, which is also printed."""
     from importlib.util import find_spec
 
-    from hydrostat.export import find_omissions, measure_mjcf, mjcf_text
+    from hydrostat.export import find_omissions, fit_mjcf, measure_mjcf, mjcf_text
     from hydrostat.version import __version__, install_command
 
     mjcf_text(robot)  # rejects robots before poses are measured
-    share, told = 1.0, "error not measured"
-    if find_spec("mujoco") is None:
-        told += f": {install_command('export')}"
+    share, lines, tuning = 1.0, ["error not measured"], None
+    if find_spec("mujoco") is None and not fit:
+        lines[0] += f": {install_command('export')}"
     elif trials:
         with progress_bar() as progress:
             found = measure_mjcf(robot, trials, progress=progress)
-        share, told = found.range_share, found.describe()
+            share, lines = found.range_share, [found.describe()]
+            if fit and found.share is not None:
+                fitted = fit_mjcf(robot, fit, share=share, progress=progress)
+                tuning = fitted.tuning if fitted.is_worth_it else None
+                lines = [
+                    f"unfitted: {lines[0]}",
+                    f"fit: {fitted.describe()}",
+                    *([tuning.describe(robot)] if tuning else []),
+                ]
     omitted = find_omissions(robot)
-    lines = [told, *([f"left out: {', '.join(omitted)}"] if omitted else [])]
+    lines = [*lines, *([f"left out: {', '.join(omitted)}"] if omitted else [])]
     for line in lines:
         print(f"MuJoCo model: {line}")
     controls = "controls: contraction of the winch of each cable [m]"
@@ -71,7 +91,9 @@ def _mjcf(robot: "Robot", trials: int) -> str:
         f"winch {winch.name}: {', '.join(cable.name for cable in robot.cables if cable.winch == winch.name)}"
         for winch in robot.winches
     ]
-    return mjcf_text(robot, remarks=[f"hydrostat {__version__}", *lines, controls, *winches], range_share=share)
+    return mjcf_text(
+        robot, remarks=[f"hydrostat {__version__}", *lines, controls, *winches], range_share=share, tuning=tuning
+    )
 
 
 def _usd(robot: "Robot") -> str:

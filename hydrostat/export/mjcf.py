@@ -8,8 +8,9 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from hydrostat.arrays import Bool, Int, Points
+from hydrostat.arrays import Bool, Int, Vector
 from hydrostat.errors import InputError
+from hydrostat.export.mjcf_tuning import MjcfTuning
 from hydrostat.geometry import Anchors
 from hydrostat.robot import Material, Pin, Plane, Robot
 from hydrostat.simulation import Simulation
@@ -20,7 +21,9 @@ DAMPING = 0.01  # Rayleigh damping of materials without viscosity [s]: without a
 CHORD = (7 / 8, 5 / 7)  # slope and zero of the line for a cable's tension: shares of its stiffness and smoothing
 
 
-def mjcf_text(robot: Robot, *, remarks: Iterable[str] = (), range_share: float = 1.0) -> str:
+def mjcf_text(
+    robot: Robot, *, remarks: Iterable[str] = (), range_share: float = 1.0, tuning: MjcfTuning | None = None
+) -> str:
     """Text of a MuJoCo model of a robot; it needs MuJoCo 4 or newer.
 
     Nodes are bodies on slide joints, elements a flex for each material, nodes in pins parts of the world. Each via
@@ -31,6 +34,7 @@ def mjcf_text(robot: Robot, *, remarks: Iterable[str] = (), range_share: float =
         robot: robot to write.
         remarks: lines of the comment at the start.
         range_share: share of the travel of each winch that its controls allow.
+        tuning: numbers that differ from the robot's, found by `fit_mjcf`.
 
     Raises:
         InputError: a drive, rod or sheet, which have no counterpart.
@@ -38,7 +42,7 @@ def mjcf_text(robot: Robot, *, remarks: Iterable[str] = (), range_share: float =
     for what, parts in (("drive", robot.drives), ("rod", robot.rods), ("sheet", robot.sheets)):
         if parts:
             raise InputError(f'{what} "{parts[0].name}": not available in MJCF. Remove it.')
-    return "\n".join(_MjcfModel(robot).lines(tuple(remarks), range_share)) + "\n"
+    return "\n".join(MjcfModel(robot, tuning).lines(tuple(remarks), range_share)) + "\n"
 
 
 def find_omissions(robot: Robot) -> tuple[str, ...]:
@@ -62,21 +66,22 @@ def find_omissions(robot: Robot) -> tuple[str, ...]:
 
 
 @dataclass(frozen=True, eq=False)
-class _MjcfTie:
+class MjcfTie:
     """Body at a point of an element."""
 
     name: str
-    place: Points  # in the rest pose [m]
+    place: Vector  # in the rest pose [m]
     nodes: Int[np.ndarray, " corners"]
-    weights: Points
+    weights: Vector
     is_free: bool  # False where it is part of the world
 
 
-class _MjcfModel:
+class MjcfModel:
     """Lines of a model, part by part."""
 
-    def __init__(self, robot: Robot) -> None:
-        self.robot, self.mesh, self._simulation = robot, robot.body.mesh, Simulation(robot)
+    def __init__(self, robot: Robot, tuning: MjcfTuning | None = None, simulation: Simulation | None = None) -> None:
+        self.robot, self.mesh, self._simulation = robot, robot.body.mesh, simulation or Simulation(robot)
+        self._tuning = tuning or MjcfTuning.none(robot)
         self.dim, self.axes = self.mesh.dim, "xyz"[: self.mesh.dim]
 
     @cached_property
@@ -88,7 +93,7 @@ class _MjcfModel:
         return held
 
     @cached_property
-    def ties(self) -> list[_MjcfTie]:
+    def ties(self) -> list[MjcfTie]:
         """Ties of all via points, cable after cable, then of the markers."""
         points, found = self._simulation.route_points, []
         for number, place in enumerate(points.rests):
@@ -99,10 +104,10 @@ class _MjcfModel:
             found.append(self._tie(f"marker {marker.name}", places[number], anchors, number, False))
         return found
 
-    def _tie(self, name: str, place: Points, anchors: Anchors, number: int, in_world: bool) -> _MjcfTie:
+    def _tie(self, name: str, place: Vector, anchors: Anchors, number: int, in_world: bool) -> MjcfTie:
         nodes, weights = anchors.stencils[number], anchors.weights[number]
         is_free = not in_world and bool(((weights > 0) & ~self.held[nodes]).any())
-        return _MjcfTie(name, place, nodes, weights, is_free)
+        return MjcfTie(name, place, nodes, weights, is_free)
 
     def lines(self, remarks: tuple[str, ...], range_share: float) -> Iterator[str]:
         """All lines of the file."""
@@ -129,7 +134,7 @@ class _MjcfModel:
             else:
                 yield _tag("site", 4, name=tie.name, pos=_place(tie.place), size="0.001")
 
-    def _body(self, name: str, place: Points, mass: float, site: str | None) -> Iterator[str]:
+    def _body(self, name: str, place: Vector, mass: float, site: str | None) -> Iterator[str]:
         yield f'    <body name={quoteattr(name)} pos="{_place(place)}">'
         yield _tag("inertial", 6, pos="0 0 0", mass=_numbers([mass]), diaginertia="1e-6 1e-6 1e-6")
         for axis, direction in zip(self.axes, np.eye(3), strict=False):
@@ -144,22 +149,30 @@ class _MjcfModel:
             if len(elements):
                 yield from self._flex(f"material {index}", material, elements)
 
+    def moduli(self, material: Material) -> tuple[bool, float, float]:
+        """True if a flex is thin; Young's modulus [Pa] and Poisson's ratio before they are tuned."""
+        young, poisson = material.young, material.poisson
+        if self.dim == 2 and self.robot.body.plane is Plane.STRESS:
+            return True, young, poisson
+        if self.dim == 2 and poisson < 1 / 3:  # plane strain is plane stress of these numbers
+            return True, young / (1 - poisson**2), poisson / (1 - poisson)
+        return False, young, poisson
+
     def _flex(self, name: str, material: Material, elements: Int[np.ndarray, "elements corners"]) -> Iterator[str]:
         used, numbers = np.unique(elements, return_inverse=True)
         cells, held = numbers.reshape(elements.shape), self.held[used]
         places = np.where(held[:, None], np.pad(self.mesh.nodes[used], ((0, 0), (0, 3 - self.dim))), 0.0)
         bodies = np.where(held, "world", [f"node_{node}" for node in used])
-        thickness, young, poisson = self.robot.body.thickness or 1.0, material.young, material.poisson
-        damping, shell = material.viscosity * 2 * (1 + poisson) / young or DAMPING, ""
-        is_thin = self.dim == 2 and (self.robot.body.plane is Plane.STRESS or poisson < 1 / 3)
+        thickness, shell = self.robot.body.thickness or 1.0, ""
+        damping = material.viscosity * 2 * (1 + material.poisson) / material.young or DAMPING
+        is_thin, young, poisson = self.moduli(material)
         if is_thin:
-            if self.robot.body.plane is not Plane.STRESS:  # plane strain is plane stress of these numbers
-                young, poisson = young / (1 - poisson**2), poisson / (1 - poisson)
             shell = f' elastic2d="stretch" thickness="{thickness:.9g}"'
         elif self.dim == 2:  # slabs that cannot become thicker
             half = np.array([0.0, 0.0, thickness / 2])
             cells, places = _prisms(cells, len(used)), np.concatenate([places - half, places + half])
             bodies = np.concatenate([bodies, bodies])
+        young, poisson = self._tuning.young * young, self._tuning.shift_poisson(poisson)
         yield _tag(
             "flex",
             4,
@@ -208,6 +221,7 @@ class _MjcfModel:
         points = self._simulation.route_points
         spans = np.linalg.norm(points.spans(points.rests), axis=1)
         lengths = np.bincount(points.cables, spans, len(self.robot.cables))
+        gains = dict(zip((winch.name for winch in self.robot.winches), self._tuning.gains, strict=True))
         for cable, ratio, length in zip(self.robot.cables, self.robot.spool_ratios, lengths, strict=True):
             winch, stiffness = self.robot.winch(cable.winch), CHORD[0] * cable.stiffness
             free = length + cable.slack + CHORD[1] * cable.smoothing
@@ -218,7 +232,7 @@ class _MjcfModel:
                 tendon=cable.name,
                 gaintype="fixed",
                 biastype="affine",
-                gainprm=_numbers([-stiffness * ratio]),
+                gainprm=_numbers([-stiffness * ratio * gains[cable.winch]]),
                 biasprm=_numbers([stiffness * free, -stiffness, 0.0]),
                 ctrlrange=_numbers([-winch.release, range_share * winch.travel]),
                 forcerange="-100000 0",
@@ -247,5 +261,5 @@ def _numbers(values: Iterable[float]) -> str:
     return " ".join(f"{value:.9g}" for value in values)
 
 
-def _place(place: Points) -> str:
+def _place(place: Vector) -> str:
     return _numbers([*place, 0.0][:3])
