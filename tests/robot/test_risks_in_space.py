@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from builders import box_mesh, mesh_body
+from builders import box_mesh, gallery_robot, mesh_body
 
 from hydrostat.geometry import Mesh, Surface, contour, write_ply
 from hydrostat.robot import Body, Cable, Marker, Mount, Pin, Robot, SurfaceSketch, Winch, find_risks
@@ -107,6 +107,14 @@ def test_segment_leaves_the_body() -> None:
     assert float(found[2]) == pytest.approx(60, abs=1.25)
     round_it = solid_robot(route=((10, 20, 30), (40, 20, 10), (80, 20, 10), (110, 20, 30)))
     assert not any("cable" in risk for risk in find_risks(replace(round_it, body=body)))
+
+
+def test_line_between_rigid_parts_runs_free() -> None:
+    """Oracle: the tendons of the spine, threaded from disk to disk; were the disks soft, they would leave the body."""
+    spine = gallery_robot("spine")
+    assert not any("leaves" in risk for risk in find_risks(spine))
+    soft = replace(spine, body=spine.body.with_parts(()), rods=())
+    assert any("leaves" in risk for risk in find_risks(soft))
 
 
 def test_world_winch_may_come_in_through_the_surface() -> None:

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from hydrostat.arrays import Float, Points
+from hydrostat.arrays import Bool, Float, Points
 from hydrostat.geometry import clearance, locate
 from hydrostat.robot.body import Body
 from hydrostat.robot.cable import Cable
@@ -131,14 +131,18 @@ def _leaving(robot: Robot) -> Iterator[Risk]:
         inside = _points_in_body(robot, cable)
         if len(inside) < 2:
             continue
-        places = _sample_line(inside)
         if robot.body.outline is None:
+            runs = [_sample_line(inside[at : at + 2]) for at in np.flatnonzero(~_spans_rigid_parts(robot.body, inside))]
+            if not runs:
+                continue
+            places = np.concatenate(runs)
             out = locate(robot.body.mesh, places).distances
             sewn = cover(robot.body, inside).max() <= SEWN_DEPTH
             leaves = out.max() > max(corner * float(np.median(robot.body.mesh.spacings)), spans if sewn else 0.0)
         else:
             from shapely import LineString, distance, points
 
+            places = _sample_line(inside)
             drawing, line = robot.body.outline.polygon, LineString(inside)
             leaves = not drawing.covers(line)
             if leaves:  # the middle of what is outside too: a slit may be narrower than a step
@@ -149,6 +153,18 @@ def _leaving(robot: Robot) -> Iterator[Risk]:
             way = "add a point to lead it round, unless it crosses a slit"
             text = f"leaves the body by {mm(float(out.max()))} at {where}; {way}"
             yield Risk(_cable_name(robot, index), float(out.max()), text)
+
+
+def _spans_rigid_parts(body: Body, points: Points) -> Bool[np.ndarray, " segments"]:
+    """True for segments from rigid part to rigid part, such as the disks of a spine: the line runs free between them."""
+    rigid = np.array([False, *(part.is_rigid for part in body.parts)])[body.element_materials]
+    if not rigid.any():
+        return np.zeros(len(points) - 1, dtype=bool)
+    in_part = np.zeros(len(body.mesh.nodes), dtype=bool)
+    in_part[body.mesh.elements[rigid]] = True
+    anchors = locate(body.mesh, points)
+    held = (in_part[anchors.stencils] | (anchors.weights < 1e-9)).all(axis=1)
+    return held[:-1] & held[1:]
 
 
 def _near_the_surface(robot: Robot) -> Iterator[Risk]:
