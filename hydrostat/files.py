@@ -24,7 +24,7 @@ _HOST = re.sub(r"\W", "_", platform.node())[:24] or "here"
 _NAME = re.compile(rf"\..*\.{_HOST}-(\d+)-\d+\.part", re.DOTALL)
 
 
-MOST_DRAWN_BYTES = {".svg": 20_000_000, ".dxf": 10_000_000, ".png": 50_000_000, ".jpg": 50_000_000, ".jpeg": 50_000_000}
+MAX_DRAWN_BYTES = {".svg": 20_000_000, ".dxf": 10_000_000, ".png": 50_000_000, ".jpg": 50_000_000, ".jpeg": 50_000_000}
 """The most bytes of a drawing or a picture, by the ending of its name."""
 
 
@@ -44,7 +44,7 @@ def read_stranger(path: str | Path, *, name: str | None = None, most: int | None
     """
     path, said = Path(path), name or str(path)
     most_of_any = 120_000_000  # The most bytes of any other file
-    most = (MOST_DRAWN_BYTES | _MESHES).get(path.suffix.lower(), most_of_any) if most is None else most
+    most = (MAX_DRAWN_BYTES | _MESHES).get(path.suffix.lower(), most_of_any) if most is None else most
     try:
         known = path.stat()
         if not stat.S_ISREG(known.st_mode):
@@ -67,7 +67,7 @@ def read_stranger(path: str | Path, *, name: str | None = None, most: int | None
 
 
 _HINTS = {
-    **dict.fromkeys(MOST_DRAWN_BYTES, ": save the outline alone, or a smaller picture"),
+    **dict.fromkeys(MAX_DRAWN_BYTES, ": save the outline alone, or a smaller picture"),
     **dict.fromkeys(_MESHES, ": save it as bytes, or a coarser mesh"),
     **dict.fromkeys((".stl", ".obj", ".ply", ".off", ".3mf"), ": save it as binary, or simplify the surface"),
 }

@@ -74,7 +74,7 @@ def check_point(field: str, point: Point) -> None:
         raise InputError(f"{field} must have finite coordinates, not {[float(value) for value in point]}")
 
 
-LONGEST_NAME = 60  # a name has at most this many characters
+MAX_NAME = 60  # a name has at most this many characters
 
 
 def check_name(name: str) -> str:
@@ -85,8 +85,8 @@ def check_name(name: str) -> str:
     """
     if not name:
         raise InputError("a name must not be empty")
-    if len(name) > LONGEST_NAME:
-        raise InputError(f"{units.quote(name)} has {len(name)} characters; a name has at most {LONGEST_NAME}")
+    if len(name) > MAX_NAME:
+        raise InputError(f"{units.quote(name)} has {len(name)} characters; a name has at most {MAX_NAME}")
     wrong = next((letter for letter in name if not (_is_word(letter) or letter in " ._-")), None)
     if wrong is not None:
         raise InputError(

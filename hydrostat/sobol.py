@@ -62,7 +62,7 @@ def _read_directions() -> tuple[list[int], list[list[int]]] | None:
     file = Path(str(scipy.__file__)).with_name("stats") / "_sobol_direction_numbers.npz"
     try:
         with np.load(file) as stored:
-            return tuple(stored[name][:_MOST].tolist() for name in ("poly", "vinit"))
+            return tuple(stored[name][:_MAX_DIMENSIONS].tolist() for name in ("poly", "vinit"))
     except (OSError, KeyError, ValueError):
         return None
 
@@ -70,5 +70,5 @@ def _read_directions() -> tuple[list[int], list[list[int]]] | None:
 _BITS = 30
 """Bits of a coordinate, as in SciPy."""
 
-_MOST = 1000
+_MAX_DIMENSIONS = 1000
 """Dimensions that are read."""

@@ -13,7 +13,7 @@ from hydrostat.given import check_name
 from hydrostat.units import quote
 
 SLOW = "2 Hz"  # frequency of viscosity = "material"
-LARGEST = 10**12  # no number of robot.toml is larger, whether bare or in SI
+MAX_NUMBER = 10**12  # no number of robot.toml is larger, whether bare or in SI
 
 
 def quantity_parser(dimension: units.Dimension) -> Callable[[object], float]:
@@ -24,7 +24,7 @@ def quantity_parser(dimension: units.Dimension) -> Callable[[object], float]:
             value = units.parse_quantity(text, dimension)
         except InputError as error:
             raise ValueError(str(error)) from None
-        if abs(value) > LARGEST:
+        if abs(value) > MAX_NUMBER:
             raise ValueError(f"{quote(text)} is too large")
         return value
 
@@ -38,7 +38,7 @@ def parse_number(value: object) -> Decimal:
         raise ValueError(f"{quote(value)} is not a number{hint}")
     if isinstance(value, Decimal) and not value.is_finite():
         raise ValueError(f"{quote(value)} is not a finite number")
-    if abs(value) > LARGEST:
+    if abs(value) > MAX_NUMBER:
         raise ValueError(f"{quote(value)} is too large; write a number between -1e12 and 1e12")
     return Decimal(value)
 

@@ -74,7 +74,7 @@ _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?)\s*([
 _SYMBOL = r"[^\W\d_]+(?:\s*(?:\^|\*\*)\s*-?\d|[²³])?"
 _UNIT = re.compile(rf"{_SYMBOL}(?:\s*[*/ .·]\s*{_SYMBOL}){{0,3}}")
 _DOT = re.compile("[.·]")
-_LONGEST = 60
+_MAX_LETTERS = 60
 """Characters of a quantity, and of a value shown in an error."""
 
 
@@ -86,7 +86,7 @@ def parse_quantity(text: object, dimension: Dimension) -> float:
     """
     if not isinstance(text, str):
         raise InputError(f'{quote(text)} has no unit; write {dimension.name} as text: "{dimension.example}"')
-    match = _QUANTITY.fullmatch(text) if len(text) <= _LONGEST else None
+    match = _QUANTITY.fullmatch(text) if len(text) <= _MAX_LETTERS else None
     if not match:
         raise InputError(f'{quote(text)} is not {dimension.name}; write for example "{dimension.example}"')
     number, unit = match.groups()
@@ -140,8 +140,8 @@ def quote(value: object) -> str:
     if isinstance(value, int) and value.bit_length() > 200:
         return "a huge number"
     text = str(value)
-    if len(text) > _LONGEST:
-        text = text[: _LONGEST - 3] + "..."
+    if len(text) > _MAX_LETTERS:
+        text = text[: _MAX_LETTERS - 3] + "..."
     return f'"{printable(text)}"' if isinstance(value, str) else printable(text)
 
 

@@ -8,7 +8,7 @@ from hydrostat.arrays import Vector
 from hydrostat.camera.calibrate_camera import calibrate_camera
 from hydrostat.camera.find_tags import Corners, Gray, find_tags
 from hydrostat.camera.locate_tags import align_places, locate_in_space, locate_on_plane, pairs_of
-from hydrostat.camera.measure_photos import LEAST, PhotoOptions
+from hydrostat.camera.measure_photos import MIN_TAGS, PhotoOptions
 from hydrostat.camera.tags import marker_tags, sheet_of
 from hydrostat.errors import InputError
 from hydrostat.simulation import Equilibrium
@@ -49,10 +49,10 @@ class MarkerView:
             for number in set.intersection(*(set(each) for each in found))
         }
         self._board = {number: corners for number, corners in tags.items() if sheet_of(number) is not None}
-        if len(self._board) < LEAST:
+        if len(self._board) < MIN_TAGS:
             raise InputError(
-                f"{name}: {plural(len(self._board), 'tag')} of the board in sight. Show at least {LEAST} whole tags, "
-                "in focus."
+                f"{name}: {plural(len(self._board), 'tag')} of the board in sight. Show at least {MIN_TAGS} whole "
+                "tags, in focus."
             )
         size = (frames[0].shape[1], frames[0].shape[0])
         known = self._options.lens and self._options.lens.scale_to(size)

@@ -23,10 +23,10 @@ from hydrostat.simulation import ContractionProfile, Simulation
 FILMS = (".mp4", ".mov", ".m4v", ".avi", ".mkv", ".webm")
 """Ends of the names of films."""
 
-MOST_FRAMES = 10_000
+MAX_FRAMES = 10_000
 """Frames that a table takes."""
 
-FAST = 20e-3
+FAST_WINCH_SPEED = 20e-3
 """Speed of a winch [m/s] above which a frame is far from an equilibrium."""
 
 
@@ -122,8 +122,8 @@ def measure_film(
             found.append(places)
         blind += not places
         progress("frames", round(time / options.every), round(seconds / options.every))
-        if len(times) > MOST_FRAMES:
-            raise InputError(f"{film}: more than {MOST_FRAMES} frames. Take fewer by --every.")
+        if len(times) > MAX_FRAMES:
+            raise InputError(f"{film}: more than {MAX_FRAMES} frames. Take fewer by --every.")
     if not times:
         raise InputError(f"{film}: has no frame after {options.start:g} s. Check --start.")
     commands = np.array([profile.at(time) for time in times])
@@ -155,10 +155,10 @@ def _find_warnings(film: Path, times: Vector, commands: np.ndarray, blind: int) 
     if blind:
         texts.append(f"{film.name}: {blind} of {blind + len(times)} frames show no marker. The table leaves them out.")
     speeds = np.abs(np.diff(commands, axis=0)) / np.diff(times)[:, None]
-    if speeds.size and speeds.max() > FAST:
+    if speeds.size and speeds.max() > FAST_WINCH_SPEED:
         texts.append(
             f"{film.name}: winches move at up to {1e3 * speeds.max():.0f} mm/s. Rows count as poses at rest: play more "
-            f"slowly, below {1e3 * FAST:.0f} mm/s."
+            f"slowly, below {1e3 * FAST_WINCH_SPEED:.0f} mm/s."
         )
     return texts
 

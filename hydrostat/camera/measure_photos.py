@@ -30,7 +30,7 @@ from hydrostat.robot import Robot
 from hydrostat.simulation import Equilibrium, Simulation
 from hydrostat.units import plural
 
-LEAST = 4
+MIN_TAGS = 4
 """Tags of the board that a photograph must show."""
 
 
@@ -189,10 +189,10 @@ def _read(photos: Sequence[Photo]) -> tuple[list[dict[int, Corners]], tuple[int,
         size = own
         found = find_tags(pixels, photo.name)
         on_board = sum(sheet_of(number) is not None for number in found)
-        if on_board < LEAST:
+        if on_board < MIN_TAGS:
             raise InputError(
-                f"{photo.name}: {plural(on_board, 'tag')} of the board in sight. Show at least {LEAST} whole tags, in "
-                "focus."
+                f"{photo.name}: {plural(on_board, 'tag')} of the board in sight. Show at least {MIN_TAGS} whole tags, "
+                "in focus."
             )
         tags.append(found)
         focals.append(focal)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 FULL_FRAME = 43.27
 """Diagonal of the film that focal lengths in photographs are converted to [mm]."""
 
-LARGEST = 100_000_000
+MAX_PIXELS = 100_000_000
 """Pixels that a photograph may have."""
 
 
@@ -209,8 +209,8 @@ def _open(file: Path) -> "Image.Image":
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             picture = Image.open(file)
-            if picture.size[0] * picture.size[1] > LARGEST:
-                raise InputError(f"{file}: more than {LARGEST // 1_000_000} megapixels. Save it smaller.")
+            if picture.size[0] * picture.size[1] > MAX_PIXELS:
+                raise InputError(f"{file}: more than {MAX_PIXELS // 1_000_000} megapixels. Save it smaller.")
             picture.load()
     except FileNotFoundError:
         raise InputError(f"{file}: no such file") from None

@@ -25,7 +25,7 @@ MISSIZED = 0.015
 SHIFTED = 0.05
 """Shift of the frame in one photograph, as a share of the body's size, from which on the board has moved."""
 
-COARSE = 0.5
+MAX_CORNER_ERROR = 0.5
 """Error of corners that sharp photographs do not have [pixels]."""
 
 
@@ -67,7 +67,7 @@ def warn_of_board(photos: Sequence[Photo], calibration: CameraCalibration, scale
         f"{photo.name}: the board is off by {1e3 * error * scale:.2f} mm ({error:.2f} pixels). It is bent or "
         f"printed in different sizes.{_few(photos)}"
         for photo, error in zip(photos, calibration.errors, strict=True)
-        if error * scale > BENT and error > COARSE
+        if error * scale > BENT and error > MAX_CORNER_ERROR
     ]
 
 
@@ -77,7 +77,7 @@ def warn_of_tags(photos: Sequence[Photo], misfits: Sequence[Mapping[str, float]]
         f"{photo.name}: the tag of {name} is no square ({misfit:.1f} pixels). It is bent, tilted or half covered."
         for photo, each in zip(photos, misfits, strict=True)
         for name, misfit in each.items()
-        if misfit > COARSE
+        if misfit > MAX_CORNER_ERROR
     ]
 
 

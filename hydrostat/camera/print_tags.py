@@ -36,7 +36,7 @@ LETTER, LINE = 1.55, 3.4
 OVERHANG = 0.5
 """Share of a label on the body below which it bends or peels."""
 
-SMALLEST, LARGEST_SIDE = 4e-3, 80e-3
+MIN_SIDE, MAX_SIDE = 4e-3, 80e-3
 """Sides that a marker's tag may have [m]."""
 
 STEPS = (
@@ -89,8 +89,8 @@ def tag_files(robot: Robot, paper: Paper) -> dict[str, bytes]:
 
 def tags_source(robot: Robot, paper: Paper, side: float) -> str:
     """Pages as typst reads them."""
-    if not SMALLEST <= side <= LARGEST_SIDE:
-        low, high = MILLIMETERS * SMALLEST, MILLIMETERS * LARGEST_SIDE
+    if not MIN_SIDE <= side <= MAX_SIDE:
+        low, high = MILLIMETERS * MIN_SIDE, MILLIMETERS * MAX_SIDE
         raise InputError(f"--tag {MILLIMETERS * side:g} mm: must be {low:g} to {high:g} mm")
     width, height = PAPERS[paper]
     sheets = count_sheets(robot)

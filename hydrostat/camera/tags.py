@@ -27,7 +27,7 @@ CELLS = 8
 
 ON_SHEET = COLUMNS * ROWS
 FIRST_MARKER = SHEETS * ON_SHEET
-MOST_MARKERS = 100
+MAX_MARKERS = 100
 
 BOX = np.array([(-0.5, 0.5), (0.5, 0.5), (0.5, -0.5), (-0.5, -0.5)])
 """Corners of a tag of side 1 about its center, y up, in the order in which they are found."""
@@ -55,9 +55,9 @@ def marker_tags(robot: Robot) -> dict[str, int]:
     """
     if not robot.markers:
         raise InputError(f"{robot.name}: no [[marker]] in robot.toml. Add one for each point to measure.")
-    if len(robot.markers) > MOST_MARKERS:
-        raise InputError(f"{robot.name}: {len(robot.markers)} markers. Tags are for {MOST_MARKERS} or less.")
-    first = FIRST_MARKER + zlib.crc32(robot.name.encode()) % (len(_codes()) - FIRST_MARKER - MOST_MARKERS + 1)
+    if len(robot.markers) > MAX_MARKERS:
+        raise InputError(f"{robot.name}: {len(robot.markers)} markers. Tags are for {MAX_MARKERS} or less.")
+    first = FIRST_MARKER + zlib.crc32(robot.name.encode()) % (len(_codes()) - FIRST_MARKER - MAX_MARKERS + 1)
     return {marker.name: first + index for index, marker in enumerate(robot.markers)}
 
 

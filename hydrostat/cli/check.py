@@ -150,8 +150,8 @@ def _print_workspaces(robot: "Robot") -> None:
     from hydrostat.simulation import Simulation
 
     nodes = len(robot.body.mesh.nodes)
-    if nodes > _LARGE:
-        print(f"workspace: skipped ({nodes} nodes, maximum {_LARGE}). Use larger elements")
+    if nodes > _LARGE_BODY_NODES:
+        print(f"workspace: skipped ({nodes} nodes, maximum {_LARGE_BODY_NODES}). Use larger elements")
         return
     # nodes of all poses that are tried for the reach; fewest and most poses
     solved, least, most = 30_000, 9, 64
@@ -166,7 +166,7 @@ def _print_workspaces(robot: "Robot") -> None:
         print(f"  {reach.marker}: {reach}")
 
 
-_LARGE = 5000  # nodes of a body from which on even the fewest poses take long
+_LARGE_BODY_NODES = 5000  # nodes of a body from which on even the fewest poses take long
 
 
 def _print_out_of_plane(robot: "Robot") -> str | None:

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from hydrostat.robot import Robot
 
 _MUCH = 0.25  # a larger share of the way to the targets that is left is explained
-_CLEARLY = 0.95  # a network with so many times the error of the last that was told is told
+_IMPROVEMENT_RATIO = 0.95  # a network with so many times the error of the last that was told is told
 STOPPING = "stopping: solving and writing the best network so far ..."  # said when Ctrl-C ends a search
 
 
@@ -185,7 +185,7 @@ def _tell_better() -> "Callable[[DesignStage], None]":
 
     def tell(stage: "DesignStage") -> None:
         nonlocal least
-        if stage.error > _CLEARLY * least:
+        if stage.error > _IMPROVEMENT_RATIO * least:
             return
         least = stage.error
         counts = f"{plural(len(stage.robot.winches), 'winch')}, {plural(len(stage.robot.cables), 'cable')}"

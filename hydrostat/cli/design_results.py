@@ -76,12 +76,12 @@ def find_refused_better(network: "Network") -> "tuple[Alternative, str] | None":
     from hydrostat.design import kit_fits
     from hydrostat.fabrication import Demand, find_refusals
 
-    better = [one for one in network.alternatives if one.expected_error < _CLEARLY * network.expected_error]
+    better = [one for one in network.alternatives if one.expected_error < _BETTER_RATIO * network.expected_error]
     best = min((one for one in better if not kit_fits(one)), key=lambda one: one.expected_error, default=None)
     return best and (best, find_refusals(best.robot, Demand.of_results(best.robot, best.ik_results))[0])
 
 
-_CLEARLY = 0.9  # a network below this share of the error of the chosen one is clearly better
+_BETTER_RATIO = 0.9  # a network below this share of the error of the chosen one is clearly better
 
 
 def designed_tension(robot: "Robot", folder: Path) -> float | None:

@@ -118,7 +118,7 @@ def _way(simulation: "Simulation", networks: "LearnedModel | None", *, markers: 
 
     begin = teleop.WinchMapper.list_channels(simulation.robot).rest
     if markers:
-        rate = control.LinkLimits().speed if guarded else control.FASTEST
+        rate = control.LinkLimits().speed if guarded else control.DEFAULT_MAX_SPEED
         return teleop.MarkerMapper(simulation, begin, model=networks, rate=rate)
     return teleop.WinchMapper(simulation, begin, solves=guarded)
 

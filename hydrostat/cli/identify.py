@@ -129,7 +129,7 @@ def _suggest(
         parts = [f"{w.name}={1e3 * pull:g}mm" for w, pull in zip(robot.winches, command, strict=True) if pull]
         parts += [f"{marker}={1e3 * mass:g}g" for marker, mass in zip(found.markers, masses, strict=True) if mass]
         print(f"  {f'{step:02d} ' if found.in_order else ''}{','.join(parts) or 'rest'}.jpg")
-    hidden = [name for name, share in found.deviations.items() if share > HIDDEN]
+    hidden = [name for name, share in found.deviations.items() if share > UNIDENTIFIED_RATIO]
     if hidden:
         print(
             f"note: if markers are read to {1e3 * found.noise:.1f} mm, these photographs hardly show "
@@ -139,7 +139,7 @@ def _suggest(
         print("note: a hung mass shows a modulus. Add --hang 50g, and gravity to robot.toml.")
 
 
-HIDDEN = 0.7
+UNIDENTIFIED_RATIO = 0.7
 """Uncertainty of a parameter over that of its guess from which on measurements do not show it."""
 
 
@@ -204,12 +204,12 @@ def _save_material(name: str, found: "IdentifiedRobot", source: str) -> None:
     print(f"Wrote {path}: {1e-3 * material.young:.3g} kPa (95 %: {1e-3 * low:.3g} to {1e-3 * high:.3g} kPa)")
     if replaced is not None:
         print(f'note: it replaces your earlier "{replaced.name}", {1e-3 * replaced.young:.3g} kPa')
-    if high > _WIDE * low:
+    if high > _WIDE_RATIO * low:
         print("warning: the interval of Young's modulus is wide. Measure with forces or hung masses, then fit again.")
     print(f'Use it: material = "{name}" in robot.toml')
 
 
-_WIDE = 2.0
+_WIDE_RATIO = 2.0
 """Upper over lower end of an interval that is hardly of use."""
 
 

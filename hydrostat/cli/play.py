@@ -90,7 +90,7 @@ def play(
     table = control.stand_table(asked, given)
     for column in control.list_moved_loads(asked, given):
         _say(kind, f"warning: no motor changes column {column}. Apply this load by hand, or the poses differ")
-    fastest = control.FASTEST if port is None else control.LinkLimits().speed
+    fastest = control.DEFAULT_MAX_SPEED if port is None else control.LinkLimits().speed
     motors = control.Motors(loaded.winches, control.SimulatedLink(np.zeros(len(loaded.winches))), fastest=fastest)
     motors.check(table, speed=speed)  # before anything turns
     if port is not None:

@@ -30,22 +30,22 @@ if TYPE_CHECKING:
     from hydrostat.control.marker_feedback import LostAction, MarkerFeedback, MarkerSight
     from hydrostat.control.marker_path import MarkerPath
     from hydrostat.control.model_tensions import TensionLookup, WinchPull, tensions_along, winch_tensions
-    from hydrostat.control.motors import FASTEST, Motors
+    from hydrostat.control.motors import DEFAULT_MAX_SPEED, Motors
     from hydrostat.control.open_bus import EMULATED, add_cable_layers, check_port, open_bus, open_line, servo_ratings
     from hydrostat.control.player import Player
     from hydrostat.control.restart_motors import restart_motors
     from hydrostat.control.scs_bus import ScsBus
     from hydrostat.control.spool_curve import SpoolCurve
     from hydrostat.control.take_up import SlackCalibration, find_cable_zeros
-    from hydrostat.control.timeline import LONGEST, Key, Timeline
+    from hydrostat.control.timeline import MAX_DURATION, Key, Timeline
 
 __all__ = [
     "CALIBRATION",
+    "DEFAULT_MAX_SPEED",
     "EMULATED",
     "EMULATED_CALIBRATION",
-    "FASTEST",
     "GOAL",
-    "LONGEST",
+    "MAX_DURATION",
     "TICK",
     "Bus",
     "BusLink",

@@ -25,7 +25,7 @@ MAX_LEAD_TIME = 0.12
 """A goal is never further ahead of a motor than it turns in this time [s]: a dead host leaves it no further."""
 MAX_READING_AGE = 0.2
 """A reading so old is a fault [s]."""
-FASTEST = 0.5
+MAX_SPEED = 0.5
 """No limit of speed is greater [m/s]."""
 RANGE_TOLERANCE = 5e-4
 """Motors may be so far beyond the limits of their winch, by what the motor rounds and the cable gives [m]."""
@@ -60,7 +60,7 @@ class LinkLimits:
     rise: float = 1.0
 
     def __post_init__(self) -> None:
-        for name, value, most in (("speed", self.speed, FASTEST), ("rise", self.rise, 100.0)):
+        for name, value, most in (("speed", self.speed, MAX_SPEED), ("rise", self.rise, 100.0)):
             if not 0 < value <= most:
                 raise InputError(f"limits of motors: {name} must be above 0 and at most {most:g}, not {value:g}")
 

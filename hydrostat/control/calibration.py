@@ -180,7 +180,7 @@ class Calibration:
         if not file.exists():
             raise InputError(f"{folder} has no {name}; `hydrostat calibrate` makes it")
         try:
-            table = tomllib.loads(read_stranger(file, most=_MOST).decode())
+            table = tomllib.loads(read_stranger(file, most=_MAX_BYTES).decode())
         except UnicodeDecodeError:
             raise InputError(f"{file}: not UTF-8 text; save the file again as UTF-8") from None
         except tomllib.TOMLDecodeError as error:
@@ -247,7 +247,7 @@ class Calibration:
         return replace_file(folder / name, "".join(lines).encode())
 
 
-_MOST = 1_000_000
+_MAX_BYTES = 1_000_000
 """No motors.toml has more bytes."""
 
 _KEYS: dict[str, tuple[type, ...]] = {

@@ -62,7 +62,7 @@ class PacketReader:
             if len(self._kept) < 7:
                 return None
             length = int.from_bytes(self._kept[5:7], "little")
-            if not 3 <= length <= _LONGEST:
+            if not 3 <= length <= _MAX_BYTES:
                 self._skip()
                 continue
             if len(self._kept) < 7 + length:
@@ -102,5 +102,5 @@ def _table() -> tuple[int, ...]:
 
 
 _TABLE = _table()
-_LONGEST = 1024
+_MAX_BYTES = 1024
 """No packet is longer [bytes]."""

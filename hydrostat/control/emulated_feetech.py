@@ -16,7 +16,7 @@ from hydrostat.control.emulated_servos import EmulatedChain, EmulatedServo
 from hydrostat.control.feetech_bus import (
     AMPERE,
     BOUND,
-    FULL,
+    FULL_TORQUE,
     GOAL,
     LOW,
     RISE,
@@ -125,14 +125,14 @@ class EmulatedSts(_EmulatedFeetech):
         self.table = bytearray(80)
         self.table[0:6] = bytes([3, 10, 0, *self.model.to_bytes(2, "little"), self.number])
         self.table[VOLTS : VOLTS + 2] = bytes([round(10 * self.allowed[1]), round(10 * self.allowed[0])])
-        self.table[BOUND : BOUND + 2] = FULL.to_bytes(2, "little")
+        self.table[BOUND : BOUND + 2] = FULL_TORQUE.to_bytes(2, "little")
         self.heard, self.moved = -inf, 0.0
         self.step(0.0, 1e-3)
 
     @property
     def most(self) -> float:
         """Largest torque that its bound allows [N m]."""
-        return self.constant * STALL * int.from_bytes(self.table[BOUND : BOUND + 2], "little") / FULL
+        return self.constant * STALL * int.from_bytes(self.table[BOUND : BOUND + 2], "little") / FULL_TORQUE
 
     def _hold_place(self) -> None:
         self._write_register(GOAL, round(self.counted_angle / TICK))
@@ -176,7 +176,7 @@ class EmulatedScs(_EmulatedFeetech):
         self.table[0:6] = bytes([3, 10, 0, *self.model.to_bytes(2, "big"), self.number])
         self.table[LOW : LOW + 4] = bytes([0, 0, 0x03, 0xFF])
         self.table[VOLTS : VOLTS + 2] = bytes([84, 45])
-        self.table[SCS_BOUND : SCS_BOUND + 2] = FULL.to_bytes(2, "big")
+        self.table[SCS_BOUND : SCS_BOUND + 2] = FULL_TORQUE.to_bytes(2, "big")
         self.heard, self.moved = -inf, 0.0
         self.step(0.0, 1e-3)
 
@@ -188,7 +188,7 @@ class EmulatedScs(_EmulatedFeetech):
     @property
     def most(self) -> float:
         """Largest torque that its bound allows [N m]."""
-        return self.constant * SCS_STALL * self._word(SCS_BOUND) / FULL
+        return self.constant * SCS_STALL * self._word(SCS_BOUND) / FULL_TORQUE
 
     def _hold_place(self) -> None:
         self._write_word(GOAL, round(self.angle / SCS_TICK))
@@ -205,7 +205,7 @@ class EmulatedScs(_EmulatedFeetech):
         self.angle = min(max(self.angle + speed * dt, 0.0), 1023 * SCS_TICK)
         share = min(self.load(self.angle) / (self.constant * SCS_STALL), 1.0) if on else 0.0
         self._write_word(STATE, round(self.angle / SCS_TICK))
-        self._write_word(STATE + 4, round(FULL * abs(share)) | (0x400 if share < 0 else 0))
+        self._write_word(STATE + 4, round(FULL_TORQUE * abs(share)) | (0x400 if share < 0 else 0))
         volts = 3.5 if self.ails.sags else self.supply
         self.table[STATE + 6 : STATE + 8] = bytes([round(10 * volts), 85 if self.ails.hot else 35])
 

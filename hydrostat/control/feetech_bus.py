@@ -98,10 +98,10 @@ STALL = 2.7
 SMALL, LARGE, SMALL_LIMIT, LARGE_LEAST, LITHIUM, EMPTY = 7.4, 12.0, 10.0, 9.0, 8.4, 8.0
 """Supplies that STS3215 are sold for, the greatest limit in the memory of those for the smaller, the least supply that
 we take for the larger (an empty pack of three lithium cells), two full lithium cells, eight empty NiMH cells [V]."""
-LARGE_MOST = 14.0  # greatest supply of a servo for 12 V, whatever its memory allows [V]
-FULL = 1000  # bound of torque that bounds nothing
+MAX_VOLTAGE_12V = 14.0  # greatest supply of a servo for 12 V, whatever its memory allows [V]
+FULL_TORQUE = 1000  # bound of torque that bounds nothing
 STANDING = 2000  # speed at which they come back to where they shall stand [steps/s]
-FARTHEST = 30719  # step that a servo without limits of angle may go to
+MAX_STEP = 30719  # step that a servo without limits of angle may go to
 FAULTS = {
     0x01: "supply voltage out of range",
     0x02: "encoder fault",
@@ -136,7 +136,7 @@ class FeetechBus(ServoBus):
         """Switch torque on where they stand; a bound of current is a share of the torque at stall."""
         with self._lock:
             for number, most in zip(self._numbers, currents.tolist(), strict=True):
-                share = max(1, round(FULL * min(most / STALL, 1.0)))
+                share = max(1, round(FULL_TORQUE * min(most / STALL, 1.0)))
                 self._set(number, BOUND, share.to_bytes(2, "little"), "its bound of torque")
             self._switch_on()
 
@@ -210,7 +210,7 @@ class FeetechBus(ServoBus):
             raise HydrostatError(f"motor {number} is not in position mode; set its register {MODE} to 0")
         self._set(number, TORQUE, b"\x00", "its torque switch")
         low, high = _to_signed(told[LOW : LOW + 2], 15), _to_signed(told[LOW + 2 : LOW + 4], 15)
-        self._low[index], self._high[index] = (low, high) if low < high else (-FARTHEST, FARTHEST)
+        self._low[index], self._high[index] = (low, high) if low < high else (-MAX_STEP, MAX_STEP)
         return MotorFacts(number=number, model=MODELS[model], firmware=100 * told[0] + told[1], watchdog=False)
 
     def _check_supply(self) -> None:
@@ -230,7 +230,7 @@ class FeetechBus(ServoBus):
                     f"motor {number} allows supplies from {least:.1f} V up to {most:.1f} V, which is reversed. Set its "
                     f"registers {VOLTS} (greatest) and {VOLTS + 1} (least) by its label, in 0.1 V."
                 )
-            if volts > min(most, LITHIUM if _read_rating(most) == SMALL else LARGE_MOST):
+            if volts > min(most, LITHIUM if _read_rating(most) == SMALL else MAX_VOLTAGE_12V):
                 raise _tell_supply(number, *found[number])
         kinds = {_read_rating(most): number for number, (_, most, _) in found.items()}
         if len(kinds) > 1:

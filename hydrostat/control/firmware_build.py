@@ -17,7 +17,7 @@ from hydrostat.fabrication import BOARDS, check_board
 from hydrostat.files import replace_file
 from hydrostat.robot import Robot
 
-SPARE = 0.025
+SPARE_LENGTH = 0.025
 """Cable length that a motor may turn beyond travel and release [m]: slack that calibration takes up."""
 
 
@@ -194,7 +194,7 @@ def _numbers(robot: Robot, calibration: Calibration, board: int, gain: float) ->
     winches, limits, lines = {winch.name: winch for winch in robot.winches}, LinkLimits(), ""
     for motor in _motors_of_board(calibration, board):
         winch, counts = winches[motor.winch], (motor.counts or 0.0) / (2 * pi * motor.radius)
-        numbers = [-counts * (winch.release + SPARE), counts * (winch.travel + SPARE)]
+        numbers = [-counts * (winch.release + SPARE_LENGTH), counts * (winch.travel + SPARE_LENGTH)]
         numbers += [counts * limits.speed, min(counts * limits.rise, gain * motor.current * (motor.counts or 0.0))]
         text = ", ".join(str(round(number)) for number in (*numbers, 1, 1e3 * motor.current))
         lines += f"    {{{text}}}, /* {re.sub(r'[^ -)+-~]', ' ', winch.name)} */ \\\n"
@@ -203,14 +203,16 @@ def _numbers(robot: Robot, calibration: Calibration, board: int, gain: float) ->
 
 def _run(command: Sequence[str]) -> None:
     try:
-        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=_LONGEST)
+        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=_MAX_SECONDS)
     except subprocess.TimeoutExpired:
-        raise HydrostatError(f"{command[0]} took more than {_LONGEST:g} s; look at the board and its port") from None
+        raise HydrostatError(
+            f"{command[0]} took more than {_MAX_SECONDS:g} s; look at the board and its port"
+        ) from None
     if done.returncode:
         told = (done.stderr or done.stdout).strip().splitlines() or ["without a word"]
         why = next((line for line in told if "error" in line.lower()), told[-1])
         raise HydrostatError(f"{command[0]} failed: {why.strip()}")
 
 
-_LONGEST = 120.0
+_MAX_SECONDS = 120.0
 """Neither a compiler nor avrdude takes so long [s]."""

@@ -24,7 +24,7 @@ TICKS, TICK = 250, 62 * 1024 / 16e6
 RATES = (5, 10, 25, 50)
 """Rows a second that moves may have; the board interpolates linearly."""
 
-_LARGEST = 32_767
+_MAX_INT16 = 32_767
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,7 +102,7 @@ def bake_moves(
             f"{longest:.1f} s, or {slowest:.1f} s with --rate {RATES[0]}."
         )
     counts = np.array([_count_from_zeros(calibration, profile.at(row * _measure_row(rate))) for row in range(rows)])
-    step = max(1, ceil(np.abs(counts).max() / _LARGEST))
+    step = max(1, ceil(np.abs(counts).max() / _MAX_INT16))
     return BakedMoves(steps=np.rint(counts / step).astype(int), step=step, rate=rate)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 
-SILENCE = 0.5  # motors that are told nothing for so long [s] stop where they are (watchdog)
+WATCHDOG_TIMEOUT = 0.5  # motors that are told nothing for so long [s] stop where they are (watchdog)
 
 
 class Link(ABC):
@@ -22,7 +22,7 @@ class Link(ABC):
     Neither waits for a motor. A link that fails raises a `HydrostatError` that says what to do. On that, and on any
     other error, `stop` is called and nothing is sent before somebody asks again.
 
-    Whoever puts real motors behind this keeps four promises: they stop `SILENCE` seconds after the last `send`, even
+    Whoever puts real motors behind this keeps four promises: they stop `WATCHDOG_TIMEOUT` after the last `send`, even
     if this process has died, so the watch is on the side of the motors; they stop on any error of theirs, and on
     `stop`, and hold what they have; no command makes them move beyond the limits of their winch, or faster than it
     says, which `Motors` asks for too.
@@ -88,7 +88,7 @@ class SimulatedLink(Link):
 
     def _move(self, now: float) -> None:
         """Let time pass; after the silence nothing moves."""
-        seconds = min(now, self._heard + SILENCE) - self._time
+        seconds = min(now, self._heard + WATCHDOG_TIMEOUT) - self._time
         self._time = max(self._time, now)
         if np.isfinite(seconds) and seconds > 0:
             reach = self._speed * seconds

@@ -22,7 +22,7 @@ GAIN = 3.0
 BOUND = 0.2
 """Largest correction of a winch, as a share of its travel."""
 
-FASTEST_CORRECTION = 0.02
+MAX_CORRECTION_SPEED = 0.02
 """Largest speed of a correction [m/s]."""
 
 MISREAD = 0.2
@@ -168,7 +168,7 @@ class MarkerFeedback:
             move = -self._correction * min(step / FADE, 1.0)
         else:
             move = (self._aim - self._correction) * (1.0 - np.exp(-GAIN * step))
-        move = np.clip(move, -FASTEST_CORRECTION * step, FASTEST_CORRECTION * step)
+        move = np.clip(move, -MAX_CORRECTION_SPEED * step, MAX_CORRECTION_SPEED * step)
         self._correction = np.clip(self._correction + move, -self._bound, self._bound)
 
     def _allowed_share(self, time: float) -> float:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.control.link import SILENCE, Link
+from hydrostat.control.link import WATCHDOG_TIMEOUT, Link
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Winch
 from hydrostat.simulation import ProfileTable
@@ -29,9 +29,10 @@ class DriveAxis(Winch):
     turns: bool
 
 
-FASTEST = 0.15  # largest speed of the cables [m/s] unless told otherwise: brisk for a small motor; knobs feel direct
+DEFAULT_MAX_SPEED = 0.15
+"""Speed limit of the cables by default [m/s]: brisk for a small motor, and knobs feel direct."""
 SPEEDS = (1e-3, 1.0)  # slowest and fastest that motors may be told to turn [m/s]
-NEAR = 1e-7  # contractions this close [m] are the same
+CONTRACTION_TOLERANCE = 1e-7  # contractions this close [m] are the same
 
 
 class Motors:
@@ -59,8 +60,8 @@ class Motors:
         link: Link,
         *,
         places: Vector | None = None,
-        fastest: float = FASTEST,
-        command_timeout: float = SILENCE,
+        fastest: float = DEFAULT_MAX_SPEED,
+        command_timeout: float = WATCHDOG_TIMEOUT,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         """Motors that stand still where they are [m], at 0 if that is left out.
@@ -97,7 +98,9 @@ class Motors:
         times, values = table.profile.times, table.profile.values
         if times[0] < 0:
             raise InputError(f"{table.place(0)}, column time_s: times count from 0 s, not from {times[0]:g}")
-        for row, winch in np.argwhere((values < self.low - NEAR) | (values > self.high + NEAR)).tolist():
+        for row, winch in np.argwhere(
+            (values < self.low - CONTRACTION_TOLERANCE) | (values > self.high + CONTRACTION_TOLERANCE)
+        ).tolist():
             low, high, unit = 1e3 * self.low[winch] + 0.0, 1e3 * self.high[winch], self.units[winch]
             raise InputError(
                 f"{table.place(row)}, column {self.names[winch]}: {1e3 * values[row, winch]:g} {unit} is "
@@ -117,7 +120,7 @@ class Motors:
         """Command contractions within limits [m]; return those beyond (InputError: not finite; the command stays)."""
         self.command = self._within(contractions)
         beyond = np.abs(contractions - self.command)
-        if beyond.max(initial=0.0) <= NEAR:
+        if beyond.max(initial=0.0) <= CONTRACTION_TOLERANCE:
             return ""
         index = int(beyond.argmax())
         limit, wanted = 1e3 * self.command[index], 1e3 * contractions[index]
@@ -151,7 +154,7 @@ class Motors:
         except BaseException:
             self.hold()
             raise
-        return bool(np.abs(self.places - before).max(initial=0.0) > NEAR)
+        return bool(np.abs(self.places - before).max(initial=0.0) > CONTRACTION_TOLERANCE)
 
     def hold(self) -> None:
         """Stop where they are."""

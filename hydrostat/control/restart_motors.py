@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from hydrostat.control.bus import Bus, Reading, steady
 from hydrostat.errors import HydrostatError
 
-COOL, LONGEST, LOOK = 50.0, 900.0, 5.0
+COOL_TEMPERATURE, MAX_WAIT, POLL_INTERVAL = 50.0, 900.0, 5.0
 """A motor is cool below this temperature [degree C]; longest time to wait for it, and time between two looks [s]."""
 
 
@@ -42,13 +42,13 @@ def restart_motors(
         reading = bus.read()
         off = [index for index in range(len(names)) if _is_off(reading, index)]
         warmest = max(off, key=lambda index: float(reading.temperatures[index]), default=-1)
-        if warmest < 0 or reading.temperatures[warmest] < COOL:
+        if warmest < 0 or reading.temperatures[warmest] < COOL_TEMPERATURE:
             break
         words = f"{names[warmest]}: its motor is {reading.temperatures[warmest]:.0f} °C warm"
-        if clock() - began > LONGEST:
-            raise HydrostatError(f"{words} after {LONGEST / 60:.0f} min. Switch the power off and find what heats it")
-        say(f"{words}. Waiting until it is below {COOL:.0f} °C")
-        wait(LOOK)
+        if clock() - began > MAX_WAIT:
+            raise HydrostatError(f"{words} after {MAX_WAIT / 60:.0f} min. Switch the power off and find what heats it")
+        say(f"{words}. Waiting until it is below {COOL_TEMPERATURE:.0f} °C")
+        wait(POLL_INTERVAL)
     if off:
         forget(off)
     for index in off:

@@ -15,7 +15,7 @@ import numpy as np
 from hydrostat.arrays import Vector
 from hydrostat.control.bus import MotorFacts, Reading
 from hydrostat.control.dynamixel_packets import ALL, READ, SYNC_WRITE
-from hydrostat.control.feetech_bus import FAULTS, FULL, GOAL, TORQUE, VOLTS, FeetechBus
+from hydrostat.control.feetech_bus import FAULTS, FULL_TORQUE, GOAL, TORQUE, VOLTS, FeetechBus
 from hydrostat.errors import HydrostatError
 
 MODEL, LOW, BOUND, LOCK, STATE, STATE_BYTES = 3, 9, 16, 48, 56, 8
@@ -38,7 +38,7 @@ class ScsBus(FeetechBus):
         with self._lock:
             for number, most in zip(self._numbers, currents.tolist(), strict=True):
                 self._set(number, LOCK, b"\x01", "its lock")
-                share = max(1, round(FULL * min(most / SCS_STALL, 1.0)))
+                share = max(1, round(FULL_TORQUE * min(most / SCS_STALL, 1.0)))
                 self._set(number, BOUND, share.to_bytes(2, "big"), "its bound of torque")
             self._switch_on()
 
@@ -52,7 +52,7 @@ class ScsBus(FeetechBus):
                     continue
                 told, load = packet.content, int.from_bytes(packet.content[4:6], "big")
                 last["angles"][index] = SCS_TICK * int.from_bytes(told[0:2], "big")
-                last["currents"][index] = SCS_STALL * (load & 0x3FF) / FULL * (-1 if load >> 10 & 1 else 1)
+                last["currents"][index] = SCS_STALL * (load & 0x3FF) / FULL_TORQUE * (-1 if load >> 10 & 1 else 1)
                 last["volts"][index], last["temperatures"][index] = 0.1 * told[6], told[7]
                 stamps[index] = self._clock()
                 faults[index] = ", ".join(word for bit, word in FAULTS.items() if packet.instruction & bit)

@@ -11,11 +11,11 @@ from hydrostat.control.bus_link import BusLink
 from hydrostat.control.calibration import WinchMotor
 from hydrostat.errors import HydrostatError, InputError
 
-STOPS, LEAST = 7, 4
+STOPS, MIN_STOPS = 7, 4
 """Places at which the mark is read, and how many of them must be reached."""
 STANDS = 0.3
 """A winch that stands for so long [s] away from where it shall go is held by its body: that is how far it goes."""
-SLOW, TURN = 0.02, 0.02
+TURN_SPEED, TURN = 0.02, 0.02
 """Speed from one to the next [m/s]; from one command to the next [s]."""
 WITHIN = 1e-3
 """Readings may lie so far beside the curve [m]: a ruler read to half a millimeter does far better."""
@@ -141,7 +141,7 @@ class SpoolCurve:
             _go(link, place, 0.0, clock, wait)
         finally:
             link.stop()
-        if len(turned) < LEAST:
+        if len(turned) < MIN_STOPS:
             raise HydrostatError(
                 f"{motor.winch}: its motor stood after {1e3 * taken:.0f} of {1e3 * most:.0f} mm; let its cable "
                 f"off the body, or allow more than {motor.current:g} A in motors.toml, and begin again"
@@ -162,7 +162,7 @@ def _go(link: BusLink, place: int, goal: float, clock: Callable[[], float], wait
     now, since = float(goals[place]), clock()
     goals[place], mark = goal, now
     while clock() - since < STANDS:
-        link.send(goals, clock(), speed=SLOW)
+        link.send(goals, clock(), speed=TURN_SPEED)
         wait(TURN)
         now = float(link.read(clock())[place])
         if abs(now - mark) > 1e-4:

@@ -22,8 +22,8 @@ class Key:
     contractions: Mapping[str, float]  # by the name of the winch [m]; others take in nothing
 
     def __post_init__(self) -> None:
-        if not (isfinite(self.time) and 0 <= self.time <= LONGEST):
-            raise InputError(f"the time of a keyframe must be from 0 to {LONGEST:g} s, not {self.time:g}")
+        if not (isfinite(self.time) and 0 <= self.time <= MAX_DURATION):
+            raise InputError(f"the time of a keyframe must be from 0 to {MAX_DURATION:g} s, not {self.time:g}")
         for name, value in self.contractions.items():
             if not isfinite(value):
                 raise InputError(f"keyframe at {self.time:g} s: the contraction of {name} is not a finite number")
@@ -41,10 +41,12 @@ class Timeline:
         times = [key.time for key in self.keys]
         if any(later <= earlier for earlier, later in pairwise(times)):
             raise InputError("keyframes must come in the order of their times, no two at the same time")
-        if len(times) > MOST_KEYS:
-            raise InputError(f"a timeline may have {MOST_KEYS} keyframes, not {len(times)}")
-        if not (isfinite(self.length) and SHORTEST <= self.length <= LONGEST):
-            raise InputError(f"a timeline must be from {SHORTEST:g} to {LONGEST:g} s long, not {self.length:g} s")
+        if len(times) > MAX_KEYS:
+            raise InputError(f"a timeline may have {MAX_KEYS} keyframes, not {len(times)}")
+        if not (isfinite(self.length) and MIN_DURATION <= self.length <= MAX_DURATION):
+            raise InputError(
+                f"a timeline must be from {MIN_DURATION:g} to {MAX_DURATION:g} s long, not {self.length:g} s"
+            )
 
     @property
     def seconds(self) -> float:
@@ -63,11 +65,11 @@ class Timeline:
 
     def index_at(self, time: float) -> int | None:
         """Number of the key at a time [s]; None if there is none."""
-        return next((index for index, key in enumerate(self.keys) if abs(key.time - time) <= SAME), None)
+        return next((index for index, key in enumerate(self.keys) if abs(key.time - time) <= KEY_TOLERANCE), None)
 
     def with_key(self, key: Key) -> Self:
         """The same with one more key, in place of one at the same time."""
-        others = [other for other in self.keys if abs(other.time - key.time) > SAME]
+        others = [other for other in self.keys if abs(other.time - key.time) > KEY_TOLERANCE]
         return replace(self, keys=tuple(sorted([*others, key], key=lambda other: other.time)))
 
     def without(self, index: int) -> Self:
@@ -84,13 +86,13 @@ class Timeline:
 
         The InputError of one that is too large, or no such table, names the line.
         """
-        if len(content) > LARGEST:
-            raise InputError(f"{name}: a table may have {LARGEST / 1e6:g} MB, not {len(content) / 1e6:.1f} MB")
+        if len(content) > MAX_BYTES:
+            raise InputError(f"{name}: a table may have {MAX_BYTES / 1e6:g} MB, not {len(content) / 1e6:.1f} MB")
         shown = PurePath(name.replace("\\", "/")).name or "table"
         profile = ProfileTable.read(content, robot, name=shown).profile
         times = profile.times - profile.times[0]
-        if times[-1] > LONGEST:
-            raise InputError(f"{shown}: it lasts {times[-1]:.6g} s; a timeline may last {LONGEST:g} s")
+        if times[-1] > MAX_DURATION:
+            raise InputError(f"{shown}: it lasts {times[-1]:.6g} s; a timeline may last {MAX_DURATION:g} s")
         names = [winch.name for winch in robot.winches]
         kept = _essential_rows(times, profile.values)
         keys = tuple(
@@ -101,7 +103,7 @@ class Timeline:
             timeline = Timeline(keys=keys)
         except InputError as error:
             raise InputError(f"{shown}: {error}") from None
-        return replace(timeline, length=max(float(times[-1]), SHORTEST)) if len(keys) > 1 else timeline
+        return replace(timeline, length=max(float(times[-1]), MIN_DURATION)) if len(keys) > 1 else timeline
 
     def table(self, robot: Robot) -> bytes:
         """Contractions in time as a CSV of seconds and millimeters; see `ProfileTable` (InputError: no keyframes)."""
@@ -112,13 +114,13 @@ class Timeline:
         return ContractionProfile(times=times, values=np.array([profile.at(time) for time in times])).text(robot)
 
 
-SHORTEST, LONGEST = 0.1, 600.0  # no timeline is shorter, none longer [s]
-SAME = 5e-3  # keys closer in time than this [s] are one
-MOST_KEYS = 2000  # no timeline has more
+MIN_DURATION, MAX_DURATION = 0.1, 600.0  # no timeline is shorter, none longer [s]
+KEY_TOLERANCE = 5e-3  # keys closer in time than this [s] are one
+MAX_KEYS = 2000  # no timeline has more
 
 
 STEP = 0.02  # a table is read along lines, so a smooth timeline is written in steps of this time [s]
-LARGEST = 4_000_000  # no table has more bytes
+MAX_BYTES = 4_000_000  # no table has more bytes
 
 
 def _times(timeline: Timeline) -> np.ndarray:
@@ -127,7 +129,7 @@ def _times(timeline: Timeline) -> np.ndarray:
     if timeline.smooth:
         steps = max(1, round((times[-1] - times[0]) / STEP))
         times += np.linspace(times[0], times[-1], steps + 1).tolist()
-    if timeline.seconds > timeline.keys[-1].time + SAME:
+    if timeline.seconds > timeline.keys[-1].time + KEY_TOLERANCE:
         times.append(timeline.seconds)
     rows = np.unique(np.round(times, 6))
     return rows[np.append(True, np.diff(rows) > 1e-4)]

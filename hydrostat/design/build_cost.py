@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from hydrostat.design.checks.cables import SAME
+from hydrostat.design.checks.cables import HOLE_TOLERANCE
 from hydrostat.design.polyline import nearest_shares, turns
 from hydrostat.fabrication import CableWork, KitOptions, Method, drive_price, find_motor, shaft_torques
 from hydrostat.ik import IKResult
 from hydrostat.robot import Cable, Mount, Robot, sewn_robot, sewn_sides
 from hydrostat.units import plural
 
-SHARP = 60.0  # a turn of more than this [degrees] is called sharp
+SHARP_TURN = 60.0  # a turn of more than this [degrees] is called sharp
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,7 +23,7 @@ class BuildCost:
 
     holes: int  # those in the cloth of a flat plush body; else points that cables are led through, but at winches
     crossings: int  # places where cables cross, but beside the winch of both
-    sharp_turns: int  # via points at which a cable turns by more than `SHARP` degrees
+    sharp_turns: int  # via points at which a cable turns by more than `SHARP_TURN` degrees
     sheaths: int  # tubes
     length: float  # of all cables along their routes [m]
     minutes: float  # of cutting cables and tubes, and of stitching or threading them [min]
@@ -104,7 +104,7 @@ def front(points: Sequence[tuple[float, float]]) -> list[int]:
 
 
 def _sharp(cable: Cable) -> int:
-    return int((np.degrees(turns(np.array(cable.points))) > SHARP).sum())
+    return int((np.degrees(turns(np.array(cable.points))) > SHARP_TURN).sum())
 
 
 def _crossings(robot: Robot) -> int:
@@ -127,5 +127,5 @@ def _crossings(robot: Robot) -> int:
             beside = winch.name == robot.cables[other].winch and winch.mount is Mount.BODY
             if beside and np.linalg.norm(place - np.array(winch.at)) < 2 * winch.spool_radius:
                 continue
-            found += int(np.linalg.norm(place - meet) < SAME)
+            found += int(np.linalg.norm(place - meet) < HOLE_TOLERANCE)
     return found

@@ -59,11 +59,11 @@ class Range:
         return (1e3, "mm") if self.unit == "m" else (1.0, self.unit)
 
 
-LONGEST = 20.0
+MAX_LENGTH = 20.0
 """Largest length that can be asked for [m]: a larger one was meant in another unit."""
 
-_LENGTH = Range(above=True, most=LONGEST, unit="m")
-_GAP = Range(most=LONGEST, unit="m")
+_LENGTH = Range(above=True, most=MAX_LENGTH, unit="m")
+_GAP = Range(most=MAX_LENGTH, unit="m")
 
 
 def _limit(default: Any, allowed: Range | None = None, *, trees: bool = False) -> Any:
@@ -138,7 +138,7 @@ class Constraints:
     cable_gap: float = _limit(0.004, _GAP)
     max_turn: float = _limit(30.0, Range(above=True, most=180.0, unit="degrees"))
     bend_radius: float = _limit(0.0, _GAP)
-    max_length: float | None = _limit(None, Range(above=True, most=LONGEST, optional=True, unit="m"))
+    max_length: float | None = _limit(None, Range(above=True, most=MAX_LENGTH, optional=True, unit="m"))
     tension: float = _limit(20.0, Range(above=True, most=1000.0, unit="N"), trees=True)
     torque: float | None = _limit(None, Range(above=True, most=100.0, unit="N m", optional=True))
     motor: str = "auto"
@@ -146,7 +146,7 @@ class Constraints:
     release: float = _limit(0.0, _GAP, trees=True)
     spool_radius: float = _limit(0.006, _LENGTH, trees=True)
     slack: float = _limit(0.0, Range(most=1.0, unit="m"))
-    spool_ratio: float = _limit(1.0, Range(least=1.0, most=Robot.LARGEST_STEP))
+    spool_ratio: float = _limit(1.0, Range(least=1.0, most=Robot.MAX_RADIUS_RATIO))
     two_way: bool = False
     leads: bool = _limit(True, trees=True)
     mirror: str | None = None

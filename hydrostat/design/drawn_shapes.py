@@ -10,7 +10,7 @@ from shapely.geometry.base import BaseGeometry
 from hydrostat.design.zone import Zone
 from hydrostat.robot import Body, Robot
 
-_LARGEST = 0.3  # share of the body above which a drawn shape is no eye or mouth: cables must cross it
+_MAX_SHARE = 0.3  # share of the body above which a drawn shape is no eye or mouth: cables must cross it
 _ROUND = 0.9  # a shape that fills such a share of the circle around it becomes a disc
 _SIMPLER = 2e-4  # largest error of a simplified outline [m]
 
@@ -18,7 +18,7 @@ _SIMPLER = 2e-4  # largest error of a simplified outline [m]
 def drawn_shapes(body: Body) -> list[BaseGeometry]:
     """Convex hulls of the small shapes that are drawn on a body [m]; none for large ones, such as a belly."""
     hulls = [shapely.LineString(line).convex_hull for line in body.marks]
-    return [hull for hull in hulls if _width(hull) < _LARGEST * body.mesh.size]
+    return [hull for hull in hulls if _width(hull) < _MAX_SHARE * body.mesh.size]
 
 
 def drawn_zones(body: Body, gap: float) -> tuple[Zone, ...]:

@@ -32,14 +32,14 @@ def find_lifts(network: Network) -> tuple[Lift, ...]:
     if not isinstance(request.winches, int) or request.warm_start:
         return ()
     changes = list(_changes(request, request.winches)) if request.winches < len(request.poses) else []
-    if network.expected_error > _LARGE * network.source.body.mesh.size:
+    if network.expected_error > _LARGE_ERROR * network.source.body.mesh.size:
         if across := _across_drawings(network.source, request):
             changes.append((CROSSING, across))
         elif request.winches >= len(request.poses) and request.constraints.cable_gap > 0:
-            changes.append((TOUCHING, replace(request, constraints=replace(request.constraints, cable_gap=0.0))))
+            changes.append((CROSSING_LINE, replace(request, constraints=replace(request.constraints, cable_gap=0.0))))
     for words, changed in changes:
         best = _find_quickly(network.source, changed)
-        if best is not None and best.expected_error < _CLEARLY * network.expected_error:
+        if best is not None and best.expected_error < _BETTER_RATIO * network.expected_error:
             lifts.append(Lift(words=words, network=best))
     return tuple(lifts)
 
@@ -128,8 +128,8 @@ def _neighbors(request: DesignRequest, own: int) -> Iterator[DesignRequest]:
 CROSSING = 'drawing_gap = "0 mm" in a file for --constraints'
 """Line that allows cables across drawn shapes."""
 
-TOUCHING = 'cable_gap = "0 mm" in a file for --constraints (cables may cross)'
+CROSSING_LINE = 'cable_gap = "0 mm" in a file for --constraints (cables may cross)'
 """Line that allows cables to cross."""
 
-_CLEARLY = 0.85  # an error below this multiple of the network's is reported
-_LARGE = 0.01  # share of the body's size above which an error may be due to drawn shapes that cables avoid
+_BETTER_RATIO = 0.85  # an error below this multiple of the network's is reported
+_LARGE_ERROR = 0.01  # share of the body's size above which an error may be due to drawn shapes that cables avoid

@@ -8,12 +8,12 @@ from hydrostat.design.constraints import Constraints
 from hydrostat.errors import InputError
 from hydrostat.robot import PoseTarget, Robot
 
-_NEAR = 0.02  # share of the body's size by which a point may be off its mirror image
+_MIRROR_TOLERANCE = 0.02  # share of the body's size by which a point may be off its mirror image
 
 
 def find_mirror_axis(robot: Robot, poses: Iterable[PoseTarget]) -> str | None:
     """Axis across which the outline, the markers and all targets are their own mirror image; None without one."""
-    nodes, near = robot.body.mesh.nodes, _NEAR * robot.body.mesh.size
+    nodes, near = robot.body.mesh.nodes, _MIRROR_TOLERANCE * robot.body.mesh.size
     skin = nodes[robot.body.mesh.boundary_nodes]
     rest = {marker.name: np.array(marker.at) for marker in robot.markers}
     for axis in "xyz"[: nodes.shape[1]]:

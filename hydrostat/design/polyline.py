@@ -37,7 +37,7 @@ def sharpest_turn(route: Route) -> float:
 Measure = Callable[[Points], Float[np.ndarray, " points"]]
 """Distances of points from something [m]: they change by no more than one goes."""
 
-FINEST = 4e-5  # places are at least so far apart [m]: coordinates are rounded to a quarter of it
+MIN_SPACING = 4e-5  # places are at least so far apart [m]: coordinates are rounded to a quarter of it
 
 
 def least_along(
@@ -52,8 +52,8 @@ def least_along(
 
     A stretch of a segment is halved only while its ends leave open whether the least is lower in between, as a distance
     cannot fall faster than one goes. What is told is found at a place of the segment; if it is not below the limit,
-    then nothing on the segment is, by more than half of `FINEST`. Where it is below, it is as near to the least as the
-    resolution [m] says; by default any place below the limit will do.
+    then nothing on the segment is, by more than half of `MIN_SPACING`. Where it is below, it is as near to the least as
+    the resolution [m] says; by default any place below the limit will do.
     """
     lengths = np.linalg.norm(ends - starts, axis=1)
     first, last = measure(starts), measure(ends)
@@ -63,7 +63,7 @@ def least_along(
         span = (high - low) * lengths[owner]
         bound = 0.5 * (first + last - span)
         known = np.where(least < limit, least - resolution, limit)
-        unknown = (span > FINEST) & (bound < known[owner])
+        unknown = (span > MIN_SPACING) & (bound < known[owner])
         if not unknown.any():
             return least
         owner, low, high, first, last = owner[unknown], low[unknown], high[unknown], first[unknown], last[unknown]

@@ -143,7 +143,7 @@ def flat_region(body: Body, clearance: float) -> FlatRegion | None:
 
 
 _STEPS = 60  # most steps of a point on its way inside
-_SMALLEST = 1 / 64  # a point that gains nothing by a step of this many clearances has come as deep as it can
+_MIN_STEP = 1 / 64  # a point that gains nothing by a step of this many clearances has come as deep as it can
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,7 +165,7 @@ class SpaceRegion(Region):
         depths = self.depths(moved)
         reach = np.full(len(moved), self.clearance)
         for _ in range(_STEPS):
-            going = np.flatnonzero((depths < wanted) & (reach > _SMALLEST * self.clearance))
+            going = np.flatnonzero((depths < wanted) & (reach > _MIN_STEP * self.clearance))
             if not len(going):
                 break
             steps = np.where(depths[going] < 0, wanted - depths[going], np.minimum(reach, wanted - depths)[going])

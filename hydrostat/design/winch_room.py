@@ -17,7 +17,7 @@ from hydrostat.design.zone import Zone
 from hydrostat.errors import InputError
 from hydrostat.fabrication import (
     ALL_MOTORS,
-    GIVES,
+    COMPRESSION_SHARE,
     MOTORS,
     Cuboid,
     Demand,
@@ -272,9 +272,9 @@ def _room(body: Body, box: Cuboid, scale: float = 1.0) -> BaseGeometry:
     seam = affinity.scale(seam_of(body), scale, scale, origin=(0.0, 0.0))
     seam = shapely.simplify(seam.buffer(-_RULES.simplification), _RULES.simplification)
     sides = []
-    if box.size[2] <= (1 + GIVES) * thickness:
+    if box.size[2] <= (1 + COMPRESSION_SHARE) * thickness:
         sides.append((box.low[:2], box.high[:2]))
-    if box.size[0] <= (1 + GIVES) * thickness:
+    if box.size[0] <= (1 + COMPRESSION_SHARE) * thickness:
         middle = box.high[2] / 2
         low, high = box.low[2] - middle, box.high[2] - middle
         sides += [((low, box.low[1]), (high, box.high[1])), ((-high, box.low[1]), (-low, box.high[1]))]

@@ -182,15 +182,15 @@ def _is_number(value: object) -> TypeGuard[float]:
     return isinstance(value, Real) and not isinstance(value, bool) and isfinite(value)
 
 
-FARTHEST = 20.0
+MAX_DISTANCE = 20.0
 """No zone is farther from the origin, or larger [m]: more was meant in another unit."""
 
 
 def _check_corner(name: str, corner: object) -> None:
     if not isinstance(corner, tuple | list) or len(corner) not in (2, 3) or not all(map(_is_number, corner)):
         raise InputError(f"{name} of a zone must be two or three finite coordinates [m], not {corner!r:.60}")
-    if max(map(abs, corner)) > FARTHEST:
-        raise InputError(f"{name} of a zone is in meters, at most {FARTHEST:g}, not {corner!r:.60}; 30 mm is 0.03")
+    if max(map(abs, corner)) > MAX_DISTANCE:
+        raise InputError(f"{name} of a zone is in meters, at most {MAX_DISTANCE:g}, not {corner!r:.60}; 30 mm is 0.03")
 
 
 def _check_ball(at: object, radius: object) -> None:
@@ -199,8 +199,8 @@ def _check_ball(at: object, radius: object) -> None:
     _check_corner("at", at)
     if not (_is_number(radius) and radius > 0):
         raise InputError(f"radius of a zone must be finite and above 0 m, not {radius!r:.60}")
-    if radius > FARTHEST:
-        raise InputError(f"radius of a zone is in meters, at most {FARTHEST:g}, not {radius:g}; 8 mm is 0.008")
+    if radius > MAX_DISTANCE:
+        raise InputError(f"radius of a zone is in meters, at most {MAX_DISTANCE:g}, not {radius:g}; 8 mm is 0.008")
 
 
 def _check_box(box: object) -> None:

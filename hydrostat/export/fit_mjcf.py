@@ -22,7 +22,7 @@ HELD_OUT = 5  # one held-out pose for so many that are fitted, but at least
 MIN_HELD_OUT = 12
 LOWER, UPPER = (-1.0, -0.15, -0.3), (1.0, 0.15, 0.3)  # limits: ln of Young's factor, Poisson's shift, ln of gains
 STEPS = (0.1, 0.02, 0.02)  # differences for the Jacobian, likewise
-MOST_STEPS = 4  # most steps of the least squares
+MAX_STEPS = 4  # most steps of the least squares
 
 Markers = Float[np.ndarray, "poses markers dim"]  # places of all markers in some poses [m]
 
@@ -124,7 +124,7 @@ class _MjcfSearch:
                 "Fit a smaller share of the travel."
             )
         unknowns = len(travels) + 2
-        self._most = count * (1 + MOST_STEPS * (unknowns + 2)) + 2 * (len(travels) + 1) * (len(self._poses) - count)
+        self._most = count * (1 + MAX_STEPS * (unknowns + 2)) + 2 * (len(travels) + 1) * (len(self._poses) - count)
         self._fitted, self._held_out = np.arange(count), np.arange(count, len(self._poses))
 
     def run(self) -> MjcfFit:
@@ -157,7 +157,7 @@ class _MjcfSearch:
             x_scale=steps,
             ftol=1e-2,
             xtol=1e-2,
-            max_nfev=MOST_STEPS,
+            max_nfev=MAX_STEPS,
         )
         own, fitted = MjcfTuning.none(self._robot), _tuning(found.x)
         wanted, rest = (

@@ -19,8 +19,8 @@ from hydrostat.units import plural
 from hydrostat.version import install_command
 
 SHARES = (1.0, 0.5, 0.25, 0.125)  # shares of the travel that are measured, until all poses settle
-RAMP, LONGEST = 300, 1500  # steps in which controls grow to their values, and after which a pose has not settled
-STILL = 1e-6  # largest movement of a body that stands, in one step [m]
+RAMP, MAX_STEPS = 300, 1500  # steps in which controls grow to their values, and after which a pose has not settled
+REST_TOLERANCE = 1e-6  # largest movement of a body that stands, in one step [m]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -133,12 +133,12 @@ class _SettledModel:
     def _settle(self, data: Any, contractions: Vector) -> bool:
         """Step until nothing moves; return False if that does not happen."""
         mujoco, model = self._engine, self._model
-        for step in range(LONGEST):
+        for step in range(MAX_STEPS):
             data.ctrl[:] = min(1.0, (step + 1) / RAMP) * contractions[self._winches]
             mujoco.mj_step(model, data)
             if not np.isfinite(data.qvel).all() or data.warning[mujoco.mjtWarning.mjWARN_BADQACC].number:
                 return False
-            if step >= RAMP and np.abs(data.qvel).max() * model.opt.timestep < STILL:
+            if step >= RAMP and np.abs(data.qvel).max() * model.opt.timestep < REST_TOLERANCE:
                 return True
         return False
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from hydrostat.fabrication.moulds.mould import make_mold
     from hydrostat.fabrication.moulds.pocket_room import PocketRoom
     from hydrostat.fabrication.parts.motor import ALL_MOTORS, AUTO_MOTORS, MOTORS, Motor
-    from hydrostat.fabrication.parts.places import GIVES, TOUCHES, UnitBox, seam_of
+    from hydrostat.fabrication.parts.places import COMPRESSION_SHARE, OVERLAP_TOLERANCE, UnitBox, seam_of
     from hydrostat.fabrication.parts.winch_unit import unit_room
     from hydrostat.fabrication.patches.skin_mesh import skin_of_surface
     from hydrostat.fabrication.patches.space_pattern import Sewing, space_pattern
@@ -42,13 +42,13 @@ __all__ = [
     "ALL_MOTORS",
     "AUTO_MOTORS",
     "BOARDS",
-    "GIVES",
+    "COMPRESSION_SHARE",
     "MATERIAL_FIX",
     "MOTORS",
+    "OVERLAP_TOLERANCE",
     "OVER_BUDGET",
     "PAPERS",
     "STUFFINGS",
-    "TOUCHES",
     "CableWork",
     "Check",
     "Cuboid",

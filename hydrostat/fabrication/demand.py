@@ -18,7 +18,7 @@ _ONCE = IKOptions(restarts=0)
 """No restarts: a pose that is better by some micrometers makes no difference to a motor."""
 
 
-FAR = 0.1
+MISSED_POSE_SHARE = 0.1
 """A pose that is missed by more than this share of the body's size is told: its loads are those of another pose."""
 
 
@@ -102,7 +102,7 @@ class _PoseLoads:
         except (InputError, NotConvergedError) as error:
             self._missed.append(f"{name}: {error}")
             return
-        if reached.rms_error > FAR * self._robot.body.mesh.size:
+        if reached.rms_error > MISSED_POSE_SHARE * self._robot.body.mesh.size:
             self._far.append(
                 f"{name} is missed by {1e3 * reached.rms_error:.0f} mm (rms). Its loads are those of the nearest pose "
                 "that the winches reach"

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from hydrostat.fabrication.kit_options import KitOptions, Method
 from hydrostat.fabrication.lists.bill import PRICES
-from hydrostat.fabrication.lists.motors import SLOW, power_plan, travel_time, turns_of
+from hydrostat.fabrication.lists.motors import SLOW_TRAVEL_TIME, power_plan, travel_time, turns_of
 from hydrostat.fabrication.lists.needs import control_needs
 from hydrostat.fabrication.moulds.pocket import WinchRoom, clashes, make_pockets
 from hydrostat.fabrication.moulds.setting import mold_setting
@@ -92,7 +92,7 @@ def find_motor(robot: Robot, torques: Sequence[float], options: KitOptions) -> M
     auto = [motor for motor in _by_price(robot, torques) if motor in AUTO_MOTORS]
     ordered = [motor for motor in auto if _turns_of(robot) <= motor.turns + 1e-9]
     steady = [motor for motor in ordered if motor.largest_torque() >= most]
-    quick = [motor for motor in steady if (_seconds(robot, torques, motor) or math.inf) <= SLOW]
+    quick = [motor for motor in steady if (_seconds(robot, torques, motor) or math.inf) <= SLOW_TRAVEL_TIME]
     by_torque = sorted(ordered, key=lambda motor: -motor.stall_torque)
     brief = [motor for motor in by_torque if inside and motor.largest_torque(inside=True) >= most]
     piled: list[Motor] = []
@@ -165,7 +165,7 @@ def _weakness(robot: Robot, torques: Sequence[float], motor: Motor) -> str:
     if MARGIN * most > motor.rated_torque + 1e-9:
         return f"holds {motor.rated_torque:.0f} of {MARGIN * most:.0f} N mm for long"
     seconds = _seconds(robot, torques, motor)
-    return "is slow" if seconds is None or seconds > SLOW else ""
+    return "is slow" if seconds is None or seconds > SLOW_TRAVEL_TIME else ""
 
 
 def _seconds(robot: Robot, torques: Sequence[float], motor: Motor) -> float | None:

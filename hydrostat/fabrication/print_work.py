@@ -14,8 +14,8 @@ from hydrostat.fabrication.solids.construct import segments, sides_text
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Cable, Mount, Robot
 
-BEYOND = 3.0  # length by which a hole is drilled past the first and the last point of its cable [mm]
-SPARE = 1.0  # diameter of a hole beyond that of its line [mm]: holes that lie print too narrow. Assumed.
+DRILL_OVERSHOOT = 3.0  # length by which a hole is drilled past the first and the last point of its cable [mm]
+HOLE_ALLOWANCE = 1.0  # diameter of a hole beyond that of its line [mm]: holes that lie print too narrow. Assumed.
 
 
 def print_work(robot: Robot, options: KitOptions) -> BodyWork:
@@ -40,7 +40,7 @@ def print_work(robot: Robot, options: KitOptions) -> BodyWork:
 
 def hole_of(parts: PartOptions) -> float:
     """Diameter of the holes [mm]."""
-    return parts.cable + SPARE
+    return parts.cable + HOLE_ALLOWANCE
 
 
 def print_problems(robot: Robot, parts: PartOptions) -> tuple[str, ...]:
@@ -57,8 +57,8 @@ def drill(cable: Cable, diameter: float) -> Manifold:
     """Make the hole of a cable along its points, longer at both ends [mm]."""
     points = _points(cable)
     first, last = points[0] - points[1], points[-1] - points[-2]
-    points[0] += BEYOND * first / np.linalg.norm(first)
-    points[-1] += BEYOND * last / np.linalg.norm(last)
+    points[0] += DRILL_OVERSHOOT * first / np.linalg.norm(first)
+    points[-1] += DRILL_OVERSHOOT * last / np.linalg.norm(last)
     sides = segments(diameter / 2)
     ball = Manifold.sphere(diameter / 2, sides)
     pieces = []

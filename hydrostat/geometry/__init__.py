@@ -30,12 +30,12 @@ if TYPE_CHECKING:
     from hydrostat.geometry.surface import Solid, Surface
     from hydrostat.geometry.tetrahedra.manifold import euler
     from hydrostat.geometry.tetrahedra.small_holes import HOLE_SHARE, fill_small_holes
-    from hydrostat.geometry.tetrahedra.tetrahedralize import CLOSE, fit, tetrahedralize
+    from hydrostat.geometry.tetrahedra.tetrahedralize import BOUNDARY_TOLERANCE, fit, tetrahedralize
     from hydrostat.geometry.thickness import Thickness
     from hydrostat.geometry.triangles.triangulate import triangulate
 
 __all__ = [
-    "CLOSE",
+    "BOUNDARY_TOLERANCE",
     "DRAWN_HINT",
     "HOLE_SHARE",
     "OUTLINE_SUFFIXES",

@@ -8,7 +8,7 @@ from hydrostat.arrays import Bool, Float, Int, Points, Vector
 from hydrostat.errors import SurfaceError
 from hydrostat.geometry.surface import Surface
 
-MOST_GRID_POINTS = 4_000_000  # a grid with more points than this is refused
+MAX_GRID_POINTS = 4_000_000  # a grid with more points than this is refused
 
 Field = Callable[[Points], Vector]
 """A number for each point, negative inside: a signed distance [m], or 0.5 minus a winding number."""
@@ -69,10 +69,10 @@ class _Grid:
             raise SurfaceError("a contour needs a box with three sides above 0 and a spacing above 0")
         self.box, self.spacing = box, spacing
         shape = np.ceil(extent / spacing) + 3.0
-        if shape.prod() > MOST_GRID_POINTS:
+        if shape.prod() > MAX_GRID_POINTS:
             raise SurfaceError(
                 f"a grid of {1e3 * spacing:.3g} mm over {' x '.join(f'{1e3 * side:.4g}' for side in extent)} mm has "
-                f"{shape.prod():.3g} points, at most {MOST_GRID_POINTS} are computed: use a larger spacing"
+                f"{shape.prod():.3g} points, at most {MAX_GRID_POINTS} are computed: use a larger spacing"
             )
         self.shape = shape.astype(np.int64)
         self.points = int(self.shape.prod())

@@ -27,9 +27,9 @@ def find_near_pairs(one: Corners, other: Corners) -> Int[np.ndarray, "pairs 2"]:
     origin = np.minimum(centers[0].min(axis=0), centers[1].min(axis=0))
     span = float(max((center - origin).max() for center in centers))
     largest = sum(0.5 * float((high - low).max()) for low, high in zip(lows, highs, strict=True))
-    side = max(1.001 * largest, span / _MOST_CELLS) or 1.0
+    side = max(1.001 * largest, span / _MAX_CELLS) or 1.0
     first, second = (((center - origin) / side).astype(np.int64) + 1 for center in centers)
-    key = np.array([(_MOST_CELLS + 4) ** 2, _MOST_CELLS + 4, 1])
+    key = np.array([(_MAX_CELLS + 4) ** 2, _MAX_CELLS + 4, 1])
     order = np.argsort(second @ key, kind="stable")
     kept = (second @ key)[order]
     steps = np.array(list(product((-1, 0, 1), (-1, 0, 1)))) @ key[:2]  # three cells along z have keys in a row
@@ -45,5 +45,5 @@ def find_near_pairs(one: Corners, other: Corners) -> Int[np.ndarray, "pairs 2"]:
     return pairs[np.lexsort((j, i))]
 
 
-_MOST_CELLS = 1_000_000
+_MAX_CELLS = 1_000_000
 """Cells along an axis, at most."""

@@ -89,7 +89,7 @@ class Shell:
         normals = self._normals_at(facets, shares)
         lengths = np.linalg.norm(offsets, axis=1)
         signs = np.where(np.einsum("pd,pd->p", offsets, normals) < 0, -1.0, 1.0)
-        beside = (shares == 0).any(axis=1) & (lengths > _TOUCHING * np.abs(corners).max(axis=(1, 2)))
+        beside = (shares == 0).any(axis=1) & (lengths > _CONTACT_TOLERANCE * np.abs(corners).max(axis=(1, 2)))
         directions = np.where(beside[:, None], signs[:, None] * offsets / _or_one(lengths)[:, None], normals)
         return Nearest(self.facets[facets], shares, signs * lengths, directions)
 
@@ -209,7 +209,7 @@ def _curvatures(shell: Shell, found: Nearest) -> Float[np.ndarray, "points dim d
     return np.where(beside, 1.0 / np.where(beside, found.distances, 1.0), 0.0)[:, None, None] * round_
 
 
-_TOUCHING = 1e-12
+_CONTACT_TOLERANCE = 1e-12
 """A point this near, as a fraction of the coordinates, has no direction to its nearest place but the normal there."""
 
 

@@ -20,8 +20,8 @@ class TooManyNodesError(SurfaceError):
         self.count = count
 
 
-FEWEST, MOST = 10, 200_000  # nodes that may be asked for
-CLOSE = 0.1  # how far the number may be off, as a fraction of it
+MIN_NODES, MAX_NODES = 10, 200_000  # nodes that may be asked for
+COUNT_TOLERANCE = 0.1  # how far the number may be off, as a fraction of it
 _HASTY = 0.15  # the same where a few meshes must do and each takes long
 _LONG = 500  # nodes from which on it does
 
@@ -57,8 +57,8 @@ def size_for(
         InputError: fewer nodes than a body so thin can have, or no mesh at all. Where `make` raises only
             TooManyNodesError, the first guess is returned.
     """
-    if not FEWEST <= nodes <= MOST:
-        raise InputError(f"the number of nodes must be from {FEWEST} to {MOST}, not {nodes}")
+    if not MIN_NODES <= nodes <= MAX_NODES:
+        raise InputError(f"the number of nodes must be from {MIN_NODES} to {MAX_NODES}, not {nodes}")
     _check_thin(nodes, content, rim, dim)
     size, low, high = _guess(nodes, content, rim, dim), 0.0, np.inf
     refused: InputError | None = None
@@ -78,8 +78,8 @@ def size_for(
             above[size] = count
         except InputError as error:
             refused = error
-            count = 0 if isinstance(error, SurfaceError) or size**dim > fine * content else 10 * MOST
-        if abs(count / nodes - 1) <= (_HASTY if is_hasty and nodes >= _LONG else CLOSE):
+            count = 0 if isinstance(error, SurfaceError) or size**dim > fine * content else 10 * MAX_NODES
+        if abs(count / nodes - 1) <= (_HASTY if is_hasty and nodes >= _LONG else COUNT_TOLERANCE):
             return size
         if is_hasty and above and not tried and len(above) == 1:
             size *= 0.8  # walls thinner than the elements were refined: finer ones need less of that

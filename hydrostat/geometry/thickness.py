@@ -12,8 +12,8 @@ _ASIDE = (0.011, -0.007, -0.004)
 """Offset of a ray's start from the center of its facet, as weights: from there it hits edges in regular meshes."""
 
 
-_NEAR = 1.5  # middles of thin places this many elements apart are of one part
-_SLENDER = 1.5  # a part is a limb if it is this many times as long as thick
+_MERGE_DISTANCE = 1.5  # middles of thin places this many elements apart are of one part
+_LIMB_RATIO = 1.5  # a part is a limb if it is this many times as long as thick
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,13 +43,13 @@ class Thickness:
     def thin_parts(self, least: float) -> list["ThinPart"]:
         """Limbs and sheets with fewer than `least` elements across, thinnest first.
 
-        Tips, corners and notches are no limbs: what is not longer than `_SLENDER` times its thickness is left out.
+        Tips, corners and notches are no limbs: what is not longer than `_LIMB_RATIO` times its thickness is left out.
         """
         thin = np.flatnonzero(self.across < least)
         if not len(thin):
             return []
         middles = self.middles[thin]
-        reach = _NEAR * float(np.median(self.spacing[thin]))
+        reach = _MERGE_DISTANCE * float(np.median(self.spacing[thin]))
         neighbors = 20  # as many of them are looked at: in a mesh with fine and coarse places more would be near
         gaps, near = build_point_tree(middles).query(middles, k=min(neighbors, len(thin)), distance_upper_bound=reach)
         gaps, near = gaps.reshape(len(thin), -1), near.reshape(len(thin), -1)
@@ -63,7 +63,7 @@ class Thickness:
             length = float(np.ptp(spread @ axis))
             at = members[np.argsort(self.across[members])[3 * len(members) // 4]]
             chord, across = float(self.chords[at]), float(self.across[at])
-            if length > _SLENDER * chord:
+            if length > _LIMB_RATIO * chord:
                 found.append(ThinPart(chord, across, self.middles[at], length))
         return sorted(found, key=lambda part: part.across)
 

@@ -23,7 +23,7 @@ ROUNDS = 20
 INEXACT = 1e-3
 """Largest error of the inverse, as a share of the travel."""
 
-SAME = 5e-4
+LENGTH_TOLERANCE = 5e-4
 """Difference of lengths below which travel and cables are those of the robot that was measured [m]."""
 
 
@@ -103,7 +103,7 @@ class ContractionMap:
             raise InputError(f"{file}: travel_m must be above 0. Remove it, or run `hydrostat identify` again.")
         own = np.array([winch.travel for winch in robot.winches]), cable_lengths(robot)
         for one, other in zip((travel, lengths), own, strict=True):
-            if one.shape != other.shape or not (np.abs(one - other) < SAME).all():
+            if one.shape != other.shape or not (np.abs(one - other) < LENGTH_TOLERANCE).all():
                 raise InputError(
                     f"{file}: is for other cables or travel. Remove it, or run `hydrostat identify` again."
                 )

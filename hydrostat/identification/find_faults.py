@@ -18,7 +18,7 @@ CLEARER = 0.25
 EXPLAINED = 0.6
 """Share of the squared residuals that one slip must explain."""
 
-LEAST = 0.01
+MIN_SHIFT = 0.01
 """Least distance of swapped markers, and least slip, over the size of the body."""
 
 
@@ -64,7 +64,7 @@ def find_swaps(fitted: FittedModel, assumed: FittedModel, measurements: Measurem
         for places in predicted:
             straight = np.linalg.norm(places[:, [one, other]] - seen, axis=2).max(axis=1)
             crossed = np.linalg.norm(places[:, [other, one]] - seen, axis=2).max(axis=1)
-            swapped |= (crossed < CLEARER * straight) & (straight > LEAST * size)
+            swapped |= (crossed < CLEARER * straight) & (straight > MIN_SHIFT * size)
         if swapped.any():
             names = measurements.markers[one], measurements.markers[other]
             found.append(Swap(markers=names, rows=tuple(np.flatnonzero(swapped).tolist())))
@@ -97,7 +97,7 @@ def find_slip(fitted: FittedModel, measurements: Measurements) -> Slip | None:
         along = errors @ changed
         winch = int(np.argmax(along**2 / squares)) if len(ratios) else 0
         length = -MM * float(along[winch] / squares[winch]) if len(ratios) else 0.0
-        if len(ratios) and along[winch] ** 2 / squares[winch] > best and abs(length) > LEAST * robot.body.mesh.size:
+        if len(ratios) and along[winch] ** 2 / squares[winch] > best and abs(length) > MIN_SHIFT * robot.body.mesh.size:
             best = float(along[winch] ** 2 / squares[winch])
             found = Slip(winch=robot.winches[winch].name, row=row, length=length)
     return found

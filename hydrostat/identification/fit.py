@@ -24,13 +24,13 @@ MISSING = 5.0
 ROUNDS = 6
 """Most estimates of the noise, each followed by a fit with it."""
 
-SETTLED = 0.1
+NOISE_TOLERANCE = 0.1
 """Relative change of the noise below which it is not estimated again."""
 
-LEAST_FREE = 0.1
+MIN_FREE = 0.1
 """Least share of the measured coordinates that is left to show the noise."""
 
-LEAST_FORCE_NOISE = 0.02
+MIN_FORCE_NOISE = 0.02
 """Least noise of a force over the largest that was measured; the fit begins with five times that."""
 
 ROBUST = 3.0
@@ -250,7 +250,7 @@ class MarkerFit:
         largest = float(
             np.max(np.abs(measurements.known_forces), initial=0.0, where=~np.isnan(measurements.known_forces))
         )
-        self._least_force = LEAST_FORCE_NOISE * largest
+        self._least_force = MIN_FORCE_NOISE * largest
         self.noise, self.force_noise, self.count = noise, 5 * self._least_force or np.nan, 0
 
     def residuals(self, numbers: Vector) -> Vector:
@@ -290,7 +290,7 @@ class MarkerFit:
             self._noise_of(self._solved & ~is_force, least, before[0]),
             self._noise_of(self._solved & is_force, self._least_force, before[1]),
         )
-        return not np.allclose([self.noise, self.force_noise], before, rtol=SETTLED, atol=0.0, equal_nan=True)
+        return not np.allclose([self.noise, self.force_noise], before, rtol=NOISE_TOLERANCE, atol=0.0, equal_nan=True)
 
     def _noise_of(self, chosen: np.ndarray, least: float, before: float) -> float:
         """Noise of some residuals, of which the parameters take up a share (MacKay 1992)."""
@@ -299,7 +299,7 @@ class MarkerFit:
         scaled = self._residuals.jacobian / self._scales[:, None]
         information = scaled[self._solved].T @ scaled[self._solved] + np.eye(scaled.shape[1])
         taken = float(np.sum(scaled[chosen] * np.linalg.solve(information, scaled[chosen].T).T))
-        free = max(1.0 - taken / int(chosen.sum()), LEAST_FREE)
+        free = max(1.0 - taken / int(chosen.sum()), MIN_FREE)
         return max(robust_scale(self._residuals.errors[chosen]) / free**0.5, least)
 
     def _ask(self, numbers: Vector) -> None:

@@ -16,7 +16,7 @@ GAINED = 0.9
 FOLDS = 5
 """Parts of the rows, each of which is held out once."""
 
-LEAST = 10
+MIN_ROWS = 10
 """Rows from which on a correction is fitted."""
 
 PENALTIES = tuple(10.0**power for power in range(-4, 3))
@@ -38,14 +38,14 @@ def fit_contraction_map(fitted: FittedModel, robot: Robot, measurements: Measure
         The map; None with fewer than ten rows, if it does not win, or if it cannot be inverted.
     """
     travel = np.array([winch.travel for winch in robot.winches])
-    if len(measurements.commands) < LEAST or not len(travel) or not (travel > 0).all():
+    if len(measurements.commands) < MIN_ROWS or not len(travel) or not (travel > 0).all():
         return None
     values = fitted.values
     rest = fitted.model.contractions(values, np.zeros((1, len(travel))))
     commands = fitted.model.contractions(values, measurements.commands) - rest
     rows = _error_rows(fitted, measurements, features(commands / travel), travel)
     known = [row for row, (errors, _) in enumerate(rows) if len(errors)]
-    if len(known) < LEAST:
+    if len(known) < MIN_ROWS:
         return None
     before, after = [], []
     for fold in range(FOLDS):

@@ -12,7 +12,7 @@ from hydrostat.identification.model import IdentificationModel, Parameter, Value
 from hydrostat.robot import FOAM_POISSON_LIMIT, Material, Robot
 from hydrostat.units import MM
 
-NARROW = 1e-6
+POISSON_MARGIN = 1e-6
 """Distance that a fitted Poisson's ratio keeps from 0.5."""
 
 
@@ -279,7 +279,7 @@ KINDS: dict[str, ParameterKind] = {
         default=True,
     ),
     "poisson": ParameterKind(
-        parameters=lambda robot: _material(robot, "poisson", 0.1, (0.0, 0.5 - NARROW), ""),
+        parameters=lambda robot: _material(robot, "poisson", 0.1, (0.0, 0.5 - POISSON_MARGIN), ""),
         robot=_with_material("poisson"),
     ),
     "density": ParameterKind(

@@ -15,7 +15,7 @@ from hydrostat.identification.measurements import Measurements
 from hydrostat.robot import Robot
 from hydrostat.units import MM
 
-LARGEST = 20_000_000
+MAX_BYTES = 20_000_000
 """Bytes that a table may have."""
 
 
@@ -32,7 +32,7 @@ def read_measurements(file: str | Path, robot: Robot) -> Measurements:
     """
     path = Path(file)
     try:
-        rows = list(csv.reader(StringIO(read_stranger(path, most=LARGEST).decode("utf-8-sig"), newline="")))
+        rows = list(csv.reader(StringIO(read_stranger(path, most=MAX_BYTES).decode("utf-8-sig"), newline="")))
     except (UnicodeDecodeError, csv.Error):
         raise InputError(f"{path}: cannot be read as a table; save it as CSV in UTF-8") from None
     if len(rows) < 2:

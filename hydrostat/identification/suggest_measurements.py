@@ -17,7 +17,7 @@ from hydrostat.units import MM
 NOISE = 0.01
 """Standard deviation of a measured coordinate about a good model, as a share of the body's size."""
 
-IDLE = 0.4
+IDLE_SHARE = 0.4
 """Share of the winches that do not contract in a candidate."""
 
 WITH_HISTORY = {"friction", "hysteresis"}
@@ -179,7 +179,7 @@ def _candidates(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Contractions [m] in whole millimeters and hung masses [kg]: rest, each winch alone, then random ones."""
     travel = np.array([winch.travel for winch in robot.winches])
-    idle = rng.random((count, len(travel))) < IDLE
+    idle = rng.random((count, len(travel))) < IDLE_SHARE
     pulls = [np.zeros(len(travel)), *np.eye(len(travel)), *np.where(idle, 0.0, rng.random((count, len(travel))))]
     loads = [np.zeros(len(robot.markers))]
     loads += [mass * row for mass in masses for row in np.eye(len(robot.markers))]

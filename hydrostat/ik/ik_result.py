@@ -26,7 +26,7 @@ class IKStatus(StrEnum):
     NO_EQUILIBRIUM = "no equilibrium found on the way"
 
 
-CLOSE = 3e-3
+REACHED_TOLERANCE = 3e-3
 """Distance from its target, as a share of the body's size, within which each goal counts as reached in words."""
 
 
@@ -70,7 +70,7 @@ class IKResult(Tabular):
     @property
     def is_close(self) -> bool:
         """True if every goal is within 0.3 % of the body's size of its target."""
-        return max(self.errors.values(), default=0.0) <= CLOSE * self.pose.robot.body.mesh.size
+        return max(self.errors.values(), default=0.0) <= REACHED_TOLERANCE * self.pose.robot.body.mesh.size
 
     @property
     def outcome(self) -> str:

@@ -208,7 +208,7 @@ def _add_first_pose(begun: BegunRobot) -> BegunRobot:
     mesh = begun.robot.body.mesh
     if mesh.dim == 2:
         return begun
-    if len(mesh.nodes) > _MOST_POSED:
+    if len(mesh.nodes) > _MAX_POSED:
         note = f"no first pose was looked for, as {len(mesh.nodes)} nodes take long: hydrostat pose finds yours"
         return replace(begun, notes=(*begun.notes, note))
     return replace(begun, robot=with_first_pose(begun.robot))
@@ -222,7 +222,7 @@ def _file_name(name: str) -> str:
     return re.sub(r"[^\w.-]", "_", name)
 
 
-_MOST_POSED = 10_000  # nodes of a body from which on no first pose is looked for
+_MAX_POSED = 10_000  # nodes of a body from which on no first pose is looked for
 _SHARES, _REACHED = (0.5, 0.25, 0.1), 0.01  # travels to try, in shares of all; how near is near, in sizes of the body
 
 
@@ -231,7 +231,7 @@ def with_first_pose(robot: Robot) -> Robot:
     from hydrostat.ik.solve_ik import solve_ik
     from hydrostat.simulation import Simulation
 
-    if len(robot.body.mesh.nodes) > _MOST_POSED:
+    if len(robot.body.mesh.nodes) > _MAX_POSED:
         return robot
     simulation = Simulation(robot)
     simulation.solve({}, strict=False)

@@ -12,7 +12,7 @@ from hydrostat.simulation import Contractions, Equilibrium, Simulation
 
 TOLERANCE = 1e-6
 STEPS = 60
-LONGEST = 0.1
+MAX_STEP = 0.1
 """Longest change of a contraction in a step, as a share of the size of the body."""
 
 
@@ -65,13 +65,13 @@ def solve_pulls(
 
 
 def _newton_step(simulation: Simulation, pose: Equilibrium, ratios: np.ndarray, own: Vector, missing: Vector) -> Vector:
-    """Change of the contractions that would give the pulls, were the derivatives constant; no longer than `LONGEST`."""
+    """Change of the contractions that would give the pulls, were the derivatives constant; at most `MAX_STEP`."""
     cables = simulation.cables
     derivatives = ratios.T @ StateJacobian.at(simulation, pose).tensions[:, own]
     slack = cables.elongations(pose.nodes, pose.contractions) <= 0
     # A winch whose cables are slack goes on until the first is taut.
     gaps = np.where(slack, -cables.elongations(pose.nodes, pose.contractions), 0.0) + 0.5 * cables.law.smoothing
-    step, longest = np.zeros(len(own)), LONGEST * simulation.robot.body.mesh.size
+    step, longest = np.zeros(len(own)), MAX_STEP * simulation.robot.body.mesh.size
     idle = np.array([bool(slack[column > 0].all()) for column in ratios.T], dtype=bool)
     for index in np.flatnonzero(idle & (missing > 0)):
         mine = ratios[:, index] > 0

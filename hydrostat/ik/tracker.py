@@ -202,7 +202,7 @@ class Tracker:
                 self._radius = min(2.0 * self._radius, largest)
                 return tried.trial, IKStatus.ITERATION_LIMIT
             found = found or tried.trial is not None
-            self._radius = max(0.25 * self._radius, _SMALLEST)
+            self._radius = max(0.25 * self._radius, _MIN_STEP)
         return state, IKStatus.STALLED if found else IKStatus.NO_EQUILIBRIUM
 
     def _search(self, target: PoseTarget | None, seconds: float, objectives: Sequence[Objective]) -> InverseSearch:
@@ -224,7 +224,7 @@ def _is_reached(problem: InverseProblem, state: InverseState) -> bool:
 _WORTH = 0.5
 """A model is followed where it expects to leave less than this share of the error: a step alone does as well else."""
 
-_SMALLEST = 1e-4
+_MIN_STEP = 1e-4
 """Steps do not become shorter than this share of a range; a target that moves on asks for longer ones again."""
 
 

@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from hydrostat.learning.sample_shard import sample_shard
     from hydrostat.learning.samples import Samples
     from hydrostat.learning.train import answer, tensors_of, train_forward
-    from hydrostat.learning.training_set import LEAST, TrainingSet, linear_map
+    from hydrostat.learning.training_set import MIN_SAMPLES, TrainingSet, linear_map
     from hydrostat.learning.verify import exact_steps, solve_exactly, verify
 
 __all__ = [
-    "LEAST",
+    "MIN_SAMPLES",
     "LearnOptions",
     "LearnedModel",
     "ModelCard",

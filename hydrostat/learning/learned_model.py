@@ -194,7 +194,7 @@ class LearnedModel:
             raise InputError("the model has no inverse network: its learning was stopped before")
         count = self.card.coordinates
         raw, _ = self.inverse.average_members((markers - self.middle[:count]) / self.unit[:count])
-        return self._apply_pairs(self._contractions(_BEYOND * np.tanh(raw)))
+        return self._apply_pairs(self._contractions(_OVERSHOOT * np.tanh(raw)))
 
     def _predict_pose(self, contractions: Vector) -> tuple[Vector, Vector]:
         mean, spread = self.forward.average_members(self._scale_inputs(contractions))
@@ -329,7 +329,7 @@ def span_of(low: Vector, high: Vector) -> Vector:
     return np.where(high > low, high - low, 1.0)
 
 
-_BEYOND = 1.02
+_OVERSHOOT = 1.02
 """The inverse network's answer may reach so far beyond the limits, so that they can be reached; it is cut off there."""
 
 _STARTS = 3

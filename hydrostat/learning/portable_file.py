@@ -44,8 +44,8 @@ class PortableFile:
         kept = {name: np.ascontiguousarray(value, self.kinds[name][0]) for name, value in arrays.items()}
         table = [[name, value.dtype.str, list(value.shape)] for name, value in kept.items()]
         header = json.dumps({"facts": dict(facts), "arrays": table}).encode()
-        if len(header) > MOST_HEADER:
-            raise InputError(f"{path}: names and facts of the {self.word} take more than {MOST_HEADER} bytes")
+        if len(header) > MAX_HEADER:
+            raise InputError(f"{path}: names and facts of the {self.word} take more than {MAX_HEADER} bytes")
         parts = [self.magic, len(header).to_bytes(8, "little"), header, *(one.tobytes() for one in kept.values())]
         content = b"".join(parts)
         return replace_file(Path(path), content + hashlib.sha256(content).digest())
@@ -62,7 +62,7 @@ class PortableFile:
         """
         path = path_of(path, f"a {self.word} is read from its file, by a path")
         try:
-            content = read_stranger(path, most=MOST)
+            content = read_stranger(path, most=MAX_BYTES)
         except InputError as error:
             raise InputError(f"{error}; name a file that {self.writer} wrote") from None
         if not content.startswith(self.magic):
@@ -80,8 +80,8 @@ class PortableFile:
         """Facts, and arrays by name; sizes are checked before bytes are taken (ValueError: what is wrong)."""
         begin = len(self.magic) + 8
         length = int.from_bytes(body[len(self.magic) : begin], "little")
-        if length > MOST_HEADER:
-            raise ValueError(f"its header has {length} bytes, and no header needs more than {MOST_HEADER}")
+        if length > MAX_HEADER:
+            raise ValueError(f"its header has {length} bytes, and no header needs more than {MAX_HEADER}")
         if length > len(body) - begin:
             raise ValueError("its header is cut off")
         header = json.loads(body[begin : begin + length])
@@ -89,7 +89,7 @@ class PortableFile:
         for name, kind, shape in header["arrays"]:
             if name not in self.kinds or (kind, len(shape)) != tuple(self.kinds[name]) or name in arrays:
                 raise ValueError(f"array {name!r} is none of a {self.word}'s")
-            if not all(type(side) is int and 0 <= side <= MOST for side in shape):
+            if not all(type(side) is int and 0 <= side <= MAX_BYTES for side in shape):
                 raise ValueError(f"array {name} has no size")
             size = prod(shape) * np.dtype(kind).itemsize
             if size > len(body) - at:
@@ -118,8 +118,8 @@ _WORDS = {str: "text", bool: "true or false", int: "a whole number", float: "a n
 
 _DIGEST = hashlib.sha256().digest_size
 
-MOST = 500_000_000
+MAX_BYTES = 500_000_000
 """No such file is larger [bytes]."""
 
-MOST_HEADER = 2_000_000
+MAX_HEADER = 2_000_000
 """No header is longer [bytes]: it has names and options, some kilobytes of them."""

@@ -103,7 +103,7 @@ def train_inverse(
     batches, members, held = _batches(learned, options.batch, draw), len(forward), _holding(training_set, pairs)
 
     def apply_inverse(goals: Tensor, number: int) -> tuple[Tensor, Tensor, Tensor]:
-        scaled = held(BEYOND * torch.tanh(answer(numbers, goals[None], None)[0]))
+        scaled = held(OVERSHOOT * torch.tanh(answer(numbers, goals[None], None)[0]))
         value = answer([part[number : number + 1] for part in teacher], scaled, None)[0][0]
         return value[:, : training_set.coordinates], value[:, training_set.coordinates :], scaled[0]
 
@@ -292,7 +292,7 @@ def _perceptrons(sizes: list[int], numbers: Numbers) -> Perceptrons:
     return Perceptrons(sizes=np.array(sizes), numbers=flat.double().numpy())
 
 
-BEYOND = 1.02
+OVERSHOOT = 1.02
 """The inverse network may answer so far beyond the limits, so that they can be reached; `LearnedModel` cuts it off."""
 
 _BETWEEN = 0.5

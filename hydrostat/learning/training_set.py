@@ -41,9 +41,9 @@ class TrainingSet:
         """Return the training set of samples, in the units of a model if its networks are trained further.
 
         Raises:
-            InputError: there are fewer than `LEAST`, or `FEWEST` where a model learns on.
+            InputError: there are fewer than `MIN_SAMPLES`, or `MIN_CORRECTION_SAMPLES` where a model learns on.
         """
-        count, least = len(samples), LEAST if like is None else FEWEST
+        count, least = len(samples), MIN_SAMPLES if like is None else MIN_CORRECTION_SAMPLES
         if count < least:
             raise InputError(f"there are {count} samples; learning takes {least} or more")
         low, high = samples.limits
@@ -86,8 +86,8 @@ def _rms_scale(part: np.ndarray) -> float:
     return float(np.sqrt(np.mean(np.square(part)))) if np.any(part) else 1.0
 
 
-LEAST = 20
+MIN_SAMPLES = 20
 """Fewer samples teach nothing."""
 
-FEWEST = 5
+MIN_CORRECTION_SAMPLES = 5
 """So many correct a model."""

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 Backend = Literal["auto", "supernodal", "superlu"]
 
-TINY = 1e-13
+PIVOT_TOLERANCE = 1e-13
 """A pivot not above this share of the largest diagonal entry counts as 0."""
 
 
@@ -121,7 +121,7 @@ class SymbolicFactorization:
     def factorize(self, data: Vector) -> "Factorization":
         """Factorize the matrix with these values, in the order of `indices`."""
         if self.backend == "supernodal":
-            return Factorization(self._supernodal.factorize(np.require(data, float, ["C", "W"]), TINY))
+            return Factorization(self._supernodal.factorize(np.require(data, float, ["C", "W"]), PIVOT_TOLERANCE))
         from scipy.sparse import csc_array
 
         matrix = csc_array((data, self._indices, self._indptr), shape=(self._size, self._size))
@@ -191,7 +191,7 @@ class SuperLUFactors:
             return
         pivots = self._lu.U.diagonal()
         unpivoted = bool((self._lu.perm_r == self._lu.perm_c).all())
-        large = np.isfinite(pivots) & (np.abs(pivots) > TINY * diagonal.max(initial=0.0))
+        large = np.isfinite(pivots) & (np.abs(pivots) > PIVOT_TOLERANCE * diagonal.max(initial=0.0))
         self.singular = not (unpivoted and bool(large.all()))
         self.negative = 0 if self.singular else int((pivots < 0).sum())
 

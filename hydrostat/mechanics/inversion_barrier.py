@@ -12,7 +12,7 @@ from hydrostat.kernel import native
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks, ScatterMap, nearest_semidefinite
 from hydrostat.mechanics.quadratic_solid import QuadraticElements, shape_gradients
 
-FREE = 0.3
+BARRIER_START = 0.3
 """Ratio of volumes from which on the barrier is 0."""
 
 Coefficients = Float[np.ndarray, "elements coefficients"]
@@ -21,9 +21,10 @@ Coefficients = Float[np.ndarray, "elements coefficients"]
 class InversionBarrier(Energy):
     """Sum of V mu phi(c) / m over m ratios c of each quadratic element: the Bernstein coefficients of J and its parts.
 
-    phi(c) = -ln(c / c0)^3 below c0 = `FREE`, 0 above; it has two continuous derivatives. J is a polynomial, quadratic
-    in a triangle and cubic in a tetrahedron, nowhere less than its least coefficient, so no element can invert. Nor can
-    its linear parts, by which pictures, cables and contact see it: their ratios are volume over volume at rest.
+    phi(c) = -ln(c / c0)^3 below c0 = `BARRIER_START`, 0 above; it has two continuous derivatives. J is a polynomial,
+    quadratic in a triangle and cubic in a tetrahedron, nowhere less than its least coefficient, so no element can
+    invert. Nor can its linear parts, by which pictures, cables and contact see it: their ratios are volume over volume
+    at rest.
     """
 
     convex: ClassVar[bool] = False
@@ -120,12 +121,12 @@ class InversionBarrier(Energy):
 
     @staticmethod
     def _find_low(found: Coefficients) -> "_Low":
-        if found.min(initial=FREE) >= FREE:
+        if found.min(initial=BARRIER_START) >= BARRIER_START:
             return _NO_LOW
-        elements, places = np.nonzero(~(found >= FREE))
+        elements, places = np.nonzero(~(found >= BARRIER_START))
         values = found[elements, places]
         with np.errstate(invalid="ignore", divide="ignore"):  # an inverted element has no forces, but infinite energy
-            return _Low(elements, places, values, np.log(values / FREE))
+            return _Low(elements, places, values, np.log(values / BARRIER_START))
 
     def _stiffness(self, low: "_Low") -> Vector:
         return (self.mu * self._volumes)[low.elements]
@@ -170,11 +171,11 @@ class InversionBarrier(Energy):
 
 def pushed_elements(rest: Nodes, elements: QuadraticElements, nodes: Nodes) -> Int[np.ndarray, " pushed"]:
     """Return the quadratic elements that a barrier pushes at `nodes` [m], by their numbers."""
-    return np.flatnonzero((_coefficients(nodes[elements]) / _coefficients(rest[elements]) < FREE).any(axis=1))
+    return np.flatnonzero((_coefficients(nodes[elements]) / _coefficients(rest[elements]) < BARRIER_START).any(axis=1))
 
 
 class _Low(NamedTuple):
-    """Coefficients below `FREE`: their element, place in it, value c, and ln(c / c0)."""
+    """Coefficients below `BARRIER_START`: their element, place in it, value c, and ln(c / c0)."""
 
     elements: Int[np.ndarray, " low"]
     places: Int[np.ndarray, " low"]

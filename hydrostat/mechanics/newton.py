@@ -108,7 +108,7 @@ class _EnergyDescent:
             scale = place.assembly.largest_force(place.nodes, self.controls)
             allowed = max(self.options.tolerance * scale, self.noise.force)
             before, residual = residual, float(np.abs(place.gradient).max())
-            self.fast = residual < _FAST * before
+            self.fast = residual < _FAST_DECREASE * before
             if residual <= allowed:
                 found, reason, self.error = self._leave_saddle(place), NewtonStatus.CONVERGED, 0.0
             elif iteration == self.options.iterations:
@@ -187,7 +187,7 @@ class _EnergyDescent:
         if (
             self.whole
             or trial.energy == np.inf
-            or (trial.share > _LONG and trial.energy <= enough)
+            or (trial.share > _LONG_STEP and trial.energy <= enough)
             or not trial.assembly.projects_first
         ):
             return step, trial
@@ -202,11 +202,11 @@ class _EnergyDescent:
             return
         square, curvature = float(step @ step), -float(place.gradient @ step) / float(step @ step)
         taken = float(np.linalg.norm(found.nodes - place.nodes)) / square**0.5
-        if taken < _SHORT and place.assembly.projects_first and not eases:
+        if taken < _SHORT_STEP and place.assembly.projects_first and not eases:
             least = 1e-3  # Damping is chosen for steps of at least this share
             self.damping = max(_DAMPS * self.damping, curvature * (1.0 / max(taken, least) - 1.0))
-        elif eases or taken > _LONG:
-            self.damping = self.damping / _EASES if self.damping > _FREE * curvature else 0.0
+        elif eases or taken > _LONG_STEP:
+            self.damping = self.damping / _EASES if self.damping > _MIN_DAMPING_SHARE * curvature else 0.0
 
     def _within_accuracy(self, place: _Iterate, step: Vector) -> bool:
         """Return True if a step with the unmodified Hessian shows that the iterate is within the requested accuracy."""
@@ -311,7 +311,7 @@ class _EnergyDescent:
 
     def _leave_saddle(self, place: _Iterate) -> _Iterate | None:
         """Place of lower energy along a falling mode; None at a minimum, or where none is found."""
-        if self.saddles == _SADDLES or self.options.tolerance > _SHARP:
+        if self.saddles == _SADDLES or self.options.tolerance > _SADDLE_TOLERANCE:
             return None
         stiffness = self._stiffness(place)
         if stiffness.definite or stiffness.singular:
@@ -369,28 +369,28 @@ An element near J = 0 pushes back so hard, and so far from linearly, that Newton
 _PAYS = 0.1
 """A step with old factors has to bring the residual down this far, or new ones are made."""
 
-_SHORT = 0.25
+_SHORT_STEP = 0.25
 """A step of which less is taken is damped from then on."""
 
 _DAMPS = 4.0
 """So many times more than before."""
 
-_LONG = 0.5
+_LONG_STEP = 0.5
 """After a step of which more was taken there is less damping."""
 
 _EASES = 8.0
 """So many times less."""
 
-_FREE = 0.05
+_MIN_DAMPING_SHARE = 0.05
 """Damping that takes less than this share of a step's curvature is left out."""
 
-_FAST = 0.1
+_FAST_DECREASE = 0.1
 """After a step that leaves less than this share of the residual the full Hessian is tried at once."""
 
 _SHIFTS = tuple(np.logspace(-10, 1, 12))
 """Shifts of the diagonal if even the projected Hessian is singular: fractions of its largest entry."""
 
-_SHARP = 1e-4
+_SADDLE_TOLERANCE = 1e-4
 """Only an equilibrium at least as sharp as this share of the largest applied force is told from a saddle."""
 
 _SADDLES = 3

@@ -196,5 +196,5 @@ class ObstacleFriction:
         return np.where(slips, self.limits / np.where(slips, lengths, 1.0), self.springs)
 
 
-_KEPT = 6
+_REMEMBERED_LIMITS = 6
 """So many limits tried before are remembered."""

@@ -38,15 +38,15 @@ class Projection:
         Of a first Hessian `left` is the residual, as a share of the largest applied force. Far from equilibrium, as
         after the prediction, it is seldom definite with small shares, and a step with all of them is as good.
         """
-        if left > _FAR and not projects_first:
+        if left > _FAR_RESIDUAL and not projects_first:
             return Projection(late=1.0)
-        if self.late > _LEAST:
+        if self.late > _MIN_NEGATIVE_SHARE:
             return Projection(float(projects_first), self.late / 16)
         return Projection(self.early if self.raised and projects_first else 0.0)
 
     def with_larger_shares(self, *, projects_first: bool, negative: int = 0) -> "Projection":
         """Return larger shares, where these left so many negative eigenvalues."""
-        if projects_first and negative >= _MANY and not self.late:
+        if projects_first and negative >= _MANY_NEGATIVE and not self.late:
             return Projection(1.0, 1.0, raised=True)
         if projects_first and self.early < 1.0 and not self.late:
             return Projection(1.0, raised=True)
@@ -55,11 +55,11 @@ class Projection:
         return Projection(0.0, min(16 * self.late, 1.0) or 1.0)
 
 
-_MANY = 7
+_MANY_NEGATIVE = 7
 """From this number of negative eigenvalues on, contact's share alone or 1/8 of the others' seldom suffice."""
 
-_FAR = 0.3
+_FAR_RESIDUAL = 0.3
 """With a larger residual all that is negative is taken out of a first Hessian."""
 
-_LEAST = 1 / 32
+_MIN_NEGATIVE_SHARE = 1 / 32
 """Below this share of what is negative, the full Hessian is tried."""

@@ -8,7 +8,7 @@ from hydrostat.arrays import Float, Nodes, Points, Vector
 from hydrostat.geometry import Mesh, locate
 from hydrostat.mechanics.energy import Blocks, Energy, HessianBlocks
 
-LARGEST_TWIST = 3.0
+MAX_TWIST = 3.0
 """Twist of a segment from which on the energy is infinite [rad]; at pi its sense is lost."""
 
 OFFSET = 0.5
@@ -52,7 +52,7 @@ class RodTwistEnergy(Energy):
         """Vectors of both directors, about 1 long, twists of segments since rest [rad], and if all are allowed."""
         vectors = _flat(self._vectors(nodes) * self._scales[..., None])
         angles = (_twist(vectors) - self._rest + np.pi) % (2 * np.pi) - np.pi
-        return vectors, angles.reshape(-1, 2).mean(axis=1), (np.abs(angles) < LARGEST_TWIST).all()
+        return vectors, angles.reshape(-1, 2).mean(axis=1), (np.abs(angles) < MAX_TWIST).all()
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
         _, angles, allowed = self._angles(nodes)

@@ -35,7 +35,7 @@ class ContactSurface:
     @property
     def soft(self) -> float:
         """Regularization that makes the nearest points of parallel edges unique [m^2]."""
-        return (_SOFT * self.distance) ** 2
+        return (_EDGE_SOFTENING * self.distance) ** 2
 
     def compute_squared_distances(self, nodes: Nodes, pairs: Pairs) -> Vector:
         """Squared distance of each pair [m^2]."""
@@ -225,5 +225,5 @@ class SelfContactEnergy(Energy):
         )
 
 
-_SOFT = 0.05
+_EDGE_SOFTENING = 0.05
 """Two edges whose middles are nearest are as far apart as they are; at their ends so much of the distance more."""

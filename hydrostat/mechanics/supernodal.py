@@ -54,14 +54,14 @@ class Fronts(NamedTuple):
     diagonal: np.ndarray
 
 
-SPARE = 8
+PADDING = 8
 """Numbers behind the end of an array that the compiled core may read."""
 
-IDLE = 4
+SPARE_ARRAYS = 4
 """So many arrays of factors are kept for each body, for those to come; fresh pages take half as long as factors."""
 
 
-LARGE = 0.2
+THREADED_SECONDS = 0.2
 """Modelled time of a factorization [s] from which on several threads share it."""
 
 
@@ -94,7 +94,7 @@ class _Workspace(threading.local):
     def __init__(self, spare: int, stacks: tuple[int, int]) -> None:
         self.sizes = spare, stacks
         self.spare = np.empty(spare)
-        self.stacks = np.empty(stacks[0] + SPARE), np.empty(stacks[1] + SPARE)
+        self.stacks = np.empty(stacks[0] + PADDING), np.empty(stacks[1] + PADDING)
 
     def __reduce__(self) -> tuple:
         return _Workspace, self.sizes
@@ -116,7 +116,7 @@ class _IdleArrays:
     def give(self, array: np.ndarray) -> None:
         """Keep an array that nobody else uses, if there is room."""
         idle_size = 75_000_000  # Numbers in all arrays that are kept so for one body (600 MB)
-        if len(self._arrays) < IDLE and (len(self._arrays) + 1) * len(array) <= idle_size:
+        if len(self._arrays) < SPARE_ARRAYS and (len(self._arrays) + 1) * len(array) <= idle_size:
             self._arrays.append(array)
 
     def __reduce__(self) -> tuple:
@@ -142,8 +142,8 @@ class SupernodalAnalysis:
         """Factors of the matrix with these values."""
         signs = np.ones(len(self.place))
         work = self.workspace
-        lower = self.idle.take(self.entries + SPARE)
-        if THREADS > 1 and self.seconds >= LARGE:
+        lower = self.idle.take(self.entries + PADDING)
+        if THREADS > 1 and self.seconds >= THREADED_SECONDS:
             widest = len(work.spare)
             negative = native.factorise_together(*self.fronts, data, lower, signs, widest, tiny, THREADS)
         else:

@@ -11,7 +11,7 @@ from hydrostat.control import SlackCalibration, SpoolCurve, WinchPull
 from hydrostat.drawing import Color, Html, tag
 from hydrostat.files import replace_file
 from hydrostat.plot.chart import new_chart
-from hydrostat.plot.report_tables import NARROW, grid, number, page, picture, table
+from hydrostat.plot.report_tables import NARROW_WIDTH, grid, number, page, picture, table
 from hydrostat.robot import Robot
 from hydrostat.units import MILLIMETERS
 
@@ -88,7 +88,7 @@ def _spools(curves: Sequence[SpoolCurve]) -> tuple[Html, ...]:
 
 def _draw_spool(found: SpoolCurve) -> Figure:
     """Cable beside what was thought before, by turns of the spool."""
-    figure, axes = new_chart("turns of the spool", "more than thought [mm]", width=NARROW, height=2.4)
+    figure, axes = new_chart("turns of the spool", "more than thought [mm]", width=NARROW_WIDTH, height=2.4)
     turns = found.turned / (2 * np.pi)
     axes.plot(turns, MILLIMETERS * (found.readings - found.before), "o", color=Color.WINCHES[0], markersize=4)
     axes.plot(turns, MILLIMETERS * (found.fitted_lengths - found.before), color=Color.MUTED, linewidth=1.2)
@@ -99,7 +99,7 @@ def _draw(found: SlackCalibration, model: WinchPull, constant: float) -> Figure:
     """Pull by cable taken in; current where the motor's constant is not known."""
     known = np.isfinite(constant)
     figure, axes = new_chart(
-        "cable beyond the edge [mm]", "pull [N]" if known else "current [mA]", width=NARROW, height=2.4
+        "cable beyond the edge [mm]", "pull [N]" if known else "current [mA]", width=NARROW_WIDTH, height=2.4
     )
     scale = constant / found.motor.radius if known else 1e3
     axes.plot(

@@ -30,11 +30,11 @@ def name_parts(labels: Labels, pane: Pane, robot: Robot, nodes: Nodes) -> None:
         places[f"{shorten(cover.name)}: sheet"] = nodes[own].mean(axis=0)
     for obstacle in _near_obstacles(robot):
         places[shorten(obstacle.name)] = obstacle.frame()[0]
-    for words, place in list(places.items())[:_MOST_NAMES]:
+    for words, place in list(places.items())[:_MAX_NAMES]:
         labels.place(pane.places(place[None])[0], words, size=7, outside=0.0, color=Color.INK)
 
 
-_MOST_NAMES = 8  # names of parts in a picture, which more would cover
+_MAX_NAMES = 8  # names of parts in a picture, which more would cover
 
 
 def obstacle_reach(robot: Robot) -> Spread:
@@ -44,14 +44,14 @@ def obstacle_reach(robot: Robot) -> Spread:
 
 
 def _near_obstacles(robot: Robot) -> list[Obstacle]:
-    nodes, reach = robot.body.mesh.nodes, _NEAR * robot.body.mesh.size
+    nodes, reach = robot.body.mesh.nodes, _OBSTACLE_DISTANCE * robot.body.mesh.size
     low, high = nodes.min(axis=0) - reach, nodes.max(axis=0) + reach
     ended = [one for one in robot.obstacles if one.shape is not ObstacleShape.PLANE]
     points = [np.concatenate(rims(one, robot)) for one in ended]
     return [one for one, each in zip(ended, points, strict=True) if (each >= low).all() and (each <= high).all()]
 
 
-_NEAR = 0.5  # share of the body's size within which an obstacle is shown whole
+_OBSTACLE_DISTANCE = 0.5  # share of the body's size within which an obstacle is shown whole
 
 
 def draw_rods(sheet: PictureSheet, pane: Pane, robot: Robot, nodes: Nodes) -> None:

@@ -16,7 +16,7 @@ from hydrostat.robot import PoseTarget, Robot
 from hydrostat.simulation import Equilibrium, Simulation
 from hydrostat.units import MILLIMETERS
 
-STILL = 0.25  # share of the time from one stop to the next in which the robot stays there
+REST_SHARE = 0.25  # share of the time from one stop to the next in which the robot stays there
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -115,7 +115,7 @@ class _Shot:
 
     def go(self, begin: Stop, end: Stop, count: int) -> None:
         """Go from one stop to the next in a number of frames, the last of them still."""
-        still = max(1, round(STILL * count))
+        still = max(1, round(REST_SHARE * count))
         words = "back to rest" if not end.contractions.any() else f"to {end.name}"
         for number in range(1, count - still + 1):
             share = 0.5 - 0.5 * np.cos(np.pi * number / (count - still))

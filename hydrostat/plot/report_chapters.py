@@ -22,7 +22,7 @@ from hydrostat.plot.activation_figures import draw_activation, draw_candidates, 
 from hydrostat.plot.design_charts import draw_front, draw_growth, draw_winch_front, stage_runs
 from hydrostat.plot.report_sensitivities import sensitivity_table
 from hydrostat.plot.report_tables import (
-    NARROW,
+    NARROW_WIDTH,
     Chapter,
     body_table,
     cable_table,
@@ -127,7 +127,7 @@ def _body(robot: Robot) -> Chapter:
 
 def body_part(robot: Robot) -> Html:
     """The body at rest beside its size, its material and the places of its markers."""
-    figure = draw_rest(robot.with_network((), ()), title="", width=NARROW)
+    figure = draw_rest(robot.with_network((), ()), title="", width=NARROW_WIDTH)
     shown = picture(figure, "body", "Body, mesh and markers", ", coordinates in mm")
     markers = [tag("h3", "Markers"), place_table(robot)] if robot.markers else []
     return tag("div", shown, tag("div", tag("h3", "Body"), body_table(robot), *markers), class_="pose")
@@ -141,7 +141,7 @@ def target_chapter(robot: Robot, poses: Iterable[PoseTarget]) -> Chapter:
     )
     pictures = []
     for index, pose in enumerate(poses):
-        figure = draw_target(robot.with_network((), ()), pose, title="", width=NARROW)
+        figure = draw_target(robot.with_network((), ()), pose, title="", width=NARROW_WIDTH)
         note = f": where {plural(len(pose.targets), 'marker')} should go"
         pictures.append(picture(figure, f"target-{index}", pose.name, note))
     return Chapter("What it should do", words, [grid(*pictures)])
@@ -160,7 +160,7 @@ def _network(network: Network) -> Chapter:
 
 def network_part(robot: Robot, note: str) -> Html:
     """The network, with a note behind its name, beside tables of winches and cables."""
-    shown = picture(draw_network(robot, title="", width=NARROW), "network", "The network", note)
+    shown = picture(draw_network(robot, title="", width=NARROW_WIDTH), "network", "The network", note)
     facts = tag("div", tag("h3", "Winches"), winch_table(robot), tag("h3", "Cables"), cable_table(robot))
     return tag("div", shown, facts, class_="pose")
 
@@ -174,7 +174,7 @@ REACHED = (  # head and words of the chapter on the poses
 
 def reached_part(robot: Robot, reached: IKResult, index: int, *notes: Html) -> Html:
     """A pose as the winches reach it, beside tables of markers, winches and cables; below them what is to be minded."""
-    figure = draw_reached(robot, reached, title="", width=NARROW)
+    figure = draw_reached(robot, reached, title="", width=NARROW_WIDTH)
     note = f": {MILLIMETERS * reached.rms_error:.2f} mm rms; {reached.outcome}"
     tables = {
         "Markers": marker_table(robot, reached),
@@ -203,7 +203,7 @@ def workspace_chapters(network: Network) -> list[Chapter]:
         f"their travel and {limit:g} N in a cable: poses solved at contractions all over their range, and what exact "
         "slopes tell about their surroundings."
     )
-    shown = picture(draw_workspace(robot, reaches, title="", width=NARROW), "reach", "Reach", " of each marker")
+    shown = picture(draw_workspace(robot, reaches, title="", width=NARROW_WIDTH), "reach", "Reach", " of each marker")
     told = tag("ul", *(tag("li", tag("b", reach.marker), f": {reach}") for reach in reaches))
     return [Chapter("What else it reaches", words, [tag("div", shown, tag("div", told), class_="pose")])]
 
@@ -221,7 +221,7 @@ def _activations(network: Network, trace: TreeTrace) -> Chapter:
     )
     pictures = []
     for index, activation in enumerate(trace.activations):
-        figure = draw_activation(network.robot, activation, title="", width=NARROW)
+        figure = draw_activation(network.robot, activation, title="", width=NARROW_WIDTH)
         note = f": {MILLIMETERS * activation.rms_error:.2f} mm rms with free muscles"
         pictures.append(picture(figure, f"activation-{index}", activation.target.name, note))
     return Chapter("What muscles would do", words, [grid(*pictures)])
@@ -231,10 +231,10 @@ def _routes(network: Network, trace: TreeTrace) -> Chapter:
     words = "Nobody can sew in hundreds of muscles. The strongest are kept, and neighbors are joined into routes."
     pictures = []
     for index, (activation, kept) in enumerate(zip(trace.activations, trace.candidates, strict=True)):
-        figure = draw_candidates(network.robot, activation, kept, title="", width=NARROW)
+        figure = draw_candidates(network.robot, activation, kept, title="", width=NARROW_WIDTH)
         note = f": the strongest {len(kept)} of {plural(len(activation.fibres), 'fibre')}"
         pictures.append(picture(figure, f"candidates-{index}", f"Candidates for {activation.target.name}", note))
-    figure = draw_trees(network.robot, trace.trees, title="", width=NARROW)
+    figure = draw_trees(network.robot, trace.trees, title="", width=NARROW_WIDTH)
     note = f": {plural(len(trace.trees), 'route')} that join neighboring candidates"
     pictures.append(picture(figure, "trees", "Trees", note))
     return Chapter("From muscles to routes", words, [grid(*pictures, kind="small")])

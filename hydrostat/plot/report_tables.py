@@ -16,7 +16,7 @@ from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import BodyPart, Robot, robot_hash
 from hydrostat.units import MILLIMETERS
 
-NARROW = 4.9  # width of pictures that stand side by side [inch]: the narrower, the larger their letters
+NARROW_WIDTH = 4.9  # width of pictures that stand side by side [inch]: the narrower, the larger their letters
 
 
 class Chapter(NamedTuple):

@@ -133,7 +133,7 @@ def _draw_parts(
     return drawn[0], labels
 
 
-SMALL = 2.7  # width of such a picture [inch]
+SMALL_WIDTH = 2.7  # width of such a picture [inch]
 
 
 def draw_stage(robot: Robot, *, like: Robot, frame: Spread) -> Figure:
@@ -142,7 +142,7 @@ def draw_stage(robot: Robot, *, like: Robot, frame: Spread) -> Figure:
     All are seen from the best side of the robot `like`, in a picture that holds the points of `stage_frame` [m].
     """
     nodes = robot.body.mesh.nodes
-    sheet, (pane, *_) = open_sheet(like, [], [frame], width=SMALL, ruled=False)
+    sheet, (pane, *_) = open_sheet(like, [], [frame], width=SMALL_WIDTH, ruled=False)
     draw_hardware(sheet, pane, pane.draw_body(sheet, nodes, pins=True), Attachments(robot), nodes, width=1.8)
     draw_markers(sheet, pane.locate_points(rest_markers(robot)), size=3.4)
     return sheet.figure

@@ -20,7 +20,7 @@ from hydrostat.plot.targets import target_points
 from hydrostat.plot.tension_scale import TensionScale
 from hydrostat.robot import PoseTarget, Robot
 
-MOST_KEYS = 120  # of a film of more different frames every second, third ... is a key: programs hold them all at once
+MAX_KEYS = 120  # of a film of more different frames every second, third ... is a key: programs hold them all at once
 CABLE, MARKER, TARGET = 0.0045, 0.011, 0.05
 """Radius of a cable and of a marker, and length of a target's cross, in sizes of the body."""
 
@@ -64,8 +64,8 @@ class _Film:
     @classmethod
     def of(cls, robot: Robot, frames: Sequence[Frame]) -> Self:
         keys, order = _distinct(robot, frames)
-        if len(keys) > MOST_KEYS:
-            stride = -(-len(frames) // MOST_KEYS)
+        if len(keys) > MAX_KEYS:
+            stride = -(-len(frames) // MAX_KEYS)
             kept = [index for index in range(len(frames)) if index % stride == 0 or index == len(frames) - 1]
             keys, some = _distinct(robot, [frames[index] for index in kept])
             order = [-1] * len(frames)

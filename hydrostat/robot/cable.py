@@ -11,7 +11,7 @@ import numpy as np
 
 from hydrostat.errors import InputError
 from hydrostat.given import (
-    LONGEST_NAME,
+    MAX_NAME,
     Point,
     check_name,
     check_not_negative,
@@ -154,4 +154,4 @@ def _numbers(cables: Sequence[Cable]) -> list[int]:
 def _usual_name(winch: str, number: int) -> str:
     """Winch's name and a number, no longer than a name may be."""
     tail = f" {number}"
-    return winch[: LONGEST_NAME - len(tail)] + tail
+    return winch[: MAX_NAME - len(tail)] + tail

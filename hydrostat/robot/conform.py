@@ -9,7 +9,7 @@ from hydrostat.geometry import Mesh
 from hydrostat.robot.part import BodyPart
 
 PASSES = 3
-LEAST_QUALITY = 0.25
+MIN_QUALITY = 0.25
 """Least shape of an element that a move may leave, 1 for a regular one; or what it was before."""
 
 
@@ -17,7 +17,7 @@ def conform(mesh: Mesh, parts: Sequence[BodyPart]) -> Mesh:
     """Mesh with nodes moved onto the borders of parts, where an edge crosses one; nodes on the boundary stay.
 
     A node moves to the nearest place of the border if it is nearer to it than the other end of an edge that crosses,
-    and no element becomes flatter than `LEAST_QUALITY`. Elements keep their nodes.
+    and no element becomes flatter than `MIN_QUALITY`. Elements keep their nodes.
     """
     nodes = mesh.nodes.copy()
     free = np.ones(len(nodes), dtype=bool)
@@ -32,7 +32,7 @@ def conform(mesh: Mesh, parts: Sequence[BodyPart]) -> Mesh:
                 before, touched = nodes[node].copy(), around[node]
                 nodes[node] = place
                 found = _qualities(nodes, mesh.elements[touched])
-                if (found < np.minimum(LEAST_QUALITY, quality[touched])).any():
+                if (found < np.minimum(MIN_QUALITY, quality[touched])).any():
                     nodes[node] = before
                     continue
                 quality[touched] = found

@@ -10,7 +10,7 @@ from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
 
 FILE = "grading.csv"
-MOST_RATIO = 1e4
+MAX_RATIO = 1e4
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,7 +25,7 @@ class Grading:
 
     Raises:
         InputError: columns of other names, a row that does not fit them, or a factor that is not above 0 or more than
-            `MOST_RATIO` times another one.
+            `MAX_RATIO` times another one.
     """
 
     content: bytes = field(repr=False)
@@ -36,7 +36,7 @@ class Grading:
         if (wrong := np.flatnonzero(~(factors > 0))).size:
             at = ", ".join(f"{1e3 * value:.4g}" for value in places[wrong[0]])
             raise InputError(f"{self.file}: each factor must be above 0; at {at} mm it is {factors[wrong[0]]:.4g}")
-        if factors.max() > MOST_RATIO * factors.min():
+        if factors.max() > MAX_RATIO * factors.min():
             raise InputError(f"{self.file}: the largest factor is {factors.max() / factors.min():.3g} times the least")
 
     @staticmethod

@@ -7,7 +7,7 @@ import numpy as np
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
-from hydrostat.given import LONGEST_NAME, Point
+from hydrostat.given import MAX_NAME, Point
 from hydrostat.robot.body import Body
 from hydrostat.robot.body_cache import Arrays, keep_body
 from hydrostat.robot.cable import Cable
@@ -40,7 +40,7 @@ def sewn_sides(robot: Robot) -> tuple[str, ...]:
 def side_name(cable: Cable, side: str) -> str:
     """Such as "left 1 back"; nothing, so that a robot gives it one, where that is longer than a name may be."""
     name = f"{cable.name} {side}"
-    return name if len(name) <= LONGEST_NAME else ""
+    return name if len(name) <= MAX_NAME else ""
 
 
 def describe_cable_side(robot: Robot) -> str:

@@ -5,7 +5,7 @@ import numpy as np
 from hydrostat.arrays import Bool, Int, Points, Vector
 from hydrostat.geometry import Mesh
 
-_LEAST_PERSISTENCE = 0.15  # share of the longest distance by which a tip rises above the way to a farther one
+_MIN_PERSISTENCE = 0.15  # share of the longest distance by which a tip rises above the way to a farther one
 
 
 def measure_geodesics(mesh: Mesh, held: Bool[np.ndarray, " nodes"]) -> tuple[Vector, Int[np.ndarray, " nodes"]]:
@@ -31,7 +31,7 @@ def find_limb_tips(mesh: Mesh, away: Vector) -> list[int]:
     farther one (topological persistence: Edelsbrunner, Letscher and Zomorodian 2002).
     """
     height = np.where(np.isfinite(away), away, -1.0)
-    least = max(_LEAST_PERSISTENCE * float(height.max()), 2 * float(mesh.edge_lengths.mean()))
+    least = max(_MIN_PERSISTENCE * float(height.max()), 2 * float(mesh.edge_lengths.mean()))
     order = np.argsort(-height, kind="stable")
     rank = np.empty(len(order), int)
     rank[order] = np.arange(len(order))

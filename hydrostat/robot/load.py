@@ -12,7 +12,7 @@ from hydrostat.geometry import Mesh
 from hydrostat.given import Point, check_name, check_number, check_point, check_positive, check_unique, list_choices
 from hydrostat.units import quote
 
-MOST_SHARE = 100.0
+MAX_SHARE = 100.0
 """Largest share of a load in a motion: 1 is all of it. Write a larger load instead."""
 
 
@@ -89,8 +89,8 @@ class Load:
             check_number("path", share, "")
             if not math.isfinite(instant):
                 raise InputError(f"path: its times must be finite, not {instant:g} s")
-            if not abs(share) <= MOST_SHARE:
-                raise InputError(f"path: a share must be from -{MOST_SHARE:g} to {MOST_SHARE:g}, not {share:g}")
+            if not abs(share) <= MAX_SHARE:
+                raise InputError(f"path: a share must be from -{MAX_SHARE:g} to {MAX_SHARE:g}, not {share:g}")
             if not (instant >= 0 and instant > before):
                 after = "" if before < 0 else f" after {before:g} s"
                 raise InputError(f"path: its times must rise from 0 s; {instant:g} s comes{after or ' first'}")

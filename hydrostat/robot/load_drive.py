@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 from hydrostat.errors import InputError
 from hydrostat.given import check_name, check_number, list_choices
-from hydrostat.robot.load import MOST_SHARE, Load
+from hydrostat.robot.load import MAX_SHARE, Load
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,8 +33,8 @@ class LoadDrive:
         check_name(self.name)
         for key, sign in (("min", -1), ("max", 1)):
             check_number(key, value := getattr(self, key), "")
-            if not 0 <= sign * value <= MOST_SHARE:
-                low, high = sorted((0.0, sign * MOST_SHARE))
+            if not 0 <= sign * value <= MAX_SHARE:
+                low, high = sorted((0.0, sign * MAX_SHARE))
                 raise InputError(f"{key} must be a share of the loads from {low:g} to {high:g}, not {value:g}")
 
     @property

@@ -9,9 +9,9 @@ from hydrostat.given import check_not_negative, check_number, check_positive
 from hydrostat.robot.losses import SLIDERS
 
 SOFTEST = 100.0  # Young's modulus of a material is at least so much [Pa]: less was meant in another unit
-MOST_BRANCHES = 10  # a material has at most this many branches
-MOST_TERMS = 6  # a foam law has at most this many terms
-STEEPEST = 50.0  # largest exponent of a term, up or down
+MAX_BRANCHES = 10  # a material has at most this many branches
+MAX_TERMS = 6  # a foam law has at most this many terms
+MAX_EXPONENT = 50.0  # largest exponent of a term, up or down
 FOAM_POISSON_LIMIT = 0.45  # Poisson's ratio of a foam law is at most this: foams change their volume
 
 
@@ -68,9 +68,10 @@ class FoamTerm:
     def __post_init__(self) -> None:
         check_positive("share", self.share, "")
         check_number("exponent", self.exponent, "")
-        if not 0 < abs(self.exponent) <= STEEPEST:
+        if not 0 < abs(self.exponent) <= MAX_EXPONENT:
             raise InputError(
-                f"exponent must be from {-STEEPEST:g} to {STEEPEST:g} and not 0, not {self.exponent:g}; 8 is soft foam"
+                f"exponent must be from {-MAX_EXPONENT:g} to {MAX_EXPONENT:g} and not 0, not {self.exponent:g}; 8 is "
+                "soft foam"
             )
 
 
@@ -129,10 +130,10 @@ class Material:
         check_not_negative("viscosity", self.viscosity, "Pa s")
         if self.loss_factor is not None:
             check_not_negative("loss_factor", self.loss_factor, "")
-        if len(self.relaxation) > MOST_BRANCHES:
-            raise InputError(f"relaxation must have at most {MOST_BRANCHES} branches, not {len(self.relaxation)}")
-        if len(self.hysteresis) > MOST_BRANCHES:
-            raise InputError(f"hysteresis must have at most {MOST_BRANCHES} elements, not {len(self.hysteresis)}")
+        if len(self.relaxation) > MAX_BRANCHES:
+            raise InputError(f"relaxation must have at most {MAX_BRANCHES} branches, not {len(self.relaxation)}")
+        if len(self.hysteresis) > MAX_BRANCHES:
+            raise InputError(f"hysteresis must have at most {MAX_BRANCHES} elements, not {len(self.hysteresis)}")
         if self.foam:
             self._check_foam()
         if self.largest_stretch is not None and not 1 < self.largest_stretch < math.inf:
@@ -151,8 +152,8 @@ class Material:
 
     def _check_foam(self) -> None:
         total = sum(term.share for term in self.foam)
-        if len(self.foam) > MOST_TERMS:
-            raise InputError(f"terms: a foam law has at most {MOST_TERMS}, not {len(self.foam)}")
+        if len(self.foam) > MAX_TERMS:
+            raise InputError(f"terms: a foam law has at most {MAX_TERMS}, not {len(self.foam)}")
         if abs(total - 1) > 1e-6:
             raise InputError(f"terms: their shares add up to {total:g}, not to 1; divide each by {total:g}")
         if self.poisson > FOAM_POISSON_LIMIT:

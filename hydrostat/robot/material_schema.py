@@ -5,7 +5,7 @@ from typing import Annotated
 from pydantic import BeforeValidator, Discriminator, Field, Tag
 
 from hydrostat.robot.element_kind import MaterialLaw
-from hydrostat.robot.material import MOST_BRANCHES, MOST_TERMS
+from hydrostat.robot.material import MAX_BRANCHES, MAX_TERMS
 from hydrostat.toml_schema import Density, Name, NamedViscosity, Number, Pressure, Text, Time, TomlTable, Viscosity
 
 
@@ -16,7 +16,7 @@ class RelaxationTable(TomlTable):
     time: Time
 
 
-Branches = Annotated[list[RelaxationTable], Field(max_length=MOST_BRANCHES)]
+Branches = Annotated[list[RelaxationTable], Field(max_length=MAX_BRANCHES)]
 
 
 class SliderTable(TomlTable):
@@ -26,7 +26,7 @@ class SliderTable(TomlTable):
     strain: Number
 
 
-Sliders = Annotated[list[SliderTable], Field(max_length=MOST_BRANCHES)]
+Sliders = Annotated[list[SliderTable], Field(max_length=MAX_BRANCHES)]
 
 
 class FoamTermTable(TomlTable):
@@ -36,7 +36,7 @@ class FoamTermTable(TomlTable):
     exponent: Number
 
 
-Terms = Annotated[list[FoamTermTable], Field(min_length=1, max_length=MOST_TERMS)]
+Terms = Annotated[list[FoamTermTable], Field(min_length=1, max_length=MAX_TERMS)]
 
 
 def _named_sliders(value: object) -> object:

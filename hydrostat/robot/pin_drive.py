@@ -68,7 +68,7 @@ class PinDrive:
             check_number(key, value, self.unit)
             if not 0 <= sign * value < math.inf:
                 raise InputError(f"{key} must not be {'above' if sign < 0 else 'below'} 0, where the robot rests")
-            if self.turns and abs(value) > _LARGEST_TURN:
+            if self.turns and abs(value) > _MAX_TURN:
                 raise InputError(f"{key} is {math.degrees(value):.4g} deg; the angle must be within one turn, 360 deg")
 
     @property
@@ -150,7 +150,7 @@ class PinDrive:
     def check_radians(drives: "Sequence[PinDrive | LoadDrive]", values: Vector) -> None:
         """Reject angles that are degrees (InputError: more than a turn)."""
         for drive, value in zip(drives, values, strict=True):
-            if drive.turns and abs(value) > _LARGEST_TURN:
+            if drive.turns and abs(value) > _MAX_TURN:
                 raise InputError(
                     f'the angle of drive "{drive.name}", {value:g} rad, is more than a turn; angles are in radians: '
                     "30 degrees are 0.5236"
@@ -209,4 +209,4 @@ def format_angle(value: float) -> str:
     return next((text for text in texts if PinDrive.parse_value(text, turns=True) == value), texts[-3])
 
 
-_LARGEST_TURN = 2 * math.pi
+_MAX_TURN = 2 * math.pi

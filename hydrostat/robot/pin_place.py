@@ -8,14 +8,15 @@ import shapely
 from hydrostat.robot.body import Body
 from hydrostat.robot.pin import Pin
 
-_SMALL = 0.3  # size of a drawn shape, as a share of the body's, from which on a pin may cover it, such as a belly
+_COVERABLE_SIZE = 0.3
+"""Size of a drawn shape, as a share of the body's, from which on a pin may cover it, such as a belly."""
 
 
 def move_off_drawings(pin: Pin, body: Body, outline: shapely.Polygon) -> Pin:
     """Return a pin at the nearest place in the body where it covers no small drawn shape; itself if there is none."""
     hulls = [shapely.LineString(line).convex_hull for line in body.marks]
     sizes = [max(hull.bounds[2] - hull.bounds[0], hull.bounds[3] - hull.bounds[1]) for hull in hulls]
-    limit = _SMALL * body.mesh.size
+    limit = _COVERABLE_SIZE * body.mesh.size
     small = shapely.union_all([hull for hull, size in zip(hulls, sizes, strict=True) if size < limit])
     if pin.at is None or small.is_empty or shapely.Point(pin.at).distance(small) >= pin.radius:
         return pin

@@ -85,7 +85,7 @@ class Robot:
     rods: tuple[Rod, ...] = ()
     sheets: tuple[Membrane, ...] = ()
     sensors: tuple[Sensor, ...] = ()
-    LARGEST_STEP = 4.0  # the spools of cables on one shaft differ by at most so many times
+    MAX_RADIUS_RATIO = 4.0  # the spools of cables on one shaft differ by at most so many times
 
     def __post_init__(self) -> None:
         self._check_kinds()
@@ -350,11 +350,11 @@ class Robot:
 
     def _check_spool(self, index: int, cable: Cable, winch: Winch) -> None:
         radius, usual = cable.spool_radius or winch.spool_radius, winch.spool_radius
-        if max(radius, usual) > (1 + 1e-9) * self.LARGEST_STEP * min(radius, usual):
+        if max(radius, usual) > (1 + 1e-9) * self.MAX_RADIUS_RATIO * min(radius, usual):
             raise InputError(
-                f"cable[{index}].spool_radius must be from {self._text(usual / self.LARGEST_STEP)} to "
-                f"{self._text(usual * self.LARGEST_STEP)}, at most {self.LARGEST_STEP:g} times smaller or larger than "
-                f'that of winch "{winch.name}", not {self._text(radius)}'
+                f"cable[{index}].spool_radius must be from {self._text(usual / self.MAX_RADIUS_RATIO)} to "
+                f"{self._text(usual * self.MAX_RADIUS_RATIO)}, at most {self.MAX_RADIUS_RATIO:g} times smaller or "
+                f'larger than that of winch "{winch.name}", not {self._text(radius)}'
             )
 
     def _check_inside(self, named: Sequence[tuple[str, Point]]) -> None:

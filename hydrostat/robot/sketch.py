@@ -15,19 +15,19 @@ from hydrostat.robot.limb_tips import find_limb_tips, measure_geodesics, name_ti
 from hydrostat.robot.marker import Marker, PoseTarget
 from hydrostat.robot.materials import get_material
 from hydrostat.robot.pin import Pin
-from hydrostat.robot.risks.body_risks import LEAST_QUADRATIC, LOCKING_POISSON, MIN_ELEMENTS_ACROSS
+from hydrostat.robot.risks.body_risks import LOCKING_POISSON, MIN_ELEMENTS_ACROSS, MIN_QUADRATIC
 from hydrostat.robot.robot import Robot
 
-SLENDER = 6
+MIN_LINEAR_ELEMENTS = 6
 """A limb with fewer linear elements across bends 5 % too little or worse, whatever its Poisson's ratio."""
 
 
 def is_slender(body: Body) -> bool:
     """Return True if linear elements bend a limb too little: it has few across, or they lock."""
-    return body.material.poisson >= LOCKING_POISSON or bool(body.measured_thickness.thin_parts(SLENDER))
+    return body.material.poisson >= LOCKING_POISSON or bool(body.measured_thickness.thin_parts(MIN_LINEAR_ELEMENTS))
 
 
-THICK = 2.0
+PLANE_STRAIN_RATIO = 2.0
 """Thickness over width from which plane strain is chosen: a bar of that pulls 20 % harder in plane stress than in space
 at Poisson's ratio 0.45, and 48 % harder in plane strain, so that much thicker ones alone would be nearer to it."""
 
@@ -35,7 +35,7 @@ at Poisson's ratio 0.45, and 48 % harder in plane strain, so that much thicker o
 def choose_plane(body: Body) -> Plane:
     """Plane stress for a flat body that is at most twice as thick as it is wide (median), else plane strain."""
     width, _ = body.measured_thickness.part(0.5)
-    return Plane.STRESS if body.thickness is not None and body.thickness <= THICK * width else Plane.STRAIN
+    return Plane.STRESS if body.thickness is not None and body.thickness <= PLANE_STRAIN_RATIO * width else Plane.STRAIN
 
 
 def finer_size(body: Body, most: int) -> float | None:
@@ -44,7 +44,7 @@ def finer_size(body: Body, most: int) -> float | None:
     None where they have, where the body is a ready mesh, or where it would have more nodes than `most`.
     """
     dim = body.mesh.dim
-    least = MIN_ELEMENTS_ACROSS[dim] if body.mesh.quadratic is None else 2 * LEAST_QUADRATIC
+    least = MIN_ELEMENTS_ACROSS[dim] if body.mesh.quadratic is None else 2 * MIN_QUADRATIC
     parts = body.measured_thickness.thin_parts(least) if body.element_size else []
     if not parts or body.element_size is None:
         return None

@@ -143,7 +143,7 @@ _STOUT = 0.35
 
 _STATIONS = np.linspace(0.06, 0.9, 12)
 
-_SPOOL, _LEAST_SPOOL = 0.006, 0.002
+_SPOOL, _MIN_SPOOL = 0.006, 0.002
 
 
 def _first_robot(body: Body, name: str) -> Robot:
@@ -169,7 +169,7 @@ def _first_robot(body: Body, name: str) -> Robot:
     ]
     tips = np.array([_cover_offset(mesh, solid, end, 0 * side) for end in ends])
     tip, names = tips[0], name_tips(mesh, tips)
-    spool = min(_SPOOL, max(_LEAST_SPOOL, -0.9 * float(solid.distances(route[:1])[0])))
+    spool = min(_SPOOL, max(_MIN_SPOOL, -0.9 * float(solid.distances(route[:1])[0])))
     cable = Cable(winch="pull", points=tuple(map(_point, route)))
     travel = max(round(0.4 * cable.length, 3), 1e-3)
     winch = Winch(name="pull", at=cable.points[0], spool_radius=round(spool, 4), travel=travel)

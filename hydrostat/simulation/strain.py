@@ -48,7 +48,7 @@ def _foam_stresses(material: Material, squares: Float[np.ndarray, "elements 3 3"
     return np.sqrt(1.5 * ((stress - stress.mean(axis=1, keepdims=True)) ** 2).sum(axis=1))
 
 
-MANY = 0.02
+WARNED_SHARE = 0.02
 """Share of the body that must leave the range of its material to be worth a warning: single elements at points do."""
 
 
@@ -62,7 +62,7 @@ def find_overstrain(robot: Robot, nodes: Nodes) -> str:
     beyond = np.maximum(longest / most, (1 - shortest) / np.maximum(1 - least, 1e-9))
     outside, volumes = beyond > 1, body.mesh.volumes
     share = float(volumes[outside].sum() / volumes.sum())
-    if share < MANY:
+    if share < WARNED_SHARE:
         return ""
     worst = int(np.argmax(beyond))
     material = body.materials[body.element_materials[worst]]

@@ -16,7 +16,7 @@ from hydrostat.studio.judge import Judge
 
 LOCKED = "your teacher has locked the robots. Wait until they are unlocked"
 
-MOST_STEPS = 500  # so many changes can be undone; older ones are forgotten
+MAX_STEPS = 500  # so many changes can be undone; older ones are forgotten
 
 
 @dataclass(eq=False)
@@ -151,7 +151,7 @@ class Document:
             if merge and len(self._past) > 1 and self._past[-1].merge == merge:
                 self._past.pop()
             self._past.append(change)
-            del self._past[: -MOST_STEPS - 1]
+            del self._past[: -MAX_STEPS - 1]
             self._future = []
             self._forget_physics()
             self.serial += 1

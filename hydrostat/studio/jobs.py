@@ -17,7 +17,7 @@ from hydrostat.studio.worker_context import start_worker
 
 __all__ = ["JobState", "Jobs", "Report", "Slots"]
 
-LOOK = 1.0  # time from one look at the line of others to the next [s]
+POLL_INTERVAL = 1.0  # time from one look at the line of others to the next [s]
 END_TIMEOUT = 5.0  # a process that has told what came of its work is given so long to end [s]
 
 
@@ -261,7 +261,7 @@ class Jobs:
         """Hear the process until it says what came of its work; why it failed, or ""."""
         over = time.monotonic() + self._turn_time
         while True:
-            while not pipe.poll(LOOK):
+            while not pipe.poll(POLL_INTERVAL):
                 self._end_turn(over)
             self._end_turn(over)
             kind, *rest = pipe.recv()

@@ -13,7 +13,7 @@ from hydrostat.studio.jobs import Slots
 from hydrostat.studio.skins import SewnSkin, Skins
 
 QUIET = 0.2  # a robot is judged when it is shown unchanged for so long [s]
-KEPT = 80  # so many robots are remembered, the candidates of some designs among them
+CACHE_SIZE = 80  # so many robots are remembered, the candidates of some designs among them
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +90,7 @@ class Judge:
         elif now - seen[3] >= QUIET and not held:
             options, known = self.options, self._of(robot)
             review = _Review(robot, wishes, options, known, _all_findings(robot, wishes, options, known))
-            self._reviews = (review, *self._reviews)[:KEPT]
+            self._reviews = (review, *self._reviews)[:CACHE_SIZE]
             self.skins.look(robot.body, options)
             self._bell.ring(Topic.JOB, Topic.SCENE)
 
@@ -105,7 +105,7 @@ class Judge:
         if robot is not None:
             options, known = self.options, self._of(robot)
             verdict = _KitVerdict(robot, options, known, _is_refused(robot, options, known))
-            self._verdicts = (verdict, *self._verdicts)[:KEPT]
+            self._verdicts = (verdict, *self._verdicts)[:CACHE_SIZE]
             self._bell.ring(Topic.JOB)
 
     def torque_limit(self, robot: Robot) -> float | None:
@@ -126,7 +126,7 @@ class Judge:
         if demand is not None:
             before = replace(before, demand=demand, torque=torque)
         known = replace(before, robot=robot, refused=refused or before.refused)
-        self._known = (known, *(other for other in self._known if not _alike(other.robot, robot)))[:KEPT]
+        self._known = (known, *(other for other in self._known if not _alike(other.robot, robot)))[:CACHE_SIZE]
         self._seen = None
         self._bell.ring(Topic.JOB, Topic.SCENE)
 

@@ -14,11 +14,11 @@ from zipfile import ZipFile
 from hydrostat.errors import InputError
 
 LINK_MARK = "#robot="
-MOST_LETTERS = 30_000  # no link is longer
-MOST_BYTES = 300_000  # of all files, unpacked
+MAX_LETTERS = 30_000  # no link is longer
+MAX_BYTES = 300_000  # of all files, unpacked
 WRONG = "this link is incomplete or holds no robot. Copy all of it again"
-MOST_PATH = 255  # letters; a zip holds paths of 65,535 bytes
-MOST_FILES = 4  # robot.toml, the drawing, studio.json, and one more
+MAX_PATH = 255  # letters; a zip holds paths of 65,535 bytes
+MAX_FILES = 4  # robot.toml, the drawing, studio.json, and one more
 
 
 def pack_robot(files: Mapping[str, bytes]) -> str:
@@ -36,8 +36,8 @@ def pack_robot(files: Mapping[str, bytes]) -> str:
     deflate = zlib.compressobj(9, wbits=-15)
     packed = deflate.compress(json.dumps(texts, ensure_ascii=False, separators=(",", ":")).encode()) + deflate.flush()
     letters = urlsafe_b64encode(packed).rstrip(b"=").decode()
-    if len(letters) > MOST_LETTERS or len(files) > MOST_FILES or sum(map(len, files.values())) > MOST_BYTES:
-        raise InputError(f"this robot needs {len(letters)} letters (maximum {MOST_LETTERS}). Send the .zip")
+    if len(letters) > MAX_LETTERS or len(files) > MAX_FILES or sum(map(len, files.values())) > MAX_BYTES:
+        raise InputError(f"this robot needs {len(letters)} letters (maximum {MAX_LETTERS}). Send the .zip")
     return LINK_MARK + letters
 
 
@@ -48,18 +48,18 @@ def unpack_robot_link(link: str) -> bytes:
         InputError: there is no robot in it, or too much.
     """
     letters = link.partition(LINK_MARK)[2].strip()
-    if not 0 < len(letters) <= MOST_LETTERS:
-        raise InputError(f"no robot in this link (1 to {MOST_LETTERS} letters after {LINK_MARK}). Copy it again")
+    if not 0 < len(letters) <= MAX_LETTERS:
+        raise InputError(f"no robot in this link (1 to {MAX_LETTERS} letters after {LINK_MARK}). Copy it again")
     inflate = zlib.decompressobj(wbits=-15)
     try:
         packed = urlsafe_b64decode(letters.encode() + b"=" * (-len(letters) % 4))
-        text = inflate.decompress(packed, MOST_BYTES + 1)
-        files = json.loads(text) if inflate.eof and len(text) <= MOST_BYTES else None
+        text = inflate.decompress(packed, MAX_BYTES + 1)
+        files = json.loads(text) if inflate.eof and len(text) <= MAX_BYTES else None
     except (ValueError, zlib.error, RecursionError):
         files = None
-    if not isinstance(files, dict) or len(files) > MOST_FILES:
+    if not isinstance(files, dict) or len(files) > MAX_FILES:
         raise InputError(WRONG)
-    if not all(isinstance(content, str) and len(path) <= MOST_PATH for path, content in files.items()):
+    if not all(isinstance(content, str) and len(path) <= MAX_PATH for path, content in files.items()):
         raise InputError(WRONG)
     buffer = BytesIO()
     try:

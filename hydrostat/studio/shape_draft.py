@@ -10,7 +10,7 @@ from hydrostat.studio.document import Document
 from hydrostat.studio.stage import SAME_CLICK
 from hydrostat.studio.view.scene_items import Area, Dot, Look, SceneItem, Strand, Stroke
 
-LEAST = 0.015  # the smallest radius or half side of what is drawn, as a share of the body
+MIN_SHAPE = 0.015  # the smallest radius or half side of what is drawn, as a share of the body
 
 
 class Form(StrEnum):
@@ -23,13 +23,13 @@ class Form(StrEnum):
 
 def disc(middle: Point, rim: Point, size: float) -> Zone:
     """A disc or ball from its middle to a point on its rim, not too small for a body of some size [m]."""
-    return Zone(at=middle, radius=max(math.dist(middle, rim), LEAST * size))
+    return Zone(at=middle, radius=max(math.dist(middle, rim), MIN_SHAPE * size))
 
 
 def box(one: Point, other: Point, size: float) -> Zone:
     """A box between two corners, not too small for a body of some size [m]."""
     low, high = (tuple(map(end, one, other)) for end in (min, max))
-    return Zone(box=(low, tuple(max(b, a + LEAST * size) for a, b in zip(low, high, strict=True))))
+    return Zone(box=(low, tuple(max(b, a + MIN_SHAPE * size) for a, b in zip(low, high, strict=True))))
 
 
 def lasso(points: tuple[Point, ...], size: float) -> Zone:
@@ -40,7 +40,7 @@ def lasso(points: tuple[Point, ...], size: float) -> Zone:
     whole = make_valid(Polygon(points)) if len(points) >= 3 else Polygon()
     parts = whole.geoms if isinstance(whole, BaseMultipartGeometry) else [whole]
     polygons = [part for part in parts if isinstance(part, Polygon) and not part.is_empty]
-    if not polygons or max(part.area for part in polygons) < (LEAST * size) ** 2:
+    if not polygons or max(part.area for part in polygons) < (MIN_SHAPE * size) ** 2:
         raise InputError("the line encloses no area. Draw it around a part of the body")
     coarse = 0.006  # a line drawn by hand is made this much simpler, as a share of the body
     largest = max(polygons, key=lambda part: part.area).exterior.simplify(coarse * size)

@@ -67,7 +67,7 @@ def _share(frequency: Vector | float, seconds: float) -> Vector | float:
     return 1.0 / (1.0 + 1.0 / (2 * pi * frequency * seconds))
 
 
-SILENCE = 0.25
+HAND_TIMEOUT = 0.25
 """A hand that is not heard for so long is not there [s]."""
 USUAL_SMOOTHING = Smoothing()
 """Smoothing of hand readings: each is one byte, and trembles."""
@@ -78,7 +78,7 @@ STARTUP_TIMEOUT = 5.0
 class MappedHand(DriveSource):
     """A hand whose sensors are read all the time, in a thread of their own, and mapped to the channels of a robot."""
 
-    silence = SILENCE
+    silence = HAND_TIMEOUT
 
     def __init__(
         self,

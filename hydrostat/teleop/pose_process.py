@@ -21,7 +21,7 @@ from hydrostat.ik import IKStatus, Limits, LinearizedPose, Tracker
 from hydrostat.robot import Robot
 from hydrostat.simulation import Equilibrium, Simulation
 
-LONGEST = 0.1
+MAX_STEP = 0.1
 """Time since the update before counts as so long at most [s]: nobody catches up in a leap. An outlook looks as far."""
 
 
@@ -81,7 +81,7 @@ class FingertipPoses:
         if not targets:
             return None, False
         now = time.monotonic()
-        passed, self._updated = min(max(now - self._updated, 1e-3), LONGEST), now
+        passed, self._updated = min(max(now - self._updated, 1e-3), MAX_STEP), now
         if begin is not None and number != self._done:
             start = self._simulation.solve(begin, start=self._tracker.pose, strict=False)
             if start.result.converged:
@@ -91,7 +91,7 @@ class FingertipPoses:
         more = reached.status is IKStatus.ITERATION_LIMIT
         told = {
             "error": max(reached.errors.values()),
-            "outlook": self._tracker.linearize(seconds=LONGEST),
+            "outlook": self._tracker.linearize(seconds=MAX_STEP),
             "done": not more,
         }
         return replace(_find_pose(number, self._simulation.robot, reached.pose), **told), more

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.control import FASTEST, TensionLookup
+from hydrostat.control import DEFAULT_MAX_SPEED, TensionLookup
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
@@ -17,7 +17,7 @@ from hydrostat.teleop.source import DriveChannels
 if TYPE_CHECKING:
     from hydrostat.learning import LearnedModel
 
-NEAR = 3e-3
+CONTRACTION_TOLERANCE = 3e-3
 """A guard judges where a pose is known within so much of each contraction [m]."""
 REACH = 0.5
 """Targets of a marker lie so far about its rest, as a share of the largest side of the body."""
@@ -64,7 +64,7 @@ class WinchMapper(CommandMapper):
         """Begin at contractions [m]; poses need not be solved where there is no guard."""
         robot = simulation.robot
         self.channels, self.contractions = WinchMapper.list_channels(robot), contractions.copy()
-        self.known = TensionLookup(robot, near=NEAR)
+        self.known = TensionLookup(robot, near=CONTRACTION_TOLERANCE)
         self.known.add(simulation.solve(contractions, strict=False))
         self._seen = contractions.copy()
         self._poses = PoseProcess(WinchPoses, (robot,), self._accept_pose) if solves else None
@@ -124,12 +124,12 @@ class MarkerMapper(CommandMapper):
         contractions: Vector,
         *,
         model: "LearnedModel | None" = None,
-        rate: float = FASTEST,
+        rate: float = DEFAULT_MAX_SPEED,
     ) -> None:
         """Begin at contractions [m]; cables get no faster than a rate [m/s] (InputError: there are no markers)."""
         self._model, robot = model, simulation.robot
         self.channels, self.contractions = MarkerMapper.list_channels(simulation), contractions.copy()
-        self.known = TensionLookup(robot, near=NEAR)
+        self.known = TensionLookup(robot, near=CONTRACTION_TOLERANCE)
         start = simulation.solve(contractions, strict=False)
         self.known.add(start)
         self._names, self._dim = tuple(simulation.rest.markers), robot.body.mesh.dim

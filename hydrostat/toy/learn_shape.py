@@ -7,7 +7,7 @@ import numpy as np
 
 from hydrostat.arrays import Float, Int, Nodes, Vector
 from hydrostat.errors import InputError
-from hydrostat.learning import LEAST, Perceptrons, Samples
+from hydrostat.learning import MIN_SAMPLES, Perceptrons, Samples
 from hydrostat.progress import Progress, no_progress
 from hydrostat.toy.learned_shape import LearnedShape
 
@@ -42,8 +42,8 @@ def learn_shape(
     """
     if samples.nodes is None:
         raise InputError("the samples hold no nodes. Sample again with --save-nodes.")
-    if len(samples) < LEAST:
-        raise InputError(f"{len(samples)} samples are too few. Use {LEAST} or more.")
+    if len(samples) < MIN_SAMPLES:
+        raise InputError(f"{len(samples)} samples are too few. Use {MIN_SAMPLES} or more.")
     low, high = samples.limits
     span = np.where(high > low, high - low, 1.0)
     inputs = np.where(high > low, 2.0 * (np.vstack([samples.contractions, 0.0 * low]) - low) / span - 1.0, 0.0)

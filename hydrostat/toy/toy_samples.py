@@ -7,7 +7,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.learning import LEAST, SamplePlan, Samples, SamplingScheme, sample_robot
+from hydrostat.learning import MIN_SAMPLES, SamplePlan, Samples, SamplingScheme, sample_robot
 from hydrostat.progress import Progress, no_progress
 from hydrostat.robot import Robot
 
@@ -48,8 +48,8 @@ def sample_shapes(
         if until is not None and time.monotonic() > until and done < total:
             raise _TimeUpError("time is up")
 
-    if count < LEAST:
-        raise InputError(f"{count} samples are too few. Use {LEAST} or more.")
+    if count < MIN_SAMPLES:
+        raise InputError(f"{count} samples are too few. Use {MIN_SAMPLES} or more.")
     a_file = 16  # poses in one file: what is lost when time is up
     few = 4  # winches whose whole box the samples fill
     draws = (SamplingScheme.FACES, SamplingScheme.BOX)[: 2 if len(robot.winches) + len(robot.drives) <= few else 1]
@@ -59,6 +59,6 @@ def sample_shapes(
         with suppress(_TimeUpError):
             sample_robot(plan, Path(folder), jobs=jobs, progress=watch)
         samples = Samples.read(folder)
-    if len(samples) < LEAST:
-        raise InputError(f"only {len(samples)} poses were found. At least {LEAST} are needed: allow more time.")
+    if len(samples) < MIN_SAMPLES:
+        raise InputError(f"only {len(samples)} poses were found. At least {MIN_SAMPLES} are needed: allow more time.")
     return samples

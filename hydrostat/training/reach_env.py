@@ -16,7 +16,7 @@ from hydrostat.training.backends import Backend, ExactBackend, LearnedBackend, M
 from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, check_task, finite_numbers, prepare_robot
 from hydrostat.units import quote
 
-BEYOND = 1.02
+OVERSHOOT = 1.02
 """An action of 1 / 1.02 takes in all: a network that ends in tanh can reach the limits (as in a learned model)."""
 
 
@@ -174,7 +174,7 @@ class ReachEnv(GoalEnv):
         """Contractions of an action [m]: alone from release to travel, or one of two winches from 0 to travel."""
         taken = np.zeros(len(self._low))
         for value, group in zip(
-            np.clip(BEYOND * np.asarray(action, dtype=float), -1, 1).tolist(), self._groups, strict=True
+            np.clip(OVERSHOOT * np.asarray(action, dtype=float), -1, 1).tolist(), self._groups, strict=True
         ):
             one = group[0]
             if len(group) == 1:

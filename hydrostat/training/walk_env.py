@@ -16,7 +16,7 @@ from hydrostat.simulation import Motion, Simulation, StepOptions
 from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, check_task, finite_numbers, prepare_robot
 from hydrostat.training.ground import standing, tilt, with_friction
 
-FASTEST, SLOWEST = 0.3, 2.0
+MIN_PERIOD, MAX_PERIOD = 0.3, 2.0
 """Periods of gaits that an action can ask for [s]."""
 
 
@@ -71,13 +71,13 @@ class GaitClock:
         return self.amplitude * 0.5 * (1.0 - np.cos(2.0 * np.pi * (self.phase - self.lag * self._order)))
 
 
-_MIDDLE, _HALF = 0.5 * (SLOWEST + FASTEST), 0.5 * (SLOWEST - FASTEST)
+_MIDDLE, _HALF = 0.5 * (MAX_PERIOD + MIN_PERIOD), 0.5 * (MAX_PERIOD - MIN_PERIOD)
 
 
 STEP = 0.02
 """A time step [s]."""
 
-MOST_TILT = np.deg2rad(20.0)
+MAX_TILT = np.deg2rad(20.0)
 """A body that has turned further has fallen [rad]."""
 
 
@@ -184,8 +184,8 @@ class WalkEnv(GoalEnv):
         self.steps = self.options.steps or round(seconds / (self.beat * STEP))
         self.action_space = spaces.Box(-1.0, 1.0, (3 if by_gait else count,), np.float32)
         seen = count + 2 * marks * mesh.dim + (4 if by_gait else 0)
-        goal = spaces.Box(-_FAR, _FAR, (2,), np.float64)
-        body = spaces.Box(-_FAR, _FAR, (seen,), np.float64)
+        goal = spaces.Box(-_OBSERVATION_BOUND, _OBSERVATION_BOUND, (2,), np.float64)
+        body = spaces.Box(-_OBSERVATION_BOUND, _OBSERVATION_BOUND, (seen,), np.float64)
         self.observation_space = spaces.Dict(observation=body, achieved_goal=goal, desired_goal=goal)
         self._simulation, self.motion = Simulation(self.robot), None
         self._masses = self._simulation.body.masses / self._simulation.body.masses.sum()
@@ -299,7 +299,7 @@ class WalkEnv(GoalEnv):
             return
         self.moves.append((self.motion.time, contractions))
         masses = self._simulation.body.masses
-        self._fallen = bool(tilt(masses, self.robot.body.mesh.nodes, self.motion.nodes) > MOST_TILT)
+        self._fallen = bool(tilt(masses, self.robot.body.mesh.nodes, self.motion.nodes) > MAX_TILT)
 
     def _observation(self) -> dict[str, Vector]:
         motion, anchors, rest = self._now, self._simulation.marker_anchors, self.robot.body.mesh.nodes
@@ -311,8 +311,10 @@ class WalkEnv(GoalEnv):
             clock, turn = self._clock, 2.0 * np.pi * self._clock.phase
             parts.append(np.array([np.sin(turn), np.cos(turn), clock.amplitude / self.most, 2.0 * clock.lag]))
         return {
-            "observation": np.clip(np.concatenate(parts), -_FAR, _FAR),
-            "achieved_goal": np.clip([self.way / self.unit, float(self._fallen)], -_FAR, _FAR),
+            "observation": np.clip(np.concatenate(parts), -_OBSERVATION_BOUND, _OBSERVATION_BOUND),
+            "achieved_goal": np.clip(
+                [self.way / self.unit, float(self._fallen)], -_OBSERVATION_BOUND, _OBSERVATION_BOUND
+            ),
             "desired_goal": np.array([self._wanted / self.unit, 0.0]),
         }
 
@@ -327,5 +329,5 @@ class WalkEnv(GoalEnv):
         }
 
 
-_FAR = 100.0
+_OBSERVATION_BOUND = 100.0
 """Bound of what is observed."""

@@ -211,14 +211,14 @@ def _only(study: "Study", methods: str, asked: Sequence[str]) -> "Study":
 
 
 def _numbers(text: str) -> list[int]:
-    from hydrostat.learning import LEAST
+    from hydrostat.learning import MIN_SAMPLES
 
     parts = [part.strip() for part in text.split(",")]
     if not all(part.isdecimal() and int(part) for part in parts):
         raise InputError(f"--counts {text}: not a list of numbers above 0. Write e.g. 100,1000.")
     counts = [int(part) for part in parts]
-    if min(counts) < LEAST:
-        raise InputError(f"--counts {text}: too few samples. The minimum is {LEAST}.")
+    if min(counts) < MIN_SAMPLES:
+        raise InputError(f"--counts {text}: too few samples. The minimum is {MIN_SAMPLES}.")
     return counts
 
 

@@ -162,7 +162,7 @@ def test_a_flat_robot_says_where_its_cables_run_and_what_that_does(
 
     Workspaces are left out: test_commands.py has them.
     """
-    monkeypatch.setattr("hydrostat.cli.check._LARGE", 1)
+    monkeypatch.setattr("hydrostat.cli.check._LARGE_BODY_NODES", 1)
     robot = load_robot(gallery_folder("letter_s"))
     found = {}
     for face in (CableSide.FRONT, CableSide.PAIRS):
@@ -185,7 +185,7 @@ def test_a_flat_robot_says_where_its_cables_run_and_what_that_does(
 def test_reach_is_left_out_of_large_bodies(check: Check, monkeypatch: pytest.MonkeyPatch) -> None:
     """Nine poses of 22,000 nodes take minutes; a limit below the starfish's nodes makes it such a body."""
     nodes = len(load_robot(gallery_folder("starfish")).body.mesh.nodes)
-    monkeypatch.setattr("hydrostat.cli.check._LARGE", nodes - 1)
+    monkeypatch.setattr("hydrostat.cli.check._LARGE_BODY_NODES", nodes - 1)
     monkeypatch.setattr("hydrostat.simulation.is_stuffed_motion_fast", lambda *_: False)
     lines = [line for line in check(gallery_folder("starfish")) if line.startswith("workspace")]
     assert lines == [f"workspace: skipped ({nodes} nodes, maximum {nodes - 1}). Use larger elements"]

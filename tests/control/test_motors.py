@@ -13,7 +13,7 @@ from builders import gallery_robot, strip_robot
 
 from hydrostat.arrays import Vector
 from hydrostat.control import EMULATED, Calibration, Link, Motors, Player, SimulatedLink, arm_motors
-from hydrostat.control.link import SILENCE
+from hydrostat.control.link import WATCHDOG_TIMEOUT
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.identification import ContractionMap
 from hydrostat.robot import Robot, Winch
@@ -96,7 +96,7 @@ def test_in_silence_they_hold_and_must_be_asked_anew() -> None:
 def test_just_before_the_silence_they_go_on() -> None:
     motors = Motors(WINCHES, Noted())
     motors.drive(0.0)
-    motors.drive(SILENCE)
+    motors.drive(WATCHDOG_TIMEOUT)
     motors.hold()
     motors.drive(99.0)
 

@@ -10,7 +10,7 @@ from emulation import NAMES, RADIUS, Rig
 from hydrostat.control.bus_link import LinkState
 from hydrostat.control.dynamixel_bus import MODELS
 from hydrostat.control.emulated_servos import EmulatedServo, InjectedFaults
-from hydrostat.control.restart_motors import COOL, LOOK, fault_words, restart_motors
+from hydrostat.control.restart_motors import COOL_TEMPERATURE, POLL_INTERVAL, fault_words, restart_motors
 from hydrostat.errors import HydrostatError
 
 MAKES = [(1200, 1220, 1060), (777, 777, 777)]
@@ -37,8 +37,8 @@ def test_an_overloaded_motor_is_named_and_restarted_once_it_is_cool(models: tupl
 
     again = restart_motors(rig.bus, NAMES, said.append, forget, clock=rig.chain.clock, wait=rig.chain.wait)
     assert again == ("index extensor",)
-    assert said == [f"index extensor: its motor is 72 °C warm. Waiting until it is below {COOL:.0f} °C"] * 4
-    assert 18.0 <= rig.chain.now - begin <= 18.0 + LOOK + 1.0
+    assert said == [f"index extensor: its motor is 72 °C warm. Waiting until it is below {COOL_TEMPERATURE:.0f} °C"] * 4
+    assert 18.0 <= rig.chain.now - begin <= 18.0 + POLL_INTERVAL + 1.0
     assert not rig.servos[1].ails.overloaded
     rig.link.identify()
     if models == MAKES[0]:  # a reboot forgets turns

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hydrostat.control import SimulatedLink
-from hydrostat.control.link import SILENCE
+from hydrostat.control.link import WATCHDOG_TIMEOUT
 
 
 def link() -> SimulatedLink:
@@ -38,9 +38,9 @@ def test_the_newest_command_counts() -> None:
 def test_told_nothing_it_stops_after_the_silence() -> None:
     motors = link()
     motors.send(np.array([1.0, 0.02]), 0.0, speed=0.1)
-    assert motors.read(60.0) == pytest.approx([0.1 * SILENCE, 0.02])
+    assert motors.read(60.0) == pytest.approx([0.1 * WATCHDOG_TIMEOUT, 0.02])
     motors.send(np.array([1.0, 0.02]), 60.0, speed=0.1)
-    assert motors.read(60.1) == pytest.approx([0.1 * (SILENCE + 0.1), 0.02])
+    assert motors.read(60.1) == pytest.approx([0.1 * (WATCHDOG_TIMEOUT + 0.1), 0.02])
 
 
 @pytest.mark.parametrize("end", [SimulatedLink.stop, SimulatedLink.close])

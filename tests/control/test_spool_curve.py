@@ -9,7 +9,7 @@ from hydrostat.control.calibration import Calibration, WinchMotor
 from hydrostat.control.dynamixel_bus import DynamixelBus
 from hydrostat.control.emulated_servos import EmulatedChain, EmulatedServo
 from hydrostat.control.open_bus import add_cable_layers
-from hydrostat.control.spool_curve import LEAST, STOPS, SpoolCurve
+from hydrostat.control.spool_curve import MIN_STOPS, STOPS, SpoolCurve
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Winch
 
@@ -95,7 +95,7 @@ def test_a_body_that_holds_a_winch_ends_it_there(spring: float, stops: int) -> N
     bench = Bench()
     true = TRUE.motors[0]
     bench.servos[0].load = lambda angle: RADIUS * spring * max(true.contraction(angle) - 0.01, 0.0)
-    if stops < LEAST:
+    if stops < MIN_STOPS:
         with pytest.raises(HydrostatError, match=r"flexor: its motor stood after 1\d of 80 mm; let its cable off"):
             bench.measure(0)
     else:

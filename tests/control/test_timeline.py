@@ -2,7 +2,7 @@
 
 import pytest
 
-from hydrostat.control.timeline import MOST_KEYS, SAME, Key, Timeline
+from hydrostat.control.timeline import KEY_TOLERANCE, MAX_KEYS, Key, Timeline
 from hydrostat.errors import InputError
 
 
@@ -31,8 +31,10 @@ def test_it_is_as_long_as_said_or_as_its_last_key() -> None:
 def test_a_moved_key_replaces_one_that_is_there() -> None:
     timeline = two_keys()
     assert [key.time for key in timeline.move_key(0, 3.5).keys] == [3.0, 3.5]
-    assert timeline.move_key(0, 3.0 + SAME / 2).keys == (Key(time=3.0 + SAME / 2, contractions={"left": 0.0}),)
-    assert timeline.index_at(3.0 - SAME / 2) == 1
+    assert timeline.move_key(0, 3.0 + KEY_TOLERANCE / 2).keys == (
+        Key(time=3.0 + KEY_TOLERANCE / 2, contractions={"left": 0.0}),
+    )
+    assert timeline.index_at(3.0 - KEY_TOLERANCE / 2) == 1
     assert timeline.index_at(2.0) is None
 
 
@@ -43,6 +45,6 @@ def test_a_length_out_of_range_is_refused(length: float) -> None:
 
 
 def test_too_many_keys_are_refused() -> None:
-    keys = tuple(Key(time=0.01 * index, contractions={}) for index in range(MOST_KEYS + 1))
+    keys = tuple(Key(time=0.01 * index, contractions={}) for index in range(MAX_KEYS + 1))
     with pytest.raises(InputError, match="may have 2000 keyframes, not 2001"):
         Timeline(keys=keys)

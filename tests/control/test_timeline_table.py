@@ -7,7 +7,7 @@ import pytest
 from builders import gallery_robot
 
 from hydrostat.control import Key, Timeline
-from hydrostat.control.timeline import LARGEST
+from hydrostat.control.timeline import MAX_BYTES
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.simulation import ContractionProfile
@@ -74,7 +74,7 @@ def test_a_wrong_table_is_refused_by_its_own_name(starfish: Robot, text: bytes, 
 
 def test_a_huge_table_is_refused_unread(starfish: Robot) -> None:
     with pytest.raises(InputError, match="may have 4 MB"):
-        Timeline.read(starfish, "huge.csv", b"0" * (LARGEST + 1))
+        Timeline.read(starfish, "huge.csv", b"0" * (MAX_BYTES + 1))
 
 
 def test_nothing_to_export_is_told(starfish: Robot) -> None:

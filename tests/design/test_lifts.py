@@ -7,7 +7,7 @@ import pytest
 from plot.designs import plain_network
 
 from hydrostat.design import DesignRequest, Network, find_lifts
-from hydrostat.design.lifts import TOUCHING, search_front
+from hydrostat.design.lifts import CROSSING_LINE, search_front
 from hydrostat.design.routes.quick_search import RouteProposal
 from hydrostat.errors import HydrostatError
 from hydrostat.robot import Robot
@@ -44,7 +44,7 @@ def test_clear_gains_that_can_be_built_are_told(monkeypatch: pytest.MonkeyPatch)
     assert find_lifts(network) == ()
     answer(0.5, 0.5)
     enough = replace(network, request=replace(network.request, winches=len(poses)))
-    assert [lift.words for lift in find_lifts(enough)] == [TOUCHING]
+    assert [lift.words for lift in find_lifts(enough)] == [CROSSING_LINE]
     assert find_lifts(replace(enough, expected_error=1e-4)) == ()
     monkeypatch.setattr("hydrostat.design.lifts.propose_routes", refuse)
     assert find_lifts(network) == ()

@@ -18,9 +18,9 @@ from hydrostat.design.winch_room import _example, built_in, find_holding_torque,
 from hydrostat.design.zone import Zone
 from hydrostat.errors import InputError
 from hydrostat.fabrication import (
-    GIVES,
+    COMPRESSION_SHARE,
     MOTORS,
-    TOUCHES,
+    OVERLAP_TOLERANCE,
     KitOptions,
     Motor,
     PartOptions,
@@ -52,7 +52,10 @@ def test_a_unit_lies_within_the_seam_wherever_there_is_room(name: str, unchecked
 
     def fits(at: np.ndarray) -> bool:
         unit = UnitBox(winch="w", at=(1e3 * at[0], 1e3 * at[1]), low=box.low, high=box.high, along=0.0)
-        return any(place.outside <= TOUCHES and place.depth <= (1 + GIVES) * thick for place in unit.ways_to_lie(seam))
+        return any(
+            place.outside <= OVERLAP_TOLERANCE and place.depth <= (1 + COMPRESSION_SHARE) * thick
+            for place in unit.ways_to_lie(seam)
+        )
 
     inside, outside = nodes[away < -5e-4][::4], nodes[away > 8e-3][::6]
     assert len(inside) > 3

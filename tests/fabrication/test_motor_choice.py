@@ -8,7 +8,7 @@ import pytest
 from builders import gallery_robot
 
 from hydrostat.fabrication import KitOptions
-from hydrostat.fabrication.lists.motors import SLOW, power_plan
+from hydrostat.fabrication.lists.motors import SLOW_TRAVEL_TIME, power_plan
 from hydrostat.fabrication.lists.needs import control_needs
 from hydrostat.fabrication.motor_choice import MotorOffer, find_motor, fit_motor, motor_offers, motors_price
 from hydrostat.fabrication.parts.motor import ALL_MOTORS, MARGIN, Motor
@@ -41,7 +41,7 @@ def test_auto_is_the_cheapest_that_does(torque: float) -> None:
         turns = max(each.travel / (2 * math.pi * each.spool_radius) for each in robot.winches)
         if turns > motor.turns:
             continue
-        if turns / (motor.speed / 60) * -math.log(1 - share) / share > SLOW:
+        if turns / (motor.speed / 60) * -math.log(1 - share) / share > SLOW_TRAVEL_TIME:
             continue
         items = control_needs(power_plan({each.name: 1e3 * torque for each in robot.winches}, motor))
         able.append((len(torques) * motor.price + sum(item.cost for item in items), motor.key))

@@ -9,7 +9,7 @@ import trimesh
 from builders import gallery_robot
 
 from hydrostat.fabrication import KitOptions, Method, build_kit, find_refusals
-from hydrostat.fabrication.print_work import BEYOND, drill, hole_of, print_work
+from hydrostat.fabrication.print_work import DRILL_OVERSHOOT, drill, hole_of, print_work
 from hydrostat.fabrication.solids.body_solid import body_solid
 from hydrostat.robot import Mount, get_material
 
@@ -23,7 +23,7 @@ def test_a_hole_is_as_large_as_its_capsule():
     """Oracle: volume of a straight capsule, pi r^2 l + 4/3 pi r^3; the polygon of its circle takes up to 4 % off."""
     robot = gallery_robot("spiral")
     cable = replace(robot.cables[0], points=((0.0, 0.0), (0.03, 0.0), (0.05, 0.0)), sheathed=())
-    radius, length = 0.7, 50 + 2 * BEYOND
+    radius, length = 0.7, 50 + 2 * DRILL_OVERSHOOT
     exact = np.pi * radius**2 * length + 4 / 3 * np.pi * radius**3
     assert 0.96 < drill(cable, 2 * radius).volume() / exact < 1
 

@@ -286,7 +286,7 @@ def test_a_grid_that_would_be_too_fine_is_coarser_and_says_so() -> None:
     from hydrostat.geometry.healing import remake
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(remake, "MOST_GRID_POINTS", 30_000)
+        patch.setattr(remake, "MAX_GRID_POINTS", 30_000)
         assert _says(heal(pair, resolution=0.001), "coarser than the 1 mm asked for")
 
 

@@ -8,7 +8,7 @@ from solids import Maker, ball, brick, moved, ring, two_fingers
 
 from hydrostat.errors import InputError, SurfaceError
 from hydrostat.geometry.mesh import Mesh
-from hydrostat.geometry.sizing import CLOSE, MOST, size_for
+from hydrostat.geometry.sizing import COUNT_TOLERANCE, MAX_NODES, size_for
 from hydrostat.geometry.tetrahedra.tetrahedralize import tetrahedralize
 from hydrostat.geometry.triangles.triangulate import triangulate
 
@@ -32,7 +32,7 @@ def test_within_a_tenth_in_space(name: str) -> None:
         return mesh
 
     size = size_for(nodes, make, content=body.volume, dim=3)
-    assert counts[size] == pytest.approx(nodes, rel=CLOSE)
+    assert counts[size] == pytest.approx(nodes, rel=COUNT_TOLERANCE)
     assert float(f"{1e3 * size:.3g}") == pytest.approx(1e3 * size, rel=1e-12)  # short in a file
 
 
@@ -41,7 +41,7 @@ def test_within_a_tenth_in_space(name: str) -> None:
 def test_within_a_tenth_in_the_plane(name: str, nodes: int) -> None:
     drawn = shapes.outline(shapes.SHAPES[name][0])
     size = size_for(nodes, lambda trial: triangulate(drawn, trial), content=drawn.area, dim=2)
-    assert len(triangulate(drawn, size).nodes) == pytest.approx(nodes, rel=CLOSE)
+    assert len(triangulate(drawn, size).nodes) == pytest.approx(nodes, rel=COUNT_TOLERANCE)
 
 
 def _of_nodes(count: float) -> Mesh:
@@ -63,7 +63,7 @@ def test_a_mesher_that_jumps_gives_the_nearest() -> None:
     assert size_for(120, lambda trial: _of_nodes(70 if trial > 2.0 else 160), content=1e3, dim=2) <= 2.0
 
 
-@pytest.mark.parametrize("nodes", [-1, 0, 9, MOST + 1])
+@pytest.mark.parametrize("nodes", [-1, 0, 9, MAX_NODES + 1])
 def test_numbers_out_of_range(nodes: int) -> None:
     with pytest.raises(InputError, match="the number of nodes must be from 10 to 200000, not "):
         size_for(nodes, lambda trial: _of_nodes(trial), content=1.0, dim=3)
@@ -112,7 +112,7 @@ def test_thin_bodies_are_found_beyond_sizes_that_are_refused() -> None:
     with pytest.raises(SurfaceError):
         tetrahedralize(body, 0.008)
     size = size_for(2500, lambda trial: tetrahedralize(body, trial), content=20 * body.volume, dim=3)
-    assert len(tetrahedralize(body, size).nodes) == pytest.approx(2500, rel=CLOSE)
+    assert len(tetrahedralize(body, size).nodes) == pytest.approx(2500, rel=COUNT_TOLERANCE)
 
 
 def test_a_body_that_is_always_refused_says_why() -> None:

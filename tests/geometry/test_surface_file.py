@@ -19,7 +19,7 @@ from geometry.surface_writers import (
 )  # fmt: skip
 
 from hydrostat.errors import SurfaceError
-from hydrostat.geometry.files.soup import MOST_BYTES, MOST_TEXT_BYTES
+from hydrostat.geometry.files.soup import MAX_BYTES, MAX_TEXT_BYTES
 from hydrostat.geometry.files.surface_file import SURFACE_SUFFIXES, read_surface, write_ply
 from hydrostat.geometry.healing.heal import heal
 from hydrostat.geometry.surface import Surface
@@ -198,7 +198,7 @@ _BAD = {
     "no such format": ("a.iges", b"S      1", "export it as STL"),
     "no suffix": ("body", _STL, "stl, .obj"),
     "empty": ("a.stl", b" \n", "is empty"),
-    "too large": ("a.stl", b"x" * (MOST_BYTES + 1), "at most 120 MB"),
+    "too large": ("a.stl", b"x" * (MAX_BYTES + 1), "at most 120 MB"),
     "step as stl": ("a.stl", b"ISO-10303-21;" * 20, "rename it to end with .step"),
     "gltf": ("a.obj", b"glTF\2\0\0\0", "glTF"),
     "ply as stl": ("a.stl", _PLY, "rename it"),
@@ -262,8 +262,8 @@ _BAD = {
     "3mf transform": ("a.3mf", _model(f'<object id="1">{_BOX_XML}</object>',
                                       '<item objectid="1" transform="1 2 3"/>'), "item"),
     "3mf deep": ("a.3mf", _model("<a>" * 60 + "</a>" * 60), "deeper"),
-    "3mf bomb": ("a.3mf", _model(" " * (MOST_TEXT_BYTES + 10)), "unpacks to more"),
-    "too much text": ("a.obj", b"v 0 0 0\n" * (MOST_TEXT_BYTES // 8 + 1), "MB of text"),
+    "3mf bomb": ("a.3mf", _model(" " * (MAX_TEXT_BYTES + 10)), "unpacks to more"),
+    "too much text": ("a.obj", b"v 0 0 0\n" * (MAX_TEXT_BYTES // 8 + 1), "MB of text"),
 }  # fmt: skip
 
 

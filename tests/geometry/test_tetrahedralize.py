@@ -29,7 +29,7 @@ from solids import (
 from hydrostat.errors import InputError, SurfaceError
 from hydrostat.geometry.mesh import Mesh, dihedral_angles
 from hydrostat.geometry.surface import Solid, Surface
-from hydrostat.geometry.tetrahedra.tetrahedralize import CLOSE, fit, tetrahedralize
+from hydrostat.geometry.tetrahedra.tetrahedralize import BOUNDARY_TOLERANCE, fit, tetrahedralize
 
 BODIES: dict[str, tuple[Maker, float]] = {
     "ball": (ball, 0.02),
@@ -52,7 +52,7 @@ def assert_good(mesh: Mesh, body: Surface, element_size: float) -> None:
     assert dihedral_angles(mesh.nodes, mesh.elements).min() >= 12
     found = fit(mesh, Solid(body), element_size / 3)
     assert found.volume == pytest.approx(1, abs=0.02)
-    assert found.largest <= CLOSE * element_size
+    assert found.largest <= BOUNDARY_TOLERANCE * element_size
     assert_proper(mesh)
     assert euler(boundary(mesh)) == euler(body)
 

@@ -164,7 +164,7 @@ def test_threads_make_the_same_bytes(name: str, shift: float, monkeypatch: pytes
     data = assembly.hessian(mesh.nodes, np.zeros(0)).data
     data[assembly.pattern.diagonal] += shift * np.median(data[assembly.pattern.diagonal])
     right = np.random.default_rng(1).standard_normal((assembly.size, 3))
-    monkeypatch.setattr(supernodal, "LARGE", 0.0)
+    monkeypatch.setattr(supernodal, "THREADED_SECONDS", 0.0)
     found = []
     for threads in (1, 2, 3, 5):
         monkeypatch.setattr(supernodal, "THREADS", threads)
@@ -187,7 +187,7 @@ def test_threads_end_together_at_a_singular_matrix(wrong: float, place: float, m
     if wrong == 0.0:
         matrix.data[matrix.indptr[dof] : matrix.indptr[dof + 1]] = 0.0
         matrix.data[matrix.indices == dof] = 0.0
-    monkeypatch.setattr(supernodal, "LARGE", 0.0)
+    monkeypatch.setattr(supernodal, "THREADED_SECONDS", 0.0)
     monkeypatch.setattr(supernodal, "THREADS", 3)
     assert assembly.pattern.analysis.factorize(matrix.data).singular
 

@@ -8,7 +8,7 @@ from builders import gallery_robot
 from states import CONTROLS, rough_mesh
 
 from hydrostat.mechanics import InversionBarrier
-from hydrostat.mechanics.inversion_barrier import FREE
+from hydrostat.mechanics.inversion_barrier import BARRIER_START
 from hydrostat.mechanics.quadratic_solid import shape_gradients
 from hydrostat.simulation import Simulation
 from hydrostat.testing import check_energy
@@ -55,11 +55,11 @@ def test_no_point_has_less_volume_than_the_least_coefficient(dim: int) -> None:
 
 
 def test_bodies_that_are_bent_as_usual_keep_their_poses() -> None:
-    """Oracle: no energy and no force where no ratio is below `FREE`."""
+    """Oracle: no energy and no force where no ratio is below `BARRIER_START`."""
     energy, nodes = barrier(2, 0)
     rest = energy.rest
     mild = rest + 0.25 * (nodes - rest)
-    assert FREE < energy.min_volume_ratio(mild) < 0.9
+    assert BARRIER_START < energy.min_volume_ratio(mild) < 0.9
     assert energy.value(mild, NONE) == 0.0
     assert not energy.gradient(mild, NONE).any()
 

@@ -70,7 +70,7 @@ def analyze(mesh: Mesh, patch: pytest.MonkeyPatch) -> None:
     native.turn(mesh.nodes, 0.1 * mesh.nodes, *elastic._groups, np.zeros_like(mesh.nodes))
     analysis = assembly.pattern.analysis
     analysis.factorize(matrix.data).solve(np.ones((assembly.size, 3)))
-    patch.setattr(supernodal, "LARGE", 0.0)
+    patch.setattr(supernodal, "THREADED_SECONDS", 0.0)
     patch.setattr(supernodal, "THREADS", 3)
     analysis.factorize(matrix.data)
     starts = np.append(0, np.cumsum(np.full(4, 2)))

@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 from hydrostat.errors import InputError
 from hydrostat.plot import Frame, save_glb
 from hydrostat.plot import solids as shapes
-from hydrostat.plot.scene import MOST_KEYS
+from hydrostat.plot.scene import MAX_KEYS
 from hydrostat.robot import Robot
 
 FILMS = {"space": space_film, "flat": flat_film}
@@ -220,7 +220,7 @@ def test_frames_that_come_again_are_one_key_and_long_films_have_not_too_many(tmp
     step = made.frames[6].nodes - made.frames[0].nodes
     long = [Frame(nodes=made.frames[0].nodes + share * step, tensions=np.zeros(2)) for share in np.linspace(0, 1, 300)]
     read = Scene.read(save_glb(robot, long, tmp_path / "b.glb", step=0.1))
-    assert len(read.mesh("body")["targets"]) < MOST_KEYS
+    assert len(read.mesh("body")["targets"]) < MAX_KEYS
     last = at_time(read, "body", "POSITION", 29.9)
     assert cKDTree(made.frames[6].nodes).query(last)[0].max() < 2e-7
 

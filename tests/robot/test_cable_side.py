@@ -7,7 +7,7 @@ import pytest
 from robot_files import GOOD, edit, load
 
 from hydrostat.errors import InputError
-from hydrostat.given import LONGEST_NAME
+from hydrostat.given import MAX_NAME
 from hydrostat.robot import (
     CableSide,
     Robot,
@@ -91,7 +91,7 @@ def test_pairs_are_sewn_twice(starfish: Robot) -> None:
 
 
 def test_a_long_name_gets_no_side(starfish: Robot) -> None:
-    long = replace(starfish.cables[0], name="c" * LONGEST_NAME)
+    long = replace(starfish.cables[0], name="c" * MAX_NAME)
     names = [cable.name for cable in sewn_robot(replace(starfish, cables=(long,), face=CableSide.PAIRS)).cables]
     assert names == ["right 1", "right 2"]
 

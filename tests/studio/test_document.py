@@ -10,7 +10,7 @@ from hydrostat.errors import InputError
 from hydrostat.project import Wishes, Work
 from hydrostat.robot import Robot
 from hydrostat.studio.bell import Bell, Topic
-from hydrostat.studio.document import MOST_STEPS, Document
+from hydrostat.studio.document import MAX_STEPS, Document
 
 
 def named(robot: Robot, name: str) -> Robot:
@@ -108,13 +108,13 @@ def test_another_network_keeps_the_physics_of_the_body(document: Document, starf
 
 @pytest.mark.slow
 def test_the_past_does_not_grow_without_end(document: Document, starfish: Robot) -> None:
-    for step in range(MOST_STEPS + 50):
+    for step in range(MAX_STEPS + 50):
         document.change(f"{step}", robot=named(starfish, f"n_{step}"))
     undone = 0
     while document.undo():
         undone += 1
-        assert document.robot.name == f"n_{MOST_STEPS + 49 - undone}"
-    assert undone == MOST_STEPS
+        assert document.robot.name == f"n_{MAX_STEPS + 49 - undone}"
+    assert undone == MAX_STEPS
 
 
 def test_only_the_last_states_keep_their_physics(document: Document, starfish: Robot) -> None:

@@ -94,7 +94,7 @@ def test_a_slot_is_given_back_where_no_process_can_be_begun(monkeypatch: pytest.
 
 
 def test_work_ends_with_what_it_has_once_its_turn_is_over_and_others_wait(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("hydrostat.studio.jobs.LOOK", 0.02)
+    monkeypatch.setattr("hydrostat.studio.jobs.POLL_INTERVAL", 0.02)
     slots = Slots(1)
     first, second = (Heard(Jobs(Bell(), slots)) for _ in range(2))
     first.jobs.start("Working", works.wait, on_done=first.results.append, on_part=first.part, on_end=first.over, turn=0)
@@ -108,7 +108,7 @@ def test_work_ends_with_what_it_has_once_its_turn_is_over_and_others_wait(monkey
 
 def test_a_person_who_stops_as_the_turn_ends_keeps_what_there_is(monkeypatch: pytest.MonkeyPatch) -> None:
     """The worst moment: a person stops just as the turn is over."""
-    monkeypatch.setattr("hydrostat.studio.jobs.LOOK", 0.02)
+    monkeypatch.setattr("hydrostat.studio.jobs.POLL_INTERVAL", 0.02)
     slots, bell, pressed = Slots(1), Bell(), list[bool]()
     first, second = Heard(Jobs(bell, slots)), Heard(Jobs(Bell(), slots))
 

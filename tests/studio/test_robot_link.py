@@ -12,8 +12,8 @@ import segno
 
 from hydrostat.errors import InputError
 from hydrostat.robot import gallery_folder
-from hydrostat.studio.face.share import LARGEST_CODE
-from hydrostat.studio.robot_link import LINK_MARK, MOST_BYTES, pack_robot
+from hydrostat.studio.face.share import MAX_CODE_LETTERS
+from hydrostat.studio.robot_link import LINK_MARK, MAX_BYTES, pack_robot
 from hydrostat.studio.session import Session
 
 
@@ -33,7 +33,7 @@ def test_a_link_holds_the_robot_and_fits_a_code() -> None:
     name = "Seestern é"
     mine.document.change("rename", robot=replace(mine.document.robot, name=name))
     link = "http://192.168.1.20:38211/?token=Zk3vQ0n0_x-AbCdEfGhIjK" + mine.exporter.robot_link()
-    assert len(link) <= LARGEST_CODE
+    assert len(link) <= MAX_CODE_LETTERS
     matrix = np.array([list(row) for row in segno.make(link, error="l").matrix_iter(scale=6, border=4)])
     assert cv2.QRCodeDetectorAruco().detectAndDecode((255 * (1 - matrix)).astype(np.uint8))[0] == link
     other = Session()
@@ -58,7 +58,7 @@ def test_a_body_in_space_fits_no_link() -> None:
         ("http://127.0.0.1/", "no robot in this link"),
         (LINK_MARK + "A" * 30_001, "no robot in this link"),
         (LINK_MARK + "****", "incomplete or holds no robot"),
-        (link_of(b"x" * (MOST_BYTES + 1)), "incomplete or holds no robot"),
+        (link_of(b"x" * (MAX_BYTES + 1)), "incomplete or holds no robot"),
         (link_of(b"[1]"), "incomplete or holds no robot"),
         (link_of(b'{"robot.toml": 1}'), "incomplete or holds no robot"),
         (link_of(b"[" * 100_000), "incomplete or holds no robot"),

@@ -14,7 +14,7 @@ from hydrostat.studio.bell import Bell, Topic
 from hydrostat.studio.judge import QUIET, Judge
 from hydrostat.studio.session import Session
 from hydrostat.studio.stage import StageName
-from hydrostat.studio.view.robot_items import BRIEF, TONES, diagnostic_items
+from hydrostat.studio.view.robot_items import MAX_LABEL_LETTERS, TONES, diagnostic_items
 from hydrostat.studio.view.scene_items import Dot, Look
 
 WISHES = Wishes()
@@ -125,7 +125,7 @@ def test_a_ring_at_every_place_with_few_words(squid: Robot) -> None:
     dots = diagnostic_items(squid, said)
     expected = {(place.at, TONES[one.weight], place.part) for one in said for place in one.places}
     assert flags(dots) == expected
-    assert all(0 < len(dot.label) <= BRIEF + 2 and dot.key == "" for dot in dots)  # type: ignore[union-attr]
+    assert all(0 < len(dot.label) <= MAX_LABEL_LETTERS + 2 and dot.key == "" for dot in dots)  # type: ignore[union-attr]
     outside = squid.with_network([replace(squid.winches[0], mount=Mount.WORLD), *squid.winches[1:]], squid.cables)
     loose = {dot.about for dot in diagnostic_items(outside, said) if not dot.stuck}  # type: ignore[union-attr]
     assert loose <= {f"winch:{squid.winches[0].name}"}

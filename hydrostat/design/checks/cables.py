@@ -146,7 +146,7 @@ def _sheathed_for_nothing(parts: Parts, segments: _Segments) -> Iterator[str]:
         )
 
 
-SAME = 1e-5  # points no farther apart than this [m] share a hole
+HOLE_TOLERANCE = 1e-5  # points no farther apart than this [m] share a hole
 Hole = tuple[int, int]  # a hole: number of the cable, and of its point
 
 
@@ -167,7 +167,7 @@ def _holes_near_each_other(
 ) -> Iterator[str]:
     least = parts.constraints.hole_gap
     gaps = np.linalg.norm(places[:, None] - places, axis=2)
-    close = (gaps < least - LENGTH) & (gaps > SAME * (1 + 1e-6)) & (new[:, None] | new)
+    close = (gaps < least - LENGTH) & (gaps > HOLE_TOLERANCE * (1 + 1e-6)) & (new[:, None] | new)
     for one, other in np.argwhere(np.triu(close, 1)):
         yield (
             f"{_hole_name(holes[other])}: too close to {_hole_name(holes[one])} ({mm(gaps[one, other])}). "
@@ -213,7 +213,7 @@ def gap_violations(parts: Parts) -> Iterator[str]:
                 continue
             gap = _gap(parts, (index, at), (other, there))
             if gap < least - LENGTH:
-                told, value = ("crosses", "") if gap < SAME else ("too close to", f" ({mm(gap)})")
+                told, value = ("crosses", "") if gap < HOLE_TOLERANCE else ("too close to", f" ({mm(gap)})")
                 yield (
                     f"cable[{other}] between points {there} and {there + 1}: {told} cable[{index}] between points {at} "
                     f"and {at + 1}{value}. Minimum cable_gap: {mm(least)}. Reroute one of them."
@@ -229,7 +229,7 @@ def _gap(parts: Parts, one: Hole, other: Hole) -> float:
     if one[0] != other[0] and cables[0].winch == cables[1].winch:
         winch = parts.winch_of(cables[0])
         away = [float(np.linalg.norm(place - winch.at)) for place in places]
-        if max(away) < 2 * winch.spool_radius - SAME:
+        if max(away) < 2 * winch.spool_radius - HOLE_TOLERANCE:
             return float("inf")
     return float(np.linalg.norm(places[0] - places[1]))
 

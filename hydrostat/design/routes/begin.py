@@ -126,7 +126,7 @@ def _tie_twins(layout: Layout) -> Layout:
     images: dict[int, int] = {}
     for index, image in enumerate(reflect_points(layout, places)):
         away = np.linalg.norm(places - image, axis=1)
-        if away.min() <= _NEAR:
+        if away.min() <= _MIRROR_TOLERANCE:
             images[index] = int(away.argmin())
     for index, other in images.items():
         if other <= index and not sites[index].fixed:
@@ -146,7 +146,7 @@ def _are_twins(layout: Layout, first: CableRoute, second: CableRoute, images: di
         images.get(first.winch) == second.winch
         and first.points.shape == second.points.shape
         and first.lead == second.lead
-        and float(np.abs(reflect_points(layout, first.points) - second.points).max()) <= _NEAR
+        and float(np.abs(reflect_points(layout, first.points) - second.points).max()) <= _MIRROR_TOLERANCE
     )
 
 
@@ -157,4 +157,4 @@ def _lead(cable: Cable) -> int | None:
     return None if sheathed[count:].any() else count
 
 
-_NEAR = 1e-4  # what is so near to a mirror image [m] is that image
+_MIRROR_TOLERANCE = 1e-4  # what is so near to a mirror image [m] is that image

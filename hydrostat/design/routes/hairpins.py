@@ -35,7 +35,7 @@ def _turn_margin(layout: Layout, corner: Int[np.ndarray, " 3"], most: float) -> 
     """Room of the turn at the second of three places, its angle times the shorter segment [m]."""
     places = layout.places[corner]
     spans = np.diff(places, axis=0)
-    lengths = np.maximum(np.linalg.norm(spans, axis=1), _TINY)
+    lengths = np.maximum(np.linalg.norm(spans, axis=1), _ZERO_LENGTH)
     units = spans / lengths[:, None]
     cosine = float(np.clip(units[0] @ units[1], -1.0, 1.0))
     room, short = most - float(np.arccos(cosine)), int(np.argmin(lengths))
@@ -67,7 +67,11 @@ def _gap_margins(layout: Layout, members: Int[np.ndarray, " _"], least: float, r
         if distance - least > reach:
             continue
         run = places[at + 1] - places[at]
-        way = span / distance if distance > _TINY else _aside(run / max(np.linalg.norm(run), _TINY), 0.0 * run)
+        way = (
+            span / distance
+            if distance > _ZERO_LENGTH
+            else _aside(run / max(np.linalg.norm(run), _ZERO_LENGTH), 0.0 * run)
+        )
         slopes: Float[np.ndarray, "3 dim"] = np.stack([way, -(1 - share) * way, -share * way])
         yield _row(layout, members[[0, at, at + 1]], slopes), distance - least
 
@@ -78,5 +82,5 @@ def _row(layout: Layout, places: Int[np.ndarray, " places"], slopes: Float[np.nd
     return row
 
 
-_TINY = 1e-9  # lengths below it have no direction [m]
+_ZERO_LENGTH = 1e-9  # lengths below it have no direction [m]
 _OPPOSITE = 1e-9  # sine below which two directions have no plane

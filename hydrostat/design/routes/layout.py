@@ -286,7 +286,7 @@ def _follow(full: np.ndarray, drop: np.ndarray, rows: slice, twin: slice, flip: 
 
 def _clip_ratio(ratio: float, *, way: float) -> float:
     """A spool ratio that can be made, of the same sign as `way`."""
-    size = float(np.clip(ratio if way > 0 else -ratio, 1 / Robot.LARGEST_STEP, Robot.LARGEST_STEP))
+    size = float(np.clip(ratio if way > 0 else -ratio, 1 / Robot.MAX_RADIUS_RATIO, Robot.MAX_RADIUS_RATIO))
     return size if way > 0 else -size
 
 

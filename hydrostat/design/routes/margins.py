@@ -36,7 +36,7 @@ class _MarginRows:
     def collect(self) -> Margins:
         """Collect all margins: by depth and zones, of ways back, between parts of the network, of slack and spools."""
         self._depths()
-        for row, left in hairpin_margins(self.layout, reach=self.reach, hair=_HAIR, degrees=_DEGREE):
+        for row, left in hairpin_margins(self.layout, reach=self.reach, hair=_ROUNDING_MARGIN, degrees=_DEGREE):
             self.found_rows.append(row[None])
             self.found_left.append(np.array([left]))
         for part in (self._between_parts(), self._bounds()):
@@ -58,7 +58,9 @@ class _MarginRows:
         depths, ways = self.region.depths_and_ways(np.concatenate([winches, places]))
         if len(inner):
             need = max(self.constraints.winch_clearance, self.constraints.clearance)
-            self._add_spots(_winch_spots(dim * inner), depths[: len(inner)] - need - _HAIR, ways[: len(inner)])
+            self._add_spots(
+                _winch_spots(dim * inner), depths[: len(inner)] - need - _ROUNDING_MARGIN, ways[: len(inner)]
+            )
             self._zones(winches, _winch_spots(dim * inner))
         if len(places):
             self._edges(spots, depths[len(inner) :], ways[len(inner) :])
@@ -66,15 +68,15 @@ class _MarginRows:
     def _zones(self, places: Points, winches: "_Spots") -> None:
         if self.constraints.winch_zones:
             distances, ways = self.constraints.winch_area.measure(places)
-            self._add_spots(winches, -distances - _HAIR, -ways)
+            self._add_spots(winches, -distances - _ROUNDING_MARGIN, -ways)
 
     def _edges(self, spots: "_Spots", depths: Vector, ways: Points) -> None:
         """Points a clearance from the edge, segments half of it; both outside forbidden zones."""
         hole, (least, most), (lowest, deepest) = spots.shares == 0.0, self.region.hole_band, self.region.run_band
-        needs = np.where(hole, least + _HAIR, lowest + _SHY * abs(lowest))
+        needs = np.where(hole, least + _ROUNDING_MARGIN, lowest + _SHY * abs(lowest))
         self._within(spots, depths - needs, ways)
         if np.isfinite(deepest):  # a layer under the skin
-            limits = np.where(hole, most - _HAIR, deepest - _SHY * abs(deepest))
+            limits = np.where(hole, most - _ROUNDING_MARGIN, deepest - _SHY * abs(deepest))
             self._within(spots, limits - depths, -ways)
         for zone in self.constraints.keep_out:
             self._outside(zone, spots)
@@ -90,7 +92,7 @@ class _MarginRows:
         """Those places, and between them the ones nearest to the zone: a small zone would pass between two."""
         near = _nearest(zone, spots, self.layout.numbers, self.layout.dim)
         places = near.places(self.layout.numbers, self.layout.dim)
-        self._add_spots(near, zone.distances(places) - _HAIR, zone.away(places))
+        self._add_spots(near, zone.distances(places) - _ROUNDING_MARGIN, zone.away(places))
 
     def _add_spots(self, spots: "_Spots", lefts: Vector, ways: Points) -> None:
         """Places along cables within reach of a limit must not move against `ways` farther than what is left."""
@@ -110,7 +112,16 @@ class _MarginRows:
         layout, own = self.layout, self.constraints
         longest = np.inf if own.max_length is None else own.max_length
         turn = np.radians(own.max_turn - _DEGREE)
-        limits = [own.winch_gap, own.hole_gap, own.cable_gap, turn, own.bend_radius, longest, self.reach, _HAIR]
+        limits = [
+            own.winch_gap,
+            own.hole_gap,
+            own.cable_gap,
+            turn,
+            own.bend_radius,
+            longest,
+            self.reach,
+            _ROUNDING_MARGIN,
+        ]
         room = _ROOM
         while True:
             rows, left = np.empty((room, layout.size)), np.empty(room)
@@ -166,7 +177,7 @@ def _spots(layout: Layout, spacing: float) -> _Spots:
     run = layout.free_runs
     spans = layout.places[run.last] - layout.places[run.first]
     lengths = np.sqrt((spans**2).sum(axis=1))
-    counts = np.clip(np.ceil(lengths / spacing) - 1, 1, _MOST).astype(np.int64) + 1
+    counts = np.clip(np.ceil(lengths / spacing) - 1, 1, _MAX_PLACES).astype(np.int64) + 1
     owner = np.repeat(np.arange(len(counts)), counts)  # each has its end first, then the places before that
     place = np.arange(len(owner)) - np.repeat(np.cumsum(counts) - counts, counts)
     hole = place == 0
@@ -199,11 +210,11 @@ def _nearest(zone: Zone, spots: _Spots, numbers: Vector, dim: int) -> _Spots:
     return spots._replace(shares=0.5 * (low + high))
 
 
-_HAIR = 5e-5  # kept back from every limit on a length [m]: more than what rounding coordinates changes
+_ROUNDING_MARGIN = 5e-5  # kept back from every limit on a length [m]: more than what rounding coordinates changes
 _SHY = 0.2  # share of the limit along a straight run that is kept back from it: it is watched at some places only
 _DEGREE = 0.5  # kept back from the largest turn
 
-_MOST = 500  # places between two points: a layout that cannot be pushed back may have flown far apart
+_MAX_PLACES = 500  # places between two points: a layout that cannot be pushed back may have flown far apart
 
 _GOLDEN = 0.5 * (5**0.5 - 1)
 

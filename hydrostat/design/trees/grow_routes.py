@@ -119,7 +119,7 @@ def lay_route(route: Route, region: Region, spacing: float) -> Route | None:
     return laid if len(laid) >= 2 and region.holds(laid) else None
 
 
-_SAME = 1e-5  # points nearer than this [m] share a hole
+_HOLE_TOLERANCE = 1e-5  # points nearer than this [m] share a hole
 _STEP = 1e-3  # how finely places along a cable are tried [m]
 
 
@@ -134,7 +134,7 @@ def keep_apart(cables: Sequence[Route], *, gap: float, winch_gap: float) -> list
     moved = []
     for cable in cables:
         placed = [cable[0]]
-        foreign = winches[np.linalg.norm(winches - cable[0], axis=1) > _SAME].reshape(-1, winches.shape[1])
+        foreign = winches[np.linalg.norm(winches - cable[0], axis=1) > _HOLE_TOLERANCE].reshape(-1, winches.shape[1])
         for index in range(1, len(cable)):
             places = _places(cable, index)
             free = (_gaps(places, np.array(holes), shared=index < len(cable) - 1) >= gap) & (
@@ -165,5 +165,5 @@ def _gaps(places: Float[np.ndarray, "places dim"], others: Route, *, shared: boo
     """Distance of each place from the nearest of other points; those on one spot count only where none is shared."""
     away = np.linalg.norm(places[:, None] - others[None], axis=2)
     if shared:
-        away = np.where(away < _SAME, np.inf, away)
+        away = np.where(away < _HOLE_TOLERANCE, np.inf, away)
     return away.min(axis=1, initial=np.inf)

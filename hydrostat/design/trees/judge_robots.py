@@ -12,8 +12,8 @@ from hydrostat.simulation import BodyPhysics, Simulation
 _ROUNDS = tuple(IKOptions(iterations=steps, restarts=0, min_tension=False) for steps in (3, 4, 100))
 """Enough steps to see which robots are hopeless, more for those that are not, all for the best."""
 
-_KEPT = 4  # one in so many robots goes on to the next round
-_FEWEST = 4  # at least so many robots go on
+_SELECTION_RATIO = 4  # one in so many robots goes on to the next round
+_MIN_ROBOTS = 4  # at least so many robots go on
 
 
 def judge(
@@ -49,7 +49,7 @@ def judge(
                 better(DesignStage(words="a network judged", robot=robots[index], error=error))
         chosen.sort(key=lambda index: cost(reached[index], tension))
         if number < len(_ROUNDS) - 1:
-            chosen = chosen[: max(_FEWEST, len(chosen) // _KEPT)]
+            chosen = chosen[: max(_MIN_ROBOTS, len(chosen) // _SELECTION_RATIO)]
     progress("Judging networks", len(robots), len(robots))
     return chosen[0], reached[chosen[0]]
 

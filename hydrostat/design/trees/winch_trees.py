@@ -46,7 +46,7 @@ class WinchTrees:
         points = self.ways.points
         rows = np.arange(len(self.places))
         for other in taken:
-            gap = _SAME if self.ways.outside(other) else self.constraints.winch_gap
+            gap = _PLACE_TOLERANCE if self.ways.outside(other) else self.constraints.winch_gap
             rows = rows[np.linalg.norm(points[self.places[rows]] - points[other], axis=1) >= gap]
         order = np.argsort(self.shortenings.mean(axis=1), kind="stable")
         order = order[~np.isin(order, list(used))]
@@ -104,7 +104,7 @@ class WinchTrees:
         return pairs.min(axis=2), pairs[:, :, 1] < pairs[:, :, 0]
 
 
-_SAME = 1e-6  # winches in the world nearer than this stand at one place [m]
+_PLACE_TOLERANCE = 1e-6  # winches in the world nearer than this stand at one place [m]
 
 
 def tree_score(contractions: Float[np.ndarray, "cables poses"], phi: float) -> float:

@@ -11,7 +11,7 @@ from hydrostat.arrays import Float
 from hydrostat.errors import InputError
 from hydrostat.fabrication.kit import Check
 from hydrostat.fabrication.kit_options import PatternOptions
-from hydrostat.fabrication.patches.cutting import MOST_EASE
+from hydrostat.fabrication.patches.cutting import MAX_EASE
 from hydrostat.fabrication.patches.skin_holes import NearestOnSkin
 from hydrostat.fabrication.patches.space_pattern import SpacePattern
 from hydrostat.fabrication.patterns.pattern import Pattern
@@ -208,8 +208,8 @@ def _seams(pattern: SpacePattern) -> Check:
     return Check(
         what=f"equally long sides of {plural(len(pattern.seams), 'seam')}",
         measured=f"at most {worst:.1%} apart, beyond half a millimeter",
-        allowed=f"{MOST_EASE:.0%}, eased in",
-        passed=worst <= MOST_EASE,
+        allowed=f"{MAX_EASE:.0%}, eased in",
+        passed=worst <= MAX_EASE,
     )
 
 

@@ -8,7 +8,7 @@ from manifold3d import Error
 from hydrostat.arrays import Float, Int
 from hydrostat.fabrication.kit import Check
 from hydrostat.fabrication.parts.winch_unit import WinchUnit
-from hydrostat.fabrication.solids.assembly import LEAST, PartAssembly, interferences
+from hydrostat.fabrication.solids.assembly import MIN_OVERLAP, PartAssembly, interferences
 from hydrostat.fabrication.solids.construct import sides_text
 from hydrostat.fabrication.solids.printed import Printed, loose_edges, number_groups
 from hydrostat.robot import Robot
@@ -86,7 +86,7 @@ def solid_checks(printed: Iterable[Printed], assemblies: Iterable[PartAssembly])
         Check(
             what=f"no overlap among {plural(pieces, 'piece')} of {plural(len(assemblies), 'unit')}",
             measured="; ".join(clashes) or "nothing shared",
-            allowed=f"a film of {1e3 * LEAST:g} micrometer",
+            allowed=f"a film of {1e3 * MIN_OVERLAP:g} micrometer",
             passed=not clashes,
         ),
     )

@@ -12,7 +12,7 @@ from hydrostat.fabrication.lists.table import Table, number_column, text_column
 from hydrostat.fabrication.parts.motor import MARGIN, MOTORS, Motor
 from hydrostat.robot import Robot, Winch
 
-SLOW = 10.0  # a winch that takes longer than this for its full travel [s] is called slow
+SLOW_TRAVEL_TIME = 10.0  # a winch that takes longer than this for its full travel [s] is called slow
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,7 +98,7 @@ def motor_warnings(sizings: tuple[WinchSizing, ...]) -> tuple[str, ...]:
             enough = f", {worst.torque_with_margin:.0f} N mm with the margin of {MARGIN:g}"
             margin = "" if verdict == "too weak" else enough
             found.append(f"{who} {worst.torque:.0f} N mm{margin}, {mind.format(worst.motor)}")
-    slow = (sizing for sizing in sizings if sizing.time is not None and sizing.time > SLOW)
+    slow = (sizing for sizing in sizings if sizing.time is not None and sizing.time > SLOW_TRAVEL_TIME)
     return (
         *found,
         *(
@@ -196,7 +196,7 @@ def motor_table(sizings: tuple[WinchSizing, ...], demand: Demand, motor: Motor) 
     )
 
 
-SPARE = 1.5
+CURRENT_RESERVE = 1.5
 """Ratio of a supply's current to the current of all motors at their largest torque at once: bodies are stiffer than
 assumed, and supplies sag at their limit."""
 
@@ -250,7 +250,7 @@ class PowerPlan:
     @property
     def supply(self) -> float:
         """Current of the supply [A]: with what is spare, and never below two motors that stall."""
-        needed = max(SPARE * self.largest, min(2, len(self.winches)) * self.motor.stall_current)
+        needed = max(CURRENT_RESERVE * self.largest, min(2, len(self.winches)) * self.motor.stall_current)
         supplies = (2.0, 3.0, 5.0, 8.0, 10.0, 15.0, 20.0, 30.0, 40.0)  # currents of available supplies [A]
         return next((size for size in supplies if size >= needed), supplies[-1])
 
@@ -324,8 +324,8 @@ class PowerPlan:
             rows=tuple(PowerRow(what=what, amount=amount) for what, amount in rows),
             notes=(
                 f"Current rises evenly with torque, from {self.motor.free_current:g} A to "
-                f"{self.motor.stall_current:g} A at stall. Spare: {SPARE:g} times. Battery: motors draw a third of "
-                "their largest on average, which is assumed.",
+                f"{self.motor.stall_current:g} A at stall. Spare: {CURRENT_RESERVE:g} times. Battery: motors draw a "
+                "third of their largest on average, which is assumed.",
             ),
         )
 

@@ -22,7 +22,7 @@ NEEDLE = 60.0
 enough of it left to hold; for deeper ones a tube is laid before casting. Assumed."""
 
 
-CLOSE = 2.0  # Points nearer than this [mm] cannot be told apart with a needle. Assumed.
+MIN_STITCH_GAP = 2.0  # Points nearer than this [mm] cannot be told apart with a needle. Assumed.
 
 
 class PointAccess(StrEnum):
@@ -275,15 +275,15 @@ def close_warnings(robot: Robot) -> tuple[str, ...]:
     close = {
         f"C{number}": 1e3 * float(cable.segments[cable.bare].min())
         for number, cable in enumerate(robot.cables, start=1)
-        if 1e3 * cable.segments[cable.bare].min() < CLOSE
+        if 1e3 * cable.segments[cable.bare].min() < MIN_STITCH_GAP
     }
     if not close:
         return ()
     cables = f"cable{'s' if len(close) > 1 else ''} {', '.join(close)}"
     least = min(close.values())
     return (
-        f"{cables}: some points are only {least:.1f} mm apart, too close for two stitches (minimum {CLOSE:g} mm). Sew "
-        "one stitch for both",
+        f"{cables}: some points are only {least:.1f} mm apart, too close for two stitches (minimum {MIN_STITCH_GAP:g} "
+        "mm). Sew one stitch for both",
     )
 
 

@@ -10,7 +10,7 @@ from manifold3d import Manifold
 
 from hydrostat.arrays import Float, Vector
 from hydrostat.fabrication.moulds.solids import rod
-from hydrostat.fabrication.moulds.stance import SMALLEST_TRAP, high_points
+from hydrostat.fabrication.moulds.stance import MIN_TRAP, high_points
 from hydrostat.fabrication.solids.printed import triangles_of
 
 NECKS = (12.0, 10.0, 8.0, 6.0, 5.0)
@@ -91,7 +91,7 @@ def make_vents(cavity: Manifold, sprue: Sprue | None, *, low: float, high: float
     vertices, triangles = triangles_of(cavity)
     across, tops = roof(cavity)
     vents = []
-    for number in high_points(vertices, triangles, np.array([0.0, 1.0, 0.0]), rise=SMALLEST_TRAP):
+    for number in high_points(vertices, triangles, np.array([0.0, 1.0, 0.0]), rise=MIN_TRAP):
         at = vertices[number]
         if sprue is None or not _leaves_by_sprue(at, across, tops, sprue):
             vents.append(_vent(at, across, tops, low=low, high=high, top=top))
@@ -104,18 +104,18 @@ def _leaves_by_sprue(at: Float[np.ndarray, "3"], across: Vector, tops: Vector, s
         return True
     first, last = sorted((at[0], sprue.x))
     between = tops[(across >= first - _STEP) & (across <= last + _STEP)]
-    return len(between) > 0 and bool(np.abs(between - at[1]).max() <= SMALLEST_TRAP)
+    return len(between) > 0 and bool(np.abs(between - at[1]).max() <= MIN_TRAP)
 
 
 def _vent(at: np.ndarray, across: Vector, tops: Vector, *, low: float, high: float, top: float) -> Vent:
     near = float(np.interp(at[0], across, tops, left=-np.inf, right=-np.inf)) if len(across) else -np.inf
     vent = 1.5  # radius of a vent [mm]: a printer does not close it, foam does
-    if abs(at[1] - near) <= SMALLEST_TRAP:
+    if abs(at[1] - near) <= MIN_TRAP:
         start = np.array([at[0], near - vent, 0.0])
         return Vent(at=at, upward=True, solid=rod(start, np.array([at[0], top + 1.0, 0.0]), vent))
     side = 1.0 if at[2] > 0 else -1.0
     back = high + 1.0 if side > 0 else low - 1.0
-    level = at[1] - vent + SMALLEST_TRAP / 4
+    level = at[1] - vent + MIN_TRAP / 4
     start = np.array([at[0], level, at[2] - side * vent])
     return Vent(at=at, upward=False, solid=rod(start, np.array([at[0], level, back]), vent))
 

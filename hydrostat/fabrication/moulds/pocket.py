@@ -37,7 +37,7 @@ class WinchRoom(Cuboid):
         return (self.low[0] + self.high[0]) / 2, (self.low[1] + self.high[1]) / 2, 0.0
 
 
-LEAST_SKIN = 2.0  # foam between a pocket and the next surface [mm]
+MIN_SKIN = 2.0  # foam between a pocket and the next surface [mm]
 _WIRES = (8.0, 4.0)  # width and depth of the groove for the wires of a motor, beside it [mm]
 
 _OUTSIDE = 0.02
@@ -188,8 +188,7 @@ def _pocket(name: str, body: Manifold, way: LyingWinch, upper: bool, clearance: 
         )
     elif float((skin - body).volume()) > bare * float(skin.volume()):
         problem = (
-            f'winch "{name}": less than {LEAST_SKIN:g} mm of foam would be left next to the pocket of {side} mm. '
-            f"{_MOVE}"
+            f'winch "{name}": less than {MIN_SKIN:g} mm of foam would be left next to the pocket of {side} mm. {_MOVE}'
         )
     return Pocket(
         winch=name,
@@ -226,8 +225,8 @@ def _groove(at: np.ndarray, across: tuple[float, float], wires: tuple[int, int],
 def _skin(at: np.ndarray, sides: tuple[float, float, float], upper: bool) -> Manifold:
     """The room with a skin round it, but for its open side."""
     sign = 1.0 if upper else -1.0
-    deep, end = at[2] - sign * (sides[2] / 2 + LEAST_SKIN), at[2] + sign * sides[2] / 2
-    return _upright_box(at, sides[0] + 2 * LEAST_SKIN, sides[1] + 2 * LEAST_SKIN, deep, end)
+    deep, end = at[2] - sign * (sides[2] / 2 + MIN_SKIN), at[2] + sign * sides[2] / 2
+    return _upright_box(at, sides[0] + 2 * MIN_SKIN, sides[1] + 2 * MIN_SKIN, deep, end)
 
 
 def _upright_box(at: np.ndarray, width: float, height: float, deep: float, far: float) -> Manifold:

@@ -10,7 +10,7 @@ from manifold3d import Manifold
 
 from hydrostat.arrays import Bool, Int, Points, Vector
 from hydrostat.fabrication.kit_options import MoldOptions
-from hydrostat.fabrication.moulds.pocket import LEAST_SKIN, LyingWinch, WinchRoom, ways_to_turn
+from hydrostat.fabrication.moulds.pocket import MIN_SKIN, LyingWinch, WinchRoom, ways_to_turn
 from hydrostat.fabrication.moulds.setting import mold_setting
 from hydrostat.fabrication.moulds.stance import MoldOrientation
 from hydrostat.fabrication.solids.construct import Cuboid
@@ -82,7 +82,7 @@ class PocketRoom:
 
     def _has_skin(self, way: LyingWinch, scale: float, sign: float) -> Bool[np.ndarray, "x y z"]:
         """Places at which a pocket open to one half has foam on its other five sides."""
-        outer, total = self._count(way, scale, LEAST_SKIN, sign)
+        outer, total = self._count(way, scale, MIN_SKIN, sign)
         straight, hole = self._count(way, scale, 0.0, sign)
         return outer - straight >= _RULES.min_cover * (total - hole)
 

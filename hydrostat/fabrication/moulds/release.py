@@ -15,7 +15,7 @@ from hydrostat.fabrication.solids.printed import TriangleMesh, triangles_of
 from hydrostat.kernel import native
 
 _EDGE = 1 / 30  # longest edge of a triangle, in sizes of the body
-_COARSE = 4e-4  # maximum error of the simplified surface, in sizes of the body
+_SIMPLIFICATION_ERROR = 4e-4  # maximum error of the simplified surface, in sizes of the body
 
 
 class FineSurface(TriangleMesh):
@@ -41,7 +41,7 @@ def fine_surface(solid: Manifold) -> FineSurface:
     """The surface of a solid [mm] in triangles that are small, but not too many."""
     low, high = np.reshape(solid.bounding_box(), (2, 3))
     size = float((high - low).max())
-    coarse, edge = _COARSE, _EDGE
+    coarse, edge = _SIMPLIFICATION_ERROR, _EDGE
     fine = solid.simplify(coarse * size).refine_to_length(edge * size)
     most = 16_000  # triangles that are looked at, about
     while fine.num_tri() > most and edge < 1:

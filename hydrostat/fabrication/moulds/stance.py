@@ -11,7 +11,7 @@ from hydrostat.fabrication.moulds.pull import Pull
 from hydrostat.fabrication.moulds.release import axes_along
 from hydrostat.fabrication.solids.printed import TriangleMesh, root_of
 
-SMALLEST_TRAP = 1.0  # a bubble no higher than that is left to the foam, which pushes it into its cells [mm]
+MIN_TRAP = 1.0  # a bubble no higher than that is left to the foam, which pushes it into its cells [mm]
 _HELD_UPWARDS = 3.0  # a held end at the top is worth so many vents: nobody sees there where the sprue was cut off
 _TALL = 0.5  # vents that a mold may have more for being once less as tall as it is wide
 _TOP = 0.5  # maximum depth below a high point of points that belong to it [mm]
@@ -70,7 +70,7 @@ def _rated_stance(
     level = (held @ axes[1] - places[:, 1].min()) / tall
     at_the_top = 0.85  # from which part of the height on something is at the top
     held_upwards = len(held) > 0 and float(level.mean()) > at_the_top
-    vents = len(high_points(pull.surface.vertices, pull.surface.triangles, axes[1], rise=SMALLEST_TRAP))
+    vents = len(high_points(pull.surface.vertices, pull.surface.triangles, axes[1], rise=MIN_TRAP))
     against = vents - _HELD_UPWARDS * held_upwards + _TALL * tall / min(width, 3 * depth)
     return float(against), float(width * tall), MoldOrientation(axes, pull.height, held_upwards)
 

@@ -10,7 +10,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from hydrostat.arrays import Vector
-from hydrostat.fabrication.parts.places import GIVES, TOUCHES, UnitBox, UnitPlace
+from hydrostat.fabrication.parts.places import COMPRESSION_SHARE, OVERLAP_TOLERANCE, UnitBox, UnitPlace
 from hydrostat.fabrication.solids.construct import sides_text
 
 _SWEEPS = 8  # rounds of a search
@@ -63,15 +63,15 @@ class _Ways:
     """All ways to lay one unit; `places` are those that are least outside the seam, and not too deep if they can."""
 
     def __init__(self, places: list[UnitPlace], thickness: float) -> None:
-        outside = [round(max(place.outside - TOUCHES, 0.0), 3) for place in places]
-        deep = [place.depth > (1 + GIVES) * thickness for place in places]
+        outside = [round(max(place.outside - OVERLAP_TOLERANCE, 0.0), 3) for place in places]
+        deep = [place.depth > (1 + COMPRESSION_SHARE) * thickness for place in places]
         first = min(zip(outside, deep, strict=True))
         self._all = places
         self.places = [place for place, *before in zip(places, outside, deep, strict=True) if tuple(before) == first]
         self._footprints = np.array([place.footprint for place in self.places])
         self._depths = np.array([place.depth for place in self.places])
         self._thickness = thickness
-        self._room = (1 + GIVES) * thickness
+        self._room = (1 + COMPRESSION_SHARE) * thickness
         bulges = np.maximum(self._depths - thickness, 0.0).round(3).tolist()
         self._after = list(zip(bulges, range(len(self.places)), strict=True))
         self._shares: dict[int, tuple[UnitPlace, Vector, Vector]] = {}
@@ -92,7 +92,7 @@ class _Ways:
 
     def thinnest(self) -> "_Ways":
         """Those that take the least of the thickness, of those within the seam if there are any."""
-        inside = [place for place in self._all if place.outside <= TOUCHES] or self._all
+        inside = [place for place in self._all if place.outside <= OVERLAP_TOLERANCE] or self._all
         least = min(place.depth for place in inside)
         return _Ways([place for place in inside if place.depth <= least + 1e-9], self._thickness)
 
@@ -102,7 +102,7 @@ class _Ways:
             near = shapely.intersects(self._footprints, other.footprint)
             area = np.zeros(len(self.places))
             area[near] = shapely.area(shapely.intersection(self._footprints[near], other.footprint))
-            area = np.round(np.where(area > TOUCHES, area, 0.0), 3)
+            area = np.round(np.where(area > OVERLAP_TOLERANCE, area, 0.0), 3)
             above = self._depths + other.depth <= self._room
             self._shares[id(other)] = (other, np.where(above, 0.0, area), np.where(above, area, 0.0))
         return self._shares[id(other)]
@@ -135,7 +135,7 @@ def _swept(ways: list[_Ways], order: Sequence[int]) -> tuple[tuple[float, float]
 
 def _meet(places: Sequence[UnitPlace], numbers: Sequence[int]) -> bool:
     """Return True if some units all cover a common part of the plane."""
-    return float(shapely.intersection_all([places[number].footprint for number in numbers]).area) > TOUCHES
+    return float(shapely.intersection_all([places[number].footprint for number in numbers]).area) > OVERLAP_TOLERANCE
 
 
 def _meets_another(places: Sequence[UnitPlace], number: int) -> bool:
@@ -163,7 +163,7 @@ def _describe_pile(pile: Sequence[UnitPlace], thickness: float) -> tuple[str, bo
     high = sum(place.depth for place in pile)
     *first, last = (f'"{place.box.winch}"' for place in pile)
     names = f"{', '.join(first)} and {last}{_sizes(pile)}"
-    possible = high <= (1 + GIVES) * thickness
+    possible = high <= (1 + COMPRESSION_SHARE) * thickness
     if possible:
         bulge = f", so it bulges by {high - thickness:.0f} mm" if high > thickness else ""
         return (
@@ -189,23 +189,23 @@ def _sizes(pile: Sequence[UnitPlace]) -> str:
 def _alone(place: UnitPlace, thickness: float) -> list[str]:
     """Return the reasons why a unit cannot be built well, even alone."""
     found = []
-    if place.outside > TOUCHES:
+    if place.outside > OVERLAP_TOLERANCE:
         share = 100 * place.outside / place.footprint.area
         words = f"{share:.0f}" if share >= 1 else "less than 1"
         found.append(
             f"{place.box.words} does not fit within the seam at any angle ({words} % outside). Move the winch inwards "
             "or choose a smaller motor or spool"
         )
-    if place.depth > (1 + GIVES) * thickness:
+    if place.depth > (1 + COMPRESSION_SHARE) * thickness:
         found.append(
             f"{place.box.words} needs {place.depth:.0f} mm in a body of {thickness:.0f} mm, which bulges by "
-            f"{100 * GIVES:.0f} % at most. Choose a smaller motor or spool, or a thicker body"
+            f"{100 * COMPRESSION_SHARE:.0f} % at most. Choose a smaller motor or spool, or a thicker body"
         )
     return found
 
 
 def _bulging(place: UnitPlace, thickness: float) -> list[str]:
-    if not thickness + 0.5 <= place.depth <= (1 + GIVES) * thickness:  # mm
+    if not thickness + 0.5 <= place.depth <= (1 + COMPRESSION_SHARE) * thickness:  # mm
         return []
     return [
         f"{place.box.words} is thicker than the body of {thickness:.0f} mm, which will bulge by "

@@ -86,7 +86,7 @@ def post(height: float) -> Construction:
 
 
 Ring = tuple[Corner, ...]  # a closed line, its first corner not repeated [mm]
-FREE = 15.0  # from a unit to its tube holder [mm]
+HOLDER_GAP = 15.0  # from a unit to its tube holder [mm]
 
 _GAP = 3.0
 _STRIP = 12.0
@@ -149,7 +149,7 @@ class BasePlan:
 
         Where cores are swapped, couplers have room to move by `reach` [mm].
         """
-        free = reach + COUPLER[0] + 8.0 if options.swap else FREE
+        free = reach + COUPLER[0] + 8.0 if options.swap else HOLDER_GAP
         pitch = max(unit.room.size[0] for unit in units) + _GAP
         low = min(unit.room.low[1] for unit in units) - _GAP / 2
         high = max(unit.room.high[1] for unit in units) + free + HOLDER_DEPTH + 2.0
@@ -232,7 +232,7 @@ def _rectangle(low: Corner, high: Corner) -> Ring:
     return low, (high[0], low[1]), high, (low[0], high[1])
 
 
-def holder_at(unit: WinchUnit, free: float = FREE) -> Corner:
+def holder_at(unit: WinchUnit, free: float = HOLDER_GAP) -> Corner:
     """The middle of its tube holder, in the unit's coordinates [mm]."""
     x, y, _ = unit.exits[0].point
     return x, y + free + HOLDER_DEPTH / 2

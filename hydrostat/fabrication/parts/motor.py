@@ -117,7 +117,7 @@ class Motor:
 
     def largest_torque(self, *, inside: bool = False) -> float:
         """Largest torque of poses [N m], with the margin: outside the body for long, inside for seconds."""
-        return 1e-3 * (BRIEF * self.stall_torque if inside else self.rated_torque) / MARGIN
+        return 1e-3 * (BRIEF_TORQUE_SHARE * self.stall_torque if inside else self.rated_torque) / MARGIN
 
     @property
     def is_feetech(self) -> bool:
@@ -394,5 +394,5 @@ MARGIN = 2.0
 one that turns by 360 degrees in all at mu = 0.1 needs exp(0.1 * 2 pi) = 1.9 times the tension at its winch (capstan).
 Bodies also differ from their assumed stiffness, and motors age."""
 
-BRIEF = 0.5
+BRIEF_TORQUE_SHARE = 0.5
 """Share of its stall torque that a motor gives for seconds, as coils warm up slowly. Assumed, measured on none."""

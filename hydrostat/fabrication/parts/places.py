@@ -11,8 +11,9 @@ from shapely.geometry.base import BaseGeometry
 from hydrostat.fabrication.solids.construct import Corner, Cuboid, sides_text
 from hydrostat.robot import Body
 
-GIVES = 0.25  # Share of its thickness that stuffing and cloth give for a unit. Assumed, measured on none.
-TOUCHES = 1.0  # area that units may share, or that may stand over the seam [mm^2]: corners of boxes drawn square
+COMPRESSION_SHARE = 0.25  # Share of its thickness that stuffing and cloth give for a unit. Assumed, measured on none.
+OVERLAP_TOLERANCE = 1.0
+"""Area that units may share, or that may stand over the seam [mm^2]: corners of boxes drawn square."""
 
 _SLIDE = 6.0
 """Offset of a unit from its place in the robot file [mm]: this place is still in its housing, and its tubes can bend

@@ -18,10 +18,10 @@ from hydrostat.fabrication.solids.construct import Construction, Cuboid, solid_o
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Mount, Robot, Winch
 
-_LONGEST = 30.0
+_MAX_SPOOL_LENGTH = 30.0
 """A spool is no longer than this where several layers can avoid it [mm]: its far end is held by a thin roof."""
 
-_MOST_LAYERS = 6
+_MAX_LAYERS = 6
 
 _INSIDE = 1.2  # the least of a shaft in a spool over its diameter: less, and a flat of plastic wears round
 
@@ -65,15 +65,15 @@ def spool_for(
     turns = spool_turns(1e3 * (winch.travel + winch.release), 1e3 * winch.spool_radius, options.spare_wraps)
     grooves = [
         [_groove(radius, turns, layers, options.cable, *kind, step) for radius, kind in zip(radii, kinds, strict=True)]
-        for layers in range(1, _MOST_LAYERS + 1)
+        for layers in range(1, _MAX_LAYERS + 1)
         for step in (SHARED_STEP, FINE_STEP)
     ]
     sizes = [_spool(each, drive.inside, options, motor) for each in grooves]
-    spool = next((each for each in sizes if each.body <= _LONGEST), sizes[-1])
-    if spool.body > _LONGEST:
+    spool = next((each for each in sizes if each.body <= _MAX_SPOOL_LENGTH), sizes[-1])
+    if spool.body > _MAX_SPOOL_LENGTH:
         problems.append(
-            f'winch "{winch.name}": {turns:.1f} turns of cable do not fit on a spool of {_LONGEST:g} mm in '
-            f"{_MOST_LAYERS} layers. Choose a larger spool radius or less travel"
+            f'winch "{winch.name}": {turns:.1f} turns of cable do not fit on a spool of {_MAX_SPOOL_LENGTH:g} mm in '
+            f"{_MAX_LAYERS} layers. Choose a larger spool radius or less travel"
         )
     return spool, (*small, *problems), _layers(spool, winch, wound)
 

@@ -39,12 +39,12 @@ class Chord:
         return over & (at > self.low - 1e-6) & (at < self.high + 1e-6)
 
 
-NARROWEST = 8.0  # A neck of a patch narrower than that [mm] cannot be sewn and turned. Assumed.
+MIN_NECK = 8.0  # A neck of a patch narrower than that [mm] cannot be sewn and turned. Assumed.
 
 
 def is_narrow(outline: BaseGeometry) -> bool:
     """Return True if an outline [mm] has such a neck, or is no wider anywhere."""
-    inner = outline.buffer(-NARROWEST / 2)
+    inner = outline.buffer(-MIN_NECK / 2)
     return inner.is_empty or isinstance(inner, shapely.MultiPolygon)
 
 

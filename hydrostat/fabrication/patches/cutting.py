@@ -6,7 +6,7 @@ from functools import lru_cache
 import numpy as np
 
 from hydrostat.arrays import Float, Int
-from hydrostat.fabrication.patches.chord import NARROWEST, best_chord, cut_chord, is_narrow
+from hydrostat.fabrication.patches.chord import MIN_NECK, best_chord, cut_chord, is_narrow
 from hydrostat.fabrication.patches.flatten import distortion, flatten
 from hydrostat.fabrication.patches.patch import Patch, disc_of
 from hydrostat.fabrication.patches.seams import Seam, find_seams
@@ -30,13 +30,13 @@ def relax_patch(patch: Patch, *, ease: float = LOOSE) -> Patch:
     energy = PatchEnergy(patch, ease)
     from scipy.optimize import minimize  # Imported here: only what is sewn in space needs it.
 
-    energy.turned_over = _FAR * energy(patch.flat.ravel())[0]
+    energy.turned_over = _FOLDED_ENERGY * energy(patch.flat.ravel())[0]
     options = {"maxiter": 300, "maxcor": 20}
     found = minimize(energy, patch.flat.ravel(), jac=True, method="L-BFGS-B", options=options)
     return replace(patch, flat=found.x.reshape(-1, 2)) if found.fun < energy.turned_over else patch
 
 
-_FAR = 3.0
+_FOLDED_ENERGY = 3.0
 """Energy of an image with a triangle on its back, as a multiple of that at the start: a line search goes back from
 there by a share of its step. From 1e12 it went back to where it was, and ended."""
 
@@ -165,11 +165,11 @@ def _smooth_values(mesh: SkinMesh, values: Float[np.ndarray, " vertices"]) -> Fl
     return splu(csc_array(diags_array(mass) - reach**2 * spread)).solve(mass * values)
 
 
-MOST_GIVE = 0.12
+MAX_STRETCH = 0.12
 """Maximum stretch of the cloth in 95 % of a patch. Felt and woven plush stretch about that much; assumed, not
 measured."""
 
-MOST_EASE = 0.05  # How much longer one side of a seam may be than the other: the longer is eased in with pins. Assumed.
+MAX_EASE = 0.05  # How much longer one side of a seam may be than the other: the longer is eased in with pins. Assumed.
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -219,7 +219,7 @@ def _cut_skin(vertices: bytes, triangles: bytes, patch: bytes) -> Cutting:
             worst = _uneasy(mesh, patches)
         if worst < 0 or worst in given_up or len(patches) == most_patches:
             break
-        chord = best_chord(plain[worst], min(MOST_GIVE, distortion(plain[worst]).give(0.9)))
+        chord = best_chord(plain[worst], min(MAX_STRETCH, distortion(plain[worst]).give(0.9)))
         if chord is None:
             given_up.add(worst)
             continue
@@ -255,7 +255,7 @@ def _uneasy(mesh: SkinMesh, patches: list[Patch]) -> int:
     """The patch that spoils the worst seam, of which it has one side; -1 if all seams can be sewn."""
     seams = find_seams(mesh, tuple(patches), np.eye(3)[2])
     worst = max(seams, key=lambda seam: seam.mismatch)
-    if worst.mismatch <= MOST_EASE:
+    if worst.mismatch <= MAX_EASE:
         return -1
     off = [abs(length / worst.length - 1) for length in worst.lengths]
     return worst.patches[int(np.argmax(off))]
@@ -264,9 +264,9 @@ def _uneasy(mesh: SkinMesh, patches: list[Patch]) -> int:
 def _excess(patch: Patch) -> float:
     """Area that is distorted too much [mm^2], 0 if the patch is good enough."""
     bent = distortion(patch)
-    if bent.give(0.95) <= MOST_GIVE and patch.outline.is_valid:
+    if bent.give(0.95) <= MAX_STRETCH and patch.outline.is_valid:
         return 0.0
-    return float(bent.areas[bent.gives > MOST_GIVE].sum())
+    return float(bent.areas[bent.gives > MAX_STRETCH].sum())
 
 
 def _on(mesh: SkinMesh, number: int, patch: Patch) -> Patch:
@@ -282,26 +282,26 @@ def patch_problems(
     problems = []
     for name, patch, skin in zip(names, patches, skins, strict=True):
         give = distortion(patch).give(0.95)
-        if give > MOST_GIVE:
+        if give > MAX_STRETCH:
             problems.append(
                 f"patch {name} would have to stretch or shrink by {give:.1%} to fit the body, more than "
-                f"felt allows ({MOST_GIVE:.0%}). Cast this body in a mold or simplify its shape"
+                f"felt allows ({MAX_STRETCH:.0%}). Cast this body in a mold or simplify its shape"
             )
         if not patch.outline.is_valid:
             problems.append(f"patch {name} overlaps itself when flat. Cast this body in a mold")
         elif is_narrow(patch.outline):
             problems.append(
-                f"patch {name} is narrower than {NARROWEST:g} mm somewhere and cannot be sewn and turned. Cast this "
+                f"patch {name} is narrower than {MIN_NECK:g} mm somewhere and cannot be sewn and turned. Cast this "
                 "body in a mold or make it larger"
             )
         problems += [f"patch {name}: {problem}" for problem in skin.problems]
     worst = max(seams, key=lambda seam: seam.mismatch)
-    if worst.mismatch > MOST_EASE:
+    if worst.mismatch > MAX_EASE:
         one, other = (names[number] for number in worst.patches)
         lengths = " and ".join(f"{length:.0f} mm" for length in worst.lengths)
         problems.append(
             f"the seam between patches {one} and {other} is {lengths} long on them, {worst.mismatch:.0%} apart. You "
-            f"cannot ease in more than {MOST_EASE:.0%}. Cast this body in a mold or simplify its shape"
+            f"cannot ease in more than {MAX_EASE:.0%}. Cast this body in a mold or simplify its shape"
         )
     return tuple(problems)
 

@@ -54,7 +54,7 @@ def distortion(patch: Patch) -> Distortion:
     return Distortion(longest=stretches[:, 0], shortest=stretches[:, 1], areas=patch.disc.areas)
 
 
-SETTLED = 5e-4
+ENERGY_TOLERANCE = 5e-4
 """Relative change of the energy in one such time below which it has settled: it moves seams by less than cloth does."""
 
 
@@ -63,7 +63,7 @@ _TOOTH = 0.1
 two sides of most seams differ by a few percent only, while patches distort little more."""
 
 
-def flatten(disc: Disc, *, settled: float = SETTLED) -> Patch:
+def flatten(disc: Disc, *, settled: float = ENERGY_TOLERANCE) -> Patch:
     """The flat image with the least symmetric Dirichlet energy, by scalable locally injective maps.
 
     The energy counts stretch and squeeze alike and grows without bound before a triangle would turn over (Rabinovich,

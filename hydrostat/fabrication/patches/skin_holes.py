@@ -17,16 +17,16 @@ from hydrostat.geometry import Solid, Surface
 from hydrostat.robot import Cable, Mount, Robot
 from hydrostat.units import plural
 
-DEEPEST = 15.0
+MAX_SEWN_DEPTH = 15.0
 """A point of a cable at most so far under the skin [mm] is sewn to it; deeper ones stay in the stuffing. Assumed."""
 
-SHARED = 0.1  # cables that pass the skin no farther apart than that [mm] share a hole
+SHARED_HOLE_DISTANCE = 0.1  # cables that pass the skin no farther apart than that [mm] share a hole
 
 _SEAM_FIRST = 3.0
 """A point at most so much farther from a seam than from the skin [mm] is sewn into the seam: that takes no hole, and
 cables in the middle between front and back stay there. Assumed."""
 
-_SHALLOW = 5.0  # A cable that was simulated so near to the skin [mm] acts as if it were on it. Assumed.
+_SHALLOW_DEPTH = 5.0  # A cable that was simulated so near to the skin [mm] acts as if it were on it. Assumed.
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,7 +98,7 @@ def find_holes(
         solid, patch, flat = NearestOnSkin(patches).nearest(points)
         depths = np.linalg.norm(points - solid, axis=1)
         first = int(robot.winch(cable.winch).mount is not Mount.WORLD)
-        near = [index for index in range(first, len(points)) if depths[index] <= DEEPEST]
+        near = [index for index in range(first, len(points)) if depths[index] <= MAX_SEWN_DEPTH]
         begins = Side.INSIDE if first else Side.OUTSIDE
         for index, passes, after in _sewn_points(cable, near, begins):
             x, y = flat[index].tolist()
@@ -157,7 +157,11 @@ def hole_problems(holes: tuple[SkinHole, ...], options: PatternOptions) -> tuple
     for one, other in combinations(cut, 2):
         (patch, place), (theirs, there) = one.places[0], other.places[0]
         apart = float(np.hypot(*np.subtract(place, there)))
-        if patch == theirs and SHARED < apart < options.pinhole and apart < close.get(one.cable, (np.inf,))[0]:
+        if (
+            patch == theirs
+            and SHARED_HOLE_DISTANCE < apart < options.pinhole
+            and apart < close.get(one.cable, (np.inf,))[0]
+        ):
             close[one.cable] = (apart, one, other)
     return tuple(
         f"the holes of cable {one.cable} at point {one.point} and of cable {other.cable} at point {other.point} are "
@@ -175,7 +179,7 @@ def find_surface_runs(robot: Robot, patches: tuple[Patch, ...], holes: tuple[Ski
         points = 1e3 * np.array(robot.cables[one.cable - 1].points[one.point - 1 : other.point])
         way = np.concatenate([points, (points[1:] + points[:-1]) / 2])
         depth = float(np.linalg.norm(way - nearest(way)[0], axis=1).max())
-        if depth > DEEPEST:
+        if depth > MAX_SEWN_DEPTH:
             problems[one.cable] = (
                 f"cable {one.cable} would run outside from point {one.point} to point {other.point}, but was simulated "
                 f"{depth:.0f} mm under the skin there. Cast this body in a mold or lay the cable "
@@ -195,11 +199,11 @@ def hole_warnings(robot: Robot, holes: tuple[SkinHole, ...]) -> tuple[str, ...]:
             free[number] = len(bare - near)
         if not own:
             warnings.append(
-                f"cable {number} is nowhere within {DEEPEST:g} mm of the skin and gets no hole. Move it to the skin "
-                "or make the robot of foam"
+                f"cable {number} is nowhere within {MAX_SEWN_DEPTH:g} mm of the skin and gets no hole. Move it to the "
+                "skin or make the robot of foam"
             )
             continue
-        if max(hole.depth for hole in own) > _SHALLOW:
+        if max(hole.depth for hole in own) > _SHALLOW_DEPTH:
             shallow[number] = max(hole.depth for hole in own)
         if own[-1].after is Side.INSIDE or own[-1].point != len(cable.points):
             warnings.append(f"the stopper of cable {number} is inside the body. Adjust it through the opening")
@@ -210,8 +214,8 @@ def hole_warnings(robot: Robot, holes: tuple[SkinHole, ...]) -> tuple[str, ...]:
         )
     if free:
         warnings.append(
-            f"{_cables(free)} simulated through {plural(sum(free.values()), 'point')} deeper than {DEEPEST:g} mm "
-            "under the skin. Nothing holds them there: they run straight through the stuffing to the next hole"
+            f"{_cables(free)} simulated through {plural(sum(free.values()), 'point')} deeper than {MAX_SEWN_DEPTH:g} "
+            "mm under the skin. Nothing holds them there: they run straight through the stuffing to the next hole"
         )
     return tuple(warnings)
 

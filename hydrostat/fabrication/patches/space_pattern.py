@@ -19,7 +19,7 @@ from hydrostat.fabrication.patches.flatten import distortion
 from hydrostat.fabrication.patches.patch import Patch
 from hydrostat.fabrication.patches.seams import PatchNotch, Seam, find_seams, patch_notches, stuffing_gap
 from hydrostat.fabrication.patches.skin_holes import (
-    SHARED,
+    SHARED_HOLE_DISTANCE,
     NearestOnSkin,
     SkinHole,
     find_holes,
@@ -40,7 +40,7 @@ from hydrostat.fabrication.patterns.stitches import CableStitches, Side, Stitch
 from hydrostat.robot import Body, Mount, Robot
 from hydrostat.units import plural
 
-_CLEAR = 0.8
+_HOLE_CLEARANCE = 0.8
 
 
 def patch_skin(patch: Patch, options: PatternOptions) -> Skin:
@@ -69,7 +69,7 @@ def patch_panel(
     ]
     holes = [pair for _, own in cables for pair in own]
     for index, (hole, place) in enumerate(holes):
-        if all(math.dist(place, other) > SHARED for _, other in holes[:index]):
+        if all(math.dist(place, other) > SHARED_HOLE_DISTANCE for _, other in holes[:index]):
             shapes += _hole(hole, place, options)
     for _, own in cables:
         shapes += _cable_lines(own, skin.seam, options)
@@ -108,7 +108,7 @@ def _hole(hole: SkinHole, place: Place, options: PatternOptions) -> tuple[Shape,
 def _cable_lines(own: tuple[tuple[SkinHole, Place], ...], seam: Polygon, options: PatternOptions) -> tuple[Shape, ...]:
     """The cable between neighboring holes on this patch: solid outside, dashed inside."""
     shapes: list[Shape] = []
-    clear = options.pinhole / 2 + _CLEAR
+    clear = options.pinhole / 2 + _HOLE_CLEARANCE
     for (hole, place), (following, there) in pairwise(own):
         if following.point != hole.point + 1 or (hole.in_seam and following.in_seam):
             continue  # from seam to seam it runs along the seam

@@ -10,7 +10,7 @@ from hydrostat.fabrication.patterns.sheet_layout import lay_out
 
 WIDTH = 14.0  # of a strip: a channel of 8 mm, and 3 mm beyond each of its seams [mm]
 SEAM = 3.0  # from the edge of a strip to its seam [mm]
-_LONGEST = 150.0  # of a piece, so that it fits on one page of an office printer [mm]
+_MAX_PIECE = 150.0  # of a piece, so that it fits on one page of an office printer [mm]
 _END = 12.0  # of a strip before its first point and beyond its last, with its name [mm]
 
 
@@ -29,7 +29,7 @@ def channel_strips(name: str, ways: Mapping[str, Sequence[tuple[str, float]]]) -
 def _cut_strips(cable: str, points: Sequence[tuple[str, float]]) -> list[Panel]:
     """The strip of one cable, in pieces; a piece ends where the next begins."""
     first, last = points[0][1], points[-1][1]
-    count = max(1, math.ceil((last - first) / _LONGEST))
+    count = max(1, math.ceil((last - first) / _MAX_PIECE))
     step, pieces = (last - first) / count, []
     for piece in range(count):
         start = first + piece * step

@@ -13,7 +13,7 @@ from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patterns.shape import Circle, Layer, PatternPart, Place
 from hydrostat.robot import Mount, Robot
 
-_SAME = 0.01  # points nearer than this [mm] are one point
+_POINT_TOLERANCE = 0.01  # points nearer than this [mm] are one point
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,7 @@ def _merge(pinholes: Iterable[Pinhole]) -> tuple[Pinhole, ...]:
 
 
 def _one_hole(one: Pinhole, other: Pinhole) -> bool:
-    same_point = np.hypot(*np.subtract(one.center, other.center)) < _SAME
+    same_point = np.hypot(*np.subtract(one.center, other.center)) < _POINT_TOLERANCE
     return bool(same_point or (one.winch and one.winch == other.winch and one.gap(other) < 0))
 
 
@@ -105,7 +105,7 @@ def _join(one: Pinhole, other: Pinhole) -> Pinhole:
     winch = one.winch or other.winch
     shift = np.subtract(other.center, one.center)
     apart = float(np.hypot(*shift))
-    if apart < _SAME or apart + min(one.radius, other.radius) <= max(one.radius, other.radius):
+    if apart < _POINT_TOLERANCE or apart + min(one.radius, other.radius) <= max(one.radius, other.radius):
         larger = max(one, other, key=lambda hole: hole.radius)
         return Pinhole(larger.center, larger.radius, uses, winch)
     radius = (apart + one.radius + other.radius) / 2

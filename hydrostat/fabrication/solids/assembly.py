@@ -6,7 +6,7 @@ from math import pi
 
 from manifold3d import Manifold
 
-LEAST = 1e-3  # mean thickness of what two pieces share, above which they are in each other's way [mm]
+MIN_OVERLAP = 1e-3  # mean thickness of what two pieces share, above which they are in each other's way [mm]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -37,7 +37,7 @@ class Interference:
     volume: float  # volume of their overlap [mm^3]
 
 
-def interferences(assembly: PartAssembly, *, least: float = LEAST) -> tuple[Interference, ...]:
+def interferences(assembly: PartAssembly, *, least: float = MIN_OVERLAP) -> tuple[Interference, ...]:
     """All pairs of pieces that share room, by booleans.
 
     What two share is what they lose when they are joined: measured on the intersection itself it would be wrong where

@@ -23,7 +23,7 @@ class Cells:
     names: tuple[dict[str, int], dict[str, int]] = field(default=({}, {}))
 
 
-_LONGEST = 10_000  # characters of a word
+_MAX_WORD = 10_000  # characters of a word
 _SPACE = re.compile(rb"\s")
 _BLANK = re.compile(rb"\s*")
 _WORD = re.compile(rb"\S+")
@@ -65,7 +65,7 @@ class Cursor:
             return None
         end = self.content.find(b"\n", self.at)
         end = len(self.content) if end < 0 else end
-        line, self.at = self.content[self.at : min(end, self.at + _LONGEST)].strip(), end + 1
+        line, self.at = self.content[self.at : min(end, self.at + _MAX_WORD)].strip(), end + 1
         return line
 
     def seek_after(self, mark: bytes) -> None:
@@ -113,7 +113,7 @@ class Cursor:
         while end < len(self.content):
             space = _SPACE.search(self.content, end + size)
             end = space.start() if space else len(self.content)
-            if end - self.at > size + _LONGEST:
+            if end - self.at > size + _MAX_WORD:
                 raise self.make_damage_error("has a very long word")
             words = self.content[self.at : end].split()
             if words:

@@ -38,7 +38,7 @@ class Shapes:
 
 _GAP = 1e-3  # ends of a line that are this part of its box apart, or less, meet
 _ROUNDING = 1e-6
-_MOST_SHAPES = 200  # a drawing may have this many closed shapes
+_MAX_SHAPES = 200  # a drawing may have this many closed shapes
 _SPECK = 1e-8  # a closed shape of this part of the largest one's area is none
 
 
@@ -76,8 +76,8 @@ def sorted_shapes(lines: Sequence[DrawnLine], sheet: PageFacts, name: str) -> Sh
             f"left out {plural(len(specks), 'closed line')} without area, at {point_text(specks[0].points[0])}"
         )
         rings = [line for line in rings if line not in specks]
-    if len(rings) > _MOST_SHAPES:
-        raise OutlineError(f"{name}: has {len(rings)} closed shapes, more than {_MOST_SHAPES}: leave out some holes")
+    if len(rings) > _MAX_SHAPES:
+        raise OutlineError(f"{name}: has {len(rings)} closed shapes, more than {_MAX_SHAPES}: leave out some holes")
     grounds, doubtful = find_grounds(_by_area(rings), sheet)
     shapes, united = unite_fills([line for line in rings if line not in grounds])
     if united:

@@ -19,7 +19,7 @@ from hydrostat.geometry.files.drawn_line import DrawnLine, PageFacts
 from hydrostat.geometry.files.drawn_shapes import sorted_shapes
 from hydrostat.geometry.files.rings import (
     CHORD_ERROR,
-    MOST_POINTS,
+    MAX_POINTS,
     Drawing,
     Page,
     one_line,
@@ -32,9 +32,9 @@ from hydrostat.units import plural
 if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
 
-MOST_ENTITIES = 20_000  # a drawing with more entities, counting what its blocks repeat, is refused
+MAX_ENTITIES = 20_000  # a drawing with more entities, counting what its blocks repeat, is refused
 
-_FARTHEST = 1e100
+_MAX_COORDINATE = 1e100
 _FRAME_VERTEX = 16  # flag of a vertex that controls a fitted curve and lies beside it
 _METERS = {
     1: 0.0254, 2: 0.3048, 3: 1609.344, 4: 1e-3, 5: 1e-2, 6: 1.0, 7: 1e3, 8: 25.4e-9, 9: 25.4e-6, 10: 0.9144,
@@ -160,7 +160,7 @@ class _Space:
 
     document: "Document"
     name: str
-    budget: int = MOST_ENTITIES
+    budget: int = MAX_ENTITIES
     points: int = 0
     ignored: Counter[str] = field(default_factory=Counter)
     texts: list[tuple[float, float]] = field(default_factory=list)  # places of texts
@@ -217,8 +217,8 @@ class _Space:
     def _drawn(self, entity: Any, found: list[Ring], block_name: str) -> Iterator[DrawnLine]:
         """Lines of an entity along some points."""
         self.points += sum(map(len, found))
-        if self.points > MOST_POINTS:
-            raise OutlineError(f"{self.name}: more than {MOST_POINTS} points: simplify the drawing")
+        if self.points > MAX_POINTS:
+            raise OutlineError(f"{self.name}: more than {MAX_POINTS} points: simplify the drawing")
         label = f"{entity.dxf.get('layer', '0')} {block_name}".strip()
         for points in found:
             if len(points) > 1:
@@ -228,7 +228,7 @@ class _Space:
         """Refuse drawings that repeat their blocks without end."""
         self.budget -= count
         if self.budget < 0:
-            raise OutlineError(f"{self.name}: more than {MOST_ENTITIES} entities: save the outline alone")
+            raise OutlineError(f"{self.name}: more than {MAX_ENTITIES} entities: save the outline alone")
         most_depth = 20
         if depth > most_depth:
             raise OutlineError(f"{self.name}: blocks nested deeper than {most_depth}: explode the blocks")
@@ -265,10 +265,10 @@ def _along(path: Any) -> Ring:
     control = np.array([(point.x, point.y) for point in path.control_vertices()]).reshape(-1, 2)
     if not len(control):
         return control
-    if not (np.abs(control) < _FARTHEST).all():
+    if not (np.abs(control) < _MAX_COORDINATE).all():
         return np.full((2, 2), np.nan)
     tolerance = CHORD_ERROR * float(np.ptp(control, axis=0).max()) or 1.0
-    points = [(point.x, point.y) for point in islice(path.flattening(tolerance, segments=2), MOST_POINTS + 1)]
+    points = [(point.x, point.y) for point in islice(path.flattening(tolerance, segments=2), MAX_POINTS + 1)]
     return without_repeats(np.array(points).reshape(-1, 2))
 
 
@@ -280,7 +280,7 @@ def _spline(entity: Any) -> Ring:
     control = np.array([(point.x, point.y) for point in tool.control_points]).reshape(-1, 2)
     knots, degree = np.array(tool.knots(), dtype=float), tool.order - 1
     weights = np.array(tool.weights() or np.ones(len(control)), dtype=float)
-    if not all((np.abs(values) < _FARTHEST).all() for values in (control, knots, weights)):
+    if not all((np.abs(values) < _MAX_COORDINATE).all() for values in (control, knots, weights)):
         return np.full((2, 2), np.nan)
     curve = BSpline(knots, np.column_stack([control * weights[:, None], weights]), degree)
     ends = np.unique(knots[degree : len(control) + 1])
@@ -291,7 +291,7 @@ def _spline(entity: Any) -> Ring:
         at = np.r_[(ends[:-1, None] + np.diff(ends)[:, None] * shares).ravel(), ends[-1]]
         points = curve(at)[:, :2] / curve(at)[:, 2:]
         bends = np.linalg.norm(points[1:-1:2] - 0.5 * (points[:-2:2] + points[2::2]), axis=1)
-        if not (bends > tolerance).any() or 4 * count * len(ends) > MOST_POINTS:
+        if not (bends > tolerance).any() or 4 * count * len(ends) > MAX_POINTS:
             return points[::2]
         count *= 2
 

@@ -27,7 +27,7 @@ from hydrostat.units import plural
 if TYPE_CHECKING:
     from PIL.Image import Image
 
-MOST_PIXELS = 50_000_000  # a picture with more pixels is refused
+MAX_PIXELS = 50_000_000  # a picture with more pixels is refused
 
 _BROKEN = (OSError, ValueError, TypeError, LookupError, SyntaxError, ArithmeticError, AttributeError, EOFError)
 
@@ -72,7 +72,7 @@ def _pixels(content: bytes, name: str) -> tuple[Float[np.ndarray, "rows columns 
             warnings.simplefilter("ignore")
             with Image.open(io.BytesIO(content), formats=("PNG", "JPEG")) as image:
                 columns, rows = image.size
-                if columns * rows > MOST_PIXELS:
+                if columns * rows > MAX_PIXELS:
                     raise _too_large(name, f"{columns} x {rows}")
                 step = max(1, -(-max(columns, rows) // longest))
                 ImageOps.exif_transpose(image, in_place=True)
@@ -89,7 +89,7 @@ def _pixels(content: bytes, name: str) -> tuple[Float[np.ndarray, "rows columns 
 
 def _too_large(name: str, pixels: str) -> OutlineError:
     return OutlineError(
-        f"{name}: the picture has {pixels} pixels, at most {MOST_PIXELS / 1e6:.0f} million are read: make it smaller"
+        f"{name}: the picture has {pixels} pixels, at most {MAX_PIXELS / 1e6:.0f} million are read: make it smaller"
     )
 
 

@@ -7,15 +7,15 @@ import numpy as np
 from shapely.errors import GEOSException
 
 from hydrostat.errors import GIVE_SIZE, InputError, OutlineError
-from hydrostat.files import MOST_DRAWN_BYTES
+from hydrostat.files import MAX_DRAWN_BYTES
 from hydrostat.geometry.files.drawing_body import Inner
 from hydrostat.geometry.files.rings import Drawing, Page, one_line
 from hydrostat.geometry.outline import Outline
 
-LARGEST = 20.0
+MAX_SIZE = 20.0
 """Longest side of a drawn body [m]; what is longer has the wrong unit."""
 
-OUTLINE_SUFFIXES = tuple(MOST_DRAWN_BYTES)  # names of files that outlines are read from end in one of these
+OUTLINE_SUFFIXES = tuple(MAX_DRAWN_BYTES)  # names of files that outlines are read from end in one of these
 
 
 def read_outline(
@@ -72,10 +72,10 @@ def _read_drawing(
         )
     if not content.strip():
         raise OutlineError(f"{name}: the file is empty: save it again")
-    if len(content) > MOST_DRAWN_BYTES[suffix]:
+    if len(content) > MAX_DRAWN_BYTES[suffix]:
         raise OutlineError(
             f"{name}: the file has {len(content) / 1e6:.0f} MB, "
-            f"at most {MOST_DRAWN_BYTES[suffix] / 1e6:.0f} MB are read: "
+            f"at most {MAX_DRAWN_BYTES[suffix] / 1e6:.0f} MB are read: "
             "save the outline alone, or a smaller picture"
         )
     if suffix == ".svg":
@@ -88,7 +88,7 @@ def _read_drawing(
         drawing = read(content, name, size, page, inner, part)
     except GEOSException as error:
         raise OutlineError(f"{name}: its shapes cannot be sorted ({one_line(error)}): simplify the drawing") from None
-    if size is None and page is None and drawing.outline.size > LARGEST:
+    if size is None and page is None and drawing.outline.size > MAX_SIZE:
         long = f"{drawing.outline.size:.4g} m long"
-        raise OutlineError(f"{name}: would be {long}, as its unit says (at most {LARGEST:g} m): {GIVE_SIZE}")
+        raise OutlineError(f"{name}: would be {long}, as its unit says (at most {MAX_SIZE:g} m): {GIVE_SIZE}")
     return drawing

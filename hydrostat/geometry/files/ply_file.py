@@ -8,10 +8,10 @@ import numpy as np
 
 from hydrostat.arrays import Int
 from hydrostat.errors import SurfaceError
-from hydrostat.geometry.files.soup import MOST_TRIANGLES, Soup, check_count, check_text, fans
+from hydrostat.geometry.files.soup import MAX_TRIANGLES, Soup, check_count, check_text, fans
 from hydrostat.geometry.surface import Surface
 
-_LONGEST_ROW = 1_000_000
+_MAX_ROW = 1_000_000
 _TYPES = {
     "char": "i1", "int8": "i1", "uchar": "u1", "uint8": "u1", "short": "i2", "int16": "i2", "ushort": "u2",
     "uint16": "u2", "int": "i4", "int32": "i4", "uint": "u4", "uint32": "u4", "float": "f4", "float32": "f4",
@@ -45,7 +45,9 @@ def read_ply(content: bytes, name: str) -> Soup:
         check_text(content, name)
     vertices, faces = np.zeros((0, 3)), None
     for element in elements:
-        check_count(name, f"{element.name} rows", element.count, room=_room(element, order, content, start), most=_MOST)
+        check_count(
+            name, f"{element.name} rows", element.count, room=_room(element, order, content, start), most=_MAX_ELEMENTS
+        )
         if order:
             values, start = _binary(content, start, element, order, name)
         else:
@@ -65,7 +67,7 @@ def read_ply(content: bytes, name: str) -> Soup:
     return Soup(vertices, fans(corners, counts, vertices))
 
 
-_MOST = 3 * MOST_TRIANGLES
+_MAX_ELEMENTS = 3 * MAX_TRIANGLES
 _Values = dict[str, tuple[np.ndarray, np.ndarray]]
 """Values of each property: the numbers of all rows, concatenated, and the number of values in each row."""
 
@@ -143,7 +145,7 @@ def _first_lengths(content: bytes, start: int, element: _Element, order: str) ->
             kind = np.dtype(order + each.length_kind)
             piece = content[start : start + kind.itemsize]
             length = int(np.frombuffer(piece, kind)[0]) if len(piece) == kind.itemsize else 0
-            length = min(max(length, 0), _LONGEST_ROW)
+            length = min(max(length, 0), _MAX_ROW)
             start += kind.itemsize
         start += length * np.dtype(each.kind).itemsize
         lengths.append(length)
@@ -168,7 +170,7 @@ def _row_by_row(content: bytes, start: int, element: _Element, order: str, name:
         for piece, count, size, head in steps:
             length = int.from_bytes(content[start : start + head], byte_order) if head else 1
             end = start + head + length * size
-            if length > _LONGEST_ROW or end > len(content):
+            if length > _MAX_ROW or end > len(content):
                 raise SurfaceError(
                     f"{name}: ends within {element.name} {row} of {element.count}: the file is damaged or cut short, "
                     "export or copy it again"
@@ -190,9 +192,9 @@ def _text(content: bytes, start: int, element: _Element, name: str) -> tuple[_Va
     stream = BytesIO(content)
     stream.seek(start)
     for row in range(element.count):
-        line = stream.readline(_LONGEST_ROW)
+        line = stream.readline(_MAX_ROW)
         while line and line.isspace():
-            line = stream.readline(_LONGEST_ROW)
+            line = stream.readline(_MAX_ROW)
         try:
             words = [float(word) for word in line.split()]
             place = 0

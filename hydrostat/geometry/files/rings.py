@@ -72,7 +72,7 @@ PART_HINT = "--part N, or drawing_part = N in [body]"
 DRAWN_HINT = '--inner drawn, or inner = "drawn" in [body]'
 """Hint for errors about closed shapes that are no holes."""
 
-MOST_POINTS = 100_000  # a drawing with more points, counting what it repeats, is refused
+MAX_POINTS = 100_000  # a drawing with more points, counting what it repeats, is refused
 CHORD_ERROR = 2e-5  # curves become chords that stray at most this part of their box
 
 
@@ -81,8 +81,8 @@ def checked_points(lines: Iterable[Ring], name: str) -> None:
     count = 0
     for line in lines:
         count += len(line)
-        if count > MOST_POINTS:
-            raise OutlineError(f"{name}: more than {MOST_POINTS} points: simplify the drawing")
+        if count > MAX_POINTS:
+            raise OutlineError(f"{name}: more than {MAX_POINTS} points: simplify the drawing")
         if not (np.abs(line) < 1e100).all():
             raise OutlineError(f"{name}: a coordinate is not a finite number: save the drawing again")
 
@@ -150,7 +150,7 @@ def point_text(point: Float[np.ndarray, " 2"] | tuple[float, ...]) -> str:
     return f"({point[0]:.4g}, {point[1]:.4g})"
 
 
-_SAME = 1e-6
+_POINT_TOLERANCE = 1e-6
 _JOINED = 1e-3
 
 _Ends = Int[np.ndarray, "lines 2"]
@@ -188,7 +188,10 @@ def _numbers_of_ends(points: Float[np.ndarray, "lines 2 2"], extent: float, with
 
     flat = points.reshape(-1, 2)
     cells = np.concatenate(
-        [np.floor(flat / (2.0 * _SAME * extent) + shift) for shift in ((0, 0), (0, 0.5), (0.5, 0), (0.5, 0.5))]
+        [
+            np.floor(flat / (2.0 * _POINT_TOLERANCE * extent) + shift)
+            for shift in ((0, 0), (0, 0.5), (0.5, 0), (0.5, 0.5))
+        ]
     )
     grid = np.repeat(np.arange(4), len(flat))
     _, cell = np.unique(np.column_stack([grid, cells]), axis=0, return_inverse=True)
@@ -210,7 +213,7 @@ def _unique_lines(lines: list[Ring], ends: _Ends, extent: float) -> Int[np.ndarr
     seen, kept = set(), []
     for index, (line, (start, end)) in enumerate(zip(lines, ends.tolist(), strict=True)):
         middle = _middle(line)
-        key = (min(start, end), max(start, end), *np.round(middle / (100 * _SAME * extent)).tolist())
+        key = (min(start, end), max(start, end), *np.round(middle / (100 * _POINT_TOLERANCE * extent)).tolist())
         if key not in seen and (start != end or np.ptp(line, axis=0).max() > 2 * _JOINED * extent or len(line) > 3):
             kept.append(index)
         seen.add(key)

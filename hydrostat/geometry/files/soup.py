@@ -9,9 +9,9 @@ import numpy as np
 from hydrostat.arrays import Float, Int
 from hydrostat.errors import SurfaceError
 
-MOST_BYTES = 120_000_000  # a surface file larger than this, or that unpacks to more, is refused
-MOST_TEXT_BYTES = 60_000_000  # the same for what is read word by word, which takes longer: text, and the XML of 3MF
-MOST_TRIANGLES = 2_000_000  # a surface with more triangles is refused; of vertices it may have three times as many
+MAX_BYTES = 120_000_000  # a surface file larger than this, or that unpacks to more, is refused
+MAX_TEXT_BYTES = 60_000_000  # the same for what is read word by word, which takes longer: text, and the XML of 3MF
+MAX_TRIANGLES = 2_000_000  # a surface with more triangles is refused; of vertices it may have three times as many
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +24,7 @@ class Soup:
     notes: tuple[str, ...] = ()  # what was left out
 
 
-def check_count(name: str, what: str, count: int, *, room: float, most: int = MOST_TRIANGLES) -> None:
+def check_count(name: str, what: str, count: int, *, room: float, most: int = MAX_TRIANGLES) -> None:
     """Refuse a declared count before anything is made of that size.
 
     Raises SurfaceError, with the file's name and `what` is counted, where the count is negative, above `most`, or more
@@ -43,9 +43,9 @@ def check_count(name: str, what: str, count: int, *, room: float, most: int = MO
 
 def check_text(content: bytes, name: str) -> None:
     """Refuse text that would take long (SurfaceError: it has too many bytes)."""
-    if len(content) > MOST_TEXT_BYTES:
+    if len(content) > MAX_TEXT_BYTES:
         raise SurfaceError(
-            f"{name}: has {len(content) / 1e6:.0f} MB of text, at most {MOST_TEXT_BYTES / 1e6:.0f} MB are read: "
+            f"{name}: has {len(content) / 1e6:.0f} MB of text, at most {MAX_TEXT_BYTES / 1e6:.0f} MB are read: "
             "save it as binary STL or PLY, or simplify the surface"
         )
 

@@ -13,9 +13,9 @@ from hydrostat.geometry.files.soup import Soup, check_count
 from hydrostat.units import plural
 from hydrostat.version import install_command
 
-_MOST_SOLIDS = 60
+_MAX_SOLIDS = 60
 _PART = 0.1  # a second solid apart from the largest is a part of its own where it has this share of the volume
-_TOUCHING = 1e-3  # solids as near as this are one [mm]
+_CONTACT_TOLERANCE = 1e-3  # solids as near as this are one [mm]
 
 
 def read_step(content: bytes, name: str, part: int | None = None) -> Soup:
@@ -38,8 +38,8 @@ def read_step(content: bytes, name: str, part: int | None = None) -> Soup:
     solids = _solids(_shape(content, name))
     if not solids:
         raise SurfaceError(f"{name}: holds no solid: export a closed body, not a sketch or a sheet")
-    if len(solids) > _MOST_SOLIDS:
-        raise SurfaceError(f"{name}: has {len(solids)} solids, at most {_MOST_SOLIDS} are read: export one part")
+    if len(solids) > _MAX_SOLIDS:
+        raise SurfaceError(f"{name}: has {len(solids)} solids, at most {_MAX_SOLIDS} are read: export one part")
     bodies = sorted(_unite(solids), key=_volume, reverse=True)
     large = sum(_volume(body) > _PART * _volume(bodies[0]) for body in bodies)
     if part is None and large > 1:
@@ -123,9 +123,9 @@ def _unite(solids: list[Any]) -> list[Any]:
             body = solids[member] if body is None else BRepAlgoAPI_Fuse(body, solids[member]).Shape()
             for other in list(left):
                 apart = np.maximum(boxes[member][0] - boxes[other][1], boxes[other][0] - boxes[member][1]).max()
-                if apart > _TOUCHING:
+                if apart > _CONTACT_TOLERANCE:
                     continue
-                if BRepExtrema_DistShapeShape(solids[member], solids[other]).Value() < _TOUCHING:
+                if BRepExtrema_DistShapeShape(solids[member], solids[other]).Value() < _CONTACT_TOLERANCE:
                     group.append(other)
                     left.remove(other)
         bodies.append(body)

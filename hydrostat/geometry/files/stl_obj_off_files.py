@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from hydrostat.errors import SurfaceError
-from hydrostat.geometry.files.soup import MOST_TRIANGLES, Soup, check_count, fans, text_lines
+from hydrostat.geometry.files.soup import MAX_TRIANGLES, Soup, check_count, fans, text_lines
 from hydrostat.units import plural
 
 _HEADER = 84
@@ -124,8 +124,8 @@ def read_obj(content: bytes, name: str) -> Soup:
                 corners.extend(_index(word, len(places) // 3) for word in words[1:])
         except (ValueError, IndexError):
             raise SurfaceError(f"{name}: line {number} is no {_KINDS[words[0]]}: export the file again") from None
-        if len(places) > 9 * MOST_TRIANGLES or len(corners) > 3 * MOST_TRIANGLES:
-            check_count(name, "vertices or corners", 1 + 3 * MOST_TRIANGLES, room=np.inf, most=3 * MOST_TRIANGLES)
+        if len(places) > 9 * MAX_TRIANGLES or len(corners) > 3 * MAX_TRIANGLES:
+            check_count(name, "vertices or corners", 1 + 3 * MAX_TRIANGLES, room=np.inf, most=3 * MAX_TRIANGLES)
     vertices = np.array(places).reshape(-1, 3)
     return Soup(vertices, fans(np.array(corners, dtype=np.int64), np.array(counts, dtype=np.int64), vertices))
 
@@ -155,7 +155,7 @@ def read_off(content: bytes, name: str) -> Soup:
         raise SurfaceError(f"{name}: does not begin like an OFF file of text: export the surface again, such as to STL")
     rows = ((number, words) for number, line in text_lines(content[head.end() :], name) if (words := _words(line)))
     vertex_count, face_count = _counts(rows, name)
-    check_count(name, "vertices", vertex_count, room=len(content) / 6, most=3 * MOST_TRIANGLES)
+    check_count(name, "vertices", vertex_count, room=len(content) / 6, most=3 * MAX_TRIANGLES)
     check_count(name, "faces", face_count, room=len(content) / 8)
     places, corners, counts = array("d"), array("q"), array("q")
     for _ in range(vertex_count):

@@ -10,7 +10,7 @@ import numpy as np
 
 from hydrostat.errors import GIVE_SIZE, SurfaceError
 from hydrostat.geometry.files.ply_file import read_ply, write_ply
-from hydrostat.geometry.files.soup import MOST_BYTES, Soup, check_count
+from hydrostat.geometry.files.soup import MAX_BYTES, Soup, check_count
 from hydrostat.geometry.files.step_file import read_step
 from hydrostat.geometry.files.stl_obj_off_files import (
     OFF_HEAD,
@@ -57,9 +57,9 @@ def read_surface(
             raise SurfaceError(f"{name}: the {key} to read it with is {length!r} m, but has to be above 0")
     if not content.strip():
         raise SurfaceError(f"{name}: the file is empty: export the surface again")
-    if len(content) > MOST_BYTES:
+    if len(content) > MAX_BYTES:
         raise SurfaceError(
-            f"{name}: the file has {len(content) / 1e6:.0f} MB, at most {MOST_BYTES / 1e6:.0f} MB are read: "
+            f"{name}: the file has {len(content) / 1e6:.0f} MB, at most {MAX_BYTES / 1e6:.0f} MB are read: "
             "save it as binary STL or PLY, or simplify the surface"
         )
     if suffix in STEP_SUFFIXES:

@@ -16,7 +16,7 @@ from hydrostat.geometry.files.drawn_line import DrawnLine, Fill, PageFacts
 from hydrostat.geometry.files.drawn_shapes import sorted_shapes
 from hydrostat.geometry.files.rings import (
     CHORD_ERROR,
-    MOST_POINTS,
+    MAX_POINTS,
     Drawing,
     Page,
     one_line,
@@ -167,8 +167,8 @@ def _check_points(root: ElementTree.Element, name: str) -> None:
         drawn = element.get("d", "") + element.get("points", "")
         numbers, letters = (sum(1 for _ in kind.finditer(drawn)) for kind in (_NUMBER, _COMMAND))
         points += 1 + max(numbers // 2, letters)
-        if points > MOST_POINTS:
-            raise OutlineError(f"{name}: more than {MOST_POINTS} points: simplify the drawing, save the outline alone")
+        if points > MAX_POINTS:
+            raise OutlineError(f"{name}: more than {MAX_POINTS} points: simplify the drawing, save the outline alone")
         stack.extend((child, users) for child in element)
         if _tag(element) == "use":
             link = next((text for key, text in element.attrib.items() if key.rpartition("}")[2] == "href"), "")
@@ -392,4 +392,4 @@ def _chords(segment: Any, tolerance: float) -> int:
     else:
         knots = [complex(point) for point in (segment.start, segment.control1, segment.control2, segment.end)]
         bend = 6.0 * max(abs(a - 2 * b + c) for a, b, c in zip(knots, knots[1:], knots[2:], strict=False))
-    return int(min(max(np.ceil(np.sqrt(bend / (8.0 * tolerance))), 1), MOST_POINTS))
+    return int(min(max(np.ceil(np.sqrt(bend / (8.0 * tolerance))), 1), MAX_POINTS))

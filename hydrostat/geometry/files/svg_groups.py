@@ -20,7 +20,7 @@ _URL = re.compile(r"url\(\s*['\"]?#([^'\")]+)['\"]?\s*\)")
 _STYLE = re.compile(r"(?:^|;)\s*(clip-path|mask)\s*:\s*([^;]+)")
 _WINDOWS = ("clipPath", "mask")
 _BLACK = re.compile(r"(?:^|[;:\s])(black|#000|#000000)\s*(?:;|$)", re.IGNORECASE)
-_MOST_STYLE = 100_000  # letters of a style sheet that are searched for clip paths
+_MAX_STYLE = 100_000  # letters of a style sheet that are searched for clip paths
 
 
 def _tag(element: ElementTree.Element) -> str:
@@ -144,7 +144,7 @@ def _clips_of_names(root: ElementTree.Element) -> dict[str, str]:
     """Clip paths that style sheets give, by class (.name) and id (#name)."""
     found: dict[str, str] = {}
     for sheet in (each.text or "" for each in root.iter() if _tag(each) == "style"):
-        for rule in sheet[:_MOST_STYLE].split("}"):
+        for rule in sheet[:_MAX_STYLE].split("}"):
             chosen, _, body = rule.partition("{")
             for _, said in _STYLE.findall(body):
                 found |= {name.strip(): said for name in chosen.split(",")}

@@ -11,10 +11,10 @@ from zipfile import ZIP_DEFLATED, ZIP_STORED, BadZipFile, ZipFile
 import numpy as np
 
 from hydrostat.errors import SurfaceError
-from hydrostat.geometry.files.soup import MOST_TEXT_BYTES, MOST_TRIANGLES, Soup, check_count
+from hydrostat.geometry.files.soup import MAX_TEXT_BYTES, MAX_TRIANGLES, Soup, check_count
 from hydrostat.units import plural
 
-_MOST_DEPTH = 50
+_MAX_DEPTH = 50
 _METERS = {
     "micron": 1e-6, "millimeter": 1e-3, "centimeter": 1e-2, "meter": 1.0, "inch": 0.0254, "foot": 0.3048,
 }  # fmt: skip
@@ -69,7 +69,7 @@ def _read_archive(archive: ZipFile, name: str) -> _Model:
     """Root model of an archive, and the parts that it names."""
     model = _Model()
     root = _root(archive, name)
-    waiting, done, left = [root], set(), MOST_TEXT_BYTES
+    waiting, done, left = [root], set(), MAX_TEXT_BYTES
     while waiting:
         part = waiting.pop()
         done.add(part)
@@ -112,7 +112,7 @@ def _member(archive: ZipFile, part: str, name: str, most: int) -> bytes:
         if len(text) <= most:
             return text
     raise SurfaceError(
-        f"{name}: unpacks to more than {MOST_TEXT_BYTES / 1e6:.0f} MB: simplify the surface, such as to 100000 "
+        f"{name}: unpacks to more than {MAX_TEXT_BYTES / 1e6:.0f} MB: simplify the surface, such as to 100000 "
         "triangles, or save it as binary STL"
     )
 
@@ -124,8 +124,8 @@ def _parse(text: bytes, start: "expat._StartElement", name: str) -> None:  # pyr
     def begin(tag: str, attributes: dict[str, str]) -> None:
         nonlocal depth
         depth += 1
-        if depth > _MOST_DEPTH:
-            raise SurfaceError(f"{name}: XML nested deeper than {_MOST_DEPTH}: export it again")
+        if depth > _MAX_DEPTH:
+            raise SurfaceError(f"{name}: XML nested deeper than {_MAX_DEPTH}: export it again")
         start(tag, attributes)
 
     def end(_tag: str) -> None:
@@ -168,8 +168,8 @@ def _read_xml(text: bytes, part: str, model: _Model, *, root: bool, name: str) -
                     model.unit = attributes.get("unit", "millimeter")
         except (KeyError, ValueError, OverflowError):
             raise SurfaceError(f"{name}: a {tag.rpartition('}')[2]} in {part[:60]} is wrong: export it again") from None
-        if len(now.corners) > 3 * MOST_TRIANGLES or len(now.places) > 9 * MOST_TRIANGLES:
-            check_count(name, "triangles or vertices", 1 + MOST_TRIANGLES, room=np.inf)
+        if len(now.corners) > 3 * MAX_TRIANGLES or len(now.places) > 9 * MAX_TRIANGLES:
+            check_count(name, "triangles or vertices", 1 + MAX_TRIANGLES, room=np.inf)
 
     _parse(text, start, name)
 
@@ -203,7 +203,7 @@ def _read_objects(model: _Model, name: str) -> Soup:
             raise SurfaceError(f"{name}: a triangle names a vertex that its object does not have: export it again")
         triangle_count += len(corners)
         check_count(name, "triangles", triangle_count, room=np.inf)
-        check_count(name, "vertices", vertex_count + len(points), room=np.inf, most=3 * MOST_TRIANGLES)
+        check_count(name, "vertices", vertex_count + len(points), room=np.inf, most=3 * MAX_TRIANGLES)
         turn = np.linalg.det(transform[:3, :3]) < 0.0
         with np.errstate(all="ignore"):
             places.append(points @ transform[:3, :3] + transform[3, :3])
@@ -224,7 +224,7 @@ def _meshes(model: _Model, name: str) -> Iterator[tuple[_Object, np.ndarray]]:
         placed += 1
         if key not in model.objects:
             raise SurfaceError(f"{name}: builds object {key[1][:20]}, which it does not hold: export it again")
-        if depth > _MOST_DEPTH or placed > most_placed:
+        if depth > _MAX_DEPTH or placed > most_placed:
             raise SurfaceError(f"{name}: its objects hold themselves, or too many others: export it again as STL")
         found = model.objects[key]
         if found.corners:

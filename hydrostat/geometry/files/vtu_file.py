@@ -13,7 +13,7 @@ import numpy as np
 from hydrostat.arrays import Nodes, Points
 from hydrostat.errors import InputError
 from hydrostat.geometry.files.cursor import Cells, Cursor, make_damage_error, whole_numbers
-from hydrostat.geometry.files.soup import MOST_BYTES
+from hydrostat.geometry.files.soup import MAX_BYTES
 from hydrostat.geometry.files.vtk_file import TETRAHEDRON, TRIANGLE, cells_of
 from hydrostat.geometry.mesh import Mesh
 
@@ -142,7 +142,7 @@ class _Reader:
 
     def __init__(self, attributes: dict[str, str], appended: bytes, encoding: str, name: str) -> None:
         self.name, self.appended, self.encoding = name, appended, encoding
-        self.budget = MOST_BYTES // 8  # numbers, of all arrays together: each becomes eight bytes
+        self.budget = MAX_BYTES // 8  # numbers, of all arrays together: each becomes eight bytes
         self.order = ">" if attributes.get("byte_order") == "BigEndian" else "<"
         self.head = np.dtype(self.order + ("u8" if attributes.get("header_type") == "UInt64" else "u4"))
         self.packed = "compressor" in attributes
@@ -168,7 +168,7 @@ class _Reader:
             raise make_damage_error(self.name, "has an array that cannot be unpacked") from None
         self.budget -= len(found)
         if self.budget < 0:
-            raise InputError(f"{self.name}: unpacks to more than {MOST_BYTES / 1e6:.0f} MB: save a coarser mesh")
+            raise InputError(f"{self.name}: unpacks to more than {MAX_BYTES / 1e6:.0f} MB: save a coarser mesh")
         return found
 
     def _text(self, data: _Array, kind: str) -> np.ndarray:
@@ -190,8 +190,8 @@ class _Reader:
         whole, last, packed = heads[1], heads[2], heads[3:]
         if last > whole:
             raise ValueError
-        if blocks * whole > MOST_BYTES:
-            raise InputError(f"{self.name}: unpacks to more than {MOST_BYTES / 1e6:.0f} MB: save a coarser mesh")
+        if blocks * whole > MAX_BYTES:
+            raise InputError(f"{self.name}: unpacks to more than {MAX_BYTES / 1e6:.0f} MB: save a coarser mesh")
         # the head is encoded on its own, so the rest begins again
         start = size * (3 + blocks)
         rest = source[start if encoding == "raw" else 4 * -(-start // 3) :]

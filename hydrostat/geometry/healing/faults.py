@@ -13,7 +13,7 @@ from hydrostat.geometry.surface import Surface
 from hydrostat.units import plural
 
 _BOXES = 4096  # and no more triangles, for the next may cross many more others
-MOST_PAIRS = 100_000  # where so many pairs cross, no more are looked for
+MAX_PAIRS = 100_000  # where so many pairs cross, no more are looked for
 
 # a turn that no CAD model is aligned with: its walls are not seen from the side, where many boxes overlap
 _TURN = np.linalg.qr(np.array([[0.61, 0.33, -0.72], [-0.47, 0.88, 0.05], [0.64, 0.31, 0.70]]))[0]
@@ -50,7 +50,7 @@ def crossing_pairs(surface: Surface) -> Int[np.ndarray, "pairs 2"]:
             two = _roll_triangles(second[some], same[some].any(axis=1), count)
             cross[some] = test(surface.vertices[one], surface.vertices[two], near * surface.size)
         found.append(pairs[cross])
-        if sum(map(len, found)) >= MOST_PAIRS:
+        if sum(map(len, found)) >= MAX_PAIRS:
             break
     return np.concatenate(found)
 
@@ -176,7 +176,7 @@ def describe_faults(
     crowded, turned = int(sides.is_non_manifold.sum()), int(sides.is_misoriented.sum())
     longest = 1e3 * holes.length.max(initial=0.0)
     roles = shells.roles
-    most = "at least " if len(crossing) >= MOST_PAIRS else ""
+    most = "at least " if len(crossing) >= MAX_PAIRS else ""
     lines = (
         (welded.merged, plural(welded.merged, "corner") + " in the place of another"),
         (welded.flat, plural(welded.flat, "triangle") + " without an area"),

@@ -4,10 +4,10 @@ import numpy as np
 
 from hydrostat.arrays import Bool, Int
 from hydrostat.errors import SurfaceError
-from hydrostat.geometry.healing.faults import MOST_PAIRS, crossing_pairs, describe_faults, pieces_of, sliver_count
+from hydrostat.geometry.healing.faults import MAX_PAIRS, crossing_pairs, describe_faults, pieces_of, sliver_count
 from hydrostat.geometry.healing.healing import Healing, Piece
 from hydrostat.geometry.healing.mend import (
-    NEAR,
+    MERGE_TOLERANCE,
     Holes,
     Welded,
     holes_of,
@@ -22,7 +22,7 @@ from hydrostat.geometry.healing.shells import Role, Shells, shells_of
 from hydrostat.geometry.surface import Surface
 from hydrostat.units import plural
 
-_MOST_PARTS = 20_000
+_MAX_PARTS = 20_000
 
 
 def heal(surface: Surface, *, resolution: float) -> Healing:
@@ -67,16 +67,16 @@ def heal(surface: Surface, *, resolution: float) -> Healing:
 
 def _check_loose(surface: Surface) -> None:
     """Refuse a soup before its vertices are joined: a part of some triangles has at most two vertices more."""
-    cells = np.floor((surface.vertices - surface.box[0]) / (4 * NEAR * surface.size)).astype(np.int64)
+    cells = np.floor((surface.vertices - surface.box[0]) / (4 * MERGE_TOLERANCE * surface.size)).astype(np.int64)
     places = len(np.unique(cells @ np.array([1 << 36, 1 << 18, 1])))
     parts = (places - len(surface.triangles)) // 2
-    if parts > 3 * _MOST_PARTS:  # some that are near are counted twice, as a cell ends between them
+    if parts > 3 * _MAX_PARTS:  # some that are near are counted twice, as a cell ends between them
         raise _loose(parts)
 
 
 def _loose(parts: int) -> SurfaceError:
     return SurfaceError(
-        f"the surface falls into {parts} loose parts, at most {_MOST_PARTS} are read: this is no surface of a body; in "
+        f"the surface falls into {parts} loose parts, at most {_MAX_PARTS} are read: this is no surface of a body; in "
         "the program it comes from, join its vertices, and export it again"
     )
 
@@ -92,7 +92,7 @@ def _check_parts(surface: Surface) -> None:
             "file is damaged; export it again"
         )
     parts = int(sides.groups(sides.counts > 1).max(initial=0)) + 1
-    if parts > _MOST_PARTS:
+    if parts > _MAX_PARTS:
         raise _loose(parts)
 
 
@@ -100,7 +100,7 @@ def _check_tangle(crossing: Int[np.ndarray, "pairs 2"]) -> None:
     """Reject input that is no surface: most of the triangles that cross any cross many others."""
     counts = np.bincount(crossing.ravel())
     usual = float(np.median(counts[counts > 0])) if len(crossing) else 0.0
-    if len(crossing) >= MOST_PAIRS:  # of the first triangles only, as no more were looked for
+    if len(crossing) >= MAX_PAIRS:  # of the first triangles only, as no more were looked for
         usual = max(usual, len(crossing) / (1 + int(crossing[:, 0].max())))
     most_crossed = 20
     if usual > most_crossed:

@@ -66,7 +66,7 @@ def sides_of(triangles: Int[np.ndarray, "triangles 3"]) -> Sides:
     return Sides(triangles, pairs[first], place.reshape(-1, 3).astype(np.int64))
 
 
-NEAR = 1e-6  # vertices nearer to each other than this part of the surface's size are one
+MERGE_TOLERANCE = 1e-6  # vertices nearer to each other than this part of the surface's size are one
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +104,7 @@ def weld(surface: Surface) -> Welded:
 def _first_in_place(surface: Surface, used: Int[np.ndarray, " used"]) -> Int[np.ndarray, " vertices"]:
     """Find for each vertex the first of those in its place."""
     places = surface.vertices[used] - surface.box[0]
-    cell = 4 * NEAR * surface.size
+    cell = 4 * MERGE_TOLERANCE * surface.size
     joins = [
         _same_cell(places / cell + shift) for shift in (0.0, 0.5)
     ]  # not pairs: where all is in one place, too many

@@ -6,7 +6,7 @@ import numpy as np
 
 from hydrostat.arrays import Bool, Float, Int, Points, Vector
 from hydrostat.errors import SurfaceError
-from hydrostat.geometry.contour import MOST_GRID_POINTS, contour
+from hydrostat.geometry.contour import MAX_GRID_POINTS, contour
 from hydrostat.geometry.healing.faults import Piece
 from hydrostat.geometry.healing.mend import members_of, sides_of
 from hydrostat.geometry.surface import Solid, Surface, spread_points
@@ -80,7 +80,7 @@ def _allowed_spacing(surface: Surface, resolution: float) -> float:
     """Resolution, or the smallest larger spacing whose grid does not have too many points."""
     extent = np.ptp(surface.box, axis=0)
     spacing = resolution
-    while (np.ceil(extent / spacing) + 8.0).prod() > MOST_GRID_POINTS:
+    while (np.ceil(extent / spacing) + 8.0).prod() > MAX_GRID_POINTS:
         spacing *= 1.05
     return float(spacing)
 

@@ -9,7 +9,7 @@ from hydrostat.arrays import Bool, Float, Int, Vector
 from hydrostat.geometry.healing.mend import Sides, sides_of
 from hydrostat.geometry.surface import Surface
 
-SMALL = 0.1  # a part whose box has a diagonal below this share of the body's is small
+SMALL_PART_SHARE = 0.1  # a part whose box has a diagonal below this share of the body's is small
 
 
 class Role(Enum):
@@ -164,7 +164,7 @@ def _find_specks(
 
     diagonal = np.linalg.norm(boxes[:, 1] - boxes[:, 0], axis=1)
     body = np.array([role is Role.BODY for role in roles])
-    small = body & ~meets & (diagonal < SMALL * diagonal[largest])
+    small = body & ~meets & (diagonal < SMALL_PART_SHARE * diagonal[largest])
     rest = surface.triangles[~small[label]]
     numbers = np.flatnonzero(small[label])
     if not len(numbers):

@@ -95,7 +95,7 @@ def _planes(
     return normals.reshape(len(facets), -1, 3), offsets.reshape(len(facets), -1)
 
 
-CLOSE = 0.25  # the boundary of a mesh should be as near to the surface, in element sizes
+BOUNDARY_TOLERANCE = 0.25  # the boundary of a mesh should be as near to the surface, in element sizes
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,7 +144,7 @@ _ENOUGH = ((2.5, _CLOSE_ENOUGH), (2.0, 0.35))
 _ALMOST, _GAIN = 0.3, 0.9
 """Distance [element sizes] that is kept where a round of finer elements leaves more than this share of it."""
 
-_FEWEST, _MOST, _MOST_CELLS = 20, 400_000, 2_000_000
+_MIN_NODES, _MAX_NODES, _MAX_CELLS = 20, 400_000, 2_000_000
 """Elements, and cells of the lattice over the bounding box: what fits into memory."""
 
 
@@ -239,7 +239,7 @@ def _stuff_lattice(
         return _Filling(mesh, whole, lost, np.concatenate([breaks, gaps]))
     mesh = improve(mesh, solid, element_size=element_size, stages=_STAGES)
     found = fit(mesh, solid, element_size / 3)
-    far = found.places[found.distances > CLOSE * element_size]
+    far = found.places[found.distances > BOUNDARY_TOLERANCE * element_size]
     places = np.concatenate([far, gaps, *([breaks] if len(far) else [])])
     is_alike = euler(mesh.boundary) == euler(solid.surface.triangles)
     return _Filling(mesh, whole, lost, places, found.largest / element_size, is_alike)
@@ -268,14 +268,16 @@ def _check_element_size(surface: Surface, element_size: float) -> None:
         raise InputError(f"the element size must be positive, not {element_size} m")
     count = 8.5 * surface.volume / element_size**3
     size = f"elements of {1e3 * element_size:.4g} mm"
-    if count < _FEWEST:
-        most = 1e3 * min(0.9 * element_size * (count / _FEWEST) ** (1 / 3), 2 * surface.volume / surface.area)
+    if count < _MIN_NODES:
+        most = 1e3 * min(0.9 * element_size * (count / _MIN_NODES) ** (1 / 3), 2 * surface.volume / surface.area)
         body = f"a body of {1e6 * surface.volume:.3g} cm^3"
         raise InputError(f"{size} are too large for {body}: take {most:.2g} mm or less")
     cells = float(np.prod(np.ptp(surface.box, axis=0) / element_size + 3))
-    if count > _MOST or cells > _MOST_CELLS:
-        least = 1.1e3 * element_size * max(count / _MOST, cells / _MOST_CELLS) ** (1 / 3)
-        raise InputError(f"{size} would be about {count:.2g}, at most {_MOST} are made: take {least:.2g} mm or more")
+    if count > _MAX_NODES or cells > _MAX_CELLS:
+        least = 1.1e3 * element_size * max(count / _MAX_NODES, cells / _MAX_CELLS) ** (1 / 3)
+        raise InputError(
+            f"{size} would be about {count:.2g}, at most {_MAX_NODES} are made: take {least:.2g} mm or more"
+        )
 
 
 def _trim_elements(solid: Solid, nodes: Nodes, elements: Elements, cell: float) -> tuple[Places, Tetrahedra]:

@@ -12,7 +12,7 @@ from hydrostat.geometry.triangles.divide import Spacing, divide
 from hydrostat.geometry.triangles.draft import Draft
 from hydrostat.geometry.triangles.relax import push_apart, repair, smooth
 
-_FEWEST, _MOST = 8, 200_000
+_MIN_NODES, _MAX_NODES = 8, 200_000
 
 
 def triangulate(outline: Outline, element_size: float) -> Mesh:
@@ -46,13 +46,13 @@ def _check_element_size(outline: Outline, element_size: float) -> None:
         raise InputError(f"the element size must be positive, not {element_size} m")
     count = outline.area / (0.25 * np.sqrt(3.0) * element_size**2)
     size = f"elements of {1e3 * element_size:.4g} mm"
-    if count < _FEWEST:
-        most = 0.9e3 * element_size * np.sqrt(count / _FEWEST)
+    if count < _MIN_NODES:
+        most = 0.9e3 * element_size * np.sqrt(count / _MIN_NODES)
         body = f"a body of {1e3 * outline.size:.4g} mm"
         raise InputError(f"{size} are too large for {body}: take {most:.2g} mm or less")
-    if count > _MOST:
-        least = 1.1e3 * element_size * np.sqrt(count / _MOST)
-        raise InputError(f"{size} would be {count:.3g}, at most {_MOST} are made: take {least:.2g} mm or more")
+    if count > _MAX_NODES:
+        least = 1.1e3 * element_size * np.sqrt(count / _MAX_NODES)
+        raise InputError(f"{size} would be {count:.3g}, at most {_MAX_NODES} are made: take {least:.2g} mm or more")
 
 
 def _with_all_sides(draft: Draft) -> Draft:

@@ -60,9 +60,11 @@ class ShapeTarget(Objective):
         mesh = simulation.robot.body.mesh
         weight = not_negative("weight of a shape", self.weight)
         most = 1_000_000
-        if self.samples is not None and not (isinstance(self.samples, Integral) and _FEWEST <= self.samples <= most):
+        if self.samples is not None and not (
+            isinstance(self.samples, Integral) and _MIN_POINTS <= self.samples <= most
+        ):
             raise InputError(
-                f"samples of a shape must be a whole number from {_FEWEST} to {most}, not {describe(self.samples)}"
+                f"samples of a shape must be a whole number from {_MIN_POINTS} to {most}, not {describe(self.samples)}"
             )
         name, shell = self._shell(mesh)
         _check(name, shell, mesh)
@@ -94,7 +96,7 @@ class ShapeTarget(Objective):
         return "surface", Shell(self.surface.vertices, self.surface.triangles)
 
 
-_FEWEST = 3
+_MIN_POINTS = 3
 
 
 class _Shape(Residual):
@@ -148,7 +150,7 @@ def _along(outline: Outline, count: int) -> Points:
     pieces = [
         curve.at((np.arange(number) + 0.5) * curve.length / number)
         for curve in curves
-        for number in [max(round(count * curve.length / length), _FEWEST)]
+        for number in [max(round(count * curve.length / length), _MIN_POINTS)]
     ]
     return np.concatenate(pieces)
 

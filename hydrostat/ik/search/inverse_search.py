@@ -142,7 +142,7 @@ class InverseSearch:
             return near and self.problem.idle(near)
         contractions = self.problem.bounds.spread @ values
         result = state.result
-        far = (np.abs(values - state.values) > _FAR * self.problem.bounds.span).any()
+        far = (np.abs(values - state.values) > _LARGE_STEP * self.problem.bounds.span).any()
         relaxations = 6  # steps of Newton towards an equilibrium before stronger means are used
         loose = 0.1  # force left over after these, as a share of the largest tension
         for _ in range(relaxations):
@@ -179,7 +179,9 @@ class InverseSearch:
             whole = self._follow_path(state.values)
             if whole is not None:
                 apart = np.abs(whole.result.nodes - state.result.nodes).max()
-                self._turns = self._turns or bool(apart > _APART * self.problem.simulation.robot.body.mesh.size)
+                self._turns = self._turns or bool(
+                    apart > _SAME_POSE_TOLERANCE * self.problem.simulation.robot.body.mesh.size
+                )
             return whole
         contractions = self.problem.bounds.spread @ state.values
         result = self.problem.simulation.solver.relax(
@@ -223,8 +225,8 @@ class InverseSearch:
 
 
 _ITERATIONS = 30  # steps of Newton before an equilibrium is given up
-_FAR = 0.02  # a step of more than this share of a channel's range is far: it takes more than one step of Newton
-_APART = 1e-8  # ways that end within this share of the body's size end in the same pose
+_LARGE_STEP = 0.02  # a step of more than this share of a channel's range is far: it takes more than one step of Newton
+_SAME_POSE_TOLERANCE = 1e-8  # ways that end within this share of the body's size end in the same pose
 _LEFT = 0.2  # an equilibrium is near enough when what is left is this share of the last step of Newton
 _HARDLY = 1e-3  # a channel whose tautest cable pulls less than this share of the largest tension may as well be slack
 
@@ -334,7 +336,7 @@ def limits_that_hold(search: InverseSearch, found: Descent) -> tuple[str, ...]:
     """Limits that hold, in words: winches at their ends, cables at their largest tension."""
     state, bounds, robot = found.state, search.problem.bounds, search.problem.simulation.robot
     words = []
-    hair = _HAIR * bounds.span
+    hair = _LIMIT_TOLERANCE * bounds.span
     for channel, value in enumerate(state.values):
         if bounds.driven[channel]:
             words += drive_at_end(robot.drives[channel - len(bounds.driven)], value, hair[channel])
@@ -345,7 +347,7 @@ def limits_that_hold(search: InverseSearch, found: Descent) -> tuple[str, ...]:
             words.append(f"{name}: at maximum contraction, {1e3 * value:.4g} mm")
         elif value <= bounds.low[channel] + hair[channel] and state.posture.tensions[bounds.cables == channel].any():
             words.append(f"{name}: at maximum payout, {abs(round(1e3 * value, 3)):g} mm")
-    full = state.posture.tensions >= (1.0 - _HAIR) * bounds.tension
+    full = state.posture.tensions >= (1.0 - _LIMIT_TOLERANCE) * bounds.tension
     pulling = {robot.cables[cable].winch: bounds.tension[cable] for cable in np.flatnonzero(full)}
     words.extend(f"{name}: at maximum tension, {most:.4g} N" for name, most in pulling.items())
     first = len(bounds.most) - len(bounds.motors)
@@ -353,7 +355,7 @@ def limits_that_hold(search: InverseSearch, found: Descent) -> tuple[str, ...]:
     words.extend(
         f"{name}: at maximum torque, {1e3 * most:.4g} N mm"
         for name, torque, most in zip(bounds.motors, torques, bounds.most[first:], strict=True)
-        if torque >= (1.0 - _HAIR) * most
+        if torque >= (1.0 - _LIMIT_TOLERANCE) * most
     )
     return tuple(words)
 
@@ -365,4 +367,4 @@ def drive_at_end(drive: PinDrive | LoadDrive, value: float, hair: float) -> list
     return [f"{drive.name}: at {name}, {drive.format_value(value)}" for name, holds in ends.items() if holds]
 
 
-_HAIR = 1e-6  # a limit holds within this share of it
+_LIMIT_TOLERANCE = 1e-6  # a limit holds within this share of it

@@ -7,7 +7,7 @@ import numpy as np
 
 from hydrostat.arrays import Points
 from hydrostat.geometry import (
-    CLOSE,
+    BOUNDARY_TOLERANCE,
     HOLE_SHARE,
     BoundaryTree,
     Mesh,
@@ -39,7 +39,7 @@ MIN_ELEMENTS_ACROSS = {2: 2.0, 3: 3.0}
 FEW_ELEMENTS = " elements across ("
 """Words of the sentence on a limb of few elements alone, whatever its elements are."""
 
-LEAST_QUADRATIC = 0.8
+MIN_QUADRATIC = 0.8
 """A limb with fewer quadratic elements across may bend 10 % too little or too much (docs/decisions/0044)."""
 
 GOOD_ACROSS = 4
@@ -116,7 +116,7 @@ def _unlike(body: Body) -> Iterator[str]:
     surface = fill_small_holes(body.healing.surface, HOLE_SHARE * body.element_size).surface
     found = fit(body.mesh, Solid(surface), body.element_size / 3)
     worst = int(np.argmax(found.distances))
-    if found.largest > CLOSE * body.element_size:
+    if found.largest > BOUNDARY_TOLERANCE * body.element_size:
         yield (
             f"body: near {place(found.places[worst])} the mesh is {mm(found.largest)} off the surface, which is "
             f"sharper or thinner there than its elements (volume {100 * (found.volume - 1):+.1f} %); a smaller "
@@ -154,7 +154,7 @@ def _thin(body: Body) -> Iterator[str]:
             spacing=thickness.spacing[bends],
             areas=thickness.areas[bends],
         )
-    parts = thickness.thin_parts(2 * LEAST_QUADRATIC if quadratic else MIN_ELEMENTS_ACROSS[dim])
+    parts = thickness.thin_parts(2 * MIN_QUADRATIC if quadratic else MIN_ELEMENTS_ACROSS[dim])
     if not parts:
         return
     thinnest = parts[0]

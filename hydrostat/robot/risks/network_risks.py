@@ -94,10 +94,10 @@ def _sticking_out(robot: Robot) -> Iterator[Risk]:
             yield Risk(_name(robot, index), radius - depth, text)
 
 
-LEAST_COVER = 0.003  # a cable nearer to the edge or the surface than this [m] tears out
+MIN_COVER = 0.003  # a cable nearer to the edge or the surface than this [m] tears out
 SEWN_DEPTH = 0.004  # a point of a cable at most so deep in a body of foam [m] is sewn to its skin
-_STEP = 0.5 * LEAST_COVER  # distance of the places at which a cable is looked at [m]
-_MOST_STEPS = 400  # places on one segment
+_STEP = 0.5 * MIN_COVER  # distance of the places at which a cable is looked at [m]
+_MAX_STEPS = 400  # places on one segment
 
 
 def cable_risks(robot: Robot) -> Iterator[str]:
@@ -115,10 +115,10 @@ def _points_in_body(robot: Robot, cable: Cable) -> Points:
 
 
 def _sample_line(points: Points) -> Float[np.ndarray, "places dim"]:
-    """Points and places between them, at most `_STEP` apart, with `_MOST_STEPS` on a segment at most."""
+    """Points and places between them, at most `_STEP` apart, with `_MAX_STEPS` on a segment at most."""
     places = [points[:1]]
     for start, end in pairwise(points):
-        steps = min(int(np.ceil(np.linalg.norm(end - start) / _STEP)), _MOST_STEPS)
+        steps = min(int(np.ceil(np.linalg.norm(end - start) / _STEP)), _MAX_STEPS)
         places.append(start + np.linspace(0, 1, max(steps, 1) + 1)[1:, None] * (end - start))
     return np.concatenate(places)
 
@@ -156,7 +156,7 @@ def _leaving(robot: Robot) -> Iterator[Risk]:
 
 
 def _spans_rigid_parts(body: Body, points: Points) -> Bool[np.ndarray, " segments"]:
-    """True for segments from rigid part to rigid part, such as the disks of a spine: the line runs free between them."""
+    """True for segments from rigid part to rigid part, such as disks of a spine: the line runs free between them."""
     rigid = np.array([False, *(part.is_rigid for part in body.parts)])[body.element_materials]
     if not rigid.any():
         return np.zeros(len(points) - 1, dtype=bool)
@@ -174,11 +174,11 @@ def _near_the_surface(robot: Robot) -> Iterator[Risk]:
         inside = _points_in_body(robot, cable)
         places = inside if flat else _unsewn_places(robot.body, inside)
         if robot.winch(cable.winch).mount is Mount.WORLD:  # it has to come in somewhere
-            places = places[np.linalg.norm(places - inside[0], axis=1) > 2 * LEAST_COVER]
+            places = places[np.linalg.norm(places - inside[0], axis=1) > 2 * MIN_COVER]
         if not len(places):
             continue
         depths = cover(robot.body, places)
-        if depths.min() < LEAST_COVER:
+        if depths.min() < MIN_COVER:
             nearest = int(np.argmin(depths))
             edge = f"{'edge' if flat else 'surface'} at {place(places[nearest])}"
             text = f"only {mm(float(depths[nearest]))} inside the {edge}, it may tear out"

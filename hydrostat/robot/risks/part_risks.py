@@ -12,10 +12,10 @@ from hydrostat.robot.rod import sample_rod
 POINTS = 3000
 """Number of points at which a part is measured."""
 
-LEAST_OUTSIDE = 0.03
+MIN_OUTSIDE = 0.03
 """A part of which less than this share lies outside is drawn to the edge."""
 
-MOST_CHANGED = 0.2
+MAX_CHANGED = 0.2
 """Largest relative change of the volume of a part by its mesh."""
 
 
@@ -38,7 +38,7 @@ def _judge_parts(robot: Robot) -> Iterator[tuple[bool, Risk]]:
         own = grid[part.holds(grid)]
         gaps = body.distances(own)
         far, share = float(gaps.max()), float((gaps > 0).mean())
-        if part.is_rigid and share > LEAST_OUTSIDE and far > 0.1 * float(np.median(body.mesh.spacings)):
+        if part.is_rigid and share > MIN_OUTSIDE and far > 0.1 * float(np.median(body.mesh.spacings)):
             yield (
                 True,
                 Risk(
@@ -51,7 +51,7 @@ def _judge_parts(robot: Robot) -> Iterator[tuple[bool, Risk]]:
         drawn = float(np.prod(np.ptp(grid, axis=0))) * len(own) / len(grid) * (1 - share)
         meshed = float(body.mesh.volumes[body.element_materials == index + 1].sum())
         change = meshed / drawn - 1 if drawn else 0.0
-        if abs(change) > MOST_CHANGED:
+        if abs(change) > MAX_CHANGED:
             text = f"{100 * change:+.0f} % in volume in the mesh; take a smaller element_size"
             yield False, Risk(name, abs(change), text)
 

@@ -177,7 +177,7 @@ class _Follower:
         """End the branch at the share that lies between two places, 0 or 1."""
         share = 1.0 if beyond.share > 1.0 else 0.0
         part = (share - place.share) / (beyond.share - place.share)
-        if abs(place.tangent.rate) < _FLAT * abs(beyond.tangent.rate):
+        if abs(place.tangent.rate) < _FOLD_RATIO * abs(beyond.tangent.rate):
             part = np.sqrt(part)
         guess = place.nodes + part * (beyond.nodes - place.nodes)
         still = Tangent(np.zeros(guess.size), 1.0)
@@ -206,13 +206,13 @@ class _Follower:
             known[length] = known.get(length) or self._raw_step(place, length) or trial
             return known[length].tangent.rate
 
-        brentq(rate, 0.0, step, xtol=_SHARP * step, maxiter=60)
+        brentq(rate, 0.0, step, xtol=_CRITICAL_TOLERANCE * step, maxiter=60)
         return min(known.values(), key=lambda found: abs(found.tangent.rate))
 
     def _find_change(self, place: PathPoint, trial: PathPoint, step: float) -> PathPoint:
         """Return the point where the definiteness of the Hessian changes, by bisection."""
         low, high, there = 0.0, step, trial
-        while high - low > _SHARP * step:
+        while high - low > _CRITICAL_TOLERANCE * step:
             middle = 0.5 * (low + high)
             found = self._raw_step(place, middle)
             if found is None or found.stiffness.definite != place.stiffness.definite:
@@ -266,8 +266,8 @@ def _solve_at(simulation: Simulation, controls: Callable[[float], Vector], place
     )
 
 
-_FLAT = 0.1
+_FOLD_RATIO = 0.1
 """Ratio of the rates of the share at two points below which the first is a fold: the share is quadratic there."""
 
-_SHARP = 1e-7
+_CRITICAL_TOLERANCE = 1e-7
 """Critical points are found to this share of a step."""

@@ -46,7 +46,7 @@ def diagnose_failure(
     mesh = robot.body.mesh
     now, before = (np.linalg.det(x[mesh.elements][:, 1:] - x[mesh.elements][:, :1]) for x in (nodes, mesh.nodes))
     flat = int(np.argmin(now / before))
-    if now[flat] < _FLAT * before[flat]:
+    if now[flat] < _FLAT_VOLUME * before[flat]:
         place = mesh.nodes[mesh.elements[flat]].mean(axis=0)
         told.append(f"element {flat}, {_at(place)} at rest, compressed to {now[flat] / before[flat]:.2g} of its volume")
     if not told:
@@ -68,7 +68,7 @@ def _at(place: Vector) -> str:
     return f"at ({', '.join(f'{1e3 * value:.4g}' for value in place)}) mm"
 
 
-_FLAT = 0.2
+_FLAT_VOLUME = 0.2
 """An element that keeps less than this share of its volume is told."""
 
 
@@ -115,7 +115,7 @@ class StaticSolver:
         """
         options = replace(self.options, whole=whole)
         if rough:
-            options = replace(options, near=_ROUGH, known=True)
+            options = replace(options, near=_ROUGH_RESIDUAL, known=True)
         if iterations is not None:
             options = replace(options, iterations=min(iterations, options.iterations))
         if tolerance is not None:
@@ -234,7 +234,7 @@ class StaticSolver:
             controls = goal if last else begin + share * (goal - begin)
             solver = replace(self, assembly=self.assembly.with_load(share)) if with_load else self
             result = solver.relax(
-                nodes, controls, stiffness, iterations=iterations, tolerance=tolerance, whole=step > _SMALLEST_WHOLE
+                nodes, controls, stiffness, iterations=iterations, tolerance=tolerance, whole=step > _MIN_WHOLE_STEP
             )
             spent += result.iterations
             if result.converged and not last:
@@ -256,8 +256,8 @@ def _needs_fallback(result: NewtonResult) -> bool:
     return result.reason not in (NewtonStatus.CONVERGED, NewtonStatus.TIME_LIMIT)
 
 
-_ROUGH = 1e-2
+_ROUGH_RESIDUAL = 1e-2
 """Residual at which a Hessian serves as that of the result nearby, as a share of the largest applied force."""
 
-_SMALLEST_WHOLE = 0.05
+_MIN_WHOLE_STEP = 0.05
 """Larger load steps are taken whole or not at all; smaller ones may begin with a step of Newton that is cut short."""

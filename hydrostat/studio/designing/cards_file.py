@@ -14,7 +14,7 @@ from hydrostat.fabrication import Demand
 from hydrostat.robot import Body, Cable, CableSide, PoseTarget, Robot, Winch
 from hydrostat.studio.designing.design_work import Candidate, PoseResult
 
-LARGEST = 8_000_000  # more bytes than these are not kept: cards that would go beyond are left out, the last first
+MAX_BYTES = 8_000_000  # more bytes than these are not kept: cards that would go beyond are left out, the last first
 
 _PLAIN = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
 
@@ -66,7 +66,7 @@ class CardsFile(BaseModel):
 def cards_content(candidates: Sequence[Candidate]) -> bytes:
     """Candidates for one body, the best of the latest design first, as JSON; empty without any."""
     records: list[CardRecord] = []
-    left = LARGEST
+    left = MAX_BYTES
     for candidate in candidates:
         record = _record(candidate)
         left -= len(record.model_dump_json())

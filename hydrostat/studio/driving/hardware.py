@@ -29,7 +29,7 @@ from hydrostat.studio.view.scene_items import RobotShape
 SILENT = 1.5
 """Motors hold when no page has given a sign of life for so long [s]: it was closed, hidden, or its line is gone."""
 
-NEAR = 2e-3  # the guard judges tensions where motors are this close to what is shown [m]
+SHOWN_TOLERANCE = 2e-3  # the guard judges tensions where motors are this close to what is shown [m]
 
 Opener = Callable[[str, Robot, Calibration, Callable[[Vector], Vector]], Bus]
 
@@ -236,11 +236,11 @@ class Hardware:
 
     def _expected_tensions(self, contractions: Vector) -> Vector:
         """Tensions of the winches where motors are near what is shown [N]; NaN, not judged, where they are not."""
-        return np.where(np.abs(contractions - self._goal) < NEAR, self._pulls, np.nan)
+        return np.where(np.abs(contractions - self._goal) < SHOWN_TOLERANCE, self._pulls, np.nan)
 
     def _load(self, contractions: Vector) -> Vector:
         """Tensions that load emulated motors [N]: those of the shown pose, once the motors are there."""
-        return np.where(contractions > self._goal - NEAR, self._pulls, 0.0)
+        return np.where(contractions > self._goal - SHOWN_TOLERANCE, self._pulls, 0.0)
 
     def _say(self, words: str) -> None:
         self.words = words

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import isfinite
 
-from hydrostat.control import LONGEST, Key, Timeline
+from hydrostat.control import MAX_DURATION, Key, Timeline
 from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.studio.document import Document
@@ -92,8 +92,8 @@ class Keyframes:
         time = key.time + apart
         while self.timeline.index_at(time) is not None:
             time += apart
-        if time > LONGEST:
-            raise InputError(f"no free time for another keyframe before {LONGEST:g} s. Move or delete one")
+        if time > MAX_DURATION:
+            raise InputError(f"no free time for another keyframe before {MAX_DURATION:g} s. Move or delete one")
         self._document.change("duplicate keyframe", timeline=self.timeline.with_key(replace(key, time=time)))
         self._choose(time)
         return time

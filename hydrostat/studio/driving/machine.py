@@ -9,7 +9,7 @@ from threading import RLock
 import numpy as np
 
 from hydrostat.arrays import Vector
-from hydrostat.control import FASTEST, Link, Motors, Player, Timeline
+from hydrostat.control import DEFAULT_MAX_SPEED, Link, Motors, Player, Timeline
 from hydrostat.errors import HydrostatError
 from hydrostat.fabrication import KitOptions, find_motor
 from hydrostat.plot import upright
@@ -31,19 +31,20 @@ def kit_speed(robot: Robot, tension: float) -> tuple[float, str]:
     counts = [sum(cable.winch == winch.name for cable in robot.cables) for winch in robot.winches]
     loads = [many * tension * winch.spool_radius for many, winch in zip(counts, robot.winches, strict=True)]
     if not any(counts):
-        return FASTEST, ""
+        return DEFAULT_MAX_SPEED, ""
     motor = find_motor(robot, loads, KitOptions())
     share = 1e3 * max(loads) / motor.stall_torque
-    turns = motor.speed / 60 * max(1 - share, _LEAST)
+    turns = motor.speed / 60 * max(1 - share, _MIN_SPEED_SHARE)
     least = min(winch.spool_radius for winch, many in zip(robot.winches, counts, strict=True) if many)
     return 2 * math.pi * least * turns, motor.title
 
 
-_LEAST = 0.1
+_MIN_SPEED_SHARE = 0.1
 """Motors that would stall are shown at this share of their free speed: the kit says that they are too weak."""
 
 
-ROUGH = 3e-4  # how far a node may be from equilibrium while it moves, in sizes of the body: less than a pixel
+EQUILIBRIUM_TOLERANCE = 3e-4
+"""How far a node may be from equilibrium while it moves, in sizes of the body: less than a pixel."""
 
 
 class Follower:
@@ -58,7 +59,7 @@ class Follower:
         """The body at these contractions [m], or as it was last; `failure` tells which. Rough: it moves on at once."""
         if simulation is not self._simulation:
             self._simulation, self._last = simulation, None
-        accuracy = ROUGH * simulation.robot.body.mesh.size if rough else None
+        accuracy = EQUILIBRIUM_TOLERANCE * simulation.robot.body.mesh.size if rough else None
         pose = simulation.solve(contractions, start=self._last, strict=False, accuracy=accuracy)
         if pose.result.converged and upright(simulation.robot, pose):
             self._last, self.failure = pose, ""

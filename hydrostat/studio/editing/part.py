@@ -101,7 +101,7 @@ def _parse_named(kind: Kind, name: str, names: list[str]) -> Part | None:
     return Part(kind=kind, index=names.index(name)) if name in names else None
 
 
-SAME = 1e-3  # what is so near to the mirrored place, as a share of the body, is the twin
+TWIN_TOLERANCE = 1e-3  # what is so near to the mirrored place, as a share of the body, is the twin
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -121,7 +121,7 @@ class Mirror:
     def holds(self, robot: Robot, key: str) -> bool:
         """Return True if a part is on the plane."""
         at = place_of(robot, key)
-        return at is not None and abs(at[self.axis]) <= SAME * robot.body.mesh.size
+        return at is not None and abs(at[self.axis]) <= TWIN_TOLERANCE * robot.body.mesh.size
 
     def near(self, robot: Robot, at: Point) -> bool:
         """Return True if a new part there is meant to be on the plane."""
@@ -166,13 +166,13 @@ class Mirror:
             return None
         gaps = np.linalg.norm(np.array([place for _, place in placed]) - np.array(self.point(at)), axis=1)
         least = int(np.argmin(gaps))
-        return placed[least][0] if gaps[least] <= SAME * robot.body.mesh.size else None
+        return placed[least][0] if gaps[least] <= TWIN_TOLERANCE * robot.body.mesh.size else None
 
     def _cable(self, robot: Robot, index: int) -> int | None:
         own = np.array([self.point(point) for point in robot.cables[index].points])
         for number, cable in enumerate(robot.cables):
             if number != index and len(cable.points) == len(own):
                 gaps = np.linalg.norm(np.array(cable.points) - own, axis=1)
-                if gaps.max() <= SAME * robot.body.mesh.size:
+                if gaps.max() <= TWIN_TOLERANCE * robot.body.mesh.size:
                     return number
         return None

@@ -13,7 +13,7 @@ from hydrostat.files import replace_file
 LETTERS = "abcdefghjkmnpqrstuvwxyz23456789"  # of a code: without i, l, o, 0 and 1
 LENGTH = 8  # letters of a code: at 2,000 guesses a second, 13 years for all of them
 FILE = "class_code"
-KEPT = 90 * 24 * 3600  # browsers keep their code, room and nickname so long, and a laptop its code [s]
+CODE_LIFETIME = 90 * 24 * 3600  # browsers keep their code, room and nickname so long, and a laptop its code [s]
 
 
 def new_code() -> str:
@@ -33,7 +33,7 @@ def recall_code(state: Path | None) -> str:
         code = file.read_text(encoding="ascii")
         facts = file.stat()
         is_private = os.name != "posix" or not facts.st_mode & 0o077
-        if is_private and 0 <= time.time() - facts.st_mtime < KEPT and _is_code(code):
+        if is_private and 0 <= time.time() - facts.st_mtime < CODE_LIFETIME and _is_code(code):
             return code
     code = new_code()
     with suppress(OSError, InputError):  # a full disk, a folder in its place: the next lesson has another code

@@ -10,18 +10,18 @@ from starlette.requests import HTTPConnection, Request
 from starlette.responses import HTMLResponse, PlainTextResponse, RedirectResponse, Response
 
 from hydrostat.errors import InputError
-from hydrostat.studio.face.class_code import KEPT
+from hydrostat.studio.face.class_code import CODE_LIFETIME
 from hydrostat.studio.face.classroom import Classroom
-from hydrostat.studio.face.rooms import LONGEST_NAME, clean_name
+from hydrostat.studio.face.rooms import MAX_NAME, clean_name
 from hydrostat.studio.face.teacher import build_teacher
 
 NAME = "hydrostat_name"  # the cookie of a nickname, followed by the port
-MOST_BYTES = 4096  # of the form
+MAX_BYTES = 4096  # of the form
 
 
 def remember(response: Response, cookie: str, value: str) -> None:
     """Set a cookie that no script reads."""
-    response.set_cookie(cookie, value, httponly=True, samesite="lax", max_age=KEPT)
+    response.set_cookie(cookie, value, httponly=True, samesite="lax", max_age=CODE_LIFETIME)
 
 
 def read_nickname(connection: HTTPConnection, port: int) -> str:
@@ -34,7 +34,7 @@ def read_nickname(connection: HTTPConnection, port: int) -> str:
 
 def ask_nickname(key: str, problem: str = "") -> Response:
     """Page that asks for a nickname, then leads into the room of a key. It needs no script, so it is there at once."""
-    page = _FORM.format(key=escape(key), problem=escape(problem), most=LONGEST_NAME)
+    page = _FORM.format(key=escape(key), problem=escape(problem), most=MAX_NAME)
     return HTMLResponse(page, headers={"cache-control": "no-store"})
 
 
@@ -49,7 +49,7 @@ def add_class_pages(app: FastAPI, classroom: Classroom, token: str | None, port:
         body = b""
         async for part in request.stream():
             body += part
-            if len(body) > MOST_BYTES:
+            if len(body) > MAX_BYTES:
                 return PlainTextResponse("hydrostat: that is too much to send\n", status_code=413)
         given = parse_qs(body.decode(errors="replace"))
         key = given.get("room", [""])[0]

@@ -9,11 +9,11 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import HTMLResponse, PlainTextResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from hydrostat.studio.face.class_code import KEPT
+from hydrostat.studio.face.class_code import CODE_LIFETIME
 
 LOOPBACK = ("127.0.0.1", "localhost", "[::1]")  # names of this machine that a page may have
 COOKIE = "hydrostat_token"  # followed by the port: cookies do not know ports, and two studios may run on one machine
-LARGEST = 200_000_000  # no request has more bytes
+MAX_REQUEST_BYTES = 200_000_000  # no request has more bytes
 
 _ROOM = re.compile(r"/(room|watch|class)/[A-Za-z0-9_-]+")  # what a link with a token may lead to, beside the front
 _TYPED = re.compile(r"/[^/.]+")  # a path that may be meant as a code
@@ -66,7 +66,7 @@ class Guard:
         names: tuple[str, ...] = LOOPBACK,
         token: str | None = None,
         coded: bool = False,
-        largest: int = LARGEST,
+        largest: int = MAX_REQUEST_BYTES,
     ) -> None:
         """Guard an app at a port, by names of this machine in its address; no request has more bytes than `largest`.
 
@@ -141,7 +141,7 @@ class Guard:
         """Keeps the token as a cookie and goes to the page, so that it does not stay in the address."""
         here = path if _ROOM.fullmatch(path) else "/"
         response = HTMLResponse(WELCOME.format(here), headers={"cache-control": "no-store"})
-        lasts = KEPT if self._coded else None  # pupils need not type the code again in the next lesson
+        lasts = CODE_LIFETIME if self._coded else None  # pupils need not type the code again in the next lesson
         response.set_cookie(self._cookie, self._token or "", httponly=True, samesite="strict", max_age=lasts)
         return response
 

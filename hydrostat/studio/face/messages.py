@@ -9,7 +9,7 @@ from hydrostat.errors import InputError
 Coordinate = Annotated[float, Field(ge=-100.0, le=100.0, allow_inf_nan=False)]
 Place = Annotated[list[Coordinate], Field(min_length=3, max_length=3)]
 
-LONGEST = 4096  # no message has more characters
+MAX_LETTERS = 4096  # no message has more characters
 
 
 class _Message(BaseModel):
@@ -50,8 +50,8 @@ _ADAPTER: TypeAdapter[Message] = TypeAdapter(Annotated[Message, Field(discrimina
 
 def read_message(text: str) -> Message:
     """A message from its text (InputError: it is too long, no JSON, of no known kind, or has a wrong value)."""
-    if len(text) > LONGEST:
-        raise InputError(f"a message may have {LONGEST} characters, not {len(text)}")
+    if len(text) > MAX_LETTERS:
+        raise InputError(f"a message may have {MAX_LETTERS} characters, not {len(text)}")
     try:
         return _ADAPTER.validate_json(text)
     except (ValidationError, RecursionError) as error:

@@ -11,13 +11,13 @@ from hydrostat.studio.jobs import Slots
 from hydrostat.studio.session import Session, Tone
 from hydrostat.studio.view.picture import Shown
 
-SHORTEST = 1 / 60
+MIN_STEP = 1 / 60
 """One step is taken in this time [s], and one more for each drag that waits for its answer."""
 
 POLL_INTERVAL = 0.25
 """The session is looked at at least so often [s]."""
 
-LONG = 0.1
+LONG_STEP = 0.1
 """A step that takes longer [s] does not keep the screens waiting: what changes meanwhile is shown beside it."""
 
 SEEN = (Topic.SHAPE, Topic.SCENE, Topic.ROBOT, Topic.STAGE)
@@ -82,7 +82,7 @@ class Pulse:
                 self._run_guarded(self._hand_over)
             if took and self._turns is not None:
                 self._turns.give()
-            self._pause(begun + SHORTEST)
+            self._pause(begun + MIN_STEP)
             if not more and not self._stale:
                 self._wake.wait(POLL_INTERVAL)
 
@@ -92,14 +92,14 @@ class Pulse:
             return False
         line, begun = [0], time.monotonic()
         took = self._turns.wait(lambda: self._ended, lambda before: line.append(before + 1))
-        self._session.before = max(line) if time.monotonic() - begun > LONG else 0
+        self._session.before = max(line) if time.monotonic() - begun > LONG_STEP else 0
         return took
 
     def _stand_in(self) -> None:
         """Show what has changed while one step takes long."""
-        while not self._end.wait(LONG):
+        while not self._end.wait(LONG_STEP):
             since = self._stepping
-            if self._stale and since is not None and time.monotonic() - since > LONG:
+            if self._stale and since is not None and time.monotonic() - since > LONG_STEP:
                 self._stale = False
                 self._run_guarded(self._hand_over)
 

@@ -22,12 +22,12 @@ from hydrostat.studio.jobs import Slots
 from hydrostat.studio.session import Session
 from hydrostat.studio.starting.autosave import RecoveredWork, find_left
 
-MOST = 48  # so many rooms are open at a time
-IDLE = 120.0  # a room that nobody looked at for so long [s] may be closed for another; its work is kept
+MAX_ROOMS = 48  # so many rooms are open at a time
+IDLE_TIMEOUT = 120.0  # a room that nobody looked at for so long [s] may be closed for another; its work is kept
 
-LONGEST_NAME = 24  # characters of a nickname
+MAX_NAME = 24  # characters of a nickname
 
-RETRY = 30  # a page that found no room asks again after so long [s]
+RETRY_INTERVAL = 30  # a page that found no room asks again after so long [s]
 
 _KEY = re.compile(r"[A-Za-z0-9_-]{16,64}")
 
@@ -192,7 +192,7 @@ class Rooms:
         First goes one that no page visited, then one of a computer that has at least two more than the one that asks,
         or one that nobody has looked at for longest.
         """
-        if len(self._rooms) < MOST:
+        if len(self._rooms) < MAX_ROOMS:
             return
         count = Counter(room.address for room in self._rooms.values())
         bare = Counter(room.address for room in self._rooms.values() if not room.visited)
@@ -202,10 +202,10 @@ class Rooms:
             key=lambda room: (room.visited, -bare[room.address], room.seen),
             default=None,
         )
-        if oldest is None or (oldest.visited and time.monotonic() - oldest.seen < IDLE):
+        if oldest is None or (oldest.visited and time.monotonic() - oldest.seen < IDLE_TIMEOUT):
             greedy, rooms = count.most_common(1)[0]
             if rooms < count[address] + 2:
-                raise RoomsFullError(f"all {MOST} rooms of this studio are in use")
+                raise RoomsFullError(f"all {MAX_ROOMS} rooms of this studio are in use")
             oldest = min((room for room in self._rooms.values() if room.address == greedy), key=lambda room: room.seen)
         del self._rooms[oldest.key]
         Thread(target=oldest.close, name="closing a room", daemon=True).start()
@@ -224,7 +224,7 @@ def clean_name(text: str) -> str:
     """
     seen = [letter for letter in unicodedata.normalize("NFC", text[:1000]) if letter.isprintable()]
     name = "".join(letter for letter in seen if not unicodedata.combining(letter))
-    name = " ".join(name.split())[:LONGEST_NAME].strip()
+    name = " ".join(name.split())[:MAX_NAME].strip()
     if not name:
         raise InputError("nickname missing. Write at least one letter")
     return name

@@ -23,7 +23,7 @@ from hydrostat.studio.face.class_pages import add_class_pages, ask_nickname, rea
 from hydrostat.studio.face.classroom import Classroom
 from hydrostat.studio.face.guard import LOOPBACK, Guard
 from hydrostat.studio.face.page import HEARTBEAT, Toasts, WindowPage
-from hydrostat.studio.face.rooms import RETRY, Room, Rooms, RoomsFullError, new_key
+from hydrostat.studio.face.rooms import RETRY_INTERVAL, Room, Rooms, RoomsFullError, new_key
 from hydrostat.studio.face.share import Links
 from hydrostat.studio.face.tour import STAGES
 from hydrostat.studio.face.view_bar import view_bar
@@ -140,11 +140,11 @@ def _address(connection: HTTPConnection) -> str:
 
 def _full(words: str) -> Response:
     """Page that says why there is no room, and asks again by itself."""
-    head = f'<meta charset="utf-8"><meta http-equiv="refresh" content="{RETRY}"><title>{TITLE}</title>'
+    head = f'<meta charset="utf-8"><meta http-equiv="refresh" content="{RETRY_INTERVAL}"><title>{TITLE}</title>'
     style = "font: 18px system-ui, sans-serif; max-width: 30em; margin: 20vh auto; padding: 0 1em; color: #2b2833"
-    text = f"{words[0].upper()}{words[1:]}. This page tries again every {RETRY} seconds."
+    text = f"{words[0].upper()}{words[1:]}. This page tries again every {RETRY_INTERVAL} seconds."
     page = f'<!doctype html><html lang="en">{head}<p style="{style}">{text}</p></html>'
-    return HTMLResponse(page, status_code=503, headers={"retry-after": str(RETRY)})
+    return HTMLResponse(page, status_code=503, headers={"retry-after": str(RETRY_INTERVAL)})
 
 
 def serve(

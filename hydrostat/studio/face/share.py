@@ -13,7 +13,7 @@ from hydrostat.errors import InputError
 from hydrostat.studio.face.guard import LOOPBACK
 from hydrostat.studio.face.page import show_heading
 
-LARGEST_CODE = 2900  # letters in a QR code; 2953 bytes fit
+MAX_CODE_LETTERS = 2900  # letters in a QR code; 2953 bytes fit
 _SHOW = "Show it, or write it on the board."
 
 
@@ -97,7 +97,7 @@ def share_dialog(links: Links, pack: Callable[[], str] | None = None) -> Callabl
             hint = "A copy of the robot as it is now. Open it here, or elsewhere with hydrostat studio 'LINK'."
             ui.label(hint).classes("studio-hint")
             _link_box("Robot in a link", link, "share-robot")
-            if len(link) <= LARGEST_CODE and not links.are_local:
+            if len(link) <= MAX_CODE_LETTERS and not links.are_local:
                 _code("Robot in a link", link, 160 if len(link) < 400 else 480)
 
     return dialog.open if pack is None else lambda: (show(), dialog.open())

@@ -15,7 +15,7 @@ from hydrostat.studio.session import Session
 from hydrostat.studio.stage import Hit
 from hydrostat.studio.view.picture import Shown
 
-MOST_MISTAKES = 20
+MAX_MISTAKES = 20
 """A screen that says so much that is not understood is sent away."""
 
 
@@ -68,7 +68,7 @@ class Stream:
 
     async def _read(self, name: str, screen: "_Screen") -> None:
         mistakes = 0
-        while mistakes < MOST_MISTAKES:
+        while mistakes < MAX_MISTAKES:
             received = await screen.socket.receive()
             if received["type"] == "websocket.disconnect":
                 return

@@ -7,7 +7,7 @@ from hydrostat.lazy import open_package
 if TYPE_CHECKING:
     from hydrostat.studio.posing.movers import STRIDE, CableMover, MuscleMover
     from hydrostat.studio.posing.photograph_work import PhotographFit
-    from hydrostat.studio.posing.photographs import MOST_BYTES, Photographs
+    from hydrostat.studio.posing.photographs import MAX_BYTES, Photographs
     from hydrostat.studio.posing.pose_state import HeldPoint, Mode, held_of, same_as
     from hydrostat.studio.posing.poser import Poser
     from hydrostat.studio.posing.proposal_work import (
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     )
 
 __all__ = [
-    "MOST_BYTES",
+    "MAX_BYTES",
     "STRIDE",
     "CableMover",
     "HeldPoint",

@@ -88,7 +88,7 @@ class Mover(ABC):
         """One step towards the targets; the shape, and whether there is more to gain."""
 
 
-MISSED = 0.01  # from this distance on a target counts as out of reach, in sizes of the body
+REACH_TOLERANCE = 0.01  # from this distance on a target counts as out of reach, in sizes of the body
 NEAREST = "target not reached: the winches get no closer from here"
 
 
@@ -138,7 +138,7 @@ class MuscleMover(Mover):
         faint = 1e-3
         most = max(float(pulls.max()), faint * self._posing.strength)
         errors = self._anchored.errors(held, nodes)
-        far = not more and max(errors.values(), default=0.0) > MISSED * robot.body.mesh.size
+        far = not more and max(errors.values(), default=0.0) > REACH_TOLERANCE * robot.body.mesh.size
         return RobotShape(
             nodes=nodes,
             tensions=np.zeros(len(robot.cables)),
@@ -158,7 +158,7 @@ GAIN = 0.5
 """Markers that nobody holds rather stay, as in `solve_ik`: the square of their distance from rest weighs this times the
 error, in sizes of the body. An arm that is dragged out of reach yanks no other for the hair that it would gain."""
 
-ROUGH = 1e-3
+FORCE_TOLERANCE = 1e-3
 """Force that may be left over while something moves, as a share of the largest tension: nobody sees a micrometer, and
 updates take little more than half the time. What comes to rest is followed to the end."""
 
@@ -196,7 +196,7 @@ class CableMover(Mover):
         self.predictor, self._told = predictor, False
         self.robot, self.tension = simulation.robot, tension
         self._simulation, self._anchored = simulation, Anchored(simulation.robot.body.mesh)
-        options = replace(simulation.options, tolerance=ROUGH)
+        options = replace(simulation.options, tolerance=FORCE_TOLERANCE)
         self._rough = Simulation(simulation.robot, options=options, body=simulation.body)
         self._begin(start or simulation.rest)
 
@@ -251,7 +251,7 @@ class CableMover(Mover):
         if not more and not self._exact:
             self._near, self._still, self._updates, more = True, 0, max_cable_updates - last, True
         notes = reached.active_limits
-        if not more and max(reached.errors.values()) > MISSED * self.robot.body.mesh.size:
+        if not more and max(reached.errors.values()) > REACH_TOLERANCE * self.robot.body.mesh.size:
             nearest = reached.status in (IKStatus.ITERATION_LIMIT, IKStatus.LOCAL_OPTIMUM, IKStatus.STALLED)
             notes = (*notes, NEAREST if nearest else str(reached.status))
         if not more:

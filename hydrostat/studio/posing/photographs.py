@@ -17,10 +17,10 @@ from hydrostat.studio.posing.photograph_work import (
     fit_photographs,
 )
 
-MOST = 24
+MAX_PHOTOGRAPHS = 24
 """Photographs that are kept."""
 
-MOST_BYTES = 25_000_000
+MAX_BYTES = 25_000_000
 """Bytes of a photograph."""
 
 
@@ -72,11 +72,11 @@ class Photographs:
         """Take a photograph on a pose (InputError: too many, or too large); one of the same name is replaced."""
         if Path(name).name != name or name in ("", "..") or "\0" in name or len(name.encode()) > 200:
             raise InputError(f"{name[:60]!r}: not a file name. Rename the photograph.")
-        if len(content) > MOST_BYTES:
-            raise InputError(f"{name}: larger than {MOST_BYTES // 1_000_000} MB. Save it smaller.")
+        if len(content) > MAX_BYTES:
+            raise InputError(f"{name}: larger than {MAX_BYTES // 1_000_000} MB. Save it smaller.")
         kept = tuple(file for file in self.files if file.name != name)
-        if len(kept) >= MOST:
-            raise InputError(f"{name}: {MOST} photographs are here already. Remove one.")
+        if len(kept) >= MAX_PHOTOGRAPHS:
+            raise InputError(f"{name}: {MAX_PHOTOGRAPHS} photographs are here already. Remove one.")
         self.files = (*kept, PoseFile(name=name, content=content, contractions=dict(contractions)))
         self._ring()
 

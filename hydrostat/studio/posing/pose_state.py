@@ -141,7 +141,7 @@ def with_network_of(robot: Robot, shape: RobotShape) -> RobotShape:
     return replace(shape, tensions=np.zeros(len(robot.cables)), contractions=np.zeros(len(robot.winches)))
 
 
-NEAR = 0.02  # a plain point so near to one that is held is that one, in sizes of the body
+POINT_TOLERANCE = 0.02  # a plain point so near to one that is held is that one, in sizes of the body
 
 
 def name_under(now: PoseState, hit: Hit) -> str:
@@ -154,7 +154,7 @@ def name_under(now: PoseState, hit: Hit) -> str:
         return name
     if hit.rest is None:
         return ""
-    near = NEAR * now.robot.body.mesh.size
+    near = POINT_TOLERANCE * now.robot.body.mesh.size
     for own, held in now.targets.held.items():
         if np.linalg.norm(np.subtract(held.at, hit.rest)) < near:
             return own

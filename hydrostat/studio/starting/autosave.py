@@ -1,7 +1,7 @@
 """`Autosave`: keeps work that is not saved, so that a crash loses little of it.
 
-Lost is what was done in the last `QUIET_TIME`; of changes without a pause, what was done in the last `LONGEST`; and in
-both cases what was done while a copy is written.
+Lost is what was done in the last `QUIET_TIME`; of changes without a pause, what was done in the last `MAX_DELAY`; and
+in both cases what was done while a copy is written.
 """
 
 import json
@@ -23,7 +23,7 @@ from hydrostat.studio.document import Document
 
 LOCK = "lock"
 _LOCKING = Lock()  # held while a folder is made and locked, or looked at, as rooms of a class share a process
-DESIGNS, LARGEST = "designs.json", 20_000_000  # networks that were found; the file may have this many bytes
+DESIGNS, MAX_DESIGN_BYTES = "designs.json", 20_000_000  # networks that were found; the file may have this many bytes
 
 
 class HeldFolder:
@@ -60,9 +60,9 @@ def is_held(folder: Path) -> bool:
 
 
 QUIET_TIME = 2.0  # work is kept when nothing has changed for so long [s]
-LONGEST = 5.0  # and so often while changes go on [s]
+MAX_DELAY = 5.0  # and so often while changes go on [s]
 AGAIN = 10.0  # what could not be written is tried again after so long [s]
-MOST_ASIDE = 10  # copies of a room that a teacher's robots replaced; the oldest goes first
+MAX_ASIDE = 10  # copies of a room that a teacher's robots replaced; the oldest goes first
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,7 +119,7 @@ class Autosave:
             return
         if self.problem and now - self._asked < AGAIN:
             return
-        if self._is_over(state) or self.problem or now - self._changed >= QUIET_TIME or now - self._asked >= LONGEST:
+        if self._is_over(state) or self.problem or now - self._changed >= QUIET_TIME or now - self._asked >= MAX_DELAY:
             self._asked = now
             self._writer = Thread(target=self._keep, name="autosave", daemon=True)
             self._writer.start()
@@ -143,7 +143,7 @@ class Autosave:
     def set_aside(self) -> None:
         """Keep a copy of the work that later work does not replace; Start offers it. Nothing of an untouched robot.
 
-        Only the newest `MOST_ASIDE` are kept.
+        Only the newest `MAX_ASIDE` are kept.
 
         Raises:
             OSError: it cannot be written.
@@ -159,7 +159,7 @@ class Autosave:
                 self._write_copy(kept.path / "1", self._document.work, state[2])
             finally:
                 kept.let_go()
-        for left in self.find_recovered()[MOST_ASIDE:]:
+        for left in self.find_recovered()[MAX_ASIDE:]:
             self.forget(left)
 
     def note_received(self) -> None:
@@ -170,7 +170,7 @@ class Autosave:
         """Open what was left; it is kept on as work of this studio (InputError: it cannot be read any more)."""
         home, designs = left.folder / "work", left.folder / DESIGNS
         work = Work.open(home)
-        found = read_stranger(designs, name=DESIGNS, most=LARGEST) if designs.is_file() else b""
+        found = read_stranger(designs, name=DESIGNS, most=MAX_DESIGN_BYTES) if designs.is_file() else b""
         self._document.open(work, folder=left.origin, saved=False, stamp=left.stamp, text=text_of(home), designs=found)
         if self._keep():
             self.forget(left)

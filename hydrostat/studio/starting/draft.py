@@ -11,7 +11,7 @@ from hydrostat.robot import Material, get_material
 from hydrostat.units import quote
 
 UPLOAD_SUFFIXES = (*OUTLINE_SUFFIXES, *SURFACE_SUFFIXES, *STEP_SUFFIXES)  # endings of files that may be brought
-MOST_BYTES = 190_000_000  # of a file that is brought; with what goes round it, no request has more than 200 MB
+MAX_BYTES = 190_000_000  # of a file that is brought; with what goes round it, no request has more than 200 MB
 PICTURES = (".png", ".jpg", ".jpeg")  # endings of files of pixels
 _CAD = (".iges", ".igs", ".f3d", ".sldprt")
 
@@ -88,8 +88,8 @@ def new_draft(name: str, content: bytes) -> BodyDraft:
     file = safe_name(name)
     if not content:
         raise InputError(f"{file}: file is empty. Export it again")
-    if len(content) > MOST_BYTES:
-        raise InputError(f"{file}: has {len(content) / 1e6:.0f} MB, at most {MOST_BYTES / 1e6:.0f} MB are read")
+    if len(content) > MAX_BYTES:
+        raise InputError(f"{file}: has {len(content) / 1e6:.0f} MB, at most {MAX_BYTES / 1e6:.0f} MB are read")
     material = "polyester fibre" if file.endswith(OUTLINE_SUFFIXES) else "flexfoam-it x"
     picture_size = 0.2  # of a body from a picture, which says no size, until another is asked for [m]
     size = picture_size if file.endswith(PICTURES) else None

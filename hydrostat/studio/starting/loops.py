@@ -18,7 +18,7 @@ HANDLE = 0.35
 The editor on the screen has the same number."""
 
 _STATIONS = np.linspace(0.0, 1.0, 17)[:-1]
-_GOOD_FIT, _THIN, _FIRST, _MOST_KNOTS = 0.0045, 0.0003, 6, 200
+_GOOD_FIT, _THIN, _FIRST, _MAX_KNOTS = 0.0045, 0.0003, 6, 200
 _SHARP, _WINDOW = np.deg2rad(50.0), 0.004
 
 
@@ -127,7 +127,7 @@ def _fit_ring(rim: Ring, size: float) -> Loop:
         missed = np.asarray(distance(places, LinearRing(dense)))
         missed[knots] = 0.0
         strayed = np.asarray(distance(shapely_points(dense), whole))
-        if max(missed.max(), strayed.max()) < _GOOD_FIT * size or len(knots) >= min(_MOST_KNOTS, len(ring)):
+        if max(missed.max(), strayed.max()) < _GOOD_FIT * size or len(knots) >= min(_MAX_KNOTS, len(ring)):
             return loop
         stretches = [part[1:] for part in np.split(np.arange(len(ring)), knots[1:])]
         worst = [int(part[missed[part].argmax()]) for part in stretches if len(part)]

@@ -51,7 +51,7 @@ if __name__ == "__main__":
     main()
 
 
-MOST_SEEN, MOST_SHOWN = 500, 24  # so many entries of a folder are looked at, so many robots in it are shown
+MAX_SEEN, MAX_SHOWN = 500, 24  # so many entries of a folder are looked at, so many robots in it are shown
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,8 +79,8 @@ def robots_in(folder: Path) -> list[Card]:
         return [card_of(folder)]
     found: list[Path] = []
     with suppress(OSError):
-        found = sorted(path for path in islice(folder.iterdir(), MOST_SEEN) if is_robot(path))
-    return [card_of(path) for path in found[:MOST_SHOWN]]
+        found = sorted(path for path in islice(folder.iterdir(), MAX_SEEN) if is_robot(path))
+    return [card_of(path) for path in found[:MAX_SHOWN]]
 
 
 def distinguish_cards(cards: list[Card]) -> list[Card]:
@@ -101,10 +101,10 @@ def suggestions(text: str) -> list[str]:
     parent, start = (path, "") if text.endswith(("/", "\\")) or not text.strip() else (path.parent, path.name)
     found: list[Path] = []
     with suppress(OSError, ValueError):
-        entries = (entry for entry in islice(parent.iterdir(), MOST_SEEN) if not entry.name.startswith("."))
+        entries = (entry for entry in islice(parent.iterdir(), MAX_SEEN) if not entry.name.startswith("."))
         found = [entry for entry in entries if entry.name.startswith(start) and entry.is_dir()]
     found.sort(key=lambda entry: (not is_robot(entry), entry.name))
-    return [str(entry) for entry in found[:MOST_SHOWN]]
+    return [str(entry) for entry in found[:MAX_SHOWN]]
 
 
 def is_robot(folder: Path) -> bool:
@@ -136,7 +136,7 @@ def _words(folder: Path) -> str:
     return ", ".join([kind, *(part for part in parts if not part.startswith("0 "))])
 
 
-MOST_RECENT = 12  # so many are remembered
+MAX_RECENT = 12  # so many are remembered
 
 
 class Recent:
@@ -155,7 +155,7 @@ class Recent:
         if self._file is None:
             return
         folder = folder.resolve()
-        folders = [folder, *(other for other in self._read() if other != folder)][:MOST_RECENT]
+        folders = [folder, *(other for other in self._read() if other != folder)][:MAX_RECENT]
         with suppress(OSError, HydrostatError):
             self._file.parent.mkdir(parents=True, exist_ok=True)
             replace_file(self._file, json.dumps([str(folder) for folder in folders]).encode())
@@ -166,7 +166,7 @@ class Recent:
         with suppress(OSError, ValueError):
             known = json.loads(self._file.read_text(encoding="utf-8"))
             if isinstance(known, list):
-                return [Path(path) for path in known if isinstance(path, str)][:MOST_RECENT]
+                return [Path(path) for path in known if isinstance(path, str)][:MAX_RECENT]
         return []
 
 

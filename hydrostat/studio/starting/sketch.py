@@ -16,7 +16,7 @@ from hydrostat.studio.starting.photo import Backdrop, backdrop, cut_out
 
 _CHOICE = re.compile(r": choose one by --part N.*")
 
-MOST_MEMORY = 6 * 2**30  # the process may have so much memory [bytes]; a file that needs more is refused
+MAX_MEMORY = 6 * 2**30  # the process may have so much memory [bytes]; a file that needs more is refused
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -64,7 +64,7 @@ def make_sketch(report: Report, draft: BodyDraft) -> Sketch:
     try:
         return _sketch(report, draft)
     except MemoryError:
-        raise InputError(f"{draft.file}: needs more than {MOST_MEMORY >> 30} GB of memory. Simplify it") from None
+        raise InputError(f"{draft.file}: needs more than {MAX_MEMORY >> 30} GB of memory. Simplify it") from None
     except RecursionError:
         raise InputError(f"{draft.file}: nested too deep. Export it again") from None
     except SeveralPartsError as error:
@@ -162,5 +162,5 @@ def _limit_memory() -> None:
     if parent_process() is None:
         return  # only a process of its own; tests call this in theirs
     hard = resource.getrlimit(resource.RLIMIT_AS)[1]
-    most = MOST_MEMORY if hard == resource.RLIM_INFINITY else min(MOST_MEMORY, hard)
+    most = MAX_MEMORY if hard == resource.RLIM_INFINITY else min(MAX_MEMORY, hard)
     resource.setrlimit(resource.RLIMIT_AS, (most, hard))

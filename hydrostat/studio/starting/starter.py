@@ -33,8 +33,8 @@ from hydrostat.units import printable, quote
 
 _BROKEN = (BadZipFile, EOFError, NotImplementedError, RuntimeError, OSError, zlib.error, LZMAError)
 
-MOST_FILES = 200  # in an archive
-MOST_BYTES = 200_000_000  # of all its files, unpacked
+MAX_FILES = 200  # in an archive
+MAX_BYTES = 200_000_000  # of all its files, unpacked
 
 
 def unpack_robot(name: str, content: bytes) -> tuple[Work, str]:
@@ -75,11 +75,11 @@ def unpack_robot(name: str, content: bytes) -> tuple[Work, str]:
 def _check_entries(entries: list[ZipInfo], shown: str) -> dict[PurePosixPath, ZipInfo]:
     """Files by their paths, none of which leads out of the archive."""
     files = [entry for entry in entries if not entry.is_dir()]
-    if len(files) > MOST_FILES:
-        raise InputError(f"{shown}: has {len(files)} files, at most {MOST_FILES} are read")
+    if len(files) > MAX_FILES:
+        raise InputError(f"{shown}: has {len(files)} files, at most {MAX_FILES} are read")
     total = sum(entry.file_size for entry in files)
-    if total > MOST_BYTES:
-        raise InputError(f"{shown}: has {total / 1e6:.0f} MB unpacked, at most {MOST_BYTES / 1e6:.0f} MB are read")
+    if total > MAX_BYTES:
+        raise InputError(f"{shown}: has {total / 1e6:.0f} MB unpacked, at most {MAX_BYTES / 1e6:.0f} MB are read")
     found: dict[PurePosixPath, ZipInfo] = {}
     deepest = 4  # folders in one another
     for entry in files:

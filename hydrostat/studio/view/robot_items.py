@@ -240,7 +240,7 @@ def winch_bars(robot: Robot, shape: RobotShape, limit: float) -> list[Bar]:
 
 
 TONES = {Severity.REFUSED: "#c8243f", Severity.LIMIT: "#6d6875", Severity.MIND: Color.SEAM}  # color of each weight
-BRIEF = 64  # letters that are written beside a ring
+MAX_LABEL_LETTERS = 64  # letters that are written beside a ring
 
 
 def diagnostic_items(robot: Robot, said: Iterable[Diagnostic], chosen: Diagnostic | None = None) -> list[SceneItem]:
@@ -250,7 +250,11 @@ def diagnostic_items(robot: Robot, said: Iterable[Diagnostic], chosen: Diagnosti
     most = 24  # rings of one finding: more say no more
     for finding in said:
         words = in_words(finding.text)
-        label = words if len(words) <= BRIEF else words[: BRIEF - 1].rsplit(" ", 1)[0].rstrip(",;:") + " …"
+        label = (
+            words
+            if len(words) <= MAX_LABEL_LETTERS
+            else words[: MAX_LABEL_LETTERS - 1].rsplit(" ", 1)[0].rstrip(",;:") + " …"
+        )
         items += [
             Dot(
                 at=place.at,

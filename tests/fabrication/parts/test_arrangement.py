@@ -15,7 +15,7 @@ from winch_robots import with_winches
 from hydrostat.fabrication.kit_options import PartOptions
 from hydrostat.fabrication.parts.arrangement import LaidUnit, _arrange_units, arrange_units
 from hydrostat.fabrication.parts.motor import MOTORS, Motor
-from hydrostat.fabrication.parts.places import GIVES, TOUCHES, UnitBox, seam_of
+from hydrostat.fabrication.parts.places import COMPRESSION_SHARE, OVERLAP_TOLERANCE, UnitBox, seam_of
 from hydrostat.fabrication.parts.winch_unit import WinchUnit, winch_units
 from hydrostat.robot import Cable, Robot, Winch
 
@@ -55,13 +55,13 @@ def test_flat_robots_of_the_gallery_have_room(name: str, motor: Motor, unchecked
     assert [text for unit in units for text in unit.problems] == []
     places = [unit.place for unit in units if unit.place is not None]
     assert len(places) == len(robot.winches)
-    room = (1 + GIVES) * 1e3 * float(robot.body.thickness or 0)
+    room = (1 + COMPRESSION_SHARE) * 1e3 * float(robot.body.thickness or 0)
     for place in places:
-        assert place.footprint.difference(seam).area <= TOUCHES
+        assert place.footprint.difference(seam).area <= OVERLAP_TOLERANCE
         assert place.depth <= room
         assert math.dist(place.footprint.centroid.coords[0], place.box.at) < max(place.box.size)
     for one, other in combinations(places, 2):
-        assert one.footprint.intersection(other.footprint).area <= TOUCHES or one.depth + other.depth <= room
+        assert one.footprint.intersection(other.footprint).area <= OVERLAP_TOLERANCE or one.depth + other.depth <= room
     for place in places:
         assert (place.slid == (0.0, 0.0)) is ("shifted" not in place.instruction)
 
@@ -86,9 +86,9 @@ def test_a_body_thinner_than_stuffing_gives_is_refused_and_a_little_thinner_is_t
         return units_of(replace(robot, body=replace(robot.body, thickness=1e-3 * thickness)))
 
     thinnest = min(of(40.0)[0].room.size)
-    for unit in (*of(4.0), *of(thinnest / (1 + GIVES) - 0.1)):
+    for unit in (*of(4.0), *of(thinnest / (1 + COMPRESSION_SHARE) - 0.1)):
         assert any(f'winch "{unit.winch}"' in text and "hoose a smaller motor" in text for text in unit.problems)
-    for unit in of(thinnest / (1 + GIVES) + 0.1):
+    for unit in of(thinnest / (1 + COMPRESSION_SHARE) + 0.1):
         assert unit.problems == ()
         assert any("which will bulge by" in text for text in unit.notes)
     assert any("will bulge by 1 mm" in text for unit in of(thinnest - 0.6) for text in unit.notes)
@@ -134,7 +134,7 @@ def test_neighbors_turn_away_from_each_other():
     wide = box(-200, -200, 200, 200)
     near = arrange_units([brick("a", -3, 0), brick("b", 3, 0)], wide, 31.0)
     assert problems(near) == []
-    assert near[0].place.footprint.intersection(near[1].place.footprint).area <= TOUCHES
+    assert near[0].place.footprint.intersection(near[1].place.footprint).area <= OVERLAP_TOLERANCE
     assert notes(near) == []
     assert all(each.place.instruction.startswith("flat, motor toward") for each in near)
     apart = arrange_units([brick("a", -40, 0), brick("b", 40, 0)], wide, 31.0)

@@ -14,7 +14,7 @@ from shapely.geometry import Polygon
 
 from hydrostat.fabrication.checks.solid_checks import watertight_problems
 from hydrostat.fabrication.kit_options import PartOptions
-from hydrostat.fabrication.parts.base_plan import FREE, HOLDER_DEPTH, holder_at, tube_holder
+from hydrostat.fabrication.parts.base_plan import HOLDER_DEPTH, HOLDER_GAP, holder_at, tube_holder
 from hydrostat.fabrication.parts.base_plate import BasePlate, base_plate
 from hydrostat.fabrication.parts.motor import MOTORS, Motor
 from hydrostat.fabrication.parts.winch_unit import WinchUnit, winch_units
@@ -119,7 +119,7 @@ def test_a_straight_tube_runs_from_its_seat_through_its_holder(motor: Motor):
     others = [piece.solid for piece in base.assembly.pieces if not piece.name.startswith("tube_holder")]
     for seat, holder in zip(base.seats, holders, strict=True):
         (leaves,) = units[seat.unit].exits
-        length = FREE + HOLDER_DEPTH
+        length = HOLDER_GAP + HOLDER_DEPTH
         assert dict(base.tubes)[leaves.cable] > length
         tube = Manifold.cylinder(length, 0.97, -1, 24).rotate((-90, 0, 0)).translate(leaves.point)
         placed = seat.place_solid(tube.translate((0, 0.01, 0)))
@@ -158,7 +158,7 @@ def test_every_tube_reaches_a_body_anywhere_in_front_of_the_base(name: str, unch
     for unit in units:
         holder = holders[unit.winch] + np.array([0.0, HOLDER_DEPTH / 2])
         for cable in unit.cables:
-            free = tubes[cable] - FREE - HOLDER_DEPTH
+            free = tubes[cable] - HOLDER_GAP - HOLDER_DEPTH
             for end in (min(row), max(row)):
                 for nearest in begins:  # stands at the run from the row, in front of one of its ends
                     away = abs(end - holder[0]) + run + float(np.linalg.norm(begins[cable] - nearest))

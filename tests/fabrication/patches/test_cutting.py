@@ -8,7 +8,7 @@ from shapely.geometry.base import BaseGeometry
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.patches.chord import is_narrow
-from hydrostat.fabrication.patches.cutting import MOST_GIVE, Cutting, cut_skin, front_and_back, thin_direction
+from hydrostat.fabrication.patches.cutting import MAX_STRETCH, Cutting, cut_skin, front_and_back, thin_direction
 from hydrostat.fabrication.patches.flatten import distortion, flatten
 from hydrostat.fabrication.patches.patch import disc_of
 from hydrostat.fabrication.patches.seams import Seam, find_seams
@@ -74,7 +74,7 @@ def test_patches_are_discs_that_cover_the_skin_once(name, request):
     assert all(euler(patch.disc.triangles) == 1 for patch in cutting.patches)
     assert all((patch.flat_areas > 0).all() for patch in cutting.patches)
     assert set(cutting.mesh.patch.tolist()) == set(range(len(cutting.patches)))
-    assert max(distortion(patch).give(0.95) for patch in cutting.patches) <= MOST_GIVE
+    assert max(distortion(patch).give(0.95) for patch in cutting.patches) <= MAX_STRETCH
 
 
 @pytest.mark.slow
@@ -185,9 +185,9 @@ def test_a_tail_that_turns_up_is_sewn_in_a_front_and_a_back() -> None:
     cat = cat.buffer(0.006).buffer(-0.012).buffer(0.006).simplify(1e-4)
     mesh = skin_of_surface(inflate(Outline(shapely.get_coordinates(cat)[:-1]), 0.055, spacing=0.004))
     halves = front_and_back(mesh)
-    assert distortion(flatten(disc_of(halves, 0))).give(0.95) > MOST_GIVE
+    assert distortion(flatten(disc_of(halves, 0))).give(0.95) > MAX_STRETCH
     cutting = cut_skin(mesh)
     assert cutting.names == ("front", "back")
-    assert max(distortion(patch).give(0.95) for patch in cutting.patches) <= MOST_GIVE
+    assert max(distortion(patch).give(0.95) for patch in cutting.patches) <= MAX_STRETCH
     (seam,) = find_seams(cutting.mesh, cutting.patches, UP)
     assert seam.mismatch < 0.01

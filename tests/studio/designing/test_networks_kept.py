@@ -124,7 +124,7 @@ def test_cards_of_another_body_damaged_ones_and_too_many(
     for damaged in (b"{}", content[:-9], content.replace(b'"built":0.004', b'"built":"x"', 1)):
         with pytest.raises(InputError, match="networks from an earlier session cannot be read"):
             read_cards(damaged, starfish)
-    monkeypatch.setattr(cards_file, "LARGEST", len(content) - 200)
+    monkeypatch.setattr(cards_file, "MAX_BYTES", len(content) - 200)
     assert len(read_cards(cards_content(crashed.designer.candidates), starfish)) == 1, "the best is kept"
     crashed.designer.clear()
     assert crashed.document.designs == b""

@@ -12,7 +12,7 @@ from hydrostat.project import Paint, Work
 from hydrostat.studio.bell import Bell
 from hydrostat.studio.designing.painter import Painter
 from hydrostat.studio.document import Document
-from hydrostat.studio.shape_draft import LEAST, lasso
+from hydrostat.studio.shape_draft import MIN_SHAPE, lasso
 from hydrostat.studio.stage import Hit
 from hydrostat.studio.view.picture import Picture
 from hydrostat.studio.view.scene_items import Area, Dot, Look, Strand
@@ -72,7 +72,7 @@ def test_the_disc_is_seen_while_it_is_drawn(painter: Painter, document: Document
 def test_a_disc_is_never_too_small_to_take_hold_of(painter: Painter, document: Document) -> None:
     painter.take(Paint.KEEP_OUT)
     stroke(painter, on_body(0.0, 0.0), on_body(1e-5, 0.0))
-    assert painted(document)[0][1].radius == LEAST * document.robot.body.mesh.size
+    assert painted(document)[0][1].radius == MIN_SHAPE * document.robot.body.mesh.size
 
 
 def test_a_drag_that_begins_beside_the_body_paints_nothing(painter: Painter, document: Document) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from hydrostat.errors import InputError
-from hydrostat.studio.face.class_code import KEPT, LETTERS, find_code_date, forget_code, recall_code
+from hydrostat.studio.face.class_code import CODE_LIFETIME, LETTERS, find_code_date, forget_code, recall_code
 
 
 def test_the_next_lesson_has_the_same_code(tmp_path: Path) -> None:
@@ -34,9 +34,9 @@ def test_a_damaged_code_is_replaced(tmp_path: Path, damage: str) -> None:
 
 def test_an_old_code_is_replaced(tmp_path: Path) -> None:
     code, file = recall_code(tmp_path), tmp_path / "class_code"
-    os.utime(file, times=(time.time() - 0.99 * KEPT,) * 2)
+    os.utime(file, times=(time.time() - 0.99 * CODE_LIFETIME,) * 2)
     assert recall_code(tmp_path) == code
-    os.utime(file, times=(time.time() - 1.01 * KEPT,) * 2)
+    os.utime(file, times=(time.time() - 1.01 * CODE_LIFETIME,) * 2)
     assert recall_code(tmp_path) != code
 
 

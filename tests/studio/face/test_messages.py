@@ -5,7 +5,7 @@ import json
 import pytest
 
 from hydrostat.errors import InputError
-from hydrostat.studio.face.messages import LONGEST, LetGo, Pointer, Seen, read_message
+from hydrostat.studio.face.messages import MAX_LETTERS, LetGo, Pointer, Seen, read_message
 
 POINTER = {"kind": "drag", "key": "body", "rest": [0.1, 0, 0], "world": [0.1, -2, 3.5], "shift": True, "stamp": 12.5}
 
@@ -39,9 +39,9 @@ def test_wrong_values_are_refused(change: dict[str, object]) -> None:
 @pytest.mark.parametrize(
     "text",
     ["", " ", "null", "[]", "7", '"grab"', "{", "{}", '{"kind": "grab"}', '{"kind": "seen"', '{"kind": "seen", "x": 1}',
-     "{'kind': 'seen'}", '{"kind": "seen"} {"kind": "seen"}', "NaN", "\0", '{"kind": "se\\u0000en"}', "[" * LONGEST,
+     "{'kind': 'seen'}", '{"kind": "seen"} {"kind": "seen"}', "NaN", "\0", '{"kind": "se\\u0000en"}', "[" * MAX_LETTERS,
      '{"kind":' * 500, '{"kind": "grab", "world": ' + "[" * 1000 + "]" * 1000 + "}",
-     '{"kind": "grab", "key": "\\ud800", "world": [0, 0, 0]}', '{"kind": "seen", "x": "' + "y" * LONGEST + '"}'],
+     '{"kind": "grab", "key": "\\ud800", "world": [0, 0, 0]}', '{"kind": "seen", "x": "' + "y" * MAX_LETTERS + '"}'],
 )  # fmt: skip
 def test_what_is_no_message_is_refused(text: str) -> None:
     with pytest.raises(InputError):

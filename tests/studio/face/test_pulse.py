@@ -8,7 +8,7 @@ from builders import gallery_robot
 
 from hydrostat.project import Work
 from hydrostat.studio.bell import Topic
-from hydrostat.studio.face.pulse import LONG, SHORTEST, Pulse
+from hydrostat.studio.face.pulse import LONG_STEP, MIN_STEP, Pulse
 from hydrostat.studio.jobs import Slots
 from hydrostat.studio.session import Session
 from hydrostat.studio.stage import Hit, Stage, StageName
@@ -62,7 +62,7 @@ def test_work_without_end_does_not_spin(session: Session) -> None:
     took = time.monotonic() - begun  # a busy machine only makes it longer
     steps = stage.steps
     pulse.stop()
-    assert steps <= took / SHORTEST + 2
+    assert steps <= took / MIN_STEP + 2
     assert shown
 
 
@@ -123,7 +123,7 @@ def test_drags_of_all_rooms_take_turns(session: Session) -> None:
     seen = list[int]()
     pulse = Pulse(session, lambda _: seen.append(session.before), turns)
     pulse.start()
-    time.sleep(3 * LONG)
+    time.sleep(3 * LONG_STEP)
     assert stage.steps == 1
     turns.give()
     assert stage.enough.wait(60.0)

@@ -66,11 +66,11 @@ def test_a_guest_reads_and_writes_no_folder(rooms: Rooms, tmp_path: Path) -> Non
 
 
 def test_the_room_that_nobody_sees_makes_way(rooms: Rooms, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(rooms_module, "MOST", 2)
+    monkeypatch.setattr(rooms_module, "MAX_ROOMS", 2)
     one, two = (rooms.enter(new_key(), visit=True) for _ in range(2))
     with pytest.raises(RoomsFullError, match="all 2 rooms of this studio are in use"):
         rooms.enter(new_key())
-    one.seen = two.seen = time.monotonic() - 2 * rooms_module.IDLE
+    one.seen = two.seen = time.monotonic() - 2 * rooms_module.IDLE_TIMEOUT
     one.seen -= 1.0
     rooms.enter(new_key())
     assert (rooms.find_watched(one.watch_key), rooms.find_watched(two.watch_key)) == (None, two)
@@ -78,7 +78,7 @@ def test_the_room_that_nobody_sees_makes_way(rooms: Rooms, monkeypatch: pytest.M
 
 def test_bare_requests_take_no_room_from_a_class(rooms: Rooms, monkeypatch: pytest.MonkeyPatch) -> None:
     """Oracle: rooms that a page visited stay; of the others the address that asked for most loses its oldest."""
-    monkeypatch.setattr(rooms_module, "MOST", 4)
+    monkeypatch.setattr(rooms_module, "MAX_ROOMS", 4)
     pupil = rooms.enter(new_key(), address="pupil", visit=True)
     loading = rooms.enter(new_key(), address="next pupil")
     attacks = [rooms.enter(new_key(), address="attacker") for _ in range(6)]
@@ -90,7 +90,7 @@ def test_bare_requests_take_no_room_from_a_class(rooms: Rooms, monkeypatch: pyte
 
 def test_who_takes_all_rooms_makes_way(rooms: Rooms, monkeypatch: pytest.MonkeyPatch) -> None:
     """Oracle: of rooms that are all looked at, the computer with most loses its oldest; equal ones wait."""
-    monkeypatch.setattr(rooms_module, "MOST", 3)
+    monkeypatch.setattr(rooms_module, "MAX_ROOMS", 3)
     pupil, *greedy = (rooms.enter(new_key(), address=address, visit=True) for address in ("a", "b", "b"))
     for room in (pupil, *greedy):
         room.stream._screens["one"] = object()  # type: ignore[assignment]

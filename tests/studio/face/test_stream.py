@@ -11,7 +11,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
 from hydrostat.robot import gallery_folder
-from hydrostat.studio.face.stream import MOST_MISTAKES
+from hydrostat.studio.face.stream import MAX_MISTAKES
 from hydrostat.studio.session import Session
 from hydrostat.studio.stage import Hit, StageName
 from hydrostat.studio.view.picture import parse_message
@@ -96,12 +96,12 @@ def test_a_drag_is_answered_and_seen_by_all(server: Server, good: Screen) -> Non
 )  # fmt: skip
 def test_who_talks_rubbish_is_sent_away_and_nobody_else(server: Server, good: Screen, rubbish: str | bytes) -> None:
     with screen(server) as bad:
-        assert bad.sent_away(MOST_MISTAKES * [rubbish]) == 1008
+        assert bad.sent_away(MAX_MISTAKES * [rubbish]) == 1008
     good.drag_gets_an_answer(3.0)
 
 
 def test_a_few_mistakes_are_forgiven(good: Screen) -> None:
-    for _ in range(MOST_MISTAKES - 1):
+    for _ in range(MAX_MISTAKES - 1):
         good.socket.send("what")
     good.drag_gets_an_answer(4.0)
 

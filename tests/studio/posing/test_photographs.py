@@ -16,7 +16,7 @@ from hydrostat.simulation import Simulation
 from hydrostat.studio.bell import Bell
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.posing import MOST_BYTES, Photographs
+from hydrostat.studio.posing import MAX_BYTES, Photographs
 
 UPPER = ((0.0083, 0.0137), (0.0587, 0.0161), (0.1129, 0.0147), (0.1833, 0.0143))
 
@@ -73,7 +73,7 @@ def test_photographs_are_kept_by_name() -> None:
     kept.remove("b.jpg")
     assert [file.name for file in kept.files] == ["a.jpg"]
     with pytest.raises(InputError, match=r"c.jpg: larger than 25 MB"):
-        kept.add("c.jpg", b"0" * (MOST_BYTES + 1), {})
+        kept.add("c.jpg", b"0" * (MAX_BYTES + 1), {})
     for name in ("..", "", "a/b.jpg", "a" * 300, "a\0.jpg"):
         with pytest.raises(InputError, match="not a file name"):
             kept.add(name, b"picture", {})

@@ -18,8 +18,8 @@ from hydrostat.studio.bell import Bell
 from hydrostat.studio.document import Document
 from hydrostat.studio.starting.autosave import (
     AGAIN,
-    LONGEST,
-    MOST_ASIDE,
+    MAX_ASIDE,
+    MAX_DELAY,
     QUIET_TIME,
     Autosave,
     HeldFolder,
@@ -113,11 +113,11 @@ def test_work_is_kept_when_changes_pause(tmp_path: Path, work: Work) -> None:
     assert list(tmp_path.glob("*/*/meta.json")) == []
     settle(autosave, 100.1 + QUIET_TIME)
     assert len(list(tmp_path.glob("*/*/meta.json"))) == 1
-    for second in range(int(LONGEST) + 2):
+    for second in range(int(MAX_DELAY) + 2):
         changed(document, f"change {second}")
         settle(autosave, 200.0 + second)
     (kept,) = tmp_path.glob("*/*/work")
-    assert load_robot(kept).name == f"change {int(LONGEST)}", "without a pause it is kept now and then"
+    assert load_robot(kept).name == f"change {int(MAX_DELAY)}", "without a pause it is kept now and then"
     autosave.close()
 
 
@@ -177,14 +177,14 @@ def test_only_what_was_changed_is_set_aside_and_not_for_ever(tmp_path: Path, wor
     """Oracle: names of what is left, the newest first."""
     document, autosave = opened(tmp_path)
     document.open(work, saved=False)
-    for number in range(MOST_ASIDE + 2):
+    for number in range(MAX_ASIDE + 2):
         changed(document, f"mine_{number}")
         autosave.set_aside()
         changed(document, "task")
         autosave.note_received()
         autosave.set_aside()
     names = [left.name for left in autosave.find_recovered()]
-    assert names == [f"mine_{number}" for number in range(MOST_ASIDE + 1, 1, -1)]
+    assert names == [f"mine_{number}" for number in range(MAX_ASIDE + 1, 1, -1)]
 
 
 def test_a_disk_that_cannot_be_written_is_no_reason_to_stop(tmp_path: Path, work: Work) -> None:
@@ -221,7 +221,7 @@ def test_why_nothing_is_kept_is_told_and_tried_again(
 
 
 def test_work_goes_on_and_is_kept_as_often_as_said(tmp_path: Path, work: Work) -> None:
-    """Oracle: changes four times a second for 60 s; a copy each `LONGEST`."""
+    """Oracle: changes four times a second for 60 s; a copy each `MAX_DELAY`."""
     document, autosave = opened(tmp_path)
     document.open(work, saved=False)
     kept = set()
@@ -229,7 +229,7 @@ def test_work_goes_on_and_is_kept_as_often_as_said(tmp_path: Path, work: Work) -
         changed(document, f"change_{beat}")
         settle(autosave, beat / 4)
         kept |= {path.parent.name for path in tmp_path.glob("*/*/meta.json")}
-    assert 60 / LONGEST - 2 <= len(kept) <= 60 / LONGEST + 1
+    assert 60 / MAX_DELAY - 2 <= len(kept) <= 60 / MAX_DELAY + 1
     autosave.close()
 
 

@@ -18,7 +18,7 @@ from hydrostat.project import Work
 from hydrostat.studio.bell import Bell
 from hydrostat.studio.document import Document
 from hydrostat.studio.jobs import Jobs
-from hydrostat.studio.starting.draft import MOST_BYTES, new_draft, safe_name
+from hydrostat.studio.starting.draft import MAX_BYTES, new_draft, safe_name
 from hydrostat.studio.starting.sketch import make_sketch
 from hydrostat.studio.starting.starter import Starter
 
@@ -188,7 +188,7 @@ def test_names_become_plain(name: str, safe: str) -> None:
 def test_too_large_and_empty_files_are_refused() -> None:
     """Oracle: InputError."""
     with pytest.raises(InputError, match="at most 190 MB"):
-        new_draft("a.stl", bytes(MOST_BYTES + 1))
+        new_draft("a.stl", bytes(MAX_BYTES + 1))
     with pytest.raises(InputError, match="empty"):
         new_draft("a.stl", b"")
 

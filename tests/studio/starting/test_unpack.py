@@ -58,7 +58,7 @@ LINK.external_attr = (stat.S_IFLNK | 0o777) << 16
         ({"a/b/c/d/robot.toml": TOML}, "outside"),
         ({"kit/sheet.html": b"x"}, "no robot.toml"),
         ({"a/robot.toml": TOML, "b/robot.toml": TOML}, "2 robots"),
-        ({f"{k}.txt": b"x" for k in range(starter.MOST_FILES + 1)}, "201 files"),
+        ({f"{k}.txt": b"x" for k in range(starter.MAX_FILES + 1)}, "201 files"),
         ({"robot/robot.toml": b"\xff"}, "robot"),
         ({"robot/robot.toml": TOML, "robot/studio.json": b"{"}, "studio.json"),
     ],
@@ -72,7 +72,7 @@ def test_what_is_refused(files: dict[str, bytes], why: str, tmp_path: Path, monk
 
 def test_a_bomb_is_refused_before_it_is_unpacked(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(starter, "_write", lambda *_: pytest.fail("it was unpacked"))
-    bomb = packed({"robot/robot.toml": TOML, "robot/outline.svg": bytes(starter.MOST_BYTES)})
+    bomb = packed({"robot/robot.toml": TOML, "robot/outline.svg": bytes(starter.MAX_BYTES)})
     assert len(bomb) < 1_000_000
     with pytest.raises(InputError, match="200 MB unpacked, at most 200 MB are read"):
         unpack_robot("bomb.zip", bomb)

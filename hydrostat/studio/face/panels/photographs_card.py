@@ -7,7 +7,7 @@ from nicegui import events, ui
 
 from hydrostat.studio.bell import Topic
 from hydrostat.studio.face.page import WindowPage, icon_button, name_upload, show_heading
-from hydrostat.studio.posing import MOST_BYTES, Mode, PhotographFit
+from hydrostat.studio.posing import MAX_BYTES, Mode, PhotographFit
 from hydrostat.studio.session import Tone
 from hydrostat.studio.stage import format_error
 from hydrostat.units import plural
@@ -36,8 +36,8 @@ def photographs_card(page: WindowPage) -> None:
         with ui.element("div").classes("studio-card column").style("gap: 8px"):
             ui.label(HINT).classes("studio-hint")
             upload = ui.upload(
-                label="Choose or drop", multiple=True, auto_upload=True, max_file_size=MOST_BYTES, on_upload=load,
-                on_rejected=lambda: page.tell(f"a photograph may have {MOST_BYTES // 10**6} MB", Tone.BAD),
+                label="Choose or drop", multiple=True, auto_upload=True, max_file_size=MAX_BYTES, on_upload=load,
+                on_rejected=lambda: page.tell(f"a photograph may have {MAX_BYTES // 10**6} MB", Tone.BAD),
             ).props("accept=image/* flat bordered").classes("w-full").style("max-height: 130px")  # fmt: skip
             name_upload(upload, "Choose photographs").mark("pose-photographs")
             rows = ui.column().classes("w-full").style("gap: 2px")

@@ -83,7 +83,7 @@ def pose_panel(page: WindowPage) -> None:
     photographs_card(page)
 
 
-NEAR = 5e-4  # a marker so near to its target is there [m]
+TARGET_TOLERANCE = 5e-4  # a marker so near to its target is there [m]
 
 
 def held_card(page: WindowPage) -> None:
@@ -162,12 +162,12 @@ class _PointRow:
         self._line.style(f"font-weight: {600 if chosen else 400}; color: var(--{'ink' if held or chosen else 'muted'})")
         self._ring.style(f"color: var(--{'accent' if chosen else 'muted'}); opacity: {1 if held or chosen else 0.4}")
         self._error.set_text(words)
-        near = error is not None and error < NEAR
+        near = error is not None and error < TARGET_TOLERANCE
         self._error.style(f"color: {'var(--q-positive)' if near else 'inherit'}")
         self._release.set_visibility(held)
 
 
-FULL = 0.999  # a bar this full is at its limit
+FULL_BAR = 0.999  # a bar this full is at its limit
 
 
 def bars_card(page: WindowPage) -> None:
@@ -234,7 +234,7 @@ def _track() -> ui.element:
 
 
 def _fill(bar: ui.element, share: float, color: str) -> None:
-    full = Color.ERROR if share >= FULL else f"color-mix(in oklab, {color}, white var(--lift, 0%))"
+    full = Color.ERROR if share >= FULL_BAR else f"color-mix(in oklab, {color}, white var(--lift, 0%))"
     bar.style(f"width: {100 * min(share, 1.0):.1f}%; background: {full}")
 
 

@@ -16,7 +16,7 @@ from hydrostat.studio.face.page import WindowPage, icon_button, name_upload, sho
 from hydrostat.studio.face.panels.start_draft import draft_view
 from hydrostat.studio.stage import StageName
 from hydrostat.studio.starting.autosave import RecoveredWork
-from hydrostat.studio.starting.draft import MOST_BYTES
+from hydrostat.studio.starting.draft import MAX_BYTES
 from hydrostat.studio.starting.outlining import Reshaped, beginnings
 from hydrostat.studio.starting.shelf import Card, gallery_cards, suggestions
 
@@ -184,7 +184,7 @@ def _drop(page: WindowPage) -> None:
         with ui.element("div").classes("start-kinds"):
             for kind in KINDS:
                 ui.label(kind).classes("start-kind")
-        upload = ui.upload(max_file_size=MOST_BYTES, max_files=1, auto_upload=True).props('data-testid="upload"')
+        upload = ui.upload(max_file_size=MAX_BYTES, max_files=1, auto_upload=True).props('data-testid="upload"')
         name_upload(upload, "File")
 
     def complain(words: str) -> None:
@@ -208,7 +208,7 @@ def _drop(page: WindowPage) -> None:
             complain("")
 
     upload.on_upload(brought)
-    upload.on_rejected(lambda: complain(f"file refused. Import one file at a time, at most {MOST_BYTES // 10**6} MB"))
+    upload.on_rejected(lambda: complain(f"file refused. Import one file at a time, at most {MAX_BYTES // 10**6} MB"))
     pick = f"() => getElement({upload.id}).$refs.qRef.pickFiles()"
     card.on("click", js_handler=pick)
     for key in ("enter", "space.prevent.stop"):
