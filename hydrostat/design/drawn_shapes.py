@@ -8,7 +8,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from hydrostat.design.zone import Zone
-from hydrostat.robot import Body, Robot
+from hydrostat.robot import Body, Pin, Robot
 
 _MAX_SHARE = 0.3  # share of the body above which a drawn shape is no eye or mouth: cables must cross it
 _ROUND = 0.9  # a shape that fills such a share of the circle around it becomes a disc
@@ -43,10 +43,18 @@ def _zone(hull: BaseGeometry) -> Zone:
     return Zone(outline=tuple(map(tuple, corners.tolist())))
 
 
+def _pin_field(pin: Pin) -> "shapely.Polygon":
+    if pin.box is None:
+        assert pin.at is not None
+        return shapely.Point(pin.at).buffer(pin.radius)
+    (left, low), (right, high) = np.asarray(pin.box)
+    return shapely.box(float(left), float(low), float(right), float(high))
+
+
 def find_pinned_drawings(robot: Robot) -> Iterator[str]:
     """Sentence for each pin that covers most of a small shape drawn on a flat body, such as an eye."""
     for index, pin in enumerate(robot.pins if robot.body.mesh.dim == 2 else ()):
-        field = shapely.Point(pin.at).buffer(pin.radius) if pin.box is None else shapely.box(*np.ravel(pin.box))
+        field = _pin_field(pin)
         for hull in (shape.buffer(_SIMPLER) for shape in drawn_shapes(robot.body)):
             if field.intersection(hull).area > 0.5 * hull.area:
                 x, y = (f"{1e3 * value:z.0f}" for value in hull.centroid.coords[0])

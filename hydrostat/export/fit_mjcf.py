@@ -152,7 +152,7 @@ class _MjcfSearch:
         found = least_squares(
             differences,
             np.zeros(count + 2),
-            differ,
+            differ,  # pyright: ignore[reportArgumentType] (a function)
             bounds=(lower, upper),
             x_scale=steps,
             ftol=1e-2,
@@ -188,7 +188,7 @@ class _MjcfSearch:
         wanted, missed, size = self._markers(self._held_out), [], []
         for winch, step in enumerate(self._steps):
             moved = self._settle(tuning, self._held_out, step * np.eye(len(self._steps))[winch])
-            ours = np.array([self._respond(number, winch) for number in self._held_out])
+            ours = np.array([self._respond(number, winch) for number in map(int, self._held_out)])
             missed.append((moved - found) / step - ours)
             size.append(ours)
         known = np.isfinite(missed)

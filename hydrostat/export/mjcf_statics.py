@@ -44,12 +44,14 @@ class MjcfStatics:
 
     def find_markers(self, pose: Equilibrium, contractions: Vector, begin: Nodes) -> tuple[Points, Nodes] | None:
         """Positions of the markers and of the nodes [m] at rest, searched from some nodes; None if none is found."""
+        stiffness = pose.result.stiffness
+        assert stiffness is not None
         for share, most in SEARCHES:
             nodes, ties = begin.copy(), np.zeros(self._tie_dofs.shape)
             nodes[self._held] = self._rest[self._held]
             for _ in range(most):
                 forces, pulls = self._forces(nodes - self._rest, ties, contractions)
-                step = share * pose.result.stiffness.solve(forces.reshape(-1, 1)).reshape(forces.shape)
+                step = share * stiffness.solve(forces.reshape(-1, 1)).reshape(forces.shape)
                 step[self._held] = 0.0
                 largest = np.abs(step).max()
                 if not largest < np.ptp(self._rest, axis=0).max():

@@ -48,11 +48,11 @@ class RodTwistEnergy(Energy):
         """Directors at both ends of each segment and the segment, for the first and the second director [m]."""
         return np.einsum("spvc,scd->spvd", self._weights, nodes[self.stencils])
 
-    def _angles(self, nodes: Nodes) -> tuple[Vectors, Vector, np.ndarray]:
+    def _angles(self, nodes: Nodes) -> tuple[Vectors, Vector, bool]:
         """Vectors of both directors, about 1 long, twists of segments since rest [rad], and if all are allowed."""
         vectors = _flat(self._vectors(nodes) * self._scales[..., None])
         angles = (_twist(vectors) - self._rest + np.pi) % (2 * np.pi) - np.pi
-        return vectors, angles.reshape(-1, 2).mean(axis=1), (np.abs(angles) < MAX_TWIST).all()
+        return vectors, angles.reshape(-1, 2).mean(axis=1), bool((np.abs(angles) < MAX_TWIST).all())
 
     def value(self, nodes: Nodes, controls: Vector) -> float:
         _, angles, allowed = self._angles(nodes)

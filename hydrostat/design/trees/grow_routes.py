@@ -87,7 +87,8 @@ def _extend(
 
 def _is_close(spots: Float[np.ndarray, "fibres dim"], tip: Vector, reach: float) -> Bool[np.ndarray, " fibres"]:
     """Return True for points within a distance, or beyond it by rounding alone."""
-    return sum((spots[:, axis] - tip[axis]) ** 2 for axis in range(len(tip))) <= (reach * (1 + 1e-9)) ** 2
+    squares = sum((spots[:, axis] - tip[axis]) ** 2 for axis in range(len(tip)))
+    return np.asarray(squares <= (reach * (1 + 1e-9)) ** 2)
 
 
 def _cosines(first: Float[np.ndarray, "*rows dim"], second: Float[np.ndarray, "fibres dim"]) -> Vector:

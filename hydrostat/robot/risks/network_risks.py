@@ -163,7 +163,7 @@ def _spans_rigid_parts(body: Body, points: Points) -> Bool[np.ndarray, " segment
     in_part = np.zeros(len(body.mesh.nodes), dtype=bool)
     in_part[body.mesh.elements[rigid]] = True
     anchors = locate(body.mesh, points)
-    held = (in_part[anchors.stencils] | (anchors.weights < 1e-9)).all(axis=1)
+    held = np.all(in_part[anchors.stencils] | (anchors.weights < 1e-9), axis=1)
     return held[:-1] & held[1:]
 
 
