@@ -1,12 +1,15 @@
 """`RoutePoints`: points of all cables of a robot, and their motion with their rest positions."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from hydrostat.arrays import Bool, Float, Int, Nodes, Points
 from hydrostat.geometry import Anchors, Mesh, locate
+from hydrostat.given import Point
 from hydrostat.robot import Mount, Robot
 
 RouteGradient = Float[np.ndarray, "_ dim"]
@@ -153,7 +156,17 @@ def route_points(robot: Robot) -> RoutePoints:
     )
 
 
-@lru_cache(maxsize=4)
-def hold_markers(mesh: Mesh, places: tuple[tuple[float, ...], ...]) -> Anchors:
-    """Anchors of markers at rest positions [m]; the last answers are kept, as networks on a body share its markers."""
-    return locate(mesh, np.array(places).reshape(-1, mesh.dim))
+_held: WeakKeyDictionary[Mesh, tuple[tuple[tuple[float, ...], ...], Anchors]] = WeakKeyDictionary()
+"""Markers of each mesh that lives: the places that were asked for last, and their anchors."""
+
+
+def hold_markers(mesh: Mesh, places: Iterable[Point]) -> Anchors:
+    """Read-only anchors of markers at rest positions [m]; the last are kept: networks on a body share its markers."""
+    asked = tuple(tuple(float(number) for number in place) for place in places)
+    known, anchors = _held.get(mesh, (None, None))
+    if anchors is None or known != asked:
+        anchors = locate(mesh, np.array(asked).reshape(-1, mesh.dim))
+        for kept in (anchors.stencils, anchors.weights, anchors.distances):
+            kept.setflags(write=False)
+        _held[mesh] = asked, anchors
+    return anchors

@@ -320,7 +320,7 @@ class Simulation:
     @cached_property
     def marker_anchors(self) -> Anchors:
         """Nodes and weights that hold the markers."""
-        return hold_markers(self.robot.body.mesh, tuple(marker.at for marker in self.robot.markers))
+        return hold_markers(self.robot.body.mesh, (marker.at for marker in self.robot.markers))
 
     def tensions(self, nodes: Nodes, contractions: Vector, history: Vector | None = None) -> Vector:
         """Tension of each cable [N]; at its winch if it has friction and remembers its slips in `history` [m]."""

@@ -1,15 +1,21 @@
 """Poses of small robots. Oracles: statics (balances of force and moment), the rest pose, and the solver's promises."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from gc import collect
+from typing import Any
+from weakref import ref
 
 import numpy as np
 import pytest
 from builders import box_robot, strip_robot
 
 from hydrostat.errors import InputError, NotConvergedError
+from hydrostat.geometry import Mesh
 from hydrostat.mechanics import NewtonOptions, NewtonStatus
 from hydrostat.robot import Mount, Robot
 from hydrostat.simulation import Equilibrium, Simulation
+from hydrostat.simulation.route_points import hold_markers
 
 ROBOTS = {
     "strip": strip_robot,
@@ -196,6 +202,33 @@ def test_markers_and_tensions_belong_to_the_pose() -> None:
     assert pose.markers["tip"] == pytest.approx(_anchor(simulation.robot, np.array([0.2, 0.0]), pose.nodes))
     assert pose.tensions.shape == (2,)
     assert pose.energy == simulation.assembly.value(pose.nodes, PULL)
+
+
+@pytest.mark.parametrize("make", [list, np.array])
+def test_markers_may_be_given_as_a_list_or_an_array(make: Callable[[tuple[float, ...]], Any], unchecked: None) -> None:
+    """Oracle: the same place as a tuple. Simulations on one mesh share the anchors, so nobody may write to them."""
+    robot = strip_robot()
+    (tip,) = robot.markers
+    anchors = Simulation(robot).marker_anchors
+    asked = Simulation(replace(robot, markers=(replace(tip, at=make(tip.at)),))).marker_anchors
+    for name in ("stencils", "weights", "distances"):
+        found = getattr(asked, name)
+        assert np.array_equal(found, getattr(anchors, name))
+        with pytest.raises(ValueError, match="read-only"):
+            found[:] = 0
+
+
+def test_anchors_of_markers_are_shared_and_go_with_their_mesh() -> None:
+    robot = strip_robot()
+    one, other = Simulation(robot), Simulation(replace(robot, gravity=robot.gravity))
+    assert one.marker_anchors is other.marker_anchors
+    moved = replace(robot, markers=(replace(robot.markers[0], at=(0.1, 0.0)),))
+    assert Simulation(moved).marker_anchors is not one.marker_anchors
+    anchors = ref(hold_markers(mesh := Mesh(robot.body.mesh.nodes, robot.body.mesh.elements), [(0.1, 0.0)]))
+    assert anchors() is not None
+    del mesh
+    collect()
+    assert anchors() is None
 
 
 def test_the_upper_cable_bends_the_strip_up() -> None:
