@@ -49,8 +49,9 @@ def _pairs(attributes: dict[str, object]) -> str:
 
 
 def number(value: float, digits: int) -> str:
-    """Number with a largest number of digits after the point, one or more, without a minus before nought."""
-    return f"{round(value, digits) + 0.0:.{digits}f}".rstrip("0").rstrip(".")
+    """Number with a largest number of digits after the point, without a minus before nought."""
+    text = f"{round(value, digits) + 0.0:.{digits}f}"
+    return text.rstrip("0").rstrip(".") if digits else text
 
 
 def path(lines: Iterable[Iterable[Sequence[float] | np.ndarray]], *, digits: int, closed: bool = False) -> str:
@@ -61,7 +62,8 @@ def path(lines: Iterable[Iterable[Sequence[float] | np.ndarray]], *, digits: int
         places = np.round(line, digits).tolist() if isinstance(line, np.ndarray) else list(line)
         values = [value if type(value) is float else round(value, digits) for value in chain.from_iterable(places)]
         words.append("M" + "L".join([point] * len(places)) % tuple(values) + end)
-    return _MINUS_NOUGHT.sub("0", _LAST_NOUGHTS.sub("", "".join(words)))
+    text = "".join(words)
+    return _MINUS_NOUGHT.sub("0", _LAST_NOUGHTS.sub("", text) if digits else text)
 
 
 _LAST_NOUGHTS, _MINUS_NOUGHT = re.compile(r"\.?0+(?![.\d])"), re.compile(r"-0(?![.\d])")

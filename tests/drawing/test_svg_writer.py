@@ -20,6 +20,15 @@ def test_numbers_are_short_and_keep_their_value(value, digits, words):
     assert float(words) == pytest.approx(value, abs=0.51 * 10**-digits)
 
 
+@pytest.mark.parametrize("digits", [0, 1, 2, 3])
+@pytest.mark.parametrize("value", [100.0, 0.0, -0.2, -30.0, 1050.0, 0.05, 7.25])
+def test_a_number_is_the_same_alone_and_in_a_path(value: float, digits: int) -> None:
+    """Oracle: the plain formatter of Python."""
+    words = number(value, digits)
+    assert float(words) == float(f"{value:.{digits}f}")
+    assert path([[(value, value), (1.0, value)]], digits=digits) == f"M{words} {words}L1 {words}"
+
+
 def test_what_a_user_writes_stays_text():
     """Oracle: an XML reader finds the very words again, in an attribute and as content."""
     read = ElementTree.fromstring(tag("g", HARD, shape("circle", id=HARD), font_size=2, class_=None))

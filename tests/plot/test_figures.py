@@ -21,6 +21,7 @@ from hydrostat.plot import reached_title
 from hydrostat.plot.activation_figures import draw_candidates, draw_trees
 from hydrostat.plot.motion import motion_frames, motion_svg
 from hydrostat.plot.robot_figures import draw_target
+from hydrostat.plot.sheet import new_sheet
 from hydrostat.plot.skin import FlatSkin
 from hydrostat.robot import Mount, PoseTarget
 
@@ -205,3 +206,10 @@ def test_a_title_says_reached_where_the_target_is(status: IKStatus, name: str | 
     found = hostile_network().ik_results[0]
     wave = PoseTarget(name="wave", targets={"tip": (0.1, 0.0)})
     assert reached_title(replace(found, status=status, target=wave), name) == title
+
+
+def test_the_short_side_of_a_picture_may_hold_no_round_number() -> None:
+    """Oracle: by hand: lines every 20 mm along 100 mm, and none between 3 and 4 mm."""
+    sheet = new_sheet(np.array([[0.0, 3.0], [100.0, 4.0]]), room=0.0)
+    numbers = [words.get_text() for words in sheet.axes.texts]
+    assert numbers == ["0", "20", "40", "60", "80", "100", "mm"]
