@@ -2,6 +2,7 @@
 
 import math
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from decimal import Context, Decimal
 from functools import cache
@@ -193,3 +194,9 @@ def plural(number: int, noun: str) -> str:
     """Number with its noun: "1 winch", "2 winches"."""
     plural = noun + ("es" if noun.endswith("ch") else "s")
     return f"{number} {noun if number == 1 else plural}"
+
+
+def list_words(words: Iterable[str]) -> str:
+    """Words in a row: "a"; "a and b"; "a, b and c"; empty without any."""
+    *first, last = [*words] or [""]
+    return f"{', '.join(first)} and {last}" if first else last

@@ -1,3 +1,4 @@
+from collections.abc import Iterable
 from decimal import Decimal
 
 import pytest
@@ -166,3 +167,11 @@ def test_the_common_units_are_those_of_pint(
     monkeypatch.setattr(units, "COMMON", {})
     written = {"Nm": "N m", "Nmm": "N mm"}.get(unit, unit)  # pint asks for the space
     assert units.unit_factor.__wrapped__(written, dimension) == known
+
+
+@pytest.mark.parametrize(
+    ("words", "listed"), [([], ""), (["a"], "a"), (["a", "b"], "a and b"), (iter("abcd"), "a, b, c and d")]
+)
+def test_words_in_a_row(words: Iterable[str], listed: str) -> None:
+    """Oracle: by hand."""
+    assert units.list_words(words) == listed

@@ -27,14 +27,16 @@ def find_open_seam(plan: KitPlan) -> int:
 
 
 def find_passage_warnings(plan: KitPlan) -> tuple[str, ...]:
-    """Warn of a zipper that is too short for a winch."""
+    """Warn of a zipper that is too short for a winch, or missing."""
     return tuple(_warning(unit, _slit(plan)) for unit in find_stuck_units(plan)[:1])
 
 
 def _slit(plan: KitPlan) -> float:
-    """Length of the slit of the zipper [mm]; infinite where a body has none."""
-    opening = None if plan.work.pattern is None else plan.work.pattern.opening
-    return math.inf if opening is None else float(opening.slit.length)
+    """Length of the slit of the zipper [mm]; 0 without a zipper, infinite where nothing is sewn."""
+    if plan.work.pattern is None:
+        return math.inf
+    opening = plan.work.pattern.opening
+    return 0.0 if opening is None else float(opening.slit.length)
 
 
 def _find_stuck(units: Sequence[WinchUnit], slit: float) -> tuple[WinchUnit, ...]:
@@ -54,8 +56,9 @@ def _seam_for(unit: WinchUnit) -> int:
 
 def _warning(unit: WinchUnit, slit: float) -> str:
     sides = " x ".join(f"{side:.0f}" for side in sorted(unit.room.size))
+    fails = f"does not pass through its opening of {int(slit)} mm" if slit else "has no zipper to pass through"
     return (
-        f'zipper: the unit of winch "{unit.winch}" ({sides} mm) does not pass through its opening of {int(slit)} mm '
-        f"(minimum {_slit_for(unit):.0f} mm). Leave {_seam_for(unit)} mm of seam open, and close it by hand. To reach "
-        "the motor later, undo this seam"
+        f'zipper: the unit of winch "{unit.winch}" ({sides} mm) {fails} (minimum {_slit_for(unit):.0f} mm). '
+        f"Leave {_seam_for(unit)} mm of seam open, and close it by hand. To reach the motor later, undo this seam. "
+        "If no seam near it is so long, choose a smaller motor or spool"
     )

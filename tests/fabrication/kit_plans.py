@@ -31,7 +31,7 @@ class FewParts(RigidParts):
         self.__dict__.update(facts)
 
 
-_OF_PARTS = {"motor", *(name for name in vars(FewParts) if not name.startswith("_"))}
+_OF_PARTS = {"motor", "units", *(name for name in vars(FewParts) if not name.startswith("_"))}
 _OF_WORK = set(BodyWork.__dataclass_fields__)
 _OF_OPTIONS = {"method", "paper"}
 

@@ -11,6 +11,7 @@ from hydrostat.fabrication.demand import Demand
 from hydrostat.fabrication.lists.table import Table, number_column, text_column
 from hydrostat.fabrication.parts.motor import MARGIN, MOTORS, Motor
 from hydrostat.robot import Robot, Winch
+from hydrostat.units import list_words
 
 SLOW_TRAVEL_TIME = 10.0  # a winch that takes longer than this for its full travel [s] is called slow
 
@@ -316,7 +317,7 @@ class PowerPlan:
             ),
         ]
         if self.servos:
-            rows.append(("feed the chain at", " and ".join(f"ID {number}" for number in self.fed)))
+            rows.append(("feed the chain at", list_words(f"ID {number}" for number in self.fed)))
         return Table(
             name="power",
             title="Power",

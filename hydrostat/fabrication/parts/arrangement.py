@@ -12,6 +12,7 @@ from shapely.geometry.base import BaseGeometry
 from hydrostat.arrays import Vector
 from hydrostat.fabrication.parts.places import COMPRESSION_SHARE, OVERLAP_TOLERANCE, UnitBox, UnitPlace
 from hydrostat.fabrication.solids.construct import sides_text
+from hydrostat.units import list_words
 
 _SWEEPS = 8  # rounds of a search
 
@@ -161,8 +162,7 @@ def _piles(places: Sequence[UnitPlace]) -> list[tuple[int, ...]]:
 def _describe_pile(pile: Sequence[UnitPlace], thickness: float) -> tuple[str, bool]:
     """Return the sentence on units above each other, and True if they can be built."""
     high = sum(place.depth for place in pile)
-    *first, last = (f'"{place.box.winch}"' for place in pile)
-    names = f"{', '.join(first)} and {last}{_sizes(pile)}"
+    names = list_words(f'"{place.box.winch}"' for place in pile) + _sizes(pile)
     possible = high <= (1 + COMPRESSION_SHARE) * thickness
     if possible:
         bulge = f", so it bulges by {high - thickness:.0f} mm" if high > thickness else ""
@@ -183,7 +183,7 @@ def _sizes(pile: Sequence[UnitPlace]) -> str:
     sides = [sides_text(place.box.size) for place in pile]
     alike = len(set(sides)) == 1
     apart = f", {math.dist(pile[0].box.at, pile[1].box.at):.0f} mm apart" if len(pile) == 2 else ""
-    return f" ({sides[0]} mm each{apart})" if alike else f" ({', '.join(sides[:-1])} and {sides[-1]} mm{apart})"
+    return f" ({sides[0]} mm each{apart})" if alike else f" ({list_words(sides)} mm{apart})"
 
 
 def _alone(place: UnitPlace, thickness: float) -> list[str]:

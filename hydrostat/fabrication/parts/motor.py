@@ -185,7 +185,8 @@ _N20 = Motor(
     price=18.0,
     price_source="of its sister HPCB 75:1, 17.95 in an order list of the team ASROB-sumo, which has no date",
     price_month="2026-11",
-    caution="The encoder stands behind the motor, on its extended shaft. Leave 10 mm (no source): it is not drawn.",
+    caution="The encoder stands behind the motor, on its extended shaft. Leave 10 mm (no source): neither drawn "
+    "nor counted in the size of its unit.",
     source="Pololu, Micro Metal Gearmotors, Rev 2.0, May 2018: stall 20 kg mm (extrapolated), 45 rpm, 10 g, gearbox "
     "9 mm, M1.6 screws at most 1.3 mm deep; LP 6V: 0.36 A at stall, 0.02 A without load, 297.92:1. Pololu, product "
     "page 5215: section 10 x 12 mm, D shaft 3 x 9 mm. Load at most a quarter of stall: Pololu's forum, thread 14572 "

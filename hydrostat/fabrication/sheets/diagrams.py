@@ -6,6 +6,7 @@ from hydrostat.drawing import Canvas, Spot
 from hydrostat.fabrication.board_kind import BOARDS
 from hydrostat.fabrication.lists.motors import PowerPlan
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side
+from hydrostat.units import list_words
 
 _CLOTH = 1.5  # thickness of drawn cloth [mm]
 
@@ -205,7 +206,7 @@ def _put_chain(canvas: Canvas, plan: PowerPlan, places: list[float], step: float
     for number in plan.fed:
         if number <= len(places):
             _put_feed(canvas, places[number - 1], top)
-    words = "plus and minus go into the chain at " + " and ".join(f"ID {number}" for number in plan.fed)
+    words = "plus and minus go into the chain at " + list_words(f"ID {number}" for number in plan.fed)
     canvas.text((canvas.width, top - 5.0), words, size=8, anchor="end", grey=0.25)
 
 

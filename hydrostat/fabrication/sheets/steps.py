@@ -11,7 +11,7 @@ from hydrostat.fabrication.parts.base_plate import BasePlate
 from hydrostat.fabrication.passage import find_open_seam, find_stuck_marks
 from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.robot import Mount, Pin, Robot, SheetSide
-from hydrostat.units import plural
+from hydrostat.units import list_words, plural
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ def cables_text(cables: Iterable[str]) -> str:
         for run in runs
         for word in ([f"C{run[0]} to C{run[-1]}"] if len(run) > 2 else [f"C{number}" for number in run])
     ]
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}" if words else ""
+    return list_words(words)
 
 
 def marks_on(plan: KitPlan, mount: Mount) -> tuple[str, ...]:
@@ -185,7 +185,7 @@ def marks_text(marks: tuple[str, ...]) -> str:
     numbers = [int(mark[1:]) for mark in marks]
     if len(numbers) > 2 and numbers == list(range(numbers[0], numbers[-1] + 1)):
         return f"{marks[0]} to {marks[-1]}"
-    return marks[0] if len(marks) == 1 else f"{', '.join(marks[:-1])} and {marks[-1]}"
+    return list_words(marks)
 
 
 def _sheet_size(plan: KitPlan) -> str:

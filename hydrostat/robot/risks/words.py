@@ -7,6 +7,7 @@ import numpy as np
 
 from hydrostat.arrays import Float
 from hydrostat.robot.material import Material
+from hydrostat.units import list_words
 
 
 @dataclass(frozen=True)
@@ -28,7 +29,7 @@ def merge_risks(found: Iterable[Risk]) -> Iterator[str]:
     if len(parts) == 1:
         yield f"{worst.part}: {worst.text}"
     elif len(parts) <= 3:
-        yield f"{', '.join(parts[:-1])} and {parts[-1]}: {worst.text} ({worst.part} is the worst)"
+        yield f"{list_words(parts)}: {worst.text} ({worst.part} is the worst)"
     else:
         yield f"{', '.join(parts[:2])} and {len(parts) - 2} more: {worst.text} ({worst.part} is the worst)"
 

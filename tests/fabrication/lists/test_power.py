@@ -56,6 +56,10 @@ def test_ten_strong_servos_are_fed_in_several_places() -> None:
     assert plan.fed[0] == 1
     assert len(gaps) == plan.feeds
     assert max(gaps) - min(gaps) <= 1, "about as many servos after each feed"
+    *first, last = (f"ID {number}" for number in plan.fed)
+    assert len(first) > 1
+    amounts = {row.what: row.amount for row in plan.table.rows}
+    assert amounts["feed the chain at"] == f"{', '.join(first)} and {last}"
 
 
 @pytest.mark.parametrize(("count", "boards"), [(2, ("uno",)), (3, ("mega",)), (6, ("mega",)), (8, ("mega", "uno"))])

@@ -3,10 +3,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import shapely
+from kit_plans import change_plan, make_plan
 from plush_robots import drawn_body, plush_robot
 
-from hydrostat.fabrication import PatternOptions, plush_pattern
-from hydrostat.fabrication.passage import _find_stuck, _warning
+from hydrostat.fabrication import MOTORS, PartOptions, PatternOptions, plush_pattern
+from hydrostat.fabrication.demand import Demand
+from hydrostat.fabrication.parts.winch_unit import winch_units
+from hydrostat.fabrication.passage import _find_stuck, _warning, find_open_seam, find_passage_warnings
 from hydrostat.fabrication.patterns.opening import ZIPPERS, opening_at
 from hydrostat.fabrication.patterns.pattern import Pattern
 from hydrostat.fabrication.patterns.shape import Layer, PatternPart
@@ -113,5 +116,20 @@ def test_a_zipper_too_short_for_a_winch_is_told() -> None:
     words = _warning(unit, 47.0)
     assert "Leave 80 mm of seam open" in words  # 66 mm and a tenth, in full tens
     assert 'unit of winch "left" (27 x 39 x 41 mm) does not pass through its opening of 47 mm (minimum 66 mm)' in words
+    assert words.endswith("If no seam near it is so long, choose a smaller motor or spool")
     unit.mount = Mount.WORLD
     assert _find_stuck([unit], 47.0) == ()
+
+
+def test_a_plush_without_a_zipper_takes_its_winches_through_the_seam() -> None:
+    """The same winch passes through a zipper of 100 mm; where nothing is sewn, no zipper is missing."""
+    robot = plush_robot(drawn_body(WIDE), [(0, 0), (40, 0)])
+    units = winch_units(robot, PartOptions(), MOTORS[0])
+    demand = Demand(poses=(), tensions=np.zeros(1), torques=np.zeros(1), taken=np.zeros((1, 2)))
+    plan = make_plan(robot, demand, units=units)
+    assert find_passage_warnings(plan) == ()
+    for reach, told in ((30.0, 0), (0.0, 1)):
+        sewn = change_plan(plan, pattern=plush_pattern(robot, options=PatternOptions(opening_reach=reach)))
+        assert len(find_passage_warnings(sewn)) == told
+    assert "has no zipper to pass through (minimum" in find_passage_warnings(sewn)[0]
+    assert find_open_seam(sewn) > 0
