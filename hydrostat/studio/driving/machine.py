@@ -44,7 +44,7 @@ _MIN_SPEED_SHARE = 0.1
 
 
 EQUILIBRIUM_TOLERANCE = 3e-4
-"""How far a node may be from equilibrium while it moves, in sizes of the body: less than a pixel."""
+"""Largest distance of a node from equilibrium while it moves, in sizes of the body: less than a pixel."""
 
 
 class Follower:
