@@ -176,6 +176,8 @@ def print_poses(network: "Network", seconds: float) -> tuple[str, ...]:
     for reached in network.ik_results:
         if words := str(find_crossings(robot.body.mesh, reached.pose.nodes)):
             print(f"{reached.pose_target.name}: {words}")
+        if words := reached.pose.squeezed_corners:
+            print(f"warning: {reached.pose_target.name}: {words}")
         if words := unconstrained_motion(reached):
             print(f"{reached.pose_target.name}: {words}")
     corrected = corrected_error(network)

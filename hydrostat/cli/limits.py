@@ -21,12 +21,12 @@ def print_far_targets(robot: "Robot", poses: "Iterable[PoseTarget]") -> None:
 
 
 def print_exceeded(pose: "Equilibrium", indent: str = "") -> None:
-    """Print strain beyond a material's measured range, and lines that would break."""
+    """Print strain beyond a material's measured range, elements held open, and lines that would break."""
     from hydrostat.fabrication import find_weak_lines
 
     for reason in find_weak_lines(pose.robot, pose.tensions):
         print(f"{indent}error: {reason}")
-    if words := pose.overstrain:
+    for words in filter(None, (pose.squeezed_corners, pose.overstrain)):
         print(f"{indent}warning: {words}")
 
 

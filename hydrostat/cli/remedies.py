@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from hydrostat.fabrication import KitOptions
     from hydrostat.robot import Robot
 
-_SHORT_SEARCH = 600.0  # longest search that its time limit ended and that more time may help [s]: assumed
+_MAX_SHORT_SEARCH = 600.0  # longest search that its time limit ended and that more time may help [s]: assumed
 _SILICONE = "mold of silicone"  # in reasons that a mold of silicone does not have
 _PRINT = "(--mould printed)"  # in reasons that a printed mold does not have
 
@@ -116,7 +116,7 @@ def design_remedy(
         options = kit_options(network, budget)
         return kit_remedy(network.robot, out / "robot", out / "kit", options=options, reasons=reasons)
     asked = network.request
-    if not network.complete and asked.seconds is not None and asked.seconds <= _SHORT_SEARCH:
+    if not network.complete and asked.seconds is not None and asked.seconds <= _MAX_SHORT_SEARCH:
         count = f"--winches {asked.winches} --cables {asked.cables} --time {4 * asked.seconds:g}s"
         return f"hydrostat design {quote(str(source))} {count}{spend} --out {quote(str(out))}"
     found = len(network.robot.winches), len(network.robot.cables)

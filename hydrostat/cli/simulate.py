@@ -34,6 +34,9 @@ if TYPE_CHECKING:
     from hydrostat.simulation import ContractionProfile, Equilibrium, Motion, SensorReader, Simulation
 
 
+_TIME_STEP, _RAMP = "5ms", "0.5s"
+
+
 def simulate(
     robot: RobotFolder,
     out: OutFolder,
@@ -50,8 +53,13 @@ def simulate(
         str | None,
         typer.Option(metavar="TIME", help="Simulated time.", show_default="length of --ramp or --play, at least 1 s"),
     ] = None,
-    step: Annotated[str, typer.Option("--time-step", metavar="TIME", help="Maximum time step.")] = "5ms",
-    ramp: Annotated[str, typer.Option(metavar="TIME", help="Time over which the winches reach their target.")] = "0.5s",
+    step: Annotated[
+        str | None, typer.Option("--time-step", metavar="TIME", help="Maximum time step.", show_default=_TIME_STEP)
+    ] = None,
+    ramp: Annotated[
+        str | None,
+        typer.Option(metavar="TIME", help="Time over which the winches reach their target.", show_default=_RAMP),
+    ] = None,
     play: Annotated[
         Path | None,
         typer.Option(metavar="FILE.csv", help="Controls over time: columns time_s, WINCH ... [mm], DRIVE_deg."),
@@ -88,18 +96,22 @@ def simulate(
     if forces and (dynamic or timeout is not None):
         raise InputError(f"--pull: not available with {'--dynamic' if dynamic else '--timeout'}. Remove one of them.")
     driven = moves(loaded, move)
-    if dynamic and jacobian:
-        raise InputError("--jacobian: not available with --dynamic. Remove one of them.")
-    if not dynamic and (play is not None or duration is not None):
-        raise InputError(f"{'--duration' if play is None else '--play'}: needs --dynamic. Add it.")
-    if dynamic and timeout is not None:
-        raise InputError("--timeout: not available with --dynamic. Remove one of them.")
+    static = {"--jacobian": jacobian or None, "--timeout": timeout}
+    _check_mode(dynamic, static, {"--play": play, "--duration": duration, "--time-step": step, "--ramp": ramp})
     limit = parse_optional("--timeout", timeout, TIME)
     with print_profile(profile, "preparing"):
         simulation = prepare_physics(loaded)
     if dynamic:
         with print_profile(profile, "simulating"), result_folder(out) as folder:
-            files = _move(simulation, {**given, **driven}, folder, duration=duration, step=step, ramp=ramp, play=play)
+            files = _move(
+                simulation,
+                {**given, **driven},
+                folder,
+                duration=duration,
+                step=step or _TIME_STEP,
+                ramp=ramp or _RAMP,
+                play=play,
+            )
         print("Wrote " + ", ".join(str(out / file.relative_to(folder)) for file in files))
         return
     began = time.process_time()
@@ -129,6 +141,14 @@ def simulate(
             (out / name).unlink(missing_ok=True)
         print("note: no equilibrium was found: pose.json and pose.png say so, pose.vtu is not written")
         raise typer.Exit(1)
+
+
+def _check_mode(dynamic: bool, static: Mapping[str, object], timed: Mapping[str, object]) -> None:
+    """Reject options of the other kind of simulation that are given, i.e. not None."""
+    for name, value in (static if dynamic else timed).items():
+        if value is not None:
+            fix = "not available with --dynamic. Remove one of them." if dynamic else "needs --dynamic. Add it."
+            raise InputError(f"{name}: {fix}")
 
 
 def _solve(
@@ -205,9 +225,7 @@ def _move(
     seconds = parse_optional("--duration", duration, TIME) or max(float(profile.times[-1]), 1.0)
     dt = positive("--time-step", step, TIME)
     if dt > seconds:
-        raise InputError(
-            f"--time-step {step}: longer than the simulated time ({seconds:g} s). Allowed: at most {seconds:g}s."
-        )
+        raise InputError(f"--time-step {step}: longer than the simulated time ({seconds:g} s). Allowed: at most that.")
     start = simulation.motion_at_rest(_first_pose(simulation, profile) if rests_at_first(simulation.robot) else None)
     began = time.process_time()
     with progress_bar() as progress:

@@ -80,11 +80,12 @@ class Equilibrium(Tabular):
         if self.result.converged and not self.result.stable:
             told.append("unstable equilibrium (saddle point)")
         told.append(str(find_crossings(self.robot.body.mesh, self.nodes)))
-        told.append(self._warn_of_corners())
+        told.append(self.squeezed_corners)
         return (*filter(None, told), *([self.overstrain] if self.overstrain else []))
 
-    def _warn_of_corners(self) -> str:
-        """Warning of quadratic elements that are held open by the barrier against inversion."""
+    @property
+    def squeezed_corners(self) -> str:
+        """Warning of quadratic elements that are held open by the barrier against inversion; empty if none is."""
         mesh = self.robot.body.mesh
         pushed = [] if mesh.quadratic is None else pushed_elements(mesh.nodes, mesh.quadratic, self.nodes)
         if not len(pushed):

@@ -8,7 +8,7 @@ import pytest
 from builders import box_mesh, gallery_robot, mesh_body
 
 from hydrostat.geometry import Mesh, Surface, contour, write_ply
-from hydrostat.robot import Body, Cable, Marker, Mount, Pin, Robot, SurfaceSketch, Winch, find_risks
+from hydrostat.robot import Body, BodyPart, Cable, Marker, Mount, Pin, Robot, SurfaceSketch, Winch, find_risks
 
 LENGTH, SIDE = 0.12, 0.04
 
@@ -115,6 +115,18 @@ def test_line_between_rigid_parts_runs_free() -> None:
     assert not any("leaves" in risk for risk in find_risks(spine))
     soft = replace(spine, body=spine.body.with_parts(()), rods=())
     assert any("leaves" in risk for risk in find_risks(soft))
+
+
+@pytest.mark.parametrize("ends", [(45, 75), (48, 74)])
+def test_line_across_a_wide_gap_between_rigid_parts_leaves_the_body(ends: tuple[int, int]) -> None:
+    """Oracle: the U above with rigid legs; its gap of 20 mm is a sixth of its size, a free line may span 15 %."""
+    legs = [
+        BodyPart(name=name, shape="box", at=(low, 0.0, 0.021), to=(high, SIDE, SIDE), density=1240.0)
+        for name, low, high in (("left", 0.0, 0.049), ("right", 0.071, LENGTH))
+    ]
+    robot = solid_robot(route=((10, 20, 30), (ends[0], 20, 30), (ends[1], 20, 30), (110, 20, 30)))
+    risks = find_risks(replace(robot, body=valley_body().with_parts(legs)))
+    assert any("leaves the body by 10" in risk or "leaves the body by 9" in risk for risk in risks)
 
 
 def test_world_winch_may_come_in_through_the_surface() -> None:

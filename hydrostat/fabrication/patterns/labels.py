@@ -116,7 +116,7 @@ def _boxes(centers: np.ndarray, width: float, height: float, clearance: float = 
 _NAMES = (4.0, 3.0)
 _TITLES = (8.0, 6.0, 5.0, 4.0)  # heights of letters, the best first [mm]
 _LETTER = 3.0  # height of the letter at a notch [mm]
-_LABEL_DISTANCE = 4.0  # maximum distance of a label without a line to its place [mm]
+_MAX_LABEL_DISTANCE = 4.0  # maximum distance of a label without a line to its place [mm]
 
 
 class PanelLabels:
@@ -250,10 +250,10 @@ class PanelLabels:
             lettering = Lettering(text, height)
             middle = self._space.beside(at, lettering.width, height, gap=gap)
             choices.append((lettering, middle, _to_label(at, middle, lettering)))
-        near = (choice for choice in choices if np.linalg.norm(choice[2]) < gap + _LABEL_DISTANCE)
+        near = (choice for choice in choices if np.linalg.norm(choice[2]) < gap + _MAX_LABEL_DISTANCE)
         lettering, middle, way = next(near, choices[-1])
         self._write(lettering, middle)
-        if np.linalg.norm(way) >= gap + _LABEL_DISTANCE:
+        if np.linalg.norm(way) >= gap + _MAX_LABEL_DISTANCE:
             leader = _leader(at, way, gap)
             self._shapes.append(leader)
             self._space.take_line(leader)

@@ -1,5 +1,6 @@
 """`Opening`: the slit in the back with its zipper, through which winches are reached (R10)."""
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
@@ -120,7 +121,8 @@ def opening_at(
     if not len(winches) or not reach or room.is_empty:
         return None
     center = shapely.shortest_line(room, shapely.Point(winches.mean(axis=0))).interpolate(0.0)
-    off = [shapely.Point(hole.center).buffer(hole.radius + options.cloth + _PLACKET) for hole in pinholes]
+    corner = math.sqrt(2) * _PLACKET  # from the end of the slit to a corner of its box
+    off = [shapely.Point(hole.center).buffer(hole.radius + options.cloth + corner) for hole in pinholes]
     room = room.difference(shapely.union_all(off))
     row = np.linalg.svd(winches - winches.mean(axis=0))[2][0] if len(winches) > 1 else np.array([1.0, 0.0])
     wanted = 2 * (np.abs((winches - winches.mean(axis=0)) @ row).max() + reach)

@@ -100,7 +100,7 @@ def _is_printable(letter: str) -> bool:
     return True
 
 
-_SENTENCE, _MAX_SENTENCES = 640, 7  # longest sentence in letters, and most sentences
+_MAX_SENTENCE_LETTERS, _MAX_SENTENCES = 640, 7  # longest sentence in letters, and most sentences
 
 _PLACE = re.compile(r"\[[^\]]*\]")
 _CLOTH = re.compile(r"\b(cloth|seam|felt|fabric|snip|notch|skin)", re.IGNORECASE)
@@ -111,7 +111,7 @@ def note_lines(problems: tuple[str, ...], warnings: tuple[str, ...], robot: Robo
     """Return problems first, then warnings on motors, on fits, on cloth, and the number of those left out."""
     ranked = (*merge_sentences(problems), *sorted(merge_sentences(warnings), key=_rank))
     ordered = [_mark_winches(in_words(words), robot) for words in ranked]
-    shown = [shorten_text(sentence(words), _SENTENCE) for words in ordered[:_MAX_SENTENCES]]
+    shown = [shorten_text(sentence(words), _MAX_SENTENCE_LETTERS) for words in ordered[:_MAX_SENTENCES]]
     if len(ordered) > _MAX_SENTENCES:
         shown.append(f"… and {len(ordered) - _MAX_SENTENCES} more in manifest.json")
     return shown

@@ -195,7 +195,7 @@ class InverseProblem:
         values = np.where(slack, np.minimum(wanted, edge), state.values)
         direct = self._direct(state.posture)[:, slack] * self.bounds.span[slack]
         if direct.any():
-            matrix = np.vstack([direct, _MIN_WEIGHT * np.eye(direct.shape[1])])
+            matrix = np.vstack([direct, _REGULARIZATION_WEIGHT * np.eye(direct.shape[1])])
             right = np.concatenate([-state.residual, np.zeros(direct.shape[1])])
             up = (np.minimum(edge, self.bounds.high) - state.values)[slack] / self.bounds.span[slack]
             down = (state.values - self.bounds.low)[slack] / self.bounds.span[slack]
@@ -290,10 +290,10 @@ def effort_weight(residual: Rows, size: float, most: float) -> float:
     """Weight of the effort where so much is left [m], of a body of a size [m]: at most `most`."""
     error = float(np.sqrt(residual @ residual)) / size
     share = 0.1  # weight of the effort, as a share of the error in sizes of the body
-    return max(min(most, share * error), _MIN_WEIGHT)
+    return max(min(most, share * error), _REGULARIZATION_WEIGHT)
 
 
-_MIN_WEIGHT = 1e-8  # of the effort; enough to keep the linearized problem well posed
+_REGULARIZATION_WEIGHT = 1e-8  # of the effort; enough to keep the linearized problem well posed
 
 
 def _full_tension(simulation: Simulation) -> float:

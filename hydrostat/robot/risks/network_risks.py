@@ -98,6 +98,8 @@ MIN_COVER = 0.003  # a cable nearer to the edge or the surface than this [m] tea
 SEWN_DEPTH = 0.004  # a point of a cable at most so deep in a body of foam [m] is sewn to its skin
 _STEP = 0.5 * MIN_COVER  # distance of the places at which a cable is looked at [m]
 _MAX_STEPS = 400  # places on one segment
+MAX_FREE_SHARE = 0.15
+"""Length of a line that may run free from one rigid part to the next, as a share of the body's size."""
 
 
 def cable_risks(robot: Robot) -> Iterator[str]:
@@ -156,15 +158,16 @@ def _leaving(robot: Robot) -> Iterator[Risk]:
 
 
 def _spans_rigid_parts(body: Body, points: Points) -> Bool[np.ndarray, " segments"]:
-    """True for segments from rigid part to rigid part, such as disks of a spine: the line runs free between them."""
-    rigid = np.array([False, *(part.is_rigid for part in body.parts)])[body.element_materials]
-    if not rigid.any():
-        return np.zeros(len(points) - 1, dtype=bool)
-    in_part = np.zeros(len(body.mesh.nodes), dtype=bool)
-    in_part[body.mesh.elements[rigid]] = True
-    anchors = locate(body.mesh, points)
-    held = np.all(in_part[anchors.stencils] | (anchors.weights < 1e-9), axis=1)
-    return held[:-1] & held[1:]
+    """True for short segments from one rigid part to another, such as disks of a spine: the line runs free there."""
+    anchors, parts = locate(body.mesh, points), np.zeros(len(points), dtype=int)
+    for index, part in enumerate(body.parts, start=1):
+        if part.is_rigid:
+            in_part = np.zeros(len(body.mesh.nodes), dtype=bool)
+            in_part[body.mesh.elements[body.element_materials == index]] = True
+            parts[np.all(in_part[anchors.stencils] | (anchors.weights < 1e-9), axis=1)] = index
+    lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    apart = (parts[:-1] > 0) & (parts[1:] > 0) & (parts[:-1] != parts[1:])
+    return apart & (lengths <= MAX_FREE_SHARE * body.mesh.size)
 
 
 def _near_the_surface(robot: Robot) -> Iterator[Risk]:
