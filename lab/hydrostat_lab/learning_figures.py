@@ -102,7 +102,7 @@ def draw_costs(
         axes.plot(across, up, color=color, linestyle=dashes, linewidth=1.4, marker="o", markersize=5, label=name)
     _logarithmic(axes, used, missed)
     left, lower, _, tall = axes.get_position().bounds
-    axes.set_position((left, lower, 0.7 - left, tall))
+    axes.set_position((left, lower, 0.64 - left, tall))
     axes.legend(frameon=False, fontsize=8, labelcolor=Color.INK, loc="upper left", bbox_to_anchor=(1.0, 1.0))
     return figure
 
