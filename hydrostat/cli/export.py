@@ -10,6 +10,8 @@ from hydrostat.cli.waiting import prepare_physics, progress_bar, read_robot
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
+    from hydrostat.export import MjcfTuning
+    from hydrostat.progress import Progress
     from hydrostat.robot import Robot
 
 
@@ -42,6 +44,8 @@ def export(
     """
     if not mjcf and not usd:
         raise InputError("export needs --mjcf or --usd, or both")
+    if 0 < fit_poses < 3:
+        raise InputError(f"--fit-poses {fit_poses}: too few poses. Allowed: 0, or 3 to 1000. Write --fit-poses 20.")
     if fit_poses and not (mjcf and trials):
         raise InputError("--fit-poses needs --mjcf and --trials, which find the share of the travel to fit")
     require_folder(out)
@@ -63,7 +67,7 @@ def _mjcf(robot: "Robot", trials: int, fit: int) -> str:
     """Model with its error, which is also printed."""
     from importlib.util import find_spec
 
-    from hydrostat.export import find_omissions, fit_mjcf, measure_mjcf, mjcf_text
+    from hydrostat.export import find_omissions, mjcf_text
     from hydrostat.version import __version__, install_command
 
     mjcf_text(robot)  # rejects robots before poses are measured
@@ -71,19 +75,14 @@ def _mjcf(robot: "Robot", trials: int, fit: int) -> str:
     if find_spec("mujoco") is None and not fit:
         lines[0] += f": {install_command('export')}"
     elif trials:
-        with progress_bar() as progress:
-            found = measure_mjcf(robot, trials, progress=progress)
-            share, lines = found.range_share, [found.describe()]
-            if fit and found.share is not None:
-                fitted = fit_mjcf(robot, fit, share=share, progress=progress)
-                tuning = fitted.tuning if fitted.is_worth_it else None
-                lines = [
-                    f"unfitted: {lines[0]}",
-                    f"fit: {fitted.describe()}",
-                    *([tuning.describe(robot)] if tuning else []),
-                ]
-    omitted = find_omissions(robot)
-    lines = [*lines, *([f"left out: {', '.join(omitted)}"] if omitted else [])]
+        share, lines, tuning = _measure(robot, trials, fit)
+    omitted = ", ".join(find_omissions(robot))
+    if omitted:
+        lines.append(f"left out: {omitted}")
+    if omitted and tuning:
+        lines.append(
+            "warning: the fitted numbers also compensate for what is left out. They are not those of a material"
+        )
     for line in lines:
         print(f"MuJoCo model: {line}")
     controls = "controls: contraction of the winch of each cable [m]"
@@ -94,6 +93,41 @@ def _mjcf(robot: "Robot", trials: int, fit: int) -> str:
     return mjcf_text(
         robot, remarks=[f"hydrostat {__version__}", *lines, controls, *winches], range_share=share, tuning=tuning
     )
+
+
+def _measure(robot: "Robot", trials: int, fit: int) -> tuple[float, list[str], "MjcfTuning | None"]:
+    """Share of the travel, lines with errors, and fitted numbers if they are used."""
+    from hydrostat.export import measure_mjcf
+
+    with progress_bar() as progress:
+        found = measure_mjcf(robot, trials, progress=progress)
+        if not fit:
+            return found.range_share, [found.describe()], None
+        if found.share is None:
+            reason = f"no trial settled at {100 * found.range_share:g} % of the travel"
+            return found.range_share, [found.describe(), f"not fitted: {reason}"], None
+        lines, tuning = _fit(robot, trials, fit, found.share, progress)
+    return found.share, [f"settled, unfitted: {found.describe()}", *lines], tuning
+
+
+def _fit(
+    robot: "Robot", trials: int, fit: int, share: float, progress: "Progress"
+) -> tuple[list[str], "MjcfTuning | None"]:
+    """Lines with errors of the fit, and its numbers if they are used."""
+    from hydrostat.export import fit_mjcf, measure_mjcf
+
+    try:
+        fitted = fit_mjcf(robot, fit, share=share, progress=progress)
+    except InputError as error:  # the measured model is still worth writing
+        return [f"warning: not fitted: {error}"], None
+    lines = fitted.describe()
+    if not fitted.is_worth_it:
+        return lines, None
+    settled = measure_mjcf(robot, trials, tuning=fitted.tuning, shares=(share,), progress=progress)
+    if settled.share is None:
+        reason = f"the fitted model did not settle at {100 * share:g} % of the travel"
+        return [*lines, f"warning: unfitted numbers kept: {reason}"], None
+    return [*lines, f"settled, fitted: {settled.describe()}", fitted.tuning.describe(robot)], fitted.tuning
 
 
 def _usd(robot: "Robot") -> str:

@@ -8,8 +8,9 @@ if TYPE_CHECKING:
     from hydrostat.export.fit_mjcf import fit_mjcf
     from hydrostat.export.measure_mjcf import measure_mjcf
     from hydrostat.export.mjcf import find_omissions, mjcf_text
+    from hydrostat.export.mjcf_tuning import MjcfTuning
     from hydrostat.export.usd import usd_text
 
-__all__ = ["find_omissions", "fit_mjcf", "measure_mjcf", "mjcf_text", "usd_text"]
+__all__ = ["MjcfTuning", "find_omissions", "fit_mjcf", "measure_mjcf", "mjcf_text", "usd_text"]
 
 open_package(__name__)

@@ -5,7 +5,7 @@ from importlib.util import find_spec
 
 import numpy as np
 
-from hydrostat.arrays import Float, Int, Nodes, Points, Vector
+from hydrostat.arrays import Float, Int, Nodes, Vector
 from hydrostat.errors import InputError
 from hydrostat.export.mjcf import MjcfModel
 from hydrostat.export.mjcf_statics import MjcfStatics
@@ -17,30 +17,59 @@ from hydrostat.sobol import draw_sobol
 from hydrostat.units import plural
 from hydrostat.version import install_command
 
-WORTH = 0.95  # a fit is kept if the error of the held-out poses falls below this share
-HELD_OUT = 5  # one held-out pose for so many that are fitted, but at least
-MIN_HELD_OUT = 12
-LOWER, UPPER = (-1.0, -0.15, -0.3), (1.0, 0.15, 0.3)  # limits: ln of Young's factor, Poisson's shift, ln of gains
-STEPS = (0.1, 0.02, 0.02)  # differences for the Jacobian, likewise
+MIN_GAIN = 0.05  # a fit is kept if it lowers the error of the held-out poses by this share or more
+MIN_POSES = 3  # fewest fitted poses
+NUM_HELD_OUT = 12  # held-out draws, the same for every number of fitted poses
+MIN_VALUES, MAX_VALUES = (-1.0, -0.15, -0.3), (1.0, 0.15, 0.3)  # ln of Young's factor, Poisson's shift, ln of gains
+VALUE_STEPS = (0.1, 0.02, 0.02)  # differences of these values in the least squares
+CONTRACTION_STEP = 0.01  # difference of contractions for the Jacobian of markers, share of their range
 MAX_STEPS = 4  # most steps of the least squares
 
-Markers = Float[np.ndarray, "poses markers dim"]  # places of all markers in some poses [m]
+Markers = Float[np.ndarray, "poses markers dim"]  # positions of all markers in some poses [m]
+
+
+@dataclass(frozen=True, kw_only=True)
+class MjcfPoseErrors:
+    """Errors of a MuJoCo model in held-out poses.
+
+    Attributes:
+        rms: root mean square of the distances of the markers from those of hydrostat [m].
+        median: median of these distances [m].
+        largest: largest of these distances [m].
+        jacobian: relative error of the Jacobian of markers by contractions, over all poses [-].
+        jacobian_median: median of the relative errors of single poses [-].
+        jacobian_largest: largest relative error of a single pose [-].
+    """
+
+    rms: float
+    median: float
+    largest: float
+    jacobian: float
+    jacobian_median: float
+    jacobian_largest: float
+
+    def describe(self) -> str:
+        """Phrase with the figures."""
+        return (
+            f"markers off by {1e3 * self.rms:.2g} mm rms, {1e3 * self.median:.2g} mm median, "
+            f"{1e3 * self.largest:.2g} mm at most, Jacobian by {100 * self.jacobian:.2g} % rms, "
+            f"{100 * self.jacobian_median:.2g} % median, {100 * self.jacobian_largest:.2g} % at most"
+        )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MjcfFit:
-    """Fit of a MuJoCo model, judged on poses that it did not use.
+    """Fit of a MuJoCo model, judged on poses that are not fitted. They also decide whether it is used.
 
     Attributes:
         tuning: fitted numbers.
         share: share of the travel of each winch up to which contractions were drawn.
         num_poses: number of fitted poses.
-        num_held_out: number of held-out poses.
-        num_lost: number of drawn poses that have no equilibrium in MuJoCo, fitted or not: they count nowhere.
-        before: root mean square of the distances of the markers from those of hydrostat, held out, not fitted [m].
-        after: the same, fitted [m].
-        jacobian_before: relative error of the Jacobian of markers by contractions, held out, not fitted [-].
-        jacobian_after: the same, fitted [-].
+        num_held_out: number of held-out poses that both models have: the errors are those of these poses.
+        num_left_out: number of drawn poses that have no equilibrium in the unfitted model, fitted or held out.
+        num_lost: number of held-out poses that one model loses, there or one step of a contraction away.
+        before: errors of the unfitted model.
+        after: errors of the fitted model.
         travel: root mean square of the distances of the markers from rest in the held-out poses [m].
     """
 
@@ -48,38 +77,43 @@ class MjcfFit:
     share: float
     num_poses: int
     num_held_out: int
+    num_left_out: int
     num_lost: int
-    before: float
-    after: float
-    jacobian_before: float
-    jacobian_after: float
+    before: MjcfPoseErrors
+    after: MjcfPoseErrors
     travel: float
 
     @property
     def is_worth_it(self) -> bool:
-        """True if the error of the held-out poses falls by 5 % or more."""
-        return self.after < WORTH * self.before
+        """True if the rms error of the held-out poses falls by 5 % or more."""
+        return self.after.rms < (1 - MIN_GAIN) * self.before.rms
 
-    def describe(self) -> str:
-        """Sentence with the figures."""
-        told = (
-            f"markers off by {1e3 * self.before:.2g} mm rms unfitted, {1e3 * self.after:.2g} mm fitted, of "
-            f"{1e3 * self.travel:.2g} mm rms, in {plural(self.num_held_out, 'held-out pose')} up to "
-            f"{100 * self.share:g} % of the travel; Jacobian off by {100 * self.jacobian_before:.2g} % and "
-            f"{100 * self.jacobian_after:.2g} %; fitted to {plural(self.num_poses, 'pose')}"
-        )
-        lost = f"; {plural(self.num_lost, 'drawn pose')} without equilibrium in MuJoCo" if self.num_lost else ""
-        return told + lost + ("" if self.is_worth_it else ". The fit gains nothing: the model stays unfitted")
+    def describe(self) -> list[str]:
+        """Lines with the figures."""
+        lines = [
+            f"fit: {plural(self.num_poses, 'pose')} up to {100 * self.share:g} % of the travel, and "
+            f"{plural(self.num_held_out, 'held-out pose')} that move markers by {1e3 * self.travel:.2g} mm rms",
+            f"held out, unfitted: {self.before.describe()}",
+            f"held out, fitted: {self.after.describe()}",
+        ]
+        if self.num_left_out:
+            lines.append(f"{plural(self.num_left_out, 'drawn pose')} left out: no equilibrium in MuJoCo")
+        if self.num_lost:
+            lines.append(f"{plural(self.num_lost, 'held-out pose')} lost: no equilibrium in one of the models")
+        if not self.is_worth_it:
+            lines.append(f"unfitted numbers kept: the error falls by less than {100 * MIN_GAIN:g} %")
+        return lines
 
 
-def fit_mjcf(robot: Robot, num_poses: int = 300, *, share: float = 0.25, progress: Progress | None = None) -> MjcfFit:
+def fit_mjcf(robot: Robot, num_poses: int = 20, *, share: float = 0.25, progress: Progress | None = None) -> MjcfFit:
     """Fit Young's modulus, Poisson's ratio and a gain of each winch of a MuJoCo model to poses of hydrostat.
 
-    Contractions are scrambled Sobol points up to a share of the travel. Bounded least squares on the markers.
+    Contractions are scrambled Sobol points up to a share of the travel. Bounded least squares on the markers. The
+    numbers also compensate for what the model leaves out (`find_omissions`).
 
     Args:
         robot: robot with markers and winches.
-        num_poses: number of fitted poses; a fifth as many, at least 12, are held out.
+        num_poses: number of fitted poses, 3 or more; 12 others are held out, the same for each number.
         share: share of the travel of each winch, such as `MjcfError.range_share`.
         progress: called with the evaluations of the model.
 
@@ -91,8 +125,10 @@ def fit_mjcf(robot: Robot, num_poses: int = 300, *, share: float = 0.25, progres
         raise InputError(f"MuJoCo is not installed: {install_command('export')}")
     if not robot.markers or not robot.winches:
         raise InputError("fitting a model needs a [[marker]] and a [[winch]]. Add them.")
-    if num_poses < 3 or not 0 < share <= 1:
-        raise InputError(f"a fit needs 3 poses or more and a share within 0 and 1, not {num_poses} and {share:g}")
+    if num_poses < MIN_POSES or not 0 < share <= 1:
+        raise InputError(
+            f"a fit needs {MIN_POSES} poses or more and a share within 0 and 1, not {num_poses} and {share:g}"
+        )
     return _MjcfSearch(robot, num_poses, share, progress).run()
 
 
@@ -101,57 +137,64 @@ class _MjcfSearch:
 
     def __init__(self, robot: Robot, num_poses: int, share: float, progress: Progress | None) -> None:
         self._robot, self._simulation, self._share, self._progress = robot, Simulation(robot), share, progress
-        travels = share * np.array([winch.travel for winch in robot.winches])
-        num_drawn = num_poses + max(MIN_HELD_OUT, num_poses // HELD_OUT)
-        self._steps = 0.01 * travels  # differences of contractions
-        self._done, own = 0, MjcfTuning.none(robot)
+        self._travels = share * np.array([winch.travel for winch in robot.winches])
+        count = len(self._travels)
+        inside = 2 * CONTRACTION_STEP  # held-out poses stay as far within the range, which ends contractions
+        draws = [
+            draw_sobol(count, num_poses, np.random.default_rng(0)),
+            inside + (1 - 2 * inside) * draw_sobol(count, NUM_HELD_OUT, np.random.default_rng(1)),
+        ]
+        self._done, self._num_evaluations = 0, 0
         self._poses: list[tuple[Vector, Equilibrium]] = []
-        self._places: list[Nodes] = []  # nodes of the MuJoCo model, from which searches begin
-        statics = MjcfStatics(robot, self._simulation, own)
-        for number, contractions in enumerate(draw_sobol(len(travels), num_drawn, np.random.default_rng(0)) * travels):
+        self._nodes: list[Nodes] = []  # nodes of the MuJoCo model, from which searches begin
+        self._fitted, self._held_out = self._draw(np.concatenate(draws) * self._travels, num_poses)
+        self._num_left_out = num_poses + NUM_HELD_OUT - len(self._fitted) - len(self._held_out)
+        if len(self._fitted) < max(MIN_POSES, num_poses / 2) or len(self._held_out) < NUM_HELD_OUT / 2:
+            raise InputError(
+                f"{robot.name}: {self._num_left_out} of {num_poses + NUM_HELD_OUT} poses have no equilibrium in "
+                "MuJoCo. Fit a smaller share of the travel."
+            )
+        fitting = len(self._fitted) * (1 + MAX_STEPS * (count + 4))
+        self._num_evaluations = fitting + 2 * (2 * count + 1) * len(self._held_out)
+
+    def _draw(self, draws: Vector, num_poses: int) -> tuple[Int[np.ndarray, " poses"], Int[np.ndarray, " poses"]]:
+        """Solve poses in both programs; return the numbers of those to fit and to hold out."""
+        statics = MjcfStatics(self._robot, self._simulation, MjcfTuning.none(self._robot))
+        fitted: list[int] = []
+        for number, contractions in enumerate(draws):
             pose = self._simulation.solve(contractions, strict=False)
             found = statics.find_markers(pose, contractions, pose.nodes) if pose.result.converged else None
-            if found is not None:
+            # Searches begin from nodes that were found: the same search must end there as well.
+            again = statics.find_markers(pose, contractions, found[1]) if found is not None else None
+            if again is not None:
+                if number < num_poses:
+                    fitted.append(len(self._poses))
                 self._poses.append((contractions, pose))
-                self._places.append(found[1])
-            if progress is not None:
-                progress("drawing poses", number + 1, num_drawn)
-        self._num_lost = num_drawn - len(self._poses)
-        count = round(len(self._poses) * num_poses / num_drawn)
-        if count < 3 or self._num_lost > num_drawn // 2:
-            raise InputError(
-                f"{robot.name}: {self._num_lost} of {num_drawn} poses have no equilibrium in MuJoCo. "
-                "Fit a smaller share of the travel."
-            )
-        unknowns = len(travels) + 2
-        self._most = count * (1 + MAX_STEPS * (unknowns + 2)) + 2 * (len(travels) + 1) * (len(self._poses) - count)
-        self._fitted, self._held_out = np.arange(count), np.arange(count, len(self._poses))
+                self._nodes.append(again[1])
+            if self._progress is not None:
+                self._progress("drawing poses", number + 1, len(draws))
+        return np.arange(len(fitted)), np.arange(len(fitted), len(self._poses))
 
     def run(self) -> MjcfFit:
         from scipy.optimize import least_squares  # Imported here: seldom needed.
 
-        count, wide = len(self._robot.winches), [0, 1, *[2] * len(self._robot.winches)]
-        lower, upper, steps = np.array(LOWER)[wide], np.array(UPPER)[wide], np.array(STEPS)[wide]
+        lower, upper, steps = self._bounds()
+        own_values = np.zeros(len(steps))
+        own = np.nan_to_num(self._differences(own_values))  # finite in poses that were drawn twice
+
+        def residuals(values: Vector) -> Vector:
+            trial = self._differences(values)
+            return np.where(np.isnan(trial), own, trial)  # a lost pose counts as unfitted
 
         def differ(values: Vector) -> Float[np.ndarray, "residuals values"]:
             base, columns = self._differences(values), []
-            for step, unit in zip(np.where(values + steps < upper, steps, -steps), np.eye(count + 2), strict=True):
+            for step, unit in zip(np.where(values + steps < upper, steps, -steps), np.eye(len(steps)), strict=True):
                 columns.append((self._differences(values + step * unit) - base) / step)
-            return np.nan_to_num(np.stack(columns, axis=1))  # poses without equilibrium say nothing
-
-        model = MjcfModel(self._robot, None, self._simulation)
-        ratios = [model.moduli(material)[2] for material in self._robot.body.materials]
-        lower[1], upper[1] = max(lower[1], -min(ratios) - 1e-3), min(upper[1], MAX_POISSON - max(ratios))
-        upper[1] = max(upper[1], 1e-3)
-        own_differences = self._differences(np.zeros(count + 2))
-
-        def differences(values: Vector) -> Vector:
-            trial = self._differences(values)
-            return np.where(np.isnan(trial), own_differences, trial)  # a lost pose gains nothing
+            return np.nan_to_num(np.stack(columns, axis=1))  # poses without equilibrium have no slope
 
         found = least_squares(
-            differences,
-            np.zeros(count + 2),
+            residuals,
+            own_values,
             differ,  # pyright: ignore[reportArgumentType] (a function)
             bounds=(lower, upper),
             x_scale=steps,
@@ -159,66 +202,94 @@ class _MjcfSearch:
             xtol=1e-2,
             max_nfev=MAX_STEPS,
         )
-        own, fitted = MjcfTuning.none(self._robot), _tuning(found.x)
-        wanted, rest = (
-            self._markers(self._held_out),
-            self._simulation.marker_anchors.positions(self._robot.body.mesh.nodes),
-        )
-        (before, jacobian_before), (after, jacobian_after) = self._judge(own), self._judge(fitted)
-        return MjcfFit(
-            tuning=fitted,
-            share=self._share,
-            num_poses=len(self._fitted),
-            num_held_out=len(self._held_out),
-            num_lost=self._num_lost,
-            before=before,
-            after=after,
-            jacobian_before=jacobian_before,
-            jacobian_after=jacobian_after,
-            travel=_rms(wanted - rest),
-        )
+        return self._judge(_tuning(found.x))
+
+    def _bounds(self) -> tuple[Vector, Vector, Vector]:
+        """Lower and upper bounds of all values, and their differences."""
+        kinds = [0, 1, *[2] * len(self._robot.winches)]
+        lower, upper, steps = np.array(MIN_VALUES)[kinds], np.array(MAX_VALUES)[kinds], np.array(VALUE_STEPS)[kinds]
+        model = MjcfModel(self._robot, None, self._simulation)
+        ratios = [model.moduli(material)[2] for material in self._robot.body.materials]
+        lower[1], upper[1] = max(lower[1], -min(ratios) - 1e-3), min(upper[1], MAX_POISSON - max(ratios))
+        upper[1] = max(upper[1], 1e-3)
+        return lower, upper, steps
 
     def _differences(self, values: Vector) -> Vector:
         """Differences of all markers in the fitted poses [m]; nan in poses without equilibrium."""
         return (self._settle(_tuning(values), self._fitted) - self._markers(self._fitted)).ravel()
 
-    def _judge(self, tuning: MjcfTuning) -> tuple[float, float]:
-        """Error of the markers [m] and relative error of their Jacobian, in held-out poses."""
-        found = self._settle(tuning, self._held_out)
-        wanted, missed, size = self._markers(self._held_out), [], []
-        for winch, step in enumerate(self._steps):
-            moved = self._settle(tuning, self._held_out, step * np.eye(len(self._steps))[winch])
-            ours = np.array([self._respond(number, winch) for number in map(int, self._held_out)])
-            missed.append((moved - found) / step - ours)
-            size.append(ours)
-        known = np.isfinite(missed)
-        ratio = np.sqrt(np.mean(np.array(missed)[known] ** 2) / np.mean(np.array(size)[known] ** 2))
-        return (_rms(found - wanted), float(ratio)) if np.isfinite(found).all() else (np.inf, float(ratio))
+    def _judge(self, tuning: MjcfTuning) -> MjcfFit:
+        """Compare both models in the held-out poses that both have."""
+        models = [self._respond(each) for each in (MjcfTuning.none(self._robot), tuning)]
+        known = np.all(
+            [np.isfinite(each).all(axis=tuple(range(1, each.ndim))) for model in models for each in model], axis=0
+        )
+        if not known.any():
+            raise InputError(
+                f"{self._robot.name}: no held-out pose has an equilibrium in both models. "
+                "Fit a smaller share of the travel."
+            )
+        numbers = self._held_out[known]
+        wanted = self._markers(numbers)
+        jacobians = np.array([self._simulation.marker_jacobian(self._poses[number][1]) for number in numbers])
+        before, after = (
+            _errors(markers[known] - wanted, slopes[known] - jacobians, jacobians) for markers, slopes in models
+        )
+        rest = self._simulation.marker_anchors.positions(self._robot.body.mesh.nodes)
+        return MjcfFit(
+            tuning=tuning,
+            share=self._share,
+            num_poses=len(self._fitted),
+            num_held_out=len(numbers),
+            num_left_out=self._num_left_out,
+            num_lost=len(self._held_out) - len(numbers),
+            before=before,
+            after=after,
+            travel=_rms(wanted - rest),
+        )
 
-    def _respond(self, number: int, winch: int) -> Points:
-        """Exact derivative of hydrostat's markers by a contraction, (markers, dim)."""
-        _, pose = self._poses[number]
-        return self._simulation.marker_jacobian(pose)[:, :, winch]
+    def _respond(self, tuning: MjcfTuning) -> tuple[Markers, Float[np.ndarray, "poses markers dim winches"]]:
+        """Markers in the held-out poses, and their central differences by contractions; nan where one is missing."""
+        slopes = []
+        for step in CONTRACTION_STEP * np.diag(self._travels):
+            there, back = (self._settle(tuning, self._held_out, sign * step) for sign in (1.0, -1.0))
+            slopes.append((there - back) / (2 * step.sum()))
+        return self._settle(tuning, self._held_out), np.stack(slopes, axis=-1)
 
     def _settle(self, tuning: MjcfTuning, numbers: Int[np.ndarray, " poses"], more: Vector | float = 0.0) -> Markers:
         """Markers of the model in some poses, contracted by so much more; nan where no equilibrium is found."""
         statics, found = MjcfStatics(self._robot, self._simulation, tuning), []
         for number in numbers:
             contractions, pose = self._poses[number]
-            settled = statics.find_markers(pose, contractions + more, self._places[number])
+            settled = statics.find_markers(pose, contractions + more, self._nodes[number])
             found.append(np.full((len(pose.markers), pose.nodes.shape[1]), np.nan) if settled is None else settled[0])
             self._done += 1
             if self._progress is not None:
-                self._progress("fitting MuJoCo poses", self._done, self._most)
+                self._progress("fitting MuJoCo poses", min(self._done, self._num_evaluations), self._num_evaluations)
         return np.array(found)
 
     def _markers(self, numbers: Int[np.ndarray, " poses"]) -> Markers:
-        """Markers of hydrostat in some poses, (poses, markers, dim)."""
+        """Markers of hydrostat in some poses."""
         return np.array([list(self._poses[number][1].markers.values()) for number in numbers])
 
 
 def _tuning(values: Vector) -> MjcfTuning:
     return MjcfTuning(young=float(np.exp(values[0])), poisson=float(values[1]), gains=np.exp(values[2:]))
+
+
+def _errors(offsets: Markers, missed: np.ndarray, jacobians: np.ndarray) -> MjcfPoseErrors:
+    """Errors by offsets of markers and of Jacobians, (poses, markers, dim, winches)."""
+    distances = np.linalg.norm(offsets, axis=-1)
+    squares, sizes = ((each**2).sum(axis=(1, 2, 3)) for each in (missed, jacobians))
+    single = np.sqrt(squares / sizes)
+    return MjcfPoseErrors(
+        rms=_rms(offsets),
+        median=float(np.median(distances)),
+        largest=float(distances.max()),
+        jacobian=float(np.sqrt(squares.sum() / sizes.sum())),
+        jacobian_median=float(np.median(single)),
+        jacobian_largest=float(single.max()),
+    )
 
 
 def _rms(differences: Markers) -> float:

@@ -1,6 +1,6 @@
 """`measure_mjcf`: error of the MuJoCo model of a robot against hydrostat; it needs MuJoCo."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -11,6 +11,7 @@ import numpy as np
 from hydrostat.arrays import Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.export.mjcf import mjcf_text
+from hydrostat.export.mjcf_tuning import MjcfTuning
 from hydrostat.progress import Progress
 from hydrostat.robot import Robot
 from hydrostat.simulation import Simulation
@@ -19,8 +20,8 @@ from hydrostat.units import plural
 from hydrostat.version import install_command
 
 SHARES = (1.0, 0.5, 0.25, 0.125)  # shares of the travel that are measured, until all poses settle
-RAMP, MAX_STEPS = 300, 1500  # steps in which controls grow to their values, and after which a pose has not settled
-REST_TOLERANCE = 1e-6  # largest movement of a body that stands, in one step [m]
+RAMP, MAX_STEPS = 300, 3000  # steps in which controls grow to their values, and after which a pose has not settled
+REST_TOLERANCE, REST_STEPS = 2e-7, 50  # largest movement in one step [m] of a model at rest, in so many steps in a row
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,11 +58,25 @@ class MjcfError:
         )
 
 
-def measure_mjcf(robot: Robot, num_poses: int = 5, *, progress: Progress | None = None) -> MjcfError:
+def measure_mjcf(
+    robot: Robot,
+    num_poses: int = 5,
+    *,
+    tuning: MjcfTuning | None = None,
+    shares: Sequence[float] = SHARES,
+    progress: Progress | None = None,
+) -> MjcfError:
     """Measure the MuJoCo model of a robot: markers in poses of random contractions, settled in time.
 
     Contractions are scrambled Sobol points up to a share of the travel of each winch. If an element inverts or a
     pose does not settle, the next smaller share is measured.
+
+    Args:
+        robot: robot with markers and winches.
+        num_poses: number of poses.
+        tuning: numbers of the model that differ from the robot's, found by `fit_mjcf`.
+        shares: shares of the travel, in the order in which they are tried.
+        progress: called with the number of measured poses.
 
     Raises:
         InputError: MuJoCo is not installed, no pose, a robot without markers, or one that `mjcf_text` rejects.
@@ -72,11 +87,11 @@ def measure_mjcf(robot: Robot, num_poses: int = 5, *, progress: Progress | None 
         raise InputError(f"num_poses must be 1 or more, not {num_poses}")
     if not robot.markers or not robot.winches:
         raise InputError("measuring a model needs a [[marker]] and a [[winch]]. Add them.")
-    settled = _SettledModel(robot)
+    settled = _SettledModel(robot, tuning)
     travels = np.array([winch.travel for winch in robot.winches])
     draws = draw_sobol(len(travels), num_poses, np.random.default_rng(0)) * travels
     rest = settled.simulation.marker_anchors.positions(robot.body.mesh.nodes)
-    for share in SHARES:
+    for share in shares:
         pairs = []
         for number, contractions in enumerate(share * draws):
             pose = settled.simulation.solve(contractions, strict=False)
@@ -101,12 +116,12 @@ def _rms(values: Points) -> float:
 class _SettledModel:
     """Poses of a MuJoCo model at rest."""
 
-    def __init__(self, robot: Robot) -> None:
+    def __init__(self, robot: Robot, tuning: MjcfTuning | None) -> None:
         import mujoco  # type: ignore[import-not-found]
 
         self._engine: Any = mujoco
         self.simulation = Simulation(robot)
-        self._robot, self._model = robot, mujoco.MjModel.from_xml_string(mjcf_text(robot))
+        self._robot, self._model = robot, mujoco.MjModel.from_xml_string(mjcf_text(robot, tuning=tuning))
         order = {winch.name: index for index, winch in enumerate(robot.winches)}
         self._winches = [order[cable.winch] for cable in robot.cables]
         names = [f"node_{node}" for node in range(len(robot.body.mesh.nodes))]
@@ -132,13 +147,15 @@ class _SettledModel:
 
     def _settle(self, data: Any, contractions: Vector) -> bool:
         """Step until nothing moves; return False if that does not happen."""
-        mujoco, model = self._engine, self._model
+        mujoco, model, num_still = self._engine, self._model, 0
         for step in range(MAX_STEPS):
             data.ctrl[:] = min(1.0, (step + 1) / RAMP) * contractions[self._winches]
             mujoco.mj_step(model, data)
             if not np.isfinite(data.qvel).all() or data.warning[mujoco.mjtWarning.mjWARN_BADQACC].number:
                 return False
-            if step >= RAMP and np.abs(data.qvel).max() * model.opt.timestep < REST_TOLERANCE:
+            is_slow = step >= RAMP and np.abs(data.qvel).max() * model.opt.timestep < REST_TOLERANCE
+            num_still = num_still + 1 if is_slow else 0  # an oscillation is slow where it turns
+            if num_still == REST_STEPS:
                 return True
         return False
 

@@ -10,8 +10,8 @@ from hydrostat.export.mjcf_tuning import MjcfTuning
 from hydrostat.robot import Robot
 from hydrostat.simulation import Equilibrium, Simulation
 
-STILL = 3e-6  # last step of a search that ends [m]
-SEARCHES = ((1.0, 60), (0.4, 400))  # share of each step and most steps of a search, and of the next if it fails
+REST_TOLERANCE = 3e-6  # last step of a search that ends [m]
+SEARCH_LIMITS = ((1.0, 60), (0.4, 400))  # share of each step and most steps, of a search and of the next if it fails
 
 
 class MjcfStatics:
@@ -46,7 +46,8 @@ class MjcfStatics:
         """Positions of the markers and of the nodes [m] at rest, searched from some nodes; None if none is found."""
         stiffness = pose.result.stiffness
         assert stiffness is not None
-        for share, most in SEARCHES:
+        max_pull = REST_TOLERANCE * self._tie_stiffness
+        for share, most in SEARCH_LIMITS:
             nodes, ties = begin.copy(), np.zeros(self._tie_dofs.shape)
             nodes[self._held] = self._rest[self._held]
             for _ in range(most):
@@ -57,7 +58,7 @@ class MjcfStatics:
                 if not largest < np.ptp(self._rest, axis=0).max():
                     break
                 nodes, ties = nodes + step, ties + 0.5 * pulls / self._tie_stiffness
-                if largest < share * STILL and np.abs(pulls).max(initial=0.0) < STILL * self._tie_stiffness:
+                if largest < share * REST_TOLERANCE and np.abs(pulls).max(initial=0.0) < max_pull:
                     return (self._markers(), nodes) if self._is_upright(nodes) else None
         return None
 

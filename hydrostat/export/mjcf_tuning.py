@@ -12,7 +12,7 @@ MAX_POISSON = 0.49  # largest Poisson's ratio of a model
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MjcfTuning:
-    """Numbers by which a MuJoCo model makes up for its other law of materials.
+    """Numbers that compensate for the other law of materials of a MuJoCo model.
 
     Attributes:
         young: factor of Young's modulus of each material [-].
