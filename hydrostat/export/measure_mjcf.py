@@ -87,7 +87,7 @@ def measure_mjcf(
         raise InputError(f"num_poses must be 1 or more, not {num_poses}")
     if not robot.markers or not robot.winches:
         raise InputError("measuring a model needs a [[marker]] and a [[winch]]. Add them.")
-    settled = _SettledModel(robot, tuning)
+    settled = SettledModel(robot, tuning)
     travels = np.array([winch.travel for winch in robot.winches])
     draws = draw_sobol(len(travels), num_poses, np.random.default_rng(0)) * travels
     rest = settled.simulation.marker_anchors.positions(robot.body.mesh.nodes)
@@ -113,7 +113,7 @@ def _rms(values: Points) -> float:
     return float(np.sqrt(np.mean(values**2)))
 
 
-class _SettledModel:
+class SettledModel:
     """Poses of a MuJoCo model at rest."""
 
     def __init__(self, robot: Robot, tuning: MjcfTuning | None) -> None:

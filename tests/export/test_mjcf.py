@@ -9,7 +9,8 @@ from builders import box_mesh, mesh_body, strip_robot
 
 from hydrostat.errors import InputError
 from hydrostat.export import find_omissions, mjcf_text
-from hydrostat.export.measure_mjcf import MjcfError, measure_mjcf
+from hydrostat.export.measure_mjcf import MjcfError, SettledModel, measure_mjcf
+from hydrostat.export.mjcf_statics import MjcfStatics
 from hydrostat.robot import Cable, Marker, Material, Mount, Pin, PinDrive, Robot, Winch
 from hydrostat.simulation import Simulation
 
@@ -106,3 +107,16 @@ def test_the_weight_of_a_block_bends_it_as_in_hydrostat() -> None:
     simulation = Simulation(robot)
     sag = simulation.solve({}).markers["tip"][2] - 0.025
     assert data.site("marker tip").xpos[2] - 0.025 == pytest.approx(sag, rel=0.02)
+
+
+def test_poses_settle_in_time_where_the_static_search_ends() -> None:
+    """An oscillation is slow where it turns, which must not count as rest."""
+    pytest.importorskip("mujoco")
+    robot = _with_small_strains(strip_robot(columns=12, rows=4))
+    simulation = Simulation(robot)
+    contractions = np.array([1.0, 0.3]) * [winch.travel for winch in robot.winches]
+    pose = simulation.solve(contractions)
+    found = MjcfStatics(robot, simulation).find_markers(pose, contractions, pose.nodes)
+    settled = SettledModel(robot, None).find_markers(contractions)
+    assert found is not None
+    assert settled == pytest.approx(found[0], abs=1.5e-5)
