@@ -271,7 +271,7 @@ class PowerPlan:
         return max(1, math.ceil(min(self.fuse, len(self.winches) * self.motor.stall_current) / PLUG))
 
     @property
-    def fed(self) -> tuple[int, ...]:
+    def feed_ids(self) -> tuple[int, ...]:
         """Numbers of the servos, from 1, at which the chain is fed, with as many servos after each."""
         count = min(self.feeds, len(self.winches))
         return tuple(1 + group * len(self.winches) // count for group in range(count))
@@ -317,7 +317,7 @@ class PowerPlan:
             ),
         ]
         if self.servos:
-            rows.append(("feed the chain at", list_words(f"ID {number}" for number in self.fed)))
+            rows.append(("feed the chain at", list_words(f"ID {number}" for number in self.feed_ids)))
         return Table(
             name="power",
             title="Power",

@@ -203,10 +203,10 @@ def _put_chain(canvas: Canvas, plan: PowerPlan, places: list[float], step: float
         canvas.line([[(begin, line), (other - 0.3 * step, line)]], width=Canvas.MIDDLE)
     for number, place in enumerate(places, start=1):
         _box(canvas, (place - 0.3 * step, top, place + 0.3 * step, top + 12.0), f"ID {number}", "")
-    for number in plan.fed:
+    for number in plan.feed_ids:
         if number <= len(places):
             _put_feed(canvas, places[number - 1], top)
-    words = "plus and minus go into the chain at " + list_words(f"ID {number}" for number in plan.fed)
+    words = "plus and minus go into the chain at " + list_words(f"ID {number}" for number in plan.feed_ids)
     canvas.text((canvas.width, top - 5.0), words, size=8, anchor="end", grey=0.25)
 
 

@@ -52,11 +52,11 @@ def test_ten_strong_servos_are_fed_in_several_places() -> None:
     assert plan.largest == pytest.approx(14.7)
     assert (plan.supply, plan.fuse, plan.wire) == (30.0, 25.0, (2.5, 14))
     assert plan.feeds * PLUG >= 14.7
-    gaps = np.diff((*plan.fed, 11))
-    assert plan.fed[0] == 1
+    gaps = np.diff((*plan.feed_ids, 11))
+    assert plan.feed_ids[0] == 1
     assert len(gaps) == plan.feeds
     assert max(gaps) - min(gaps) <= 1, "about as many servos after each feed"
-    *first, last = (f"ID {number}" for number in plan.fed)
+    *first, last = (f"ID {number}" for number in plan.feed_ids)
     assert len(first) > 1
     amounts = {row.what: row.amount for row in plan.table.rows}
     assert amounts["feed the chain at"] == f"{', '.join(first)} and {last}"
