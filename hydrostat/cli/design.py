@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from hydrostat.robot import Robot
 
 _MUCH = 0.25  # a larger share of the way to the targets that is left is explained
-_IMPROVEMENT_RATIO = 0.95  # a network with so many times the error of the last that was told is told
+_IMPROVEMENT_RATIO = 0.95  # a network is printed below this share of the last printed error
 STOPPING = "stopping: solving and writing the best network so far ..."  # said when Ctrl-C ends a search
 
 

@@ -225,7 +225,7 @@ def _move(
     seconds = parse_optional("--duration", duration, TIME) or max(float(profile.times[-1]), 1.0)
     dt = positive("--time-step", step, TIME)
     if dt > seconds:
-        raise InputError(f"--time-step {step}: longer than the simulated time ({seconds:g} s). Allowed: at most that.")
+        raise InputError(f"--time-step {step}: longer than the simulated time ({seconds:g} s). Choose a shorter one.")
     start = simulation.motion_at_rest(_first_pose(simulation, profile) if rests_at_first(simulation.robot) else None)
     began = time.process_time()
     with progress_bar() as progress:

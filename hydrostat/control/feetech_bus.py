@@ -101,7 +101,7 @@ we take for the larger (an empty pack of three lithium cells), two full lithium 
 MAX_VOLTAGE_12V = 14.0  # greatest supply of a servo for 12 V, whatever its memory allows [V]
 FULL_TORQUE = 1000  # bound of torque that bounds nothing
 STANDING = 2000  # speed at which they come back to where they shall stand [steps/s]
-MAX_STEP = 30719  # step that a servo without limits of angle may go to
+MAX_POSITION = 30719  # step that a servo without limits of angle may go to
 FAULTS = {
     0x01: "supply voltage out of range",
     0x02: "encoder fault",
@@ -210,7 +210,7 @@ class FeetechBus(ServoBus):
             raise HydrostatError(f"motor {number} is not in position mode; set its register {MODE} to 0")
         self._set(number, TORQUE, b"\x00", "its torque switch")
         low, high = _to_signed(told[LOW : LOW + 2], 15), _to_signed(told[LOW + 2 : LOW + 4], 15)
-        self._low[index], self._high[index] = (low, high) if low < high else (-MAX_STEP, MAX_STEP)
+        self._low[index], self._high[index] = (low, high) if low < high else (-MAX_POSITION, MAX_POSITION)
         return MotorFacts(number=number, model=MODELS[model], firmware=100 * told[0] + told[1], watchdog=False)
 
     def _check_supply(self) -> None:

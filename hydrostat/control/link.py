@@ -6,7 +6,7 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 
-WATCHDOG_TIMEOUT = 0.5  # motors that are told nothing for so long [s] stop where they are (watchdog)
+WATCHDOG_TIMEOUT = 0.5  # time without a command [s] after which motors stop where they are
 
 
 class Link(ABC):

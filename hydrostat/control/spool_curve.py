@@ -15,7 +15,7 @@ STOPS, MIN_STOPS = 7, 4
 """Places at which the mark is read, and how many of them must be reached."""
 STANDS = 0.3
 """A winch that stands for so long [s] away from where it shall go is held by its body: that is how far it goes."""
-TURN_SPEED, TURN = 0.02, 0.02
+TURN_SPEED, COMMAND_INTERVAL = 0.02, 0.02
 """Speed from one to the next [m/s]; from one command to the next [s]."""
 WITHIN = 1e-3
 """Readings may lie so far beside the curve [m]: a ruler read to half a millimeter does far better."""
@@ -163,7 +163,7 @@ def _go(link: BusLink, place: int, goal: float, clock: Callable[[], float], wait
     goals[place], mark = goal, now
     while clock() - since < STANDS:
         link.send(goals, clock(), speed=TURN_SPEED)
-        wait(TURN)
+        wait(COMMAND_INTERVAL)
         now = float(link.read(clock())[place])
         if abs(now - mark) > 1e-4:
             mark, since = now, clock()

@@ -21,7 +21,7 @@ from hydrostat.version import install_command
 
 SHARES = (1.0, 0.5, 0.25, 0.125)  # shares of the travel that are measured, until all poses settle
 RAMP, MAX_STEPS = 300, 3000  # steps in which controls grow to their values, and after which a pose has not settled
-REST_TOLERANCE, REST_STEPS = 2e-7, 50  # largest movement in one step [m] of a model at rest, in so many steps in a row
+REST_TOLERANCE, REST_STEPS = 2e-7, 50  # largest movement in one step [m] at rest, and number of such steps in a row
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -16,7 +16,7 @@ from hydrostat.studio.judge import Judge
 
 LOCKED = "your teacher has locked the robots. Wait until they are unlocked"
 
-MAX_STEPS = 500  # so many changes can be undone; older ones are forgotten
+MAX_STEPS = 500  # changes that can be undone; older ones are dropped
 
 
 @dataclass(eq=False)

@@ -13,7 +13,7 @@ from hydrostat.studio.jobs import Slots
 from hydrostat.studio.skins import SewnSkin, Skins
 
 QUIET = 0.2  # a robot is judged when it is shown unchanged for so long [s]
-CACHE_SIZE = 80  # so many robots are remembered, the candidates of some designs among them
+CACHE_SIZE = 80  # robots that are kept, the candidates of some designs among them
 
 
 @dataclass(frozen=True, eq=False)

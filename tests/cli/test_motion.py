@@ -59,7 +59,10 @@ def test_a_table_is_played(run: Run, starfish: Path, tmp_path: Path) -> None:
         (("--duration", "2s"), ("--dynamic", "--duration")),
         (("--dynamic", "--duration", "2"), ("--duration 2", "no unit")),
         (("--dynamic", "--time-step", "0s"), ("--time-step 0s", "above 0")),
-        (("--dynamic", "--time-step", "1h"), ("--time-step 1h: longer than the simulated time (1 s)", "at most that")),
+        (
+            ("--dynamic", "--time-step", "1h"),
+            ("--time-step 1h: longer than the simulated time (1 s)", "Choose a shorter one"),
+        ),
         (("--dynamic", "--time-step", "5mm"), ("--time-step 5mm",)),
         (("--dynamic", "--jacobian"), ("--jacobian",)),
         (("--dynamic", "--play", "none.csv"), ("none.csv", "there is no such file")),

@@ -12,8 +12,8 @@ from hydrostat.simulation import BodyPhysics, Simulation
 _ROUNDS = tuple(IKOptions(iterations=steps, restarts=0, min_tension=False) for steps in (3, 4, 100))
 """Enough steps to see which robots are hopeless, more for those that are not, all for the best."""
 
-_SELECTION_RATIO = 4  # one in so many robots goes on to the next round
-_MIN_ROBOTS = 4  # at least so many robots go on
+_SELECTION_RATIO = 4  # one robot in four goes on to the next round
+_MIN_ROBOTS = 4  # robots that go on, at least
 
 
 def judge(

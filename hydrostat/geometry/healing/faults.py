@@ -13,7 +13,7 @@ from hydrostat.geometry.surface import Surface
 from hydrostat.units import plural
 
 _BOXES = 4096  # and no more triangles, for the next may cross many more others
-MAX_PAIRS = 100_000  # where so many pairs cross, no more are looked for
+MAX_PAIRS = 100_000  # pairs that cross, after which the search ends
 
 # a turn that no CAD model is aligned with: its walls are not seen from the side, where many boxes overlap
 _TURN = np.linalg.qr(np.array([[0.61, 0.33, -0.72], [-0.47, 0.88, 0.05], [0.64, 0.31, 0.70]]))[0]

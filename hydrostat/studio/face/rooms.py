@@ -22,7 +22,7 @@ from hydrostat.studio.jobs import Slots
 from hydrostat.studio.session import Session
 from hydrostat.studio.starting.autosave import RecoveredWork, find_left
 
-MAX_ROOMS = 48  # so many rooms are open at a time
+MAX_ROOMS = 48  # rooms that are open at a time
 IDLE_TIMEOUT = 120.0  # a room that nobody looked at for so long [s] may be closed for another; its work is kept
 
 MAX_NAME = 24  # characters of a nickname

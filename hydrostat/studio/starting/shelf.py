@@ -51,7 +51,7 @@ if __name__ == "__main__":
     main()
 
 
-MAX_SEEN, MAX_SHOWN = 500, 24  # so many entries of a folder are looked at, so many robots in it are shown
+MAX_SEEN, MAX_SHOWN = 500, 24  # entries of a folder that are searched, and robots in it that are shown
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -136,7 +136,7 @@ def _words(folder: Path) -> str:
     return ", ".join([kind, *(part for part in parts if not part.startswith("0 "))])
 
 
-MAX_RECENT = 12  # so many are remembered
+MAX_RECENT = 12  # robots in the list of recent ones
 
 
 class Recent:
