@@ -57,14 +57,15 @@ def identify(
 ) -> None:
     """Fit a robot's parameters to measured marker positions.
 
-    Parameters: young, poisson, density, hysteresis (scale of its moduli), stiffness (of cables), zero and gain (of
-    winches), routes (points of cables), friction, pins, gravity, rods, sheets, frame (of the measurement), force (scale
-    of measured forces). Writes the fitted robot, parameters.csv with 95 % intervals and identified.png. With ten or
-    more rows, every fifth row is also predicted by a fit that leaves it out. `hydrostat design` takes the interval of
-    the fitted material as its uncertainty. correction.json holds a correction of the contractions, if it predicts those
-    rows better. Intervals follow from a linearized model; --profile corrects them where the model is nonlinear or a
-    value is at its limit. With friction or hysteresis, loading and unloading differ: measure both, and add --in-order.
-    With --suggest, the command prints file names of photographs to take, most informative first.
+    Parameters: young, poisson, density, thickness, hysteresis (scale of its moduli), stiffness (of cables), zero and
+    gain (of winches), routes (points of cables), friction, pins, gravity, rods, sheets, frame (of the measurement),
+    scale (of the board), force (scale of measured forces). Writes the fitted robot, parameters.csv with 95 %
+    intervals and identified.png. With ten or more rows, every fifth row is also predicted by a fit that leaves it
+    out. `hydrostat design` takes the interval of the fitted material as its uncertainty. correction.json holds a
+    correction of the contractions, if it predicts those rows better. Intervals follow from a linearized model;
+    --profile corrects them where the model is nonlinear or a value is at its limit. With friction or hysteresis,
+    loading and unloading differ: measure both, and add --in-order. With --suggest, the command prints file names of
+    photographs to take, most informative first.
 
     Example: hydrostat identify my_starfish measured.csv --out build/fitted
     """

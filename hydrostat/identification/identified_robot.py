@@ -98,6 +98,8 @@ def identify(
         return replace(found, robot=driven)
     if fit is None and measurements.forces is not None:
         fit = (*(name for name, kind in KINDS.items() if kind.default and kind.parameters(robot)), "force")
+    if "scale" in (fit or ()) and np.isfinite(measurements.known_lengths).any():
+        raise InputError("scale: ruler distances do not change with the scale of the board. Fit them without scale.")
     model, assumed = named_model(robot, fit), start_of(named_model(robot, ()))
     count = len(measurements.commands)
     held_out = np.arange(2, count, 5) if count >= 10 else np.zeros(0, dtype=int)

@@ -106,6 +106,15 @@ def _with_material(key: str) -> Callable[[Robot, Values], Robot]:
     return change
 
 
+def _thickness(robot: Robot) -> list[Parameter]:
+    start = robot.body.thickness
+    return [] if start is None else [Parameter(name="thickness", start=start / MM, spread=0.2, log=True, unit="mm")]
+
+
+def _with_thickness(robot: Robot, values: Values) -> Robot:
+    return replace(robot, body=replace(robot.body, thickness=MM * values["thickness"]))
+
+
 def _hysteresis(robot: Robot) -> list[Parameter]:
     return [Parameter(name="hysteresis.scale", start=1.0, spread=0.7, log=True)] * robot.body.has_hysteresis
 
@@ -272,6 +281,11 @@ def _move_to_frame(robot: Robot, values: Values, places: np.ndarray) -> np.ndarr
     return (places - middle) @ turn.T + middle + MM * np.array([values[f"frame.{axis}"] for axis in axes])
 
 
+def _scale_places(robot: Robot, values: Values, places: np.ndarray) -> np.ndarray:
+    middle = robot.body.mesh.nodes.mean(axis=0)
+    return (places - middle) * values["frame.scale"] + middle
+
+
 KINDS: dict[str, ParameterKind] = {
     "young": ParameterKind(
         parameters=lambda robot: _material(robot, "young", 0.7, (1.0, 1e13), "Pa"),
@@ -288,6 +302,7 @@ KINDS: dict[str, ParameterKind] = {
         ),
         robot=_with_material("density"),
     ),
+    "thickness": ParameterKind(parameters=_thickness, robot=_with_thickness),
     "hysteresis": ParameterKind(parameters=_hysteresis, robot=_with_hysteresis),
     "stiffness": ParameterKind(
         parameters=lambda robot: _each_cable(robot, "stiffness"),
@@ -314,6 +329,10 @@ KINDS: dict[str, ParameterKind] = {
         parameters=_frame,
         places=_move_to_frame,
         default=True,
+    ),
+    "scale": ParameterKind(  # measured over true distances: of a board printed too small, or tags nearer than stated
+        parameters=lambda _: [Parameter(name="frame.scale", start=1.0, spread=0.02, log=True)],
+        places=_scale_places,
     ),
     "force": ParameterKind(
         parameters=lambda robot: [Parameter(name="force.scale", start=1.0, spread=0.2, log=True)] * bool(robot.winches),

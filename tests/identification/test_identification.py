@@ -95,10 +95,11 @@ def measured(robot: Robot, commands: np.ndarray) -> Measurements:
 @pytest.mark.parametrize(
     ("robot", "kinds"),
     [
-        (strip(), ("young", "poisson", "density", "stiffness", "zero", "gain", "pins", "gravity", "frame", "force")),
-        (box(), ("young", "stiffness", "zero", "gain", "rods", "frame", "force", "routes")),
+        (strip(), ("young", "poisson", "density", "thickness", "stiffness", "zero", "gain", "pins", "gravity")),
+        (strip(), ("frame", "scale", "force")),
+        (box(), ("young", "stiffness", "zero", "gain", "rods", "frame", "scale", "force", "routes")),
     ],
-    ids=["flat", "space"],
+    ids=["flat", "flat frame", "space"],
 )
 def test_slopes_are_those_of_central_differences(robot: Robot, kinds: tuple[str, ...], unchecked: None) -> None:
     model = named_model(robot, kinds)
@@ -151,6 +152,21 @@ def test_what_measurements_do_not_show_is_said() -> None:
     assert "up.gain" not in found.unknown
     assert found.robot.winch("up").spool_radius != robot.winch("up").spool_radius
     assert len(found.held_out) == 2
+
+
+def test_a_board_printed_too_small_is_found() -> None:
+    """Oracle: places that a robot of known scale and thickness has; rulers do not shrink with the board."""
+    robot, rows = strip(), np.random.default_rng(3).uniform(0.001, 0.012, (6, 2))
+    model = named_model(robot, ("thickness", "scale"))
+    hidden = {"thickness": 1.2 * model.start["thickness"], "frame.scale": 0.985}
+    numbers = np.array([parameter.to_fitted(hidden[parameter.name]) for parameter in model.parameters])
+    asked = measured(robot, rows)
+    seen = replace(asked, places=MarkerPredictor(model, asked).predict(numbers, with_jacobian=False).places)
+    found = identify(robot, seen, fit=("thickness", "scale"))
+    assert found.fitted.values["frame.scale"] == pytest.approx(0.985, abs=1e-4)
+    assert found.robot.body.thickness == pytest.approx(1e-3 * hidden["thickness"], rel=0.01)
+    with pytest.raises(InputError, match="scale: ruler distances"):
+        identify(robot, replace(seen, pairs=((0, 1),), lengths=np.full((6, 1), 0.1)), fit=("scale",))
 
 
 def test_a_hung_mass_tells_modulus_and_density_apart() -> None:
