@@ -12,6 +12,7 @@ from pathlib import Path
 
 from hydrostat.control.bus_link import LinkLimits
 from hydrostat.control.calibration import CALIBRATION, Calibration, WinchMotor
+from hydrostat.control.firmware_servos import servo_settings
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.fabrication import BOARDS, check_board
 from hydrostat.files import replace_file
@@ -53,7 +54,9 @@ SPIN_UP, EFFORT = 0.02, 0.5
 bound of current that it may take to gain speed."""
 
 
-def firmware_settings(robot: Robot, calibration: Calibration, *, rpm: float, stall: float = 2.0, board: int = 1) -> str:
+def firmware_settings(
+    robot: Robot, calibration: Calibration, *, rpm: float, stall: float = 2.0, board: int = 1, bus: str = ""
+) -> str:
     """The text of settings.h for one board of a robot.
 
     Args:
@@ -62,6 +65,7 @@ def firmware_settings(robot: Robot, calibration: Calibration, *, rpm: float, sta
         rpm: no-load speed [turns/min].
         stall: stall current [A]; acceleration leaves half of the current limit for the load.
         board: board number.
+        bus: kind of bus of servos, of `SERVO_STEPS`; empty for DC motors.
 
     Raises:
         InputError: motors that are not numbered from 1 without a gap, turn the wrong way, or have no counts.
@@ -72,12 +76,14 @@ def firmware_settings(robot: Robot, calibration: Calibration, *, rpm: float, sta
     for motor in ordered:
         if motor.counts is None:
             raise InputError(f'{CALIBRATION}: motor of "{motor.winch}" needs counts, those of its encoder in a turn')
-        if motor.turns != 1:
+        if motor.turns != 1 and not bus:
             raise InputError(
                 f'{CALIBRATION}: "{motor.winch}" has turns = {motor.turns}; on a board swap the two wires of the '
                 "motor and those of its encoder, A for B, and write 1"
             )
     most = max(motor.counts or 0.0 for motor in ordered)
+    servos = servo_settings(robot, ordered, bus) if bus else ""
+    rows = _servo_numbers(robot, ordered, rpm) if bus else ""
     gain = EFFORT * rpm / 60 / SPIN_UP / stall  # turns/s2 for an ampere of the bound
     return (
         f"/* Settings of {robot.name}, made by hydrostat firmware from robot.toml and {CALIBRATION}. */\n"
@@ -85,7 +91,7 @@ def firmware_settings(robot: Robot, calibration: Calibration, *, rpm: float, sta
         f"#define DCS {len(ordered)}\n#define SERVOS 0\n#define DEADLINE_MS 200\n"
         f"#define FREE_SPEED {round(rpm / 60 * most)} /* of a motor without load [1/s] */\n"
         "/* least and greatest place, greatest speed [1/s], acceleration [1/s2], sign of the encoder, current [mA] */\n"
-        f"#define MOTORS {{ \\\n{_numbers(robot, calibration, board, gain)}}}\n"
+        f"#define MOTORS {{ \\\n{rows or _numbers(robot, calibration, board, gain)}}}\n{servos}"
     )
 
 
@@ -100,11 +106,15 @@ def build_firmware(settings: str, board: str, folder: Path) -> Path:
     """
     kind = check_board(board)
     asked = int((re.search(r"#define DCS (\d+)", settings) or [0, 0])[1])
-    if asked > kind.motors:
+    has_servos = "#define FEETECH" in settings
+    if has_servos and asked > kind.servos:
+        raise InputError(f"board {board} drives {kind.servos} servos, the robot has {asked}. Use --board esp32s3.")
+    if not has_servos and asked > kind.motors:
         more = " Use --board mega (six motors)." if board == "uno" and asked <= BOARDS["mega"].motors else ""
         raise InputError(f"board {board} drives {kind.motors} motors, the robot has {asked}.{more}")
     if not kind.loader:
-        _check_currents(settings, board)
+        if not has_servos:
+            _check_currents(settings, board)
         return _write_sketch(settings, board, folder / "winches")
     if not (shutil.which("avr-gcc") and shutil.which("avr-objcopy")):
         raise HydrostatError("avr-gcc not found. On Debian/Ubuntu: sudo apt install gcc-avr avr-libc")
@@ -127,13 +137,14 @@ def build_images(
     rpm: float,
     stall: float,
     moves: str = "",
+    bus: str = "",
 ) -> list[Path]:
     """Compile the firmware of each board into its folder, and return the images.
 
     Arguments as `firmware_settings`; `moves` is text that the settings of each get, too.
     """
     texts = [
-        firmware_settings(robot, calibration, rpm=rpm, stall=stall, board=number + 1) + moves
+        firmware_settings(robot, calibration, rpm=rpm, stall=stall, board=number + 1, bus=bus) + moves
         for number in range(len(folders))
     ]
     return [build_firmware(*each) for each in zip(texts, boards, folders, strict=False)]
@@ -168,7 +179,8 @@ def _write_sketch(settings: str, board: str, folder: Path) -> Path:
     """Write an Arduino sketch: the sources of the firmware as C++, since Arduino's serial line is."""
     folder.mkdir(parents=True, exist_ok=True)
     sources, layer = resources.files("hydrostat.control") / "firmware", f"{board}.h"
-    for name, new in (("winches.c", "winches.cpp"), ("moves.h", "moves.h"), (layer, layer)):
+    backend = "feetech.h" if "#define FEETECH" in settings else "geared.h"
+    for name, new in (("winches.c", "winches.cpp"), (backend, backend), ("moves.h", "moves.h"), (layer, layer)):
         replace_file(folder / new, (sources / name).read_bytes())
     replace_file(folder / "settings.h", settings.encode())
     words = b"/* Made by hydrostat firmware: settings.h has the robot, winches.cpp the program. */\n"
@@ -197,8 +209,25 @@ def _numbers(robot: Robot, calibration: Calibration, board: int, gain: float) ->
         numbers = [-counts * (winch.release + SPARE_LENGTH), counts * (winch.travel + SPARE_LENGTH)]
         numbers += [counts * limits.speed, min(counts * limits.rise, gain * motor.current * (motor.counts or 0.0))]
         text = ", ".join(str(round(number)) for number in (*numbers, 1, 1e3 * motor.current))
-        lines += f"    {{{text}}}, /* {re.sub(r'[^ -)+-~]', ' ', winch.name)} */ \\\n"
+        lines += f"    {{{text}}}, /* {_plain(winch.name)} */ \\\n"
     return lines
+
+
+def _servo_numbers(robot: Robot, motors: Sequence[WinchMotor], rpm: float) -> str:
+    """Limits of servos in their order, counted from their zeros; the board adds spares."""
+    winches, limits, lines = {winch.name: winch for winch in robot.winches}, LinkLimits(), ""
+    for motor in motors:
+        winch, steps = winches[motor.winch], motor.counts or 0.0
+        scale = steps / (2 * pi * motor.radius)
+        low, high = sorted((-motor.turns * scale * winch.release, motor.turns * scale * winch.travel))
+        numbers = (low, high, min(scale * limits.speed, rpm / 60 * steps), scale * limits.rise, 1, 1e3 * motor.current)
+        lines += f"    {{{', '.join(str(round(number)) for number in numbers)}}}, /* {_plain(winch.name)} */ \\\n"
+    return lines
+
+
+def _plain(name: str) -> str:
+    """A name that may stand in a remark of C."""
+    return re.sub(r"[^ -)+-~]", " ", name)
 
 
 def _run(command: Sequence[str]) -> None:

@@ -13,6 +13,23 @@ from hydrostat.control.bus import Bus, MotorFacts, Port, Reading, steady
 from hydrostat.errors import HydrostatError
 
 PROOF = 0.05  # current at which the watchdog is tried [A]
+STOPS = {
+    "heat": "too warm, stopped by its board",
+    "unheard": "silent or without its bound of torque. Check its power and cable",
+    "restarted": "lost power and restarted: its torque is off. Check its plug and cable",
+}
+"""Stops of a board with servos, in words; other stops are words already."""
+REFUSALS = {
+    "supply": "the motors' supply is below --min-supply. Charge its battery, or check its divider",
+    "servo": "servo {} does not answer the board. Check its power, its cable and its number",
+    "model": "servo {} is of another model than the board was built for. Run hydrostat firmware with its --motor",
+    "mode": "servo {} is not in position mode. Set its register of the mode to 0",
+    "memory": "servo {} allows no supply: its registers of greatest and least voltage are reversed",
+    "range": "servo {} turns without end. Set its limits of angle to 0 and 1023",
+    "voltage": "servo {} measures a supply that it is not for. Switch the power off and read its label",
+    "fault": "servo {} is hot, overloaded or out of its supply. Free its cable and let it cool",
+}
+"""Reasons for which a board arms no motor, with the number of the servo."""
 ANEW = "it was switched off or reset, and its motors count again; calibrate them again"
 
 
@@ -123,7 +140,7 @@ class FirmwareBus(Bus):
                     faults = [why] * len(faults)
                 if stopped and told[2] != "0":  # whose fault it was, so that no other one is named
                     faults = [""] * len(faults)
-                    faults[int(self._order[int(told[2]) - 1])] = told[1]
+                    faults[int(self._order[int(told[2]) - 1])] = STOPS.get(told[1], told[1])
                 if told[1] == "off" and self._bounds:
                     self.lost_position, faults = True, [f"board: {ANEW}"] * len(faults)
                 self._refused = ""
@@ -175,8 +192,10 @@ class FirmwareBus(Bus):
 
     def _must(self, words: str, name: str) -> None:
         told = self._surely(words)
-        if told == "no supply":
-            raise HydrostatError("the motors' supply is below --min-supply. Charge its battery, or check its divider")
+        no, _, rest = told.partition(" ")
+        word, _, number = rest.partition(" ")
+        if no == "no" and word in REFUSALS:
+            raise HydrostatError(REFUSALS[word].format(number))
         if told != "ok":
             raise HydrostatError(f"the board did not take {name}; it says: {told}")
 

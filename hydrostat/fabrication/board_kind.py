@@ -1,4 +1,4 @@
-"""`BoardKind`: boards that drive geared DC motors by our firmware."""
+"""`BoardKind`: boards that drive geared DC motors, or Feetech servos, by our firmware."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,6 +14,7 @@ class BoardKind:
         title: name by which it is bought.
         chip: processor, by its name in compilers.
         motors: number of geared DC motors with encoders that it drives.
+        servos: number of Feetech servos on one line that it drives.
         loader: options of avrdude for its bootloader; empty where the Arduino IDE builds and flashes a sketch.
         wiring: pins for each motor: PWM and direction to the driver, encoder A and B, the driver's current sense.
         supply: pin that a divider of 47 kOhm over 10 kOhm leads the supply of the motors to.
@@ -24,6 +25,7 @@ class BoardKind:
     title: str
     chip: str
     motors: int
+    servos: int = 0
     loader: tuple[str, ...]
     wiring: Sequence[tuple[str, str, str, str, str]]
     supply: str
@@ -63,6 +65,7 @@ BOARDS = {
         title="ESP32-S3-DevKitC-1",
         chip="esp32s3",
         motors=4,
+        servos=16,
         loader=(),
         wiring=(
             ("15", "16", "39", "40", "1"),

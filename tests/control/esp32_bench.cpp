@@ -17,7 +17,7 @@ struct Pin {
     void *given;
 };
 
-HardwareSerial Serial;
+HardwareSerial Serial, Serial1;
 static Pin pins[PINS];
 static int second[2]; /* pin of channel B of each plant */
 static Plant plants[2];
@@ -26,6 +26,7 @@ static double now, byte_at, fed, patience; /* patience 0: no watchdog */
 static bool hung, is_protected, opened;
 static esp_reset_reason_t reason;
 static std::string sketch, got, queue;
+static std::string told, answers; /* of the line of servos */
 static void *loaded;
 static void (*run_loop)();
 
@@ -104,7 +105,7 @@ void bench_wire(int i, int pwm, int direction, int a, int b, int current) {
 
 int bench_start(const char *path, const char *, int) {
     sketch = path, now = byte_at = 0, supply = 12;
-    got.clear(), queue.clear();
+    got.clear(), queue.clear(), told.clear(), answers.clear();
     for (Pin &pin : pins)
         pin = {0, 1, -1, nullptr, nullptr};
     for (int i = 0; i < 2; i++)
@@ -138,6 +139,14 @@ int bench_heard(char *into, int most) {
     got.clear();
     return bytes;
 }
+/* Bytes that it sent to the servos, and theirs. */
+int bench_told(char *into, int most) {
+    int bytes = fmin(told.size(), most);
+    memcpy(into, told.data(), bytes);
+    told.clear();
+    return bytes;
+}
+void bench_answer(const unsigned char *bytes, int count) { answers.append((const char *)bytes, count); }
 void bench_press(char, int number, int down) { pins[number].level = !down; }
 int bench_light() { return pins[7].mode == OUTPUT && pins[7].level; }
 Plant *bench_plant(int i) { return &plants[i]; }
@@ -146,13 +155,21 @@ void bench_supply(double volts) { supply = volts; }
 double bench_seconds() { return now; }
 }
 
-void HardwareSerial::begin(unsigned long baud) { opened = baud == 250000; }
+void HardwareSerial::begin(unsigned long baud, uint32_t, int8_t rx, int8_t tx) {
+    opened = this == &Serial ? baud == 250000 : opened && baud == 1000000 && rx == 18 && tx == 17;
+}
 int HardwareSerial::read() {
-    if (!opened || queue.empty() || now < byte_at)
+    bool is_line = this == &Serial1;
+    std::string &from = is_line ? answers : queue;
+    if (!opened || from.empty() || (!is_line && now < byte_at))
         return -1;
-    byte_at = now + 40e-6; /* a byte lasts so long at 250,000 baud */
-    int byte = (unsigned char)queue[0];
-    queue.erase(0, 1);
+    if (!is_line)
+        byte_at = now + 40e-6; /* a byte lasts so long at 250,000 baud */
+    int byte = (unsigned char)from[0];
+    from.erase(0, 1);
     return byte;
 }
 size_t HardwareSerial::write(uint8_t byte) { return opened ? got.push_back(byte), 1 : 0; }
+size_t HardwareSerial::write(const uint8_t *bytes, size_t count) {
+    return told.append((const char *)bytes, opened ? count : 0), count;
+}

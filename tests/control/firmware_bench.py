@@ -5,6 +5,7 @@ import shutil
 import subprocess
 import tempfile
 import zlib
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -12,6 +13,7 @@ from pathlib import Path
 import pytest
 from builders import strip_robot
 
+from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedScs, EmulatedSts
 from hydrostat.control.firmware_build import BOARDS, build_firmware
 from hydrostat.control.firmware_bus import line_of
 from hydrostat.robot import Robot
@@ -177,6 +179,36 @@ class Board:
             said = self.ask(words)
             self.run(0.03)
         return said
+
+
+class ServoBoard(Board):
+    """An ESP32-S3 with emulated Feetech servos on its line.
+
+    Attributes:
+        chain: the servos.
+        line: all bytes that the board sent to them.
+        echoes: True if the adapter gives back each byte that it sends.
+    """
+
+    def __init__(self, servos: Sequence[EmulatedSts | EmulatedScs], settings: str, *, echoes: bool = False) -> None:
+        """Start the sketch."""
+        self.chain, self.line, self.echoes = EmulatedFeetechChain(servos), b"", echoes
+        super().__init__("esp32s3", settings=settings)
+
+    def run(self, seconds: float) -> None:
+        """Let so much time pass, for the board and its servos."""
+        into, step = ctypes.create_string_buffer(1 << 12), self.chain.STEP
+        for _ in range(max(1, round(seconds / step))):
+            super().run(step)
+            count = self._bench.bench_told(into, len(into))
+            if sent := into.raw[:count]:
+                self.line += sent
+                self.chain.write(sent)
+            if waiting := self.chain.in_waiting:
+                answer = (sent if self.echoes else b"") + self.chain.read(waiting)  # which lasts a step
+                self._bench.bench_answer(answer, len(answer))
+            else:
+                self.chain.wait(step)
 
 
 def two_winch_strip() -> Robot:

@@ -80,7 +80,7 @@ def test_an_esp32_gets_a_sketch(robot: Robot, motors: Calibration, tmp_path: Pat
     sketch = build_firmware(settings, "esp32s3", tmp_path)
     assert sketch == tmp_path / "winches" / "winches.ino"
     written = {path.name: path.read_text() for path in sketch.parent.iterdir()}
-    assert sorted(written) == ["esp32s3.h", "moves.h", "settings.h", "winches.cpp", "winches.ino"]
+    assert sorted(written) == ["esp32s3.h", "geared.h", "moves.h", "settings.h", "winches.cpp", "winches.ino"]
     assert written["settings.h"] == settings
     assert written["winches.cpp"] == (FIRMWARE / "winches.c").read_text()
     command = flash_command("esp32s3", "/dev/ttyACM0", sketch)

@@ -12,6 +12,12 @@
 #define TICK_US 3968UL /* as on AVR, so that moves last as long */
 #define BAUD_RATE 250000UL
 #define WATCHDOG_MS 120
+
+#ifdef FEETECH
+#define LINE_RATE 1000000UL
+#define LINE_OUT 17 /* to TX of the bus adapter, which makes one line of two */
+#define LINE_IN 18  /* to its RX */
+#else
 #define BRIDGES 4
 
 typedef struct {
@@ -25,12 +31,13 @@ static const Bridge bridges[BRIDGES] = {
     {13, 14, 21, 47, 5},
 };
 #define SUPPLY 6 /* pin of the divider */
-#define BUTTON 0 /* between pin 0 and GND: the button BOOT of the board */
-#define LIGHT 7  /* an LED with 330 Ohm to GND */
-
 #if DCS > BRIDGES
 #error "this board has fewer H-bridges than the robot has DC motors"
 #endif
+#endif
+#define BUTTON 0 /* between pin 0 and GND: the button BOOT of the board */
+#define LIGHT 7  /* an LED with 330 Ohm to GND */
+
 #if SERVOS
 #error "hobby servos are for Uno and Mega"
 #endif
@@ -52,6 +59,12 @@ static int hear_byte(void) { return Serial.read(); }
 
 static void put_byte(char c) { Serial.write((uint8_t)c); }
 
+#ifdef FEETECH
+static void write_line(const uint8_t *bytes, uint8_t count) { Serial1.write(bytes, count); }
+
+/* The next byte that came from the servos, -1 for none. */
+static int hear_line(void) { return Serial1.read(); }
+#else
 static volatile uint8_t channels[BRIDGES]; /* of encoders: bit 0 is A */
 
 static void IRAM_ATTR see_step(void *which) {
@@ -75,6 +88,8 @@ static uint16_t measure_pin(uint8_t turn, uint8_t next) {
     return analogReadMilliVolts(turn < DCS ? bridges[turn].current : SUPPLY);
 }
 
+#endif
+
 static wdt_hal_context_t watchdog;
 
 /* 1 once in each tick; a program that does not ask for WATCHDOG_MS is reset. */
@@ -97,6 +112,10 @@ static void set_light(uint8_t on) { digitalWrite(LIGHT, on); }
 #endif
 
 static void start_board(void) {
+    Serial.begin(BAUD_RATE);
+#ifdef FEETECH
+    Serial1.begin(LINE_RATE, SERIAL_8N1, LINE_IN, LINE_OUT);
+#else
     for (uint8_t i = 0; i < DCS; i++) {
         const Bridge *bridge = &bridges[i];
         pinMode(bridge->direction, OUTPUT);
@@ -108,11 +127,11 @@ static void start_board(void) {
         attachInterruptArg(bridge->a, see_step, (void *)(uintptr_t)i, CHANGE);
         attachInterruptArg(bridge->b, see_step, (void *)(uintptr_t)i, CHANGE);
     }
+#endif
 #ifdef MOVE_ROWS
     pinMode(BUTTON, INPUT_PULLUP);
     pinMode(LIGHT, OUTPUT);
 #endif
-    Serial.begin(BAUD_RATE);
     wdt_hal_init(&watchdog, WDT_RWDT, 0, false);
     wdt_hal_write_protect_disable(&watchdog);
     wdt_hal_config_stage(

@@ -6,6 +6,16 @@
    HOLD_TICKS, then let go. */
 #pragma once
 
+#if defined(MOVE_ROWS) || defined(FEETECH)
+/* Zeros of the motors, as word M tells them; without them nothing plays. */
+static uint8_t keep_zeros(char *text) {
+    zeroed = numbers(text, zeros, COUNT);
+    return zeroed || !*text;
+}
+#else
+static uint8_t keep_zeros(char *text) { return (void)text, 1; }
+#endif
+
 #ifdef MOVE_ROWS
 #define HOLD_TICKS (2 * RATE)
 #define AIM_TICKS 5 /* from one goal to the next, as from a computer: goals in each tick make the current tremble */
@@ -15,14 +25,7 @@ enum Phase { BY_COMPUTER, ARRIVE, PLAY, HOLD };
 
 static const int16_t moves[MOVE_ROWS][COUNT] PROGMEM = MOVES; /* from the zeros, in steps of MOVE_STEP */
 static const int16_t move_ends[COUNT][2] = MOVE_ENDS;         /* least and greatest of them */
-static int32_t zeros[COUNT];
 static uint16_t row, passed; /* of the table, and ticks since */
-
-/* Zeros of the motors, as word M tells them; without them nothing plays. */
-static uint8_t keep_zeros(char *text) {
-    zeroed = numbers(text, zeros, COUNT);
-    return zeroed || !*text;
-}
 
 /* 1 once in each press, after 20 ms. A button that was down from the start has to be let go first. */
 static uint8_t is_pressed(void) {
@@ -37,11 +40,11 @@ static uint8_t is_pressed(void) {
 }
 
 static uint8_t can_play(void) {
-    if (!zeroed || is_supply_low() || drained || state == ENCODER || state == BEYOND || (state == ARMED && !alone))
+    if (!zeroed || find_obstacle() || state == ENCODER || state == BEYOND || (state == ARMED && !alone))
         return 0;
     for (uint8_t i = 0; i < COUNT; i++)
-        if (zeros[i] + (int32_t)MOVE_STEP * move_ends[i][0] < limits[i].low ||
-            zeros[i] + (int32_t)MOVE_STEP * move_ends[i][1] > limits[i].high)
+        if (zeros[i] + (int32_t)MOVE_STEP * move_ends[i][0] < low_of(i) ||
+            zeros[i] + (int32_t)MOVE_STEP * move_ends[i][1] > high_of(i))
             return 0;
     return 1;
 }
@@ -93,6 +96,5 @@ static void play_alone(void) {
     }
 }
 #else
-static uint8_t keep_zeros(char *text) { return (void)text, 1; }
 static void play_alone(void) {}
 #endif

@@ -1,11 +1,13 @@
 /* Winches of a soft robot on a board: Arduino Uno, Mega or ESP32-S3. How it talks: docs/decisions/0037-firmware.md.
 
-   This file knows no pin and no register: avr.h and esp32s3.h do. It is C, and C++ for Arduino sketches.
+   This file knows no pin and no register: avr.h and esp32s3.h do. It is C, and C++ for Arduino sketches. Motors are
+   those of geared.h, DC motors with encoders, or of feetech.h, servos on one line.
 
-   Time is counted in ticks of 4 ms, places in counts of an encoder, or in microseconds of a servo's pulse.
+   Time is counted in ticks of 4 ms, places in counts of an encoder, steps of a servo on the line, or in microseconds of
+   a hobby servo's pulse.
    Five things stop a motor here: silence for DEADLINE_MS, too much current, no motion under full power, a supply below
-   MIN_SUPPLY, and the hardware watchdog, which resets the processor 120 ms after the control loop ran last: pins are inputs then, and
-   pull-down resistors switch the bridges off. */
+   MIN_SUPPLY, and the hardware watchdog, which resets the processor 120 ms after the control loop ran last: pins are
+   inputs then, and pull-down resistors switch the bridges off; servos are switched off as the program starts. */
 
 #include <math.h>
 #include <stdint.h>
@@ -16,7 +18,9 @@
 #include "settings.h"
 #endif
 
+#ifndef FEETECH
 static void count_step(uint8_t motor, uint8_t was, uint8_t now);
+#endif
 #ifdef __AVR__
 #include "avr.h"
 #else
@@ -27,17 +31,6 @@ static void count_step(uint8_t motor, uint8_t was, uint8_t now);
 #define LONGEST 240 /* bytes of a line */
 #define HALF 12     /* ticks after which a line that came to a halt is thrown away */
 
-/* Power of 255 by counts of error, of error summed over ticks, and of error of speed a tick. */
-#define GAIN_P 1.8f
-#define GAIN_I 0.02f
-#define GAIN_D 6.5f
-#define GAIN_BOUND 120.0f
-#ifndef SPIN_UP_MS
-#define SPIN_UP_MS 20 /* in which a motor without load comes to two thirds of its speed */
-#endif
-#define BEYOND_BY 100 /* counts past a limit at which something is wrong */
-#define SENSE 11      /* volts at the driver's current pin, by amperes, times ten */
-#define DIVIDER 57    /* volts of the supply, by those at its pin, times ten: 47 kOhm over 10 kOhm */
 #ifndef MIN_SUPPLY
 #define MIN_SUPPLY 0 /* of the supply [mV]: below it for half a second, motors stop; 0 without a divider */
 #endif
@@ -66,21 +59,28 @@ typedef struct {
     uint8_t hot, stuck; /* ticks of too much current, of full power without motion */
 } Motor;
 
+#ifndef FEETECH
 enum State { OFF, ARMED, SILENT, SAGGED, CURRENT, STALL, ENCODER, BEYOND };
 static const char *const words[] = {"off", "armed", "silent", "supply", "current", "stall", "encoder", "beyond"};
+#else
+enum State { OFF, ARMED, SILENT, SAGGED, CURRENT, STALL, ENCODER, BEYOND, HEAT, UNHEARD, RESTARTED };
+static const char *const words[] = {"off",     "armed",  "silent", "supply",  "current",  "stall",
+                                    "encoder", "beyond", "heat",   "unheard", "restarted"};
+#endif
 
 static const Limits limits[COUNT] = MOTORS;
 static Motor motors[COUNT];
-static volatile int32_t places[COUNT]; /* of encoders */
-static volatile uint8_t lost;          /* an encoder made a step that it cannot make */
+static volatile uint8_t lost; /* an encoder made a step that it cannot make */
 static enum State state = OFF;
 static uint8_t culprit;
 static uint8_t silence; /* ticks since a good line */
 static uint8_t marked; /* zeros were found since the power came on: 0 after each start */
 static uint8_t zeroed; /* whether the board itself knows them, and no encoder was lost since */
+#if defined(MOVE_ROWS) || defined(FEETECH)
+static int32_t zeros[COUNT]; /* of the motors, if zeroed */
+#endif
 static uint8_t alone;  /* whether moves play without a computer, see moves.h */
 static uint16_t supply; /* [mV] */
-static uint8_t sagging; /* readings in a row below MIN_SUPPLY */
 static uint8_t drained; /* stopped by it: an empty battery recovers when nothing pulls; cleared by a reset alone */
 
 /* ---- serial line ---- */
@@ -117,28 +117,15 @@ static void end_line(void) {
 
 /* ---- motors ---- */
 
-/* An encoder's channels went from one state to another, bit 0 is A: called by interrupts. */
-static void count_step(uint8_t motor, uint8_t was, uint8_t now) {
-    static const int8_t steps[16] = {0, 1, -1, 2, -1, 0, 2, 1, 1, 2, 0, -1, 2, -1, 1, 0};
-    int8_t step = steps[was << 2 | now];
-    if (step == 2)
-        lost = motor + 1;
-    else
-        places[motor] += limits[motor].sign > 0 ? step : -step;
-}
+static void fault(enum State why, uint8_t motor);
 
-static int32_t place(uint8_t i) {
-#if SERVOS
-    if (i >= DCS)
-        return lroundf(motors[i].wish);
+static uint8_t is_supply_low(void) { return MIN_SUPPLY && supply + 1UL <= MIN_SUPPLY; }
+
+#ifdef FEETECH
+#include "feetech.h"
+#else
+#include "geared.h"
 #endif
-    return read_count(&places[i]);
-}
-
-static void drive(uint8_t i, int16_t power) {
-    motors[i].power = power;
-    drive_bridge(i, power);
-}
 
 /* Let all stand where they are. */
 static void stand(void) {
@@ -173,60 +160,6 @@ static void move_on(uint8_t i) {
     motor->gain = fmaxf(-rise, fminf(rise, change));
     motor->pace += motor->gain;
     motor->wish += motor->pace;
-}
-
-static void follow(uint8_t i) {
-    Motor *motor = &motors[i];
-    int32_t now = place(i);
-    float error = motor->wish - now, speed = now - motor->before;
-    motor->before = now;
-    motor->pace_seen = fmaxf(-127, fminf(127, speed));
-    motor->sum = fmaxf(-GAIN_BOUND, fminf(GAIN_BOUND, motor->sum + GAIN_I * error));
-    float needed = motor->pace + motor->gain * SPIN_UP_MS * RATE / 1000;
-    float power = GAIN_P * error + motor->sum + GAIN_D * (motor->pace - speed) + 255.0f * RATE / FREE_SPEED * needed;
-    int16_t whole = lroundf(fmaxf(-255, fminf(255, power)));
-    drive(i, abs(whole) < 4 ? 0 : whole);
-    motor->hot = motor->milliamps > motor->bound ? motor->hot + 1 : 0;
-    /* An encoder with one wire trembles by a count, one with swapped wires runs away: neither is motion. */
-    uint8_t moves = (whole > 0 ? speed : -speed) * 10 * RATE >= FREE_SPEED;
-    motor->stuck = abs(whole) > 200 && !moves ? motor->stuck + 1 : 0;
-    if (motor->hot >= RATE / 20)
-        fault(CURRENT, i);
-    else if (motor->stuck >= RATE / 10)
-        fault(STALL, i);
-    else if (now < limits[i].low - BEYOND_BY || now > limits[i].high + BEYOND_BY)
-        fault(BEYOND, i);
-}
-
-static uint8_t is_supply_low(void) { return MIN_SUPPLY && supply + 1UL <= MIN_SUPPLY; }
-
-/* A moment in which motors start lets a good battery sag, too. */
-static void watch_supply(uint16_t millivolts) {
-    supply = (uint32_t)millivolts * DIVIDER / 10;
-    sagging = is_supply_low() ? sagging + (sagging < 255) : 0;
-    if (sagging * (DCS + 1) >= RATE / 2 && (state == ARMED || state == SILENT)) {
-        drained = 1;
-        fault(SAGGED, 0);
-    }
-}
-
-/* One current a tick and motor, then the supply. */
-static void measure(void) {
-    static uint8_t turn;
-    if (!DCS)
-        return;
-    uint8_t next = turn + 1 < DCS + (MIN_SUPPLY > 0) ? turn + 1 : 0;
-    uint16_t millivolts = measure_pin(turn, next);
-    Motor *motor = &motors[turn];
-    if (turn == DCS) {
-        turn = next;
-        return watch_supply(millivolts);
-    }
-    motor->milliamps = (uint32_t)millivolts * 10 / SENSE; /* volts of the driver to milliamperes */
-    /* Which way: that of the volts across its coil, power less what its turning induces. A motor that brakes a cable
-       on the way out still pulls at it. */
-    motor->pays = motor->power * (FREE_SPEED / 255.0f) < (float)RATE * motor->pace_seen;
-    turn = next;
 }
 
 /* So many whole numbers, and nothing after them; 0 where they are not there. */
@@ -299,7 +232,7 @@ static void go(uint8_t number, char *text) {
     if (!numbers(text, told, 2 * COUNT))
         return no(number, "goals");
     for (uint8_t i = 0; i < COUNT; i++)
-        if (told[2 * i] < limits[i].low || told[2 * i] > limits[i].high)
+        if (told[2 * i] < low_of(i) || told[2 * i] > high_of(i))
             return no(number, "limit");
     for (uint8_t i = 0; i < COUNT; i++) {
         motors[i].aim = told[2 * i];
@@ -316,8 +249,9 @@ static void arm(uint8_t number, char *text) {
     for (uint8_t i = 0; i < COUNT; i++)
         if (told[i] <= 0 || told[i] > limits[i].current)
             return no(number, "current");
-    if (drained || is_supply_low())
-        return no(number, "supply");
+    const char *obstacle = find_obstacle();
+    if (obstacle)
+        return no(number, obstacle);
     for (uint8_t i = 0; i < COUNT; i++)
         motors[i].bound = told[i];
     stand();
@@ -334,7 +268,7 @@ static void tell(uint8_t number) {
         say_number(place(i));
         say_number(motors[i].pays ? -(int32_t)motors[i].milliamps : motors[i].milliamps);
     }
-    if (MIN_SUPPLY)
+    if (TELLS_SUPPLY)
         say_number(supply);
     end_line();
 }
@@ -417,7 +351,12 @@ void setup(void) {
     start_board();
 #if SERVOS
     for (uint8_t i = DCS; i < COUNT; i++)
-        motors[i].wish = limits[i].low;
+        motors[i].wish = low_of(i);
+#endif
+#ifdef ZEROS
+    static const int32_t known[COUNT] = ZEROS;
+    memcpy(zeros, known, sizeof zeros);
+    zeroed = marked = 1;
 #endif
     stand();
 }

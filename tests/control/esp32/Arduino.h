@@ -36,9 +36,12 @@ char *ltoa(long value, char *into, int base);
 char *utoa(unsigned value, char *into, int base);
 }
 
+#define SERIAL_8N1 0x800001c
+
 struct HardwareSerial {
-    void begin(unsigned long baud);
+    void begin(unsigned long baud, uint32_t config = SERIAL_8N1, int8_t rx = -1, int8_t tx = -1);
     int read();
     size_t write(uint8_t byte);
+    size_t write(const uint8_t *bytes, size_t count);
 };
-extern HardwareSerial Serial;
+extern HardwareSerial Serial, Serial1;
