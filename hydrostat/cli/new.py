@@ -13,6 +13,7 @@ import typer
 
 from hydrostat.cli.bounded import run_bounded
 from hydrostat.cli.check import print_sewing
+from hydrostat.cli.copy_gallery import copy_gallery
 from hydrostat.cli.options import parse_optional, positive
 from hydrostat.cli.remedies import kit_warnings
 from hydrostat.cli.waiting import patiently
@@ -57,6 +58,9 @@ def new(
         int | None,
         typer.Option(metavar="N", help="Shape of a drawing, or body of a STEP file, to use; 1 is the largest."),
     ] = None,
+    cables_on_skin: Annotated[
+        bool, typer.Option("--cables-on-skin", help="Move the cables of a 3D gallery robot to its skin, as on a glove.")
+    ] = False,
     timeout: Annotated[
         str | None, typer.Option(metavar="TIME", help="Time limit for reading, healing and meshing the file.")
     ] = None,
@@ -69,11 +73,8 @@ def new(
     Example: hydrostat new my_hand --from scan.stl --size "190 mm" --nodes 900
     """
     from hydrostat.ik import NewRobotWish
-    from hydrostat.robot import is_of_gallery
     from hydrostat.units import TIME
 
-    if name.exists() and (not name.is_dir() or any(name.iterdir())):
-        raise InputError(f"{name} already exists. Choose another name or delete the folder.")
     if nodes is not None and element_size is not None:
         raise InputError("--nodes and --element-size: mutually exclusive. Give one of them.")
     wish = NewRobotWish(
@@ -90,12 +91,11 @@ def new(
     seconds = parse_optional("--timeout", timeout, TIME) or SECONDS + SECONDS_A_NODE * (nodes or 0)
     with _made_whole(name) as folder:
         with _blaming_the_option(name):
-            lines = _begin(source, folder, wish, seconds)
+            lines = _begin(source, folder, wish, seconds, on_skin=cables_on_skin)
         with patiently("reading the robot back and drawing it ..."):
             made = _draw(folder)
-    lines += _other_count(len(made.body.mesh.nodes), nodes)
-    told = [line.replace(str(folder), str(name)) for line in lines]
-    _print_made(made, name, told, chosen=bool(nodes or element_size), from_gallery=is_of_gallery(source))
+    told = [line.replace(str(folder), str(name)) for line in (*lines, *_other_count(len(made.body.mesh.nodes), nodes))]
+    _print_made(made, name, told, chosen=bool(nodes or element_size), source=source)
 
 
 def _other_count(count: int, wanted: int | None) -> list[str]:
@@ -141,9 +141,11 @@ def _inner(given: str | None) -> "Inner | None":
 
 
 def _robot_name(folder: Path) -> str:
-    """Name of a robot after its folder (InputError: no robot may be called so)."""
+    """Name of a robot after its folder (InputError: it is there already, or no robot may be called so)."""
     from hydrostat.given import check_name
 
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise InputError(f"{folder} already exists. Choose another name or delete the folder.")
     return check_name(folder.resolve().name)
 
 
@@ -194,12 +196,14 @@ def _made_whole(name: Path) -> Iterator[Path]:
                 parent.rmdir()
 
 
-def _begin(source: str, folder: Path, wish: "NewRobotWish", seconds: float) -> list[str]:
+def _begin(source: str, folder: Path, wish: "NewRobotWish", seconds: float, *, on_skin: bool) -> list[str]:
     """Make the robot; returns what there is to tell."""
     from hydrostat.robot import is_of_gallery
 
     if is_of_gallery(source):
-        return _from_gallery(source, folder, wish)
+        return copy_gallery(source, folder, wish, on_skin=on_skin)
+    if on_skin:
+        raise InputError("--cables-on-skin: only for robots of the gallery. Give --from gallery:NAME")
     from hydrostat.files import replace_file
     from hydrostat.robot import save_robot
 
@@ -257,29 +261,6 @@ def _asked_about_holes(source: str, wish: "NewRobotWish", seconds: float) -> "Ne
     return replace(wish, inner=Inner.DRAWN if drawn else Inner.HOLES)
 
 
-def _from_gallery(source: str, folder: Path, wish: "NewRobotWish") -> list[str]:
-    """Copy a robot under its new name, if asked with other elements."""
-    from hydrostat.files import replace_file
-    from hydrostat.robot import GALLERY, gallery_folder, load_robot, with_values
-
-    wish.refuse(
-        "not available for gallery robots. Edit robot.toml",
-        "size",
-        "thickness",
-        "inflate",
-        "material",
-        "inner",
-        "drawing_part",
-    )
-    shelf = gallery_folder(source.removeprefix(GALLERY))
-    files = {file.name: file.read_bytes() for file in sorted(shelf.iterdir()) if file.is_file()}
-    wanted = wish.element_size if wish.nodes is None else load_robot(shelf).body.element_size_for(wish.nodes)
-    files["robot.toml"] = with_values(files["robot.toml"].decode(), name=wish.name, element_size=wanted).encode()
-    for file, content in files.items():
-        replace_file(folder / file, content)
-    return []
-
-
 def _draw(folder: Path) -> "Robot":
     """Read the robot back, as any command will, and draw it."""
     from hydrostat.cli.options import load_matplotlib
@@ -293,10 +274,12 @@ def _draw(folder: Path) -> "Robot":
     return made
 
 
-def _print_made(made: "Robot", name: Path, lines: list[str], *, chosen: bool, from_gallery: bool) -> None:
+def _print_made(made: "Robot", name: Path, lines: list[str], *, chosen: bool, source: str) -> None:
     """Say what there is now, and what to do next."""
     from hydrostat.errors import NO_KIT, in_words
-    from hydrostat.robot import find_risks
+    from hydrostat.robot import find_risks, is_of_gallery
+
+    from_gallery = is_of_gallery(source)
 
     mesh, flat = made.body.mesh, made.body.mesh.dim == 2
     print(f"Created {name}: {1e3 * mesh.size:.0f} mm, {mesh.describe()}, poses: {', '.join(made.poses)}")

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from hydrostat.robot.sheet import Membrane, SheetSide
     from hydrostat.robot.sketch import choose_plane, sketch_robot
     from hydrostat.robot.sketch_space import SurfaceSketch, inflate_outline, sketch_mesh
+    from hydrostat.robot.skin_cables import lay_cables_on_skin
     from hydrostat.robot.tables_file import TablesFile
     from hydrostat.robot.winch import Mount, Winch
     from hydrostat.robot.winch_bodies import check_winch_bodies, fit_winch_bodies
@@ -103,6 +104,7 @@ __all__ = [
     "inflate_outline",
     "inflated_robot",
     "is_of_gallery",
+    "lay_cables_on_skin",
     "limit_travels",
     "list_gallery",
     "load_robot",
