@@ -232,7 +232,7 @@ def attack(
             flat=robot.body.mesh.dim == 2,
             within=within,
             contractions=contractions.tolist(),
-            reason=str(pose.result.reason),
+            reason=str(pose.result.status),
             fault=wrong,
             iterations=pose.result.iterations,
             seconds=spent,

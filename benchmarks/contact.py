@@ -91,7 +91,7 @@ def study(name: str, count: int, minutes: float, seed: int, share: float) -> int
         if not good:
             wrong += 1
             print(
-                f"  {name} {number}: {pose.result.reason}, least gap {least:.2f}, residual {pose.result.residual:.2g} N"
+                f"  {name} {number}: {pose.result.status}, least gap {least:.2f}, residual {pose.result.residual:.2g} N"
             )
         crossed = crosses(robot, other.nodes)
         onward = warm(free, other, touching, pose, steps.choice([-0.01, 0.01], len(travel)) * travel)

@@ -119,12 +119,12 @@ def sweep(robot: Robot, count: int, *, seed: int = 0) -> Sweep:
         result.seconds.append(time.process_time() - began)
         result.iterations.append(sum(call.iterations for call in simulation.calls))
         result.retries += len(simulation.calls) > 1
-        result.reasons[str(pose.result.reason)] += 1
+        result.reasons[str(pose.result.status)] += 1
         result.buckled += pose.result.buckled
         result.unstable += pose.result.converged and not pose.result.stable
         wrong = fault(simulation, pose)
         if wrong:
-            result.failures.append((contractions.tolist(), f"{wrong} ({pose.result.reason})"))
+            result.failures.append((contractions.tolist(), f"{wrong} ({pose.result.status})"))
     return result
 
 

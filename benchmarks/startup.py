@@ -104,7 +104,7 @@ lap()
 simulation = hydrostat.simulation.Simulation(robot)
 lap()
 for contraction in (0.004, 0.005):
-    assert simulation.solve({{robot.winches[0].name: contraction}}).result.reason == 'converged'
+    assert simulation.solve({{robot.winches[0].name: contraction}}).result.status == 'converged'
     lap()
 laps = [[b - a for a, b in zip(*pair)] for pair in zip(clocks, clocks[1:])]
 print(json.dumps(laps + [[b - a for a, b in zip(clocks[0], clocks[-1])]]))
@@ -138,7 +138,7 @@ import hydrostat.robot, hydrostat.simulation
 {robot}
 simulation = hydrostat.simulation.Simulation(robot)
 solved = simulation.solve({{robot.winches[0].name: 0.004}})
-assert solved.result.reason == 'converged'
+assert solved.result.status == 'converged'
 print(solved.nodes.tobytes().hex())
 """
 

@@ -20,7 +20,7 @@ def main() -> float:
     pose = simulation.solve({"left": 0.012})
     rest = next(marker.at for marker in robot.markers if marker.name == "left")
     print(f"left arm moves {1e3 * np.linalg.norm(pose.markers['left'] - rest):.1f} mm")
-    print(f"tensions: {np.round(pose.tensions, 2)} N, {pose.result.reason}")
+    print(f"tensions: {np.round(pose.tensions, 2)} N, {pose.result.status}")
 
     # How every node follows every winch, exactly: (nodes, dim, winches).
     jacobian = simulation.jacobian(pose)

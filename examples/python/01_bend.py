@@ -20,7 +20,7 @@ simulation = hs.Simulation(robot)
 pose = simulation.solve({"left": 0.012})
 rest = next(marker.at for marker in robot.markers if marker.name == "left")
 travel = float(np.linalg.norm(pose.markers["left"] - rest))
-print(f"left arm moves {1e3 * travel:.1f} mm, {pose.result.reason}")
+print(f"left arm moves {1e3 * travel:.1f} mm, {pose.result.status}")
 
 # %%
 # Draw it. In a notebook ``pose`` alone shows the picture.

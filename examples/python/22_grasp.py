@@ -20,7 +20,7 @@ ball = hs.Obstacle(name="ball", shape="sphere", at=(0.055, 0.055), radius=0.018,
 # Close the arm, let the ball settle, then pull in steps of 3 mm.
 options = hs.grasp.PullOptions(direction=(1.0, 0.0), step=3e-3)
 pull = hs.grasp.pull_out(robot, ball, {"right": 0.055}, options)
-print(f"largest force {pull.peak:.2f} N, {pull.reason}")
+print(f"largest force {pull.peak:.2f} N, {pull.status}")
 
 # %%
 # The pull and the forces of contact balance.

@@ -188,7 +188,7 @@ def _bands(cases: "tuple[PullCase, ...]") -> str:
         if case.pull is None:
             lines.append(f'{case.name},,,"{case.trouble}"')
         else:
-            lines.append(f'{case.name},{case.pull.peak:.4f},{1e3 * case.pull.work:.4f},"{case.pull.reason}"')
+            lines.append(f'{case.name},{case.pull.peak:.4f},{1e3 * case.pull.work:.4f},"{case.pull.status}"')
     return "\n".join(lines) + "\n"
 
 
@@ -196,7 +196,7 @@ def _print(pull: "PullOut", cases: "tuple[PullCase, ...]") -> None:
     """Print the highest force of the pull, and its changes by uncertain parameters."""
     hardest = 1e3 * float(pull.moved[int(pull.forces.argmax())])
     words = "highest force so far" if pull.is_rising else "peak force"
-    print(f"{words} {pull.peak:.3g} N at {hardest:.1f} mm, work {1e3 * pull.work:.3g} mJ; {pull.reason}")
+    print(f"{words} {pull.peak:.3g} N at {hardest:.1f} mm, work {1e3 * pull.work:.3g} mJ; {pull.status}")
     for case in cases:
         print(f"  {case.name:<14} " + (case.trouble if case.pull is None else f"{case.pull.peak:.3g} N"))
     if pull.peak <= 0:

@@ -35,7 +35,7 @@ def learned_start(simulation: "Simulation", model: "LearnedModel", target: "Pose
     expected = _root_mean_square(found.errors)
     words = f"model predicts rms error {1e3 * expected:.2f} mm, uncertainty {1e3 * found.uncertainty:.2f} mm"
     if found.certified is None:
-        print(f"{target.name}: {words}; simulator: {found.reason}")
+        print(f"{target.name}: {words}; simulator: {found.status}")
         return None
     print(f"{target.name}: {words}; simulated rms error {1e3 * _root_mean_square(found.certified):.2f} mm")
     return found.pose

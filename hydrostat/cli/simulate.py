@@ -123,7 +123,7 @@ def simulate(
     for name, contraction in zip(forces, _contractions_of(pose, forces), strict=True):
         print(f"winch {name}: {1e3 * contraction:.2f} mm at {forces[name]:g} N")
         check_contraction(loaded, name, contraction, option="--pull")
-    print(f"{pose.result.reason} after {plural(pose.result.iterations, 'iteration')}, {1e3 * seconds:.0f} ms")
+    print(f"{pose.result.status} after {plural(pose.result.iterations, 'iteration')}, {1e3 * seconds:.0f} ms")
     _print_notes(simulation, pose)
     sys.stdout.flush()  # the answer is there before the picture is drawn
     load_matplotlib()

@@ -72,7 +72,7 @@ class PullOut:
         contact: force of the robot on the object [N], (rows, dim).
         poses: equilibria of the robot with the object.
         released: True if nothing touched the object at the end.
-        reason: reason why the pull ended.
+        status: reason why the pull ended.
     """
 
     robot: Robot
@@ -82,7 +82,7 @@ class PullOut:
     contact: Points
     poses: tuple[Equilibrium, ...]
     released: bool
-    reason: str
+    status: str
 
     @property
     def peak(self) -> float:
@@ -148,7 +148,7 @@ def pull_out(
     springs = options.along * straight + options.across * (whole - straight)
     rows: list[tuple[float, Equilibrium, Vector, Vector]] = []
     travel = options.travel or 1.5 * _size(obstacle)
-    count, reason = max(1, int(np.ceil(travel / options.step))), "object not free at the end of the pull"
+    count, status = max(1, int(np.ceil(travel / options.step))), "object not free at the end of the pull"
     for number in range(count + 1):
         pulled = min(number * options.step, travel)
         guide = GuideEnergy(carriage, place=place + pulled * unit, axes=axes, along=springs, turning=options.across)
@@ -157,7 +157,7 @@ def pull_out(
         if not found.result.converged:
             found = _find_settled(pulling, contractions, pose)
         if found is None:
-            reason = f"no equilibrium found after {1e3 * pulled:.3g} mm"
+            status = f"no equilibrium found after {1e3 * pulled:.3g} mm"
             break
         pose = found
         push = obstacle_forces(pulling, pose)[-1]
@@ -165,10 +165,10 @@ def pull_out(
         if progress is not None:
             progress("pulling [mm]", round(1e3 * pulled), round(1e3 * travel))
         if number and not push.any():
-            reason = "object is free"
+            status = "object is free"
             break
     if not rows:
-        raise InputError(f'no equilibrium of "{obstacle.name}" in the grasp before the pull: {reason}')
+        raise InputError(f'no equilibrium of "{obstacle.name}" in the grasp before the pull: {status}')
     if progress is not None:
         progress("pulling [mm]", round(1e3 * travel), round(1e3 * travel))
     distances, poses, pulls, pushes = zip(*rows, strict=True)
@@ -180,7 +180,7 @@ def pull_out(
         contact=np.array(pushes),
         poses=poses,
         released=not pushes[-1].any(),
-        reason=reason,
+        status=status,
     )
 
 

@@ -147,7 +147,7 @@ def solve_ik(
         found = _best(search, found, seek)
     # The answer does not depend on where it begins, unless squares are less than this share from there
     plainly = 0.98
-    if aside is not None and found.reason not in _ENDS:  # none is worse than where it began, or than a plain descent
+    if aside is not None and found.status not in _ENDS:  # none is worse than where it began, or than a plain descent
         found = _better(search, found, descend(search, aside), share=plainly)
     search, found = anchor_untargeted_markers(search, found, target, start)
     reached = reached_pose(search, found, target)
@@ -159,7 +159,7 @@ def solve_ik(
 def _follow_friction(simulation: Simulation, found: IKResult, start: Equilibrium | None) -> IKResult:
     """Solve an answer that was found without obstacle friction again, with friction along its loading path."""
     pose = simulation.solve(found.pose.controls, start=start, strict=False)
-    if pose.result.reason is NewtonStatus.TIME_LIMIT:
+    if pose.result.status is NewtonStatus.TIME_LIMIT:
         found = replace(found, status=IKStatus.TIME_LIMIT)
     elif not pose.result.converged:
         raise not_converged(pose.result, simulation.diagnose(pose))
@@ -196,7 +196,7 @@ def wishes(target: PoseTarget | None, objectives: Sequence[Objective]) -> list[O
 
 def _best(search: InverseSearch, found: Descent, seek: Callable[[InverseSearch, InverseState], Descent]) -> Descent:
     """Best of several beginnings; the first that reaches its goal."""
-    if found.reason in _ENDS or not found.state.errors:
+    if found.status in _ENDS or not found.state.errors:
         return found
     spent = found.iterations
     best = [found.state]
@@ -206,10 +206,10 @@ def _best(search: InverseSearch, found: Descent, seek: Callable[[InverseSearch, 
         if _better(search, found, other) is other:
             found = other
             best.append(other.state)
-        if found.reason is IKStatus.REACHED:
+        if found.status is IKStatus.REACHED:
             break
         if search.budget.over:
-            return replace(found, reason=IKStatus.TIME_LIMIT).after(spent)
+            return replace(found, status=IKStatus.TIME_LIMIT).after(spent)
     return found.after(spent)
 
 

@@ -128,17 +128,17 @@ class Tracker:
         target = as_pose(targets)
         search = self._search(target, seconds, objectives)
         state = search.begin(self.pose) if self._state is None else search.adopt_state(self._state)
-        weight, reason = search.problem.weight(state), IKStatus.REACHED
+        weight, status = search.problem.weight(state), IKStatus.REACHED
         if not _is_reached(search.problem, state):
             led = self._predict(search, state, target)
             weight = search.problem.weight(led or state)
-            state, reason = (led, IKStatus.ITERATION_LIMIT) if led else self._step(search, state, weight)
+            state, status = (led, IKStatus.ITERATION_LIMIT) if led else self._step(search, state, weight)
         self._state = state
         if _is_reached(search.problem, state):
-            reason = IKStatus.REACHED
+            status = IKStatus.REACHED
         elif state.excess > _RULES.far:
-            reason = IKStatus.INFEASIBLE
-        found = Descent(state=state, reason=reason, iterations=1, weight=weight)
+            status = IKStatus.INFEASIBLE
+        found = Descent(state=state, status=status, iterations=1, weight=weight)
         reached = reached_pose(search, found, target)
         self.pose, self._targets = reached.pose, {} if target is None else dict(target.targets)
         self._terms = search.problem.terms

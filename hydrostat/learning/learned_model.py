@@ -47,7 +47,7 @@ class LearnedPose:
         errors: predicted distance of each requested marker from its target [m].
         spread: disagreement of the networks, root of the mean square [m]: their uncertainty.
         certified: distance of each from its target in the simulator [m]; None without a check.
-        reason: why the simulator ended: of an equilibrium, or, for `Tier.EXACT`, of inverse kinematics.
+        status: reason why the simulator ended: of an equilibrium, or, for `Tier.EXACT`, of inverse kinematics.
         pose: the equilibrium; None where there is none.
     """
 
@@ -60,7 +60,7 @@ class LearnedPose:
     errors: Mapping[str, float]
     spread: Mapping[str, float]
     certified: Mapping[str, float] | None = None
-    reason: NewtonStatus | IKStatus | None = None
+    status: NewtonStatus | IKStatus | None = None
     pose: Equilibrium | None = None
 
     def __repr__(self) -> str:
@@ -194,7 +194,7 @@ class LearnedModel:
             raise InputError("the model has no inverse network: its learning was stopped before")
         count = self.card.coordinates
         raw, _ = self.inverse.average_members((markers - self.middle[:count]) / self.unit[:count])
-        return self._apply_pairs(self._contractions(_OVERSHOOT * np.tanh(raw)))
+        return self._apply_pairs(self._contractions(TANH_SCALE * np.tanh(raw)))
 
     def _predict_pose(self, contractions: Vector) -> tuple[Vector, Vector]:
         mean, spread = self.forward.average_members(self._scale_inputs(contractions))
@@ -329,8 +329,8 @@ def span_of(low: Vector, high: Vector) -> Vector:
     return np.where(high > low, high - low, 1.0)
 
 
-_OVERSHOOT = 1.02
-"""The inverse network's answer may reach so far beyond the limits, so that they can be reached; it is cut off there."""
+TANH_SCALE = 1.02
+"""Factor on the tanh of the inverse network, so that its answer reaches the limits; it is clipped there."""
 
 _STARTS = 3
 """Samples that a search begins from where the inverse network's answer is not near enough."""

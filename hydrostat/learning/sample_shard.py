@@ -70,7 +70,7 @@ def _fill(row: np.void, simulation: Simulation, contractions: Vector, tension: f
     row["contractions"], row["reason"] = contractions, REASONS.index("error")
     pose = _within(simulation, contractions, tension)
     row["contractions"], row["iterations"] = pose.controls, pose.result.iterations
-    row["reason"], row["stable"] = REASONS.index(pose.result.reason), pose.result.stable
+    row["reason"], row["stable"] = REASONS.index(pose.result.status), pose.result.stable
     if not pose.result.converged:
         return
     anchors = simulation.marker_anchors

@@ -10,7 +10,7 @@ import numpy as np
 from hydrostat.arrays import Float
 from hydrostat.errors import InputError
 from hydrostat.learning.learn_options import LearnOptions
-from hydrostat.learning.learned_model import span_of
+from hydrostat.learning.learned_model import TANH_SCALE, span_of
 from hydrostat.learning.perceptrons import Perceptrons
 from hydrostat.learning.training_set import TrainingSet, linear_map
 from hydrostat.progress import Progress
@@ -103,7 +103,7 @@ def train_inverse(
     batches, members, held = _batches(learned, options.batch, draw), len(forward), _holding(training_set, pairs)
 
     def apply_inverse(goals: Tensor, number: int) -> tuple[Tensor, Tensor, Tensor]:
-        scaled = held(OVERSHOOT * torch.tanh(answer(numbers, goals[None], None)[0]))
+        scaled = held(TANH_SCALE * torch.tanh(answer(numbers, goals[None], None)[0]))
         value = answer([part[number : number + 1] for part in teacher], scaled, None)[0][0]
         return value[:, : training_set.coordinates], value[:, training_set.coordinates :], scaled[0]
 
@@ -291,9 +291,6 @@ def _perceptrons(sizes: list[int], numbers: Numbers) -> Perceptrons:
     flat = torch.cat([part.flatten(1) for part in numbers], dim=1)
     return Perceptrons(sizes=np.array(sizes), numbers=flat.double().numpy())
 
-
-OVERSHOOT = 1.02
-"""The inverse network may answer so far beyond the limits, so that they can be reached; `LearnedModel` cuts it off."""
 
 _BETWEEN = 0.5
 """Goals of the inverse network lie up to so far on the way from one sample to another."""

@@ -21,7 +21,7 @@ def verify(
     """A learned answer with the error that the simulator finds, if asked after exact Gauss-Newton steps from there.
 
     The contractions are solved from rest, unless the answer was certified before, for the same robot; each step goes on
-    from the pose before, as an update of `Tracker`. Where no equilibrium is found, `certified` is None and `reason`
+    from the pose before, as an update of `Tracker`. Where no equilibrium is found, `certified` is None and `status`
     says why. After steps the pose is that at the end of their way: the same contractions, taken in from rest, may lead
     to another. What they leave from rest says `verify(simulation, model, replace(found, pose=None))`.
 
@@ -47,7 +47,7 @@ def verify(
     pose, taken = exact_steps(simulation, pose, answer.target, steps, enough=enough)
     found = model.evaluate(answer.target, pose.controls, Tier.STEP if taken else answer.tier)
     certified = _target_distances(answer, pose) if pose.result.converged else None
-    return replace(found, certified=certified, reason=pose.result.reason, pose=pose)
+    return replace(found, certified=certified, status=pose.result.status, pose=pose)
 
 
 def exact_steps(
@@ -112,7 +112,7 @@ def solve_exactly(
     begun = start.pose if start.certified is not None else None
     reached = solve_ik(simulation, answer.target, limits=limits, start=begun, options=options)
     found = model.evaluate(answer.target, reached.pose.controls, Tier.EXACT)
-    return replace(found, certified=_target_distances(answer, reached.pose), reason=reached.status, pose=reached.pose)
+    return replace(found, certified=_target_distances(answer, reached.pose), status=reached.status, pose=reached.pose)
 
 
 def _same(one: Robot, other: Robot) -> bool:

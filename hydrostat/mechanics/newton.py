@@ -110,19 +110,19 @@ class _EnergyDescent:
             before, residual = residual, float(np.abs(place.gradient).max())
             self.fast = residual < _FAST_DECREASE * before
             if residual <= allowed:
-                found, reason, self.error = self._leave_saddle(place), NewtonStatus.CONVERGED, 0.0
+                found, status, self.error = self._leave_saddle(place), NewtonStatus.CONVERGED, 0.0
             elif iteration == self.options.iterations:
-                found, reason = None, NewtonStatus.ITERATION_LIMIT
+                found, status = None, NewtonStatus.ITERATION_LIMIT
             elif self._late:
-                found, reason = None, NewtonStatus.TIME_LIMIT
+                found, status = None, NewtonStatus.TIME_LIMIT
             else:
                 self.left = residual / scale if scale else np.inf
-                found, reason = self._advance(place, known), NewtonStatus.NO_DESCENT
+                found, status = self._advance(place, known), NewtonStatus.NO_DESCENT
             known = None
             if found is place:
                 return self._result(place, NewtonStatus.CONVERGED, allowed, iteration)
             if found is None:
-                return self._result(place, NewtonStatus.TIME_LIMIT if self._late else reason, allowed, iteration)
+                return self._result(place, NewtonStatus.TIME_LIMIT if self._late else status, allowed, iteration)
             place = found
         raise AssertionError("count() never ends")
 
@@ -334,15 +334,15 @@ class _EnergyDescent:
             self.last, self.sharp = place.assembly.stiffness(place.nodes, self.controls), True
         return self.last
 
-    def _result(self, place: _Iterate, reason: NewtonStatus, allowed: float, iterations: int) -> NewtonResult:
-        if reason is not NewtonStatus.CONVERGED:
+    def _result(self, place: _Iterate, status: NewtonStatus, allowed: float, iterations: int) -> NewtonResult:
+        if status is not NewtonStatus.CONVERGED:
             self.last = None
-        late = reason in (NewtonStatus.BAD_START, NewtonStatus.TIME_LIMIT)
-        blank = late or (reason is NewtonStatus.NO_DESCENT and self.whole)
+        late = status in (NewtonStatus.BAD_START, NewtonStatus.TIME_LIMIT)
+        blank = late or (status is NewtonStatus.NO_DESCENT and self.whole)
         stiffness = None if blank else self._stiffness(place)
         return NewtonResult(
             nodes=place.nodes,
-            reason=reason,
+            status=status,
             residual=float(np.abs(place.gradient).max()),
             allowed=allowed,
             energy=place.energy,
@@ -350,7 +350,7 @@ class _EnergyDescent:
             stable=stiffness is not None and stiffness.definite,
             buckled=self.saddles > 0,
             stiffness=stiffness,
-            error=0.0 if self.options.accuracy is None else self.error if reason is NewtonStatus.CONVERGED else np.inf,
+            error=0.0 if self.options.accuracy is None else self.error if status is NewtonStatus.CONVERGED else np.inf,
         )
 
 

@@ -38,7 +38,7 @@ class NewtonResult:
 
     Attributes:
         nodes: best node positions found [m]; every element has J > 0.
-        reason: reason for stopping.
+        status: reason for stopping.
         residual: largest component of a residual nodal force [N].
         allowed: residual [N] below which the result counts as converged.
         energy: total energy [J].
@@ -52,7 +52,7 @@ class NewtonResult:
     """
 
     nodes: Nodes
-    reason: NewtonStatus
+    status: NewtonStatus
     residual: float
     allowed: float
     energy: float
@@ -65,4 +65,4 @@ class NewtonResult:
     @property
     def converged(self) -> bool:
         """True if the residual, or with `accuracy` the estimated error, is small enough."""
-        return self.reason is NewtonStatus.CONVERGED
+        return self.status is NewtonStatus.CONVERGED

@@ -32,7 +32,7 @@ def draw_pull(
         width: figure width [inch].
     """
     hardest = int(np.argmax(pull.forces))
-    rows = {"grasped": 0, f"hardest pull, {pull.peak:.3g} N": hardest, pull.reason: len(pull.poses) - 1}
+    rows = {"grasped": 0, f"hardest pull, {pull.peak:.3g} N": hardest, pull.status: len(pull.poses) - 1}
     images = _portraits(robot, pull, list(rows.values()))
     side = width / 3
     tall = min(max(image.shape[0] / image.shape[1] for image in images) * 0.94 * side, 3.2)

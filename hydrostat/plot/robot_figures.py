@@ -308,7 +308,7 @@ def _rests(pose: Equilibrium) -> str:
     causes = [*(["contractions"] if robot.winches or not robot.loads else []), *(["loads"] if robot.loads else [])]
     under = f"under the given {' and '.join(causes)}"
     if not pose.result.converged:
-        return f"not at rest {under}: {pose.result.reason}"
+        return f"not at rest {under}: {pose.result.status}"
     return f"at rest {under}" + ("" if pose.result.stable else ", on a saddle")
 
 

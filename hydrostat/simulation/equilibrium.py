@@ -73,7 +73,7 @@ class Equilibrium(Tabular):
         """
         told = []
         if not self.result.converged:
-            told.append(f"no equilibrium: {self.result.reason}")
+            told.append(f"no equilibrium: {self.result.status}")
         told += beyond_travel(self.robot, self.contractions) + PinDrive.check_values(self.robot.drives, self.drives)
         if self.result.buckled:
             told.append("buckled: a mirror-image pose is equally likely")
@@ -157,7 +157,7 @@ class Equilibrium(Tabular):
         ]
         pulls = f", tensions up to {self.tensions.max():.3g} N" if len(self.tensions) else ""
         contractions = ", ".join(taken) or "no contractions"
-        return f"<Equilibrium of {self.robot.name!r}: {contractions}{pulls}; {self.result.reason}>"
+        return f"<Equilibrium of {self.robot.name!r}: {contractions}{pulls}; {self.result.status}>"
 
     def _repr_html_(self) -> str:
         """Summary, warnings and a picture, for a notebook."""

@@ -16,8 +16,8 @@ from hydrostat.training.backends import Backend, ExactBackend, LearnedBackend, M
 from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, check_task, finite_numbers, prepare_robot
 from hydrostat.units import quote
 
-OVERSHOOT = 1.02
-"""An action of 1 / 1.02 takes in all: a network that ends in tanh can reach the limits (as in a learned model)."""
+ACTION_SCALE = 1.02
+"""Factor on actions, clipped to 1 after it, so that a policy that ends in tanh reaches the limits."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -174,7 +174,7 @@ class ReachEnv(GoalEnv):
         """Contractions of an action [m]: alone from release to travel, or one of two winches from 0 to travel."""
         taken = np.zeros(len(self._low))
         for value, group in zip(
-            np.clip(OVERSHOOT * np.asarray(action, dtype=float), -1, 1).tolist(), self._groups, strict=True
+            np.clip(ACTION_SCALE * np.asarray(action, dtype=float), -1, 1).tolist(), self._groups, strict=True
         ):
             one = group[0]
             if len(group) == 1:

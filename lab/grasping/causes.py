@@ -150,7 +150,7 @@ def study(name: str, step: float, factors: list[str], closings: list[float]) -> 
         tight = max(float(pose.tensions.max()) for pose in pull.poses)
         print(
             f"{row} | {pull.peak:.2f} | {pull.peak / default:.2f} | {tight:.1f} | {motor_for(case.robot, tight)} | "
-            f"{pull.reason} | {time.process_time() - begin:.0f} |",
+            f"{pull.status} | {time.process_time() - begin:.0f} |",
             flush=True,
         )
 

@@ -58,7 +58,7 @@ def study(name: str, step: float, closings: list[float], *, bands: bool) -> None
         tight = max(float(solved.tensions.max()) for solved in pull.poses)
         print(
             f"{row} | {pull.peak:.2f} | {1e3 * pull.moved[int(pull.forces.argmax())]:.0f} | {free.peak:.2f} | "
-            f"{1e3 * free.work:.1f} | {tight:.1f} | {thesis} | {pull.reason} | {time.process_time() - begin:.0f} |",
+            f"{1e3 * free.work:.1f} | {tight:.1f} | {thesis} | {pull.status} | {time.process_time() - begin:.0f} |",
             flush=True,
         )
         firm = (taken, pull, closing) if pull.released else firm

@@ -120,7 +120,7 @@ def measured(size: str, share: float) -> dict[str, Any]:
         "first": taken[0],
         "solve": taken[1],
         "iterations": pose.result.iterations,
-        "converged": pose.result.reason is NewtonStatus.CONVERGED,
+        "converged": pose.result.status is NewtonStatus.CONVERGED,
         "factorizations": counted[0],
         "factorizing": counted[1],
         "memory": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6,

@@ -47,7 +47,7 @@ def branch_row(folder: str, simulation: Simulation) -> str:
     again &= len(back.folds) == len(there.folds)
     unstable = sum(not point.stable for point in there.points)
     return (
-        f"| {folder} | {there.reason.name} | {folds} | {len(there.critical) - len(there.folds)} | {len(there.points)} "
+        f"| {folder} | {there.status.name} | {folds} | {len(there.critical) - len(there.folds)} | {len(there.points)} "
         f"| {unstable} | {'yes' if again else 'no'} | {missed:.0e} | {spent:.1f} |"
     )
 

@@ -44,7 +44,7 @@ def test_the_object_is_held_and_comes_free() -> None:
     pull = pulled()
     assert pull.peak > 0.05
     assert pull.released
-    assert pull.reason == "object is free"
+    assert pull.status == "object is free"
     assert pull.forces[-1] == pytest.approx(0.0, abs=1e-3 * pull.peak)
 
 

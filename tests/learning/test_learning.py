@@ -108,8 +108,8 @@ def test_answers_rolled_out_in_the_simulator(model: LearnedModel, samples: Sampl
             errors[name].append(answer.error)
             assert (answer.contractions >= model.low).all()
             assert (answer.contractions <= model.high).all()
-        assert answers["search"].reason is NewtonStatus.CONVERGED
-        assert answers["exact"].reason is IKStatus.REACHED
+        assert answers["search"].status is NewtonStatus.CONVERGED
+        assert answers["exact"].status is IKStatus.REACHED
         assert answers["step"].error <= answers["search"].error
     means = {name: np.mean(values) for name, values in errors.items()}
     assert means["search"] <= 1.05 * means["network"]

@@ -97,7 +97,7 @@ def solve(
 def test_it_converges_to_a_minimum_and_says_so() -> None:
     result = solve(0.03)
     assembly, controls = strip(), np.array([0.03])
-    assert result.reason is NewtonStatus.CONVERGED
+    assert result.status is NewtonStatus.CONVERGED
     assert result.converged
     assert result.stable
     assert np.linalg.eigvalsh(dense(assembly, result.nodes, controls))[0] > 0
@@ -175,14 +175,14 @@ def test_a_node_that_nothing_holds_stays_and_the_rest_arrives() -> None:
 @pytest.mark.parametrize("iterations", [0, 1, 3])
 def test_the_iteration_limit_is_kept_and_named(iterations: int) -> None:
     result = solve(0.03, iterations=iterations)
-    assert result.reason is NewtonStatus.ITERATION_LIMIT
+    assert result.status is NewtonStatus.ITERATION_LIMIT
     assert result.iterations == iterations
     assert np.isfinite(result.nodes).all()
 
 
 def test_an_inverted_start_is_named() -> None:
     result = solve(0.03, start=MESH.nodes * [1, -1])
-    assert result.reason is NewtonStatus.BAD_START
+    assert result.status is NewtonStatus.BAD_START
     assert (result.nodes == MESH.nodes * [1, -1]).all()
 
 
@@ -190,15 +190,15 @@ def test_no_descent_is_named_not_hidden() -> None:
     """A gradient that lies: Newton stops where it is and says that no step helps."""
     assembly = strip(Uphill)
     result = solve(0.03, assembly=assembly, start=MESH.nodes + np.array([0.01, 0.0]))
-    assert result.reason in (NewtonStatus.NO_DESCENT, NewtonStatus.ITERATION_LIMIT)
+    assert result.status in (NewtonStatus.NO_DESCENT, NewtonStatus.ITERATION_LIMIT)
     assert not result.converged
     assert np.isfinite(result.nodes).all()
-    assert solve(0.03, halvings=0).reason is NewtonStatus.NO_DESCENT
+    assert solve(0.03, halvings=0).status is NewtonStatus.NO_DESCENT
 
 
 def test_a_hessian_that_is_not_a_number_ends_without_one() -> None:
     result = solve(0.03, assembly=strip(NotANumber))
-    assert result.reason is NewtonStatus.NO_DESCENT
+    assert result.status is NewtonStatus.NO_DESCENT
     assert np.isfinite(result.nodes).all()
 
 
@@ -229,7 +229,7 @@ def test_no_step_leaves_less_than_a_fifth_of_the_element_squeezed_most(contracti
 def test_a_first_step_that_would_crush_an_element_is_refused_at_no_cost() -> None:
     """A contraction of two thirds of the strip: cut short the step is taken, whole it is not."""
     refused, cut = (solve(0.2, whole=whole, iterations=1) for whole in (True, False))
-    assert refused.reason is NewtonStatus.NO_DESCENT
+    assert refused.status is NewtonStatus.NO_DESCENT
     assert refused.iterations == 0
     assert refused.stiffness is None
     assert (refused.nodes == MESH.nodes).all()

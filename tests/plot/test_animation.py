@@ -175,7 +175,7 @@ def test_where_there_is_no_equilibrium_the_frame_before_stands(monkeypatch: pyte
 
         if self.as_contractions(contractions).max() <= 0.006:
             return pose
-        return replace(pose, nodes=pose.nodes + 1.0, result=replace(pose.result, reason=NewtonStatus.NO_DESCENT))
+        return replace(pose, nodes=pose.nodes + 1.0, result=replace(pose.result, status=NewtonStatus.NO_DESCENT))
 
     monkeypatch.setattr(Simulation, "solve", failing)
     stop = Stop.for_winches(robot)[0]

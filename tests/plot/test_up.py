@@ -125,7 +125,7 @@ def test_what_a_picture_says_of_a_pose() -> None:
     robot = box_robot()
     pose = Simulation(robot).solve(np.array([0.005, 0.0]))
     loaded = replace(robot, loads=(Load(name="push", marker=robot.markers[0].name, force=(0.0, 0.0, -2.5)),))
-    failed = replace(pose, result=replace(pose.result, reason=NewtonStatus.ITERATION_LIMIT))
+    failed = replace(pose, result=replace(pose.result, status=NewtonStatus.ITERATION_LIMIT))
     for drawn, words in (
         (plot.draw_pose(robot, pose, width=3.2), "at rest under the given contractions"),
         (plot.draw_pose(robot, failed, width=3.2), "not at rest under the given contractions: iteration limit reached"),

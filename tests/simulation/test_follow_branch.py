@@ -10,7 +10,7 @@ from test_buckling import column, hessian, mirrored, saddle  # pyright: ignore[r
 
 from hydrostat.errors import InputError
 from hydrostat.simulation import Branch, Equilibrium, Simulation, continue_branch
-from hydrostat.simulation.branches.branch import BranchReason, CriticalKind
+from hydrostat.simulation.branches.branch import BranchStatus, CriticalKind
 from hydrostat.simulation.branches.continue_branch import BranchOptions
 
 GOAL = 0.3
@@ -64,7 +64,7 @@ def test_every_point_is_an_equilibrium_and_its_stability_that_of_the_dense_hessi
     simulation: Simulation, branch: Branch
 ) -> None:
     critical = {point.index for point in branch.critical}
-    assert branch.reason is BranchReason.ARRIVED
+    assert branch.status is BranchStatus.ARRIVED
     assert branch.end.contractions == pytest.approx([GOAL])
     for index, point in enumerate(branch.points):
         forces = simulation.assembly.gradient(point.pose.nodes, point.pose.contractions)
@@ -144,7 +144,7 @@ def test_the_way_back_is_the_way_there(simulation: Simulation, branch: Branch) -
 
 def test_it_stops_at_a_fold_and_says_where(simulation: Simulation, branch: Branch) -> None:
     found = continue_branch(simulation, simulation.solve({}), {"down": GOAL})
-    assert found.reason is BranchReason.FOLD
+    assert found.status is BranchStatus.FOLD
     assert found.points[-1].share == found.folds[0] == pytest.approx(branch.folds[0], abs=1e-9)
     assert all(point.stable for point in found.points[:-1])
     assert found.lines()[0].startswith("fold: the robot snaps through at 50.")
@@ -166,7 +166,7 @@ def test_a_fold_in_the_last_step_is_found(simulation: Simulation, branch: Branch
     start = branch.points[fold.index + 1].pose
     assert not start.result.stable
     back = continue_branch(simulation, start, {"down": GOAL}, around_folds=True)
-    assert back.reason is BranchReason.BACK
+    assert back.status is BranchStatus.BACK
     assert len(back.points) == 3
     assert [point.kind for point in back.critical] == [CriticalKind.FOLD]
     assert back.points[1].pose.contractions == pytest.approx([fold.share * GOAL], abs=1e-9)
@@ -174,7 +174,7 @@ def test_a_fold_in_the_last_step_is_found(simulation: Simulation, branch: Branch
     assert stable.reaches_goal
     assert np.abs(back.end.nodes - stable.end.nodes).max() < 1e-8
     assert np.abs(back.end.nodes - start.nodes).max() > 1e-6
-    assert continue_branch(simulation, start, {"down": GOAL}).reason is BranchReason.FOLD
+    assert continue_branch(simulation, start, {"down": GOAL}).status is BranchStatus.FOLD
 
 
 def test_a_bifurcation_in_the_last_step_is_found() -> None:
@@ -187,7 +187,7 @@ def test_a_bifurcation_in_the_last_step_is_found() -> None:
     assert [point.kind for point in found.critical] == [CriticalKind.BIFURCATION]
     assert found.critical[0].index == len(found.points) - 2
     assert found.critical[0].share == pytest.approx(1 / 1.001, abs=1e-8)
-    assert continue_branch(simulation, rest, np.full(2, 1.001 * load)).reason is BranchReason.BIFURCATION
+    assert continue_branch(simulation, rest, np.full(2, 1.001 * load)).status is BranchStatus.BIFURCATION
 
 
 @pytest.mark.parametrize("name", ["first_step", "largest_step", "smallest_step", "steps", "distance", "iterations"])
@@ -234,7 +234,7 @@ def test_a_column_splits_where_its_straight_shape_becomes_a_saddle() -> None:
     assert np.abs(mirrored(simulation.robot, found.end.nodes) - found.end.nodes).max() < 1e-6
     assert np.abs(saddle(simulation, 0.014) - found.end.nodes).max() < 1e-6
     stopped = continue_branch(simulation, simulation.solve({}), goal)
-    assert stopped.reason is BranchReason.BIFURCATION
+    assert stopped.status is BranchStatus.BIFURCATION
     assert stopped.points[-1].share == pytest.approx(found.critical[0].share, abs=1e-9)
 
 
@@ -244,7 +244,7 @@ def test_buckled_poses_end_in_a_fold_of_their_own() -> None:
     both = np.full(2, 0.014)
     load = continue_branch(simulation, simulation.solve({}), both).points[-1].share * 0.014
     back = continue_branch(simulation, simulation.solve(both), {})
-    assert back.reason is BranchReason.FOLD
+    assert back.status is BranchStatus.FOLD
     fold = float(back.end.contractions[0])
     assert [load, fold] == pytest.approx([10.86e-3, 7.06e-3], abs=5e-6)  # as docs/theory/multistability.md says
     assert abs(least(simulation, back.end)) < 1e-5 * least(simulation, back.points[0].pose)

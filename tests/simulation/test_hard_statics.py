@@ -46,7 +46,7 @@ def test_a_time_limit_ends_a_solve_and_is_told() -> None:
     goal = np.array([0.03, 0.0])
     with pytest.raises(NotConvergedError, match="time limit reached") as caught:
         simulation.solve(goal, seconds=1e-9)
-    assert caught.value.result.reason is NewtonStatus.TIME_LIMIT  # pyright: ignore[reportAttributeAccessIssue]
+    assert caught.value.result.status is NewtonStatus.TIME_LIMIT  # pyright: ignore[reportAttributeAccessIssue]
     late = simulation.solve(goal, seconds=1e-9, strict=False)
     assert late.result.residual == np.abs(simulation.forces(late.nodes, goal)).max()
     assert (simulation.solve(goal, seconds=60.0).nodes == simulation.solve(goal).nodes).all()
@@ -56,7 +56,7 @@ def test_friction_keeps_to_a_time_limit() -> None:
     robot = strip_robot()
     rubbing = replace(robot, cables=tuple(replace(cable, friction=0.3) for cable in robot.cables))
     pose = Simulation(rubbing).solve(np.array([0.03, 0.0]), seconds=1e-9, strict=False)
-    assert pose.result.reason is NewtonStatus.TIME_LIMIT
+    assert pose.result.status is NewtonStatus.TIME_LIMIT
 
 
 @pytest.mark.parametrize(

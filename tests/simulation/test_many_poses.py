@@ -90,9 +90,9 @@ def test_a_pose_that_is_not_found_leaves_nan_and_its_reason(simulation: Simulati
     hasty = Simulation(simulation.robot, options=NewtonOptions(iterations=7), body=simulation.body)
     found = hasty.solve_batch(goals, nodes=True)
     assert found.converged.tolist() == [True, True, False]
-    assert found.reasons[2] not in (None, NewtonStatus.CONVERGED)
+    assert found.statuses[2] not in (None, NewtonStatus.CONVERGED)
     assert found.errors[:2] == ("", "")
-    assert found.errors[2].startswith(str(found.reasons[2]))
+    assert found.errors[2].startswith(str(found.statuses[2]))
     assert found.jacobians is not None
     assert found.nodes is not None
     for part in (found.markers, found.tensions, found.jacobians, found.nodes):
@@ -111,7 +111,7 @@ def test_an_error_in_one_pose_does_not_lose_the_others(simulation: Simulation, m
     monkeypatch.setattr(simulation, "solve", fragile)
     found = simulation.solve_batch(goals)
     assert found.converged.tolist() == [True, False, True, True, True]
-    assert found.reasons[1] is None
+    assert found.statuses[1] is None
     assert found.errors[1] == "ZeroDivisionError: put in on purpose"
     assert np.isnan(found.markers[1]).all()
 

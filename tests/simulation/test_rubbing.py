@@ -95,7 +95,7 @@ class Pressed:
             return minimize(assembly, nodes, IDLE, round_off=noise, options=options)
 
         found, result = find_history_equilibrium(start, (self.nodes, None), IDLE, relax, 1e-9)
-        assert result.converged, result.reason
+        assert result.converged, result.status
         self.nodes, self.at = result.nodes, np.array(place)
         self.assembly = found.with_advanced_history(self.nodes, IDLE)
         forces = pins.gradient(self.nodes, IDLE)[:, 0]

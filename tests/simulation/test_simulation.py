@@ -166,7 +166,7 @@ def test_a_solve_that_stops_early_raises_or_says_why() -> None:
         simulation.solve(PULL)
     assert not caught.value.result.converged  # type: ignore[attr-defined]
     pose = simulation.solve(PULL, strict=False)
-    assert pose.result.reason is NewtonStatus.ITERATION_LIMIT
+    assert pose.result.status is NewtonStatus.ITERATION_LIMIT
     assert np.isfinite(pose.nodes).all()
 
 

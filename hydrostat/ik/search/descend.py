@@ -91,7 +91,7 @@ def least_effort(search: InverseSearch, state: InverseState) -> Descent:
     for weight in weights:
         lighter = descend(search, state, weight=weight)
         state, spent = lighter.state, spent + lighter.iterations
-        if lighter.reason is IKStatus.TIME_LIMIT:
+        if lighter.status is IKStatus.TIME_LIMIT:
             return lighter.after(spent)
     found = descend(search, state)
     return found.after(spent + found.iterations)
@@ -137,8 +137,8 @@ class _TrustRegionDescent:
             elif not self._reconsider():
                 self._resize(-np.inf, step.values)
                 if self.radius < smallest_radius:
-                    reason = IKStatus.NO_EQUILIBRIUM if tried.trial is None else IKStatus.LOCAL_OPTIMUM
-                    return self._end(reason, iteration + 1)
+                    status = IKStatus.NO_EQUILIBRIUM if tried.trial is None else IKStatus.LOCAL_OPTIMUM
+                    return self._end(status, iteration + 1)
         return self._end(IKStatus.ITERATION_LIMIT, options.iterations)
 
     def _step(self) -> ModelStep:
@@ -177,19 +177,19 @@ class _TrustRegionDescent:
         self._move(sharp)
         return True
 
-    def _end(self, reason: IKStatus, iterations: int) -> Descent:
+    def _end(self, status: IKStatus, iterations: int) -> Descent:
         """State if it rests within its limits, else the last one that did."""
         if not self._sharpen() or self.state.excess > EXCESS:
             self.state = self.rested or self.state
         steep = 1e-3  # where the residual's length still falls faster than this [m/m], it is no optimum
         if self._is_reached():
-            reason = IKStatus.REACHED
+            status = IKStatus.REACHED
             self.state = self.search.drop_slack(self.state)
         elif self.state.excess > EXCESS:
-            reason = IKStatus.INFEASIBLE
-        elif reason is IKStatus.LOCAL_OPTIMUM and self.problem.descent_rate(self.state, self.weight) > steep:
-            reason = IKStatus.STALLED
-        return Descent(state=self.state, reason=reason, iterations=iterations, weight=self.weight)
+            status = IKStatus.INFEASIBLE
+        elif status is IKStatus.LOCAL_OPTIMUM and self.problem.descent_rate(self.state, self.weight) > steep:
+            status = IKStatus.STALLED
+        return Descent(state=self.state, status=status, iterations=iterations, weight=self.weight)
 
 
 _RULES = StepRules(excess_share=0.995, far=0.1)  # when a descent takes a step

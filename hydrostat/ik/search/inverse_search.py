@@ -240,7 +240,7 @@ def _usable_start(pose: Equilibrium) -> Equilibrium:
     """Pose, if a search can begin from it."""
     if not _sound(pose.result):
         raise NotConvergedError(
-            f"inverse kinematics finds no stable equilibrium to begin from: {pose.result.reason}; give a start",
+            f"inverse kinematics finds no stable equilibrium to begin from: {pose.result.status}; give a start",
             pose.result,
         )
     return pose
@@ -302,7 +302,7 @@ class Descent:
     """Result of one descent."""
 
     state: InverseState  # best equilibrium within the limits
-    reason: IKStatus  # reason why the descent ended
+    status: IKStatus  # reason why the descent ended
     iterations: int  # number of steps tried
     weight: float  # weight of the effort at the end
 
@@ -324,11 +324,11 @@ def reached_pose(search: InverseSearch, found: Descent, target: PoseTarget | Non
         target=target,
         pose=pose,
         errors=state.errors,
-        status=found.reason,
+        status=found.status,
         iterations=found.iterations,
         solves=search.solves,
         optimality=problem.descent_rate(state, found.weight),
-        active_limits=() if found.reason is IKStatus.REACHED else limits_that_hold(search, found),
+        active_limits=() if found.status is IKStatus.REACHED else limits_that_hold(search, found),
     )
 
 

@@ -43,7 +43,7 @@ def follow(
         pose, distance = _go(simulation, pose, goal, jump, halvings)
         if not pose.result.converged:
             raise NotConvergedError(
-                f"no equilibrium found at {time:.3g} s of the trajectory: {pose.result.reason}", pose.result
+                f"no equilibrium found at {time:.3g} s of the trajectory: {pose.result.status}", pose.result
             )
         if distance > jump:
             snaps.append(BranchJump(time=float(time), distance=distance))

@@ -14,7 +14,7 @@ from hydrostat.simulation.equilibrium import Equilibrium
 from hydrostat.units import plural
 
 
-class BranchReason(StrEnum):
+class BranchStatus(StrEnum):
     """Why a branch was followed no further."""
 
     ARRIVED = "goal reached"
@@ -74,18 +74,18 @@ class Branch(Tabular):
         goal: those at the intended end.
         points: equilibria in order along the branch.
         critical: folds and bifurcations in the same order.
-        reason: reason why the branch ends.
+        status: reason why the branch ends.
     """
 
     begin: Vector
     goal: Vector
     points: tuple[BranchPoint, ...]
     critical: tuple[CriticalPoint, ...]
-    reason: BranchReason
+    status: BranchStatus
 
     def __repr__(self) -> str:
         """Return a one-line summary."""
-        return f"<Branch of {plural(len(self.points), 'pose')}: {self.reason}>"
+        return f"<Branch of {plural(len(self.points), 'pose')}: {self.status}>"
 
     def columns(self) -> Columns:
         """Return share of the way, stability (1 or 0), contractions, markers and tensions, a row for each pose."""
@@ -96,7 +96,7 @@ class Branch(Tabular):
     @property
     def reaches_goal(self) -> bool:
         """True if the branch reaches the goal."""
-        return self.reason is BranchReason.ARRIVED
+        return self.status is BranchStatus.ARRIVED
 
     @property
     def end(self) -> Equilibrium:
@@ -125,7 +125,7 @@ class Branch(Tabular):
         """Report as lines of text."""
         unstable = sum(not point.stable for point in self.points)
         told = f"{len(self.points)} equilibria" + (f", {unstable} of them unstable" if unstable else ", all stable")
-        lines = [f"{self.reason} at {100 * self.points[-1].share:.1f} % of the path ({told})"]
+        lines = [f"{self.status} at {100 * self.points[-1].share:.1f} % of the path ({told})"]
         for point in self.critical:
             taken = self.begin + point.share * (self.goal - self.begin)
             drives = self.points[0].pose.robot.drives

@@ -9,7 +9,7 @@ from hydrostat.arrays import Nodes, Vector
 from hydrostat.errors import InputError
 from hydrostat.mechanics import NewtonResult, NewtonStatus
 from hydrostat.simulation.branches.bordered import Bordered, PathPoint, Tangent
-from hydrostat.simulation.branches.branch import Branch, BranchPoint, BranchReason, CriticalKind, CriticalPoint
+from hydrostat.simulation.branches.branch import Branch, BranchPoint, BranchStatus, CriticalKind, CriticalPoint
 from hydrostat.simulation.controls import split_controls
 from hydrostat.simulation.equilibrium import Equilibrium, check_pose
 from hydrostat.simulation.simulation import Contractions, Simulation
@@ -112,23 +112,23 @@ class _Follower:
         place = self._begin(self.start.nodes)
         self._keep(place)
         step = self.options.first_step
-        reason = BranchReason.STEP_LIMIT
+        status = BranchStatus.STEP_LIMIT
         if (self.start.controls == self.goal).all():
-            return self._branch(BranchReason.ARRIVED)
+            return self._branch(BranchStatus.ARRIVED)
         for _ in range(self.options.steps):
             trial = self._step(place, step)
             if trial is None:
                 step *= 0.5
                 if step < self.options.smallest_step:
-                    reason = BranchReason.STUCK
+                    status = BranchStatus.STUCK
                     break
                 continue
             ended = self._advance(place, trial, step)
             if ended is not None:
-                reason = ended
+                status = ended
                 break
             place, step = trial, self._next_step(trial, step)
-        return self._branch(reason)
+        return self._branch(status)
 
     def _begin(self, nodes: Nodes) -> PathPoint:
         """Start as a place on the branch, in the direction of growing share."""
@@ -157,7 +157,7 @@ class _Follower:
         bent = trial.distance / (self.options.distance * step)
         return min(step * float(np.clip(np.sqrt(0.3 / max(bent, 1e-9)), 0.4, 2.0)), self.options.largest_step)
 
-    def _advance(self, place: PathPoint, trial: PathPoint, step: float) -> BranchReason | None:
+    def _advance(self, place: PathPoint, trial: PathPoint, step: float) -> BranchStatus | None:
         """Keep what is found between two places, and the second one; a reason if the branch ends."""
         found = self._find_critical(place, trial, step)
         if found is not None:
@@ -166,14 +166,14 @@ class _Follower:
                 return self._land(place, there)
             self._mark(kind, there)
             if not self.around:
-                return BranchReason[kind.name]
+                return BranchStatus[kind.name]
             place = there
         if not 0.0 <= trial.share <= 1.0:
             return self._land(place, trial)
         self._keep(trial)
         return None
 
-    def _land(self, place: PathPoint, beyond: PathPoint) -> BranchReason:
+    def _land(self, place: PathPoint, beyond: PathPoint) -> BranchStatus:
         """End the branch at the share that lies between two places, 0 or 1."""
         share = 1.0 if beyond.share > 1.0 else 0.0
         part = (share - place.share) / (beyond.share - place.share)
@@ -184,9 +184,9 @@ class _Follower:
         reach = self.system.farthest(beyond.nodes - place.nodes, beyond.share - place.share)
         landed = self.system.correct(guess, share, still, reach=reach, before=place.tangent)
         if landed is None:
-            return BranchReason.STUCK
+            return BranchStatus.STUCK
         self._keep(landed)
-        return BranchReason.ARRIVED if share == 1.0 else BranchReason.BACK
+        return BranchStatus.ARRIVED if share == 1.0 else BranchStatus.BACK
 
     def _find_critical(self, place: PathPoint, trial: PathPoint, step: float) -> tuple[CriticalKind, PathPoint] | None:
         """Fold where the share turns back, else a bifurcation where stability changes."""
@@ -230,13 +230,13 @@ class _Follower:
             BranchPoint(share=float(place.share), pose=_solve_at(self.simulation, self.system.controls, place))
         )
 
-    def _branch(self, reason: BranchReason) -> Branch:
+    def _branch(self, status: BranchStatus) -> Branch:
         return Branch(
             begin=self.start.controls,
             goal=self.goal,
             points=tuple(self.points),
             critical=tuple(self.critical),
-            reason=reason,
+            status=status,
         )
 
 
@@ -254,7 +254,7 @@ def _solve_at(simulation: Simulation, controls: Callable[[float], Vector], place
         energy=energy,
         result=NewtonResult(
             nodes=place.nodes,
-            reason=NewtonStatus.CONVERGED,
+            status=NewtonStatus.CONVERGED,
             residual=place.residual,
             allowed=place.allowed,
             energy=energy,

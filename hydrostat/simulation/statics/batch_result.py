@@ -33,7 +33,7 @@ class PoseRow(NamedTuple):
         jacobian: Jacobian of the markers by the contractions; None if not requested or undefined.
         nodes: node positions [m]; None if not requested.
         stable: True if it is an energy minimum.
-        reason: stop reason of the solver; None after an error.
+        status: stop reason of the solver; None after an error.
         trouble: error text; empty without an error.
     """
 
@@ -42,7 +42,7 @@ class PoseRow(NamedTuple):
     jacobian: Derivatives | None = None
     nodes: Nodes | None = None
     stable: bool = False
-    reason: NewtonStatus | None = None
+    status: NewtonStatus | None = None
     trouble: str = ""
 
 
@@ -57,7 +57,7 @@ class BatchResult(Tabular):
         jacobians: exact Jacobians of the markers by the contractions, (poses, markers, dim, winches); None if not
             requested.
         nodes: node positions [m], (poses, nodes, dim); None if not requested.
-        reasons: stop reason of each solve; None after an error.
+        statuses: stop reason of each solve; None after an error.
         stable: True where the equilibrium is an energy minimum, not a saddle, (poses,).
         errors: error text of each solve; empty without an error.
         robot: robot that was solved.
@@ -68,7 +68,7 @@ class BatchResult(Tabular):
     tensions: Float[np.ndarray, "poses cables"]
     jacobians: Float[np.ndarray, "poses markers dim winches"] | None
     nodes: Float[np.ndarray, "poses nodes dim"] | None
-    reasons: tuple[NewtonStatus | None, ...]
+    statuses: tuple[NewtonStatus | None, ...]
     stable: Bool[np.ndarray, " poses"]
     errors: tuple[str, ...]
     robot: Robot
@@ -84,10 +84,10 @@ class BatchResult(Tabular):
     @property
     def converged(self) -> Bool[np.ndarray, " poses"]:
         """Mask of the rows that are equilibria."""
-        return np.array([reason is NewtonStatus.CONVERGED for reason in self.reasons], dtype=bool)
+        return np.array([status is NewtonStatus.CONVERGED for status in self.statuses], dtype=bool)
 
     def __len__(self) -> int:
-        return len(self.reasons)
+        return len(self.statuses)
 
     def __repr__(self) -> str:
         """Return a one-line summary."""
@@ -111,9 +111,9 @@ def pose_row(
         jacobian_of: returns the Jacobian of the markers by the contractions; None if not requested.
         diagnose: tells why there is no equilibrium.
     """
-    reason, trouble, jacobian = pose.result.reason, "", None
+    status, trouble, jacobian = pose.result.status, "", None
     if not pose.result.converged:
-        return PoseRow(reason=reason, trouble="; ".join([reason, *diagnose(pose)]))
+        return PoseRow(status=status, trouble="; ".join([status, *diagnose(pose)]))
     if jacobian_of is not None:
         try:
             jacobian = jacobian_of(pose)
@@ -125,7 +125,7 @@ def pose_row(
         jacobian=jacobian,
         nodes=pose.nodes if keep else None,
         stable=pose.result.stable,
-        reason=reason,
+        status=status,
         trouble=trouble,
     )
 
@@ -162,7 +162,7 @@ def solve_rows(
         tensions=_stack([row.tensions for row in rows], (len(robot.cables),)),
         jacobians=_stack([row.jacobian for row in rows], (*markers, contractions.shape[1])) if jacobians else None,
         nodes=_stack([row.nodes for row in rows], mesh.nodes.shape) if nodes else None,
-        reasons=tuple(row.reason for row in rows),
+        statuses=tuple(row.status for row in rows),
         stable=np.array([row.stable for row in rows], dtype=bool),
         errors=tuple(row.trouble for row in rows),
         robot=robot,

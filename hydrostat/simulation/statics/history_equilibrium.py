@@ -59,7 +59,7 @@ def find_history_equilibrium(
             least, last = missed, corrections
         hopeless = missed > far * largest and iterations > most * assembly.max_stalled_corrections
         if hopeless or corrections == min(_CORRECTIONS, last + assembly.max_stalled_corrections):
-            result = replace(result, reason=NewtonStatus.NO_BALANCE)
+            result = replace(result, status=NewtonStatus.NO_BALANCE)
             break
         if left > slow and stiffness is not None:  # factors of a place nearby no longer serve
             stiffness = assembly.stiffness(nodes, controls)

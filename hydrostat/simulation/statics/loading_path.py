@@ -157,7 +157,7 @@ class LoadingPath:
 
 
 def _late(state: _PathState) -> bool:
-    return state.result is not None and state.result.reason is NewtonStatus.TIME_LIMIT
+    return state.result is not None and state.result.status is NewtonStatus.TIME_LIMIT
 
 
 def _stiffness(state: _PathState) -> FactorizedHessian | None:

@@ -58,7 +58,7 @@ def diagnose_failure(
 def not_converged(result: NewtonResult, reasons: Sequence[str]) -> NotConvergedError:
     """Return the error of a solve that stopped early: reason, residual force and diagnosis."""
     return NotConvergedError(
-        f"no equilibrium found after {result.iterations} iterations: {result.reason} (residual force "
+        f"no equilibrium found after {result.iterations} iterations: {result.status} (residual force "
         f"{result.residual:.2g} N, allowed {result.allowed:.2g} N); {'; '.join(reasons)}",
         result,
     )
@@ -194,7 +194,7 @@ class StaticSolver:
             spent += result.iterations
         if not result.converged:
             result = min(self._failed_result(result, goal), direct, key=lambda found: found.energy)
-            result = replace(result, reason=NewtonStatus.TIME_LIMIT) if self._late else result
+            result = replace(result, status=NewtonStatus.TIME_LIMIT) if self._late else result
         return replace(result, iterations=spent)
 
     @property
@@ -247,13 +247,13 @@ class StaticSolver:
         if with_load and _needs_fallback(result):
             result, last = self.relax(nodes, goal, stiffness), True
             spent += result.iterations
-        told = last or result.reason is NewtonStatus.TIME_LIMIT
-        return replace(result, iterations=spent, reason=result.reason if told else NewtonStatus.ITERATION_LIMIT)
+        told = last or result.status is NewtonStatus.TIME_LIMIT
+        return replace(result, iterations=spent, status=result.status if told else NewtonStatus.ITERATION_LIMIT)
 
 
 def _needs_fallback(result: NewtonResult) -> bool:
     """Return True if another solution method should be tried."""
-    return result.reason not in (NewtonStatus.CONVERGED, NewtonStatus.TIME_LIMIT)
+    return result.status not in (NewtonStatus.CONVERGED, NewtonStatus.TIME_LIMIT)
 
 
 _ROUGH_RESIDUAL = 1e-2

@@ -152,7 +152,7 @@ class Dynamics:
                 return replace(at, time=motion.time + dt, result=replace(result, iterations=iterations))
         assert result is not None
         raise NotConvergedError(
-            f"no step found at {motion.time:.4g} s, not even one of {dt / 2**options.halvings:.2g} s: {result.reason}; "
+            f"no step found at {motion.time:.4g} s, not even one of {dt / 2**options.halvings:.2g} s: {result.status}; "
             f"try another time step (force left over {result.residual:.2g} N, allowed {result.allowed:.2g} N)",
             result,
         )

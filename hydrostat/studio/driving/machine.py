@@ -64,7 +64,7 @@ class Follower:
         if pose.result.converged and upright(simulation.robot, pose):
             self._last, self.failure = pose, ""
         else:
-            why = pose.result.reason if not pose.result.converged else "elements inverted"
+            why = pose.result.status if not pose.result.converged else "elements inverted"
             self.failure = f"no equilibrium found ({why}). The last one is shown; go back a little"
         if self._last is None:
             return rest_shape(simulation.robot)
