@@ -13,9 +13,7 @@ from hydrostat.errors import InputError
 from hydrostat.units import plural
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from hydrostat.control import Calibration
+    from hydrostat.control import Calibration, WinchMotor
     from hydrostat.fabrication import Motor
 
 
@@ -26,7 +24,8 @@ def firmware(
         str | None,
         typer.Option(
             metavar="uno|mega|esp32s3",
-            help="Board types: an uno drives two motors, a mega six, an esp32s3 four. Separate several by commas.",
+            help="Board types: an uno drives two motors, a mega six, an esp32s3 four, or 16 Feetech servos. "
+            "Separate several by commas.",
             show_default="smallest that fit",
         ),
     ] = None,
@@ -41,7 +40,11 @@ def firmware(
     ] = None,
     motor: Annotated[
         str | None,
-        typer.Option(metavar="NAME", help="Motor model: n20 or 25d.", show_default="the one in motors.toml, else 25d"),
+        typer.Option(
+            metavar="NAME",
+            help="Motor model: n20 or 25d; on an esp32s3 also sts3215, sts3215-12v, st3020 or scs0009.",
+            show_default="the one in robot.toml or motors.toml, else 25d",
+        ),
     ] = None,
     counts: Annotated[
         float | None,
@@ -64,43 +67,43 @@ def firmware(
         ),
     ] = None,
 ) -> None:
-    """Build Arduino firmware for geared motors, and flash it.
+    """Build Arduino firmware for geared motors or Feetech servos, and flash it.
 
     Limits come from robot.toml and motors.toml. Missing encoder counts are added to motors.toml; --motor or --counts
     replaces them. Robots with more motors than one board drives use several boards, each with its own port. Without
     --flash the command prints the flash command instead of running it. With --moves the board plays the table without a
     computer, after calibration. Needs Debian's gcc-avr and avr-libc, and avrdude to flash. For an ESP32-S3 the command
-    writes an Arduino sketch instead. Then run: hydrostat calibrate ROBOT --motors firmware:/dev/ttyACM0.
+    writes an Arduino sketch instead; it drives Feetech servos over a bus adapter. Then run: hydrostat calibrate ROBOT
+    --motors firmware:/dev/ttyACM0.
 
     Example: hydrostat firmware examples/starfish --board mega --out build/firmware
     """
     from hydrostat import control
-    from hydrostat.fabrication import MOTORS, check_board
+    from hydrostat.fabrication import check_board
     from hydrostat.robot import PinDrive
 
-    known = {each.key: each for each in MOTORS if each.counts}
-    _check_motor("--motor", motor or "auto", known)
+    _check_motor("--motor", motor or "auto", board)
     _check_alone(moves, rate, min_supply)
     folder = robot if robot.is_dir() else robot.parent
     loaded = read_robot(robot)
     PinDrive.require_none(loaded.drives, "firmware, whose boards turn winches")
-    _check_motor(f"{robot}: motor", loaded.motor if motor is None and counts is None else "auto", known)
+    _check_motor(f"{robot}: motor", loaded.motor if motor is None and counts is None else "auto", board)
     if not loaded.winches:
         raise InputError(f"{robot}: no winches. Add winches and cables, or run `hydrostat design`.")
     if (folder / control.CALIBRATION).exists():
         calibration = control.Calibration.read(folder, loaded)
     else:
         calibration = control.Calibration.usual(loaded)
-    chosen = known[motor or _motor_key(known, calibration)]
-    usual, turns = chosen.counts if counts is None else counts, chosen.speed if rpm is None else rpm
+    chosen = _choose_motor(motor, loaded.motor, calibration, counts)
+    known = control.SERVO_STEPS.get(chosen.bus, chosen.counts)
+    usual, turns = known if counts is None else counts, chosen.speed if rpm is None else rpm
     for name, value in (("counts", usual), ("rpm", turns)):
         if not 0 < value < 1e6:
             raise InputError(f"--{name} {value:g}: must be above 0")
-    boards = _boards(board, calibration)
-    given = control.on_boards(calibration, boards)
+    boards = [SERVO_BOARD] if chosen.bus else _boards(board, calibration)
+    given = calibration if chosen.bus else control.on_boards(calibration, boards)
     _check_count(board, given)
-    new = usual if counts or motor else None  # else what motors.toml says stays
-    given = control.Calibration(tuple(replace(each, counts=new or each.counts or usual) for each in given.motors))
+    given = _set_counts(given, usual, is_new=bool(counts or motor or chosen.bus))
     ports = port.split(",") if port else []
     if ports and len(ports) != given.boards:
         words = f"{plural(len(ports), 'port')} for {plural(given.boards, 'board')}"
@@ -113,31 +116,79 @@ def firmware(
     baked = None if moves is None else control.bake_moves(moves, folder, loaded, given, boards[0], rate=rate)
     text = "" if baked is None else baked.settings
     text += "" if min_supply is None else f"#define MIN_SUPPLY {round(1e3 * min_supply)} /* [mV] */\n"
-    images = control.build_images(loaded, given, boards, places, rpm=turns, stall=chosen.stall_current, moves=text)
+    facts = {"rpm": turns, "stall": chosen.stall_current, "bus": chosen.bus}
+    images = control.build_images(loaded, given, boards, places, moves=text, **facts)
     if given != calibration:
         print(f"Wrote {given.write(folder)}, next to the robot: motors and counts for calibrate, play and drive")
     for number, (kind, image) in enumerate(zip(boards, images, strict=False), 1):
-        _tell(kind, number, given)
+        _tell(kind, number, given, chosen.bus)
         _flash(kind, image, ports[number - 1] if ports else None)
     if baked is not None:
         words = f"{baked.seconds:.1f} s, {baked.size / 1000:.1f} kB. Button between pin"
         print(f"{moves}: {words} {check_board(boards[0]).button} and GND plays and stops it, after calibration.")
-    _tell_supply(boards[: given.boards], min_supply, alone=baked is not None)
+    _tell_supply(boards[: given.boards], min_supply, chosen.bus, alone=baked is not None)
     if ports:
         print(f"{port}: flashed. Pay out all cables, then: hydrostat calibrate {folder} --motors firmware:{port}")
 
 
-def _check_motor(where: str, key: str, known: "Mapping[str, Motor]") -> None:
-    """Reject a motor that boards do not drive: a servo on a bus, or an unknown one."""
+SERVO_BOARD = "esp32s3"
+"""Board that drives Feetech servos."""
+
+
+def _check_motor(where: str, key: str, board: str | None) -> None:
+    """Reject a motor that boards do not drive, or that this board does not, or an unknown one."""
     from hydrostat.fabrication import ALL_MOTORS
 
-    if bus := next((each.bus for each in ALL_MOTORS if each.key == key), ""):
+    motor = next((each for each in ALL_MOTORS if each.key == key), None)
+    if motor is None and key != "auto":
+        known = ", ".join(each.key for each in ALL_MOTORS if each.counts or each.is_feetech)
+        raise InputError(f"{where} {key}: unknown motor. Available: {known}. Or give --counts and --rpm.")
+    if motor is None or not motor.bus:
+        return
+    if not motor.is_feetech:
         raise InputError(
-            f"{where} {key}: boards drive no bus servos. Run `hydrostat play ROBOT MOVES --motors {bus}:PORT`, or "
-            "build with --motor n20 or 25d."
+            f"{where} {key}: boards drive no Dynamixel servos. Run `hydrostat play ROBOT MOVES --motors "
+            f"{motor.bus}:PORT`, or build with --motor n20, 25d or a Feetech servo."
         )
-    if key != "auto" and key not in known:
-        raise InputError(f"{where} {key}: unknown motor. Available: {', '.join(known)}. Or give --counts and --rpm.")
+    if board not in (None, SERVO_BOARD):
+        raise InputError(
+            f"{where} {key}: --board {board} drives no bus servos. Use --board {SERVO_BOARD}, or --motor n20 or 25d."
+        )
+
+
+def _choose_motor(asked: str | None, own: str, calibration: "Calibration", counts: float | None) -> "Motor":
+    """The motor of the command; or a servo that the robot names; or the one whose counts motors have, else a usual one.
+
+    Raises:
+        InputError: servos with other counts than theirs, or on several boards.
+    """
+    from hydrostat.control import CALIBRATION, SERVO_STEPS
+    from hydrostat.fabrication import ALL_MOTORS
+
+    known = {each.key: each for each in ALL_MOTORS if each.counts or (each.is_feetech and (asked or counts is None))}
+    if asked is None and not (own in known and known[own].bus):
+        told = {each.counts for each in calibration.motors}
+        steps = {key: SERVO_STEPS.get(each.bus, each.counts) for key, each in known.items()}
+        own = next((key for key, each in steps.items() if told == {each}), _USUAL)
+    motor = known[asked or own]
+    if motor.bus and counts is not None:
+        raise InputError(f"--counts: a {motor.key} has {SERVO_STEPS[motor.bus]:g}. Remove it.")
+    if motor.bus and calibration.boards > 1:
+        raise InputError(f"{CALIBRATION}: servos are on {calibration.boards} boards. Write board = 1 for all.")
+    return motor
+
+
+def _set_counts(calibration: "Calibration", counts: float, *, is_new: bool) -> "Calibration":
+    """Motors with counts: new ones, or those of motors.toml where it has them. Zeros in other counts are dropped."""
+
+    def change(motor: "WinchMotor") -> "WinchMotor":
+        if motor.counts is None or not is_new:
+            return replace(motor, counts=motor.counts or counts)
+        return replace(motor, counts=counts, zero=motor.zero if motor.counts == counts else None)
+
+    from hydrostat.control import Calibration
+
+    return Calibration(tuple(change(motor) for motor in calibration.motors))
 
 
 def _check_alone(moves: Path | None, rate: int, min_supply: float | None) -> None:
@@ -156,10 +207,13 @@ def _check_count(asked: str | None, given: "Calibration") -> None:
         )
 
 
-def _tell_supply(kinds: list[str], min_supply: float | None, *, alone: bool) -> None:
+def _tell_supply(kinds: list[str], min_supply: float | None, bus: str, *, alone: bool) -> None:
     from hydrostat.fabrication import check_board
 
-    if min_supply is not None:
+    if bus:
+        least = "the least supply in their memory" if min_supply is None else f"{min_supply:g} V"
+        print(f"Motors stop below {least}, as the servos measure it.")
+    elif min_supply is not None:
         pins = ", ".join(dict.fromkeys(check_board(kind).supply for kind in kinds))
         print(f"Motors stop below {min_supply:g} V. Divider: plus of the motors, 47 kΩ, pin {pins}, 10 kΩ, GND.")
     elif alone:
@@ -168,12 +222,6 @@ def _tell_supply(kinds: list[str], min_supply: float | None, *, alone: bool) -> 
 
 _USUAL = "25d"
 """The motor that is meant where neither a command nor motors.toml tells one."""
-
-
-def _motor_key(known: "Mapping[str, Motor]", calibration: "Calibration") -> str:
-    """Key of the motor whose counts all motors of a robot have, or else of the usual one."""
-    told = {each.counts for each in calibration.motors}
-    return next((key for key, one in known.items() if told == {one.counts}), _USUAL)
 
 
 def _boards(asked: str | None, calibration: "Calibration") -> list[str]:
@@ -188,10 +236,15 @@ def _boards(asked: str | None, calibration: "Calibration") -> list[str]:
     return found
 
 
-def _tell(kind: str, number: int, given: "Calibration") -> None:
+def _tell(kind: str, number: int, given: "Calibration", bus: str) -> None:
     """Say which motor is wired to which pins of a board."""
     from hydrostat.fabrication import check_board
 
+    if bus:
+        print(f"{kind}: {plural(len(given.motors), 'servo')} on a bus adapter: its TX to pin 17, RX to 18, GND to GND")
+        for motor in sorted(given.motors, key=lambda one: one.number):
+            print(f"  servo number {motor.number}: {motor.winch}")
+        return
     motors = sorted((given.motors[place] for place in given.places(number)), key=lambda one: one.number)
     name = kind if given.boards == 1 else f"board {number}, {kind}"
     print(f"{name}: {plural(len(motors), 'motor')}, wiring (driver PWM, direction, encoder A and B, current):")

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
         robot_word,
     )
     from hydrostat.control.firmware_moves import bake_moves
+    from hydrostat.control.firmware_servos import SERVO_STEPS
     from hydrostat.control.guard import TensionGuard, not_judged
     from hydrostat.control.link import Link, SimulatedLink
     from hydrostat.control.marker_feedback import LostAction, MarkerFeedback, MarkerSight
@@ -46,6 +47,7 @@ __all__ = [
     "EMULATED_CALIBRATION",
     "GOAL",
     "MAX_DURATION",
+    "SERVO_STEPS",
     "TICK",
     "Bus",
     "BusLink",

@@ -25,7 +25,7 @@ REFUSALS = {
     "model": "servo {} is of another model than the board was built for. Run hydrostat firmware with its --motor",
     "mode": "servo {} is not in position mode. Set its register of the mode to 0",
     "memory": "servo {} allows no supply: its registers of greatest and least voltage are reversed",
-    "range": "servo {} turns without end. Set its limits of angle to 0 and 1023",
+    "range": "servo {} turns less than its winch. Set its limits of angle to 0 and 0, of an SCS0009 to 0 and 1023",
     "voltage": "servo {} measures a supply that it is not for. Switch the power off and read its label",
     "fault": "servo {} is hot, overloaded or out of its supply. Free its cable and let it cool",
 }

@@ -29,8 +29,8 @@ moves whose zeros must hold after the power was off [m]."""
 def servo_settings(robot: Robot, motors: list[WinchMotor], bus: str) -> str:
     """Constants for servos of one kind of bus, on the motors of a board in their order.
 
-    Zeros are stored if servos still have them after their power was off: those that turn less than a turn, and those
-    whose winch does.
+    Zeros are stored if servos find them again after their power was off: those that turn less than a turn, and those
+    whose winch does, by the turn (`TURN`) that it must be.
     """
     winches = {winch.name: winch for winch in robot.winches}
     scales = [SERVO_STEPS[bus] / (2 * pi * motor.radius) for motor in motors]
@@ -47,6 +47,8 @@ def servo_settings(robot: Robot, motors: list[WinchMotor], bus: str) -> str:
     }
     if lasting and known:
         steps = [round((motor.zero or 0.0) * SERVO_STEPS[bus] / (2 * pi)) for motor in motors]
+        if bus == FeetechBus.kind:
+            constants["TURN"] = round(SERVO_STEPS[bus])
         constants["ZEROS"] = _join_braced(map(str, steps))
     lines = "".join(f"#define {name} {value}\n" for name, value in constants.items())
     return f"/* registers and rules of the servos, from hydrostat/control/{bus}_bus.py */\n{lines}"

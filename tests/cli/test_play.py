@@ -263,18 +263,41 @@ def test_a_camera_that_cannot_correct_is_refused(
     assert words in err
 
 
-def test_boards_drive_no_bus_servos(run: Run, starfish: Path, tmp_path: Path) -> None:
-    """They play no moves alone: neither for the motor of the command nor for that of robot.toml."""
+def test_a_board_drives_the_servos_of_feetech_alone(run: Run, starfish: Path, tmp_path: Path) -> None:
+    """An ESP32-S3 gets a sketch for the servo of the command, of robot.toml or of motors.toml; other boards none."""
     made, own = tmp_path / "made", Path(shutil.copytree(starfish, tmp_path / "own"))
-    code, _, err = run("firmware", own, "--motor", "scs0009", "--board", "esp32s3", "--out", made)
-    assert code == 2
-    assert "boards drive no bus servos. Run `hydrostat play ROBOT MOVES --motors scs:PORT`, or build with" in err
-    file = own / "robot.toml"
-    file.write_text(file.read_text().replace("format = 1", 'format = 1\nmotor = "sts3215"', 1))
-    code, _, err = run("firmware", own, "--out", made)
-    assert code == 2
-    assert "motor sts3215: boards drive no bus servos" in err
+    for option, told in (
+        (("--motor", "xl330"), "boards drive no Dynamixel servos. Run `hydrostat play ROBOT MOVES --motors dynamixel:"),
+        (("--motor", "scs0009", "--board", "mega"), "--board mega drives no bus servos. Use --board esp32s3"),
+        (("--motor", "scs0009", "--counts", "4000"), "--counts: a scs0009 has 1228.8. Remove it."),
+    ):
+        code, _, err = run("firmware", own, *option, "--out", made)
+        assert (code, err.count("\n")) == (2, 1)
+        assert told in err
     assert not made.exists()
+    dance = tmp_path / "dance.csv"
+    dance.write_text("time_s\n0\n2\n")
+    given = ("firmware", own, "--moves", dance, "--min-supply", "6", "--out", made)
+    code, out, _ = run(*given, "--motor", "st3020", "--board", "esp32s3")
+    assert code == 0
+    assert "3 servos on a bus adapter: its TX to pin 17, RX to 18, GND to GND" in out
+    assert "Motors stop below 6 V, as the servos measure it." in out
+    settings = (made / "winches" / "settings.h").read_text()
+    assert "#define FEETECH 1" in settings
+    assert "#define MOVE_ROWS 52" in settings
+    assert sorted(path.name for path in (made / "winches").iterdir()) == [
+        "esp32s3.h", "feetech.h", "moves.h", "settings.h", "winches.cpp", "winches.ino",
+    ]  # fmt: skip
+    motors = own / "motors.toml"
+    assert motors.read_text().count("counts = 4096.0") == 3
+    code, out, _ = run(*given)  # what motors.toml says
+    assert (code, (made / "winches" / "settings.h").read_text().count("FEETECH")) == (0, 1)
+    motors.write_text(motors.read_text().replace("turns = 1", "zero = 1.0\nturns = 1"))
+    file = own / "robot.toml"
+    file.write_text(file.read_text().replace("format = 1", 'format = 1\nmotor = "scs0009"', 1))
+    code, out, _ = run(*given)
+    assert (code, "SCS0009" in out) == (0, True)
+    assert "zero" not in re.sub("#.*", "", motors.read_text())  # steps of other servos
 
 
 def test_boards_turn_no_drives(run: Run, tmp_path: Path) -> None:

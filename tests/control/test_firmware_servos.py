@@ -13,7 +13,7 @@ from firmware_bench import ServoBoard, two_winch_strip
 
 from hydrostat.control import BusLink, Calibration, Motors, Player, bake_moves
 from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedScs, EmulatedSts
-from hydrostat.control.feetech_bus import TORQUE, FeetechBus, SumReader, pack
+from hydrostat.control.feetech_bus import LOW, TORQUE, FeetechBus, SumReader, pack
 from hydrostat.control.firmware_build import build_firmware, firmware_settings, robot_word
 from hydrostat.control.firmware_bus import FirmwareBus
 from hydrostat.control.firmware_servos import SERVO_STEPS
@@ -63,9 +63,16 @@ def servos_of(bus: str) -> list[EmulatedSts | EmulatedScs]:
     return [KINDS[bus][0](2 - place, angle=ZEROS[bus][place], load=pull(place)) for place in (1, 0)]
 
 
-def start(bus: str, folder: Path, *, change: Callable[[list], None] = lambda _: None, more: str = "") -> ServoBoard:
+def start(
+    bus: str,
+    folder: Path,
+    *,
+    change: Callable[[list], None] = lambda _: None,
+    more: str = "",
+    robot: Robot | None = None,
+) -> ServoBoard:
     """A board with moves and its servos, switched on a moment ago."""
-    robot, motors, servos = robot_with(bus), motors_of(bus), servos_of(bus)
+    robot, motors, servos = robot or robot_with(bus), motors_of(bus), servos_of(bus)
     change(servos)
     names = ",".join(winch.name for winch in robot.winches)
     lines = [f"time_s,{names}", *(",".join(map(str, row)) for row in ROWS)]
@@ -217,14 +224,19 @@ def test_silence_holds_and_a_hung_program_lets_go(tmp_path: Path) -> None:
         ("feetech", {"supply": 12.0, "allowed": (8.0, 14.0)}, "voltage 2"),
         ("feetech", {"model": 1284}, "model 2"),
         ("feetech", {"number": 7}, "servo 2"),
+        ("feetech", {"limits": bytes([0, 0, 0xFF, 0x0F])}, "range 2"),
         ("scs", {"supply": 8.6}, "voltage 2"),
+        ("scs", {"limits": bytes(4)}, "range 2"),
     ],
 )
 def test_servos_that_are_not_ready_are_not_armed(bus: str, change: dict, told: str, tmp_path: Path) -> None:
-    """The second is on another supply than its own, or than the first one's; another model; or not there."""
+    """The second is on another supply than its own, or than the first's; another model; not there; counts no turns."""
 
     def spoil(servos: list) -> None:
-        servos[1] = KINDS[bus][0](**{"number": 2, "angle": ZEROS[bus][0], **change})
+        limits = change.get("limits", b"")
+        rest = {name: value for name, value in change.items() if name != "limits"}
+        servos[1] = KINDS[bus][0](**{"number": 2, "angle": ZEROS[bus][0], **rest})
+        servos[1].table[LOW : LOW + len(limits)] = limits
 
     board = start(bus, tmp_path, change=spoil)
     assert board.ask("A 400 400") == f"no {told}"
@@ -278,6 +290,22 @@ def test_a_board_alone_moves_as_with_our_driver(bus: str, tmp_path: Path) -> Non
     assert is_torque_on(board) == [False, False]
 
 
+def test_a_short_winch_finds_its_turn(tmp_path: Path) -> None:
+    """STS servos that were switched on count from within a turn; stored zeros lie in others. Oracle: the last row."""
+
+    def switch_on(servos: list) -> None:
+        for servo in servos:
+            servo.origin = 2 * np.pi * (servo.angle // (2 * np.pi))
+            servo.step(0.0, 1e-3)
+
+    board = start("feetech", tmp_path, change=switch_on, robot=robot_with("scs"))
+    assert board.is_lit()
+    board.press()
+    board.keep(4.5)
+    assert board.ask("R").startswith("ok armed ")
+    assert contractions_of("feetech", board.chain.servos) == pytest.approx([0.004, 0.012], abs=1e-4)
+
+
 def test_a_second_press_stops_and_a_low_battery_ends_moves(tmp_path: Path) -> None:
     """Servos stand where they were for 2 s, then let go; below the supply of the settings nothing plays again."""
     board = start("scs", tmp_path, more="#define MIN_SUPPLY 5500\n")
@@ -321,6 +349,7 @@ def test_settings_hold_zeros_that_last(tmp_path: Path) -> None:
     short = firmware_settings(robot_with("scs"), motors_of("feetech"), rpm=60.0, bus="feetech")
     assert "#define ZEROS {7171, -1304}" in short
     assert "#define ALONE_SPARE 2.0000f" in short
+    assert "#define TURN 4096" in short
     new = Calibration(tuple(replace(motor, zero=None) for motor in motors_of("scs").motors))
     assert "#define ZEROS" not in firmware_settings(robot_with("scs"), new, rpm=60.0, bus="scs")
     with pytest.raises(InputError, match=r"board mega drives 0 servos, the robot has 2\. Use --board esp32s3"):

@@ -19,6 +19,7 @@
 
 typedef struct {
     int32_t place, low, high; /* step now, and steps that it may go to: none before it said who it is */
+    int32_t base;             /* steps of whole turns by which it counts less than its zero does */
     float goal;               /* told last */
     const char *refused;      /* why it cannot be used */
     uint8_t least, most;      /* supply in its memory [0.1 V] */
@@ -85,12 +86,14 @@ static int32_t place(uint8_t i) { return servos[i].place; }
 /* Least and greatest place: those of the servo, and those of the winch once its zero is known. */
 static int32_t low_of(uint8_t i) {
     int32_t low = lroundf(zeros[i] + limits[i].low - millimeters[i] * (alone ? ALONE_SPARE : GUIDED_SPARE));
-    return !zeroed || low < servos[i].low ? servos[i].low : low;
+    int32_t least = servos[i].low + servos[i].base;
+    return !zeroed || low < least ? least : low;
 }
 
 static int32_t high_of(uint8_t i) {
     int32_t high = lroundf(zeros[i] + limits[i].high + millimeters[i] * (alone ? ALONE_SPARE : GUIDED_SPARE));
-    return !zeroed || high > servos[i].high ? servos[i].high : high;
+    int32_t most = servos[i].high + servos[i].base;
+    return !zeroed || high > most ? most : high;
 }
 
 static void drive(uint8_t i, int16_t power) { motors[i].power = power; }
@@ -142,9 +145,9 @@ static void write_goals(void) {
         next = motor->pace > 0 ? fminf(next, fmaxf(motor->aim, motor->wish))
                                : fmaxf(next, fminf(motor->aim, motor->wish));
         next = fmaxf(servo->place - ahead, fminf(servo->place + ahead, next));
-        next = fmaxf(servo->low, fminf(servo->high, next));
+        next = fmaxf(servo->low + servo->base, fminf(servo->high + servo->base, next));
         float rate = fabsf(next - servo->goal) * RATE / GOAL_TICKS + fabsf(servo->goal - servo->place) * 10;
-        int32_t step = lroundf(next);
+        int32_t step = lroundf(next) - servo->base;
         servo->goal = next;
         add(i + 1);
         if (GOAL_BYTES > 6)
@@ -183,23 +186,34 @@ static void write_switches(void) {
 
 /* ---- what they answer ---- */
 
-static void take_head(Servo *servo, const uint8_t *table) {
+static void take_head(uint8_t i, const uint8_t *table) {
+    Servo *servo = &servos[i];
     static const uint16_t models[] = MODELS;
     uint8_t known = 0;
-    for (uint8_t i = 0; i < sizeof models / sizeof *models; i++)
-        known |= word_at(table + MODEL_AT) == models[i];
+    for (uint8_t kind = 0; kind < sizeof models / sizeof *models; kind++)
+        known |= word_at(table + MODEL_AT) == models[kind];
     servo->low = signed_at(table + LOW_AT, 15);
     servo->high = signed_at(table + LOW_AT + 2, 15);
     servo->most = table[VOLTS_AT];
     servo->least = table[VOLTS_AT + 1];
     servo->refused = !known ? "model" : MODE_AT && table[MODE_AT] ? "mode" : servo->least >= servo->most ? "memory" : 0;
-    if (servo->low < servo->high)
-        return;
-    if (ENDLESS) {
+    if (ENDLESS && servo->low >= servo->high) {
         servo->low = -MAX_POSITION;
         servo->high = MAX_POSITION;
-    } else
+    }
+    if (servo->high - servo->low < limits[i].high - limits[i].low)
         servo->refused = "range";
+}
+
+/* Steps of whole turns that a servo, heard for the first time, counts less than its stored zero does; a winch that
+   turns by less than a turn has one place for each. */
+static int32_t find_base(uint8_t i, int32_t now) {
+#ifdef TURN
+    float middle = zeros[i] + (limits[i].low + limits[i].high) / 2.0f;
+    return TURN * lroundf((middle - now) / TURN);
+#else
+    return (void)i, (void)now, 0;
+#endif
 }
 
 /* A servo was switched off: one that counts turns begins again within one. */
@@ -229,6 +243,9 @@ static void take_state(uint8_t i, uint8_t errors, const uint8_t *table) {
     const uint8_t *told = table + STATE_AT - READ_AT;
     int32_t now = signed_at(told, 15), current = signed_at(told + CURRENT_AT, CURRENT_SIGN);
     uint8_t torque = table[TORQUE_AT - READ_AT];
+    if (!servo->volts)
+        servo->base = find_base(i, now);
+    now += servo->base;
     if (!is_true(servo, i, now))
         return;
     servo->place = now;
@@ -264,7 +281,7 @@ static void hear_answer(uint8_t i, uint8_t size) {
         if (sum_up(found + 2, size + 3) != found[5 + size])
             continue;
         if (size == HEAD_BYTES)
-            take_head(&servos[i], found + 5);
+            take_head(i, found + 5);
         else
             take_state(i, found[4], found + 5);
         return;
