@@ -2,7 +2,8 @@
 
    Packet: FF FF, number, length, instruction or error, parameters, complement of the sum. In each tick the answer to
    the last question is read, torque is switched if the state wants it, goals go out every GOAL_TICKS, and the next
-   servo is asked. A place is a step of the servo's own count, so zeros are those of a computer on the same line.
+   servo is asked. A place is a step of the servo's own count but for whole turns (`base`), so zeros are those that a
+   computer on the same line finds.
 
    These servos have no watchdog. A board that falls silent leaves them at a goal of 20 ms ahead; as it starts again,
    torque goes off on the whole line. */
