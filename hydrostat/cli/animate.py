@@ -9,6 +9,7 @@ import typer
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result_folder
 from hydrostat.cli.option_errors import naming_option
 from hydrostat.cli.options import PictureWidth, check_width
+from hydrostat.cli.require_cables import require_cables
 from hydrostat.cli.waiting import prepare_physics, progress_bar, read_robot
 from hydrostat.errors import InputError
 from hydrostat.progress import Progress
@@ -67,8 +68,7 @@ def animate(
     for pose in name or []:
         with naming_option(f"--pose {pose}"):
             loaded.pose(pose)
-    if not loaded.cables:
-        raise InputError(f"{robot}: no cables. Add winches and cables, or run `hydrostat design`.")
+    require_cables(loaded, robot, "films")
     simulation = prepare_physics(loaded)
     each_way, usual, least_way = 2.0, 12.0, 0.5  # time of a way, most of a whole film, least of a way [s]
     with progress_bar() as progress:

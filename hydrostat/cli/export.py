@@ -6,6 +6,7 @@ import typer
 
 from hydrostat.cli.animate import find_stops
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result_folder
+from hydrostat.cli.require_cables import require_cables
 from hydrostat.cli.waiting import prepare_physics, progress_bar, read_robot
 from hydrostat.errors import InputError
 
@@ -50,8 +51,7 @@ def export(
         raise InputError("--fit-poses needs --mjcf and --trials, which find the share of the travel to fit")
     require_folder(out)
     loaded = read_robot(robot)
-    if not loaded.cables:
-        raise InputError(f"{robot}: no cables. Add winches and cables, or run `hydrostat design`.")
+    require_cables(loaded, robot, "exported models")
     texts = {}
     if mjcf:
         texts["robot.xml"] = _mjcf(loaded, trials, fit_poses)

@@ -3,7 +3,6 @@
 import gc
 import logging
 import os
-import re
 import sys
 import warnings
 from collections.abc import Callable
@@ -30,6 +29,7 @@ from hydrostat.cli.materials import materials
 from hydrostat.cli.measure import measure
 from hydrostat.cli.mimic import mimic
 from hydrostat.cli.new import new
+from hydrostat.cli.option_errors import describe_usage_error
 from hydrostat.cli.play import play
 from hydrostat.cli.pose import pose
 from hydrostat.cli.reproduce import PASS_ON, reproduce
@@ -144,8 +144,7 @@ def main() -> None:
 
 
 def _print_usage_error(error: Any, *_: object) -> None:
-    words = " ".join(error.format_message().split()).rstrip(".").replace("Value error, ", "")
-    words = re.sub(r"^Invalid value for '(-[^']+)':", r"\1:", words)
+    words = describe_usage_error(error)
     words += "" if words.endswith("?") else "."
     print(f"hydrostat: error: {words} See {error.ctx.command_path if error.ctx else 'hydrostat'} -h.", file=sys.stderr)
 

@@ -1,7 +1,9 @@
 """Errors that name the option they come from."""
 
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
 from hydrostat.errors import InputError
 
@@ -25,3 +27,25 @@ def naming_fields(*fields: str) -> Iterator[None]:
         if field not in fields or not separator:
             raise
         raise InputError(f"--{field.replace('_', '-')} {told}".replace(" :", ":", 1)) from None
+
+
+_FAULTS = {
+    "greater_than_equal": "too small. Allowed: {ge:g} or more",
+    "less_than_equal": "too large. Allowed: at most {le:g}",
+    "int_parsing": "not a whole number",
+    "int_from_float": "not a whole number",
+    "float_parsing": "not a number",
+}
+"""Words for pydantic's kinds of errors, with the fields of their context."""
+
+
+def describe_usage_error(error: Any) -> str:
+    """Return a usage error of typer in words, with the value of an option out of its range."""
+    words = " ".join(error.format_message().split()).rstrip(".").replace("Value error, ", "")
+    words = re.sub(r"^Invalid value for '(-[^']+)':", r"\1:", words)
+    list_faults = getattr(error.__cause__, "errors", None)
+    fault = list_faults()[0] if list_faults else {}
+    if not words.startswith("-") or fault.get("type") not in _FAULTS:
+        return words
+    option = words.partition(":")[0]
+    return f"{option} {fault['input']}: {_FAULTS[fault['type']].format(**fault.get('ctx', {}))}"

@@ -7,6 +7,7 @@ import typer
 
 from hydrostat.cli.folders import RobotFolder, folder_of, require_writable
 from hydrostat.cli.options import parse_optional
+from hydrostat.cli.require_cables import require_cables
 from hydrostat.cli.waiting import one_interrupt, prepare_physics, progress_bar, read_robot
 from hydrostat.errors import InputError
 
@@ -53,8 +54,7 @@ def share(
     if seconds is not None and not seconds > 0:
         raise InputError(f"--time {time}: must be above 0")
     loaded = read_robot(robot)
-    if not loaded.cables:
-        raise InputError(f"{robot}: no cables. Add winches and cables, or run `hydrostat design`.")
+    require_cables(loaded, robot, "shared pages")
     motors = Calibration.read(folder_of(robot), loaded) if (folder_of(robot) / CALIBRATION).exists() else None
     with one_interrupt(""), progress_bar() as progress:  # worker processes end before this one
         toy = make_toy(

@@ -54,6 +54,8 @@ OPEN += b'<path fill="none" stroke="red" d="M0 0H60V40"/></svg>'
             ("3 winches", "3 cables", "got 2"),
         ),
         (("design", "STARFISH", "--fibres", "hairs", "--out", "OUT"), ("hairs", "edges", "elements")),
+        (("export", "gallery:emio", "--mjcf", "--out", "OUT"), ('drives, such as "front",', "and it has no cables.")),
+        (("animate", "gallery:emio", "--out", "OUT"), ('drives, such as "front", are not available in films,',)),
         (("new", "OUT", "--from", "gallery:whale"), ("whale", "starfish")),
         (("new", "OUT", "--from", "drawing.bmp"), ("drawing.bmp", ".svg", ".stl", ".vtu")),
         (("new", "OUT", "--from", "missing.svg"), ("missing.svg", "no such file")),

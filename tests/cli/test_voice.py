@@ -83,8 +83,13 @@ def test_a_bad_text_is_found(text: str, fault: str) -> None:
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (("studio", "--port", "abc"), "error: --port: Input should be a valid integer"),
-        (("studio", "--port", "99999"), "less than or equal to 65535. See hydrostat studio -h."),
+        (("studio", "--port", "abc"), "error: --port abc: not a whole number. See hydrostat studio -h."),
+        (
+            ("studio", "--port", "99999"),
+            "error: --port 99999: too large. Allowed: at most 65535. See hydrostat",
+        ),
+        (("export", "--fit-poses", "-4"), "error: --fit-poses -4: too small. Allowed: 0 or more. See hydrostat export"),
+        (("export", "--fit-poses", "100000"), "error: --fit-poses 100000: too large. Allowed: at most 1000. See"),
         (("share",), "Missing argument 'ROBOT'. See hydrostat share -h."),
     ],
 )
