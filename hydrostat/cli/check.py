@@ -7,12 +7,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from hydrostat.cli.check_poses import is_solved_fast, print_reached_poses
 from hydrostat.cli.folders import RobotFolder
 from hydrostat.cli.waiting import patiently, read_robot
 from hydrostat.errors import InputError
 from hydrostat.units import plural
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from hydrostat.design import Diagnostic
     from hydrostat.robot import Body, Material, Membrane, Robot, Rod, Sensor
 
 
@@ -22,7 +26,7 @@ def check(
         bool,
         typer.Option(
             "--thorough",
-            help="Also compute marker workspaces, compliance and the out-of-plane motion of a stuffed body.",
+            help="Also solve poses in 3D; compute workspaces, compliance and out-of-plane motion of stuffed bodies.",
         ),
     ] = False,
     stuffed: Annotated[
@@ -32,7 +36,7 @@ def check(
 ) -> None:
     """Check a robot: report errors and warnings.
 
-    Without options, nothing is simulated: mesh, parts, rods, cables, winches and fit of the kit are checked. `hydrostat
+    Mesh, parts, rods, cables, winches and fit of the kit are checked, and the poses of flat bodies solved. `hydrostat
     fabricate` also checks the motor and line loads of the poses.
 
     Exit code 1 if there is an error, 0 with warnings and notes only.
@@ -60,45 +64,64 @@ def check(
     print(f"{counts}, poses: {', '.join(found.poses) or 'none'}")
     if words := describe_cable_side(found):
         print(f"cables: {words}")
+    review = _review(found)
+    refused = any(finding.weight.word == "error" for finding in review)
     if found.cables:
-        _print_cost(found, robot)
-    curled = _print_stuffed(found) if stuffed else _print_out_of_plane(found) if words and thorough else None
-    reaches = bool(found.markers and (found.cables or found.drives))
-    if reaches and thorough:
-        _print_workspaces(found)
-        _print_compliance(found)
-    left_out = ["marker workspaces", "compliance"] * reaches + ["out-of-plane motion"] * (bool(words) and not stuffed)
-    if left_out and not thorough:
-        print(f"not computed: {', '.join(left_out)}. Add --thorough. Loads of poses: hydrostat fabricate.")
+        print("build: no kit, see the error below" if refused else _cost_line(found, robot))
+    far = _print_simulated(found, thorough=thorough, stuffed=stuffed)
     if found.body.has_hysteresis:
         print("note: hysteresis: refused by pose, trajectory, share, design, branches and linear models.")
-    _print_judgement(found, curled)
+    _print_judgement(found, review, far)
 
 
-def _print_cost(robot: "Robot", folder: Path) -> None:
-    """Print the work on cables and the price of motors: those of its design, else with the weakest motors that fit."""
+def _print_simulated(robot: "Robot", *, thorough: bool, stuffed: bool) -> tuple[str, ...]:
+    """Print results that need simulations, and those that are left out; return their warnings."""
+    from hydrostat.robot import describe_cable_side
+
+    sewn = bool(describe_cable_side(robot))
+    curled = _print_stuffed(robot) if stuffed else _print_out_of_plane(robot) if sewn and thorough else None
+    reaches = bool(robot.markers and (robot.cables or robot.drives))
+    has_poses = bool(robot.poses) and reaches and not robot.body.has_hysteresis
+    solved = has_poses and (thorough or is_solved_fast(robot))
+    far = print_reached_poses(robot) if solved else ()
+    if reaches and thorough:
+        _print_workspaces(robot)
+        _print_compliance(robot)
+    left_out = ["poses"] * (has_poses and not solved)
+    left_out += ["marker workspaces", "compliance"] * reaches + ["out-of-plane motion"] * (sewn and not stuffed)
+    if left_out and not thorough:
+        print(f"not computed: {', '.join(left_out)}. Add --thorough. Loads of poses: hydrostat fabricate.")
+    return (*far, *([curled] if curled else []))
+
+
+def _cost_line(robot: "Robot", folder: Path) -> str:
+    """Return the work on cables and the price of motors: those of its design, else with the weakest motors that fit."""
     from hydrostat.cli.design_results import designed_cost
     from hydrostat.design import BuildCost
 
     known = designed_cost(robot, folder)
     least = "" if known else "; more if poses need stronger motors"
-    print(f"build: {known or BuildCost.of_robot(robot, ())}{least}. Whole kit: hydrostat fabricate --summary")
+    return f"build: {known or BuildCost.of_robot(robot, ())}{least}. Whole kit: hydrostat fabricate --summary"
 
 
-def _print_judgement(robot: "Robot", curled: str | None) -> None:
-    """Print the design review of a robot, as the studio does, and a warning of its stuffed body.
+def _review(robot: "Robot") -> "tuple[Diagnostic, ...]":
+    """Return the design review of a robot, as the studio does; motor loads of its poses are left aside."""
+    from hydrostat.design import Constraints, review_robot
 
-    Motor loads of its poses are left aside.
-    """
-    from hydrostat.design import Constraints, Diagnostic, Severity, find_no_room, review_robot
+    return review_robot(robot, constraints=Constraints())
+
+
+def _print_judgement(robot: "Robot", review: "Iterable[Diagnostic]", warnings: "Iterable[str]") -> None:
+    """Print the findings of a robot, those of its skin, and the warnings of simulations."""
+    from hydrostat.design import Diagnostic, Severity, find_no_room
     from hydrostat.errors import NO_KIT, in_words
 
     weight, before = (Severity.REFUSED, "") if robot.cables else (Severity.MIND, NO_KIT)
     found = [Diagnostic(text=before + text, weight=weight, places=()) for text in print_sewing(robot.body)]
-    found += review_robot(robot, constraints=Constraints())
+    found += review
     if not robot.cables and (words := find_no_room(robot)):
         found.append(Diagnostic(text=words, weight=Severity.MIND, places=()))
-    found += [Diagnostic(text=curled, weight=Severity.MIND, places=())] if curled else []
+    found += [Diagnostic(text=text, weight=Severity.MIND, places=()) for text in warnings]
     for finding in found:
         print(f"{finding.weight.word}: {in_words(finding.text)}")
     refused, risky = (sum(one.weight is weight for one in found) for weight in (Severity.REFUSED, Severity.MIND))

@@ -1,5 +1,6 @@
 """`review_robot`: the one review of a robot before it is built, for fabrication, studio and command line."""
 
+import re
 from collections.abc import Iterator
 
 from hydrostat.design.checks.cables import clearance_violations, gap_violations, hole_violations, turn_violations
@@ -10,7 +11,7 @@ from hydrostat.design.drawn_shapes import find_pinned_drawings
 from hydrostat.design.finding import Diagnostic, Severity, places_in
 from hydrostat.design.skin_region import cable_region
 from hydrostat.errors import NO_KIT
-from hydrostat.fabrication import Demand, KitOptions, find_refusals
+from hydrostat.fabrication import Demand, KitOptions, find_material_problems, find_refusals
 from hydrostat.robot import Robot, describe_filled_holes, find_risks
 
 
@@ -23,8 +24,8 @@ def review_robot(
 ) -> tuple[Diagnostic, ...]:
     """Collect the diagnostics of a robot before it is built, the gravest first, each sentence with its places.
 
-    - What a kit is refused for (`find_refusals`): with the demand of its poses all that is known before it is made.
-      Without cables it is a warning, as a body may be for simulation alone.
+    - What a kit is refused for (`find_material_problems`, `find_refusals`): with the demand of its poses all that is
+      known before it is made. Without cables it is a warning, as a body may be for simulation alone.
     - Limits of designs that its network does not keep, where constraints are given; one sentence for each kind, with
       the places of all. Travel, release and numbers of cables are limits of the search alone.
     - Risks (`find_risks`), and pins on drawn shapes such as eyes.
@@ -32,7 +33,8 @@ def review_robot(
 
     Raises InputError: an unknown motor, or a demand of another robot.
     """
-    refused = find_refusals(robot, demand, options=options)
+    known = (*find_material_problems(robot, options=options), *find_refusals(robot, demand, options=options))
+    refused = tuple(dict.fromkeys(known))
     risks = (*find_risks(robot), *find_pinned_drawings(robot))
     weight = Severity.REFUSED if robot.cables else Severity.MIND
     before = "" if robot.cables else NO_KIT
@@ -56,6 +58,15 @@ def _limits(robot: Robot, constraints: Constraints) -> Iterator[Diagnostic]:
         told = list(check(parts))
         if not told:
             continue
-        more = f" {len(told) - 1} more such." if len(told) > 1 else ""
+        more = _count_others(told)
         places = dict.fromkeys(place for text in told for place in places_in(text, robot))
         yield Diagnostic(text=told[0] + more, weight=Severity.LIMIT, places=tuple(places))
+
+
+def _count_others(told: list[str]) -> str:
+    """Return the number of sentences after the first, in words, and of the cables that all name; empty if it is one."""
+    if len(told) == 1:
+        return ""
+    cables = {number for text in told for number in re.findall(r"cable\[(\d+)\]", text)}
+    where = f", on {len(cables)} cables" if len(cables) > 1 else ""
+    return f" {len(told) - 1} more such{where}."

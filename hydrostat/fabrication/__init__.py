@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from hydrostat.fabrication.patches.skin_mesh import skin_of_surface
     from hydrostat.fabrication.patches.space_pattern import Sewing, space_pattern
     from hydrostat.fabrication.patterns.pattern import plush_pattern
-    from hydrostat.fabrication.refusals import find_refusals
+    from hydrostat.fabrication.refusals import find_material_problems, find_refusals
     from hydrostat.fabrication.sheets.tiles import PAPERS
     from hydrostat.fabrication.solids.construct import Cuboid, sides_text
     from hydrostat.fabrication.weak_lines import find_weak_lines
@@ -71,6 +71,7 @@ __all__ = [
     "check_board",
     "depth_table",
     "drive_price",
+    "find_material_problems",
     "find_motor",
     "find_refusals",
     "find_weak_lines",

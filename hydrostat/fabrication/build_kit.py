@@ -24,7 +24,7 @@ from hydrostat.fabrication.patterns.pattern import cut_sheet
 from hydrostat.fabrication.patterns.sheet_pieces import sheet_pieces
 from hydrostat.fabrication.patterns.svg_writer import pattern_svg
 from hydrostat.fabrication.print_work import print_work
-from hydrostat.fabrication.refusals import find_refusals
+from hydrostat.fabrication.refusals import find_material_problems, find_refusals
 from hydrostat.fabrication.sheets.assembly_sheet import assembly_sheet
 from hydrostat.fabrication.sheets.foam_steps import channel_ways
 from hydrostat.fabrication.sheets.sheet_facts import sheet_facts
@@ -76,6 +76,7 @@ def build_kit(
         InputError: a body that the method cannot make, or an unknown motor.
     """
     tell = _Stages(progress)
+    _require_material(robot, options)
     plan, lists = _plan_and_lists(robot, options, tell)
     options = plan.options
     tell("Checks")
@@ -123,6 +124,14 @@ def summarize_kit(
     tell.end()
     problems = _problems(plan, lists)
     return (*((("Problems", problems),) if problems else ()), *summary_rows(plan, lists))
+
+
+def _require_material(robot: Robot, options: KitOptions | None) -> None:
+    """Refuse a material that no kit takes before the poses are solved (UnbuildableError: with all that is known)."""
+    if not isinstance(robot, Robot) or (options is not None and options.force):
+        return
+    if problems := find_material_problems(robot, options=options):
+        raise UnbuildableError(tuple(dict.fromkeys((*problems, *find_refusals(robot, options=options)))))
 
 
 def _plan_and_lists(robot: Robot, options: KitOptions | None, tell: "_Stages") -> tuple[KitPlan, Lists]:

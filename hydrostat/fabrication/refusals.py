@@ -1,16 +1,29 @@
-"""`find_refusals`: problems that reject a kit and are known before anything is made."""
+"""`find_refusals`, `find_material_problems`: problems that reject a kit and are known before anything is made."""
 
 from hydrostat.errors import InputError
 from hydrostat.fabrication.body_work import channel_problems, stuffing_problems
 from hydrostat.fabrication.demand import Demand
 from hydrostat.fabrication.inserts import rod_problems
-from hydrostat.fabrication.kit_options import KitOptions, Method
+from hydrostat.fabrication.kit_options import KitOptions, Method, MoldKind
 from hydrostat.fabrication.lists.line import check_line, line_for
 from hydrostat.fabrication.motor_choice import find_motor, fit_motor
+from hydrostat.fabrication.moulds.casting import casting_problems
 from hydrostat.fabrication.patterns.pattern import pattern_problems
 from hydrostat.fabrication.print_work import print_problems
 from hydrostat.fabrication.weak_lines import share_tensions
 from hydrostat.robot import Robot, sewn_robot
+
+
+def find_material_problems(robot: Robot, *, options: KitOptions | None = None) -> tuple[str, ...]:
+    """Return the problems of a body's material, which no network changes: robot.toml states all that they need.
+
+    `find_refusals` leaves those of casting out, so that designs of such a body rank their networks by the others.
+    """
+    options = options or KitOptions()
+    method, material = options.method_for(robot.body), robot.body.material
+    if method is Method.FOAM:
+        return casting_problems(material, silicone=options.mould.kind is MoldKind.SILICONE)
+    return stuffing_problems(robot) if method is Method.PLUSH else ()
 
 
 def find_refusals(robot: Robot, demand: Demand | None = None, *, options: KitOptions | None = None) -> tuple[str, ...]:

@@ -16,18 +16,20 @@ from hydrostat.cli.check import _across_words
 from hydrostat.cli.main import main
 from hydrostat.design import BuildCost
 from hydrostat.geometry import Surface, write_ply, write_vtu
+from hydrostat.ik import solve_ik
 from hydrostat.robot import (
     Cable,
     CableSide,
     Marker,
     Obstacle,
+    PoseTarget,
     Winch,
     gallery_folder,
     load_robot,
     robot_hash,
     save_robot,
 )
-from hydrostat.simulation import is_stuffed_motion_fast
+from hydrostat.simulation import Simulation, is_stuffed_motion_fast
 
 Check = Callable[[Path], list[str]]
 
@@ -120,8 +122,9 @@ def test_body_in_space(check: Check, tmp_path: Path) -> None:
         across = cells[1] / np.sqrt(2) ** (1 / 3)
         assert lines[2].startswith(f"thickness from 40 mm ({across:.1f} elements across); ")
         assert lines[2].endswith("smallest angle between faces 45°")
-        assert sum(line.startswith("warning: ") for line in lines) == risks
-        assert lines[-1] == NO_CABLES.replace("0 warnings", "1 warning" if risks else "0 warnings")
+        assert sum(line.startswith("warning: ") for line in lines) == risks + 1
+        assert sum("(40 kg/m^3) is not cast from two parts" in line for line in lines) == 1
+        assert lines[-1] == NO_CABLES.replace("0 warnings", "2 warnings" if risks else "1 warning")
 
 
 def test_holes_that_the_mesh_leaves_out_are_a_note(check: Check, tmp_path: Path) -> None:
@@ -175,11 +178,29 @@ def test_a_flat_robot_says_where_its_cables_run_and_what_that_does(
         found[lines[place].removeprefix("cables: ")] = float(out[1])
         warned = [line for line in lines if line.startswith("warning: cables on the front: they bend")]
         assert len(warned) == (face is CableSide.FRONT)
-        assert lines[-1] == f"OK: 0 errors, {len(warned)} warning{'s' * (not warned)}."
+        far = [line for line in lines if line.startswith("warning: pose stretch: target not reached (35 of 35 mm")]
+        assert lines[-1] == f"OK: 0 errors, {len(warned) + 1} warning{'s' * len(warned)}."
+        assert len(far) == 1, "one winch curls it, and nothing stretches it"
     assert 10 < found["on the front"] < 30
     assert found["on both faces, in pairs"] < 1
     fine = replace(robot, face=CableSide.PAIRS, body=replace(robot.body, element_size=1e-4))
     assert not is_stuffed_motion_fast(fine, len(fine.poses))
+
+
+def test_poses_are_solved_or_named_as_not_computed(check: Check, tmp_path: Path) -> None:
+    """Oracle: the errors of `solve_ik`, and a target 300 mm away."""
+    robot = load_robot(gallery_folder("starfish"))
+    name, place = next((marker.name, marker.at) for marker in robot.markers)
+    far = PoseTarget(name="far", targets={name: (place[0], place[1] + 0.3)})
+    save_robot(replace(robot, poses={**robot.poses, "far": far}), tmp_path / "robot")
+    lines = check(tmp_path / "robot")
+    errors = {pose.name: solve_ik(Simulation(robot), pose).rms_error for pose in (*robot.poses.values(), far)}
+    told = ", ".join(f"{pose} {float(f'{1e3 * error:.2g}'):g} mm" for pose, error in errors.items())
+    assert f"poses solved, rms error: {told}" in lines
+    (warned,) = [line for line in lines if line.startswith("warning: pose ") and "not reached" in line]
+    assert warned.startswith(
+        f"warning: pose far: target not reached ({float(f'''{1e3 * errors['far']:.2g}'''):g} of 300 mm are left)"
+    )
 
 
 def test_reach_is_left_out_of_large_bodies(check: Check, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,6 +10,7 @@ from builders import gallery_robot, gallery_texts
 from hydrostat.design import Constraints, Network, RouteOptions, design_cables
 from hydrostat.design.finding import Severity
 from hydrostat.design.review_robot import review_robot
+from hydrostat.design.skin_region import cable_region
 from hydrostat.fabrication import ALL_MOTORS, Demand, KitOptions, UnbuildableError, build_kit
 from hydrostat.robot import Robot, find_risks, robot_hash
 
@@ -67,10 +68,22 @@ def test_one_sentence_for_each_kind_of_limit_with_all_places(unchecked: None) ->
         angles = np.degrees(np.abs(np.diff(np.unwrap(np.arctan2(steps[:, 1], steps[:, 0])))))
         sharp |= {f"via:{number}:{at + 1}" for at in np.flatnonzero(angles > 30.1)}
     assert {place.part for place in turns.places} == sharp
-    assert turns.text.endswith(f" Move the point. {len(sharp) - 1} more such.")
+    cables = {name.split(":")[1] for name in sharp}
+    where = f", on {len(cables)} cables" if len(cables) > 1 else ""
+    assert turns.text.endswith(f" Move the point. {len(sharp) - 1} more such{where}.")
     assert review_robot(robot) == tuple(
         one for one in review_robot(robot, constraints=Constraints()) if one not in found
     )
+
+
+def test_the_first_of_many_points_near_the_skin_is_the_shallowest_of_them(unchecked: None) -> None:
+    """Oracle: distances of all points of the cables of the spine in its region."""
+    robot = gallery_robot("spine")
+    (shallow,) = [one for one in review_robot(robot, constraints=Constraints()) if "low clearance" in one.text]
+    region = cable_region(robot.body, Constraints())
+    depths = np.concatenate([region.depths(np.array(cable.points[2:])) for cable in robot.cables])
+    assert f"({round(1e3 * float(depths.min()), 2):g} mm inside the surface" in shallow.text
+    assert shallow.text.endswith(f" more such, on {len(robot.cables)} cables.")
 
 
 def test_risks_are_told_last_as_they_are(unchecked: None) -> None:

@@ -25,11 +25,12 @@ from hydrostat.fabrication import (
     PatternOptions,
     UnbuildableError,
     build_kit,
+    find_material_problems,
     find_motor,
     write_kit,
 )
 from hydrostat.fabrication.sheets.legible import typeset
-from hydrostat.robot import MATERIALS, gallery_folder, robot_hash
+from hydrostat.robot import MATERIALS, Material, gallery_folder, robot_hash
 
 TOO_NEAR = [(-20, -10), (5, 12), (49.5, 22)]
 """A route [mm] whose last hole would be half a millimeter from the seam of the square."""
@@ -105,6 +106,24 @@ def test_a_robot_that_cannot_be_built_is_refused_with_all_reasons(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize(
+    ("density", "method", "reason"),
+    [(30.0, "foam", "(30 kg/m^3) is not cast from two parts"), (30.0, "plush", ""), (160.0, "plush", "no stuffing")],
+)
+def test_a_material_that_no_kit_takes_is_refused_before_any_pose_is_solved(density, method, reason):
+    """Oracle: the stages that were begun; the refusal of a whole kit above is the same sentence."""
+    stages, material = [], Material(young=3e4, poisson=0.3, density=density)
+    robot = crossed()
+    robot = replace(robot, body=replace(robot.body, material=material if density < 100 else MATERIALS["flexfoam-it x"]))
+    options = KitOptions(method=Method(method))
+    found = find_material_problems(robot, options=options)
+    assert [reason in text for text in found] == [True] * bool(reason)
+    if reason:
+        with pytest.raises(UnbuildableError) as refused:
+            build_kit(robot, options=options, progress=lambda stage, *_: stages.append(stage))
+        assert (refused.value.reasons[:1], stages) == (found, [])
+
+
 def test_by_force_it_is_built_with_the_reasons_on_the_sheet():
     """Oracle: pypdf's text of the first page."""
     robot = plush_robot(drawn_body("M0 0H100V100H0Z"), TOO_NEAR)

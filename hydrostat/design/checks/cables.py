@@ -76,7 +76,9 @@ def _near_the_edge_at_points(parts: Parts) -> Iterator[str]:
     if not asked:
         return
     depths = parts.region.depths(np.array([parts.points[index][at] for index, at in asked]))
-    for (index, at), depth in zip(asked, depths, strict=True):
+    worst = np.argsort(-np.maximum(least - depths, depths - most), kind="stable")  # first: reviews print that one alone
+    for number in worst:
+        (index, at), depth = asked[number], depths[number]
         if depth < least - LENGTH:
             yield (
                 f"{_hole_name((index, at))}: low clearance ({parts.within(depth)}, "

@@ -46,7 +46,7 @@ def make_casting(material: Material, fill: float, *, pours: tuple[float, ...]) -
 
     `fill` is the volume of cavity, sprue and vents, `pours` are those of silicone, none for printed halves [mm^3].
     """
-    cast, problems = _castable(material)
+    cast, _ = _castable(material)
     foams = _is_foam(cast)
     body = _mix(cast.name, fill, cast.density, 0.5, _ratio_in_words(cast))
     silicone = tuple(
@@ -69,7 +69,13 @@ def make_casting(material: Material, fill: float, *, pours: tuple[float, ...]) -
         release=_release(foams),
         notes=_casting_notes(foams, silicone=bool(pours)),
     )
-    return casting, (*problems, *_inhibition_problem(cast, silicone=bool(pours)))
+    return casting, casting_problems(material, silicone=bool(pours))
+
+
+def casting_problems(material: Material, *, silicone: bool) -> tuple[str, ...]:
+    """Return a problem if a material is not cast, and one if it does not cure in a mold of silicone."""
+    cast, problems = _castable(material)
+    return (*problems, *_inhibition_problem(cast, silicone=silicone))
 
 
 def cures_in_silicone(material: str) -> bool:
