@@ -239,6 +239,8 @@ def _print_stuffed(network: "Network") -> None:
     if filled is None:
         if network.request.stuffed:
             print("stuffed 3D body: no equilibrium found for a pose")
+        else:
+            _print_uncounted(network)
         return
     print(
         f"stuffed 3D body: {1e3 * filled.rms_error:.2f} mm rms with its own contractions "
@@ -249,6 +251,18 @@ def _print_stuffed(network: "Network") -> None:
         taken = zip(network.robot.winches, reached.pose.contractions, strict=True)
         own = ", ".join(f"{winch.name} {1e3 * value:z.1f} mm" for winch, value in taken)
         print(f"  {reached.pose_target.name}: {1e3 * reached.rms_error:.2f} mm, {own}")
+
+
+def _print_uncounted(network: "Network") -> None:
+    """Print the motion of the stuffed 3D body by the same contractions, if it is larger than the as-built error."""
+    from hydrostat.design import describe_uncounted_motion
+    from hydrostat.errors import HydrostatError
+
+    try:
+        if words := describe_uncounted_motion(network):
+            print(f"stuffed 3D body: {words}")
+    except HydrostatError as error:
+        print(f"stuffed 3D body: not computed ({error})")
 
 
 def print_front(network: "Network") -> None:

@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from hydrostat.design.routes.route_graph import RouteGraph
     from hydrostat.design.routes.search_record import SearchRecord
     from hydrostat.design.score_card import corrected_error, score_card
+    from hydrostat.design.stuffed_motion import describe_uncounted_motion, find_stuffed_motion
     from hydrostat.design.stuffed_results import StuffedResults
     from hydrostat.design.trees.design_trees import propose_trees
     from hydrostat.design.uncertainty import BuildTolerances
@@ -93,6 +94,7 @@ __all__ = [
     "cable_name",
     "corrected_error",
     "corrected_errors",
+    "describe_uncounted_motion",
     "design_cables",
     "draw_first_cable",
     "drop_cables",
@@ -103,6 +105,7 @@ __all__ = [
     "find_network",
     "find_no_room",
     "find_pinned_drawings",
+    "find_stuffed_motion",
     "front",
     "kit_fits",
     "nearest_shares",

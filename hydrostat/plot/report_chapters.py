@@ -13,6 +13,7 @@ from hydrostat.design import (
     RouteTrace,
     StuffedResults,
     TreeTrace,
+    find_stuffed_motion,
     winch_front,
 )
 from hydrostat.drawing import Html, tag
@@ -40,7 +41,7 @@ from hydrostat.plot.report_tables import (
 from hydrostat.plot.robot_figures import draw_network, draw_reached, draw_rest, draw_stage, draw_target, stage_frame
 from hydrostat.plot.workspace_figure import draw_workspace
 from hydrostat.robot import PoseTarget, Robot, Source, describe_cable_side
-from hydrostat.simulation import Simulation, is_stuffed_motion_fast, solve_stuffed_motion
+from hydrostat.simulation import Simulation
 from hydrostat.units import MILLIMETERS, plural
 
 HEAD = "Once it is filled"
@@ -62,15 +63,14 @@ def stuffed_chapters(network: Network) -> list[Chapter]:
 
 def _flat_commands_text(network: Network) -> str:
     """Return the out-of-plane displacement with the commands of the flat model, in words, if quickly computed."""
-    pulled = [reached.pose.contractions for reached in network.ik_results]
     if network.robot.body.outline is None:
         return "How far it leaves the plane is told of drawings only, and this body is a mesh."
-    if not is_stuffed_motion_fast(network.robot, len(pulled)):
-        return "How far it leaves the plane takes long to find here: hydrostat check ROBOT --stuffed tells it."
     try:
-        found = solve_stuffed_motion(network.robot, pulled)
+        found = find_stuffed_motion(network)
     except HydrostatError as error:
         return f"How far it leaves the plane was not found: {error}."
+    if found is None:
+        return "How far it leaves the plane takes long to find here: hydrostat check ROBOT --stuffed tells it."
     return f"With the commands above, {found}."
 
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from hydrostat.simulation.statics.batch_result import BatchResult
     from hydrostat.simulation.statics.static_solver import StaticSolver, not_converged
     from hydrostat.simulation.strain import node_strains, node_stresses
-    from hydrostat.simulation.stuffed_motion import is_stuffed_motion_fast, solve_stuffed_motion
+    from hydrostat.simulation.stuffed_motion import StuffedMotion, is_stuffed_motion_fast, solve_stuffed_motion
     from hydrostat.simulation.time.dynamics import StepOptions
     from hydrostat.simulation.time.motion import Motion
     from hydrostat.simulation.torch_bridge import solve_torch
@@ -52,6 +52,7 @@ __all__ = [
     "StateSpace",
     "StaticSolver",
     "StepOptions",
+    "StuffedMotion",
     "cable_sensitivities",
     "check_pose",
     "continue_branch",

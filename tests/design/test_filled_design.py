@@ -12,7 +12,9 @@ from hydrostat.design import (
     Network,
     RouteTrace,
     assign_cable_sides,
+    describe_uncounted_motion,
     design_cables,
+    find_stuffed_motion,
     score_card,
 )
 from hydrostat.design.design_cables import evaluate_stuffed
@@ -22,7 +24,7 @@ from hydrostat.errors import InputError
 from hydrostat.ik import IKResult, Limits, solve_ik
 from hydrostat.progress import no_progress
 from hydrostat.robot import CableSide, Robot, get_material, inflated_robot
-from hydrostat.simulation import Simulation
+from hydrostat.simulation import Simulation, solve_stuffed_motion
 
 
 @pytest.fixture(scope="module")
@@ -48,6 +50,25 @@ def network(robot: Robot, reached: tuple[IKResult, ...], *others: Alternative) -
         num_evaluated=1,
         seconds=0.0,
     )
+
+
+def test_motion_of_the_stuffed_body_is_named_where_the_as_built_error_is_smaller(
+    robot: Robot, reached: tuple[IKResult, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Oracle: the motion found without a network, which is solved once for each network; none for a cast body."""
+    own, calls = solve_stuffed_motion(robot, [one.pose.contractions for one in reached]), []
+    monkeypatch.setattr(
+        "hydrostat.design.stuffed_motion.solve_stuffed_motion", lambda *given: calls.append(given) or own
+    )
+    largest = max(own.out, own.aside)
+    for error, words in ((0.9 * largest, f"{own}, at the worst marker. The as-built error does not"), (largest, "")):
+        found = replace(network(robot, reached), expected_error=error)
+        assert describe_uncounted_motion(found).startswith(words)
+        assert bool(describe_uncounted_motion(found)) == bool(words)
+        assert find_stuffed_motion(found) is own
+    assert len(calls) == 2
+    cast = replace(robot, body=replace(robot.body, material=get_material("flexfoam-it x")))
+    assert describe_uncounted_motion(replace(network(cast, reached), expected_error=0.0)) == ""
 
 
 def test_new_networks_run_where_a_builder_would_want_them() -> None:
