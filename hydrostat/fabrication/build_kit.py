@@ -17,7 +17,7 @@ from hydrostat.fabrication.lists.lists import Lists, make_lists
 from hydrostat.fabrication.motor_choice import find_motor, motors_price, pulled_torques
 from hydrostat.fabrication.parts.motor import Motor
 from hydrostat.fabrication.parts.rigid_parts import RigidParts, rigid_parts
-from hydrostat.fabrication.passage import find_passage_warnings
+from hydrostat.fabrication.passage import find_passage_problems, find_passage_warnings
 from hydrostat.fabrication.patterns.channels import channel_strips
 from hydrostat.fabrication.patterns.dxf_writer import pattern_dxf
 from hydrostat.fabrication.patterns.pattern import cut_sheet
@@ -28,7 +28,7 @@ from hydrostat.fabrication.refusals import find_material_problems, find_refusals
 from hydrostat.fabrication.sheets.assembly_sheet import assembly_sheet
 from hydrostat.fabrication.sheets.foam_steps import channel_ways
 from hydrostat.fabrication.sheets.sheet_facts import sheet_facts
-from hydrostat.fabrication.sheets.summary import summary_rows
+from hydrostat.fabrication.sheets.summary import drive_share, summary_rows
 from hydrostat.fabrication.sheets.text_sheet import sheet_text
 from hydrostat.fabrication.sheets.tiles import tiled_pdf
 from hydrostat.fabrication.solids.print_files import stl_bytes, three_mf_plates
@@ -231,7 +231,7 @@ def _problems(plan: KitPlan, lists: Lists) -> tuple[str, ...]:
     """Return why a robot cannot be built well, as far as it is known without measuring its files."""
     large = too_large((*plan.printed, *plan.work.spare), plan.options.mould.bed)
     known = find_refusals(plan.drawn, plan.demand, options=plan.options)
-    made = (*plan.rigid.problems, *plan.work.problems, *lists.problems)
+    made = (*plan.rigid.problems, *plan.work.problems, *lists.problems, *find_passage_problems(plan))
     return tuple(dict.fromkeys((*known, *made, *large, *_budget_problems(plan, lists))))
 
 
@@ -367,10 +367,11 @@ def _summary(plan: KitPlan, lists: Lists) -> tuple[str, ...]:
     """Return the summary of a kit, one line for each of its contents."""
     mass = sum(part.count * part.mass for part in plan.printed)
     used, packs = lists.cost
+    share = f", {words}" if (words := drive_share(plan)) else ""
     return (
         *plan.work.summary,
         f"Winches: {len(plan.rigid.units)} x {plan.rigid.motor.title}" if plan.rigid.units else "Winches: none",
         *_insert_summary(plan),
         f"To print: {plan.pieces}, about {mass:.0f} g",
-        f"Material used: about {used:.0f} USD; to buy (full packs): {packs:.0f} USD",
+        f"Material used: about {used:.0f} USD{share}; to buy (full packs): {packs:.0f} USD",
     )

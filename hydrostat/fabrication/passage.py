@@ -5,6 +5,8 @@ from collections.abc import Sequence
 
 from hydrostat.fabrication.kit_plan import KitPlan
 from hydrostat.fabrication.parts.winch_unit import WinchUnit
+from hydrostat.fabrication.patches.space_pattern import SpacePattern
+from hydrostat.fabrication.patterns.shape import Circle, PatternPart
 from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.robot import Mount
 
@@ -29,6 +31,29 @@ def find_open_seam(plan: KitPlan) -> int:
 def find_passage_warnings(plan: KitPlan) -> tuple[str, ...]:
     """Warn of a zipper that is too short for a winch, or missing."""
     return tuple(_warning(unit, _slit(plan)) for unit in find_stuck_units(plan)[:1])
+
+
+def find_passage_problems(plan: KitPlan) -> tuple[str, ...]:
+    """Return a problem if no seam is long enough for the largest winch that does not pass through the zipper."""
+    stuck = find_stuck_units(plan)[:1]
+    longest = max(_seam_lengths(plan), default=math.inf)
+    return tuple(
+        f'seam: the unit of winch "{unit.winch}" does not pass through the longest seam ({longest:.0f} mm, minimum '
+        f"{_slit_for(unit):.0f} mm). Choose a smaller motor or spool"
+        for unit in stuck
+        if longest < _slit_for(unit)
+    )
+
+
+def _seam_lengths(plan: KitPlan) -> list[float]:
+    """Length of each seam: between two patches, or round a flat panel [mm]."""
+    pattern = plan.work.pattern
+    if isinstance(pattern, SpacePattern):
+        return [seam.length for seam in pattern.seams]
+    shapes = [shape for panel in pattern.panels for shape in panel.shapes] if pattern else []
+    return [
+        shape.geometry.length for shape in shapes if shape.part is PatternPart.SEAM and not isinstance(shape, Circle)
+    ]
 
 
 def _slit(plan: KitPlan) -> float:

@@ -16,6 +16,7 @@ from plush_robots import crossed, drawn_body, plush_robot
 import hydrostat as hs
 from hydrostat.errors import InputError
 from hydrostat.fabrication import (
+    ALL_MOTORS,
     Kit,
     KitOptions,
     Method,
@@ -25,6 +26,7 @@ from hydrostat.fabrication import (
     PatternOptions,
     UnbuildableError,
     build_kit,
+    drive_price,
     find_material_problems,
     find_motor,
     write_kit,
@@ -142,10 +144,13 @@ def test_a_spool_too_small_for_the_shaft_is_refused():
 
 @pytest.mark.slow
 def test_letter_paper_and_stages():
-    """Oracle: pypdf, and 8.5 x 11 inch; the last stage ends."""
+    """Oracle: pypdf, and 8.5 x 11 inch; the last stage ends; the price of a motor that designs print is the kit's."""
     told = []
     options = KitOptions(paper=Paper.LETTER)
     kit = build_kit(crossed(), options=options, progress=lambda stage, done, total: told.append((stage, done, total)))
+    motor = next(each for each in ALL_MOTORS if each.key == kit.motor)
+    price = drive_price(crossed(), kit.torques, motor, options=options)
+    assert f" USD, {price:.0f} USD of them for 1 motor, power and cables; to buy" in kit.summary[-1]
     assert len({stage for stage, _, _ in told}) >= 5
     assert told[-1][1] == told[-1][2]
     for path in ("assembly_sheet.pdf", "pattern/pattern_letter.pdf"):

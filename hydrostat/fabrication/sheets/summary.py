@@ -7,8 +7,9 @@ from hydrostat.fabrication.lists.lists import Lists
 from hydrostat.fabrication.motor_choice import drive_price
 from hydrostat.fabrication.sheets.foam_steps import mold_steps, skin_steps
 from hydrostat.fabrication.sheets.legible import sentence
+from hydrostat.fabrication.sheets.plush_steps import plush_steps
 from hydrostat.fabrication.sheets.print_steps import print_steps
-from hydrostat.fabrication.sheets.steps import AssemblyStep, minutes_text, plush_steps
+from hydrostat.fabrication.sheets.steps import AssemblyStep, minutes_text
 from hydrostat.units import plural
 
 
@@ -68,12 +69,16 @@ def _cable_work(plan: KitPlan) -> str:
 def _money(plan: KitPlan, lists: Lists) -> list[str]:
     """Price of all, and of motors, power and cables, the one that `design` and `check` print."""
     used, packs = lists.cost
-    share = ""
-    if plan.drawn.cables:
-        torques = plan.demand.torques.tolist()
-        price = drive_price(plan.drawn, torques, plan.rigid.motor, options=plan.options)
-        share = f": {price:.0f} USD of them for {plural(plan.num_motors, 'motor')}, power and cables"
+    share = f": {words}" if (words := drive_share(plan)) else ""
     return [f"about {packs:.0f} USD in whole packs, {used:.0f} USD used up{share}"]
+
+
+def drive_share(plan: KitPlan) -> str:
+    """Return the price of motors, power and cables, as used up, in words; empty without cables."""
+    if not plan.drawn.cables:
+        return ""
+    price = drive_price(plan.drawn, plan.demand.torques.tolist(), plan.rigid.motor, options=plan.options)
+    return f"{price:.0f} USD of them for {plural(plan.num_motors, 'motor')}, power and cables"
 
 
 def _sewing(plan: KitPlan) -> list[str]:

@@ -26,7 +26,7 @@ from hydrostat.fabrication.parts.winch_unit import winch_units
 from hydrostat.fabrication.sheets.assembly_sheet import assembly_sheet
 from hydrostat.fabrication.sheets.legible import legible, note_lines, shorten_text, typeset
 from hydrostat.fabrication.sheets.list_facts import power_facts
-from hydrostat.fabrication.sheets.steps import plush_steps
+from hydrostat.fabrication.sheets.plush_steps import plush_steps
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import MATERIALS, Mount
 
