@@ -212,6 +212,9 @@ def _tell_count(network: "Network", request: "DesignRequest", lifts: "Iterable[L
         print(
             f"note: outline, markers and targets are symmetric about {axis}. For a network that is: --symmetric {axis}"
         )
+    for name, error in (network.idle_winches if network.complete else {}).items():
+        words = f"{1e3 * error:.3g} mm in the model instead of {1e3 * network.rms_error:.3g} mm"
+        print(f"note: winch {name} hardly helps: without it {words}. Try --winches {len(network.robot.winches) - 1}")
     for lift in lifts:
         error = 1e3 * lift.network.expected_error
         print(f"note: {lift.words} would leave at most {error:.2g} mm as built, by a quick search")

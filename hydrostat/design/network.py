@@ -15,11 +15,14 @@ from hydrostat.design.muscles.activation import Activation
 from hydrostat.design.polyline import Route
 from hydrostat.design.request import DesignRequest
 from hydrostat.design.stuffed_results import StuffedResults
-from hydrostat.ik import IKResult
+from hydrostat.ik import IKResult, solve_ik
 from hydrostat.painters import draw_record, html_repr
 from hydrostat.robot import ElementKind, Robot, Volume
 from hydrostat.simulation import Simulation
 from hydrostat.units import plural
+
+_IDLE_RATIO, _SAME_ERROR = 1.1, 1e-3
+"""A winch is idle if the error without it is at most so many times as large, or larger by this share of the body."""
 
 
 def rms_error(reached: Sequence[IKResult]) -> float:
@@ -133,6 +136,21 @@ class Network:
     def _repr_html_(self) -> str:
         """Summary and a picture, for a notebook."""
         return html_repr(repr(self), draw_record("network", self.robot))
+
+    @cached_property
+    def idle_winches(self) -> dict[str, float]:
+        """Rms error in the model without each winch that hardly lowers it [m]: poses solved again without its cables.
+
+        Without two of them it may be larger. Empty for robots with drives.
+        """
+        robot, found = self.robot, dict[str, float]()
+        for winch in robot.winches if len(robot.winches) > 1 and not robot.drives else ():
+            cables = [cable for cable in robot.cables if cable.winch != winch.name]
+            simulation = Simulation(robot.with_network([one for one in robot.winches if one is not winch], cables))
+            without = rms_error([solve_ik(simulation, reached.target) for reached in self.ik_results])
+            if without < _IDLE_RATIO * self.rms_error + _SAME_ERROR * robot.body.mesh.size:
+                found[winch.name] = without
+        return found
 
     @cached_property
     def cost(self) -> BuildCost:

@@ -10,7 +10,25 @@ from hydrostat.design import DesignRequest, Network, find_lifts
 from hydrostat.design.lifts import CROSSING_LINE, search_front
 from hydrostat.design.routes.quick_search import RouteProposal
 from hydrostat.errors import HydrostatError
+from hydrostat.ik import solve_ik
 from hydrostat.robot import Robot
+from hydrostat.simulation import Simulation
+
+
+def test_a_winch_that_hardly_helps_is_named() -> None:
+    """Oracle: of two winches that pull the same cable one is enough; the strip without either bends down only."""
+    plain = plain_network()
+    up, down = plain.robot.winches
+    same = [replace(cable, winch="twin", name="twin") for cable in plain.robot.cables if cable.winch == up.name]
+    robot = plain.robot.with_network([up, replace(up, name="twin"), down], [*plain.robot.cables, *same])
+    reached = solve_ik(Simulation(robot), plain.request.poses[0])
+    network = replace(plain, robot=robot, ik_results=(reached,))
+    assert {up.name, "twin"} <= set(network.idle_winches)
+    assert network.idle_winches["twin"] == pytest.approx(network.rms_error, abs=1e-4)
+    both = replace(network, robot=plain.robot, ik_results=(solve_ik(Simulation(plain.robot), reached.target),))
+    assert up.name not in both.idle_winches
+    alone = plain.robot.with_network([up], [cable for cable in plain.robot.cables if cable.winch == up.name])
+    assert replace(network, robot=alone).idle_winches == {}
 
 
 def test_clear_gains_that_can_be_built_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
