@@ -31,6 +31,7 @@ STUDIES: dict[str, str] = {
     "grasping/grasp": "caging_gripper --closings 1 --step 8",
     "grasping/objects": "",
     "grasping/pen": "--friction 0.5",
+    "grasping/sequences": "rock --friction 0.5",
     "house/house": "--no-flows",
     "hysteresis_and_walking/walk": "--tries 2 --cycles 3",
     "ik_methods/ik_methods": "starfish --count 5",

@@ -40,26 +40,31 @@ def solid(tool: str) -> Manifold:
     raise ValueError(f'unknown tool "{tool}"')
 
 
-def triangles_of(tool: str, tilt: float) -> Points:
-    """Return the corners of the triangles of a tool along x, tilted about y by an angle [degree] towards +z [mm]."""
-    mesh = solid(tool).rotate((0, 90 - tilt, 0)).to_mesh()
+def tilted(tool: str, tilt: float) -> Manifold:
+    """Return a tool along x, tilted about y by an angle [degree] towards +z [mm]."""
+    return solid(tool).rotate((0, 90 - tilt, 0))
+
+
+def triangles_of(whole: Manifold) -> Points:
+    """Return the corners of the triangles of a solid."""
+    mesh = whole.to_mesh()
     return np.asarray(mesh.vert_properties[:, :3], dtype=float)[np.asarray(mesh.tri_verts)]
 
 
-def stl_text(tool: str, tilt: float) -> str:
-    """Return a tool as STL in millimeters."""
-    lines = [f"solid {tool}"]
-    for corners in triangles_of(tool, tilt):
+def stl_text(whole: Manifold, name: str = "box") -> str:
+    """Return a solid as STL in millimeters."""
+    lines = [f"solid {name}"]
+    for corners in triangles_of(whole):
         points = "".join(f"vertex {x:.5f} {y:.5f} {z:.5f}\n" for x, y, z in corners)
         lines.append(f"facet normal 0 0 0\nouter loop\n{points}endloop\nendfacet")
-    return "\n".join([*lines, f"endsolid {tool}", ""])
+    return "\n".join([*lines, f"endsolid {name}", ""])
 
 
 def write(folder: Path, tool: str, tilt: float) -> Path:
     """Write a tool; return its path."""
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{tool}.stl"
-    path.write_text(stl_text(tool, tilt), encoding="ascii")
+    path.write_text(stl_text(tilted(tool, tilt), tool), encoding="ascii")
     return path
 
 

@@ -20,19 +20,15 @@ from machine import machine
 
 import numpy as np  # isort: skip
 
-from scipy.spatial.transform import Rotation
-
 import hydrostat as hs
-from hydrostat.arrays import Vector
-from hydrostat.mechanics import GuideEnergy
 from hydrostat.plot import Frame, save_gif
 from hydrostat.robot import Contact, Obstacle, Robot
-from hydrostat.simulation import BodyPhysics, Motion, Simulation, StepOptions
+from hydrostat_lab.held_object import HeldObject, contractions
 from hydrostat_lab.keyframes import ease
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-HOLD, VISCOSITY, DRAG, SECONDS = 100.0, 400.0, 5.0, 0.5
-"""Spring of the ball [N/m], shear viscosity of the foam [Pa s], drag [1/s], time from one keyframe to the next [s]."""
+HOLD, VISCOSITY, SECONDS = 100.0, 400.0, 0.5
+"""Spring of the ball [N/m], shear viscosity of the foam [Pa s], time from one keyframe to the next [s]."""
 
 
 @dataclass(frozen=True)
@@ -54,13 +50,6 @@ class Twist:
         return Obstacle(
             shape="capsule", at=tuple((middle - half).tolist()), to=tuple((middle + half).tolist()), **known
         )
-
-    def contractions(self, robot: Robot, key: str) -> Vector:
-        """What each winch takes in at a key [m]."""
-        taken = np.zeros(len(robot.winches))
-        for part, value in self.keys[key].items():
-            taken[[part in winch.name for winch in robot.winches]] = 1e-3 * value
-        return taken
 
 
 _SWING = {
@@ -119,66 +108,31 @@ TWISTS = {
 }
 
 
-class Held:
-    """A robot and a ball that it turns, from keyframe to keyframe."""
-
-    def __init__(self, robot: Robot, twist: Twist, friction: float) -> None:
-        self.ball = twist.obstacle(friction)
-        self.begun, self.begin = self.ball.frame()
-        body = replace(robot.body, material=replace(robot.body.material, viscosity=VISCOSITY))
-        self.robot = replace(robot, body=body, contact=Contact(), obstacles=(self.ball,))
-        physics = BodyPhysics(self.robot)
-        self.carriage = physics.rigid_dofs[0]
-        guide = GuideEnergy(self.carriage, place=self.begun, axes=self.begin, along=HOLD * np.eye(3), turning=0.0)
-        self.simulation = Simulation(self.robot, body=physics, energies=[guide])
-        self.motion = self.simulation.motion_at_rest()
-
-    def go(self, goal: Vector, step: float) -> Motion:
-        """The motion one step [s] later."""
-        self.motion = self.simulation.step(self.motion, goal, step, options=StepOptions(scheme="euler", drag=DRAG))
-        return self.motion
-
-    @property
-    def turned(self) -> Vector:
-        """How far the ball has turned, about each axis [degree]; small enough to be a vector."""
-        return np.rad2deg(Rotation.from_matrix(_rotation(self._axes).T @ self.begin).as_rotvec())
-
-    @property
-    def place(self) -> Vector:
-        """Where the middle of the ball is [m]."""
-        assert self.motion.carried is not None
-        return self.motion.carried[0][0]
-
-    def drawn(self) -> list[Obstacle]:
-        """The ball where it is, with dots on it, which show how it turns."""
-        axes, radius = _rotation(self._axes), self.ball.radius or 0.0
-        dots = self.place + 0.94 * radius * np.concatenate([axes, -axes])[:: 1 if self.ball.to is None else 2]
-        made = [Obstacle(name="dot", shape="sphere", at=tuple(dot), radius=0.16 * radius) for dot in dots.tolist()]
-        return [self.ball.with_frame(self.place, axes), *made]
-
-    @property
-    def _axes(self) -> np.ndarray:
-        assert self.motion.carried is not None
-        return self.motion.carried[0][1:] / self.carriage.length
+def robot_with(robot: Robot, twist: Twist, friction: float) -> Robot:
+    """Return a robot with viscous foam and what it turns."""
+    body = replace(robot.body, material=replace(robot.body.material, viscosity=VISCOSITY))
+    return replace(robot, body=body, contact=Contact(), obstacles=(twist.obstacle(friction),))
 
 
-def _rotation(axes: np.ndarray) -> np.ndarray:
-    """The rotation nearest to axes that are almost one."""
-    left, _, right = np.linalg.svd(axes)
-    return left @ right
+def dotted(held: HeldObject) -> list[Obstacle]:
+    """Return the ball where it is, with dots on it, which show how it turns."""
+    radius = held.object.radius or 0.0
+    dots = held.place + 0.94 * radius * np.concatenate([held.axes, -held.axes])[:: 1 if held.object.to is None else 2]
+    made = [Obstacle(name="dot", shape="sphere", at=tuple(dot), radius=0.16 * radius) for dot in dots.tolist()]
+    return [held.drawn(), *made]
 
 
 def run(name: str, friction: float, step: float, films: Path | None) -> None:
     """Print a row for each keyframe of a hand, and write a film if asked."""
     twist = TWISTS[name]
     robot = hs.load_robot(EXAMPLES / (twist.robot or name))
-    held, frames, began = Held(robot, twist, friction), [], time.process_time()
+    held, frames, began = HeldObject(robot_with(robot, twist, friction), hold=HOLD), [], time.process_time()
     goal = np.zeros(len(robot.winches))
     for key in twist.keys:
-        begin, goal = goal, twist.contractions(robot, key)
+        begin, goal = goal, contractions(robot, twist.keys[key])
         for motion in ease(held.go, begin, goal, seconds=SECONDS, step=step):
             words = f"{key}: the ball has turned by {np.linalg.norm(held.turned):.0f} degrees"
-            frames.append(Frame.of(motion, words=words, obstacles=held.drawn()))
+            frames.append(Frame.of(motion, words=words, obstacles=dotted(held)))
         x, y, z = held.turned
         away = 1e3 * float(np.linalg.norm(held.place - held.begun))
         print(
