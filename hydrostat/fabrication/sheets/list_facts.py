@@ -245,6 +245,11 @@ def _list_first_steps(plan: PowerPlan, *, is_measured: bool) -> list[str]:
             f"motors, 47 kOhm, pin {BOARDS[plan.boards[0]].supply}, 10 kOhm and GND in series. The motors then stop at "
             f"{plan.cells} V, and the light blinks.",
         ]
+    elif plan.motor.is_feetech:
+        alone = [
+            "Optional: an ESP32-S3 wired to the bus adapter plays moves without a computer. Run: hydrostat "
+            f"firmware ROBOT --board esp32s3 --motor {plan.motor.key} --moves MOVES. Its wires are in docs/motors.md."
+        ]
     return [
         "Leave the switch off. The supply gives 1.5 times the current of all motors at full torque, and enough for two "
         f"that stall. Measure it behind the fuse: {plan.motor.volts:g} V, plus on the plus lead.",
