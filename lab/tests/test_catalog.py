@@ -75,7 +75,8 @@ def test_the_page_sets_the_thesis_and_both_runs_side_by_side(tmp_path: Path) -> 
     row = "| noise 0.2 ends nearer than 0.01 (E47) |  | -2.0 (-3.8 to -1.0) mm | contradicted, at 7,500 actions | 0.2 |"
     assert f"|  {row} confirmed |\n" in text
     assert "| 6.10 mm, 10,000 samples | 0.101 mm, 10000 samples | beaten | 0.500 mm, 300 samples |  |\n" in text
-    assert f"success 0.71 | cannot be told | not run: {THESIS['figure-5.9'].dear} |  |\n" in text
+    told = "1.0 (0.0 to 1.9) mm | cannot be told, at 10,500 actions | not run: "
+    assert f"{told}{THESIS['figure-5.9'].dear} |  |\n" in text
     assert "## figure-5.8-small\n" in text
     assert "## figure-5.8\n" not in text
 
