@@ -175,7 +175,7 @@ class Canvas:
     ) -> None:
         """Words of a size [pt], their middle at the height of `at`; with `halo` lines behind them stop short."""
         if halo:
-            wide, high = Canvas.text_size(words, size)
+            wide, high = Canvas.text_size(words, size, bold=bold)
             left = at[0] - wide * {"start": 0.0, "middle": 0.5, "end": 1.0}[anchor]
             self.box((left - 0.3, at[1] - high / 2, left + wide + 0.3, at[1] + high / 2), grey=1.0)
         x, y, height = (number(value, 2) for value in (at[0], at[1] + 0.32 * size * POINT, size * POINT))
@@ -210,9 +210,10 @@ class Canvas:
         return max(0.62 * size * POINT, 0.56 * Canvas.text_size(words, size)[0] + 0.35)
 
     @staticmethod
-    def text_size(words: str, size: float) -> tuple[float, float]:
+    def text_size(words: str, size: float, *, bold: bool = False) -> tuple[float, float]:
         """Approximate width and height [mm] of a text of a size [pt]."""
-        return 0.5 * size * POINT * (len(words) + words.count("W")), 0.75 * size * POINT
+        letters = 1.1 * (len(words) + 0.25 * words.count("C")) if bold else len(words)
+        return 0.5 * size * POINT * (letters + words.count("W")), 0.75 * size * POINT
 
     @staticmethod
     def fit_height(box: Float[np.ndarray, "2 2"], width: float, height: float) -> float:

@@ -176,7 +176,7 @@ def _put_runs(canvas: Canvas, labels: LabelPlaces, runs: Sequence[CableRun], sta
     _put_winches(canvas, labels, stands)
     for run in runs:
         words = f"C{run.cable}" if run.twin is None else f"C{run.cable} C{run.twin}"
-        middle = labels.beside(run.spots[-1], Canvas.text_size(words, 9.0), gap=1.7)
+        middle = labels.beside(run.spots[-1], Canvas.text_size(words, 9.0, bold=True), gap=1.7)
         if middle is not None:
             canvas.text(middle, words, size=9.0, bold=True, halo=True, color=run.color)
     _put_numbers(canvas, labels, runs)
@@ -269,12 +269,12 @@ def _put_number(
     """Put a number next to its hole, or with `led` and the cable's name further away with a line to it."""
     words = words or (f"C{run.cable}-{place + 1}" if led else str(place + 1))
     size, spot = Canvas.text_size(words, 7.5), run.spots[place]
-    middle = labels.beside(spot, size, gap=0.75, most=40 if led else 3, rings=4 if led else 2)
+    middle = labels.beside(spot, size, gap=0.75, most=40 if led else 3, rings=6 if led else 2, led=True)
     if middle is None:
         return
     near = 3.2  # a number further than this from its hole is led to it by a line [mm]
     if np.hypot(*np.subtract(middle, spot)) > near:
-        canvas.line([[middle, spot]], width=0.12, grey=0.35)
+        canvas.line([labels.lead(middle, size, spot)], width=0.12, grey=0.35)
     canvas.text(middle, words, size=7.5, halo=led, color=run.color)
 
 

@@ -93,7 +93,7 @@ def body_solid(robot: Robot) -> DrawnSolid:
 _WAYS = [(np.cos(turn), np.sin(turn)) for turn in np.radians(np.arange(0, 360, 30))]
 """Directions that are tried, to the right first."""
 
-_RINGS = (0.0, 1.5, 3.5, 6.0)  # additional distances of a label, tried in turn [mm]
+_RINGS = (0.0, 1.5, 3.5, 6.0, 9.0, 12.0)  # additional distances of a label, tried in turn [mm]
 
 
 @dataclass
@@ -117,12 +117,12 @@ class LabelPlaces:
         self._boxes.append(box)
 
     def beside(
-        self, at: Spot, size: tuple[float, float], *, gap: float, most: int = 1000, rings: int = 4
+        self, at: Spot, size: tuple[float, float], *, gap: float, most: int = 1000, rings: int = 4, led: bool = False
     ) -> Spot | None:
         """The middle of the best free place for a box near a spot, which is then taken; None if none is free.
 
         The box has this size and is a gap away [mm]; it may cover `most` points of lines; so many rings of places are
-        tried.
+        tried. With `led` the line from the spot to the box crosses other boxes only if no place is without.
         """
         best, least = None, float("inf")
         points = self._points_about(at, gap + _RINGS[-1] + max(size))
@@ -134,12 +134,20 @@ class LabelPlaces:
                 if not self._free(box):
                     continue
                 covered = int(_within(points, box).sum())
-                price = covered + 2.5 * ring + 0.01 * turn
+                price = covered + 2.5 * ring + 0.01 * turn + (10 * self._measure_crossings(at, middle) if led else 0)
                 if covered <= most and price < least:
                     best, least = middle, price
         if best is not None:
             self.take_box(_round(best, size, 0.15))
         return best
+
+    def lead(self, middle: Spot, size: tuple[float, float], spot: Spot) -> list[Spot]:
+        """The line from the edge of a label to its spot, which later labels avoid."""
+        way = np.subtract(spot, middle)
+        share = min(0.5 * side / max(abs(step), 1e-9) for side, step in zip(size, way.tolist(), strict=True))
+        x, y = np.add(middle, min(share, 1.0) * way).tolist()
+        self.take_line([(x, y), spot], weight=4)
+        return [(x, y), spot]
 
     def _points_about(self, at: Spot, reach: float) -> np.ndarray:
         """The points of lines that a label near a spot could cover."""
@@ -147,6 +155,12 @@ class LabelPlaces:
             self._points = [np.concatenate(self._points)]
         points = self._points[0] if self._points else np.zeros((0, 2))
         return points[_within(points, (at[0] - reach, at[1] - reach, at[0] + reach, at[1] + reach))]
+
+    def _measure_crossings(self, at: Spot, middle: Spot) -> float:
+        """Sum the widths [mm] of boxes that a line between two spots crosses, without those at its first spot."""
+        spots = np.array(at) + np.linspace(0, 1, 40)[:, None] * np.subtract(middle, at)
+        inside = [(_within(spots, box), box[2] - box[0]) for box in self._boxes]
+        return sum(width for within, width in inside if within.any() and not within[0])
 
     def _free(self, box: Box) -> bool:
         left, top, right, bottom = self.room

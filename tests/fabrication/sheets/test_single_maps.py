@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 from builders import gallery_robot
 
-from hydrostat.drawing import Color
+from hydrostat.drawing import Canvas, Color
 from hydrostat.fabrication.kit_options import PatternOptions
 from hydrostat.fabrication.patterns.skin import flat_skin
 from hydrostat.fabrication.patterns.stitches import cable_stitches
 from hydrostat.fabrication.sheets.cable_map import flat_map, single_maps
 from hydrostat.fabrication.sheets.legible import note_lines
+from hydrostat.fabrication.sheets.map_layout import LabelPlaces
 from hydrostat.fabrication.sheets.solid_pictures import portrait
 from hydrostat.fabrication.winch_marks import marked_name, winch_marks_of
 from hydrostat.robot import Robot
@@ -82,3 +83,24 @@ def test_each_cable_has_a_map_with_all_of_its_numbers(name: str, pages: int) -> 
         assert [word for word in said if " from " in word] == titles
         assert said.count("2") + said.count("3") >= len(robot.cables)
         assert max(canvas.height for canvas in found) <= 235.0
+
+
+def test_a_line_to_a_number_goes_round_other_labels() -> None:
+    """Oracle: the line drawn by hand. A label stands to the right, places above and below are as free as behind it."""
+    places, spot, size = LabelPlaces((0.0, 0.0, 100.0, 100.0)), (50.0, 50.0), (6.0, 2.0)
+    for x, y in ((53.0, 50.0), (47.0, 50.0), (50.0, 47.0)):
+        places.take_box((x - 2.5, y - 2.0, x + 2.5, y + 2.0))
+    middle = places.beside(spot, size, gap=0.75, led=True)
+    assert middle is not None
+    assert middle[1] > 50.0
+    end, start = places.lead(middle, size, spot)
+    assert start == spot
+    assert end[1] == pytest.approx(middle[1] - 1.0) or abs(end[0] - middle[0]) == pytest.approx(3.0)
+
+
+def test_bold_words_are_wider() -> None:
+    """Oracle: widths that typst measures in its font [em]: C1 1.22, C1 C2 2.69."""
+    point = 25.4 / 72  # mm
+    for words, measured in (("C1", 1.22), ("C1 C2", 2.69)):
+        wide, _ = Canvas.text_size(words, 9.0, bold=True)
+        assert measured * 9.0 * point <= wide <= 1.2 * measured * 9.0 * point
