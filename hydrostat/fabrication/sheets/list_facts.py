@@ -233,23 +233,6 @@ def _list_first_steps(plan: PowerPlan, *, is_measured: bool) -> list[str]:
             else "Open DIR/winches/winches.ino in the Arduino IDE, with the board package esp32 3 of Espressif. Choose "
             "the board ESP32S3 Dev Module and USB CDC On Boot: Disabled, then upload through the USB port UART.",
         ]
-    alone = []
-    if not plan.servos and len(plan.boards) == 1:
-        pin = BOARDS[plan.boards[0]].button
-        button = f"a push button between pin {pin} and GND" if plan.resets else "the button BOOT of the board"
-        feed = "a 9 V battery at its jack" if plan.resets else "a USB power bank at its port USB"
-        alone = [
-            f"Optional: after hydrostat firmware ROBOT --moves MOVES, {button} starts and stops these moves without a "
-            f"computer. Feed the board by {feed} before you calibrate.",
-            f"Optional, if cells power the motors: add --min-supply {plan.cells} to that command. Connect plus of the "
-            f"motors, 47 kOhm, pin {BOARDS[plan.boards[0]].supply}, 10 kOhm and GND in series. The motors then stop at "
-            f"{plan.cells} V, and the light blinks.",
-        ]
-    elif plan.motor.is_feetech:
-        alone = [
-            "Optional: an ESP32-S3 wired to the bus adapter plays moves without a computer. Run: hydrostat "
-            f"firmware ROBOT --board esp32s3 --motor {plan.motor.key} --moves MOVES. Its wires are in docs/motors.md."
-        ]
     return [
         "Leave the switch off. The supply gives 1.5 times the current of all motors at full torque, and enough for two "
         f"that stall. Measure it behind the fuse: {plan.motor.volts:g} V, plus on the plus lead.",
@@ -261,5 +244,26 @@ def _list_first_steps(plan: PowerPlan, *, is_measured: bool) -> list[str]:
         if is_measured
         else "Keep a hand on the switch and turn it on. Write the zeros of the winches, as under Calibrate.",
         f"Run: hydrostat play ROBOT MOVES --motors {kind}:PORT. Begin with small moves.",
-        *alone,
+        *_list_steps_alone(plan),
     ]
+
+
+def _list_steps_alone(plan: PowerPlan) -> list[str]:
+    """Steps for a board that plays moves without a computer."""
+    if not plan.servos and len(plan.boards) == 1:
+        pin = BOARDS[plan.boards[0]].button
+        button = f"a push button between pin {pin} and GND" if plan.resets else "the button BOOT of the board"
+        feed = "a 9 V battery at its jack" if plan.resets else "a USB power bank at its port USB"
+        return [
+            f"Optional: after hydrostat firmware ROBOT --moves MOVES, {button} starts and stops these moves without a "
+            f"computer. Feed the board by {feed} before you calibrate.",
+            f"Optional, if cells power the motors: add --min-supply {plan.cells} to that command. Connect plus of the "
+            f"motors, 47 kOhm, pin {BOARDS[plan.boards[0]].supply}, 10 kOhm and GND in series. The motors then stop at "
+            f"{plan.cells} V, and the light blinks.",
+        ]
+    if plan.motor.is_feetech:
+        return [
+            "Optional: an ESP32-S3 wired to the bus adapter plays moves without a computer. Run: hydrostat "
+            f"firmware ROBOT --board esp32s3 --motor {plan.motor.key} --moves MOVES. Its wires are in docs/motors.md."
+        ]
+    return []
