@@ -39,4 +39,4 @@ def copy_gallery(source: str, folder: Path, wish: "NewRobotWish", *, on_skin: bo
         replace_file(folder / file, content)
     if laid is None:
         return []
-    return ["cables moved to the skin. The poses were made with the cables inside: hydrostat check lists their errors"]
+    return ["note: cables moved to the skin. Poses were made with cables inside: see their errors with hydrostat pose"]

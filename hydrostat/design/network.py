@@ -3,6 +3,7 @@
 # Of the thesis (docs/thesis.md): E24
 
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -15,14 +16,18 @@ from hydrostat.design.muscles.activation import Activation
 from hydrostat.design.polyline import Route
 from hydrostat.design.request import DesignRequest
 from hydrostat.design.stuffed_results import StuffedResults
-from hydrostat.ik import IKResult, solve_ik
+from hydrostat.errors import NotConvergedError
+from hydrostat.ik import IKOptions, IKResult, solve_ik
 from hydrostat.painters import draw_record, html_repr
 from hydrostat.robot import ElementKind, Robot, Volume
 from hydrostat.simulation import Simulation
 from hydrostat.units import plural
 
 _IDLE_RATIO, _SAME_ERROR = 1.1, 1e-3
-"""A winch is idle if the error without it is at most so many times as large, or larger by this share of the body."""
+"""A winch is idle if the error without it is at most so many times as large, or below this share of the body."""
+
+_IDLE_NODES = 2000
+"""Most nodes of a body whose idle winches are looked for: a flat one takes a second for each pose and winch."""
 
 
 def rms_error(reached: Sequence[IKResult]) -> float:
@@ -141,15 +146,20 @@ class Network:
     def idle_winches(self) -> dict[str, float]:
         """Rms error in the model without each winch that hardly lowers it [m]: poses solved again without its cables.
 
-        Without two of them it may be larger. Empty for robots with drives.
+        Without two of them it may be larger. Empty for bodies in space, where this takes long, and robots with drives.
         """
-        robot, found = self.robot, dict[str, float]()
-        for winch in robot.winches if len(robot.winches) > 1 and not robot.drives else ():
+        robot, found, once = self.robot, dict[str, float](), IKOptions(restarts=0)
+        mesh = robot.body.mesh
+        if len(robot.winches) < 2 or robot.drives or mesh.dim == 3 or len(mesh.nodes) > _IDLE_NODES:
+            return {}
+        most = max(_IDLE_RATIO * self.rms_error, _SAME_ERROR * mesh.size)
+        for winch in robot.winches:
             cables = [cable for cable in robot.cables if cable.winch != winch.name]
             simulation = Simulation(robot.with_network([one for one in robot.winches if one is not winch], cables))
-            without = rms_error([solve_ik(simulation, reached.target) for reached in self.ik_results])
-            if without < _IDLE_RATIO * self.rms_error + _SAME_ERROR * robot.body.mesh.size:
-                found[winch.name] = without
+            with suppress(NotConvergedError):
+                without = rms_error([solve_ik(simulation, each.target, options=once) for each in self.ik_results])
+                if without < most:
+                    found[winch.name] = without
         return found
 
     @cached_property

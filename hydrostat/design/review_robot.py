@@ -3,16 +3,19 @@
 import re
 from collections.abc import Iterator
 
+import numpy as np
+
 from hydrostat.design.checks.cables import clearance_violations, gap_violations, hole_violations, turn_violations
 from hydrostat.design.checks.parts import Parts
 from hydrostat.design.checks.winches import standing_violations
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.drawn_shapes import find_pinned_drawings
 from hydrostat.design.finding import Diagnostic, Severity, places_in
+from hydrostat.design.region import body_shell
 from hydrostat.design.skin_region import cable_region
 from hydrostat.errors import NO_KIT
 from hydrostat.fabrication import Demand, KitOptions, find_material_problems, find_refusals
-from hydrostat.robot import Robot, describe_filled_holes, find_risks
+from hydrostat.robot import SEWN_DEPTH, Robot, describe_filled_holes, find_risks
 
 
 def review_robot(
@@ -54,13 +57,23 @@ def review_robot(
 def _limits(robot: Robot, constraints: Constraints) -> Iterator[Diagnostic]:
     """A finding for each kind of limit: its first sentence, and the places of all."""
     parts = Parts(robot, constraints, cable_region(robot.body, constraints))
+    sewn = tuple(f"cable[{index}]" for index in _sewn_cables(robot))
     for check in (standing_violations, clearance_violations, hole_violations, gap_violations, turn_violations):
-        told = list(check(parts))
+        told = [text for text in check(parts) if not (text.startswith(sewn) and "low clearance" in text)]
         if not told:
             continue
         more = _count_others(told)
         places = dict.fromkeys(place for text in told for place in places_in(text, robot))
         yield Diagnostic(text=told[0] + more, weight=Severity.LIMIT, places=tuple(places))
+
+
+def _sewn_cables(robot: Robot) -> list[int]:
+    """Return the cables that are sewn to the skin of a body in space all along, which need no clearance."""
+    if robot.body.mesh.dim == 2:
+        return []
+    shell = body_shell(robot.body)
+    depths = [-shell.nearest(np.array(cable.points)).distances for cable in robot.cables]
+    return [index for index, depth in enumerate(depths) if depth.max() <= SEWN_DEPTH]
 
 
 def _count_others(told: list[str]) -> str:

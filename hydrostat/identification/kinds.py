@@ -49,6 +49,8 @@ def named_model(robot: Robot, kinds: tuple[str, ...] | None = None) -> Identific
     """
     if unknown := [name for name in kinds or () if name not in KINDS]:
         raise InputError(f'unknown parameter "{unknown[0]}". {list_choices("parameters", [*KINDS], unknown[0])}')
+    if kinds is not None and "scale" in kinds and "frame" not in kinds:
+        raise InputError('"scale" needs "frame" as well: a shift of the board would change the scale. Add frame.')
     names = tuple(name for name, kind in KINDS.items() if (kind.default if kinds is None else name in kinds))
     found = {name: KINDS[name].parameters(robot) for name in names}
     all_names = [parameter.name for parameters in found.values() for parameter in parameters]

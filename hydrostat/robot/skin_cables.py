@@ -11,6 +11,7 @@ from hydrostat.errors import InputError
 from hydrostat.geometry import Shell
 from hydrostat.given import check_not_negative
 from hydrostat.robot.cable import Cable
+from hydrostat.robot.risks import limit_travels
 from hydrostat.robot.robot import Robot
 from hydrostat.units import MM
 
@@ -20,20 +21,21 @@ SKIN_DEPTH = 0.75 * MM
 SHEATH_DEPTH = 2.7 * MM
 """Depth of a tube in a groove of the body under the skin [m]."""
 
-MAX_SPAN = 0.06
+MAX_SPAN = 0.045
 """Longest span between points of a cable on the skin, in sizes of the body: a straight span leaves a curved skin."""
 
 SMOOTHINGS = 8
 """Times that a cable is smoothed along itself and laid on the skin again."""
 
-MIN_SPAN = 0.015
+MIN_SPAN = 0.025
 """Shortest such span: points that the skin brings nearer to each other become one."""
 
 
 def lay_cables_on_skin(robot: Robot, depth: float = SKIN_DEPTH) -> Robot:
     """Move the points of all cables, those in sheaths as well, to the nearest place of the skin.
 
-    Points at winches and outside the body stay. Poses stay as well, though other cables reach them less exactly.
+    Points at winches and outside the body stay. Travels are cut to what the body bears. Poses stay, though other
+    cables reach them less exactly.
 
     Args:
         robot: robot with a body in space.
@@ -45,9 +47,13 @@ def lay_cables_on_skin(robot: Robot, depth: float = SKIN_DEPTH) -> Robot:
     check_not_negative("depth", depth, "m")
     mesh = robot.body.mesh
     if mesh.dim == 2 or not robot.cables:
-        raise InputError(f"{robot.name} has {'a flat body' if mesh.dim == 2 else 'no cables'}; needs cables in space")
+        what = "a flat body" if mesh.dim == 2 else "no cables"
+        raise InputError(
+            f"{robot.name}: cables on the skin need a 3D body with cables ({what}). Take a hand or a trunk."
+        )
     shell = Shell(mesh.nodes, mesh.boundary)
-    return robot.with_network(robot.winches, [_lay_cable(cable, shell, mesh.size, depth) for cable in robot.cables])
+    laid = [_lay_cable(cable, shell, mesh.size, depth) for cable in robot.cables]
+    return limit_travels(robot.with_network(robot.winches, laid))
 
 
 def _lay_cable(cable: Cable, shell: Shell, size: float, depth: float) -> Cable:

@@ -157,16 +157,18 @@ def test_what_measurements_do_not_show_is_said() -> None:
 def test_a_board_printed_too_small_is_found() -> None:
     """Oracle: places that a robot of known scale and thickness has; rulers do not shrink with the board."""
     robot, rows = strip(), np.random.default_rng(3).uniform(0.001, 0.012, (6, 2))
-    model = named_model(robot, ("thickness", "scale"))
-    hidden = {"thickness": 1.2 * model.start["thickness"], "frame.scale": 0.985}
+    model = named_model(robot, ("thickness", "frame", "scale"))
+    hidden = model.start | {"thickness": 1.2 * model.start["thickness"], "frame.scale": 1.015, "frame.x": 3.0}
     numbers = np.array([parameter.to_fitted(hidden[parameter.name]) for parameter in model.parameters])
     asked = measured(robot, rows)
     seen = replace(asked, places=MarkerPredictor(model, asked).predict(numbers, with_jacobian=False).places)
-    found = identify(robot, seen, fit=("thickness", "scale"))
-    assert found.fitted.values["frame.scale"] == pytest.approx(0.985, abs=1e-4)
+    found = identify(robot, seen, fit=("thickness", "frame", "scale"))
+    assert found.fitted.values["frame.scale"] == pytest.approx(1.015, abs=1e-4)
     assert found.robot.body.thickness == pytest.approx(1e-3 * hidden["thickness"], rel=0.01)
     with pytest.raises(InputError, match="scale: ruler distances"):
-        identify(robot, replace(seen, pairs=((0, 1),), lengths=np.full((6, 1), 0.1)), fit=("scale",))
+        identify(robot, replace(seen, pairs=((0, 1),), lengths=np.full((6, 1), 0.1)), fit=("frame", "scale"))
+    with pytest.raises(InputError, match='"scale" needs "frame"'):
+        named_model(robot, ("scale",))
 
 
 def test_a_hung_mass_tells_modulus_and_density_apart() -> None:

@@ -78,7 +78,7 @@ def _near_the_edge_at_points(parts: Parts) -> Iterator[str]:
     depths = parts.region.depths(np.array([parts.points[index][at] for index, at in asked]))
     worst = np.argsort(-np.maximum(least - depths, depths - most), kind="stable")  # first: reviews print that one alone
     for number in worst:
-        (index, at), depth = asked[number], depths[number]
+        (index, at), depth = asked[number], float(depths[number])
         if depth < least - LENGTH:
             yield (
                 f"{_hole_name((index, at))}: low clearance ({parts.within(depth)}, "

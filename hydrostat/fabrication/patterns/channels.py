@@ -46,8 +46,10 @@ def _draw(title: str, marks: Sequence[tuple[str, float]], length: float) -> list
         LaserLine(layer=Layer.MARK, part=PatternPart.SEAM, points=((-_END, y), (length + _END, y)))
         for y in (SEAM, WIDTH - SEAM)
     ]
-    for word, at in marks:
+    for index, (word, at) in enumerate(marks):
         lines.append(LaserLine(layer=Layer.MARK, part=PatternPart.NOTCH, points=((at, 0.0), (at, WIDTH))))
-        lines += Lettering(word, 3.0).lines((at + 1.5 + Lettering(word, 3.0).width / 2, WIDTH / 2))
+        number = Lettering(word.split()[0], 2.5)
+        row = WIDTH / 2 + (1.7 if index % 2 else -1.7)  # neighbors in two rows, as points may be 4 mm apart
+        lines += number.lines((at + 1.0 + number.width / 2, row))
     lines += Lettering(title, 3.5).lines((-_END / 2 - 0.5, WIDTH / 2))
     return lines

@@ -299,7 +299,7 @@ def _drawn_step(depths: CableDepths, deep: list[str], poured: str, *, flat: bool
 
 
 def _sewn_step(depths: CableDepths, ways: Mapping[str, Sequence[tuple[str, float]]], *, tubes: bool) -> AssemblyStep:
-    tube = ", tubes at both ends with the line in them" if tubes else ""
+    tube = ", each tube sewn at both of its ends with the line in it" if tubes else ""
     pace = 30.0  # of a seam by hand [mm/min], two for each channel. Estimated, as the 5 minutes to pin one
     minutes = sum(5 + 2 * (points[-1][1] - points[0][1]) / pace for points in ways.values())
     channels = (
