@@ -5,13 +5,16 @@
    servo is asked. A place is a step of the servo's own count but for whole turns (`base`), so zeros are those that a
    computer on the same line finds.
 
-   These servos have no watchdog. A board that falls silent leaves them at a goal of 20 ms ahead; as it starts again,
-   torque goes off on the whole line. */
+   Nothing confirms a packet to all servos, thus the board repeats it: torque off every GOAL_TICKS as long as it is
+   meant, lock and bounds until each servo shows them, and only then torque on.
+
+   These servos have no watchdog. A board that falls silent leaves them at their last goal: at most GOAL_TICKS ahead of
+   the planned place, and LEAD_MS of full speed ahead of the servo. As it starts again, torque goes off on the line. */
 #pragma once
 
 #define GOAL_TICKS 5   /* from one goal to the next */
 #define BEYOND_BY 100  /* steps past a limit at which something is wrong */
-#define STRIKES 10     /* answers in a row that show another torque switch or bound than told */
+#define TAKE_TICKS (RATE / 2) /* in which a servo has to show its lock, its bound and torque */
 #define TELLS_SUPPLY 1 /* each servo measures it */
 #if COUNT > 16
 #error "a line has at most 16 servos: their answers would be late"
@@ -25,17 +28,20 @@ typedef struct {
     const char *refused;      /* why it cannot be used */
     uint8_t least, most;      /* supply in its memory [0.1 V] */
     uint8_t volts, heat, errors;
+    uint8_t sags;    /* answers in a row with an error of the supply: 2 for many */
     uint8_t age;     /* ticks since its last answer, 255 for many or none */
     uint8_t jumped;  /* the last answer was a turn off */
-    uint8_t on;      /* its torque was seen on since it was told so */
-    uint8_t strikes;
+    uint8_t on;      /* its torque was seen on since arming */
+    uint8_t taken;   /* steps of arming that its last answer shows */
+    uint8_t delay;   /* ticks since it showed all of them */
 } Servo;
+
+enum Taken { NOTHING, LOCKED, BOUNDED, POWERED }; /* steps of arming */
 
 static Servo servos[COUNT];
 static const float millimeters[COUNT] = MILLIMETERS; /* of cable, in steps */
-static uint8_t is_on = 2; /* torque as all were told; 2: nothing yet */
-static uint8_t again;     /* a servo did not take it */
-static uint16_t sagging;  /* ticks below MIN_SUPPLY */
+static uint8_t is_armed, is_on; /* whether torque is meant to be on, and was switched on */
+static uint16_t sagging;        /* ticks below MIN_SUPPLY */
 
 /* ---- packets ---- */
 
@@ -84,6 +90,11 @@ static int32_t signed_at(const uint8_t *place, uint8_t bit) {
 
 static int32_t place(uint8_t i) { return servos[i].place; }
 
+/* Where it is now if it follows: its last answer is some ticks old. */
+static int32_t find_stop(uint8_t i) {
+    return servos[i].place + lroundf(motors[i].pace * fminf(servos[i].age, COUNT + 1));
+}
+
 /* Least and greatest place: those of the servo, and those of the winch once its zero is known. */
 static int32_t low_of(uint8_t i) {
     int32_t low = lroundf(zeros[i] + limits[i].low - millimeters[i] * (alone ? ALONE_SPARE : GUIDED_SPARE));
@@ -103,6 +114,10 @@ static void follow(uint8_t i) {
     Motor *motor = &motors[i];
     Servo *servo = &servos[i];
     int32_t now = servo->place;
+    if (!is_on) { /* goals wait for torque */
+        motor->wish = now;
+        motor->pace = 0;
+    }
     uint8_t follows = fabsf(motor->wish - now) < millimeters[i] * STALL_MM;
     follows |= fabsf((float)now - motor->before) > millimeters[i] / 10;
     if (follows)
@@ -110,15 +125,17 @@ static void follow(uint8_t i) {
     motor->stuck = follows ? 0 : motor->stuck + 1;
     if (servo->age > LATE)
         fault(UNHEARD, i);
-    else if (servo->errors & FAULT_SUPPLY) {
+    else if (servo->sags > 1) {
         drained = 1;
         fault(SAGGED, i);
     } else if (servo->errors & FAULT_HEAT || servo->heat > MAX_HEAT)
         fault(HEAT, i);
     else if (servo->errors & FAULT_ENCODER)
         fault(ENCODER, i);
-    else if (servo->errors)
+    else if (servo->errors & ~FAULT_SUPPLY)
         fault(CURRENT, i);
+    else if (servo->delay > TAKE_TICKS)
+        fault(UNHEARD, i);
     else if (now < low_of(i) - BEYOND_BY || now > high_of(i) + BEYOND_BY)
         fault(BEYOND, i);
     else if (motor->stuck >= STALL_MS * RATE / 1000)
@@ -165,24 +182,38 @@ static uint16_t share_of(uint8_t i) {
     return fmaxf(1, fminf(FULL_TORQUE, lroundf((float)FULL_TORQUE * motors[i].bound / STALL_MA)));
 }
 
-/* Torque off; or on, with goals where they stand and bounds of torque before. */
+static void write_bounds(void) {
+    begin_packet(ALL_SERVOS, TO_SYNC_WRITE);
+    add(BOUND_AT);
+    add(2);
+    for (uint8_t i = 0; i < COUNT; i++) {
+        add(i + 1);
+        add_word(share_of(i));
+    }
+    send_packet();
+}
+
+/* The step that a servo lacks: lock, then bounds, then goals where they stand and torque. Or torque off. */
 static void write_switches(void) {
-    if (is_on) {
+    uint8_t taken = POWERED;
+    for (uint8_t i = 0; i < COUNT; i++)
+        if (servos[i].taken < taken)
+            taken = servos[i].taken;
+    if (!is_armed)
+        return write_byte(TORQUE_AT, is_on = 0);
+    if (taken == BOUNDED && !is_on) {
         for (uint8_t i = 0; i < COUNT; i++)
             servos[i].goal = servos[i].place;
-        write_goals();
-        if (LOCK_AT)
-            write_byte(LOCK_AT, 1); /* else the servo keeps its bound of torque for good */
-        begin_packet(ALL_SERVOS, TO_SYNC_WRITE);
-        add(BOUND_AT);
-        add(2);
-        for (uint8_t i = 0; i < COUNT; i++) {
-            add(i + 1);
-            add_word(share_of(i));
-        }
-        send_packet();
+        is_on = 1;
     }
-    write_byte(TORQUE_AT, is_on);
+    if (is_on)
+        write_goals();
+    if (LOCK_AT && taken == NOTHING)
+        write_byte(LOCK_AT, 1); /* else the servo keeps its bound of torque for good */
+    else if (taken < BOUNDED)
+        write_bounds();
+    else if (taken == BOUNDED)
+        write_byte(TORQUE_AT, 1);
 }
 
 /* ---- what they answer ---- */
@@ -252,20 +283,21 @@ static void take_state(uint8_t i, uint8_t errors, const uint8_t *table) {
     servo->place = now;
     servo->age = 0;
     servo->errors = errors;
+    servo->sags = errors & FAULT_SUPPLY ? servo->sags + (servo->sags < 2) : 0;
     servo->volts = told[6];
     servo->heat = told[7];
     motors[i].milliamps = lroundf(labs(current) * MILLIAMPERES);
     motors[i].pays = current < 0;
-    if (torque == is_on && (!is_on || word_at(table + BOUND_AT - READ_AT) == share_of(i))) {
-        servo->on = is_on;
-        servo->strikes = 0;
-    } else if (servo->on && !torque && !errors)
+    servo->taken = LOCK_AT && !table[LOCK_AT - READ_AT]                    ? NOTHING
+                   : word_at(table + BOUND_AT - READ_AT) != share_of(i) ? LOCKED
+                   : !torque                                            ? BOUNDED
+                                                                        : POWERED;
+    if (servo->taken == POWERED || !is_armed)
+        servo->delay = 0;
+    if (is_on && torque)
+        servo->on = 1;
+    else if (servo->on && !torque && !errors)
         forget(i);
-    else if (!errors) {
-        again = 1;
-        if (is_on == 1 && ++servo->strikes > STRIKES)
-            fault(UNHEARD, i);
-    }
 }
 
 /* Look for the answer among all that came: the own echo, and answers of others, have another number or length. */
@@ -338,22 +370,23 @@ static void watch_supply(void) {
 
 /* All that goes over the line in a tick. */
 static void measure(void) {
-    static uint8_t turn, asked, waited;
+    static uint8_t turn, asked, waited = GOAL_TICKS;
     hear_answer(turn, asked);
-    for (uint8_t i = 0; i < COUNT; i++)
+    for (uint8_t i = 0; i < COUNT; i++) {
         servos[i].age += servos[i].age < 255;
+        servos[i].delay += servos[i].delay < 255;
+    }
     watch_supply();
-    uint8_t on = state == ARMED || state == SILENT;
-    if (on != is_on || again) {
-        for (uint8_t i = 0; i < COUNT && on != is_on; i++)
-            servos[i].on = servos[i].strikes = 0;
-        is_on = on;
-        again = 0;
-        write_switches();
-        waited = GOAL_TICKS - 1;
-    } else if (is_on && ++waited >= GOAL_TICKS) {
+    uint8_t armed = state == ARMED || state == SILENT;
+    if (armed != is_armed) {
+        for (uint8_t i = 0; i < COUNT; i++)
+            servos[i].on = servos[i].taken = servos[i].delay = 0;
+        is_armed = armed;
+        waited = GOAL_TICKS;
+    }
+    if (++waited >= GOAL_TICKS) {
         waited = 0;
-        write_goals();
+        write_switches();
     }
     turn = turn + 1 < COUNT ? turn + 1 : 0;
     asked = servos[turn].low >= servos[turn].high || servos[turn].refused ? HEAD_BYTES : READ_BYTES;

@@ -37,6 +37,9 @@ static int32_t place(uint8_t i) {
     return read_count(&places[i]);
 }
 
+/* Where it stops. */
+static int32_t find_stop(uint8_t i) { return place(i); }
+
 static void drive(uint8_t i, int16_t power) {
     motors[i].power = power;
     drive_bridge(i, power);

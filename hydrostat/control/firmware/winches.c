@@ -131,7 +131,7 @@ static uint8_t is_supply_low(void) { return MIN_SUPPLY && supply + 1UL <= MIN_SU
 static void stand(void) {
     for (uint8_t i = 0; i < COUNT; i++) {
         Motor *motor = &motors[i];
-        motor->aim = motor->wish = place(i);
+        motor->aim = motor->wish = find_stop(i);
         motor->pace = motor->gain = motor->sum = 0;
         motor->before = motor->wish;
         motor->hot = motor->stuck = 0;
