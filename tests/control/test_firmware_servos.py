@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache
 from itertools import count
 from pathlib import Path
@@ -13,10 +13,12 @@ from firmware_bench import ServoBoard, two_winch_strip
 
 from hydrostat.control import BusLink, Calibration, Motors, Player, bake_moves
 from hydrostat.control.emulated_feetech import EmulatedFeetechChain, EmulatedScs, EmulatedSts
-from hydrostat.control.feetech_bus import LOW, TORQUE, FeetechBus, SumReader, pack
+from hydrostat.control.emulated_servos import InjectedFaults
+from hydrostat.control.feetech_bus import BOUND, LOW, MODE, TORQUE, VOLTS, FeetechBus, SumReader, pack
 from hydrostat.control.firmware_build import build_firmware, firmware_settings, robot_word
 from hydrostat.control.firmware_bus import FirmwareBus
 from hydrostat.control.firmware_servos import SERVO_STEPS
+from hydrostat.control.scs_bus import BOUND as SCS_BOUND
 from hydrostat.control.scs_bus import LOCK, ScsBus
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Robot
@@ -157,43 +159,79 @@ def test_a_computer_gets_the_poses_of_our_driver(bus: str, tmp_path: Path) -> No
     assert np.abs(np.array(found[:2]) - found[2:]).max() < 1e-4
 
 
+@dataclass
+class ErrorsInTurn(InjectedFaults):
+    """Errors of so many answers, the last for all that follow."""
+
+    script: tuple[int, ...] = ()
+
+    @property
+    def bits(self) -> int:
+        """Errors of the next answer."""
+        errors, *rest = self.script
+        self.script = tuple(rest) or (errors,)
+        return errors
+
+
+def spoil_bound(servo: EmulatedSts | EmulatedScs, *, again: bool) -> None:
+    """Set a servo's bound of torque to the greatest; with `again`, it takes no other."""
+    place = SCS_BOUND if isinstance(servo, EmulatedScs) else BOUND
+    take = servo.take
+    take(place, bytes(2))
+    if again:
+        servo.take = lambda at, data: 0 if at == place else take(at, data)
+
+
 FAULTS: list[tuple[str, Callable, str]] = [
     ("dead", lambda servo: setattr(servo.ails, "deaf", True), "unheard 2"),
     ("hot", lambda servo: setattr(servo.ails, "hot", True), "heat 2"),
     ("overloaded", lambda servo: setattr(servo.ails, "overloaded", True), "current 2"),
+    ("too much current", lambda servo: setattr(servo, "ails", ErrorsInTurn(script=(8,))), "current 2"),
+    ("encoder", lambda servo: setattr(servo, "ails", ErrorsInTurn(script=(2,))), "encoder 2"),
     ("sagging", lambda servo: setattr(servo.ails, "sags", True), "supply 0"),
+    ("sags twice", lambda servo: setattr(servo, "ails", ErrorsInTurn(script=(1, 1, 0))), "supply 0"),
+    ("sags once", lambda servo: setattr(servo, "ails", ErrorsInTurn(script=(1, 0))), ""),
     ("stuck", lambda servo: setattr(servo.ails, "stuck", True), "stall 2"),
+    ("bound lost", lambda servo: spoil_bound(servo, again=False), ""),
+    ("bound not taken", lambda servo: spoil_bound(servo, again=True), "unheard 2"),
     ("restarted", lambda servo: servo.begin_anew(), "restarted 2"),
     ("restarted within its turn", lambda servo: servo.take(TORQUE, bytes(1)), "restarted 2"),
     ("carried off", lambda servo: setattr(servo, "angle", servo.angle - 0.012), ""),
+    ("past its limit", lambda servo: None, "beyond 2"),
 ]
+GOALS = {"feetech": "G 8000 400 0 400", "scs": "G 400 150 700 150"}
 
 
 @pytest.mark.parametrize(("fault", "told"), [each[1:] for each in FAULTS], ids=[each[0] for each in FAULTS])
-@pytest.mark.parametrize("alone", [False, True], ids=["guided", "alone"])
-def test_a_servo_that_fails_stops_all(tmp_path: Path, fault: Callable, told: str, alone: bool) -> None:
-    """Torque goes off on the whole line, and the answer names the servo; a hand that moves one by 0.06 mm does not."""
-    board = start("feetech", tmp_path)
-    assert board.ask(f"M {steps_of('feetech')}") == "ok"
+@pytest.mark.parametrize(("bus", "alone"), [("feetech", False), ("feetech", True), ("scs", False)])
+def test_a_servo_that_fails_stops_all(bus: str, tmp_path: Path, fault: Callable, told: str, alone: bool) -> None:
+    """Torque goes off on all that hear, and the answer names the servo. Small faults, or a single one, do no harm."""
+    board = start(bus, tmp_path)
+    servos = board.chain.servos
+    assert board.ask(f"M {steps_of(bus)}") == "ok"
     if alone:
         board.press()
     else:
         assert board.ask("A 400 400") == "ok"
-        assert board.ask("G 8000 400 0 400") == "ok"
+        assert board.ask(GOALS[bus]) == "ok"
     board.keep(0.3)
     assert is_torque_on(board) == [True, True]
-    fault(board.chain.servos[1])
+    bounds = [servo.most for servo in servos]
+    fault(servos[1])
+    if told == "beyond 2":  # as if its zero were 3 m away
+        assert board.ask(f"M {steps_of(bus).split()[0]} -400000") == "ok"
     said = board.keep(0.3 if told == "" else 0.9)
     if not told:
         assert said.startswith("ok armed ")
+        assert [servo.most for servo in servos] == bounds
         return
     assert said.startswith(f"ok {told} "), said
-    assert not is_torque_on(board)[0]
-    if told == "restarted 2":
+    assert is_torque_on(board) == [False, servos[1].ails.deaf]
+    if told == "restarted 2" and bus == "feetech":
         assert board.ask("I").endswith(" new")
         board.press()
         assert board.ask("R").startswith("ok restarted ")
-    if told == "supply 0":
+    if servos[1].ails.sags:
         assert board.ask("A 400 400") == "no voltage 2"
 
 
@@ -224,19 +262,26 @@ def test_silence_holds_and_a_hung_program_lets_go(tmp_path: Path) -> None:
         ("feetech", {"supply": 12.0, "allowed": (8.0, 14.0)}, "voltage 2"),
         ("feetech", {"model": 1284}, "model 2"),
         ("feetech", {"number": 7}, "servo 2"),
-        ("feetech", {"limits": bytes([0, 0, 0xFF, 0x0F])}, "range 2"),
+        ("feetech", {"registers": (LOW, bytes([0, 0, 0xFF, 0x0F]))}, "range 2"),
+        ("feetech", {"registers": (MODE, bytes([1]))}, "mode 2"),
+        ("feetech", {"allowed": (8.0, 4.0)}, "memory 2"),
+        ("feetech", {"ails": InjectedFaults(hot=True)}, "fault 2"),
+        ("feetech", {"ails": ErrorsInTurn(script=(8,))}, "fault 2"),
+        ("scs", {"registers": (VOLTS, bytes([45, 84]))}, "memory 2"),
+        ("scs", {"ails": InjectedFaults(hot=True)}, "fault 2"),
+        ("scs", {"model": 777}, "model 2"),
         ("scs", {"supply": 8.6}, "voltage 2"),
-        ("scs", {"limits": bytes(4)}, "range 2"),
+        ("scs", {"registers": (LOW, bytes(4))}, "range 2"),
     ],
 )
 def test_servos_that_are_not_ready_are_not_armed(bus: str, change: dict, told: str, tmp_path: Path) -> None:
     """The second is on another supply than its own, or than the first's; another model; not there; counts no turns."""
 
     def spoil(servos: list) -> None:
-        limits = change.get("limits", b"")
-        rest = {name: value for name, value in change.items() if name != "limits"}
+        rest = {name: value for name, value in change.items() if name != "registers"}
         servos[1] = KINDS[bus][0](**{"number": 2, "angle": ZEROS[bus][0], **rest})
-        servos[1].table[LOW : LOW + len(limits)] = limits
+        at, data = change.get("registers", (0, b""))
+        servos[1].table[at : at + len(data)] = data
 
     board = start(bus, tmp_path, change=spoil)
     assert board.ask("A 400 400") == f"no {told}"
@@ -244,7 +289,7 @@ def test_servos_that_are_not_ready_are_not_armed(bus: str, change: dict, told: s
     driver = FirmwareBus(board, [SERVO_STEPS[bus]] * 2, clock=board.clock, wait=board.run)
     with pytest.raises(HydrostatError, match="servo 2 "):
         driver.identify()
-    assert board.chain.servos[0].table[TORQUE] == 0
+    assert is_torque_on(board) == [False, False]
 
 
 def test_a_board_alone_moves_as_with_our_driver(bus: str, tmp_path: Path) -> None:
@@ -343,9 +388,8 @@ def test_settings_hold_zeros_that_last(tmp_path: Path) -> None:
     rows = re.findall(r"\{(-?\d+), (-?\d+), (\d+), \d+, 1, 400\}, /\*", text)
     most = round(1228.8 * 0.018 / 0.0314159)
     assert [tuple(map(int, row[:2])) for row in rows] == [(-most, 0), (0, most)]  # motor 1 turns the other way
-    assert "#define ZEROS" not in firmware_settings(
-        robot_with("feetech"), motors_of("feetech"), rpm=60.0, bus="feetech"
-    )
+    long = firmware_settings(robot_with("feetech"), motors_of("feetech"), rpm=60.0, bus="feetech")
+    assert "#define ZEROS" not in long
     short = firmware_settings(robot_with("scs"), motors_of("feetech"), rpm=60.0, bus="feetech")
     assert "#define ZEROS {7171, -1304}" in short
     assert "#define ALONE_SPARE 2.0000f" in short

@@ -41,6 +41,7 @@ enum Taken { NOTHING, LOCKED, BOUNDED, POWERED }; /* steps of arming */
 static Servo servos[COUNT];
 static const float millimeters[COUNT] = MILLIMETERS; /* of cable, in steps */
 static uint8_t is_armed, is_on; /* whether torque is meant to be on, and was switched on */
+static uint8_t all_taken;       /* steps of arming that all have taken */
 static uint16_t sagging;        /* ticks below MIN_SUPPLY */
 
 /* ---- packets ---- */
@@ -134,7 +135,7 @@ static void follow(uint8_t i) {
         fault(ENCODER, i);
     else if (servo->errors & ~FAULT_SUPPLY)
         fault(CURRENT, i);
-    else if (servo->delay > TAKE_TICKS)
+    else if (servo->delay > TAKE_TICKS && servo->taken <= all_taken)
         fault(UNHEARD, i);
     else if (now < low_of(i) - BEYOND_BY || now > high_of(i) + BEYOND_BY)
         fault(BEYOND, i);
@@ -195,24 +196,24 @@ static void write_bounds(void) {
 
 /* The step that a servo lacks: lock, then bounds, then goals where they stand and torque. Or torque off. */
 static void write_switches(void) {
-    uint8_t taken = POWERED;
+    all_taken = POWERED;
     for (uint8_t i = 0; i < COUNT; i++)
-        if (servos[i].taken < taken)
-            taken = servos[i].taken;
+        if (servos[i].taken < all_taken)
+            all_taken = servos[i].taken;
     if (!is_armed)
         return write_byte(TORQUE_AT, is_on = 0);
-    if (taken == BOUNDED && !is_on) {
+    if (all_taken == BOUNDED && !is_on) {
         for (uint8_t i = 0; i < COUNT; i++)
             servos[i].goal = servos[i].place;
         is_on = 1;
     }
     if (is_on)
         write_goals();
-    if (LOCK_AT && taken == NOTHING)
+    if (LOCK_AT && all_taken == NOTHING)
         write_byte(LOCK_AT, 1); /* else the servo keeps its bound of torque for good */
-    else if (taken < BOUNDED)
+    else if (all_taken < BOUNDED)
         write_bounds();
-    else if (taken == BOUNDED)
+    else if (all_taken == BOUNDED)
         write_byte(TORQUE_AT, 1);
 }
 
