@@ -15,6 +15,7 @@ from hydrostat.units import plural
 if TYPE_CHECKING:
     from hydrostat.control import Calibration, WinchMotor
     from hydrostat.fabrication import Motor
+    from hydrostat.robot import Robot
 
 
 def firmware(
@@ -79,7 +80,6 @@ def firmware(
     Example: hydrostat firmware examples/starfish --board mega --out build/firmware
     """
     from hydrostat import control
-    from hydrostat.fabrication import check_board
     from hydrostat.robot import PinDrive
 
     _check_motor("--motor", motor or "auto", board)
@@ -90,10 +90,8 @@ def firmware(
     _check_motor(f"{robot}: motor", loaded.motor if motor is None and counts is None else "auto", board)
     if not loaded.winches:
         raise InputError(f"{robot}: no winches. Add winches and cables, or run `hydrostat design`.")
-    if (folder / control.CALIBRATION).exists():
-        calibration = control.Calibration.read(folder, loaded)
-    else:
-        calibration = control.Calibration.usual(loaded)
+    has_file, reader = (folder / control.CALIBRATION).exists(), control.Calibration
+    calibration = reader.read(folder, loaded) if has_file else reader.usual(loaded)
     chosen = _choose_motor(motor, loaded.motor, calibration, counts)
     known = control.SERVO_STEPS.get(chosen.bus, chosen.counts)
     usual, turns = known if counts is None else counts, chosen.speed if rpm is None else rpm
@@ -104,6 +102,7 @@ def firmware(
     given = calibration if chosen.bus else control.on_boards(calibration, boards)
     _check_count(board, given)
     given = _set_counts(given, usual, is_new=bool(counts or motor or chosen.bus))
+    _check_turns(loaded, given, chosen)
     ports = port.split(",") if port else []
     if ports and len(ports) != given.boards:
         words = f"{plural(len(ports), 'port')} for {plural(given.boards, 'board')}"
@@ -113,19 +112,21 @@ def firmware(
     shown = ", ".join(dict.fromkeys(f"{each.counts:g}" for each in given.motors))
     print(f"Motor: {chosen.title}{'' if motor else ' (check the kit; change with --motor)'}")
     print(f"{shown} counts per spool turn, no-load speed {turns:g} turns/min")
-    baked = None if moves is None else control.bake_moves(moves, folder, loaded, given, boards[0], rate=rate)
+    speed = {"rate": rate, "rpm": turns if motor or rpm or chosen.bus else None}
+    baked = None if moves is None else control.bake_moves(moves, folder, loaded, given, boards[0], **speed)
     text = "" if baked is None else baked.settings
     text += "" if min_supply is None else f"#define MIN_SUPPLY {round(1e3 * min_supply)} /* [mV] */\n"
     facts = {"rpm": turns, "stall": chosen.stall_current, "bus": chosen.bus}
     images = control.build_images(loaded, given, boards, places, moves=text, **facts)
     if given != calibration:
         print(f"Wrote {given.write(folder)}, next to the robot: motors and counts for calibrate, play and drive")
+    _tell_changes(loaded, calibration, given)
     for number, (kind, image) in enumerate(zip(boards, images, strict=False), 1):
         _tell(kind, number, given, chosen.bus)
         _flash(kind, image, ports[number - 1] if ports else None)
     if baked is not None:
-        words = f"{baked.seconds:.1f} s, {baked.size / 1000:.1f} kB. Button between pin"
-        print(f"{moves}: {words} {check_board(boards[0]).button} and GND plays and stops it, after calibration.")
+        words = f"{moves}: {baked.seconds:.1f} s, {baked.size / 1000:.1f} kB"
+        _tell_moves(words, boards[0], loaded, given, chosen.bus)
     _tell_supply(boards[: given.boards], min_supply, chosen.bus, alone=baked is not None)
     if ports:
         print(f"{port}: flashed. Pay out all cables, then: hydrostat calibrate {folder} --motors firmware:{port}")
@@ -137,12 +138,13 @@ SERVO_BOARD = "esp32s3"
 
 def _check_motor(where: str, key: str, board: str | None) -> None:
     """Reject a motor that boards do not drive, or that this board does not, or an unknown one."""
-    from hydrostat.fabrication import ALL_MOTORS
+    from hydrostat.fabrication import ALL_MOTORS, BOARDS
 
     motor = next((each for each in ALL_MOTORS if each.key == key), None)
     if motor is None and key != "auto":
         known = ", ".join(each.key for each in ALL_MOTORS if each.counts or each.is_feetech)
-        raise InputError(f"{where} {key}: unknown motor. Available: {known}. Or give --counts and --rpm.")
+        other = "" if any(each.key in key for each in ALL_MOTORS if each.bus) else " Or give --counts and --rpm."
+        raise InputError(f"{where} {key}: unknown motor. Available: {known}.{other}")
     if motor is None or not motor.bus:
         return
     if not motor.is_feetech:
@@ -150,6 +152,9 @@ def _check_motor(where: str, key: str, board: str | None) -> None:
             f"{where} {key}: boards drive no Dynamixel servos. Run `hydrostat play ROBOT MOVES --motors "
             f"{motor.bus}:PORT`, or build with --motor n20, 25d or a Feetech servo."
         )
+    if board not in (None, SERVO_BOARD) and {each.strip() for each in board.split(",")} == {SERVO_BOARD}:
+        most = BOARDS[SERVO_BOARD].servos
+        raise InputError(f"--board {board}: one board drives up to {most} servos. Use --board {SERVO_BOARD}.")
     if board not in (None, SERVO_BOARD):
         raise InputError(
             f"{where} {key}: --board {board} drives no bus servos. Use --board {SERVO_BOARD}, or --motor n20 or 25d."
@@ -189,6 +194,48 @@ def _set_counts(calibration: "Calibration", counts: float, *, is_new: bool) -> "
     from hydrostat.control import Calibration
 
     return Calibration(tuple(change(motor) for motor in calibration.motors))
+
+
+def _check_turns(robot: "Robot", given: "Calibration", motor: "Motor") -> None:
+    """Reject spools that a servo does not turn far enough."""
+    from hydrostat.fabrication import find_turn_problems
+
+    pairs = zip(robot.winches, given.motors, strict=True)
+    winches = [replace(winch, spool_radius=each.radius) for winch, each in pairs]
+    if motor.bus and (problems := find_turn_problems(winches, motor)):
+        raise InputError(problems[0] + ".")
+
+
+def _tell_changes(robot: "Robot", before: "Calibration", after: "Calibration") -> None:
+    """Warn of counts and zeros that are replaced, and of spools that differ from those of the robot."""
+    from hydrostat.control import CALIBRATION
+
+    for winch, old, new in zip(robot.winches, before.motors, after.motors, strict=True):
+        if old.counts and old.counts != new.counts:
+            lost = ", and its zero is removed" if old.zero is not None else ""
+            print(f"warning: {CALIBRATION}, {winch.name}: counts {old.counts:g} replaced by {new.counts:g}{lost}")
+        if not new.curve and abs(new.radius - winch.spool_radius) > 1e-6:
+            print(
+                f"warning: {winch.name}: spool radius {1e3 * new.radius:g} mm in {CALIBRATION}, "
+                f"{1e3 * winch.spool_radius:g} mm in robot.toml. Firmware uses {CALIBRATION}. Correct one of the two."
+            )
+
+
+def _tell_moves(words: str, board: str, robot: "Robot", given: "Calibration", bus: str) -> None:
+    """Say how moves start, and whether the sketch has the zeros of servos, else why not and what to do."""
+    from hydrostat.control import find_zero_loss
+    from hydrostat.fabrication import check_board
+
+    print(f"{words}. Button {check_board(board).button_name} plays and stops it, after calibration.")
+    if not bus:
+        return
+    if why := find_zero_loss(robot, given.motors, bus):
+        print(f"No zeros in the sketch: {why}.")
+        print("Calibrate from a computer after each start.")
+    elif given.is_complete:
+        print("Zeros are in the sketch: the robot plays after each start.")
+    else:
+        print("No zeros in the sketch: not calibrated. Calibrate, then run this command again and upload.")
 
 
 def _check_alone(moves: Path | None, rate: int, min_supply: float | None) -> None:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
         robot_word,
     )
     from hydrostat.control.firmware_moves import bake_moves
-    from hydrostat.control.firmware_servos import SERVO_STEPS
+    from hydrostat.control.firmware_servos import SERVO_STEPS, find_zero_loss
     from hydrostat.control.guard import TensionGuard, not_judged
     from hydrostat.control.link import Link, SimulatedLink
     from hydrostat.control.marker_feedback import LostAction, MarkerFeedback, MarkerSight
@@ -89,6 +89,7 @@ __all__ = [
     "check_ports",
     "correct_table",
     "find_cable_zeros",
+    "find_zero_loss",
     "firmware_settings",
     "flash",
     "flash_command",

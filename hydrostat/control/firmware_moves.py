@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from math import ceil, pi
+from math import ceil, floor, pi
 from pathlib import Path
 
 import numpy as np
@@ -64,7 +64,14 @@ class BakedMoves:
 
 
 def bake_moves(
-    path: Path, folder: Path, robot: Robot, calibration: Calibration, board: str, *, rate: int = 25
+    path: Path,
+    folder: Path,
+    robot: Robot,
+    calibration: Calibration,
+    board: str,
+    *,
+    rate: int = 25,
+    rpm: float | None = None,
 ) -> BakedMoves:
     """Moves for the one board of a robot, as `hydrostat play` would command them.
 
@@ -75,6 +82,7 @@ def bake_moves(
         calibration: motors with counts; their zeros are not needed.
         board: kind of the board.
         rate: rows a second, of `RATES`.
+        rpm: no-load speed of the motors [turns/min], which moves must not exceed; None: not known.
 
     Raises:
         InputError: several boards, another rate, a table that motors cannot play or that the board has no room for.
@@ -85,6 +93,8 @@ def bake_moves(
         raise InputError(f"--moves plays on one board, and this robot has {calibration.boards}.")
     calibration.check(robot)
     table = ProfileTable.open(path, robot)
+    if rpm is not None:
+        _check_speeds(table, calibration, rpm)
     limits = Motors(robot.winches, SimulatedLink(np.zeros(len(robot.winches))), fastest=LinkLimits().speed)
     limits.check(table)
     corrected = correct_table(table, folder, robot)
@@ -104,6 +114,21 @@ def bake_moves(
     counts = np.array([_count_from_zeros(calibration, profile.at(row * _measure_row(rate))) for row in range(rows)])
     step = max(1, ceil(np.abs(counts).max() / _MAX_INT16))
     return BakedMoves(steps=np.rint(counts / step).astype(int), step=step, rate=rate)
+
+
+def _check_speeds(table: ProfileTable, calibration: Calibration, rpm: float) -> None:
+    """Reject moves that are faster than a motor turns its spool without load (InputError)."""
+    fastest = np.array([rpm / 60 * 2 * pi * motor.radius for motor in calibration.motors])
+    speeds = np.abs(np.diff(table.profile.values, axis=0)) / np.diff(table.profile.times)[:, None]
+    ratios = speeds / fastest
+    if ratios.size and ratios.max() > 1 + 1e-6:
+        row, winch = np.unravel_index(int(ratios.argmax()), ratios.shape)
+        most = 1e3 * fastest[winch]
+        raise InputError(
+            f"{table.place(int(row) + 1)}, column {calibration.motors[winch].winch}: moves at "
+            f"{1e3 * speeds[row, winch]:.3g} mm/s, the motor at {most:.3g} mm/s without load. Plan slower moves: "
+            f'hydrostat trajectory --max-speed "{floor(1e3 * fastest.min())} mm/s".'
+        )
 
 
 def _measure_row(rate: int) -> float:

@@ -1,7 +1,7 @@
 """Settings of firmware for Feetech servos: registers and rules of our drivers, as constants of C."""
 
-from collections.abc import Iterable
-from math import ceil, pi
+from collections.abc import Iterable, Sequence
+from math import ceil, floor, pi
 
 from hydrostat.control import feetech_bus, scs_bus
 from hydrostat.control.bus_link import (
@@ -32,12 +32,8 @@ def servo_settings(robot: Robot, motors: list[WinchMotor], bus: str) -> str:
     Zeros are stored if servos find them again after their power was off: those that turn less than a turn, and those
     whose winch does, by the turn (`TURN`) that it must be.
     """
-    winches = {winch.name: winch for winch in robot.winches}
     scales = [SERVO_STEPS[bus] / (2 * pi * motor.radius) for motor in motors]
-    lasting = bus == ScsBus.kind or all(
-        winches[motor.winch].travel + winches[motor.winch].release + 2 * ALONE_SPARE < 2 * pi * motor.radius
-        for motor in motors
-    )
+    lasting = not find_zero_loss(robot, motors, bus)
     known = Calibration(tuple(motors)).is_complete
     alone = ALONE_SPARE if lasting and known and bus != ScsBus.kind else GUIDED_SPARE
     constants = _list_constants(bus) | {
@@ -52,6 +48,24 @@ def servo_settings(robot: Robot, motors: list[WinchMotor], bus: str) -> str:
         constants["ZEROS"] = _join_braced(map(str, steps))
     lines = "".join(f"#define {name} {value}\n" for name, value in constants.items())
     return f"/* registers and rules of the servos, from hydrostat/control/{bus}_bus.py */\n{lines}"
+
+
+def find_zero_loss(robot: Robot, motors: Sequence[WinchMotor], bus: str) -> str:
+    """Return why servos lose their zeros without power, with the fix; empty if they keep them."""
+    if bus == ScsBus.kind:
+        return ""
+    lengths = {winch.name: winch.travel + winch.release for winch in robot.winches}
+    worst = max(motors, key=lambda motor: (lengths[motor.winch] + 2 * ALONE_SPARE) / motor.radius)
+    length, turn = lengths[worst.winch], 2 * pi * worst.radius
+    if length + 2 * ALONE_SPARE < turn:
+        return ""
+    radius = ceil(1e4 * (length + 2 * ALONE_SPARE) / (2 * pi) + 1e-9) / 10
+    range_ = floor(1e3 * (turn - 2 * ALONE_SPARE) - 1e-9)
+    less = f", or travel and release of {range_} mm in all" if range_ > 0 else ""
+    return (
+        f"{worst.winch} turns {length / turn:.2f} times. Zeros last for less than one turn, with "
+        f"{1e3 * ALONE_SPARE:g} mm to spare at each end. Use a spool radius of at least {radius:.1f} mm{less}"
+    )
 
 
 def _list_constants(bus: str) -> dict[str, object]:

@@ -23,7 +23,14 @@ if TYPE_CHECKING:
         PatternOptions,
     )
     from hydrostat.fabrication.lists.stitching import depth_table
-    from hydrostat.fabrication.motor_choice import drive_price, find_motor, fit_motor, motor_offers, motors_price
+    from hydrostat.fabrication.motor_choice import (
+        drive_price,
+        find_motor,
+        find_turn_problems,
+        fit_motor,
+        motor_offers,
+        motors_price,
+    )
     from hydrostat.fabrication.moulds.mould import make_mold
     from hydrostat.fabrication.moulds.pocket_room import PocketRoom
     from hydrostat.fabrication.parts.motor import ALL_MOTORS, AUTO_MOTORS, MOTORS, Motor
@@ -74,6 +81,7 @@ __all__ = [
     "find_material_problems",
     "find_motor",
     "find_refusals",
+    "find_turn_problems",
     "find_weak_lines",
     "fit_motor",
     "make_mold",

@@ -20,6 +20,7 @@ class BoardKind:
         supply: pin that a divider of 47 kOhm over 10 kOhm leads the supply of the motors to.
         button: pin of the button that starts moves that play alone; it closes to GND.
         room: bytes of its program memory that such moves may take, beside program and bootloader.
+        light: pin of the light that is on while the button works; empty where the light is on the board.
     """
 
     title: str
@@ -31,6 +32,12 @@ class BoardKind:
     supply: str
     button: str
     room: int
+    light: str = ""
+
+    @property
+    def button_name(self) -> str:
+        """Name of the button and its place."""
+        return f"between pin {self.button} and GND" if self.loader else f"BOOT (pin {self.button})"
 
 
 BOARDS = {
@@ -76,6 +83,7 @@ BOARDS = {
         supply="6",
         button="0",
         room=120_000,
+        light="7",
     ),
 }
 """By the names that `avr.h` and `esp32s3.h` give them; a test holds the pins equal to those there."""

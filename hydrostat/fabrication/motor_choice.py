@@ -12,7 +12,7 @@ from hydrostat.fabrication.moulds.pocket import WinchRoom, clashes, make_pockets
 from hydrostat.fabrication.moulds.setting import mold_setting
 from hydrostat.fabrication.parts.motor import ALL_MOTORS, AUTO_MOTORS, MARGIN, Motor
 from hydrostat.fabrication.parts.winch_unit import unit_problems, unit_rooms
-from hydrostat.robot import Mount, Robot, sewn_robot
+from hydrostat.robot import Mount, Robot, Winch, sewn_robot
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -139,7 +139,7 @@ def fit_motor(robot: Robot, options: KitOptions, motor: Motor) -> tuple[tuple[st
     """Reasons why the winches of a robot cannot be built in with a motor; and True if units lie above each other."""
     sewn = sewn_robot(robot) if options.method_for(robot.body) is Method.PLUSH else robot
     problems, is_piled = unit_problems(sewn, options.parts, motor)
-    return (*_turn_problems(robot, motor), *problems, *_pocket_problems(robot, options, motor)), is_piled
+    return (*find_turn_problems(robot.winches, motor), *problems, *_pocket_problems(robot, options, motor)), is_piled
 
 
 def _by_price(robot: Robot, torques: Sequence[float]) -> list[Motor]:
@@ -175,14 +175,14 @@ def _seconds(robot: Robot, torques: Sequence[float], motor: Motor) -> float | No
     return None if None in times else max((each for each in times if each is not None), default=0.0)
 
 
-def _turn_problems(robot: Robot, motor: Motor) -> tuple[str, ...]:
+def find_turn_problems(winches: Sequence[Winch], motor: Motor) -> tuple[str, ...]:
     """A line for each winch that asks for more turns than a motor has."""
     return tuple(
         f'winch "{winch.name}" needs {360 * turns_of(winch):.0f} degrees for its travel, {motor.key} turns by '
         f"{360 * motor.turns:.0f}. Choose another motor, or a spool radius of at least "
         f"{math.ceil(1e4 * (winch.travel + winch.release) / (2 * math.pi * motor.turns)) / 10:.1f} mm, which takes "
         f"{turns_of(winch) / motor.turns:.1f} times the torque"
-        for winch in robot.winches
+        for winch in winches
         if turns_of(winch) > motor.turns + 1e-9
     )
 

@@ -270,11 +270,15 @@ def test_a_board_drives_the_servos_of_feetech_alone(run: Run, starfish: Path, tm
         (("--motor", "xl330"), "boards drive no Dynamixel servos. Run `hydrostat play ROBOT MOVES --motors dynamixel:"),
         (("--motor", "scs0009", "--board", "mega"), "--board mega drives no bus servos. Use --board esp32s3"),
         (("--motor", "scs0009", "--counts", "4000"), "--counts: a scs0009 has 1228.8. Remove it."),
+        (("--motor", "st3020", "--board", "esp32s3,esp32s3"), "one board drives up to 16 servos. Use --board esp32s3."),
+        (("--motor", "st3020,sts3215"), "Available: n20, 25d, sts3215, sts3215-12v, st3020, scs0009.\n"),
+        (("--motor", "scs0009"), "degrees for its travel, scs0009 turns by 280. Choose another motor, or a spool"),
     ):
         code, _, err = run("firmware", own, *option, "--out", made)
         assert (code, err.count("\n")) == (2, 1)
         assert told in err
     assert not made.exists()
+    assert not (own / "motors.toml").exists()
     dance = tmp_path / "dance.csv"
     dance.write_text("time_s\n0\n2\n")
     given = ("firmware", own, "--moves", dance, "--min-supply", "6", "--out", made)
@@ -282,6 +286,10 @@ def test_a_board_drives_the_servos_of_feetech_alone(run: Run, starfish: Path, tm
     assert code == 0
     assert "3 servos on a bus adapter: its TX to pin 17, RX to 18, GND to GND" in out
     assert "Motors stop below 6 V, as the servos measure it." in out
+    assert "Button BOOT (pin 0) plays and stops it" in out
+    assert re.search(
+        r"No zeros in the sketch: \w+ turns 1\.\d\d times.*\nCalibrate from a computer after each start", out
+    )
     settings = (made / "winches" / "settings.h").read_text()
     assert "#define FEETECH 1" in settings
     assert "#define MOVE_ROWS 52" in settings
@@ -292,11 +300,19 @@ def test_a_board_drives_the_servos_of_feetech_alone(run: Run, starfish: Path, tm
     assert motors.read_text().count("counts = 4096.0") == 3
     code, out, _ = run(*given)  # what motors.toml says
     assert (code, (made / "winches" / "settings.h").read_text().count("FEETECH")) == (0, 1)
-    motors.write_text(motors.read_text().replace("turns = 1", "zero = 1.0\nturns = 1"))
+    large = motors.read_text().replace('radius = "6 mm"', 'radius = "20 mm"')
+    motors.write_text(large)
+    told = "spool radius 20 mm in motors.toml, 6 mm in robot.toml"
+    code, out, _ = run(*given)
+    assert (code, "No zeros in the sketch: not calibrated." in out, out.count(told)) == (0, True, 3)
+    motors.write_text(large.replace("turns = 1", "zero = 1.0\nturns = 1"))
+    code, out, _ = run(*given)
+    assert (code, "Zeros are in the sketch" in out) == (0, True)
     file = own / "robot.toml"
     file.write_text(file.read_text().replace("format = 1", 'format = 1\nmotor = "scs0009"', 1))
     code, out, _ = run(*given)
     assert (code, "SCS0009" in out) == (0, True)
+    assert out.count("counts 4096 replaced by 1228.8, and its zero is removed") == 3
     assert "zero" not in re.sub("#.*", "", motors.read_text())  # steps of other servos
 
 

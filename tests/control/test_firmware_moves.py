@@ -254,6 +254,9 @@ def test_moves_that_a_board_cannot_play_are_refused(robot: Robot, motors: Calibr
     assert bake_moves(path, tmp_path, robot, motors, "uno", rate=10).seconds == pytest.approx(250.0, abs=0.1)
     with pytest.raises(InputError, match="--rate 7: unknown rate"):
         bake_moves(path, tmp_path, robot, motors, "uno", rate=7)
+    slow = r'moves at 20 mm/s, the motor at 10\.5 mm/s without load\. .* --max-speed "10 mm/s"'
+    with pytest.raises(InputError, match=slow):  # 20 turns/min of 5 mm
+        bake_moves(table_of(robot, tmp_path), tmp_path, robot, motors, "uno", rpm=20.0)
     with pytest.raises(InputError, match="moves at 100 mm/s"):
         bake_moves(table_of(robot, tmp_path, ((0, 0, 0), (0.1, 10, 5))), tmp_path, robot, motors, "uno")
     apart = Calibration((motors.motors[0], replace(motors.motors[1], board=2)))
