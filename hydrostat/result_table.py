@@ -27,19 +27,23 @@ class Tabular:
         """Return the columns of its table."""
         raise NotImplementedError
 
+    def texts(self) -> Mapping[str, Sequence[str]]:
+        """Return columns of text, which follow those of numbers in files; none by default."""
+        return {}
+
     def to_dataframe(self) -> "pandas.DataFrame":
         """Return its table for pandas (InputError: pandas is not installed)."""
         try:
             frame: Any = import_module("pandas").DataFrame
         except ImportError:
             raise InputError("to_dataframe needs pandas: pip install pandas. write_csv works without.") from None
-        return frame(self.columns())
+        return frame({**self.columns(), **self.texts()})
 
     def write_csv(self, path: str | Path) -> Path:
         """Write its table as CSV, with nine digits (InputError: the file cannot be written); returns the path."""
-        columns = self.columns()
-        rows = zip(*columns.values(), strict=True)
-        return replace_file(Path(path), csv_text(list(columns), ([f"{value:.9g}" for value in row] for row in rows)))
+        columns = {name: [f"{value:.9g}" for value in values] for name, values in self.columns().items()}
+        columns |= {name: list(values) for name, values in self.texts().items()}
+        return replace_file(Path(path), csv_text(list(columns), zip(*columns.values(), strict=True)))
 
     def _repr_html_(self) -> str:
         """Summary and the first rows, for a notebook."""

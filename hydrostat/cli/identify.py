@@ -259,8 +259,10 @@ def _warn(robot: "Robot", table: "Measurements", found: "IdentifiedRobot") -> No
         )
     for column, winch in enumerate(robot.winches):
         pulls = table.commands[:, column]
-        if not pulls.any():
-            print(f"warning: {winch.name} never contracts in the table: its zero and gain are unknown. Add its column.")
+        unknown = [key for key in ("zero", "gain") if f"{winch.name}.{key}" in found.fitted.values]
+        if unknown and not pulls.any():
+            keys = " and ".join(unknown)
+            print(f"warning: {winch.name} never contracts in the table. Unknown: {keys}. Add its column.")
         beyond = np.flatnonzero((pulls > winch.travel) | (pulls < -winch.release))
         if len(beyond):
             print(

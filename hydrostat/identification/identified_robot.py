@@ -1,5 +1,6 @@
 """`identify`: fitted model of a built robot from measured places of its markers."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,7 +10,7 @@ from hydrostat.errors import InputError
 from hydrostat.identification.contraction_map import ContractionMap
 from hydrostat.identification.fit import FittedModel, fit_model
 from hydrostat.identification.fit_contraction_map import fit_contraction_map
-from hydrostat.identification.kinds import KINDS, named_model
+from hydrostat.identification.kinds import KINDS, kind_names, named_model
 from hydrostat.identification.measurements import Measurements
 from hydrostat.identification.model import IdentificationModel
 from hydrostat.identification.profile_intervals import profile_intervals
@@ -72,7 +73,7 @@ def identify(
     robot: Robot,
     measurements: Measurements,
     *,
-    fit: tuple[str, ...] | None = None,
+    fit: Sequence[str] | None = None,
     profile: bool = False,
     progress: Progress = no_progress,
 ) -> IdentifiedRobot:
@@ -83,14 +84,15 @@ def identify(
     Args:
         robot: robot as it is assumed to be built.
         measurements: rows of contractions and places of markers.
-        fit: kinds of parameters, see `KINDS`; those that are fitted by default if left out, with `force` where
-            forces were measured.
+        fit: kinds of parameters, such as ("young", "gain") or "young,gain", named as by `hydrostat identify`; those
+            that are fitted by default if left out, with `force` where forces were measured.
         profile: take intervals by profile likelihood where linearized ones are doubtful.
         progress: callback for progress, after each evaluation.
 
     Raises:
         InputError: an unknown kind, or measurements that do not fit the robot.
     """
+    fit = kind_names(fit)
     if robot.drives:
         found = identify(with_fixed_drives(robot), measurements, fit=fit, profile=profile, progress=progress)
         pins = (replace(pin, drive=own.drive) for pin, own in zip(found.robot.pins, robot.pins, strict=True))
@@ -99,7 +101,7 @@ def identify(
     if fit is None and measurements.forces is not None:
         fit = (*(name for name, kind in KINDS.items() if kind.default and kind.parameters(robot)), "force")
     if "scale" in (fit or ()) and np.isfinite(measurements.known_lengths).any():
-        raise InputError("scale: ruler distances do not change with the scale of the board. Fit them without scale.")
+        raise InputError(_ruler_error(measurements))
     model, assumed = named_model(robot, fit), start_of(named_model(robot, ()))
     count = len(measurements.commands)
     held_out = np.arange(2, count, 5) if count >= 10 else np.zeros(0, dtype=int)
@@ -154,6 +156,13 @@ def start_of(model: IdentificationModel) -> FittedModel:
     )
 
 
+def _ruler_error(measurements: Measurements) -> str:
+    """Error of a scale that is fitted to ruler distances."""
+    if np.isfinite(measurements.places).any():
+        return "scale: ruler distances do not change with the scale of the board. Remove scale, or these distances."
+    return "scale: ruler distances are true, without a board. Fit other parameters, such as young or thickness."
+
+
 def _distances(fitted: FittedModel, measurements: Measurements) -> np.ndarray:
     found = fitted.predict(measurements)
     return np.linalg.norm(found - measurements.places, axis=2)
@@ -189,6 +198,8 @@ def _robot(model: IdentificationModel, fitted: FittedModel, assumed: Robot) -> t
         for cable, rest in zip(robot.cables, slack, strict=True)
     )
     robot = replace(robot, pins=_name_defaults(robot, assumed))
+    if "thickness" in values and robot.body.thickness is not None:
+        robot = replace(robot, body=replace(robot.body, thickness=_round_number(robot.body.thickness)))
     try:
         return robot.with_network(winches, cables), {name: zeros[name] for name in gains if name in tight}
     except InputError as error:

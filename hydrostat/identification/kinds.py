@@ -1,6 +1,6 @@
 """`KINDS`: parameters of a robot and of its measurement that can be fitted by name."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
 
@@ -27,6 +27,7 @@ class ParameterKind:
         places: places [m] in the frame of the measurement, as in `IdentificationModel`.
         force_scale: measured over simulated forces with some values, as in `IdentificationModel`.
         default: fitted without being named.
+        missing: why a robot has none of these parameters.
     """
 
     parameters: Callable[[Robot], list[Parameter]]
@@ -35,6 +36,25 @@ class ParameterKind:
     places: Callable[[Robot, Values, np.ndarray], np.ndarray] | None = None
     force_scale: Callable[[Values], float] | None = None
     default: bool = False
+    missing: str = "this robot has nothing of the kind"
+
+
+def kind_names(fit: Sequence[str] | None) -> tuple[str, ...] | None:
+    """Return names of kinds as a tuple, also of a text such as "young,gain"; None if left out.
+
+    Raises:
+        InputError: not names, or an empty text.
+    """
+    if fit is None:
+        return None
+    names = fit.split(",") if isinstance(fit, str) else fit
+    names = tuple(names) if isinstance(names, Iterable) else (names,)
+    if not all(isinstance(name, str) for name in names):
+        raise InputError(f'fit must be names, such as ("young", "gain") or "young,gain", not {fit!r:.60}')
+    found = tuple(name.strip() for name in names)
+    if isinstance(fit, str) and not all(found):
+        raise InputError(f'fit has an empty name ("{fit:.60}"). Write names such as "young,gain".')
+    return found
 
 
 def named_model(robot: Robot, kinds: tuple[str, ...] | None = None) -> IdentificationModel:
@@ -57,7 +77,7 @@ def named_model(robot: Robot, kinds: tuple[str, ...] | None = None) -> Identific
     if twice := [name for name in all_names if all_names.count(name) > 1]:
         raise InputError(f'two parameters are named "{twice[0]}"; rename the part, winch or cable')
     if kinds is not None and (empty := [name for name in names if not found[name]]):
-        raise InputError(f'parameter "{empty[0]}": this robot has nothing of the kind; leave it out')
+        raise InputError(f'parameter "{empty[0]}": {KINDS[empty[0]].missing}. Leave it out.')
     used = [KINDS[name] for name in names if found[name]]
     held = replace(robot, pins=tuple(replace(pin, stiffness=float(pin.stiffness)) for pin in robot.pins))
     pulls = [kind.contractions for kind in used if kind.contractions is not None]
@@ -288,6 +308,8 @@ def _scale_places(robot: Robot, values: Values, places: np.ndarray) -> np.ndarra
     return (places - middle) * values["frame.scale"] + middle
 
 
+_NO_CABLES, _NO_GRAVITY = "this robot has no cables", "robot.toml has no gravity"
+
 KINDS: dict[str, ParameterKind] = {
     "young": ParameterKind(
         parameters=lambda robot: _material(robot, "young", 0.7, (1.0, 1e13), "Pa"),
@@ -303,30 +325,36 @@ KINDS: dict[str, ParameterKind] = {
             [] if robot.gravity is None else _material(robot, "density", 0.3, (1e-3, 1e5), "kg/m^3")
         ),
         robot=_with_material("density"),
+        missing=_NO_GRAVITY,
     ),
-    "thickness": ParameterKind(parameters=_thickness, robot=_with_thickness),
-    "hysteresis": ParameterKind(parameters=_hysteresis, robot=_with_hysteresis),
+    "thickness": ParameterKind(parameters=_thickness, robot=_with_thickness, missing="a 3D body has no thickness"),
+    "hysteresis": ParameterKind(
+        parameters=_hysteresis, robot=_with_hysteresis, missing="no material of this robot has hysteresis"
+    ),
     "stiffness": ParameterKind(
         parameters=lambda robot: _each_cable(robot, "stiffness"),
         robot=_with_stiffness,
         default=True,
+        missing=_NO_CABLES,
     ),
     "zero": ParameterKind(
         parameters=_offsets,
         contractions=_add_zeros,
         default=True,
+        missing=_NO_CABLES,
     ),
     "gain": ParameterKind(
         parameters=_gains,
         contractions=_apply_gains,
         default=True,
+        missing=_NO_CABLES,
     ),
-    "routes": ParameterKind(parameters=_routes, robot=_with_routes),
-    "friction": ParameterKind(parameters=_friction, robot=_with_friction),
-    "pins": ParameterKind(parameters=_pins, robot=_with_pins),
-    "gravity": ParameterKind(parameters=_gravity, robot=_with_gravity),
-    "rods": ParameterKind(parameters=_rods, robot=_with_rods, default=True),
-    "sheets": ParameterKind(parameters=_sheets, robot=_with_sheets, default=True),
+    "routes": ParameterKind(parameters=_routes, robot=_with_routes, missing=_NO_CABLES),
+    "friction": ParameterKind(parameters=_friction, robot=_with_friction, missing=_NO_CABLES),
+    "pins": ParameterKind(parameters=_pins, robot=_with_pins, missing="this robot has no pins"),
+    "gravity": ParameterKind(parameters=_gravity, robot=_with_gravity, missing=_NO_GRAVITY),
+    "rods": ParameterKind(parameters=_rods, robot=_with_rods, default=True, missing="this robot has no rods"),
+    "sheets": ParameterKind(parameters=_sheets, robot=_with_sheets, default=True, missing="this robot has no sheets"),
     "frame": ParameterKind(
         parameters=_frame,
         places=_move_to_frame,
@@ -339,6 +367,7 @@ KINDS: dict[str, ParameterKind] = {
     "force": ParameterKind(
         parameters=lambda robot: [Parameter(name="force.scale", start=1.0, spread=0.2, log=True)] * bool(robot.winches),
         force_scale=lambda values: values["force.scale"],
+        missing=_NO_CABLES,
     ),
 }
 """Kinds of parameters by name, in the order in which they change a robot."""

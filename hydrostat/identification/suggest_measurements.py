@@ -8,7 +8,7 @@ import numpy as np
 from hydrostat.arrays import Float, Int
 from hydrostat.errors import InputError
 from hydrostat.geometry import find_crossings
-from hydrostat.identification.kinds import named_model
+from hydrostat.identification.kinds import kind_names, named_model
 from hydrostat.identification.marker_predictor import MarkerPredictor
 from hydrostat.identification.measurements import Measurements
 from hydrostat.robot import Robot
@@ -60,7 +60,7 @@ def suggest_measurements(
     robot: Robot,
     count: int,
     *,
-    fit: tuple[str, ...] | None = None,
+    fit: Sequence[str] | None = None,
     masses: Sequence[float] = (),
     tension: float = np.inf,
     seed: int = 0,
@@ -72,7 +72,7 @@ def suggest_measurements(
     Args:
         robot: robot as it is assumed to be built; all its markers are measured.
         count: measurements to make.
-        fit: kinds of parameters, see `KINDS`; those that are fitted by default if left out.
+        fit: kinds of parameters, as in `identify`; those that are fitted by default if left out.
         masses: masses that can be hung at a marker, one at a time [kg].
         tension: most tension of a cable [N].
         seed: seed of the candidates.
@@ -86,6 +86,7 @@ def suggest_measurements(
         raise InputError(f"--suggest {count}: must be 1 or more")
     if masses and robot.gravity is None:
         raise InputError('--hang: the robot has no gravity. Add gravity = "-y" to robot.toml.')
+    fit = kind_names(fit)
     model, in_order = named_model(robot, fit), bool(WITH_HISTORY.intersection(fit or ()))
     if in_order and count < len(STROKE):
         raise InputError(f"--suggest {count}: a stroke that shows friction takes {len(STROKE)} photographs. Ask more.")

@@ -1,12 +1,12 @@
 """Controls of a robot: contractions of its winches, then values of its drives."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
-from hydrostat.arrays import Vector
+from hydrostat.arrays import Float, Vector
 from hydrostat.errors import InputError
-from hydrostat.given import list_choices
+from hydrostat.given import check_type, list_choices
 from hydrostat.robot import PinDrive, Robot
 from hydrostat.units import plural
 
@@ -59,6 +59,22 @@ def contraction_values(robot: Robot, given: Contractions) -> Vector:
     _check_meters(robot, values[: len(robot.winches)])
     PinDrive.check_radians(robot.drives, values[len(robot.winches) :])
     return values
+
+
+def contraction_rows(robot: Robot, given: Iterable[Contractions]) -> Float[np.ndarray, "poses controls"]:
+    """Contractions as in `contraction_values`, a row for each pose.
+
+    Raises:
+        InputError: no rows, or as there, with the row.
+    """
+    check_type(given, Iterable, "contractions must be a row for each pose")
+    rows = []
+    for number, row in enumerate(given):
+        try:
+            rows.append(contraction_values(robot, row))
+        except InputError as error:
+            raise InputError(f"contractions[{number}]: {error}") from None
+    return np.array(rows).reshape(len(rows), robot.num_controls)
 
 
 def _check_meters(robot: Robot, contractions: Vector) -> None:

@@ -71,6 +71,10 @@ class Equilibrium(Tabular):
 
         Also a missing equilibrium, a saddle, or buckling on the way there. Empty if there is nothing to report.
         """
+        return self.find_warnings()
+
+    def find_warnings(self, *, crossings: bool = True) -> tuple[str, ...]:
+        """Find `warnings`; without those of self-intersection, which take long in space, if `crossings` is False."""
         told = []
         if not self.result.converged:
             told.append(f"no equilibrium: {self.result.status}")
@@ -79,7 +83,7 @@ class Equilibrium(Tabular):
             told.append("buckled: a mirror-image pose is equally likely")
         if self.result.converged and not self.result.stable:
             told.append("unstable equilibrium (saddle point)")
-        told.append(str(find_crossings(self.robot.body.mesh, self.nodes)))
+        told.append(str(find_crossings(self.robot.body.mesh, self.nodes)) if crossings else "")
         told.append(self.squeezed_corners)
         return (*filter(None, told), *([self.overstrain] if self.overstrain else []))
 

@@ -1,7 +1,7 @@
 """`Simulation`: quasi-static equilibria, sensitivities and motions of one robot."""
 # Of the thesis (docs/thesis.md): R17, R23 to R29, E14, R33, E16
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from copy import copy
 from functools import cached_property, partial
 
@@ -10,13 +10,12 @@ import numpy as np
 from hydrostat.arrays import Float, Nodes, Vector
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.geometry import Anchors
-from hydrostat.given import check_type
 from hydrostat.mechanics import Assembly, Energy, FactorizedHessian, FrictionCableEnergy, NewtonOptions, NewtonResult
 from hydrostat.robot import Robot
 from hydrostat.simulation.body_physics import BodyPhysics
 from hydrostat.simulation.cable_energies import cable_energy, friction_energy
 from hydrostat.simulation.contraction_profile import ContractionProfile, check_profile
-from hydrostat.simulation.controls import Contractions, contraction_values, split_controls
+from hydrostat.simulation.controls import Contractions, contraction_rows, contraction_values, split_controls
 from hydrostat.simulation.drive_energies import drive_energies
 from hydrostat.simulation.equilibrium import Equilibrium, check_apart, check_pose, warn_beyond_travel
 from hydrostat.simulation.route_points import RoutePoints, hold_markers, route_points
@@ -147,11 +146,9 @@ class Simulation:
         Raises:
             InputError: as for `solve`; or no number of threads.
         """
-        check_type(contractions, Iterable, "contractions must be a row for each pose")
-        given = [self.as_contractions(each) for each in contractions]
+        goals = contraction_rows(self.robot, contractions)
         self.check_start(start)
         self.body.check_held(None if start is None else start.unknowns, guided=bool(self._more))
-        goals = np.array(given).reshape(len(given), self.robot.num_controls)
         _ = self.solver.with_timeout(seconds), self.rest_stiffness  # checked and made before threads ask for them
         sensitivities = self.marker_jacobian if jacobians else None
 

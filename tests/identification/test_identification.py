@@ -22,7 +22,7 @@ from hydrostat.identification import (
 from hydrostat.identification.find_faults import Swap, find_slip, find_swaps
 from hydrostat.identification.fit import robust_scale
 from hydrostat.identification.identified_robot import start_of
-from hydrostat.identification.kinds import KINDS, named_model
+from hydrostat.identification.kinds import named_model
 from hydrostat.identification.marker_predictor import MarkerPredictor
 from hydrostat.robot import (
     Cable,
@@ -353,22 +353,6 @@ def test_a_sheet_is_fitted_beyond_its_measured_interval() -> None:
     robot = replace(strip(), sheets=(Membrane(name="felt", thickness=1e-3, material=felt),))
     fitted = named_model(robot, ("sheets",)).robot({"felt.young": 9e4}).sheets[0].material
     assert (fitted.young, fitted.young_interval) == (9e4, None)
-
-
-def test_unknown_kinds_are_refused() -> None:
-    with pytest.raises(InputError, match='unknown parameter "yuong"'):
-        named_model(strip(), ("yuong",))
-    with pytest.raises(InputError, match="has nothing of the kind"):
-        named_model(strip(), ("rods",))
-    assert [name for name, kind in KINDS.items() if kind.default] == [
-        "young",
-        "stiffness",
-        "zero",
-        "gain",
-        "rods",
-        "sheets",
-        "frame",
-    ]
 
 
 def test_the_fitted_robot_predicts_what_was_measured() -> None:

@@ -1,12 +1,14 @@
 """Many poses at once. Oracles: one solve after the other, to the byte; finite differences; errors put in on purpose."""
 
 import _thread
+import csv
 import signal
 import threading
 import time
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import count
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -100,6 +102,28 @@ def test_a_pose_that_is_not_found_leaves_nan_and_its_reason(simulation: Simulati
         assert np.isfinite(part[:2]).all()
 
 
+def test_poses_have_the_warnings_of_one_solve(simulation: Simulation, tmp_path: Path) -> None:
+    """Oracle: `Equilibrium.warnings` of each pose, in the plane; in space, all but those of self-intersection."""
+    robot = simulation.robot
+    winches = tuple(replace(winch, travel=0.012) for winch in robot.winches)
+    short = Simulation(replace(robot, winches=winches), body=simulation.body)
+    goals = np.array([0.0, 0.005, 0.02])[:, None] * np.eye(len(winches))[0]
+    found = short.solve_batch(goals)
+    poses = [short.solve(goal, strict=False) for goal in goals]
+    if robot.body.mesh.dim == 2:
+        assert found.warnings == tuple(pose.warnings for pose in poses)
+    assert found.warnings == tuple(pose.find_warnings(crossings=robot.body.mesh.dim == 2) for pose in poses)
+    assert found.warnings[0] == ()
+    assert "is outside its range" in found.warnings[2][0]
+    hasty = Simulation(short.robot, options=NewtonOptions(iterations=1), body=simulation.body).solve_batch(goals)
+    for batch in (found, hasty):
+        rows = list(csv.DictReader(batch.write_csv(tmp_path / "poses.csv").read_text(encoding="utf-8").splitlines()))
+        assert [row["status"] for row in rows] == [str(status) for status in batch.statuses]
+        told = [[*filter(None, [error]), *words] for error, words in zip(batch.errors, batch.warnings, strict=True)]
+        assert [row["warnings"] for row in rows] == ["; ".join(words) for words in told]
+    assert hasty.errors[2]
+
+
 def test_an_error_in_one_pose_does_not_lose_the_others(simulation: Simulation, monkeypatch: pytest.MonkeyPatch) -> None:
     goals, solve = goals_of(simulation, 5), simulation.solve
 
@@ -168,7 +192,7 @@ def test_threads_are_counted_from_one(simulation: Simulation, wrong: object) -> 
     ("change", "text"),
     [
         (lambda goals: goals[:, :1], "1 contractions given for"),
-        (lambda goals: np.where(goals > 0.005, np.nan, goals), "not a finite number"),
+        (lambda goals: np.where([[0], [0], [1], *[[0]] * 17], np.nan, goals), r"contractions\[2\]: .* finite number"),
     ],
 )
 def test_wrong_contractions_are_refused_at_once(simulation: Simulation, change: Callable, text: str) -> None:

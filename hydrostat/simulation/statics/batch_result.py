@@ -35,6 +35,7 @@ class PoseRow(NamedTuple):
         stable: True if it is an energy minimum.
         status: stop reason of the solver; None after an error.
         trouble: error text; empty without an error.
+        warnings: warnings of the equilibrium, as in `BatchResult`.
     """
 
     markers: Points | None = None
@@ -44,6 +45,7 @@ class PoseRow(NamedTuple):
     stable: bool = False
     status: NewtonStatus | None = None
     trouble: str = ""
+    warnings: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -60,6 +62,8 @@ class BatchResult(Tabular):
         statuses: stop reason of each solve; None after an error.
         stable: True where the equilibrium is an energy minimum, not a saddle, (poses,).
         errors: error text of each solve; empty without an error.
+        warnings: `Equilibrium.warnings` of each solve; empty after an error. Self-intersection is found in flat bodies
+            only: in space, this takes as long as the solve.
         robot: robot that was solved.
     """
 
@@ -71,6 +75,7 @@ class BatchResult(Tabular):
     statuses: tuple[NewtonStatus | None, ...]
     stable: Bool[np.ndarray, " poses"]
     errors: tuple[str, ...]
+    warnings: tuple[tuple[str, ...], ...]
     robot: Robot
 
     def columns(self) -> Columns:
@@ -80,6 +85,14 @@ class BatchResult(Tabular):
         columns = control_columns([winch.name for winch in robot.winches], drives, self.contractions)
         columns |= marker_columns({m.name: self.markers[:, row] for row, m in enumerate(robot.markers)})
         return columns | named_columns("tension", [cable.name for cable in robot.cables], self.tensions, "N")
+
+    def texts(self) -> dict[str, list[str]]:
+        """Return the status of each row, and its error and warnings in one text."""
+        told = zip(self.errors, self.warnings, strict=True)
+        return {
+            "status": [str(status or "error") for status in self.statuses],
+            "warnings": ["; ".join(filter(None, (error, *warnings))) for error, warnings in told],
+        }
 
     @property
     def converged(self) -> Bool[np.ndarray, " poses"]:
@@ -127,6 +140,7 @@ def pose_row(
         stable=pose.result.stable,
         status=status,
         trouble=trouble,
+        warnings=pose.find_warnings(crossings=pose.robot.body.mesh.dim == 2),
     )
 
 
@@ -165,6 +179,7 @@ def solve_rows(
         statuses=tuple(row.status for row in rows),
         stable=np.array([row.stable for row in rows], dtype=bool),
         errors=tuple(row.trouble for row in rows),
+        warnings=tuple(row.warnings for row in rows),
         robot=robot,
     )
 
