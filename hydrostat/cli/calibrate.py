@@ -155,6 +155,8 @@ def _take_up(
 
     found = control.find_cable_zeros(bus, calibration.motors, model, save)
     bus.mark(np.array([known[motor.winch].zero for motor in calibration.motors]))
+    if bus.kind == "firmware" and {motor.counts for motor in calibration.motors} <= set(control.SERVO_STEPS.values()):
+        print("Zeros changed. To play moves without a computer, run hydrostat firmware again and upload.")
     return found, np.array([fact.constant for fact in facts])
 
 

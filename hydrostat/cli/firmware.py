@@ -288,7 +288,8 @@ def _tell(kind: str, number: int, given: "Calibration", bus: str) -> None:
     from hydrostat.fabrication import check_board
 
     if bus:
-        print(f"{kind}: {plural(len(given.motors), 'servo')} on a bus adapter: its TX to pin 17, RX to 18, GND to GND")
+        print(f"{kind}: {plural(len(given.motors), 'servo')} on a bus adapter, GND to GND, for UART.")
+        print("Waveshare: its TX to pin 17, RX to 18. Seeed: its RX to pin 17, TX to 18. See docs/motors.md.")
         for motor in sorted(given.motors, key=lambda one: one.number):
             print(f"  servo number {motor.number}: {motor.winch}")
         return

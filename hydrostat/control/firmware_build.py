@@ -46,7 +46,11 @@ def robot_word(robot: Robot, calibration: Calibration, board: int = 1) -> str:
     """The word by which a board says what it was built for: the robot's name, which of several, a sum of settings."""
     name = re.sub(r"[^A-Za-z0-9_-]+", "-", robot.name)[:20] or "robot"
     which = f"-{board}" if calibration.boards > 1 else ""
-    return f"{name}{which}.{zlib.crc32(_numbers(robot, calibration, board, inf).encode()):08x}"
+    turns = [motor.turns for motor in _motors_of_board(calibration, board)]
+    told = _numbers(robot, calibration, board, inf) + (
+        "" if set(turns) == {1} else f" {turns}"
+    )  # servos turn both ways
+    return f"{name}{which}.{zlib.crc32(told.encode()):08x}"
 
 
 SPIN_UP, EFFORT = 0.02, 0.5
@@ -108,7 +112,8 @@ def build_firmware(settings: str, board: str, folder: Path) -> Path:
     asked = int((re.search(r"#define DCS (\d+)", settings) or [0, 0])[1])
     has_servos = "#define FEETECH" in settings
     if has_servos and asked > kind.servos:
-        raise InputError(f"board {board} drives {kind.servos} servos, the robot has {asked}. Use --board esp32s3.")
+        fix = "Use fewer winches, or two robots" if kind.servos else "Use --board esp32s3"
+        raise InputError(f"board {board} drives {kind.servos} servos, the robot has {asked}. {fix}.")
     if not has_servos and asked > kind.motors:
         more = " Use --board mega (six motors)." if board == "uno" and asked <= BOARDS["mega"].motors else ""
         raise InputError(f"board {board} drives {kind.motors} motors, the robot has {asked}.{more}")

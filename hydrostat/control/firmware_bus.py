@@ -14,13 +14,17 @@ from hydrostat.errors import HydrostatError
 
 PROOF = 0.05  # current at which the watchdog is tried [A]
 STOPS = {
-    "heat": "too warm, stopped by its board",
+    "current": "overloaded: too much current, stopped by its board",
+    "stall": "stalled: it does not follow its goal",
+    "encoder": "encoder fault. Check its plug and cable, then calibrate again",
+    "beyond": "beyond its limits. Calibrate again",
+    "heat": "too hot, stopped by its board",
     "unheard": "silent or without its bound of torque. Check its power and cable",
     "restarted": "lost power and restarted: its torque is off. Check its plug and cable",
 }
-"""Stops of a board with servos, in words; other stops are words already."""
+"""Stops of a board in words that `restart_motors` knows; other stops are words already."""
 REFUSALS = {
-    "supply": "the motors' supply is below --min-supply. Charge its battery, or check its divider",
+    "supply": "the motors' supply was too low. Charge or feed it, then reset the board",
     "servo": "servo {} does not answer the board. Check its power, its cable and its number",
     "model": "servo {} is of another model than the board was built for. Run hydrostat firmware with its --motor",
     "mode": "servo {} is not in position mode. Set its register of the mode to 0",

@@ -284,7 +284,8 @@ def test_a_board_drives_the_servos_of_feetech_alone(run: Run, starfish: Path, tm
     given = ("firmware", own, "--moves", dance, "--min-supply", "6", "--out", made)
     code, out, _ = run(*given, "--motor", "st3020", "--board", "esp32s3")
     assert code == 0
-    assert "3 servos on a bus adapter: its TX to pin 17, RX to 18, GND to GND" in out
+    assert "3 servos on a bus adapter, GND to GND, for UART." in out
+    assert "Waveshare: its TX to pin 17, RX to 18. Seeed: its RX to pin 17, TX to 18." in out
     assert "Motors stop below 6 V, as the servos measure it." in out
     assert "Button BOOT (pin 0) plays and stops it" in out
     assert re.search(

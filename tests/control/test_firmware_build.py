@@ -48,6 +48,8 @@ def test_words_of_boards_change_with_what_they_hold(robot: Robot, motors: Calibr
     assert robot_word(longer, motors) != word
     found = Calibration(tuple(replace(each, zero=1.0) for each in motors.motors))
     assert robot_word(robot, found) == word
+    turned = Calibration((replace(motors.motors[0], turns=-1), *motors.motors[1:]))  # limits of servos differ
+    assert robot_word(robot, turned) != word
 
 
 @pytest.mark.parametrize(
@@ -205,3 +207,8 @@ def test_a_current_that_a_board_cannot_measure_is_refused(tmp_path: Path) -> Non
     with pytest.raises(InputError, match=r"current too large for board esp32s3 \(4 A\)"):
         build_firmware(line.format(4000), "esp32s3", tmp_path)
     assert build_firmware(line.format(2800), "esp32s3", tmp_path).name == "winches.ino"
+
+
+def test_a_line_has_at_most_16_servos(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"esp32s3 drives 16 servos, the robot has 17\. Use fewer winches, or two"):
+        build_firmware("#define DCS 17\n#define FEETECH 1\n", "esp32s3", tmp_path)

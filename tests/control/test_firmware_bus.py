@@ -122,5 +122,5 @@ def test_a_battery_that_sags_is_told() -> None:
         board.run(0.04)
     words = fault_words("left", bus.read(), 0)
     assert words.startswith("the motor of left reports: supply voltage too low (9.0 V measured). Charge its battery")
-    with pytest.raises(HydrostatError, match=r"supply is below --min-supply\. Charge its battery"):
+    with pytest.raises(HydrostatError, match=r"supply was too low\. Charge or feed it, then reset"):
         bus.arm(np.array([1.0, 1.0]))

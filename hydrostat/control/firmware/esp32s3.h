@@ -15,8 +15,8 @@
 
 #ifdef FEETECH
 #define LINE_RATE 1000000UL
-#define LINE_OUT 17 /* to TX of the bus adapter, which makes one line of two */
-#define LINE_IN 18  /* to its RX */
+#define LINE_OUT 17 /* to TX of Waveshare's bus adapter, RX of Seeed's; each makes one line of two */
+#define LINE_IN 18  /* to the other of the two */
 #else
 #define BRIDGES 4
 
