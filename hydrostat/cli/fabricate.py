@@ -51,7 +51,11 @@ def fabricate(
     budget: Budget = None,
     board: Annotated[
         str | None,
-        typer.Option(metavar="uno|mega|esp32s3", help="Board for motors n20 and 25d.", show_default="smallest Arduino"),
+        typer.Option(
+            metavar="uno|mega|esp32s3",
+            help="Board for n20 and 25d; esp32s3 also for Feetech servos.",
+            show_default="smallest Arduino",
+        ),
     ] = None,
     mould: Annotated[
         str | None,

@@ -20,6 +20,7 @@ class BoardKind:
         supply: pin that a divider of 47 kOhm over 10 kOhm leads the supply of the motors to.
         button: pin of the button that starts moves that play alone; it closes to GND.
         room: bytes of its program memory that such moves may take, beside program and bootloader.
+        servo_pins: pins to TX and RX of a bus adapter; empty where it drives no servos.
         light: pin of the light that is on while the button works; empty where the light is on the board.
     """
 
@@ -32,6 +33,7 @@ class BoardKind:
     supply: str
     button: str
     room: int
+    servo_pins: tuple[str, ...] = ()
     light: str = ""
 
     @property
@@ -83,6 +85,7 @@ BOARDS = {
         supply="6",
         button="0",
         room=120_000,
+        servo_pins=("17", "18"),
         light="7",
     ),
 }

@@ -116,6 +116,7 @@ PRICES = MappingProxyType(
         "encoder": Price(
             amount=4.475, pack=2.0, source="order list of the team ASROB-sumo: Pololu's kit of two for 8.95"
         ),
+        "USB supply": Price(amount=10.0),
         "small parts": Price(amount=1.0, unit="set"),
         "screws": Price(amount=0.08, pack=100.0, source="parts list of a printed robot hand: M3 screws, 8 for 100"),
         "pla": Price(

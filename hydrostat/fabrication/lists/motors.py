@@ -286,6 +286,11 @@ class PowerPlan:
         return tuple(found)
 
     @property
+    def has_relay(self) -> bool:
+        """True if a board drives the servos through their bus adapter, also without a computer."""
+        return self.servos and self.board is not None
+
+    @property
     def resets(self) -> bool:
         """True if a program that opens the port of a board resets it, as those of Arduino."""
         return any(BOARDS[board].loader for board in self.boards)
@@ -318,6 +323,10 @@ class PowerPlan:
         ]
         if self.servos:
             rows.append(("feed the chain at", list_words(f"ID {number}" for number in self.feed_ids)))
+        if self.has_relay:
+            sender, receiver = BOARDS[self.board or ""].servo_pins
+            rows.append(("bus adapter to ESP32-S3", f"TX to pin {sender}, RX to pin {receiver}, GND to GND"))
+            rows.append(("ports of the ESP32-S3", "UART: computer. USB: power bank, to play alone"))
         return Table(
             name="power",
             title="Power",
@@ -335,9 +344,15 @@ def power_plan(torques: Mapping[str, float], motor: Motor, board: str | None = N
     """Plan the supply of a motor on each winch, by its name and largest torque [N mm]; None where there are none.
 
     Raises:
-        InputError: a board for motors that hang on a bus.
+        InputError: a board that does not drive motors on a bus, or not so many.
     """
-    if board is not None and motor.bus:
+    if board is not None and motor.is_feetech:
+        most = BOARDS[board].servos
+        if not most:
+            raise InputError(f"--board {board}: drives no bus servos. Use --board esp32s3, or remove it.")
+        if len(torques) > most:
+            raise InputError(f"--board {board}: drives {most} servos, the robot has {len(torques)}. Remove --board.")
+    elif board is not None and motor.bus:
         known = " or ".join(each.key for each in MOTORS if not each.bus)
         raise InputError(f"--board {board}: motor {motor.key} needs no board. Remove --board, or add --motor {known}.")
     if not torques:

@@ -192,7 +192,8 @@ def control_needs(plan: PowerPlan | None) -> list[Item]:
         chain = "of three wires with plugs of 2.54 mm (5264-3), one from servo to servo"
         board = _item_by_kind(BillGroup.CONTROL, "bus servo adapter", adapter, 1.0, "bus adapter")
         price = "servo's own cable" if plan.motor.key.startswith("sts3215") else "servo cable"
-        return [board, _item(BillGroup.CONTROL, "servo cable", chain, max(count - 1, 1), price), *feed]
+        relay = _list_relay(plan) if plan.has_relay else []
+        return [board, *relay, _item(BillGroup.CONTROL, "servo cable", chain, max(count - 1, 1), price), *feed]
     if plan.servos:
         bus = "OpenRB-150 or alike, drives the servos by their bus"
         chain = "of three wires with JST EH plugs (X3P), one from servo to servo"
@@ -221,6 +222,18 @@ def control_needs(plan: PowerPlan | None) -> list[Item]:
             parts.append(_item(BillGroup.CONTROL, "level shifter", shifter, float(math.ceil(count / 2)), "shifter"))
     parts.append(_item(BillGroup.CONTROL, "capacitor and resistors", small, 1.0, "small parts"))
     return [*parts, _item_by_kind(BillGroup.CONTROL, "motor driver", bridge, count, "driver"), *feed]
+
+
+def _list_relay(plan: PowerPlan) -> list[Item]:
+    """The board that drives servos, its wires and its supply."""
+    kind = BOARDS[plan.board or ""]
+    return [
+        _item_by_kind(BillGroup.CONTROL, "controller board", f"{kind.title} or alike", 1.0, "esp32 board"),
+        _item(
+            BillGroup.CONTROL, "jumper wires", "3 from board to bus adapter, an LED with 330 Ohm", 1.0, "small parts"
+        ),
+        _item(BillGroup.CONTROL, "USB supply", "power bank or charger of 5 V, 1 A, with a cable", 1.0, "USB supply"),
+    ]
 
 
 def _mould(plan: KitPlan) -> list[Item]:

@@ -195,7 +195,12 @@ def _put_power(canvas: Canvas, plan: PowerPlan) -> None:
 
 def _put_chain(canvas: Canvas, plan: PowerPlan, places: list[float], step: float, top: float) -> None:
     """A board that speaks to servos which hang on one another."""
-    _put_board(canvas, "bus adapter" if plan.motor.is_feetech else "OpenRB-150", top)
+    _put_board(canvas, "bus adapter" if plan.motor.is_feetech else "OpenRB-150", top, has_plug=not plan.has_relay)
+    if plan.has_relay:
+        _box(canvas, (8.0, top + 17.0, 38.0, top + 26.5), "ESP32-S3", "USB: power bank")
+        for place, pin in zip((13.0, 23.0, 33.0), (*BOARDS[plan.board or ""].servo_pins, "GND"), strict=True):
+            canvas.line([[(place, top + 12.0), (place, top + 17.0)]], width=Canvas.MIDDLE)
+            canvas.text((place + 0.8, top + 14.6), pin, size=8, anchor="start")
     line = top + 6.0
     ends = [38.0, *places]
     for one, other in zip(ends, places, strict=False):
@@ -234,11 +239,12 @@ def _put_drivers(canvas: Canvas, plan: PowerPlan, places: list[float], step: flo
         canvas.line([[(across, top - 7.5), (across, row)]], width=Canvas.THIN, dash=(1.2, 0.8))
 
 
-def _put_board(canvas: Canvas, name: str, top: float) -> None:
+def _put_board(canvas: Canvas, name: str, top: float, *, has_plug: bool = True) -> None:
     """The board, and the computer at its plug."""
-    _box(canvas, (8.0, top, 38.0, top + 12.0), name, "")
-    canvas.line([[(23.0, top + 12.0), (23.0, top + 17.0)]], width=Canvas.MIDDLE)
-    canvas.text((23.0, top + 19.5), "USB, computer", size=8)
+    _box(canvas, (8.0, top, 38.0, top + 12.0), name, "TX   RX   GND" if not has_plug else "")
+    if has_plug:
+        canvas.line([[(23.0, top + 12.0), (23.0, top + 17.0)]], width=Canvas.MIDDLE)
+        canvas.text((23.0, top + 19.5), "USB, computer", size=8)
     _drop(canvas, (28.0, 23.0), (28.0, top), dot=False)
     canvas.line([[(28.0, 23.0), (28.0, _GROUND)]], width=Canvas.MIDDLE)
     canvas.disc((28.0, _GROUND), 0.5, grey=0.0)

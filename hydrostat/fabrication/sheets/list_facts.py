@@ -201,15 +201,15 @@ def _list_first_steps(plan: PowerPlan, *, is_measured: bool) -> list[str]:
     """Steps from the first volt to the first move, each with its check."""
     chain = (
         "Chain the servos in the order of the table. Where the drawing feeds the chain, join the leads to plus and "
-        "minus of the servo cable. Then plug the board into the computer."
+        "minus of the servo cable."
     )
-    kind = plan.motor.bus or "firmware"
+    kind = "firmware" if plan.has_relay else plan.motor.bus or "firmware"
     if plan.motor.is_feetech:
-        limits = "set both angle limits to 0" if kind == "feetech" else "move it to position 34"
+        limits = "set both angle limits to 0" if plan.motor.bus == "feetech" else "move it to position 34"
         ready = [
             "Plug in one servo at a time, with the switch off. Turn it on. Give the servo its number with the "
             f"manufacturer's program FD, and {limits}. Turn the switch off. Write the number on the servo.",
-            chain,
+            *(_list_relay_steps(plan, chain) if plan.has_relay else [chain + _PLUG_IN]),
         ]
     elif plan.servos:
         ready = [
@@ -217,7 +217,7 @@ def _list_first_steps(plan: PowerPlan, *, is_measured: bool) -> list[str]:
             "and cut the plus wire of the cable between board and chain: USB then feeds the board alone.",
             "Plug in one servo at a time, with the switch off. Turn it on. Give the servo its number with ROBOTIS' "
             "Dynamixel Wizard. Turn the switch off. Write the number on the servo.",
-            chain,
+            chain + _PLUG_IN,
         ]
     else:
         flash = f" --flash {','.join(['PORT'] * len(plan.boards))}" if plan.resets else ""
@@ -230,8 +230,7 @@ def _list_first_steps(plan: PowerPlan, *, is_measured: bool) -> list[str]:
             "Put 10 uF from RESET to GND (plus to RESET). The board then keeps running when a program opens its port. "
             "Take it out before you flash again."
             if plan.resets
-            else "Open DIR/winches/winches.ino in the Arduino IDE, with the board package esp32 3 of Espressif. Choose "
-            "the board ESP32S3 Dev Module and USB CDC On Boot: Disabled, then upload through the USB port UART.",
+            else _UPLOAD,
         ]
     return [
         "Leave the switch off. The supply gives 1.5 times the current of all motors at full torque, and enough for two "
@@ -248,6 +247,26 @@ def _list_first_steps(plan: PowerPlan, *, is_measured: bool) -> list[str]:
     ]
 
 
+_PLUG_IN = " Then plug the board into the computer."
+_UPLOAD = (
+    "Open DIR/winches/winches.ino in the Arduino IDE, with the board package esp32 3 of Espressif. Choose the board "
+    "ESP32S3 Dev Module and USB CDC On Boot: Disabled, then upload through the USB port UART."
+)
+
+
+def _list_relay_steps(plan: PowerPlan, chain: str) -> list[str]:
+    """Steps that put a board between servos and computer."""
+    kind = BOARDS[plan.board or ""]
+    sender, receiver = kind.servo_pins
+    return [
+        f"{chain} Set the jumper of the adapter to UART. Connect its TX to pin {sender}, RX to pin {receiver} "
+        f"and GND to GND of the ESP32-S3, and an LED with 330 Ohm between pin {kind.light} and GND.",
+        f"Run: hydrostat firmware ROBOT --board {plan.board} --motor {plan.motor.key} --moves MOVES --out DIR. "
+        "Compare the pins that it prints.",
+        _UPLOAD,
+    ]
+
+
 def _list_steps_alone(plan: PowerPlan) -> list[str]:
     """Steps for a board that plays moves without a computer."""
     if not plan.servos and len(plan.boards) == 1:
@@ -255,15 +274,24 @@ def _list_steps_alone(plan: PowerPlan) -> list[str]:
         button = f"a push button between pin {pin} and GND" if plan.resets else "the button BOOT of the board"
         feed = "a 9 V battery at its jack" if plan.resets else "a USB power bank at its port USB"
         return [
-            f"Optional: after hydrostat firmware ROBOT --moves MOVES, {button} starts and stops these moves without a "
-            f"computer. Feed the board by {feed} before you calibrate.",
+            f"Optional: add --moves MOVES to that hydrostat firmware command, and upload. After calibration, {button} "
+            f"starts and stops these moves without a computer. Feed the board by {feed} before you calibrate.",
             f"Optional, if cells power the motors: add --min-supply {plan.cells} to that command. Connect plus of the "
             f"motors, 47 kOhm, pin {BOARDS[plan.boards[0]].supply}, 10 kOhm and GND in series. The motors then stop at "
             f"{plan.cells} V, and the light blinks.",
         ]
+    if plan.has_relay:
+        return [
+            "To play without a computer, run hydrostat firmware again as above, and upload: the sketch then has the "
+            "zeros, or the command says why not. Feed the ESP32-S3 from the power bank at its port USB. Without zeros "
+            "in the sketch, calibrate through its port UART after each start. When the light is on, its button BOOT "
+            "starts and stops the moves."
+        ]
     if plan.motor.is_feetech:
         return [
-            "Optional: an ESP32-S3 wired to the bus adapter plays moves without a computer. Run: hydrostat "
-            f"firmware ROBOT --board esp32s3 --motor {plan.motor.key} --moves MOVES. Its wires are in docs/motors.md."
+            "Optional: an ESP32-S3 wired to the bus adapter plays moves without a computer; --board esp32s3 "
+            "adds it to a kit. Run: hydrostat firmware ROBOT --board esp32s3 --motor "
+            f"{plan.motor.key} --moves MOVES --out DIR, upload, and calibrate with --motors firmware:PORT. Then run "
+            "and upload it again: it stores the zeros, or prints why not."
         ]
     return []

@@ -92,6 +92,23 @@ def test_a_board_that_is_asked_for_is_bought_where_motors_need_one() -> None:
         power_plan({"a": 40.0}, XL330, "uno")
 
 
+STS3215 = next(motor for motor in ALL_MOTORS if motor.key == "sts3215")
+
+
+def test_an_esp32_drives_the_servos_of_feetech() -> None:
+    plan = power_plan({"a": 40.0}, STS3215, "esp32s3")
+    assert plan is not None
+    rows = {row.what: row.amount for row in plan.table.rows}
+    assert rows["bus adapter to ESP32-S3"] == "TX to pin 17, RX to pin 18, GND to GND"
+    what = {item.what: item.specification for item in control_needs(plan)}
+    assert what["controller board"].startswith("ESP32-S3")
+    assert {"jumper wires", "USB supply", "bus servo adapter"} <= set(what)
+    with pytest.raises(InputError, match=r"--board uno: drives no bus servos\. Use --board esp32s3"):
+        power_plan({"a": 40.0}, STS3215, "uno")
+    with pytest.raises(InputError, match="drives 16 servos, the robot has 17"):
+        power_plan(dict.fromkeys("abcdefghijklmnopq", 40.0), STS3215, "esp32s3")
+
+
 def test_no_motors_need_nothing() -> None:
     assert power_plan({}, N20) is None
     assert control_needs(None) == []
