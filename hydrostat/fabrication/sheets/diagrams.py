@@ -212,7 +212,7 @@ def _put_chain(canvas: Canvas, plan: PowerPlan, places: list[float], step: float
         if number <= len(places):
             _put_feed(canvas, places[number - 1], top)
     words = "plus and minus go into the chain at " + list_words(f"ID {number}" for number in plan.feed_ids)
-    canvas.text((canvas.width, top - 5.0), words, size=8, anchor="end", grey=0.25)
+    canvas.text((canvas.width, _RAIL - 7.0), words, size=8, anchor="end", grey=0.25)
 
 
 def _put_drivers(canvas: Canvas, plan: PowerPlan, places: list[float], step: float, top: float) -> None:

@@ -208,7 +208,7 @@ def _list_first_steps(plan: PowerPlan, *, is_measured: bool) -> list[str]:
         limits = "set both angle limits to 0" if plan.motor.bus == "feetech" else "move it to position 34"
         ready = [
             "Plug in one servo at a time, with the switch off. Turn it on. Give the servo its number with the "
-            f"manufacturer's program FD, and {limits}. Turn the switch off. Write the number on the servo.",
+            f"program FD of Feetech (Windows), and {limits}. Turn the switch off. Write the number on the servo.",
             *(_list_relay_steps(plan, chain) if plan.has_relay else [chain + _PLUG_IN]),
         ]
     elif plan.servos:
