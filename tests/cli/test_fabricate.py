@@ -312,8 +312,8 @@ def test_a_body_without_room_for_motors_is_told_how_large_it_must_be() -> None:
     robot, options = scaled_robot(gallery_robot("starfish"), 0.5), KitOptions(motor="n20")
     reasons = find_refusals(robot, options=options)
     note = note_room(robot, "tiny", options=options, reasons=reasons)
-    assert note.startswith("note: a body 1.5 times as large has room for n20: hydrostat scale tiny 1.5")
-    assert not any("smaller motor" in each for each in find_refusals(scaled_robot(robot, 1.5), options=options))
+    assert note.startswith("note: a body 1.25 times as large has room for n20: hydrostat scale tiny 1.25")
+    assert not any("smaller motor" in each for each in find_refusals(scaled_robot(robot, 1.25), options=options))
     assert note_room(robot, "tiny", options=options, reasons=["the cloth is red"]) == ""
     tiny = scaled_robot(robot, 0.2)
     told = kit_remedy(tiny, Path("tiny"), Path("kit"), options=options, reasons=["choose a smaller motor"])

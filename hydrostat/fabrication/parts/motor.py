@@ -72,11 +72,11 @@ class Horn:
 
 @dataclass(frozen=True, kw_only=True)
 class Motor:
-    """A geared motor; lengths in millimeters. An encoder behind it belongs to its body: that of the N20 is assumed."""
+    """A geared motor; lengths in millimeters."""
 
     key: str  # by which it is chosen
     title: str  # title to buy it by
-    body: Construction  # its envelope below the face, with its encoder, without shaft, boss and horn
+    body: Construction  # its envelope below the face, without shaft, boss and horn
     outline: tuple[Corner, ...]  # outline of all of it below the face, seen along the shaft, counter-clockwise
     depth: float  # depth below the face [mm]
     shaft: Shaft  # shaft that turns the spool; with a horn the coupling's, its length counted from the horn's top
@@ -168,11 +168,9 @@ _M3 = FaceScrew(size="M3", hole=3.4, head=5.6, head_height=2.4, depth=3.0)
 _N20 = Motor(
     key="n20",
     title="Pololu micro metal gearmotor LP 6V, 298:1, with extended motor shaft (N20)",
-    body=Box((12, 10, 9)).move(-6, -5, -9)
-    + (Cylinder(16, 6) & Box((12, 10, 16)).move(-6, -5, 0)).move(0, 0, -25)
-    + Box((12, 10, 10)).move(-6, -5, -35),  # the encoder on the extended shaft: assumed, no source has its size
+    body=Box((12, 10, 9)).move(-6, -5, -9) + (Cylinder(16, 6) & Box((12, 10, 16)).move(-6, -5, 0)).move(0, 0, -25),
     outline=_box_outline((-6, -5), (6, 5)),
-    depth=35.0,
+    depth=25.0,
     shaft=Shaft(diameter=3.0, across=2.5, length=9.0, boss=2.0, boss_height=0.8),
     holes=((-4.5, 0.0), (4.5, 0.0)),
     screw=_M1_6,
@@ -187,11 +185,12 @@ _N20 = Motor(
     price=18.0,
     price_source="of its sister HPCB 75:1, 17.95 in an order list of the team ASROB-sumo, which has no date",
     price_month="2026-11",
-    caution="The encoder behind the motor is drawn as 12 x 10 x 10 mm, which is assumed: measure yours first.",
+    caution="The encoder stands behind the motor, on its extended shaft. Leave 10 mm (no source): neither drawn "
+    "nor counted in the size of its unit.",
     source="Pololu, Micro Metal Gearmotors, Rev 2.0, May 2018: stall 20 kg mm (extrapolated), 45 rpm, 10 g, gearbox "
     "9 mm, M1.6 screws at most 1.3 mm deep; LP 6V: 0.36 A at stall, 0.02 A without load, 297.92:1. Pololu, product "
     "page 5215: section 10 x 12 mm, D shaft 3 x 9 mm. Load at most a quarter of stall: Pololu's forum, thread 14572 "
-    "(20 to 30 %). Holes 9 mm apart, flat, boss, length of motor and encoder: measured on none, check yours.",
+    "(20 to 30 %). Holes 9 mm apart, flat of 2.5 mm, boss and length of the motor: measured on none, check yours.",
 )
 
 _XL330 = Motor(

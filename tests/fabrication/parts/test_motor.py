@@ -19,14 +19,6 @@ def test_the_outline_is_that_of_the_body(motor: Motor):
     assert (low_z, high_z) == pytest.approx((-motor.depth, 0.0))
 
 
-def test_the_encoder_of_an_n20_counts_as_its_body():
-    """Oracle: the assumed box of 12 x 10 x 10 mm, of which nothing sticks out and nothing is missing."""
-    behind = Manifold.cube((12, 10, 10)).translate((-6, -5, -35))
-    motor = solid_of(Motor.choose("n20").envelope)
-    assert (motor ^ behind).volume() == pytest.approx(1200.0)
-    assert motor.bounding_box()[2] == pytest.approx(-35.0)
-
-
 @pytest.mark.parametrize("motor", ALL_MOTORS, ids=lambda motor: motor.key)
 def test_what_turns_stands_on_the_face(motor: Motor):
     top = solid_of(motor.envelope).bounding_box()[5]

@@ -179,7 +179,7 @@ def test_a_unit_stands_across_a_body_that_is_thick_enough_and_else_lies():
 def test_cables_leave_an_upright_unit_as_they_go_on():
     """Oracle: angles between first segments, to the nearest quarter turn."""
     robot = gallery_robot("pig")
-    (unit,) = units_of(robot, XL330)
+    (unit,) = units_of(robot)
     assert unit.across
     ends = [robot.cables[cable].points[:2] for cable in unit.cables]
     steps = [np.subtract(second, first) for first, second in ends]

@@ -150,7 +150,7 @@ def test_the_page_of_an_esp32_says_how_it_gets_its_sketch_and_3_3_volts(key: str
     assert facts is not None
     assert facts["pins"][0][1:] == ["esp32s3", "15", "16", "39", "40", "1"]
     assert told in facts["warnings"][-1]
-    assert ("10 x 10 mm, which is assumed" in " ".join(facts["warnings"])) == (key == "n20"), "its encoder"
+    assert ("Leave 10 mm" in " ".join(facts["warnings"])) == (key == "n20"), "its encoder is in no size"
     steps = " ".join(facts["start"])
     assert f"--board esp32s3 --motor {key} --out DIR. " in steps
     assert "winches.ino in the Arduino IDE" in steps
