@@ -68,8 +68,8 @@ def _limits(robot: Robot, constraints: Constraints) -> Iterator[Diagnostic]:
 
 
 def _sewn_cables(robot: Robot) -> list[int]:
-    """Return the cables that are sewn to the skin of a body in space all along, which need no clearance."""
-    if robot.body.mesh.dim == 2:
+    """Return the cables that a kit sews to the skin of a body in space all along: they need no clearance."""
+    if robot.body.mesh.dim == 2 or find_material_problems(robot):
         return []
     shell = body_shell(robot.body)
     depths = [-shell.nearest(np.array(cable.points)).distances for cable in robot.cables]

@@ -128,7 +128,7 @@ def summarize_kit(
 
 def _require_material(robot: Robot, options: KitOptions | None) -> None:
     """Refuse a material that no kit takes before the poses are solved (UnbuildableError: with all that is known)."""
-    if not isinstance(robot, Robot) or (options is not None and options.force):
+    if not isinstance(robot, Robot) or (options is not None and getattr(options, "force", True)):
         return
     if problems := find_material_problems(robot, options=options):
         raise UnbuildableError(tuple(dict.fromkeys((*problems, *find_refusals(robot, options=options)))))

@@ -52,6 +52,7 @@ _BAG = 32 * 0.0283495  # mass of a bag of fibre filling, 32 oz [kg]
 _ANGLER = 91.44  # line on a spool, 100 yards [m]
 
 _PUPPETS = "a puppet maker's list of costs (The Tucson Puppet Lady)"
+_SUPPLY = "parts list of SO-ARM100 1.3 (TheRobotStudio): power supply, 10 USD, 13 EUR"
 _ROVER = "estimate in the parts list of a printed rover (Johnny 5)"
 _LUGGAGE = "hardware report of a luggage robot (SmoothOperator)"
 _BEARS = "a sewing group's list of costs (Crafting 4 Jesus)"
@@ -94,11 +95,7 @@ PRICES = MappingProxyType(
             source="parts list of SO-ARM100 1.3 (TheRobotStudio): Waveshare's bus servo adapter, 11 USD, 12 EUR",
         ),
         "driver": Price(amount=5.0),
-        "supply": Price(
-            amount=10.0,
-            month="2025-04",
-            source="parts list of SO-ARM100 1.3 (TheRobotStudio): power supply, 10 USD, 13 EUR",
-        ),
+        "supply": Price(amount=10.0, month="2025-04", source=_SUPPLY),
         "fuse": Price(amount=3.0, month="2026-06", source=f"{_ROVER}: blade fuse with holder in the lead"),
         "switch": Price(amount=3.0, month="2026-06", source=f"{_ROVER}: toggle switch for 10 A or more"),
         "lead": Price(
@@ -116,7 +113,7 @@ PRICES = MappingProxyType(
         "encoder": Price(
             amount=4.475, pack=2.0, source="order list of the team ASROB-sumo: Pololu's kit of two for 8.95"
         ),
-        "USB supply": Price(amount=10.0),
+        "USB supply": Price(amount=10.0, month="2025-04", source=_SUPPLY),
         "small parts": Price(amount=1.0, unit="set"),
         "screws": Price(amount=0.08, pack=100.0, source="parts list of a printed robot hand: M3 screws, 8 for 100"),
         "pla": Price(
