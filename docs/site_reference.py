@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 from importlib.util import find_spec
+from itertools import pairwise
 from pathlib import Path
 
 from typer.cli import get_docs_for_click
@@ -59,10 +60,30 @@ def _shell_block(match: re.Match[str]) -> str:
 def entry(module: str, name: str) -> str:
     """Return the directive that documents one public name: classes, functions, constants differ in case."""
     if name.isupper():
-        return f".. autodata:: {module}.{name}\n"
+        return f".. py:data:: {module}.{name}\n\n   {constant_docstring(module, name)}\n"
     if name[0].islower():
         return f".. autofunction:: {module}.{name}\n"
     return f".. autoclass:: {module}.{name}\n   :members:\n"
+
+
+def constant_docstring(door: str, name: str) -> str:
+    """Return the text below a constant where it is set: Sphinx would take that of its type."""
+    imports = [node for node in ast.walk(_read_module(door)) if isinstance(node, ast.ImportFrom)]
+    home = next((node.module or door for node in imports if name in {one.name for one in node.names}), door)
+    for statement, text in pairwise(_read_module(home).body):
+        names = [node for node in ast.walk(statement) if isinstance(node, ast.Name)]
+        is_set = any(node.id == name and isinstance(node.ctx, ast.Store) for node in names)
+        if is_set and isinstance(text, ast.Expr) and isinstance(text.value, ast.Constant):
+            return " ".join(str(text.value.value).split())
+    return ""
+
+
+def _read_module(name: str) -> ast.Module:
+    """Return the syntax of a module, which is read, not run, as extras may be missing."""
+    spec = find_spec(name)
+    assert spec is not None
+    assert spec.origin is not None
+    return ast.parse(Path(spec.origin).read_text(encoding="utf-8"))
 
 
 def top_page() -> str:
@@ -76,12 +97,9 @@ def top_page() -> str:
 
 
 def room_page(room: str) -> str:
-    """Return the page of one room. Its file is read, not run, as extras may be missing."""
+    """Return the page of one room."""
     title = f"hydrostat.{room}"
-    spec = find_spec(title)
-    assert spec is not None
-    assert spec.origin is not None
-    module = ast.parse(Path(spec.origin).read_text(encoding="utf-8"))
+    module = _read_module(title)
     lists = [
         node.value for node in module.body if isinstance(node, ast.Assign) and "__all__" in ast.dump(node.targets[0])
     ]

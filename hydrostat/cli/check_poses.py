@@ -3,9 +3,9 @@
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from hydrostat.robot import PoseTarget, Robot
+    from hydrostat.robot import Robot
 
-FAR_SHARE = 0.25  # a larger share of the distance to its targets that a pose leaves is a warning, as in `design`
+FAR_SHARE = 0.25  # a pose that leaves more than this share of the distance to its targets is told, and why
 _FAST_NODES = 2000  # nodes of a flat body of which each pose takes a second at most
 
 
@@ -23,8 +23,9 @@ def print_reached_poses(robot: "Robot") -> tuple[str, ...]:
 
     simulation, limits, once = Simulation(robot), pose_limits(robot, None, None, None), IKOptions(restarts=0)
     told, warnings = [], []
+    places = {marker.name: marker.at for marker in robot.markers}
     for name, pose in robot.poses.items():
-        rest = _rest_error(robot, pose)
+        rest = pose.mean_square_error(places) ** 0.5
         try:
             error = solve_ik(simulation, pose, limits=limits, options=once).rms_error
         except HydrostatError as problem:
@@ -37,15 +38,6 @@ def print_reached_poses(robot: "Robot") -> tuple[str, ...]:
             warnings.append(f"pose {name}: target not reached ({left}). Run hydrostat design, or move its targets")
     print(f"poses solved, rms error: {', '.join(told)}")
     return tuple(warnings)
-
-
-def _rest_error(robot: "Robot", pose: "PoseTarget") -> float:
-    """Root of the mean squared distance of the markers of a pose from their targets at rest [m]."""
-    import numpy as np
-
-    places = {marker.name: np.array(marker.at) for marker in robot.markers}
-    away = [float(np.sum((places[name] - goal) ** 2)) for name, goal in pose.targets.items()]
-    return float(np.sqrt(np.mean(away)))
 
 
 def _millimeters(length: float) -> str:

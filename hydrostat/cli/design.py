@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrostat.cli.check import print_sewing
+from hydrostat.cli.check_poses import FAR_SHARE
 from hydrostat.cli.design_arguments import DesignArguments, parse_request
 from hydrostat.cli.design_record import RECORDS, open_record, tell_record, write_record
 from hydrostat.cli.design_results import (
@@ -39,7 +40,6 @@ if TYPE_CHECKING:
     from hydrostat.fabrication import Kit
     from hydrostat.robot import Robot
 
-_MUCH = 0.25  # a larger share of the way to the targets that is left is explained
 _IMPROVEMENT_RATIO = 0.95  # a network is printed below this share of the last printed error
 STOPPING = "stopping: solving and writing the best network so far ..."  # said when Ctrl-C ends a search
 
@@ -225,7 +225,7 @@ def _tell_count(network: "Network", request: "DesignRequest", lifts: "Iterable[L
 def _tell_miss(network: "Network") -> None:
     """Print a note on what keeps a network from its targets where it leaves much of the way to them."""
     left = network.rms_error / max(network.rest_error, 1e-12)
-    if left < _MUCH:
+    if left < FAR_SHARE:
         return
     held = dict.fromkeys(words for reached in network.ik_results for words in reached.active_limits)
     if not network.complete:

@@ -289,7 +289,9 @@ def _tell(kind: str, number: int, given: "Calibration", bus: str) -> None:
 
     if bus:
         print(f"{kind}: {plural(len(given.motors), 'servo')} on a bus adapter, GND to GND, for UART.")
-        print("Waveshare: its TX to pin 17, RX to 18. Seeed: its RX to pin 17, TX to 18. See docs/motors.md.")
+        out, back = check_board(kind).servo_pins
+        wires = f"Waveshare: its TX to pin {out}, RX to {back}. Seeed: its RX to pin {out}, TX to {back}."
+        print(f"{wires} See docs/motors.md.")
         for motor in sorted(given.motors, key=lambda one: one.number):
             print(f"  servo number {motor.number}: {motor.winch}")
         return

@@ -18,12 +18,8 @@ from hydrostat.control.scs_bus import ScsBus
 from hydrostat.control.servo_bus import TURNED
 from hydrostat.robot import Robot
 
-
-class _ServoSteps(dict[str, float]):
-    """Steps of a turn of a servo, by kind of bus."""
-
-
-SERVO_STEPS = _ServoSteps({bus.kind: 2 * pi / bus.tick for bus in (FeetechBus, ScsBus)})
+SERVO_STEPS = {bus.kind: 2 * pi / bus.tick for bus in (FeetechBus, ScsBus)}
+"""Steps of a turn of a servo, by kind of bus."""
 
 GUIDED_SPARE, ALONE_SPARE = 0.045, 0.002
 """Cable length beyond travel and release that a board allows to a computer, which searches slack within 40 mm; and to

@@ -24,7 +24,7 @@ from hydrostat.simulation import Simulation
 from hydrostat.units import plural
 
 _IDLE_RATIO, _SAME_ERROR = 1.1, 1e-3
-"""A winch is idle if the error without it is at most so many times as large, or below this share of the body."""
+"""A winch is idle if the error without it is at most this many times as large, or below this share of the body."""
 
 _IDLE_NODES = 2000
 """Most nodes of a body whose idle winches are looked for: a flat one takes a second for each pose and winch."""
@@ -205,12 +205,8 @@ class Network:
     @property
     def rest_error(self) -> float:
         """Root of the mean squared marker error over all poses if nothing moved [m]."""
-        places = {marker.name: np.array(marker.at) for marker in self.robot.markers}
-        squares = [
-            np.mean([np.sum((places[name] - goal) ** 2) for name, goal in pose.pose_target.targets.items()])
-            for pose in self.ik_results
-        ]
-        return float(np.sqrt(np.mean(squares)))
+        places = {marker.name: marker.at for marker in self.robot.markers}
+        return float(np.sqrt(np.mean([pose.pose_target.mean_square_error(places) for pose in self.ik_results])))
 
 
 Size = tuple[int, int]  # numbers of winches and of cables

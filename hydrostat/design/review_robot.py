@@ -56,10 +56,9 @@ def review_robot(
 
 def _limits(robot: Robot, constraints: Constraints) -> Iterator[Diagnostic]:
     """A finding for each kind of limit: its first sentence, and the places of all."""
-    parts = Parts(robot, constraints, cable_region(robot.body, constraints))
-    sewn = tuple(f"cable[{index}]" for index in _sewn_cables(robot))
+    parts = Parts(robot, constraints, cable_region(robot.body, constraints), _sewn_cables(robot))
     for check in (standing_violations, clearance_violations, hole_violations, gap_violations, turn_violations):
-        told = [text for text in check(parts) if not (text.startswith(sewn) and "low clearance" in text)]
+        told = list(check(parts))
         if not told:
             continue
         more = _count_others(told)
@@ -67,13 +66,13 @@ def _limits(robot: Robot, constraints: Constraints) -> Iterator[Diagnostic]:
         yield Diagnostic(text=told[0] + more, weight=Severity.LIMIT, places=tuple(places))
 
 
-def _sewn_cables(robot: Robot) -> list[int]:
-    """Return the cables that a kit sews to the skin of a body in space all along: they need no clearance."""
+def _sewn_cables(robot: Robot) -> frozenset[int]:
+    """Return the numbers of the cables that a kit sews to the skin of a body in space all along."""
     if robot.body.mesh.dim == 2 or find_material_problems(robot):
-        return []
+        return frozenset()
     shell = body_shell(robot.body)
     depths = [-shell.nearest(np.array(cable.points)).distances for cable in robot.cables]
-    return [index for index, depth in enumerate(depths) if depth.max() <= SEWN_DEPTH]
+    return frozenset(index for index, depth in enumerate(depths) if depth.max() <= SEWN_DEPTH)
 
 
 def _count_others(told: list[str]) -> str:

@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from hydrostat.errors import InputError
 from hydrostat.given import Point, check_point
 
@@ -44,3 +46,7 @@ class PoseTarget:
             raise InputError("targets must name at least one marker")
         for name, target in self.targets.items():
             check_point(f"targets.{name}", target)
+
+    def mean_square_error(self, places: Mapping[str, Point]) -> float:
+        """Return the mean squared distance of markers at places [m] from their targets [m^2]."""
+        return float(np.mean([np.sum((np.array(places[name]) - goal) ** 2) for name, goal in self.targets.items()]))

@@ -34,8 +34,8 @@ MIN_SPAN = 0.025
 def lay_cables_on_skin(robot: Robot, depth: float = SKIN_DEPTH) -> Robot:
     """Move the points of all cables, those in sheaths as well, to the nearest place of the skin.
 
-    Points at winches and outside the body stay. Travels are cut to what the body bears. Poses stay, though other
-    cables reach them less exactly.
+    Points at winches and outside the body stay. Travels are cut so that they do not crush the body. Poses stay, though
+    other cables reach them less exactly.
 
     Args:
         robot: robot with a body in space.

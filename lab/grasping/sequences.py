@@ -79,7 +79,7 @@ SEQUENCES = {
 }
 
 
-def gripper_with(sequence: Sequence, friction: float) -> Robot:
+def load_gripper(sequence: Sequence, friction: float) -> Robot:
     """Return the coarse gripper, fingers down, with the box of a sequence between them."""
     robot = hs.load_robot("gallery:caging_gripper")
     fine = robot.body
@@ -107,23 +107,23 @@ def finger_forces(held: HeldObject) -> dict[str, float]:
 def run(name: str, friction: float, step: float, films: Path | None) -> None:
     """Print a row for each keyframe of a sequence, and write a film if asked."""
     sequence, frames, began = SEQUENCES[name], [], time.process_time()
-    robot = gripper_with(sequence, friction)
+    robot = load_gripper(sequence, friction)
     held = HeldObject(robot, hold=HOLD, turning=HOLD, tolerance=1e-5)
     goal, first = np.zeros(len(robot.winches)), next(iter(sequence.keys))
     for key, parts in sequence.keys.items():
         begin, goal = goal, contractions(robot, parts)
-        for motion in ease(held.go, begin, goal, seconds=SECONDS, step=step):
-            words = f"friction {friction:g}, {key}: turned by {np.linalg.norm(held.turned):.0f} degrees"
-            frames.append(Frame.of(motion, words=words, obstacles=[held.drawn()]))
-            if is_lost := held.place[2] - held.begun[2] > FALLEN:
+        for motion in ease(held.advance, begin, goal, seconds=SECONDS, step=step):
+            words = f"friction {friction:g}, {key}: turned by {np.linalg.norm(held.rotation):.0f} degrees"
+            frames.append(Frame.of(motion, words=words, obstacles=[held.current_obstacle()]))
+            if is_lost := held.place[2] - held.start_place[2] > FALLEN:
                 break
         if key == first:
             held.release()
-        moved, forces = held.place - held.begun, finger_forces(held)
-        turned, shift = (", ".join(f"{value:.1f}" for value in row) for row in (held.turned, 1e3 * moved))
+        moved, forces = held.place - held.start_place, finger_forces(held)
+        turned, shift = (", ".join(f"{value:.1f}" for value in row) for row in (held.rotation, 1e3 * moved))
         fingers = ", ".join(f"{finger} {force:.2f}" for finger, force in forces.items()) or "none"
         print(
-            f"| {name} | {friction:g} | {key} | {turned} | {np.linalg.norm(held.turned):.0f} | {shift} | {fingers} | "
+            f"| {name} | {friction:g} | {key} | {turned} | {np.linalg.norm(held.rotation):.0f} | {shift} | {fingers} | "
             f"{motion.tensions.max():.1f} | {time.process_time() - began:.0f} |",
             flush=True,
         )

@@ -35,7 +35,7 @@ class HeldObject:
             tolerance: share of the largest force that a time step may leave.
         """
         self.robot, self.object = robot, robot.obstacles[-1]
-        self.begun, self.begin = self.object.frame()
+        self.start_place, self.start_axes = self.object.frame()
         physics = BodyPhysics(robot)
         self.carriage = physics.rigid_dofs[len(robot.obstacles) - 1]
         self._guide = self._spring(hold, turning)
@@ -45,25 +45,27 @@ class HeldObject:
         self.motion = self.simulation.motion_at_rest()
 
     def _spring(self, hold: float, turning: float) -> GuideEnergy:
-        return GuideEnergy(self.carriage, place=self.begun, axes=self.begin, along=hold * np.eye(3), turning=turning)
+        return GuideEnergy(
+            self.carriage, place=self.start_place, axes=self.start_axes, along=hold * np.eye(3), turning=turning
+        )
 
     def release(self) -> None:
         """Remove the spring."""
         self.simulation = with_replaced(self.simulation, self._guide, self._spring(0.0, 0.0))
 
-    def go(self, goal: Vector, step: float) -> Motion:
+    def advance(self, goal: Vector, step: float) -> Motion:
         """Return the motion one step [s] later."""
         self.motion = self.simulation.step(self.motion, goal, step, options=StepOptions(scheme="euler", drag=DRAG))
         return self.motion
 
-    def drawn(self) -> Obstacle:
+    def current_obstacle(self) -> Obstacle:
         """Return the object where it is."""
         return self.object.with_frame(self.place, self.axes)
 
     @property
-    def turned(self) -> Vector:
+    def rotation(self) -> Vector:
         """Rotation vector of the object since the start [degree]."""
-        return np.rad2deg(Rotation.from_matrix(self.axes.T @ self.begin).as_rotvec())
+        return np.rad2deg(Rotation.from_matrix(self.axes.T @ self.start_axes).as_rotvec())
 
     @property
     def place(self) -> Vector:

@@ -114,12 +114,12 @@ def robot_with(robot: Robot, twist: Twist, friction: float) -> Robot:
     return replace(robot, body=body, contact=Contact(), obstacles=(twist.obstacle(friction),))
 
 
-def dotted(held: HeldObject) -> list[Obstacle]:
+def mark_object(held: HeldObject) -> list[Obstacle]:
     """Return the ball where it is, with dots on it, which show how it turns."""
     radius = held.object.radius or 0.0
     dots = held.place + 0.94 * radius * np.concatenate([held.axes, -held.axes])[:: 1 if held.object.to is None else 2]
     made = [Obstacle(name="dot", shape="sphere", at=tuple(dot), radius=0.16 * radius) for dot in dots.tolist()]
-    return [held.drawn(), *made]
+    return [held.current_obstacle(), *made]
 
 
 def run(name: str, friction: float, step: float, films: Path | None) -> None:
@@ -130,13 +130,13 @@ def run(name: str, friction: float, step: float, films: Path | None) -> None:
     goal = np.zeros(len(robot.winches))
     for key in twist.keys:
         begin, goal = goal, contractions(robot, twist.keys[key])
-        for motion in ease(held.go, begin, goal, seconds=SECONDS, step=step):
-            words = f"{key}: the ball has turned by {np.linalg.norm(held.turned):.0f} degrees"
-            frames.append(Frame.of(motion, words=words, obstacles=dotted(held)))
-        x, y, z = held.turned
-        away = 1e3 * float(np.linalg.norm(held.place - held.begun))
+        for motion in ease(held.advance, begin, goal, seconds=SECONDS, step=step):
+            words = f"{key}: the ball has turned by {np.linalg.norm(held.rotation):.0f} degrees"
+            frames.append(Frame.of(motion, words=words, obstacles=mark_object(held)))
+        x, y, z = held.rotation
+        away = 1e3 * float(np.linalg.norm(held.place - held.start_place))
         print(
-            f"| {name} | {friction:g} | {key} | {x:.1f}, {y:.1f}, {z:.1f} | {np.linalg.norm(held.turned):.1f} | "
+            f"| {name} | {friction:g} | {key} | {x:.1f}, {y:.1f}, {z:.1f} | {np.linalg.norm(held.rotation):.1f} | "
             f"{away:.1f} | {time.process_time() - began:.0f} |",
             flush=True,
         )

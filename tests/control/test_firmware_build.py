@@ -103,6 +103,8 @@ def test_pins_that_are_told_are_those_of_the_boards() -> None:
     buttons = re.findall(r"#define BUTTON \d /\* between pin (\d+) and GND", text + sketch)
     assert buttons == [kind.button for kind in BOARDS.values()]
     supplies = re.findall(r"#define SUPPLY (\d) ", text + sketch)
+    line = re.findall(r"#define LINE_(?:OUT|IN) (\d+)", sketch)
+    assert tuple(line) == BOARDS["esp32s3"].servo_pins
     assert supplies == [kind.supply.removeprefix("A") for kind in BOARDS.values()]
 
 

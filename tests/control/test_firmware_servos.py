@@ -161,7 +161,7 @@ def test_a_computer_gets_the_poses_of_our_driver(bus: str, tmp_path: Path) -> No
 
 @dataclass
 class ErrorsInTurn(InjectedFaults):
-    """Errors of so many answers, the last for all that follow."""
+    """Errors of the next answers, the last for all that follow."""
 
     script: tuple[int, ...] = ()
 

@@ -79,7 +79,7 @@ def _near_the_edge_at_points(parts: Parts) -> Iterator[str]:
     worst = np.argsort(-np.maximum(least - depths, depths - most), kind="stable")  # first: reviews print that one alone
     for number in worst:
         (index, at), depth = asked[number], float(depths[number])
-        if depth < least - LENGTH:
+        if depth < least - LENGTH and index not in parts.sewn:
             yield (
                 f"{_hole_name((index, at))}: low clearance ({parts.within(depth)}, "
                 f"at {place(parts.points[index][at])}). Minimum {_limit(parts, least)}. Move it inward."
@@ -110,7 +110,7 @@ def _near_the_edge(parts: Parts, segments: _Segments) -> Iterator[str]:
     skin = parts.constraints.depth is not None
     found = least_along(parts.region.depths, starts[asked], segments.ends[asked], least - LENGTH, resolution=1e-4)
     for index, depth in zip(asked, found, strict=True):
-        if depth < least - LENGTH:
+        if depth < least - LENGTH and segments.cables[index] not in parts.sewn:
             allowed = f"Minimum {_limit(parts, least)}" if skin else f"Minimum: half the clearance of {mm(clearance)}"
             yield f"{segments.name(index)}: low clearance ({parts.within(depth)}). {allowed}. Reroute it."
     if not skin:

@@ -22,6 +22,7 @@ class Parts:
     robot: Robot  # with the network
     constraints: Constraints  # that it should keep
     region: Region  # of its body
+    sewn: frozenset[int] = frozenset()  # numbers of the cables that a kit sews to the skin: they need no clearance
 
     @cached_property
     def new_winches(self) -> tuple[int, ...]:

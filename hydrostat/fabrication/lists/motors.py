@@ -344,7 +344,7 @@ def power_plan(torques: Mapping[str, float], motor: Motor, board: str | None = N
     """Plan the supply of a motor on each winch, by its name and largest torque [N mm]; None where there are none.
 
     Raises:
-        InputError: a board that does not drive motors on a bus, or not so many.
+        InputError: a board that does not drive motors on a bus, or drives fewer.
     """
     if board is not None and motor.is_feetech:
         most = BOARDS[board].servos
