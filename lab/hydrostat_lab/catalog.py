@@ -252,7 +252,7 @@ CATALOG = {
             "96.5 to 100 %",
         ),
         _script(
-            "python benchmarks/design_robust.py",
+            "python lab/designs/design_robust.py",
             "error as built over that by hand or trees",
             "measured",
             "median 0.92 (0.6 was aimed at)",
@@ -266,21 +266,21 @@ CATALOG = {
             "| starfish | 0.7 | 6.1 |",
         ),
         _script(
-            "python benchmarks/hidden_twins.py",
+            "python lab/hidden_twins/hidden_twins.py",
             "identified strip of 200 mm",
             "measured",
             "0.49 mm held out",
             "| long, 200 mm | 50 | 0.49 mm |",
         ),
         _script(
-            "python benchmarks/real.py FOLDER",
+            "python lab/measured_robots/real.py FOLDER",
             "OpenCR, its authors' MuJoCo model 8.60 mm",
             "beaten",
             "5.31 mm",
             "| hydrostat: rigid disks on a rod | 90, 42, 236 s of CPU | 4.63 | 4.16 | **5.31** |",
         ),
         _script(
-            "python benchmarks/real.py FOLDER",
+            "python lab/measured_robots/real.py FOLDER",
             "Emio, its makers' SOFA beam 2.25 mm",
             "measured",
             "2.54 mm",

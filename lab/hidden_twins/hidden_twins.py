@@ -1,7 +1,7 @@
 """Identification of hidden twins: error on held-out poses, and coverage of the intervals.
 
-    python benchmarks/hidden_twins.py                     # 20 twins of each of two robots
-    python benchmarks/hidden_twins.py --twins 100 --rows twins.csv   # restartable: rows that are in the file are kept
+    python lab/hidden_twins/hidden_twins.py                     # 20 twins of each of two robots
+    python lab/hidden_twins/hidden_twins.py --twins 100 --rows twins.csv   # restartable: rows in the file are kept
 
 A twin has another discretization than the fitted robot (half the element size), another modulus (25 %) and Poisson's
 ratio (0.15 to 0.42 for 0.3), routes 1 mm off, spools 4 % off, and noise of 0.3 mm. 20 poses are fitted (young, gain,
@@ -40,7 +40,7 @@ from hydrostat.identification import (
 from hydrostat.robot import Cable, Marker, Pin, Robot, Winch
 from hydrostat.simulation import Equilibrium
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests"))
 from builders import mesh_body, strip_mesh
 
 FIT = ("young", "gain", "frame")
@@ -125,7 +125,7 @@ def photograph_twin(
     robot: Robot, assumed: Robot, measured: Measurements, poses: Sequence[Equilibrium | None], seed: int
 ) -> tuple[Measurements, dict[str, float], float]:
     """Measurements with places from photographs of the poses of a twin, their true frame, and seconds to measure."""
-    sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "camera"))
+    sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "camera"))
     from photographs import Camera, Scene, photograph
     from PIL import Image
 

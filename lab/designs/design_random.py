@@ -1,6 +1,6 @@
 """Networks at random, with the counts and constraints of those that are designed.
 
-    python benchmarks/design_random.py [--count 500] [--seed 0] [BODY ...]
+    python lab/designs/design_random.py [--count 500] [--seed 0] [BODY ...]
 
 Winches stand at places drawn evenly from all that are allowed; each pulls at least one cable. A cable is a walk at
 random from its winch through the graph that routes are priced on, of a length drawn evenly, without sharp turns: how

@@ -1,6 +1,6 @@
 """An hour of stored moves on a board without a computer: how far motors are from the table where they stand.
 
-Usage: python benchmarks/moves_alone.py [BOARD] [SECONDS]
+Usage: python lab/motors/moves_alone.py [BOARD] [SECONDS]
 
 BOARD is esp32s3 (default: a stand-in, compiled by g++, half a minute of CPU an hour) or uno (in simavr, which needs
 gcc-avr, avr-libc, libsimavr-dev and libelf-dev, and five minutes of CPU an hour).
@@ -14,8 +14,8 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "control"))
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "control"))
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests"))
 
 from firmware_bench import Board, two_winch_strip
 from machine import machine

@@ -1,6 +1,6 @@
 """How well a network serves poses that it was not designed for (F3).
 
-    python benchmarks/design_held_out.py [--quick] [--bodies starfish,trunk] [--methods routes,trees,random]
+    python lab/designs/design_held_out.py [--quick] [--bodies starfish,trunk] [--methods routes,trees,random]
                                          [--random 100] [--seeds 1]
 
 The poses of a body come from a hidden network, dense and unlike any that is designed: many cables at random, each with

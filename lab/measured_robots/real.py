@@ -1,6 +1,6 @@
 """Real robots: errors of hydrostat against published measurements of robots that others built.
 
-    python benchmarks/real.py FOLDER [--only NAME] [--samples N] [--plot FOLDER] [--profile]
+    python lab/measured_robots/real.py FOLDER [--only NAME] [--samples N] [--plot FOLDER] [--profile]
 
 FOLDER holds opencr_v4/ (a tendon continuum robot of three segments with nine tendons; Continuum Robotics Laboratory,
 opencr-mujoco), trunk_payload/ (a vacuum-hose trunk of six motors with hung masses; Stanford ASL, trunk-stack) and emio/

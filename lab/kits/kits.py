@@ -1,6 +1,6 @@
 """Kits of all gallery robots in one run: what is in them, whether they hold, and how long they take.
 
-    python benchmarks/kits.py [--robots starfish,bear] [--out DIR]
+    python lab/kits/kits.py [--robots starfish,bear] [--out DIR]
 
 CPU time on one thread, kernels compiled before; reading (and meshing) the robot is told apart from making its kit.
 """

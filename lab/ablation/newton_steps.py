@@ -1,6 +1,6 @@
 """Newton steps and factorizations of poses from rest: random contractions up to the full travel.
 
-    python benchmarks/newton_steps.py [--count 16] [--only starfish ...]
+    python lab/ablation/newton_steps.py [--count 16] [--only starfish ...]
 
 The last column is the sum of the energies, which tells whether two commits end in the same poses.
 """
@@ -15,7 +15,7 @@ import numpy as np
 import hydrostat as hs
 from hydrostat.mechanics import Assembly
 
-EXAMPLES = Path(__file__).parents[1] / "examples"
+EXAMPLES = Path(__file__).parents[2] / "examples"
 BODIES = ("starfish", "puppy", "squid", "robot", "letter_s", "cupping_hand", "extended_hand", "octopus_arm")
 
 

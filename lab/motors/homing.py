@@ -1,6 +1,6 @@
 """Repeatability of zeros: range of six, on emulated servos of each make with 2 mA of noise, by stiffness of the cable.
 
-Usage: python benchmarks/homing.py [MAKE ...]   (all makes: about 5 minutes of CPU on one core)
+Usage: python lab/motors/homing.py [MAKE ...]   (all makes: about 5 minutes of CPU on one core)
 """
 
 import sys

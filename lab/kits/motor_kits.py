@@ -1,6 +1,6 @@
 """Kits of four robots with each motor: checks, warnings, price, pieces; or the refusal and whether its remedy works.
 
-    python benchmarks/motor_kits.py [--robots starfish,spiral] [--motors n20,25d] [--out DIR] [--remedies]
+    python lab/kits/motor_kits.py [--robots starfish,spiral] [--motors n20,25d] [--out DIR] [--remedies]
 
 Each kit is made by `hydrostat fabricate`, as a maker runs it. `--remedies` also runs the command that a refusal prints,
 and that of a refused remedy, up to three in a row.

@@ -1,6 +1,6 @@
 """How far markers of designs move on a finer mesh, by the contractions of the mesh that they were designed on.
 
-    python benchmarks/design_meshes.py DESIGN ... [--finer 0.6]
+    python lab/designs/design_meshes.py DESIGN ... [--finer 0.6]
 
 DESIGN is a folder of `hydrostat design`. Columns: nodes of its mesh and of one with elements of `--finer` times the
 length, rms difference of the places of all markers over all poses [mm], the same as a share of their moves from rest,
