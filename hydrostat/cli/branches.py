@@ -103,7 +103,7 @@ def _pose_facts(pose: Any) -> dict[str, Any]:
 def _branch_facts(name: str, branch: "Branch") -> dict[str, Any]:
     return {
         "name": name,
-        "reason": str(branch.status),
+        "status": str(branch.status),
         "begin": [float(value) for value in branch.begin],
         "goal": [float(value) for value in branch.goal],
         "critical": [

@@ -14,6 +14,7 @@ import typer
 from hydrostat.cli.bounded import run_bounded
 from hydrostat.cli.check import print_sewing
 from hydrostat.cli.copy_gallery import copy_gallery
+from hydrostat.cli.option_errors import naming_fields
 from hydrostat.cli.options import parse_optional, positive
 from hydrostat.cli.remedies import kit_warnings
 from hydrostat.cli.waiting import patiently
@@ -90,7 +91,7 @@ def new(
     )
     seconds = parse_optional("--timeout", timeout, TIME) or SECONDS + SECONDS_A_NODE * (nodes or 0)
     with _made_whole(name) as folder:
-        with _blaming_the_option(name):
+        with naming_fields(*_WISHES), _with_part_picture(name):
             lines = _begin(source, folder, wish, seconds, on_skin=cables_on_skin)
         with patiently("reading the robot back and drawing it ..."):
             made = _draw(folder)
@@ -105,15 +106,21 @@ def _other_count(count: int, wanted: int | None) -> list[str]:
     return [f"note: {count} nodes instead of {wanted}: thin parts need finer elements"]
 
 
+_WISHES = ("part", "size", "element_size", "nodes", "thickness", "inflate", "material", "inner")
+"""Fields of a `NewRobotWish` that are options of the same name."""
+
+
 @contextmanager
-def _blaming_the_option(name: Path) -> Iterator[None]:
-    """Complaints about wishes as they are written on the command line, with a picture where parts are to choose."""
+def _with_part_picture(name: Path) -> Iterator[None]:
+    """Name a picture of the parts in errors that ask for one, and the option in errors that name its key."""
     try:
         yield
     except SeveralPartsError as error:
         raise InputError(f"{error}. See {_draw_parts(error.parts, name)}") from None
     except InputError as error:
-        raise _of_option(error) from None
+        if not str(error).startswith("drawing_part"):
+            raise
+        raise InputError(str(error).removeprefix("drawing_")) from None
 
 
 def _draw_parts(parts: Any, name: Path) -> Path:
@@ -123,14 +130,6 @@ def _draw_parts(parts: Any, name: Path) -> Path:
     path = name.with_name(f"{name.name}_parts.png")
     save_png(draw_parts(parts), path)
     return path
-
-
-def _of_option(error: InputError) -> InputError:
-    """The same complaint, of a wish as it is written on the command line."""
-    key, colon, rest = str(error).partition(": ")
-    key = {"drawing_part": "part"}.get(key, key)
-    wish = colon and key in ("part", "size", "element_size", "nodes", "thickness", "inflate", "material", "inner")
-    return InputError(f"--{key.replace('_', '-')}: {rest}") if wish else error
 
 
 def _inner(given: str | None) -> "Inner | None":

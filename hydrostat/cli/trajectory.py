@@ -195,7 +195,7 @@ def _key_facts(made: "Trajectory", key: Any) -> dict[str, Any]:
     }
     if key.found is not None:
         facts |= {
-            "reason": str(key.found.status),
+            "status": str(key.found.status),
             "optimality": key.found.optimality,
             "held": list(key.found.active_limits),
         }

@@ -138,7 +138,7 @@ def _pose_results(robot: Robot, reached: IKResult) -> dict[str, Any]:
             winch.name: float(value) for winch, value in zip(robot.winches, pose.contractions, strict=True)
         },
         "tensions": [float(tension) for tension in pose.tensions],
-        "reason": str(reached.status),
+        "status": str(reached.status),
         "held": list(reached.active_limits),
         "residual": pose.result.residual,
     }

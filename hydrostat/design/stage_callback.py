@@ -1,10 +1,10 @@
-"""`Watch`: callback that reports the networks found in a search."""
+"""`StageCallback`: callback that reports the networks found in a search; `Progress` reports how far it is."""
 
 from collections.abc import Callable
 
 from hydrostat.design.network import DesignStage
 
-StageCallback = Callable[[DesignStage], None]  # told a network on the way, each better than the ones told before
+StageCallback = Callable[[DesignStage], None]  # called with each better network
 
 
 def ignore_stage(stage: DesignStage) -> None:

@@ -44,7 +44,7 @@ def anchor_untargeted_markers(
     size = simulation.robot.body.mesh.size
     names = () if target is None else tuple(m.name for m in simulation.robot.markers if m.name not in target.targets)
     rows = len(found.state.residual)
-    if not problem.options.hold_free_markers or not names or found.state.error <= _REACH_TOLERANCE * size:
+    if not problem.options.hold_free_markers or not names or found.state.error <= _MAX_MISS * size:
         return search, found
     rounds = 3
     for _ in range(rounds):
@@ -66,7 +66,7 @@ def anchor_untargeted_markers(
     return search, found
 
 
-_REACH_TOLERANCE = 1e-3  # missed by more than this, in sizes of the body, a target is out of reach
+_MAX_MISS = 1e-3  # missed by more than this, in sizes of the body, a target is out of reach
 
 
 Targets = PoseTarget | Mapping[str, Sequence[float] | Vector]  # where markers should go [m]: a pose, or points by name

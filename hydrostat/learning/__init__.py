@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from hydrostat.learning.export import check_export, export_samples
     from hydrostat.learning.learn_model import correct_model, learn_model
     from hydrostat.learning.learn_options import LearnOptions
-    from hydrostat.learning.learned_model import LearnedModel
+    from hydrostat.learning.learned_model import TANH_SCALE, LearnedModel
     from hydrostat.learning.model_card import ModelCard
     from hydrostat.learning.perceptrons import Perceptrons
     from hydrostat.learning.portable_policy import PortablePolicy
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "MIN_SAMPLES",
+    "TANH_SCALE",
     "LearnOptions",
     "LearnedModel",
     "ModelCard",

@@ -330,7 +330,7 @@ def span_of(low: Vector, high: Vector) -> Vector:
 
 
 TANH_SCALE = 1.02
-"""Factor on the tanh of the inverse network, so that its answer reaches the limits; it is clipped there."""
+"""Factor on answers and actions of networks that end in tanh, clipped to 1 after it, so that they reach the limits."""
 
 _STARTS = 3
 """Samples that a search begins from where the inverse network's answer is not near enough."""

@@ -44,7 +44,7 @@ def pose_facts(robot: Robot, pose: Equilibrium) -> dict[str, Any]:
         "energy": pose.energy,
         "residual": pose.result.residual,
         "converged": pose.result.converged,
-        "reason": str(pose.result.status),
+        "status": str(pose.result.status),
         "stable": pose.result.stable,
         "buckled": pose.result.buckled,
         "iterations": pose.result.iterations,

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from hydrostat.training.manipulation_tasks import PushEnv, PushOptions, TwistEnv, TwistOptions
     from hydrostat.training.manipulation_world import ManipulationPhysics
     from hydrostat.training.portable import policy_of, portable_policy
-    from hydrostat.training.reach_env import ACTION_SCALE, HysteresisEnv, ReachEnv, ReachOptions
+    from hydrostat.training.reach_env import HysteresisEnv, ReachEnv, ReachOptions
     from hydrostat.training.tasks import task_of
     from hydrostat.training.train import (
         CurvePoint,
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
 
 
 __all__ = [
-    "ACTION_SCALE",
     "CurvePoint",
     "Gait",
     "HysteresisEnv",

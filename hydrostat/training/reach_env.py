@@ -10,14 +10,11 @@ from gymnasium import spaces
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.given import check_type
-from hydrostat.learning import LearnedModel
+from hydrostat.learning import TANH_SCALE, LearnedModel
 from hydrostat.robot import PoseTarget, Robot
 from hydrostat.training.backends import Backend, ExactBackend, LearnedBackend, MixedBackend
 from hydrostat.training.goal_env import AN_ACTION, GoalEnv, TaskOptions, check_task, finite_numbers, prepare_robot
 from hydrostat.units import quote
-
-ACTION_SCALE = 1.02
-"""Factor on actions, clipped to 1 after it, so that a policy that ends in tanh reaches the limits."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -174,7 +171,7 @@ class ReachEnv(GoalEnv):
         """Contractions of an action [m]: alone from release to travel, or one of two winches from 0 to travel."""
         taken = np.zeros(len(self._low))
         for value, group in zip(
-            np.clip(ACTION_SCALE * np.asarray(action, dtype=float), -1, 1).tolist(), self._groups, strict=True
+            np.clip(TANH_SCALE * np.asarray(action, dtype=float), -1, 1).tolist(), self._groups, strict=True
         ):
             one = group[0]
             if len(group) == 1:

@@ -20,11 +20,11 @@ import numpy as np  # isort: skip
 
 from hydrostat.arrays import Points, Vector
 from hydrostat.geometry import Mesh
-from hydrostat.mechanics import GuideEnergy, NewtonOptions
-from hydrostat.plot import Frame, save_gif
+from hydrostat.plot import Frame
 from hydrostat.robot import Body, Cable, Contact, Material, Obstacle, Pin, Robot, Source, Winch
-from hydrostat.simulation import BodyPhysics, Motion, Simulation, StepOptions
-from hydrostat_lab.keyframes import ease
+from hydrostat.simulation import Motion
+from hydrostat_lab.held_object import HeldObject
+from hydrostat_lab.keyframes import ease, save_film
 
 LENGTH, BREADTH, ROOM = 80e-3, 12e-3, 4e-3
 """Length and breadth of a finger, and its distance from the pen [m]."""
@@ -82,64 +82,47 @@ def _strip(cells: int) -> tuple[Points, np.ndarray]:
     return np.column_stack([x.ravel(), y.ravel()]), np.array(triangles)
 
 
-class Held:
+class HeldPen(HeldObject):
     """Two fingers and a pen between them, from keyframe to keyframe."""
 
     def __init__(self, friction: float) -> None:
-        self.pen = replace(PEN, friction=friction)
-        self.robot = replace(fingers(), obstacles=(self.pen,))
-        physics = BodyPhysics(self.robot)
-        self.carriage, (self.begun, self.begin) = physics.rigid_dofs[0], self.pen.frame()
-        guide = GuideEnergy(self.carriage, place=self.begun, axes=self.begin, along=HOLD * np.eye(2), turning=0.0)
-        accuracy = NewtonOptions(tolerance=1e-5)  # share of the largest force that a time step may leave
-        self.simulation = Simulation(self.robot, body=physics, energies=[guide], options=accuracy)
-        self.motion, self.turned = self.simulation.motion_at_rest(), 0.0
+        robot = replace(fingers(), obstacles=(replace(PEN, friction=friction),))
+        super().__init__(robot, hold=HOLD, tolerance=1e-5, drag=DRAG)
+        self.turned = 0.0  # [degree], also beyond a full turn
 
-    def go(self, goal: Vector, step: float) -> Motion:
+    def advance(self, goal: Vector, step: float) -> Motion:
         """Return the motion one step [s] later."""
-        self.motion = self.simulation.step(self.motion, goal, step, options=StepOptions(scheme="euler", drag=DRAG))
-        axis, before = self._axes[0] @ self.begin.T, np.deg2rad(self.turned)
+        motion = super().advance(goal, step)
+        axis, before = self.axes[0] @ self.start_axes.T, np.deg2rad(self.turned)
         change = np.arctan2(axis[1], axis[0]) - before
         self.turned = float(np.rad2deg(before + (change + np.pi) % (2 * np.pi) - np.pi))
-        return self.motion
-
-    @property
-    def place(self) -> Vector:
-        """Center of the pen [m]."""
-        assert self.motion.carried is not None
-        return self.motion.carried[0][0]
-
-    @property
-    def _axes(self) -> Points:
-        assert self.motion.carried is not None
-        return self.motion.carried[0][1:] / self.carriage.length
+        return motion
 
     def drawn(self) -> list[Obstacle]:
         """Return the pen where it is, with a dot that shows how it turns."""
-        dot = self.place + 0.55 * (self.pen.radius or 0.0) * self._axes[0]
-        mark = Obstacle(name="dot", shape="sphere", at=tuple(dot.tolist()), radius=0.3 * (self.pen.radius or 0.0))
-        return [replace(self.pen, at=tuple(self.place.tolist())), mark]
+        radius = self.object.radius or 0.0
+        dot = self.place + 0.55 * radius * self.axes[0]
+        mark = Obstacle(name="dot", shape="sphere", at=tuple(dot.tolist()), radius=0.3 * radius)
+        return [replace(self.object, at=tuple(self.place.tolist())), mark]
 
 
 def run(friction: float, step: float, films: Path | None) -> None:
     """Print a row for each keyframe, and write a film if asked."""
-    held, frames, began = Held(friction), [], time.process_time()
+    held, frames, began = HeldPen(friction), [], time.process_time()
     goal = np.zeros(4)
     for key, taken in KEYS.items():
         begin, goal = goal, 1e-3 * np.array(taken, dtype=float)
-        for motion in ease(held.go, begin, goal, seconds=SECONDS, step=step):
+        for motion in ease(held.advance, begin, goal, seconds=SECONDS, step=step):
             words = f"friction {friction:g}, {key}: turned by {held.turned:.0f} degrees"
             frames.append(Frame.of(motion, words=words, obstacles=held.drawn()))
-        x, y = 1e3 * (held.place - held.begun)
+        x, y = 1e3 * (held.place - held.start_place)
         print(
             f"| {friction:g} | {key} | {held.turned:.0f} | {x:.1f}, {y:.1f} | {motion.tensions.max():.1f} | "
             f"{time.process_time() - began:.0f} |",
             flush=True,
         )
     if films is not None:
-        films.mkdir(parents=True, exist_ok=True)
-        path = films / f"pen_{friction:g}.gif"
-        print(f"wrote {save_gif(replace(held.robot, obstacles=()), frames, path, step=0.1, width=480)}", flush=True)
+        save_film(held.robot, frames, films / f"pen_{friction:g}.gif", step)
 
 
 def main() -> None:

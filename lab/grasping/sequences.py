@@ -20,11 +20,11 @@ from manifold3d import Manifold
 from objects import stl_text
 
 import hydrostat as hs
-from hydrostat.plot import Frame, save_gif
+from hydrostat.plot import Frame
 from hydrostat.robot import Body, Contact, Obstacle, Robot, closed_mesh, gravity_along
 from hydrostat.simulation import find_contacts
 from hydrostat_lab.held_object import HeldObject, contractions
-from hydrostat_lab.keyframes import ease
+from hydrostat_lab.keyframes import ease, save_film
 
 ELEMENT_SIZE, VISCOSITY, MASS = 15e-3, 400.0, 5e-3
 """Size of elements [m], shear viscosity of the foam [Pa s], mass of the box [kg]."""
@@ -130,10 +130,7 @@ def run(name: str, friction: float, step: float, films: Path | None) -> None:
         if is_lost:
             break
     if films is not None:
-        films.mkdir(parents=True, exist_ok=True)
-        path = films / f"{name.replace(' ', '_')}_{friction:g}.gif"
-        shown = frames[:: max(1, round(0.05 / step))]
-        print(f"wrote {save_gif(replace(robot, obstacles=()), shown, path, step=0.1, width=480)}", flush=True)
+        save_film(robot, frames, films / f"{name.replace(' ', '_')}_{friction:g}.gif", step)
 
 
 def main() -> None:

@@ -1,4 +1,4 @@
-"""`HeldObject`, `contractions`: a free object between the fingers of a robot in space, from keyframe to keyframe."""
+"""`HeldObject`, `contractions`: a free object between the fingers of a robot, from keyframe to keyframe."""
 
 from collections.abc import Mapping
 
@@ -9,9 +9,6 @@ from hydrostat.arrays import Points, Vector
 from hydrostat.mechanics import GuideEnergy, NewtonOptions
 from hydrostat.robot import Obstacle, Robot
 from hydrostat.simulation import BodyPhysics, Motion, Simulation, StepOptions, with_replaced
-
-DRAG = 5.0
-"""Drag on the foam and the object [1/s]."""
 
 
 def contractions(robot: Robot, parts: Mapping[str, float]) -> Vector:
@@ -25,7 +22,9 @@ def contractions(robot: Robot, parts: Mapping[str, float]) -> Vector:
 class HeldObject:
     """A robot and an object with a mass, the last of its obstacles, on a spring."""
 
-    def __init__(self, robot: Robot, *, hold: float, turning: float = 0.0, tolerance: float = 1e-10) -> None:
+    def __init__(
+        self, robot: Robot, *, hold: float, turning: float = 0.0, tolerance: float = 1e-10, drag: float = 5.0
+    ) -> None:
         """Start at rest.
 
         Args:
@@ -33,8 +32,9 @@ class HeldObject:
             hold: stiffness of the spring that holds the center of the object [N/m].
             turning: stiffness of the spring that holds its axes [N/m].
             tolerance: share of the largest force that a time step may leave.
+            drag: drag on the foam and the object [1/s].
         """
-        self.robot, self.object = robot, robot.obstacles[-1]
+        self.robot, self.object, self._drag = robot, robot.obstacles[-1], drag
         self.start_place, self.start_axes = self.object.frame()
         physics = BodyPhysics(robot)
         self.carriage = physics.rigid_dofs[len(robot.obstacles) - 1]
@@ -46,7 +46,11 @@ class HeldObject:
 
     def _spring(self, hold: float, turning: float) -> GuideEnergy:
         return GuideEnergy(
-            self.carriage, place=self.start_place, axes=self.start_axes, along=hold * np.eye(3), turning=turning
+            self.carriage,
+            place=self.start_place,
+            axes=self.start_axes,
+            along=hold * np.eye(len(self.start_place)),
+            turning=turning,
         )
 
     def release(self) -> None:
@@ -55,7 +59,9 @@ class HeldObject:
 
     def advance(self, goal: Vector, step: float) -> Motion:
         """Return the motion one step [s] later."""
-        self.motion = self.simulation.step(self.motion, goal, step, options=StepOptions(scheme="euler", drag=DRAG))
+        self.motion = self.simulation.step(
+            self.motion, goal, step, options=StepOptions(scheme="euler", drag=self._drag)
+        )
         return self.motion
 
     def current_obstacle(self) -> Obstacle:

@@ -1,8 +1,12 @@
-"""`ease`: time steps from one keyframe to the next, as studies of grasps take them."""
+"""`ease`, `save_film`: time steps from one keyframe to the next, and their film."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
 
 from hydrostat.arrays import Vector
+from hydrostat.plot import Frame, save_gif
+from hydrostat.robot import Robot
 from hydrostat.simulation import Motion
 
 
@@ -17,3 +21,10 @@ def ease(
     for number in range(1, count + 1):
         share = number / count
         yield go(begin + share * share * (3 - 2 * share) * (goal - begin), seconds / count)
+
+
+def save_film(robot: Robot, frames: Sequence[Frame], path: Path, step: float) -> None:
+    """Write frames that are `step` apart [s], at most twenty a second of motion, as a GIF at half speed."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    shown = frames[:: max(1, round(0.05 / step))]
+    print(f"wrote {save_gif(replace(robot, obstacles=()), shown, path, step=0.1, width=480)}", flush=True)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from hydrostat.errors import InputError
+from hydrostat.learning import TANH_SCALE
 from hydrostat.progress import Progress, no_progress
 from hydrostat.version import install_command
 from hydrostat_lab.experiments import SMALL
@@ -171,7 +172,7 @@ class _Network:
 
     def __call__(self, goals: Tensor) -> Tensor:
         raw = self._answer((goals - self._mean) / self._spread)
-        return (_BEYOND * torch.tanh(raw)).clamp(-1.0, 1.0)
+        return (TANH_SCALE * torch.tanh(raw)).clamp(-1.0, 1.0)
 
     def _answer(self, values: Tensor) -> Tensor:
         return answer(self.numbers, values, None)[0]
@@ -258,7 +259,7 @@ def _take_rows(values: Tensor, rows: Tensor) -> Tensor:
     return values.gather(1, rows[..., None].expand(-1, -1, values.shape[-1]))
 
 
-_LAYERS, _RATE, _BEYOND, _SMALL = (128, 128, 128), 3e-3, 1.02, 0.1
+_LAYERS, _RATE, _SMALL = (128, 128, 128), 3e-3, 0.1
 """Hidden layers, largest rate of learning, how far a network may reach beyond its range, and share of small changes."""
 
 _PAIRS, _NETWORKS, _BATCHES, _GOALS = 11, 22, 33, 44

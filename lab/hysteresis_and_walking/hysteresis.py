@@ -32,7 +32,8 @@ from scipy.optimize import lsq_linear
 
 import hydrostat as hs
 from hydrostat.arrays import Vector
-from hydrostat.training import ACTION_SCALE, HysteresisEnv, ReachOptions, TrainOptions, held_out_goals, judge, train
+from hydrostat.learning import TANH_SCALE
+from hydrostat.training import HysteresisEnv, ReachOptions, TrainOptions, held_out_goals, judge, train
 from hydrostat_lab.verdict import interquartile
 
 Act = Callable[[dict[str, Vector]], np.ndarray]
@@ -77,7 +78,7 @@ class Model:
 
     def action(self, taken: Vector) -> np.ndarray:
         """The action that takes in so much."""
-        return (2.0 * (taken - self.low) / (self.high - self.low) - 1.0) / ACTION_SCALE
+        return (2.0 * (taken - self.low) / (self.high - self.low) - 1.0) / TANH_SCALE
 
 
 def policies(make: Callable[[], HysteresisEnv], actions: int, seeds: int) -> tuple[list[Act], int]:

@@ -21,10 +21,10 @@ from machine import machine
 import numpy as np  # isort: skip
 
 import hydrostat as hs
-from hydrostat.plot import Frame, save_gif
+from hydrostat.plot import Frame
 from hydrostat.robot import Contact, Obstacle, Robot
 from hydrostat_lab.held_object import HeldObject, contractions
-from hydrostat_lab.keyframes import ease
+from hydrostat_lab.keyframes import ease, save_film
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 HOLD, VISCOSITY, SECONDS = 100.0, 400.0, 0.5
@@ -141,9 +141,7 @@ def run(name: str, friction: float, step: float, films: Path | None) -> None:
             flush=True,
         )
     if films is not None:
-        films.mkdir(parents=True, exist_ok=True)
-        stride = max(1, round(0.05 / step))
-        print(f"wrote {save_gif(robot, frames[::stride], films / f'{name}.gif', step=0.1, width=480)}", flush=True)
+        save_film(robot, frames, films / f"{name}.gif", step)
 
 
 def main() -> None:

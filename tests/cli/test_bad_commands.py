@@ -113,7 +113,7 @@ def test_a_solve_that_does_not_converge_ends_with_code_1(
     assert code == 1
     assert "iteration limit" in out
     facts = json.loads((tmp_path / "pose.json").read_text())
-    assert (facts["converged"], facts["reason"]) == (False, "iteration limit reached")
+    assert (facts["converged"], facts["status"]) == (False, "iteration limit reached")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["pose.json", "pose.png"]
 
 

@@ -27,7 +27,7 @@ def test_branches_writes_what_the_library_finds(run: Run, tmp_path: Path, starfi
     assert facts["poses"][0]["energy"] == pytest.approx(pose.energy)
     assert len(facts["poses"][0]["ways"]) == 4
     (branch,) = facts["branches"]
-    assert branch["reason"] == "goal reached"
+    assert branch["status"] == "goal reached"
     assert branch["critical"] == []
     assert branch["points"][-1]["markers"]["left"] == pytest.approx(pose.markers["left"].tolist(), abs=1e-7)
     assert all(point["stable"] for point in branch["points"])

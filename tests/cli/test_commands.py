@@ -78,7 +78,7 @@ def test_simulate_writes_what_the_library_solves(run: Run, tmp_path: Path, starf
     assert facts["cables"] == ["right 1", "left 1", "left 2", "feet 1", "feet 2"]
     assert facts["tensions"] == pytest.approx(pose.tensions.tolist(), abs=1e-9)
     assert facts["markers"]["left"] == pytest.approx(pose.markers["left"].tolist(), abs=1e-9)
-    assert facts["reason"] == "converged"
+    assert facts["status"] == "converged"
     assert facts["seconds"] > 0
     mesh = meshio.read(tmp_path / "pose.vtu")
     assert np.allclose(mesh.points[:, :2], pose.nodes, atol=1e-9)

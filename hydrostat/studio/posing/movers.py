@@ -88,7 +88,7 @@ class Mover(ABC):
         """One step towards the targets; the shape, and whether there is more to gain."""
 
 
-REACH_TOLERANCE = 0.01  # from this distance on a target counts as out of reach, in sizes of the body
+FAR_DISTANCE = 0.01  # from this distance on a target counts as out of reach, in sizes of the body
 NEAREST = "target not reached: the winches get no closer from here"
 
 
@@ -138,7 +138,7 @@ class MuscleMover(Mover):
         faint = 1e-3
         most = max(float(pulls.max()), faint * self._posing.strength)
         errors = self._anchored.errors(held, nodes)
-        far = not more and max(errors.values(), default=0.0) > REACH_TOLERANCE * robot.body.mesh.size
+        far = not more and max(errors.values(), default=0.0) > FAR_DISTANCE * robot.body.mesh.size
         return RobotShape(
             nodes=nodes,
             tensions=np.zeros(len(robot.cables)),
@@ -251,7 +251,7 @@ class CableMover(Mover):
         if not more and not self._exact:
             self._near, self._still, self._updates, more = True, 0, max_cable_updates - last, True
         notes = reached.active_limits
-        if not more and max(reached.errors.values()) > REACH_TOLERANCE * self.robot.body.mesh.size:
+        if not more and max(reached.errors.values()) > FAR_DISTANCE * self.robot.body.mesh.size:
             nearest = reached.status in (IKStatus.ITERATION_LIMIT, IKStatus.LOCAL_OPTIMUM, IKStatus.STALLED)
             notes = (*notes, NEAREST if nearest else str(reached.status))
         if not more:
