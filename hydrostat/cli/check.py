@@ -43,6 +43,7 @@ def check(
 
     Example: hydrostat check gallery:starfish --thorough
     """
+    from hydrostat.design import find_mirror_axis
     from hydrostat.robot import describe_cable_side
 
     found = read_robot(robot)
@@ -68,6 +69,8 @@ def check(
     refused = any(finding.weight.word == "error" for finding in review)
     if found.cables:
         print("build: no kit, see the error below" if refused else _cost_line(found, robot))
+    if found.poses and not found.cables and (axis := find_mirror_axis(found, found.poses.values())):
+        print(f"note: body, markers and poses mirror about {axis}. Try hydrostat design --symmetric {axis}")
     far = _print_simulated(found, thorough=thorough, stuffed=stuffed)
     if found.body.has_hysteresis:
         print("note: hysteresis: refused by pose, trajectory, share, design, branches and linear models.")

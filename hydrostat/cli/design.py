@@ -209,9 +209,7 @@ def _tell_count(network: "Network", request: "DesignRequest", lifts: "Iterable[L
         size = f"{1e3 * better.expected_error:.3g} mm with {plural(len(better.robot.cables), 'cable')}"
         print(f"note: {size} fell away, its kit would be refused: {in_words(reason)}")
     if request.constraints.mirror is None and (axis := find_mirror_axis(network.source, request.poses)):
-        print(
-            f"note: outline, markers and targets are symmetric about {axis}. For a network that is: --symmetric {axis}"
-        )
+        print(f"note: body, markers and poses mirror about {axis}. Try --symmetric {axis}")
     for name, error in (network.idle_winches if network.complete else {}).items():
         words = f"{1e3 * error:.3g} mm in the model instead of {1e3 * network.rms_error:.3g} mm"
         print(f"note: winch {name} hardly helps: without it {words}. Try --winches {len(network.robot.winches) - 1}")

@@ -16,10 +16,12 @@ from hydrostat.robot import (
     PoseTarget,
     Robot,
     SurfaceSketch,
+    find_mirror,
     gallery_folder,
     is_of_gallery,
     list_gallery,
     load_robot,
+    measure_asymmetry,
     sketch_mesh,
     sketch_robot,
 )
@@ -159,12 +161,21 @@ def _of_drawing(path: Path, wish: NewRobotWish) -> BegunRobot:
         sizes = {"element_size": wish.element_size, "nodes": wish.nodes, "thickness": wish.thickness}
         named = {"file": file, "name": _robot_name(path, wish), "material": material}
         robot = sketch_robot(content, drawing_part=wish.drawing_part, **named, **reading, **sizes)
-        return BegunRobot(robot, notes)
+        return BegunRobot(robot, (*notes, *_mirror_notes(robot)))
     wish.refuse("an inflated body is as thick as is asked by inflate", "thickness")
     begun = _of_bytes(
         inflate_outline(drawing.outline, wish.inflate), path.with_suffix(".ply"), wish, material, size=None
     )
     return BegunRobot(begun.robot, (*notes, *begun.notes), begun.sketch)
+
+
+def _mirror_notes(robot: Robot) -> tuple[str, ...]:
+    """Note on the mirror line of a drawn robot; none without one."""
+    axis = find_mirror(robot.body)
+    if axis is None:
+        return ()
+    off = 1e3 * measure_asymmetry(robot.body, axis)
+    return (f"note: mirror line {'xy'[axis]} = 0, halves equal within {off:.1f} mm. Markers are on it or in pairs",)
 
 
 def _of_surface(path: Path, wish: NewRobotWish) -> BegunRobot:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from hydrostat.robot.material import FOAM_POISSON_LIMIT, FoamTerm, Material, PrandtlElement, PronyTerm
     from hydrostat.robot.materials import FOAMS, MATERIALS, get_material
     from hydrostat.robot.merge import comments, lost_comments, merged_text
+    from hydrostat.robot.mirror import MIRROR_TOLERANCE, find_mirror, measure_asymmetry
     from hydrostat.robot.obstacle_lines import obstacle_lines, rims
     from hydrostat.robot.own_materials import own_materials, save_own_material
     from hydrostat.robot.part import BodyPart
@@ -52,6 +53,7 @@ __all__ = [
     "GALLERY",
     "MATERIALS",
     "MIN_ELEMENTS_ACROSS",
+    "MIRROR_TOLERANCE",
     "SEWN_DEPTH",
     "Body",
     "BodyPart",
@@ -94,6 +96,7 @@ __all__ = [
     "direction_of",
     "edge_points",
     "find_far_targets",
+    "find_mirror",
     "find_part_facets",
     "find_rings",
     "find_risks",
@@ -109,6 +112,7 @@ __all__ = [
     "list_gallery",
     "load_robot",
     "lost_comments",
+    "measure_asymmetry",
     "merged_text",
     "obstacle_lines",
     "own_materials",

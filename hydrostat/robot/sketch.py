@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from hydrostat.arrays import Nodes, Vector
+from hydrostat.arrays import Int, Nodes, Points, Vector
 from hydrostat.errors import InputError
 from hydrostat.geometry import Inner, Outline, read_drawing, size_for, triangulate
 from hydrostat.robot.body import Body
@@ -14,6 +14,7 @@ from hydrostat.robot.element_kind import ElementKind, Plane
 from hydrostat.robot.limb_tips import find_limb_tips, measure_geodesics, name_tips
 from hydrostat.robot.marker import Marker, PoseTarget
 from hydrostat.robot.materials import get_material
+from hydrostat.robot.mirror import find_mirror, mirror_points
 from hydrostat.robot.pin import Pin
 from hydrostat.robot.risks.body_risks import LOCKING_POISSON, MIN_ELEMENTS_ACROSS, MIN_QUADRATIC
 from hydrostat.robot.robot import Robot
@@ -72,7 +73,8 @@ def sketch_robot(
 
     A body with slender limbs gets quadratic elements. One at most twice as thick as wide is in plane stress.
     It is held round its deepest point. The tip of each limb is a marker, named by its place ("upper left"), or "tip" if
-    there is one. A pose bends the longest limb sideways; the other tips stay. Everything is meant to be changed.
+    there is one. A pose bends the longest limb sideways; the other tips stay. In a drawing that is its own mirror image
+    markers stand on the mirror line or in pairs, and limbs in pairs bend together. Everything is meant to be changed.
 
     Args:
         content: the drawing.
@@ -117,25 +119,48 @@ def sketch_robot(
     as_fine = 2**-0.5 if kind is ElementKind.QUADRATIC else 1.0
     spacing = as_fine * (body.element_size or 0.0)  # of linear elements in place of these
     center = np.array(maximum_inscribed_circle(outline.polygon).coords[0])
+    center = _on_mirror(body, outline, center)
     depth = outline.polygon.boundary.distance(ShapelyPoint(center))
     pin = Pin(at=_point(center), radius=_round(max(0.4 * depth, 1.3 * spacing)))
     pin = move_off_drawings(pin, body, outline.polygon)
-    corners = body.mesh.elements if body.mesh.quadratic is None else body.mesh.quadratic[:, :3]
-    within = np.setdiff1d(corners, body.mesh.boundary_nodes)
-    insides = body.mesh.nodes[within], body.mesh.nodes[corners].mean(axis=1)
-    ends = find_limb_tips(body.mesh, measure_geodesics(body.mesh, pin.holds(body.mesh))[0])
-    tips = np.array([_inner_tip(insides, body.mesh.nodes[end], center, 2.5 * spacing) for end in ends])
+    tips, twins = _find_tips(body, pin, center, 2.5 * spacing)
     names = name_tips(body.mesh, tips)
-    arms = tips - center
-    turned = center + 0.96 * (np.cos(_BEND) * arms[0] + np.sin(_BEND) * np.array([-arms[0, 1], arms[0, 0]]))
-    others = np.abs(np.angle(arms @ [1, 1j] / (arms[0] @ [1, 1j]))) > 0.7  # a tip beside moves as well: lobes of a fin
-    targets = {names[0]: _point(turned)} | {names[other]: _point(tips[other]) for other in np.flatnonzero(others)}
     return Robot(
         name=name,
         body=body,
         pins=(pin,),
         markers=tuple(Marker(name=tip, at=_point(at)) for tip, at in zip(names, tips, strict=True)),
-        poses={"bend": PoseTarget(name="bend", targets=targets)},
+        poses={"bend": PoseTarget(name="bend", targets=_bend_limb(names, tips, twins, center))},
+    )
+
+
+def _on_mirror(body: Body, outline: Outline, center: Vector) -> Vector:
+    """A deepest place of a drawing [m], on the mirror line of its body if that is nearly as deep."""
+    from shapely import Point as ShapelyPoint
+
+    axis, moved = find_mirror(body), center.copy()
+    if axis is None:
+        return center
+    moved[axis] = 0.0
+    here, there = (outline.polygon.boundary.distance(ShapelyPoint(place)) for place in (center, moved))
+    return moved if outline.polygon.contains(ShapelyPoint(moved)) and there >= _AS_DEEP * here else center
+
+
+def _find_tips(body: Body, pin: Pin, center: Vector, near: float) -> tuple[Points, Int[np.ndarray, " tips"]]:
+    """Tips of limbs, the longest first [m], on the mirror line or in pairs if there is one; number of each one's twin.
+
+    Tips are nodes within a distance of the ends of limbs.
+    """
+    corners = body.mesh.elements if body.mesh.quadratic is None else body.mesh.quadratic[:, :3]
+    within = np.setdiff1d(corners, body.mesh.boundary_nodes)
+    insides = body.mesh.nodes[within], body.mesh.nodes[corners].mean(axis=1)
+    ends = find_limb_tips(body.mesh, measure_geodesics(body.mesh, pin.holds(body.mesh))[0])
+    tips = np.array([_inner_tip(insides, body.mesh.nodes[end], center, near) for end in ends])
+    axis = find_mirror(body)
+    if axis is None:
+        return tips, np.arange(len(tips))
+    return mirror_points(
+        tips, axis, near=_TWIN_DISTANCE * body.mesh.size, holds=lambda place: body.distances(place[None])[0] <= 0
     )
 
 
@@ -150,6 +175,34 @@ def _inner_tip(insides: tuple[Nodes, Nodes], end: Vector, center: Vector, near: 
     return chosen[np.argmax(np.linalg.norm(chosen - center, axis=1))]
 
 
+def _bend_limb(
+    names: list[str], tips: Points, twins: Int[np.ndarray, " tips"], center: Vector
+) -> dict[str, tuple[float, ...]]:
+    """Targets that bend the longest limb, or a pair that is nearly as long away from the mirror line; other tips stay.
+
+    Args:
+        names: a name for each tip.
+        tips: ends of the limbs, the longest first [m].
+        twins: number of the mirror image of each tip.
+        center: place about which limbs turn [m].
+    """
+    arms, around = (tips - center) @ [1, 1j], complex(*center)
+    paired = np.round(np.abs(arms) * (twins != np.arange(len(tips))), 4)
+    first = int(np.argmax(paired)) if paired.max() >= _PAIR_LENGTH * abs(arms[0]) else 0
+    bent = [first, int(twins[first])]
+    apart = tips[first] - tips[bent[1]]
+    outward = -1 if (np.conj(apart @ [1, 1j]) * 1j * arms[first]).real < 0 else 1
+    turned = around + 0.96 * arms[first] * np.exp(1j * _BEND * outward)
+    place = np.array([turned.real, turned.imag])
+    targets = {names[bent[1]]: place * np.where(apart == 0, 1.0, -1.0), names[first]: place}
+    beside = np.abs(np.angle(arms[:, None] / arms[bent])).min(axis=1) <= 0.7  # such a tip moves as well: lobes of a fin
+    targets |= {name: place for name, place, moves in zip(names, tips, beside, strict=True) if not moves}
+    return {name: _point(place) for name, place in targets.items()}
+
+
+_TWIN_DISTANCE = 0.1  # of one tip from the image of its twin, as a share of the body's size
+_AS_DEEP = 0.95  # share of the largest depth from which on a pin stands on the mirror line
+_PAIR_LENGTH = 2 / 3  # share of the longest limb's length from which on a pair of limbs is bent instead
 _BEND = 0.3  # turn of the first pose about the pin [rad]: at 0.5 a fish with a narrow tail passes through itself
 
 

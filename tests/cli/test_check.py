@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,10 +14,11 @@ from builders import box_mesh
 from manifold3d import Manifold
 
 from hydrostat.cli.check import _across_words
+from hydrostat.cli.check_poses import print_reached_poses
 from hydrostat.cli.main import main
 from hydrostat.design import BuildCost
 from hydrostat.geometry import Surface, write_ply, write_vtu
-from hydrostat.ik import solve_ik
+from hydrostat.ik import IKOptions, solve_ik
 from hydrostat.robot import (
     Cable,
     CableSide,
@@ -201,6 +203,35 @@ def test_poses_are_solved_or_named_as_not_computed(check: Check, tmp_path: Path)
     assert warned.startswith(
         f"warning: pose far: target not reached ({float(f'''{1e3 * errors['far']:.2g}'''):g} of 300 mm are left)"
     )
+
+
+def test_poses_that_mirror_name_the_option_for_cables_that_do(check: Check, tmp_path: Path) -> None:
+    """Oracle: a bar with a marker at each end; poses that lift both by as much, and by different lengths."""
+    (tmp_path / "body.svg").write_text(SVG.format('<rect width="60" height="40"/>'))
+    (tmp_path / "robot.toml").write_text(FLAT)
+    ends = (Marker(name="left", at=(-0.025, 0.0)), Marker(name="right", at=(0.025, 0.0)))
+    robot = replace(load_robot(tmp_path), markers=ends)
+    told = []
+    for lift in (0.01, 0.02):
+        pose = PoseTarget(name="lift", targets={"left": (-0.025, 0.01), "right": (0.025, lift)})
+        save_robot(replace(robot, poses={"lift": pose}), tmp_path / f"{lift}")
+        told.append([line for line in check(tmp_path / f"{lift}") if "--symmetric x" in line])
+    assert told[0] == ["note: body, markers and poses mirror about x. Try hydrostat design --symmetric x"]
+    assert told[1] == []
+
+
+def test_a_pose_that_one_search_misses_is_solved_with_restarts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Oracle: errors by hand, far without restarts and near with them."""
+    asked = []
+
+    def solve(*_: object, options: IKOptions | None = None, **__: object) -> SimpleNamespace:
+        asked.append((options or IKOptions()).restarts)
+        return SimpleNamespace(rms_error=1.0 if asked[-1] == 0 else 1e-3)
+
+    monkeypatch.setattr("hydrostat.ik.solve_ik", solve)
+    robot = load_robot(gallery_folder("starfish"))
+    assert print_reached_poses(robot) == ()
+    assert asked == [0, IKOptions().restarts] * len(robot.poses)
 
 
 def test_reach_is_left_out_of_large_bodies(check: Check, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -44,3 +44,13 @@ def test_the_body_and_its_markers_are_images_too() -> None:
     nodes, elements = np.unique(kept, return_inverse=True)
     notched = Mesh(mesh.nodes[nodes], elements.reshape(kept.shape))
     assert find_mirror_axis(replace(robot, body=mesh_body(notched), winches=(), cables=()), [both]) is None
+
+
+def test_poses_may_be_images_of_each_other() -> None:
+    """Oracle: one marker lifted in each pose, by as much; by another length neither is an image."""
+    one = PoseTarget(name="one", targets={"high": HIGH, "low": (0.2, -0.05)})
+    two = PoseTarget(name="two", targets={"low": LOW, "high": (0.2, 0.05)})
+    far = PoseTarget(name="far", targets={"low": (0.18, -0.03), "high": (0.2, 0.05)})
+    assert find_mirror_axis(plate(), [one, two]) == "y"
+    assert find_mirror_axis(plate(), [one, far]) is None
+    assert find_mirror_axis(plate(), [one]) is None
