@@ -106,12 +106,19 @@ def designed_motor(robot: "Robot", folder: Path) -> str:
 
 
 def kit_motor(robot: "Robot", folder: Path) -> str:
-    """Key of the motor that the kit of a robot takes: that of robot.toml, else of the design next to it; or "auto"."""
+    """Key of the motor on a robot: that of robot.toml, of motors.toml, or of the kit of its design; or "auto"."""
+    from hydrostat.cli.folders import folder_of
+    from hydrostat.control import Calibration
 
     def take(card: "Any", network: "Any") -> str:
         return str(network["craft"]["motor"] if card["motor"] == "auto" else card["motor"])
 
-    return robot.motor if robot.motor != "auto" else _of_design(robot, folder, take) or "auto"
+    if robot.motor != "auto":
+        return robot.motor
+    with suppress(InputError):  # without motors, or with others: commands that need them say so
+        if model := Calibration.read(folder_of(folder), robot).model:
+            return model
+    return _of_design(robot, folder, take) or "auto"
 
 
 def designed_cost(robot: "Robot", folder: Path) -> "BuildCost | None":

@@ -114,6 +114,7 @@ def fabricate(
         step=step,
         force=force,
     )
+    kits.check_motor_and_board(motor or "auto", board)
     limit = parse_optional("--tension", tension, FORCE)
     spend = parse_budget(budget)
     began = time.perf_counter()
@@ -137,6 +138,8 @@ def fabricate(
     kit.write(out)
     _print_motors(loaded, kit, options)
     print_kit(kit)
+    if motor not in (None, "auto", loaded.motor):
+        print(f'note: to keep this motor for calibrate and play, write motor = "{motor}" into robot.toml')
     if simple:
         from hydrostat.robot import save_robot
 

@@ -102,6 +102,7 @@ def firmware(
     given = calibration if chosen.bus else control.on_boards(calibration, boards)
     _check_count(board, given)
     given = _set_counts(given, usual, is_new=bool(counts or motor or chosen.bus))
+    given = given.with_model(chosen.key) if motor or chosen.bus else given
     _check_turns(loaded, given, chosen)
     ports = port.split(",") if port else []
     if ports and len(ports) != given.boards:
@@ -171,7 +172,9 @@ def _choose_motor(asked: str | None, own: str, calibration: "Calibration", count
     from hydrostat.fabrication import ALL_MOTORS
 
     known = {each.key: each for each in ALL_MOTORS if each.counts or (each.is_feetech and (asked or counts is None))}
-    if asked is None and not (own in known and known[own].bus):
+    if asked is None and counts is None and own == "auto" and calibration.model in known:
+        own = calibration.model or own
+    elif asked is None and not (own in known and known[own].bus):
         told = {each.counts for each in calibration.motors}
         steps = {key: SERVO_STEPS.get(each.bus, each.counts) for key, each in known.items()}
         own = next((key for key, each in steps.items() if told == {each}), _USUAL)

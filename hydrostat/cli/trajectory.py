@@ -1,12 +1,14 @@
 """`hydrostat trajectory`."""
 
 import json
+import math
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from hydrostat.cli.design_results import kit_motor
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result_folder
 from hydrostat.cli.option_errors import naming_option
 from hydrostat.cli.options import (
@@ -25,7 +27,9 @@ from hydrostat.errors import InputError
 from hydrostat.progress import Progress
 
 if TYPE_CHECKING:
+    from hydrostat.arrays import Vector
     from hydrostat.ik import Keyframe, Limits, Trajectory
+    from hydrostat.robot import Robot
     from hydrostat.simulation import Simulation
 
 
@@ -105,10 +109,31 @@ def trajectory(
         with result_folder(out) as folder:
             files = _write(simulation, made, facts, folder, width, progress)
     print(*made.lines(), sep="\n")
+    if warning := warn_of_speed(loaded, kit_motor(loaded, robot), made.peak_speeds):
+        print(warning)
     print("Wrote " + ", ".join(str(out / file.relative_to(folder)) for file in files))
     stuck = (IKStatus.ITERATION_LIMIT, IKStatus.NO_EQUILIBRIUM)
     if any(key.found is not None and key.found.status in stuck for key in made.keyframes):
         raise typer.Exit(1)
+
+
+def warn_of_speed(robot: "Robot", key: str, peaks: "Vector") -> str:
+    """Warning of peak speeds [m/s], winches first, that a motor does not reach; empty if it does or is unknown."""
+    from hydrostat.fabrication import Motor
+
+    if key == "auto":
+        return ""
+    turns = Motor.choose(key).speed / 60
+    free = [2 * math.pi * turns * winch.spool_radius for winch in robot.winches]
+    ratios = [peak / most for peak, most in zip(peaks.tolist(), free, strict=False)]
+    if max(ratios, default=0.0) <= 1:
+        return ""
+    number = ratios.index(max(ratios))
+    peak, most, slowest = 1e3 * peaks[number], 1e3 * free[number], math.floor(1e3 * min(free))
+    return (
+        f"warning: winch {robot.winches[number].name} takes in {peak:.3g} mm/s, its {key} at most {most:.3g} "
+        f'mm/s without load. Plan with --max-speed "{slowest} mm/s" or less'
+    )
 
 
 def _keyframe_names(robot: Any, poses: str | None) -> list[str]:

@@ -62,7 +62,7 @@ def arm_motors(
         facts = link.identify()
         if port == EMULATED:
             models = ", ".join(sorted({fact.model for fact in facts}))
-            source = "in robot.toml" if motor in (None, robot.motor) else "of its design"
+            source = "in robot.toml" if motor in (None, robot.motor) else "of motors.toml or its design"
             log(f'{port}: motors are {models} (motor = "{emulated.motor}" {source})')
         constants = np.array([fact.constant for fact in facts])
         link.guard = TensionGuard(known, constants, calibration.labels)

@@ -39,6 +39,7 @@ class WinchMotor:
         current: the most that the motor may draw [A].
         counts: encoder counts per spool turn; only for motors on a board with our firmware.
         board: or line that it hangs on, from 1, where there are several.
+        model: key of the motor, as `hydrostat firmware` chose it; None: that of the robot or of its design.
     """
 
     winch: str
@@ -50,12 +51,15 @@ class WinchMotor:
     current: float = 0.4
     counts: float | None = None
     board: int = 1
+    model: str | None = None
 
     def __post_init__(self) -> None:
         if not 0 <= self.number <= 252:
             raise InputError(f"{self.winch}: a motor has a number from 0 to 252, not {self.number}")
         if not 1 <= self.board <= 16:
             raise InputError(f"{self.winch}: boards are counted from 1 to 16, not {self.board}")
+        if self.model is not None:
+            Motor.choose(self.model)
         if self.turns not in (1, -1):
             raise InputError(f"{self.winch}: turns must be 1 or -1, not {self.turns}")
         for name, value, most in (("radius", self.radius, 0.5), ("current", self.current, 30.0)):
@@ -118,6 +122,16 @@ class Calibration:
                 begin = end * SCS_TICK + each.turns * payouts[each.winch] / each.radius
             motors.append(replace(each, zero=begin if each.zero is None else each.zero))
         return Calibration(tuple(motors))
+
+    def with_model(self, key: str) -> "Calibration":
+        """Return a copy in which all motors have the key of a model."""
+        return Calibration(tuple(replace(motor, model=key) for motor in self.motors))
+
+    @property
+    def model(self) -> str | None:
+        """Key of the motor that all of them are; None if they differ or one is unknown."""
+        models = {motor.model for motor in self.motors}
+        return models.pop() if len(models) == 1 else None
 
     @property
     def boards(self) -> int:
@@ -242,6 +256,8 @@ class Calibration:
                 lines.append(f"curve = [{pairs}]  # angle turned [rad], cable taken in [m]\n")
             if self.boards > 1:
                 lines.append(f"board = {spool.board}\n")
+            if spool.model is not None:
+                lines.append(f"model = {json.dumps(spool.model)}\n")
             if spool.counts is not None:
                 lines.append(f"counts = {float(spool.counts)!r}  # of the encoder in a turn of the spool\n")
         return replace_file(folder / name, "".join(lines).encode())
@@ -260,6 +276,7 @@ _KEYS: dict[str, tuple[type, ...]] = {
     "current": (int, float),
     "counts": (int, float),
     "board": (int,),
+    "model": (str,),
 }
 
 

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
         PartOptions,
         PatternOptions,
     )
+    from hydrostat.fabrication.lists.motors import check_motor_and_board
     from hydrostat.fabrication.lists.stitching import depth_table
     from hydrostat.fabrication.motor_choice import (
         drive_price,
@@ -76,6 +77,7 @@ __all__ = [
     "board_for",
     "build_kit",
     "check_board",
+    "check_motor_and_board",
     "depth_table",
     "drive_price",
     "find_material_problems",

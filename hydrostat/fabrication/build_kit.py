@@ -14,8 +14,8 @@ from hydrostat.fabrication.kit import MANIFEST, Kit, UnbuildableError, manifest
 from hydrostat.fabrication.kit_options import OVER_BUDGET, KitOptions, Method
 from hydrostat.fabrication.kit_plan import BodyWork, KitFindings, KitPlan
 from hydrostat.fabrication.lists.lists import Lists, make_lists
+from hydrostat.fabrication.lists.motors import check_motor_and_board
 from hydrostat.fabrication.motor_choice import find_motor, motors_price, pulled_torques
-from hydrostat.fabrication.parts.motor import Motor
 from hydrostat.fabrication.parts.rigid_parts import RigidParts, rigid_parts
 from hydrostat.fabrication.passage import find_passage_problems, find_passage_warnings
 from hydrostat.fabrication.patterns.channels import channel_strips
@@ -139,8 +139,7 @@ def _plan_and_lists(robot: Robot, options: KitOptions | None, tell: "_Stages") -
     check_type(robot, Robot, "a kit is made of a Robot, such as load_robot gives")
     check_type(options, (KitOptions, type(None)), "options must be KitOptions(...)")
     options = options or KitOptions()
-    if (key := options.motor_for(robot)) != "auto":
-        Motor.choose(key)  # reject an unknown name before the work
+    check_motor_and_board(options.motor_for(robot), options.board, len(robot.winches))  # before the work
     if options.step:
         require_cad()
     plan = _plan(robot, options, tell)

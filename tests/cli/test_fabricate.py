@@ -25,7 +25,7 @@ from hydrostat.cli.design_results import (
 from hydrostat.cli.remedies import design_remedy, kit_remedy, note_room
 from hydrostat.design import Alternative, BuildCost, Constraints, Network
 from hydrostat.errors import InputError
-from hydrostat.fabrication import ALL_MOTORS, Demand, KitOptions, find_refusals
+from hydrostat.fabrication import ALL_MOTORS, Demand, KitOptions, build_kit, find_refusals
 from hydrostat.project import Wishes, Work
 from hydrostat.robot import CableSide, Marker, Pin, PoseTarget, load_robot, robot_hash, save_robot, scaled_robot
 
@@ -253,6 +253,27 @@ def test_a_budget_refuses_and_names_the_cheapest_way(run: Run, tmp_path: Path) -
     assert motor == min(prices.keys() - by_name, key=prices.__getitem__)
     assert int(least) == pytest.approx(cost - prices["25d"] + prices[motor], abs=2)
     assert f"--motor {motor} --budget {cost - 1}USD" in out
+
+
+@pytest.mark.parametrize(
+    ("motor", "board", "words"),
+    [("foo", "uno", 'unknown motor "foo"'), ("sts3215", "uno", "drives no bus servos"), ("xl330", "mega", "needs no")],
+)
+def test_motor_and_board_are_checked_before_the_robot_is_read(
+    run: Run, tmp_path: Path, motor: str, board: str, words: str
+) -> None:
+    """Oracle: robot.toml is empty, which is an error of its own once it is read."""
+    (tmp_path / "robot.toml").write_text("")
+    code, _, err = run("fabricate", tmp_path, "--motor", motor, "--board", board, "--out", tmp_path / "kit")
+    assert code == 2
+    assert words in err
+
+
+def test_the_robots_own_motor_is_checked_with_the_board_before_its_loads() -> None:
+    robot, stages = replace(gallery_robot("finger"), motor="sts3215"), []
+    with pytest.raises(InputError, match="drives no bus servos"):
+        build_kit(robot, options=KitOptions(board="uno"), progress=lambda *stage: stages.append(stage))
+    assert stages == []
 
 
 @pytest.mark.parametrize("text", ["120 EUR", "0 USD", "-5USD", "much", "nan USD"])

@@ -10,14 +10,16 @@ import sys
 import time
 from collections.abc import Callable
 from contextlib import nullcontext
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from own_time import PROGRAM, run_in_own_time
 
+from hydrostat.cli.design_results import kit_motor
 from hydrostat.cli.play_camera import require_rest
-from hydrostat.control import Motors, SimulatedLink
+from hydrostat.control import Calibration, Motors, SimulatedLink
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.robot import Winch, gallery_folder, load_robot, robot_hash
 
@@ -59,6 +61,21 @@ def test_it_plays_on_emulated_motors(starfish: Path, wave: Path) -> None:
     assert [line.rpartition(" s: ")[2] for line in lines[-3:-1]] == ["stopped", "closed"], "and by nobody's hand"
 
 
+def test_motors_toml_remembers_the_motor(starfish: Path, tmp_path: Path) -> None:
+    """Oracle: the motor that the file is written with, where robot.toml and designs name none."""
+    folder = shutil.copytree(starfish, tmp_path / "robot")
+    robot = load_robot(folder)
+    usual = Calibration.usual(robot)
+    usual.write(folder)
+    assert kit_motor(robot, folder) == "auto"
+    Calibration(tuple(replace(motor, model="sts3215") for motor in usual.motors)).write(folder)
+    assert Calibration.read(folder, robot).model == "sts3215"
+    assert kit_motor(robot, folder) == "sts3215"
+    assert kit_motor(replace(robot, motor="n20"), folder) == "n20"
+    with pytest.raises(InputError, match='unknown motor "sts"'):
+        replace(usual.motors[0], model="sts")
+
+
 @pytest.mark.slow
 def test_it_emulates_the_motor_of_the_design(starfish: Path, wave: Path, tmp_path: Path) -> None:
     """Oracle: the motor in score.json next to a robot that names none."""
@@ -67,7 +84,7 @@ def test_it_emulates_the_motor_of_the_design(starfish: Path, wave: Path, tmp_pat
     (tmp_path / "score.json").write_text(json.dumps(card))
     code, out, err = run_in_own_time("play", robot, wave, "--motors", "emulated")
     assert (code, err) == (0, "")
-    assert 'emulated: motors are XC330-M288 (motor = "xc330" of its design)' in out
+    assert 'emulated: motors are XC330-M288 (motor = "xc330" of motors.toml or its design)' in out
 
 
 @pytest.mark.parametrize(

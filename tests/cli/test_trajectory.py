@@ -10,12 +10,25 @@ import pytest
 from PIL import Image
 
 import hydrostat as hs
+from hydrostat.cli.trajectory import warn_of_speed
+from hydrostat.fabrication import Motor
 from hydrostat.ik import IKOptions, IKStatus, TrajectoryOptions, solve_ik_trajectory
 from hydrostat.simulation import ContractionProfile
 
 Run = Callable[..., tuple[int, str, str]]
 
 pytestmark = pytest.mark.usefixtures("unchecked")
+
+
+def test_winches_faster_than_their_motor_are_named() -> None:
+    """Oracle: the no-load speed of the motor on its spool, 2 pi r n."""
+    robot = hs.load_robot("gallery:starfish")
+    free = 2 * np.pi * robot.winches[1].spool_radius * Motor.choose("sts3215").speed / 60
+    assert warn_of_speed(robot, "sts3215", np.array([0.0, 0.99 * free, 0.0])) == ""
+    assert warn_of_speed(robot, "auto", np.array([0.0, 9.0, 0.0])) == ""
+    warning = warn_of_speed(robot, "sts3215", np.array([0.0, 1.01 * free, 0.0]))
+    assert warning.startswith(f"warning: winch {robot.winches[1].name} takes in {1010 * free:.3g} mm/s, its sts3215")
+    assert warning.endswith(f'--max-speed "{int(1e3 * free)} mm/s" or less')
 
 
 @pytest.mark.slow

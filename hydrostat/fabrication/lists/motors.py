@@ -340,21 +340,37 @@ class PowerPlan:
         )
 
 
+def check_motor_and_board(key: str, board: str | None, winches: int = 0) -> None:
+    """Check a motor by its key and the board that drives it on each winch, in no time.
+
+    Raises:
+        InputError: an unknown motor, or a board that does not drive it, or not so many of it.
+    """
+    if key != "auto":
+        _check_board(Motor.choose(key), board, winches)
+
+
+def _check_board(motor: Motor, board: str | None, winches: int) -> None:
+    if board is None:
+        return
+    if motor.is_feetech:
+        most = BOARDS[board].servos
+        if not most:
+            raise InputError(f"--board {board}: drives no bus servos. Use --board esp32s3, or remove it.")
+        if winches > most:
+            raise InputError(f"--board {board}: drives {most} servos, the robot has {winches}. Remove --board.")
+    elif motor.bus:
+        known = " or ".join(each.key for each in MOTORS if not each.bus)
+        raise InputError(f"--board {board}: motor {motor.key} needs no board. Remove --board, or add --motor {known}.")
+
+
 def power_plan(torques: Mapping[str, float], motor: Motor, board: str | None = None) -> PowerPlan | None:
     """Plan the supply of a motor on each winch, by its name and largest torque [N mm]; None where there are none.
 
     Raises:
         InputError: a board that does not drive motors on a bus, or drives fewer.
     """
-    if board is not None and motor.is_feetech:
-        most = BOARDS[board].servos
-        if not most:
-            raise InputError(f"--board {board}: drives no bus servos. Use --board esp32s3, or remove it.")
-        if len(torques) > most:
-            raise InputError(f"--board {board}: drives {most} servos, the robot has {len(torques)}. Remove --board.")
-    elif board is not None and motor.bus:
-        known = " or ".join(each.key for each in MOTORS if not each.bus)
-        raise InputError(f"--board {board}: motor {motor.key} needs no board. Remove --board, or add --motor {known}.")
+    _check_board(motor, board, len(torques))
     if not torques:
         return None
     spread = motor.stall_current - motor.free_current
