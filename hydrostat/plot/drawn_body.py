@@ -7,6 +7,7 @@ import numpy as np
 from hydrostat.arrays import Points, Vector
 from hydrostat.drawing import Camera, Render
 from hydrostat.plot.sheet import Place, Places, Spread
+from hydrostat.robot import SEWN_DEPTH
 from hydrostat.units import MILLIMETERS
 
 LEVELS = 8  # steps from what is just covered to what is deep inside
@@ -35,7 +36,8 @@ class DrawnBody:
         camera, _, image, thickness = self.sight
         depths = image.covers(camera.see(MILLIMETERS * points))
         levels = np.ceil(LEVELS * (1 - np.exp(-3 * depths / thickness))) / LEVELS
-        return np.where(depths > max(0.02 * thickness, image.buffer.pixel), 0.26 + 0.42 * levels, 0.0)
+        skin = min(MILLIMETERS * SEWN_DEPTH, 0.1 * thickness)  # cables on a skin lie as deep, and are to be seen
+        return np.where(depths > max(skin, image.buffer.pixel), 0.26 + 0.42 * levels, 0.0)
 
     def cable(self, points: Points) -> DrawnCable:
         """A cable through points [m]."""

@@ -48,8 +48,8 @@ class Labels:
 
     def flag(self, at: Place, words: str, color: str) -> None:
         """Write words on a colored flag that is tied to a point."""
-        extent = np.array([0.71 * len(words) + 1.2, 1.9]) * 7 * self._sheet.scale
-        center = self._find(at, extent, (12.0, 18.0, 27.0, 40.0, 60.0, 85.0), 0.0)
+        extent = np.array([0.74 * len(words) + 1.2, 1.9]) * 7 * self._sheet.scale
+        center = self._find(at, extent, (12.0, 18.0, 27.0, 40.0, 60.0, 85.0, 115.0), 0.0)
         self._sheet.curve(np.array([at, center]), color=color, linewidth=0.9, zorder=10)
         self._sheet.text(
             (center[0], center[1]), words, fontsize=7, color=Color.LIGHT, weight="bold", ha="center",
@@ -81,7 +81,8 @@ class Labels:
             rectangles = shapely.box(*boxes.T)
             costs = outside * shapely.area(shapely.intersection(rectangles, self._body)) / areas
         for other in self._taken:
-            costs = costs + 12 * _shared_areas(boxes, other) / areas
+            size = float(np.prod(other[2:] - other[:2]))  # a small thing is hidden by a small part of a long label
+            costs = costs + 30 * _shared_areas(boxes, other) / np.minimum(areas, max(size, 1e-9))
         covered = ((self._avoid >= boxes[:, None, :2]) & (self._avoid <= boxes[:, None, 2:])).all(axis=2)
         beyond = 1 - _shared_areas(boxes, np.concatenate([self._sheet.low, self._sheet.high])) / areas
         return costs + 0.2 * np.minimum(covered.sum(axis=1), 8) + 20 * beyond

@@ -23,6 +23,16 @@ def test_a_run_is_cut_where_it_enters_the_body() -> None:
     assert run.fades.tolist() == [0.0, fade]
 
 
+def test_cables_on_the_skin_are_seen() -> None:
+    """Oracle: depths below the front face; cables of at most 4 mm are sewn to the skin."""
+    mesh, camera = box_mesh((4, 3, 2), size=(0.1, 0.05, 0.03)), Camera.towards(np.array([0.0, -1.0, 0.0]))
+    image = render(camera.see(1e3 * mesh.nodes), mesh.boundary, pixel=0.25)
+    surface = DrawnBody(image.rings(), (camera, np.zeros(2), image, 100.0))
+    fades = surface.fades(np.array([[0.05, y, 0.015] for y in (0.001, 0.0035, 0.005)]))
+    assert fades[:2].tolist() == [0.0, 0.0]
+    assert fades[2] > 0
+
+
 def test_deeper_things_fade_more() -> None:
     mesh, camera = box_mesh((4, 3, 2), size=(0.1, 0.05, 0.03)), Camera.towards(np.array([0.0, -1.0, 0.0]))
     image = render(camera.see(1e3 * mesh.nodes), mesh.boundary, pixel=0.25)
