@@ -101,14 +101,15 @@ class FittedModel:
     def intervals(self) -> dict[str, tuple[float, float]]:
         """Intervals that hold each value with a probability of about 95 %.
 
-        They follow from `ends` if profiled, else from `interval_covariance`, or from `build_variance` if that is wider,
-        and reach to the value that finer elements would give.
+        They are the hull of two: one by the residuals (`ends` if profiled, else `interval_covariance`), and one by
+        what residuals cannot show: `build_variance`, and any mesh error between none and the largest `mesh_shift`.
         """
         half = 1.96 * np.sqrt(np.diag(self.interval_covariance))
         low, high = (self.numbers - half, self.numbers + half) if self.ends is None else self.ends
-        half = 1.96 * np.sqrt(self.build_variance)
-        low = np.minimum(low, self.numbers - half) + self.mesh_shift.min(axis=0, initial=0.0)
-        high = np.maximum(high, self.numbers + half) + self.mesh_shift.max(axis=0, initial=0.0)
+        least, most = self.mesh_shift.min(axis=0, initial=0.0), self.mesh_shift.max(axis=0, initial=0.0)
+        middle = self.numbers + 0.5 * (least + most)
+        half = 1.96 * np.sqrt(self.build_variance + (most - least) ** 2 / 12)
+        low, high = np.minimum(low, middle - half), np.maximum(high, middle + half)
         return {
             parameter.name: (parameter.from_fitted(one), parameter.from_fitted(other))
             for parameter, one, other in zip(self.model.parameters, low, high, strict=True)
