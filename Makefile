@@ -5,6 +5,8 @@ PYTHONS ?= $(PYTHON)
 VENV := .venv
 BIN := $(VENV)/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
+# Benchmarks that need arguments or other data.
+NEED_MORE := real
 # Small dense matrices: more threads of the linear algebra library only wait for each other.
 export OPENBLAS_NUM_THREADS ?= 1
 # The package is compiled once, even where bytecode is not to be written (empty: it is): a second less at each start.
@@ -20,7 +22,7 @@ help:
 	@echo "make quick     each test with its first case, without the slow ones: a minute or two"
 	@echo "make check     lint, types, import layers, tests"
 	@echo "make fix       format and repair what ruff can repair"
-	@echo "make bench     timings and figures of quality; prints tables"
+	@echo "make bench     timings and figures of quality; prints tables ($(NEED_MORE), which need more, run by hand)"
 	@echo "make studies   studies in lab/ in small sizes, about 6 minutes; prints tables (the others run by hand: lab/README.md)"
 	@echo "make docs      build the documentation site, build/docs/index.html"
 	@echo "make pictures  draw the pictures of the README again"
@@ -63,7 +65,7 @@ fix: $(VENV)/check.installed
 	$(BIN)/ruff format .
 
 bench: $(VENV)/test.installed
-	for file in $(wildcard benchmarks/*.py); do $(BIN)/python $$file || exit 1; done
+	for file in $(filter-out $(NEED_MORE:%=benchmarks/%.py),$(wildcard benchmarks/*.py)); do $(BIN)/python $$file || exit 1; done
 
 studies: $(VENV)/lab.installed
 	$(BIN)/python lab/run_studies.py

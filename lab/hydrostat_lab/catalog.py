@@ -252,7 +252,7 @@ CATALOG = {
             "96.5 to 100 %",
         ),
         _script(
-            "python lab/designs/design_robust.py",
+            "python benchmarks/design_robust.py",
             "error as built over that by hand or trees",
             "measured",
             "median 0.92 (0.6 was aimed at)",
@@ -273,14 +273,14 @@ CATALOG = {
             "| long, 200 mm | 50 | 0.49 mm |",
         ),
         _script(
-            "python lab/measured_robots/real.py FOLDER",
+            "python benchmarks/real.py FOLDER",
             "OpenCR, its authors' MuJoCo model 8.60 mm",
             "beaten",
             "5.31 mm",
             "| hydrostat: rigid disks on a rod | 90, 42, 236 s of CPU | 4.63 | 4.16 | **5.31** |",
         ),
         _script(
-            "python lab/measured_robots/real.py FOLDER",
+            "python benchmarks/real.py FOLDER",
             "Emio, its makers' SOFA beam 2.25 mm",
             "measured",
             "2.54 mm",

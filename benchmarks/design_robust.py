@@ -1,6 +1,6 @@
 """What designs are worth once they are built: errors of robots drawn at random, their commands played open loop.
 
-    python lab/designs/design_robust.py [--bodies starfish,puppy] [--methods hand,trees,exact,routes] [--draws 60]
+    python benchmarks/design_robust.py [--bodies starfish,puppy] [--methods hand,trees,exact,routes] [--draws 60]
                                        [--draws-in-space 20] [--held-out 5] [--seeds 3] [--rough] [--aimed]
                                        [--reachable]
                                        [--jobs 2] [--rows build/design_robust.jsonl]

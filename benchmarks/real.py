@@ -1,6 +1,6 @@
 """Real robots: errors of hydrostat against published measurements of robots that others built.
 
-    python lab/measured_robots/real.py FOLDER [--only NAME] [--samples N] [--plot FOLDER] [--profile]
+    python benchmarks/real.py FOLDER [--only NAME] [--samples N] [--plot FOLDER] [--profile]
 
 FOLDER holds opencr_v4/ (a tendon continuum robot of three segments with nine tendons; Continuum Robotics Laboratory,
 opencr-mujoco), trunk_payload/ (a vacuum-hose trunk of six motors with hung masses; Stanford ASL, trunk-stack) and emio/
@@ -25,8 +25,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from emio_rods import RodLegs, read_emio, rotation
-from emio_solid import SolidLegs
+from emio import RodLegs, SolidLegs, read_emio, rotation
 from machine import machine
 from real_robots import MM, opencr, trunk, with_hysteresis, with_play
 
