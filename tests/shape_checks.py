@@ -22,8 +22,14 @@ from warnings import catch_warnings, simplefilter
 
 import jaxtyping._decorator
 from beartype import BeartypeConf, beartype
-from beartype.roar import BeartypeDecorHintPep673Exception
-from jaxtyping import config, jaxtyped
+from beartype.roar import (
+    BeartypeCallHintReturnViolation,
+    BeartypeCallHintViolation,
+    BeartypeDecorHintPep673Exception,
+)
+from jaxtyping import TypeCheckError, config, jaxtyped
+from jaxtyping._decorator import _destring_annotation
+from jaxtyping._storage import pop_shape_memo, push_shape_memo, shape_str
 
 CALLS = 10
 """Calls of each function that a test checks."""
@@ -55,13 +61,19 @@ def checked(function: Callable[..., Any]) -> Callable[..., Any]:
     The result is a copy of the function whose code object is exchanged, which costs the later calls nothing.
     """
     assert isinstance(function, FunctionType)
-    code = function.__code__
-    public = FunctionType(code, function.__globals__, function.__name__, function.__defaults__, function.__closure__)
-    public.__kwdefaults__ = function.__kwdefaults__
+    public = _copy(function)
     wraps(function)(public)
     counter = _Counter(function, public)
     _exchange(public, counter.code)
     return public
+
+
+def _copy(function: FunctionType) -> FunctionType:
+    """Copy a function, without its names and annotations."""
+    code = function.__code__
+    made = FunctionType(code, function.__globals__, function.__name__, function.__defaults__, function.__closure__)
+    made.__kwdefaults__ = function.__kwdefaults__
+    return made
 
 
 def _exchange(function: FunctionType, code: CodeType) -> None:
@@ -107,7 +119,7 @@ class _Counter:
         if self.calls > CALLS or config.jaxtyping_disable:
             return self._function(*args, **kwargs)
         if self._checking is None:
-            self._checking = jaxtyped(self._function, typechecker=_typechecker)
+            self._checking = _checking(self._function)
         return self._checking(*args, **kwargs)
 
     def begin(self) -> None:
@@ -181,6 +193,37 @@ def decorate(body: list[ast.stmt]) -> None:
         else:
             for part in ("body", "orelse", "handlers", "finalbody"):
                 decorate(getattr(node, part, []))
+
+
+def _checking(function: FunctionType) -> Callable[..., Any]:
+    """Check a function's arguments and result.
+
+    jaxtyping's own decorator checks arguments again with the result, by functions that it writes and compiles; it
+    checks generators, and what returns Self, which cannot be checked outside its class.
+    """
+    if inspect.isgeneratorfunction(function) or inspect.iscoroutinefunction(function):
+        return jaxtyped(function, typechecker=_typechecker)
+    hinted = _copy(function)
+    hinted.__qualname__ = function.__qualname__
+    hinted.__annotations__ = {
+        name: _destring_annotation(hint, function.__globals__) for name, hint in function.__annotations__.items()
+    }
+    try:
+        checking = _beartype(hinted)
+    except BeartypeDecorHintPep673Exception:
+        return jaxtyped(function, typechecker=_typechecker)
+
+    def check(*args: Any, **kwargs: Any) -> Any:
+        shapes = push_shape_memo({})
+        try:
+            return checking(*args, **kwargs)
+        except BeartypeCallHintViolation as wrong:
+            checked = "return value" if isinstance(wrong, BeartypeCallHintReturnViolation) else "parameters"
+            raise TypeCheckError(f"{checked} of {function.__qualname__}: {wrong}\n{shape_str(shapes)}") from None
+        finally:
+            pop_shape_memo()
+
+    return check
 
 
 def _typechecker(function: Callable[..., Any]) -> Callable[..., Any]:
