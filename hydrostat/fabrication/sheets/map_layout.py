@@ -134,8 +134,11 @@ class LabelPlaces:
                 if not self._free(box):
                     continue
                 covered = int(_within(points, box).sum())
-                price = covered + 2.5 * ring + 0.01 * turn + (10 * self._measure_crossings(at, middle) if led else 0)
-                if covered <= most and price < least:
+                price = covered + 2.5 * ring + 0.01 * turn
+                if covered > most or price >= least:
+                    continue
+                price += 10 * self._measure_crossings(at, middle) if led else 0
+                if price < least:
                     best, least = middle, price
         if best is not None:
             self.take_box(_round(best, size, 0.15))
@@ -158,9 +161,13 @@ class LabelPlaces:
 
     def _measure_crossings(self, at: Spot, middle: Spot) -> float:
         """Sum the widths [mm] of boxes that a line between two spots crosses, without those at its first spot."""
-        spots = np.array(at) + np.linspace(0, 1, 40)[:, None] * np.subtract(middle, at)
-        inside = [(_within(spots, box), box[2] - box[0]) for box in self._boxes]
-        return sum(width for within, width in inside if within.any() and not within[0])
+        if not self._boxes:
+            return 0.0
+        x, y = (np.array(at) + np.linspace(0, 1, 40)[:, None] * np.subtract(middle, at)).T
+        left, top, right, bottom = (side[:, None] for side in np.array(self._boxes).T)
+        within = (x > left) & (x < right) & (y > top) & (y < bottom)
+        crossed = within.any(axis=1) & ~within[:, 0]
+        return sum(self._boxes[index][2] - self._boxes[index][0] for index in np.flatnonzero(crossed))
 
     def _free(self, box: Box) -> bool:
         left, top, right, bottom = self.room
