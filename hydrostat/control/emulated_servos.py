@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from math import inf, pi, sqrt
+from struct import Struct
 
 from hydrostat.control.dynamixel_bus import (
     CURRENT,
@@ -32,6 +33,10 @@ from hydrostat.control.dynamixel_packets import (
     PacketReader,
     pack,
 )
+
+_SIGNED = {1: Struct("<b"), 2: Struct("<h"), 4: Struct("<i")}
+_UNSIGNED = {1: Struct("<B"), 2: Struct("<H"), 4: Struct("<I")}
+"""Registers by their size [bytes]."""
 
 
 @dataclass
@@ -112,11 +117,11 @@ class EmulatedServo:
 
     def get(self, place: int, size: int) -> int:
         """A register."""
-        return int.from_bytes(self.table[place : place + size], "little", signed=True)
+        return _SIGNED[size].unpack_from(self.table, place)[0]
 
     def set(self, place: int, value: int, size: int) -> None:
         """Set a register."""
-        self.table[place : place + size] = int(value).to_bytes(size, "little", signed=value < 0)
+        (_SIGNED if value < 0 else _UNSIGNED)[size].pack_into(self.table, place, int(value))
 
     @property
     def torque(self) -> float:
@@ -147,8 +152,9 @@ class EmulatedServo:
         watch = self.get(WATCHDOG, 1)
         on = bool(self.table[TORQUE]) and not self.ails.is_off
         if watch > 0 and now - self.heard > 0.02 * watch:
-            self.set(WATCHDOG, -1, 1)
-        stopped = self.get(WATCHDOG, 1) == -1 and not self.ails.deaf_watchdog
+            watch = -1
+            self.set(WATCHDOG, watch, 1)
+        stopped = watch == -1 and not self.ails.deaf_watchdog
         goal = self.angle if stopped or not on else self.origin + TICK * self.get(GOAL, 4)
         rise = SPEEDING * self.get(PROFILE, 4) or 1e3
         limit = min(TURNING * self.get(PROFILE + 4, 4) or 6.0, sqrt(2 * rise * abs(goal - self.angle)))

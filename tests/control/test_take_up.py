@@ -28,16 +28,19 @@ class Winches:
 
     def __init__(self, slacks: np.ndarray = SLACKS, *, noise: float = 2e-3) -> None:
         rng, self.slacks, count = np.random.default_rng(7), slacks, len(slacks)
+        draws = (draw for _ in iter(int, 1) for draw in rng.normal(size=1000).tolist())
         self.pulls = STIFF[:count].astype(float)
         self.hardest = 0.0
         self.begin = rng.uniform(-3, 3, count)  # where each motor stands at first [rad]
         self.servos = [EmulatedServo(n + 1, model=1240, angle=float(self.begin[n])) for n in range(count)]
 
         def load(index: int):
+            begin, slack = float(self.begin[index]), float(slacks[index])
+
             def torque(angle: float) -> float:
-                pull = self.pulls[index] * max(RADIUS * (angle - self.begin[index]) - slacks[index], 0.0)
+                pull = self.pulls[index] * max(RADIUS * (angle - begin) - slack, 0.0)
                 self.hardest = max(self.hardest, pull)
-                return RADIUS * pull + CONSTANT * (0.01 + noise * float(rng.normal()))
+                return RADIUS * pull + CONSTANT * (0.01 + noise * next(draws))
 
             return torque
 
