@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import shapely
@@ -291,8 +292,8 @@ def _erode(seam: BaseGeometry, low: tuple[float, ...], high: tuple[float, ...], 
     for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
         count = max(1, math.ceil(float(np.linalg.norm(end - start)) / _RULES.spacing))
         for share in np.arange(count) / count:
-            x, y = start + share * (end - start)
-            room = room.intersection(affinity.translate(seam, -x, -y))
+            place = start + share * (end - start)
+            room = room.intersection(shapely.transform(seam, partial(np.add, -place)))
             if room.is_empty:
                 return room
     return room
