@@ -24,7 +24,9 @@ _TEMPLATES = ("blocks.typ", "assembly_sheet.typ", "overview.typ")
 
 
 def assembly_sheet(plan: KitPlan, lists: Lists, findings: KitFindings) -> bytes:
-    """A PDF: three pages for plush, five for foam, four for a printed body, one of wires; always the same bytes.
+    """A PDF: three pages for plush, five for foam, four for a printed body, one of wires, and maps of single cables.
+
+    The bytes are always the same.
 
     All words of the user reach the template as data, so that none of them is taken for markup.
     """
@@ -52,6 +54,7 @@ def _picture_facts(canvas: Canvas) -> PictureFacts:
     return {"svg": canvas.svg, "width": canvas.width}
 
 
+_DENSE = 6  # most cables of a body of foam that can be told apart on one map
 WIDE, HALF = 182.0, 88.0  # widths of a page and of half a page without its margins [mm]; both fit both papers
 
 
@@ -83,8 +86,8 @@ def sheet_pictures(plan: KitPlan, lists: Lists, views: Sequence[Camera]) -> dict
 
 
 def _single_maps(plan: KitPlan, views: Sequence[Camera]) -> list[Canvas]:
-    """Pages of maps with one cable each; only for a plush robot."""
-    if not plan.robot.cables or plan.method is not Method.PLUSH:
+    """Pages of maps with one cable each: for a plush robot, and where one map of all is too dense."""
+    if plan.method is not Method.PLUSH and len(plan.robot.cables) <= _DENSE:
         return []
     height, view = 235.0 - _shorter(plan.options.paper), views[0] if views else None
     return single_maps(plan.robot, plan.work.stitches, width=WIDE, height=height, view=view)

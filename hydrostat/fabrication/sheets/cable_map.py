@@ -376,7 +376,7 @@ def _space_scene(robot: Robot, view: Camera) -> _Scene:
         return [project_cable(robot, index, way, pane.sight, frame) for index, way in enumerate(pane.cables)]
 
     def draw(canvas: Canvas, frame: CanvasFrame) -> None:
-        canvas.line([frame.way(way) for way in pane.drawing.outlines], width=Canvas.THIN, grey=0.35, closed=True)
+        canvas.line([frame.way(way) for way in pane.drawing.outlines], width=Canvas.THIN, grey=0.35)
 
     return _Scene(pane.box, runs, draw)
 

@@ -6,14 +6,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from builders import gallery_robot
+from kit_plans import change_plan, make_plan
 
 from hydrostat.drawing import Canvas, Color
-from hydrostat.fabrication.kit_options import PatternOptions
+from hydrostat.fabrication import Demand
+from hydrostat.fabrication.kit_options import Method, PatternOptions
 from hydrostat.fabrication.patterns.skin import flat_skin
 from hydrostat.fabrication.patterns.stitches import cable_stitches
+from hydrostat.fabrication.sheets.assembly_sheet import _single_maps
 from hydrostat.fabrication.sheets.cable_map import flat_map, single_maps
 from hydrostat.fabrication.sheets.legible import note_lines
-from hydrostat.fabrication.sheets.map_layout import LabelPlaces
+from hydrostat.fabrication.sheets.map_layout import LabelPlaces, best_views, body_solid
 from hydrostat.fabrication.sheets.solid_pictures import portrait
 from hydrostat.fabrication.winch_marks import marked_name, winch_marks_of
 from hydrostat.robot import Robot
@@ -32,6 +35,18 @@ def renamed(robot: Robot, names: list[str]) -> Robot:
     known = dict(zip((winch.name for winch in robot.winches), names, strict=True))
     winches = [replace(winch, name=known[winch.name]) for winch in robot.winches]
     return robot.with_network(winches, [replace(cable, winch=known[cable.winch]) for cable in robot.cables])
+
+
+@pytest.mark.slow
+def test_a_foam_hand_has_a_map_for_each_cable(unchecked: None) -> None:
+    """Oracle: the titles; a body with few cables has one map of all."""
+    robot = gallery_robot("cupping_hand")
+    views = best_views(robot, body_solid(robot))
+    plan = make_plan(robot, Demand.of_results(robot, []), method=Method.FOAM)
+    told = [word for page in _single_maps(plan, views) for word in words(page.svg)]
+    assert {f"C{number}" for number in range(1, 11)} <= {word.split()[0] for word in told}
+    few = robot.with_network(robot.winches[:6], robot.cables[:6])
+    assert _single_maps(change_plan(plan, robot=few), views) == []
 
 
 def test_a_winch_has_one_mark_everywhere() -> None:
