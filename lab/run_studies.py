@@ -41,6 +41,7 @@ STUDIES: dict[str, str] = {
     "ik_methods/ik_sofa": "--repeats 2",
     "kits/kits": "--robots starfish",
     "kits/motor_kits": "--robots starfish --motors n20",
+    "kits/shared_winches": "",
     "large_bodies/factorization": "--repeat 3 --largest 2000",
     "large_bodies/large": "--sizes 4.7",
     "large_bodies/many": "--poses 40 --rounds 1 --bodies starfish",
