@@ -168,6 +168,8 @@ def _write(network: "Network", out: Path, *, kit: bool, budget: float | None) ->
     from hydrostat.fabrication import Kit
 
     began = time.perf_counter()
+    if network.timed_out:
+        print("search ended by --time, which does not count the report", file=sys.stderr, flush=True)
     with progress_bar() as progress:
         progress("Writing results", 0, 1)
         with result_folder(out, stale=STALE, kept=RECORDS) as folder:

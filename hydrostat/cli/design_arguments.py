@@ -141,7 +141,7 @@ class DesignArguments:
             "--time",
             "--timeout",
             metavar="TIME",
-            help="Maximum search time. Keeps the best network so far; writing it takes a few seconds more.",
+            help="Maximum search time. Keeps the best network so far. The report and the kit come on top.",
             show_default="none",
         ),
     ] = None
