@@ -5,13 +5,12 @@ from typing import TYPE_CHECKING
 from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
-    from hydrostat.camera.lens_file import LensFile
+    from hydrostat.camera.lens import LensFile
     from hydrostat.camera.marker_camera import CameraFrames, MarkerCamera
     from hydrostat.camera.measure_film import FILMS, FilmOptions, measure_film
-    from hydrostat.camera.measure_photos import PhotoMeasurements, PhotoOptions, measure_photos
+    from hydrostat.camera.measure_photos import PhotoMeasurements, PhotoOptions, measure_photos, table_text
     from hydrostat.camera.photo import Photo, read_colors
     from hydrostat.camera.print_tags import find_overhangs, tag_files, tags_pdf
-    from hydrostat.camera.table_text import table_text
 
 __all__ = [
     "FILMS",

@@ -12,27 +12,38 @@ from hydrostat.camera.lens import Lens, Pixels, Space, View
 from hydrostat.camera.tags import board_corners, sheet_of
 from hydrostat.errors import InputError
 
-FOCAL, FOCAL_SPREAD = 0.85, 0.3
-"""Focal length over the longer side of a photograph where the file does not say it, and its spread (logarithm)."""
 
-FOCAL_TRUST = 0.05
-"""Spread (logarithm) of a focal length that the file says."""
+@dataclass(frozen=True)
+class CalibrationRules:
+    """Guesses of a lens and their spread, and weights of corners."""
 
-CENTER_SPREAD, DISTORTION_SPREAD = 0.02, 0.15
-"""Spread of the principal point over the longer side, and of coefficients of distortion."""
+    focal: float = 0.85
+    focal_spread: float = 0.3
+    """Focal length over the longer side of a photograph where the file does not say it, and its spread (logarithm)."""
 
-LENS_TRUST = 0.01, 0.002, 0.01
-"""Spread of a lens that other photographs showed, as focus moves it: focal length, principal point, distortion."""
+    focal_trust: float = 0.05
+    """Spread (logarithm) of a focal length that the file says."""
 
-COVERED = 1.0
-"""Distance of a corner [pixels] from which on it counts as covered, if others are closer."""
+    center_spread: float = 0.02
+    distortion_spread: float = 0.15
+    """Spread of the principal point over the longer side, and of coefficients of distortion."""
 
-SCALES = (0.5,), (20.0, 3.0, 0.5)
-"""Errors [pixels] from which on corners count less, one fit after another, of two tries; the better one counts.
+    lens_trust: tuple[float, float, float] = (0.01, 0.002, 0.01)
+    """Spread of a lens that other photographs showed, as focus moves it: focal length, principal point, distortion."""
 
-The first keeps to a first guess of which most is right, as if a sheet has moved. The second is for a guess that is far
-from all, as by another focal length.
-"""
+    covered: float = 1.0
+    """Distance of a corner [pixels] from which on it counts as covered, if others are closer."""
+
+    scales: tuple[tuple[float, ...], ...] = ((0.5,), (20.0, 3.0, 0.5))
+    """Errors [pixels] from which on corners count less, one fit after another, of two tries; the better one counts.
+
+    The first keeps to a first guess of which most is right, as if a sheet has moved. The second is for a guess that is
+    far from all, as by another focal length.
+    """
+
+
+RULES = CalibrationRules()
+
 
 LENS = 5
 """Numbers of a lens."""
@@ -76,15 +87,19 @@ def calibrate_camera(
         InputError: sheets of which no photograph shows two together.
     """
     long = max(size)
-    start = known or Lens(focal or FOCAL * long, ((size[0] - 1) / 2, (size[1] - 1) / 2), (0.0, 0.0))
-    trust = (FOCAL_TRUST if focal else FOCAL_SPREAD, CENTER_SPREAD, DISTORTION_SPREAD) if known is None else LENS_TRUST
+    start = known or Lens(focal or RULES.focal * long, ((size[0] - 1) / 2, (size[1] - 1) / 2), (0.0, 0.0))
+    trust = (
+        (RULES.focal_trust if focal else RULES.focal_spread, RULES.center_spread, RULES.distortion_spread)
+        if known is None
+        else RULES.lens_trust
+    )
     sheets, views = _first_guess(tags, start)
     spreads = np.array([trust[0], *[trust[1] * long] * 2, *[trust[2]] * 2])
     problem = _Problem(tags, sorted(sheets), start, spreads)
     numbers = problem.solve(problem.pack(sheets, views))
     lens, sheets, views = problem.unpack(numbers)
     away = np.linalg.norm(problem.residuals(numbers)[:-LENS].reshape(-1, 2), axis=1)
-    good = away <= max(COVERED, 5 * float(np.median(away)))
+    good = away <= max(RULES.covered, 5 * float(np.median(away)))
     errors = [float(np.sqrt((away[(problem.photo == photo) & good] ** 2).mean())) for photo in range(len(views))]
     wrong = {
         (photo, sheet): float(1 - good[(problem.photo == photo) & (problem.sheet == index)].mean())
@@ -210,7 +225,7 @@ class _Problem:
     def solve(self, start: np.ndarray) -> np.ndarray:
         """Numbers with the smallest loss, of the tries from a first guess."""
         best = (np.inf, start)
-        for scales in SCALES:
+        for scales in RULES.scales:
             numbers, cost = start, np.inf
             for scale in scales:
                 found = least_squares(

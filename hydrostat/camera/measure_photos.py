@@ -9,12 +9,11 @@ import numpy as np
 from hydrostat.arrays import Float
 from hydrostat.camera.calibrate_camera import CameraCalibration, calibrate_camera
 from hydrostat.camera.find_tags import Corners, find_tags, load_opencv
-from hydrostat.camera.lens import View
-from hydrostat.camera.lens_file import LensFile
+from hydrostat.camera.lens import LensFile, View
 from hydrostat.camera.locate_tags import align_places, locate_in_space, locate_on_plane, pairs_of
 from hydrostat.camera.photo import Photo, read_pixels
 from hydrostat.camera.photo_warnings import (
-    SHIFTED,
+    LIMITS,
     check_sheets,
     find_missing,
     warn_of_board,
@@ -24,6 +23,7 @@ from hydrostat.camera.photo_warnings import (
 )
 from hydrostat.camera.tags import MARKER_SIDE, marker_tags, sheet_of
 from hydrostat.errors import InputError
+from hydrostat.files import csv_text
 from hydrostat.given import check_not_negative, check_positive
 from hydrostat.identification import Measurements
 from hydrostat.robot import Robot
@@ -301,7 +301,7 @@ def _align(robot: Robot, found: Found, poses: Sequence[Equilibrium | None]) -> t
         float(np.sqrt(((places @ a.T + b - targets) ** 2).sum(axis=1).mean()))
         for a, b in ((turn, shift), align_places(places, targets, mirror=True))
     )
-    if mirrored < 0.5 * straight and straight > SHIFTED * robot.body.mesh.size:
+    if mirrored < 0.5 * straight and straight > LIMITS.shifted * robot.body.mesh.size:
         raise InputError(
             "the markers are a mirror image of the robot's. Turn the robot over, or swap the tags of left and right."
         )
@@ -318,3 +318,22 @@ def _table(robot: Robot, photos: Sequence[Photo], places: Found) -> Measurements
         masses=np.array([[photo.masses.get(name, 0.0) for name in names] for photo in photos]),
         in_order=all(photo.step is not None for photo in photos),
     )
+
+
+def table_text(robot: Robot, found: PhotoMeasurements) -> bytes:
+    """CSV with the columns pose, left_mm per winch, tip_x_mm ... per marker, tip_load_g per marker with a mass."""
+    measured = found.measurements
+    axes = "xyz"[: measured.places.shape[2]]
+    hung = np.asarray(measured.hung_masses.any(axis=0))
+    loaded = [name for name, has_mass in zip(measured.markers, hung.tolist(), strict=True) if has_mass]
+    head = ["pose", *(f"{winch.name}_mm" for winch in robot.winches)]
+    head += [f"{name}_{axis}_mm" for name in measured.markers for axis in axes]
+    head += [f"{name}_load_g" for name in loaded]
+    rows = []
+    for members, command, places, masses in zip(
+        found.rows, measured.commands, measured.places, measured.hung_masses, strict=True
+    ):
+        numbers = [f"{1e3 * value:.6g}" for value in command]
+        numbers += ["" if np.isnan(value) else f"{1e3 * value:.3f}" for value in places.ravel()]
+        rows.append([found.photos[members[0]].photo.name, *numbers, *(f"{1e3 * mass:.6g}" for mass in masses[hung])])
+    return csv_text(head, rows)

@@ -1,6 +1,7 @@
 """Warnings of what is likely to be wrong with photographs: texts, each a line."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from statistics import median
 
 import numpy as np
@@ -13,20 +14,28 @@ from hydrostat.errors import InputError
 from hydrostat.robot import Robot
 from hydrostat.simulation import Equilibrium
 
-MISPLACED = 0.35
-"""Share of the corners of a sheet that may be elsewhere than its others say: tags that the robot half covers."""
 
-BENT = 0.3e-3
-"""Error of the board's corners [m] from which on it is bent."""
+@dataclass(frozen=True)
+class PhotoLimits:
+    """Limits beyond which photographs get a warning."""
 
-MISSIZED = 0.015
-"""Share by which tags of markers may look larger or smaller than they are."""
+    misplaced: float = 0.35
+    """Share of the corners of a sheet that may be elsewhere than its others say: tags that the robot half covers."""
 
-SHIFTED = 0.05
-"""Shift of the frame in one photograph, as a share of the body's size, from which on the board has moved."""
+    bent: float = 0.3e-3
+    """Error of the board's corners [m] from which on it is bent."""
 
-MAX_CORNER_ERROR = 0.5
-"""Error of corners that sharp photographs do not have [pixels]."""
+    missized: float = 0.015
+    """Share by which tags of markers may look larger or smaller than they are."""
+
+    shifted: float = 0.05
+    """Shift of the frame in one photograph, as a share of the body's size, from which on the board has moved."""
+
+    max_corner_error: float = 0.5
+    """Error of corners that sharp photographs do not have [pixels]."""
+
+
+LIMITS = PhotoLimits()
 
 
 def find_missing(
@@ -48,7 +57,7 @@ def find_missing(
 def check_sheets(photos: Sequence[Photo], calibration: CameraCalibration) -> None:
     """Refuse photographs in which a sheet is elsewhere than the others say (InputError: one is)."""
     for (photo, sheet), share in calibration.wrong.items():
-        if share > MISPLACED:
+        if share > LIMITS.misplaced:
             raise InputError(
                 f"{photos[photo].name}: the board is bent or its sheets have moved ({100 * share:.0f} % of the corners "
                 f"of sheet {sheet + 1} are elsewhere). Glue sheets to a flat plate.{_few(photos)}"
@@ -67,7 +76,7 @@ def warn_of_board(photos: Sequence[Photo], calibration: CameraCalibration, scale
         f"{photo.name}: the board is off by {1e3 * error * scale:.2f} mm ({error:.2f} pixels). It is bent or "
         f"printed in different sizes.{_few(photos)}"
         for photo, error in zip(photos, calibration.errors, strict=True)
-        if error * scale > BENT and error > MAX_CORNER_ERROR
+        if error * scale > LIMITS.bent and error > LIMITS.max_corner_error
     ]
 
 
@@ -77,14 +86,14 @@ def warn_of_tags(photos: Sequence[Photo], misfits: Sequence[Mapping[str, float]]
         f"{photo.name}: the tag of {name} is no square ({misfit:.1f} pixels). It is bent, tilted or half covered."
         for photo, each in zip(photos, misfits, strict=True)
         for name, misfit in each.items()
-        if misfit > MAX_CORNER_ERROR
+        if misfit > LIMITS.max_corner_error
     ]
 
 
 def warn_of_sizes(sides: list[float], side: float, height: float, calibration: CameraCalibration) -> list[str]:
     """Warn if tags look larger or smaller than they are: their height or their print is another."""
     share = median(sides) / side
-    if abs(share - 1) < MISSIZED:
+    if abs(share - 1) < LIMITS.missized:
         return []
     away = median(float(-(view.rotation.T @ view.translation)[2]) for view in calibration.views)
     likely = away - (away - height) / share
@@ -115,6 +124,6 @@ def warn_of_frame(
         own_turn, own_shift = align_places(places, targets)
         common = np.sqrt(((places @ turn.T + shift - targets) ** 2).sum(axis=1).mean())
         own = np.sqrt(((places @ own_turn.T + own_shift - targets) ** 2).sum(axis=1).mean())
-        if common > max(SHIFTED * robot.body.mesh.size, 4 * own):
+        if common > max(LIMITS.shifted * robot.body.mesh.size, 4 * own):
             texts.append(f"{photo.name}: board or robot moved by about {1e3 * common:.0f} mm since other photographs.")
     return texts

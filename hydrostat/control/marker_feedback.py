@@ -16,26 +16,35 @@ from hydrostat.ik import CORRECTION_DAMPING
 from hydrostat.robot import Robot
 from hydrostat.units import plural
 
-GAIN = 3.0
-"""Share of the remaining marker error that is taken back in a second, at first [1/s]."""
 
-BOUND = 0.2
-"""Largest correction of a winch, as a share of its travel."""
+@dataclass(frozen=True)
+class FeedbackRules:
+    """Rules of the correction by markers, the same for all robots."""
 
-MAX_CORRECTION_SPEED = 0.02
-"""Largest speed of a correction [m/s]."""
+    gain: float = 3.0
+    """Share of the remaining marker error that is taken back in a second, at first [1/s]."""
 
-MISREAD = 0.2
-"""Distance from the simulated marker, as a share of the body's size, beyond which a marker counts as misread."""
+    bound: float = 0.2
+    """Largest correction of a winch, as a share of its travel."""
 
-LOST, GIVEN_UP = 0.5, 10.0
-"""Time without a marker in sight after which the camera counts as lost, and after which a held robot stops [s]."""
+    max_correction_speed: float = 0.02
+    """Largest speed of a correction [m/s]."""
 
-FADE = 1.0
-"""Time in which a correction fades out when the motors go on without a camera [s]."""
+    misread: float = 0.2
+    """Distance from the simulated marker, as a share of the body's size, beyond which a marker counts as misread."""
 
-SETTLE = 1.0
-"""Time for which the last pose is still corrected [s]."""
+    lost: float = 0.5
+    given_up: float = 10.0
+    """Time without a marker in sight after which the camera counts as lost, and after which a held robot stops [s]."""
+
+    fade: float = 1.0
+    """Time in which a correction fades out when the motors go on without a camera [s]."""
+
+    settle: float = 1.0
+    """Time for which the last pose is still corrected [s]."""
+
+
+RULES = FeedbackRules()
 
 
 class LostAction(StrEnum):
@@ -91,7 +100,7 @@ class MarkerFeedback:
         open_errors: the same without the correction, to first order [m].
     """
 
-    settle = SETTLE
+    settle = RULES.settle
 
     def __init__(
         self,
@@ -117,7 +126,7 @@ class MarkerFeedback:
         self._path, self._source, self._lag, self._lost, self._log = path, source, lag, lost, log
         self._low = np.array([-winch.release for winch in robot.winches])
         self._high = np.array([winch.travel for winch in robot.winches])
-        self._bound, self._misread = BOUND * self._high, MISREAD * robot.body.mesh.size
+        self._bound, self._misread = RULES.bound * self._high, RULES.misread * robot.body.mesh.size
         self._winches = [winch.name for winch in robot.winches]
         self._correction = np.zeros(len(robot.winches))
         self._aim = self._correction
@@ -158,17 +167,17 @@ class MarkerFeedback:
         command = np.clip(contractions + self._correction, self._low, self._high)
         self._correction = command - contractions  # no windup at a limit
         self._past.append(_Past(now, time, self._correction))
-        while len(self._past) > 2 and self._past[1].now < now - LOST - self._lag:
+        while len(self._past) > 2 and self._past[1].now < now - RULES.lost - self._lag:
             self._past.popleft()
         return command
 
     def _advance(self, step: float) -> None:
         """Move the correction towards its aim; out, if motors go on without a camera."""
         if self._is_lost:
-            move = -self._correction * min(step / FADE, 1.0)
+            move = -self._correction * min(step / RULES.fade, 1.0)
         else:
-            move = (self._aim - self._correction) * (1.0 - np.exp(-GAIN * step))
-        move = np.clip(move, -MAX_CORRECTION_SPEED * step, MAX_CORRECTION_SPEED * step)
+            move = (self._aim - self._correction) * (1.0 - np.exp(-RULES.gain * step))
+        move = np.clip(move, -RULES.max_correction_speed * step, RULES.max_correction_speed * step)
         self._correction = np.clip(self._correction + move, -self._bound, self._bound)
 
     def _allowed_share(self, time: float) -> float:
@@ -221,14 +230,14 @@ class MarkerFeedback:
         """Notice a camera that sees nothing, or sees again."""
         seen = self._start if self._seen is None else self._seen
         since = 0.0 if seen is None else now - seen
-        if since > LOST and not self._is_lost:
+        if since > RULES.lost and not self._is_lost:
             self._is_lost, self.is_waiting = True, self._lost is LostAction.HOLD
             does = "motors hold until one is" if self.is_waiting else "going on without correction"
             self._log(f"warning: no marker in sight for {since:.1f} s; {does}")
-        elif since <= LOST and self._is_lost:
+        elif since <= RULES.lost and self._is_lost:
             self._is_lost = self.is_waiting = False
             self._log("note: markers in sight again; correcting")
-        if self.is_waiting and since > GIVEN_UP:
+        if self.is_waiting and since > RULES.given_up:
             raise HydrostatError(
                 f"no marker in sight for {since:.0f} s. Check camera, light and tags, then play again."
             )

@@ -11,13 +11,12 @@ from hydrostat.design.cable_sides import assign_cable_sides
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.fixed_drives import restore_drives, simplify_robot
 from hydrostat.design.lifts import CROSSING, may_cross, search_front
-from hydrostat.design.network import Alternative, Network, RouteTrace, size_of
+from hydrostat.design.network import Alternative, Better, Network, RouteTrace, StageCallback, ignore_stage, size_of
 from hydrostat.design.request import DesignMethod, DesignRequest, RouteOptions, TreeOptions
 from hydrostat.design.routes.design_fewest import design_fewest
 from hydrostat.design.routes.design_routes import design_routes
 from hydrostat.design.routes.finalists import kit_fits
 from hydrostat.design.routes.search_record import SearchRecord
-from hydrostat.design.stage_callback import Better, StageCallback, ignore_stage
 from hydrostat.design.stuffed_results import StuffedResults, check_stuffed, solve_stuffed
 from hydrostat.design.trees.design_trees import design_trees
 from hydrostat.errors import HydrostatError, InputError

@@ -1,8 +1,6 @@
 """`Network`: a designed robot with its scores and the trace of the search."""
 
-# Of the thesis (docs/thesis.md): E24
-
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -222,3 +220,23 @@ def on_front(size: Size, errors: Mapping[Size, float]) -> bool:
     winches, cables = size
     others = [error for other, error in errors.items() if other != size and other[0] <= winches and other[1] <= cables]
     return all(error > errors[size] for error in others)
+
+
+StageCallback = Callable[[DesignStage], None]  # called with each better network
+
+
+def ignore_stage(stage: DesignStage) -> None:
+    """Nobody watches."""
+
+
+class Better:
+    """Passes on what has a smaller error than all before."""
+
+    def __init__(self, watch: StageCallback) -> None:
+        self._watch, self._least = watch, float("inf")
+
+    def __call__(self, stage: DesignStage) -> None:
+        """Hear of a network."""
+        if stage.error < self._least:
+            self._least = stage.error
+            self._watch(stage)

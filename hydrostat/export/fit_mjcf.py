@@ -17,13 +17,23 @@ from hydrostat.sobol import draw_sobol
 from hydrostat.units import plural
 from hydrostat.version import install_command
 
-MIN_GAIN = 0.05  # a fit is kept if it lowers the error of the held-out poses by this share or more
-MIN_POSES = 3  # fewest fitted poses
-NUM_HELD_OUT = 12  # held-out draws, the same for every number of fitted poses
-MIN_VALUES, MAX_VALUES = (-1.0, -0.15, -0.3), (1.0, 0.15, 0.3)  # ln of Young's factor, Poisson's shift, ln of gains
-VALUE_STEPS = (0.1, 0.02, 0.02)  # differences of these values in the least squares
-CONTRACTION_STEP = 0.01  # difference of contractions for the Jacobian of markers, share of their range
-MAX_STEPS = 4  # most steps of the least squares
+
+@dataclass(frozen=True)
+class MjcfFitRules:
+    """Rules of a fit, the same for all robots."""
+
+    min_gain: float = 0.05  # a fit is kept if it lowers the error of the held-out poses by this share or more
+    min_poses: int = 3  # fewest fitted poses
+    num_held_out: int = 12  # held-out draws, the same for every number of fitted poses
+    min_values: tuple[float, float, float] = (-1.0, -0.15, -0.3)  # ln of Young's factor, Poisson's shift, ln of gains
+    max_values: tuple[float, float, float] = (1.0, 0.15, 0.3)
+    value_steps: tuple[float, float, float] = (0.1, 0.02, 0.02)  # differences of these values in the least squares
+    contraction_step: float = 0.01  # difference of contractions for the Jacobian of markers, share of their range
+    max_steps: int = 4  # most steps of the least squares
+
+
+RULES = MjcfFitRules()
+
 
 Markers = Float[np.ndarray, "poses markers dim"]  # positions of all markers in some poses [m]
 
@@ -86,7 +96,7 @@ class MjcfFit:
     @property
     def is_worth_it(self) -> bool:
         """True if the rms error of the held-out poses falls by 5 % or more."""
-        return self.after.rms < (1 - MIN_GAIN) * self.before.rms
+        return self.after.rms < (1 - RULES.min_gain) * self.before.rms
 
     def describe(self) -> list[str]:
         """Lines with the figures."""
@@ -101,7 +111,7 @@ class MjcfFit:
         if self.num_lost:
             lines.append(f"{plural(self.num_lost, 'held-out pose')} lost: no equilibrium in one of the models")
         if not self.is_worth_it:
-            lines.append(f"unfitted numbers kept: the error falls by less than {100 * MIN_GAIN:g} %")
+            lines.append(f"unfitted numbers kept: the error falls by less than {100 * RULES.min_gain:g} %")
         return lines
 
 
@@ -125,9 +135,9 @@ def fit_mjcf(robot: Robot, num_poses: int = 20, *, share: float = 0.25, progress
         raise InputError(f"MuJoCo is not installed: {install_command('export')}")
     if not robot.markers or not robot.winches:
         raise InputError("fitting a model needs a [[marker]] and a [[winch]]. Add them.")
-    if num_poses < MIN_POSES or not 0 < share <= 1:
+    if num_poses < RULES.min_poses or not 0 < share <= 1:
         raise InputError(
-            f"a fit needs {MIN_POSES} poses or more and a share within 0 and 1, not {num_poses} and {share:g}"
+            f"a fit needs {RULES.min_poses} poses or more and a share within 0 and 1, not {num_poses} and {share:g}"
         )
     return _MjcfSearch(robot, num_poses, share, progress).run()
 
@@ -139,22 +149,22 @@ class _MjcfSearch:
         self._robot, self._simulation, self._share, self._progress = robot, Simulation(robot), share, progress
         self._travels = share * np.array([winch.travel for winch in robot.winches])
         count = len(self._travels)
-        inside = 2 * CONTRACTION_STEP  # held-out poses stay as far within the range, which ends contractions
+        inside = 2 * RULES.contraction_step  # held-out poses stay as far within the range, which ends contractions
         draws = [
             draw_sobol(count, num_poses, np.random.default_rng(0)),
-            inside + (1 - 2 * inside) * draw_sobol(count, NUM_HELD_OUT, np.random.default_rng(1)),
+            inside + (1 - 2 * inside) * draw_sobol(count, RULES.num_held_out, np.random.default_rng(1)),
         ]
         self._done, self._num_evaluations = 0, 0
         self._poses: list[tuple[Vector, Equilibrium]] = []
         self._nodes: list[Nodes] = []  # nodes of the MuJoCo model, from which searches begin
         self._fitted, self._held_out = self._draw(np.concatenate(draws) * self._travels, num_poses)
-        self._num_left_out = num_poses + NUM_HELD_OUT - len(self._fitted) - len(self._held_out)
-        if len(self._fitted) < max(MIN_POSES, num_poses / 2) or len(self._held_out) < NUM_HELD_OUT / 2:
+        self._num_left_out = num_poses + RULES.num_held_out - len(self._fitted) - len(self._held_out)
+        if len(self._fitted) < max(RULES.min_poses, num_poses / 2) or len(self._held_out) < RULES.num_held_out / 2:
             raise InputError(
-                f"{robot.name}: {self._num_left_out} of {num_poses + NUM_HELD_OUT} poses have no equilibrium in "
+                f"{robot.name}: {self._num_left_out} of {num_poses + RULES.num_held_out} poses have no equilibrium in "
                 "MuJoCo. Fit a smaller share of the travel."
             )
-        fitting = len(self._fitted) * (1 + MAX_STEPS * (count + 4))
+        fitting = len(self._fitted) * (1 + RULES.max_steps * (count + 4))
         self._num_evaluations = fitting + 2 * (2 * count + 1) * len(self._held_out)
 
     def _draw(self, draws: Vector, num_poses: int) -> tuple[Int[np.ndarray, " poses"], Int[np.ndarray, " poses"]]:
@@ -200,14 +210,15 @@ class _MjcfSearch:
             x_scale=steps,
             ftol=1e-2,
             xtol=1e-2,
-            max_nfev=MAX_STEPS,
+            max_nfev=RULES.max_steps,
         )
         return self._judge(_tuning(found.x))
 
     def _bounds(self) -> tuple[Vector, Vector, Vector]:
         """Lower and upper bounds of all values, and their differences."""
         kinds = [0, 1, *[2] * len(self._robot.winches)]
-        lower, upper, steps = np.array(MIN_VALUES)[kinds], np.array(MAX_VALUES)[kinds], np.array(VALUE_STEPS)[kinds]
+        bounds = RULES.min_values, RULES.max_values, RULES.value_steps
+        lower, upper, steps = (np.array(each)[kinds] for each in bounds)
         model = MjcfModel(self._robot, None, self._simulation)
         ratios = [model.moduli(material)[2] for material in self._robot.body.materials]
         lower[1], upper[1] = max(lower[1], -min(ratios) - 1e-3), min(upper[1], MAX_POISSON - max(ratios))
@@ -251,7 +262,7 @@ class _MjcfSearch:
     def _respond(self, tuning: MjcfTuning) -> tuple[Markers, Float[np.ndarray, "poses markers dim winches"]]:
         """Markers in the held-out poses, and their central differences by contractions; nan where one is missing."""
         slopes = []
-        for step in CONTRACTION_STEP * np.diag(self._travels):
+        for step in RULES.contraction_step * np.diag(self._travels):
             there, back = (self._settle(tuning, self._held_out, sign * step) for sign in (1.0, -1.0))
             slopes.append((there - back) / (2 * step.sum()))
         return self._settle(tuning, self._held_out), np.stack(slopes, axis=-1)

@@ -1,12 +1,13 @@
 """`Thickness`: thickness of a body everywhere on its boundary, and the number of elements across."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from hydrostat.arrays import Float, Int, Points
 from hydrostat.geometry.mesh import Mesh, joined_groups
-from hydrostat.geometry.point_tree import build_point_tree
+from hydrostat.lazy import load_compiled
 
 _ASIDE = (0.011, -0.007, -0.004)
 """Offset of a ray's start from the center of its facet, as weights: from there it hits edges in regular meshes."""
@@ -149,3 +150,17 @@ class ThinPart:
     across: float  # number of elements across
     place: Float[np.ndarray, " dim"]  # middle of the body there [m]
     length: float  # length of the part [m]
+
+
+def build_point_tree(points: Points) -> Any:
+    """Build `scipy.spatial.KDTree`, or the compiled class beneath it, which loads 0.1 s sooner."""
+    compiled = load_compiled("scipy.spatial._ckdtree")
+    if compiled is not None and hasattr(compiled, "cKDTree"):
+        return compiled.cKDTree(points, leafsize=_LEAF)
+    from scipy.spatial import KDTree
+
+    return KDTree(points, leafsize=_LEAF)
+
+
+_LEAF = 10
+"""Points in a leaf, as in KDTree: the order of pairs depends on it."""

@@ -8,8 +8,7 @@ if TYPE_CHECKING:
     from hydrostat.identification.contraction_map import ContractionMap
     from hydrostat.identification.find_faults import find_slip, find_swaps
     from hydrostat.identification.fit import FittedModel, fit_model
-    from hydrostat.identification.identified_robot import IdentifiedRobot, identify
-    from hydrostat.identification.identified_tolerances import identified_tolerances
+    from hydrostat.identification.identified_robot import IdentifiedRobot, identified_tolerances, identify
     from hydrostat.identification.kinds import named_model
     from hydrostat.identification.marker_predictor import MarkerPredictor
     from hydrostat.identification.measurements import Measurements, rms

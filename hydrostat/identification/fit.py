@@ -8,48 +8,56 @@ from scipy.optimize import least_squares
 
 from hydrostat.arrays import Float, Vector
 from hydrostat.errors import InputError
-from hydrostat.identification.build_variance import estimate_build_variance
 from hydrostat.identification.marker_predictor import MarkerPredictor
 from hydrostat.identification.measurements import Measurements, rms
-from hydrostat.identification.mesh_shift import estimate_mesh_shift
+from hydrostat.identification.mesh_shift import choose_rows, estimate_mesh_shift
 from hydrostat.identification.model import IdentificationModel
 from hydrostat.identification.residuals import Residuals
 from hydrostat.progress import Progress, no_progress
 from hydrostat.robot import Robot
 from hydrostat.units import MM
 
-MISSING = 5.0
-"""Residual of a coordinate without an equilibrium, in standard deviations of the noise."""
 
-ROUNDS = 6
-"""Most estimates of the noise, each followed by a fit with it."""
+@dataclass(frozen=True)
+class FitRules:
+    """Rules of a fit, the same for all robots."""
 
-NOISE_TOLERANCE = 0.1
-"""Relative change of the noise below which it is not estimated again."""
+    missing: float = 5.0
+    """Residual of a coordinate without an equilibrium, in standard deviations of the noise."""
 
-MIN_FREE = 0.1
-"""Least share of the measured coordinates that is left to show the noise."""
+    rounds: int = 6
+    """Most estimates of the noise, each followed by a fit with it."""
 
-MIN_FORCE_NOISE = 0.02
-"""Least noise of a force over the largest that was measured; the fit begins with five times that."""
+    noise_tolerance: float = 0.1
+    """Relative change of the noise below which it is not estimated again."""
 
-ROBUST = 3.0
-"""Residual beyond which the loss grows linearly, in standard deviations."""
+    min_free: float = 0.1
+    """Least share of the measured coordinates that is left to show the noise."""
 
-CLIPPED, MEAN_SQUARE = 2.0, 0.9205
-"""Residual beyond which all count alike for the noise, in standard deviations, and the mean square of normal ones."""
+    min_force_noise: float = 0.02
+    """Least noise of a force over the largest that was measured; the fit begins with five times that."""
 
-INSEPARABLE = 0.9
-"""Correlation of two parameters above which their values are hardly told apart."""
+    robust: float = 3.0
+    """Residual beyond which the loss grows linearly, in standard deviations."""
 
-WRONG_UNIT = 9.0
-"""Factor by which markers are closer or farther than on the robot from which on their unit is wrong.
+    clipped: float = 2.0
+    mean_square: float = 0.9205
+    """Residual beyond which all count alike for the noise [standard deviations], and the mean square of normal ones."""
 
-Units in use differ by 10 or more; tips of a gripper that closes come 6 times closer.
-"""
+    inseparable: float = 0.9
+    """Correlation of two parameters above which their values are hardly told apart."""
 
-IMPOSSIBLE = 1e4
-"""Residual of every coordinate where the values make no robot: a step there is taken back."""
+    wrong_unit: float = 9.0
+    """Factor by which markers are closer or farther than on the robot from which on their unit is wrong.
+
+    Units in use differ by 10 or more; tips of a gripper that closes come 6 times closer.
+    """
+
+    impossible: float = 1e4
+    """Residual of every coordinate where the values make no robot: a step there is taken back."""
+
+
+RULES = FitRules()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -129,7 +137,7 @@ class FittedModel:
         names = [parameter.name for parameter in self.model.parameters]
         return [
             (names[one], names[other])
-            for one, other in np.argwhere(np.abs(np.triu(correlation, 1)) > INSEPARABLE).tolist()
+            for one, other in np.argwhere(np.abs(np.triu(correlation, 1)) > RULES.inseparable).tolist()
         ]
 
     def predict(self, measurements: Measurements) -> Float[np.ndarray, "rows markers dim"]:
@@ -169,14 +177,14 @@ def fit_model(
     numbers = np.zeros(len(model.parameters))
     limits = np.array([parameter.limits for parameter in model.parameters]).reshape(-1, 2).T
     message, jac = "", cast("Any", fit.jacobian)
-    for _ in range(ROUNDS):
+    for _ in range(RULES.rounds):
         solved = least_squares(
             fit.residuals,
             numbers,
             jac=jac,
             bounds=(limits[0], limits[1]),
             loss="soft_l1",
-            f_scale=ROBUST,
+            f_scale=RULES.robust,
             max_nfev=max(evaluations - fit.count, 2),
             ftol=1e-4,
             xtol=1e-4,
@@ -225,11 +233,12 @@ def spread_error(errors: Vector, noise: float, rows: int, *, is_known: bool) -> 
 def robust_scale(errors: Vector) -> float:
     """Standard deviation of errors of which a tenth may be wrong (Huber 1964, proposal 2).
 
-    The largest s where the mean of min(error^2, (CLIPPED s)^2) is MEAN_SQUARE s^2; 0 if 77 % or more are 0. With very
-    large errors in a tenth it is 1.3 times too large, in a fifth 2.6 times; from 23 % on they alone decide.
+    The largest s where mean(min(error^2, (clipped s)^2)) = mean_square s^2 (`FitRules`); 0 if 77 % or more are 0.
+    With very large errors in a tenth it is 1.3 times too large, in a fifth 2.6 times; from 23 % on they alone decide.
     """
     squares = np.sort(errors**2)
-    rest = MEAN_SQUARE * len(squares) - CLIPPED**2 * np.arange(len(squares))[::-1]  # of s^2, where these are clipped
+    # of s^2, where these are clipped
+    rest = RULES.mean_square * len(squares) - RULES.clipped**2 * np.arange(len(squares))[::-1]
     return float(np.sqrt(np.min(np.cumsum(squares)[rest > 0] / rest[rest > 0])))
 
 
@@ -251,7 +260,7 @@ class MarkerFit:
         largest = float(
             np.max(np.abs(measurements.known_forces), initial=0.0, where=~np.isnan(measurements.known_forces))
         )
-        self._least_force = MIN_FORCE_NOISE * largest
+        self._least_force = RULES.min_force_noise * largest
         self.noise, self.force_noise, self.count = noise, 5 * self._least_force or np.nan, 0
 
     def residuals(self, numbers: Vector) -> Vector:
@@ -291,7 +300,9 @@ class MarkerFit:
             self._noise_of(self._solved & ~is_force, least, before[0]),
             self._noise_of(self._solved & is_force, self._least_force, before[1]),
         )
-        return not np.allclose([self.noise, self.force_noise], before, rtol=NOISE_TOLERANCE, atol=0.0, equal_nan=True)
+        return not np.allclose(
+            [self.noise, self.force_noise], before, rtol=RULES.noise_tolerance, atol=0.0, equal_nan=True
+        )
 
     def _noise_of(self, chosen: np.ndarray, least: float, before: float) -> float:
         """Noise of some residuals, of which the parameters take up a share (MacKay 1992)."""
@@ -300,7 +311,7 @@ class MarkerFit:
         scaled = self._residuals.jacobian / self._scales[:, None]
         information = scaled[self._solved].T @ scaled[self._solved] + np.eye(scaled.shape[1])
         taken = float(np.sum(scaled[chosen] * np.linalg.solve(information, scaled[chosen].T).T))
-        free = max(1.0 - taken / int(chosen.sum()), MIN_FREE)
+        free = max(1.0 - taken / int(chosen.sum()), RULES.min_free)
         return max(robust_scale(self._residuals.errors[chosen]) / free**0.5, least)
 
     def _ask(self, numbers: Vector) -> None:
@@ -320,12 +331,14 @@ class MarkerFit:
         """Residuals, and what each lacks; values that no robot can have are far off after the first."""
         try:
             found = self._predictor.predict(numbers, with_jacobian=True)
-            return Residuals.of(found, self._measurements), MISSING
+            return Residuals.of(found, self._measurements), RULES.missing
         except InputError:
             if not self.count:
                 raise
         nothing = np.full(len(self._last), np.nan)
-        return replace(self._residuals, errors=nothing, jacobian=np.zeros_like(self._residuals.jacobian)), IMPOSSIBLE
+        return replace(
+            self._residuals, errors=nothing, jacobian=np.zeros_like(self._residuals.jacobian)
+        ), RULES.impossible
 
 
 def _check(robot: Robot, measurements: Measurements) -> None:
@@ -353,8 +366,35 @@ def _check_unit(robot: Robot, measurements: Measurements) -> None:
     if len(places) and len(measurements.markers) > 1:
         rest = np.array([at[name] for name in measurements.markers])
         seen, own = (float(np.std(each - each.mean(axis=-2, keepdims=True))) for each in (places, rest))
-        if own > 0.02 * robot.body.mesh.size and not own < WRONG_UNIT * seen < WRONG_UNIT**2 * own:
+        if own > 0.02 * robot.body.mesh.size and not own < RULES.wrong_unit * seen < RULES.wrong_unit**2 * own:
             raise InputError(
                 f"markers are {seen / MM:.3g} mm apart (standard deviation), on the robot {own / MM:.3g} mm. "
                 "Write tables in mm, arrays in m."
             )
+
+
+DEVIATIONS = {"routes": 1e-3, "poisson": 0.1}
+"""Standard deviations of what is seldom fitted: coordinates of the points of cables [m], Poisson's ratio."""
+
+
+def estimate_build_variance(
+    model: IdentificationModel, measurements: Measurements, numbers: Vector, noises: tuple[float, float]
+) -> Vector:
+    """Variance of each coordinate of a fit if points of cables and Poisson's ratio are unknown as well.
+
+    They are further parameters of the linearized fit, over which the values are marginalized.
+
+    Args:
+        model: robot and measurement.
+        measurements: rows of the fit.
+        numbers: coordinates of the fit.
+        noises: standard deviation of a measured coordinate or length [m], and of a force [N].
+    """
+    chosen = choose_rows(measurements)
+    rows = measurements.rows(chosen)
+    residuals = Residuals.of(
+        MarkerPredictor(model, rows, deviations=DEVIATIONS).predict(numbers, with_jacobian=True), rows
+    )
+    jacobian = residuals.jacobian / np.where(residuals.is_force, noises[1], noises[0])[:, None]
+    information = len(measurements.commands) / len(chosen) * jacobian.T @ jacobian
+    return np.diag(np.linalg.inv(information + np.eye(len(information))))[: len(numbers)]

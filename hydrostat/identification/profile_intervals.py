@@ -7,7 +7,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from hydrostat.arrays import Vector
-from hydrostat.identification.fit import ROBUST, FittedModel, MarkerFit
+from hydrostat.identification.fit import RULES, FittedModel, MarkerFit
 from hydrostat.identification.measurements import Measurements
 from hydrostat.progress import Progress, no_progress
 
@@ -60,7 +60,9 @@ class _Deviance:
         self._fit.force_noise = fitted.force_noise
         self._covariance = fitted.interval_covariance
         self._limits = np.array([parameter.limits for parameter in fitted.model.parameters]).T
-        pull = fitted.numbers / np.sqrt(1.0 + (fitted.numbers / ROBUST) ** 2)  # gradient of the loss by the guesses
+        pull = fitted.numbers / np.sqrt(
+            1.0 + (fitted.numbers / RULES.robust) ** 2
+        )  # gradient of the loss by the guesses
         self._middle = fitted.numbers - pull / fitted.spread  # of the guesses: the fit stays the minimum
         self._least = 0.0
         self._least = self._value(fitted.numbers)
@@ -125,7 +127,7 @@ class _Deviance:
 
     def _loss(self, squares: Vector) -> np.ndarray:
         """Loss of the fit for what was measured, squares for the guesses, with two derivatives."""
-        scale = np.full(len(squares), ROBUST**2 / self._fitted.spread)
+        scale = np.full(len(squares), RULES.robust**2 / self._fitted.spread)
         scale[-len(self._middle) :] = np.inf
         root = np.sqrt(1.0 + squares / scale)
         robust = np.isfinite(scale)

@@ -9,8 +9,6 @@ if TYPE_CHECKING:
     from hydrostat.mechanics.cable import CableEnergy, CableSegments
     from hydrostat.mechanics.cable_friction import FrictionCableEnergy
     from hydrostat.mechanics.capstan import ViaPointTurns
-    from hydrostat.mechanics.driven_load_energy import DrivenLoadEnergy
-    from hydrostat.mechanics.driven_pin_energy import DrivenPinEnergy
     from hydrostat.mechanics.energy import ContactForces, Energy, LowRankStiffness, Stencils
     from hydrostat.mechanics.factorization import Backend, Factorization, SymbolicFactorization
     from hydrostat.mechanics.factorized_hessian import FactorizedHessian
@@ -24,7 +22,13 @@ if TYPE_CHECKING:
     from hydrostat.mechanics.newton import minimize
     from hydrostat.mechanics.newton_options import NewtonOptions
     from hydrostat.mechanics.newton_result import NewtonResult, NewtonStatus, RoundOff
-    from hydrostat.mechanics.nodal_energies import DeadLoadEnergy, LoadEnergy, PinEnergy
+    from hydrostat.mechanics.nodal_energies import (
+        DeadLoadEnergy,
+        DrivenLoadEnergy,
+        DrivenPinEnergy,
+        LoadEnergy,
+        PinEnergy,
+    )
     from hydrostat.mechanics.obstacle import ObstacleEnergy
     from hydrostat.mechanics.patch_dilatation import PATCH_SIZE, PatchDilatation, grow_patches
     from hydrostat.mechanics.plane_stress import solve_thickening

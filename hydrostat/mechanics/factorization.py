@@ -21,7 +21,7 @@ import numpy as np
 
 from hydrostat.arrays import Float, Int, Nodes, Vector
 from hydrostat.mechanics import ordering, symbolic
-from hydrostat.mechanics.minimum_degree import order_by_minimum_degree
+from hydrostat.mechanics.ordering import order_by_minimum_degree
 from hydrostat.mechanics.supernodal import SupernodalAnalysis
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import numpy as np
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.mechanics.assembly import Assembly
 from hydrostat.mechanics.factorized_hessian import FactorizedHessian, find_negative_curvature
-from hydrostat.mechanics.newton_options import NewtonOptions
+from hydrostat.mechanics.newton_options import RULES, NewtonOptions
 from hydrostat.mechanics.newton_result import NewtonResult, NewtonStatus, RoundOff
 from hydrostat.mechanics.projection import Projection
 from hydrostat.mechanics.sliding_step import StepTrial, find_sliding_step
@@ -108,7 +108,7 @@ class _EnergyDescent:
             scale = place.assembly.largest_force(place.nodes, self.controls)
             allowed = max(self.options.tolerance * scale, self.noise.force)
             before, residual = residual, float(np.abs(place.gradient).max())
-            self.fast = residual < _FAST_DECREASE * before
+            self.fast = residual < RULES.fast_decrease * before
             if residual <= allowed:
                 found, status, self.error = self._leave_saddle(place), NewtonStatus.CONVERGED, 0.0
             elif iteration == self.options.iterations:
@@ -136,7 +136,7 @@ class _EnergyDescent:
     def _try(self, place: _Iterate, step: Vector, *, bent: bool = True) -> StepTrial:
         """Take a step as far as all energies admit it; the energy is infinite where an element is crushed."""
         nodes = self.bend(place.nodes, step) if bent else place.nodes + step.reshape(place.nodes.shape)
-        least, floor = place.assembly.min_volume_ratio(nodes), _CRUSHED * place.min_volume_ratio
+        least, floor = place.assembly.min_volume_ratio(nodes), RULES.crushed * place.min_volume_ratio
         lowest, known = place.assembly.values_before_contact(nodes, self.controls)
         if least < floor or lowest > place.energy + 10 * self.noise.energy:
             return StepTrial(place.assembly, nodes, np.inf, least, 1.0)
@@ -187,7 +187,7 @@ class _EnergyDescent:
         if (
             self.whole
             or trial.energy == np.inf
-            or (trial.share > _LONG_STEP and trial.energy <= enough)
+            or (trial.share > RULES.long_step and trial.energy <= enough)
             or not trial.assembly.projects_first
         ):
             return step, trial
@@ -202,17 +202,17 @@ class _EnergyDescent:
             return
         square, curvature = float(step @ step), -float(place.gradient @ step) / float(step @ step)
         taken = float(np.linalg.norm(found.nodes - place.nodes)) / square**0.5
-        if taken < _SHORT_STEP and place.assembly.projects_first and not eases:
+        if taken < RULES.short_step and place.assembly.projects_first and not eases:
             least = 1e-3  # Damping is chosen for steps of at least this share
-            self.damping = max(_DAMPS * self.damping, curvature * (1.0 / max(taken, least) - 1.0))
-        elif eases or taken > _LONG_STEP:
-            self.damping = self.damping / _EASES if self.damping > _MIN_DAMPING_SHARE * curvature else 0.0
+            self.damping = max(RULES.damps * self.damping, curvature * (1.0 / max(taken, least) - 1.0))
+        elif eases or taken > RULES.long_step:
+            self.damping = self.damping / RULES.eases if self.damping > RULES.min_damping_share * curvature else 0.0
 
     def _within_accuracy(self, place: _Iterate, step: Vector) -> bool:
         """Return True if a step with the unmodified Hessian shows that the iterate is within the requested accuracy."""
-        if self.options.accuracy is None or not self.left < _LINEAR:
+        if self.options.accuracy is None or not self.left < RULES.linear:
             return False
-        self.error = _MARGIN * float(np.sqrt((step.reshape(place.nodes.shape) ** 2).sum(axis=1).max()))
+        self.error = RULES.margin * float(np.sqrt((step.reshape(place.nodes.shape) ** 2).sum(axis=1).max()))
         self.sharp = self.sharp or self.error <= self.options.accuracy
         return self.error <= self.options.accuracy
 
@@ -285,7 +285,7 @@ class _EnergyDescent:
         if not trial.energy <= place.energy + 10 * self.noise.energy:
             return None
         found = self._evaluate(*trial[:4])
-        return found if np.abs(found.gradient).max() < _PAYS * np.abs(place.gradient).max() else None
+        return found if np.abs(found.gradient).max() < RULES.pays * np.abs(place.gradient).max() else None
 
     def _step(self, place: _Iterate, stiffness: FactorizedHessian) -> Vector:
         """Newton step; if the body alone is stable, it accounts for cables that become slack or taut on the way."""
@@ -311,7 +311,7 @@ class _EnergyDescent:
 
     def _leave_saddle(self, place: _Iterate) -> _Iterate | None:
         """Place of lower energy along a falling mode; None at a minimum, or where none is found."""
-        if self.saddles == _SADDLES or self.options.tolerance > _SADDLE_TOLERANCE:
+        if self.saddles == RULES.saddles or self.options.tolerance > RULES.saddle_tolerance:
             return None
         stiffness = self._stiffness(place)
         if stiffness.definite or stiffness.singular:
@@ -354,47 +354,9 @@ class _EnergyDescent:
         )
 
 
-_MARGIN = 1.1
-"""Newton's step is the distance to equilibrium but for its square; so much more is told."""
-
-_LINEAR = 1e-2
-"""With less than this share of the largest applied force left over, Newton's step tells how far equilibrium is."""
-
-_CRUSHED = 0.2
-"""No step leaves less than this share of the volume of the element that was squeezed most before it.
-
-An element near J = 0 pushes back so hard, and so far from linearly, that Newton then creeps for dozens of steps.
-"""
-
-_PAYS = 0.1
-"""A step with old factors has to bring the residual down this far, or new ones are made."""
-
-_SHORT_STEP = 0.25
-"""A step of which less is taken is damped from then on."""
-
-_DAMPS = 4.0
-"""So many times more than before."""
-
-_LONG_STEP = 0.5
-"""After a step of which more was taken there is less damping."""
-
-_EASES = 8.0
-"""So many times less."""
-
-_MIN_DAMPING_SHARE = 0.05
-"""Damping that takes less than this share of a step's curvature is left out."""
-
-_FAST_DECREASE = 0.1
-"""After a step that leaves less than this share of the residual the full Hessian is tried at once."""
-
 _SHIFTS = tuple(np.logspace(-10, 1, 12))
 """Shifts of the diagonal if even the projected Hessian is singular: fractions of its largest entry."""
 
-_SADDLE_TOLERANCE = 1e-4
-"""Only an equilibrium at least as sharp as this share of the largest applied force is told from a saddle."""
-
-_SADDLES = 3
-"""So many saddles are left in one solve."""
 
 _LEAPS = tuple(sign * leap for leap in (0.3, 0.1, 0.03, 1e-2, 1e-3, 1e-4, 1e-5) for sign in (1.0, -1.0))
 """Lengths of trial steps away from a saddle: fractions of the size of the body; the one of least energy is taken."""

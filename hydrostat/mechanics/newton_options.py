@@ -30,3 +30,50 @@ class NewtonOptions:
     accuracy: float | None = None
     near: float = 1e-5
     known: bool = False
+
+
+@dataclass(frozen=True)
+class NewtonRules:
+    """Rules of the steps, the same for all problems."""
+
+    margin: float = 1.1
+    """Newton's step is the distance to equilibrium but for its square; so much more is told."""
+
+    linear: float = 1e-2
+    """With less than this share of the largest applied force left over, Newton's step tells how far equilibrium is."""
+
+    crushed: float = 0.2
+    """No step leaves less than this share of the volume of the element that was squeezed most before it.
+
+    An element near J = 0 pushes back so hard, and so far from linearly, that Newton then creeps for dozens of steps.
+    """
+
+    pays: float = 0.1
+    """A step with old factors has to bring the residual down this far, or new ones are made."""
+
+    short_step: float = 0.25
+    """A step of which less is taken is damped from then on."""
+
+    damps: float = 4.0
+    """So many times more than before."""
+
+    long_step: float = 0.5
+    """After a step of which more was taken there is less damping."""
+
+    eases: float = 8.0
+    """So many times less."""
+
+    min_damping_share: float = 0.05
+    """Damping that takes less than this share of a step's curvature is left out."""
+
+    fast_decrease: float = 0.1
+    """After a step that leaves less than this share of the residual the full Hessian is tried at once."""
+
+    saddle_tolerance: float = 1e-4
+    """Only an equilibrium at least as sharp as this share of the largest applied force is told from a saddle."""
+
+    saddles: int = 3
+    """So many saddles are left in one solve."""
+
+
+RULES = NewtonRules()

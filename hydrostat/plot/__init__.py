@@ -20,13 +20,13 @@ if TYPE_CHECKING:
     from hydrostat.plot.learning_curves import draw_curves
     from hydrostat.plot.live_page import LivePage
     from hydrostat.plot.motion_figures import draw_motion, draw_trajectory
-    from hydrostat.plot.parts_figure import draw_parts
     from hydrostat.plot.photo_overlay import draw_photo_overlay
     from hydrostat.plot.picture_file import drawing, inline_svg, save_png
     from hydrostat.plot.report import write_report
     from hydrostat.plot.report_tables import cable_table
     from hydrostat.plot.robot_figures import (
         draw_network,
+        draw_parts,
         draw_portrait,
         draw_pose,
         draw_reached,

@@ -4,8 +4,9 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 from matplotlib.figure import Figure
+from shapely import Polygon, maximum_inscribed_circle
 
-from hydrostat.arrays import Nodes, Vector
+from hydrostat.arrays import Float, Nodes, Vector
 from hydrostat.drawing import Color
 from hydrostat.geometry import Outline, Ring
 from hydrostat.given import check_positive, check_type
@@ -17,7 +18,7 @@ from hydrostat.plot.hardware import DrawnRobot, draw_hardware, draw_numbers, nam
 from hydrostat.plot.labels import Labels, shorten
 from hydrostat.plot.open_sheet import open_sheet
 from hydrostat.plot.pane import Pane
-from hydrostat.plot.sheet import WIDTH, PictureSheet, Places, Spread
+from hydrostat.plot.sheet import WIDTH, PictureSheet, Places, Spread, new_sheet
 from hydrostat.plot.skin import outer_points
 from hydrostat.plot.targets import (
     draw_arrows,
@@ -316,3 +317,21 @@ def _note(contraction: float) -> str:
     """A contraction [m] in millimeters, with its sign."""
     number = f"{MILLIMETERS * contraction:+.1f}".replace("-", "\N{MINUS SIGN}")
     return "0 mm" if number[1:] == "0.0" else f"{number} mm"
+
+
+def draw_parts(parts: Mapping[int, Float[np.ndarray, "_ 2"]], *, title: str = "", width: float = WIDTH) -> Figure:
+    """Draw closed shapes with their numbers, on a millimeter grid.
+
+    Args:
+        parts: corners of each shape by its number, (corners, 2) [m].
+        title: title; none if empty.
+        width: width of the figure [inch].
+    """
+    rings = {number: MILLIMETERS * np.asarray(ring) for number, ring in parts.items()}
+    corners = np.concatenate(list(rings.values()))
+    sheet = new_sheet(np.array([corners.min(axis=0), corners.max(axis=0)]), title=title, width=width)
+    for number, ring in rings.items():
+        sheet.area([ring], facecolor=Color.FELT_LIGHT, edgecolor=Color.SEAM, linewidth=1.0, zorder=5)
+        x, y = maximum_inscribed_circle(Polygon(ring).buffer(0)).coords[0]
+        sheet.text((x, y), str(number), ha="center", va="center", fontsize=18, color=Color.INK, zorder=8)
+    return sheet.figure

@@ -12,7 +12,6 @@ if TYPE_CHECKING:
     from hydrostat.robot.element_kind import ElementKind, Plane, Volume
     from hydrostat.robot.fixed_drives import with_fixed_drives
     from hydrostat.robot.gravity import DIRECTIONS, direction_of, gravity_along
-    from hydrostat.robot.hole_note import describe_filled_holes
     from hydrostat.robot.inflated import describe_cable_side, inflated_robot, sewn_robot, sewn_sides
     from hydrostat.robot.load import Load
     from hydrostat.robot.load_drive import LoadDrive
@@ -36,7 +35,7 @@ if TYPE_CHECKING:
     from hydrostat.robot.sensor import Sensor, SensorKind
     from hydrostat.robot.sheet import Membrane, SheetSide
     from hydrostat.robot.sketch import choose_plane, sketch_robot
-    from hydrostat.robot.sketch_space import SurfaceSketch, inflate_outline, sketch_mesh
+    from hydrostat.robot.sketch_space import SurfaceSketch, describe_filled_holes, inflate_outline, sketch_mesh
     from hydrostat.robot.skin_cables import lay_cables_on_skin
     from hydrostat.robot.tables_file import TablesFile
     from hydrostat.robot.winch import Mount, Winch

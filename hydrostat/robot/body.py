@@ -100,7 +100,7 @@ class Body:
 
         Raises InputError: parts that do not fit, see `find_part_elements`.
         """
-        from hydrostat.robot.conform import conform
+        from hydrostat.robot.part_elements import conform
 
         parts = tuple(parts)
         linear = self.with_elements(ElementKind.LINEAR)

@@ -14,8 +14,7 @@ from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
 from hydrostat.given import check_type
 from hydrostat.robot.element_kind import MaterialLaw
-from hydrostat.robot.losses import LOSSES
-from hydrostat.robot.material import FoamTerm, Material
+from hydrostat.robot.material import LOSSES, FoamTerm, Material
 from hydrostat.units import quote
 
 PSI = 6894.757  # pascals in a pound per square inch: data sheets give stresses in these

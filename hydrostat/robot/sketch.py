@@ -5,6 +5,7 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
+import shapely
 
 from hydrostat.arrays import Int, Nodes, Points, Vector
 from hydrostat.errors import InputError
@@ -94,8 +95,6 @@ def sketch_robot(
     """
     from shapely import Point as ShapelyPoint
     from shapely import maximum_inscribed_circle
-
-    from hydrostat.robot.pin_place import move_off_drawings
 
     drawing = read_drawing(content, name=file, size=size, inner=inner, part=drawing_part)
     outline, drawing_part = drawing.outline, drawing.part if drawing.part > 1 else None
@@ -229,3 +228,29 @@ def _round(length: float) -> float:
 
 def _point(place: np.ndarray) -> tuple[float, ...]:
     return tuple(round(float(value), 4) for value in place)
+
+
+_COVERABLE_SIZE = 0.3
+"""Size of a drawn shape, as a share of the body's, from which on a pin may cover it, such as a belly."""
+
+
+def move_off_drawings(pin: Pin, body: Body, outline: shapely.Polygon) -> Pin:
+    """Return a pin at the nearest place in the body where it covers no small drawn shape; itself if there is none."""
+    hulls = [shapely.LineString(line).convex_hull for line in body.marks]
+    sizes = [max(hull.bounds[2] - hull.bounds[0], hull.bounds[3] - hull.bounds[1]) for hull in hulls]
+    limit = _COVERABLE_SIZE * body.mesh.size
+    small = shapely.union_all([hull for hull, size in zip(hulls, sizes, strict=True) if size < limit])
+    if pin.at is None or small.is_empty or shapely.Point(pin.at).distance(small) >= pin.radius:
+        return pin
+    reach = pin.radius * np.arange(0.25, 8.1, 0.25)
+    turns = np.linspace(0.0, 2 * np.pi, 48, endpoint=False)
+    away = (reach[:, None, None] * np.stack([np.cos(turns), np.sin(turns)], axis=-1)).reshape(-1, 2)
+    places = np.round(np.array(pin.at) + away, 3)  # whole millimeters
+    points = shapely.points(places)
+    shapely.prepare(outline)
+    room = np.where(shapely.contains(outline, points), shapely.distance(outline.boundary, points), 0.0)
+    fits = (room >= pin.radius) & (shapely.distance(small, points) >= pin.radius)
+    if not fits.any():
+        return pin
+    x, y = places[np.argmax(fits)].tolist()
+    return replace(pin, at=(x, y))

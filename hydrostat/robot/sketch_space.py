@@ -12,7 +12,6 @@ from hydrostat.geometry import Healing, Mesh, Outline, Solid, Surface, clearance
 from hydrostat.given import Point
 from hydrostat.robot.body import Body, Source
 from hydrostat.robot.cable import Cable
-from hydrostat.robot.hole_note import describe_filled_holes
 from hydrostat.robot.limb_tips import find_limb_tips, measure_geodesics, name_tips
 from hydrostat.robot.marker import Marker, PoseTarget
 from hydrostat.robot.materials import get_material
@@ -324,3 +323,12 @@ def _drop_sharp_turns(points: Points) -> Points:
 def _point(place: Float[np.ndarray, " 3"]) -> Point:
     """Place rounded to a hundredth of a millimeter."""
     return tuple(round(float(value), 5) for value in place)
+
+
+def describe_filled_holes(body: Body) -> str:
+    """Describe the holes that are filled in the mesh of a body in space; empty without any."""
+    if body.healing is None or body.element_size is None:
+        return ""
+    from hydrostat.geometry import HOLE_SHARE, fill_small_holes
+
+    return fill_small_holes(body.healing.surface, HOLE_SHARE * body.element_size).describe(body.element_size)

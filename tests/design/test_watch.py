@@ -6,7 +6,7 @@ from test_design_routes import DOWN, SMALL, UP, bare
 from test_judge import POSES, shifted
 
 from hydrostat.design import DesignStage, RouteTrace, design_cables
-from hydrostat.design.stage_callback import Better
+from hydrostat.design.network import Better
 from hydrostat.design.trees.judge_robots import judge
 from hydrostat.progress import no_progress
 

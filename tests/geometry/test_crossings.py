@@ -8,9 +8,8 @@ from builders import box_mesh, strip_mesh
 from shapely import Polygon
 
 from hydrostat.arrays import Nodes
-from hydrostat.geometry.crossings import find_crossings
+from hydrostat.geometry.crossings import find_crossings, find_near_pairs
 from hydrostat.geometry.mesh import Mesh
-from hydrostat.geometry.near_pairs import find_near_pairs
 
 
 def curled(nodes: Nodes, turn: float) -> Nodes:

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 from scipy.spatial import KDTree
 
-from hydrostat.geometry import point_tree
-from hydrostat.geometry.point_tree import build_point_tree
+from hydrostat.geometry import thickness
+from hydrostat.geometry.thickness import build_point_tree
 
 
 @pytest.mark.parametrize("alone", [True, False], ids=["compiled class", "by SciPy"])
 def test_neighbors_and_pairs_are_those_of_scipy(alone: bool, monkeypatch: pytest.MonkeyPatch):
     if not alone:
-        monkeypatch.setattr(point_tree, "load_compiled", lambda name: None)
+        monkeypatch.setattr(thickness, "load_compiled", lambda name: None)
     one, other = np.random.default_rng(1).random((2, 200, 3))
     found, expected = (
         make(one).sparse_distance_matrix(make(other), 0.2, output_type="ndarray") for make in (build_point_tree, KDTree)

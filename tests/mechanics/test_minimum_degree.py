@@ -8,8 +8,8 @@ import pytest
 from scipy.sparse import coo_array, csc_array
 from scipy.sparse.linalg import spilu
 
-from hydrostat.mechanics import minimum_degree
-from hydrostat.mechanics.minimum_degree import order_by_minimum_degree
+from hydrostat.mechanics import ordering
+from hydrostat.mechanics.ordering import order_by_minimum_degree
 
 
 def _graph(count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
@@ -36,7 +36,7 @@ def _reference(starts: np.ndarray, neighbors: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("count", [2, 30, 400])
 def test_the_order_is_that_of_scipy(count: int, alone: bool, monkeypatch: pytest.MonkeyPatch):
     if not alone:
-        monkeypatch.setattr(minimum_degree, "load_compiled", lambda name: None)
+        monkeypatch.setattr(ordering, "load_compiled", lambda name: None)
     starts, neighbors = _graph(count, seed=count)
     np.testing.assert_array_equal(order_by_minimum_degree(starts, neighbors), _reference(starts, neighbors))
 
@@ -45,7 +45,7 @@ def test_the_order_is_that_of_scipy(count: int, alone: bool, monkeypatch: pytest
 def test_scipy_works_after_superlu_was_loaded_alone():
     code = (
         "import sys, numpy as np\n"
-        "from hydrostat.mechanics.minimum_degree import order_by_minimum_degree\n"
+        "from hydrostat.mechanics.ordering import order_by_minimum_degree\n"
         "order = order_by_minimum_degree(np.array([0, 1, 3, 4]), np.array([1, 0, 2, 1]))\n"
         "assert sorted(order) == [0, 1, 2] and 'scipy.sparse' not in sys.modules\n"
         "from scipy.sparse import csc_array\n"

@@ -92,7 +92,7 @@ def _overfull_winches(parts: Parts) -> Iterator[str]:
             yield f"{name}: too many cables ({count}). Maximum cables_per_winch: {most}. Add a winch."
 
 
-_MIRROR_TOLERANCE = 1e-4  # a mirror image may be so far from where it should be [m]
+MIRROR_TOLERANCE = 1e-4  # a mirror image may be so far from where it should be [m]
 
 
 def mirror_violations(parts: Parts) -> Iterator[str]:
@@ -121,7 +121,7 @@ def _image_of(parts: Parts, winch: Winch, flip: np.ndarray) -> int | None:
     wanted = np.array([*(flip * winch.at), winch.spool_radius, winch.travel, winch.release])
     for index, other in enumerate(parts.robot.winches):
         own = np.array([*other.at, other.spool_radius, other.travel, other.release])
-        if other.mount is winch.mount and np.abs(own - wanted).max() <= _MIRROR_TOLERANCE:
+        if other.mount is winch.mount and np.abs(own - wanted).max() <= MIRROR_TOLERANCE:
             return index
     return None
 
@@ -132,8 +132,8 @@ def _mirrors(parts: Parts, one: int, other: int, flip: np.ndarray) -> bool:
     first, second = parts.points[one], parts.points[other]
     return (
         first.shape == second.shape
-        and bool(np.abs(flip * first - second).max() <= _MIRROR_TOLERANCE)
-        and abs(cables[one].slack - cables[other].slack) <= _MIRROR_TOLERANCE
+        and bool(np.abs(flip * first - second).max() <= MIRROR_TOLERANCE)
+        and abs(cables[one].slack - cables[other].slack) <= MIRROR_TOLERANCE
         and bool(np.isclose(ratios[one], ratios[other], rtol=1e-3))
         and _make(cables[one]) == _make(cables[other])
     )

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from hydrostat.arrays import Points
+from hydrostat.design.checks.winches import MIRROR_TOLERANCE
 from hydrostat.design.constraints import Constraints
 from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
 from hydrostat.robot import Cable, Mount, Robot
@@ -126,7 +127,7 @@ def _tie_twins(layout: Layout) -> Layout:
     images: dict[int, int] = {}
     for index, image in enumerate(reflect_points(layout, places)):
         away = np.linalg.norm(places - image, axis=1)
-        if away.min() <= _MIRROR_TOLERANCE:
+        if away.min() <= MIRROR_TOLERANCE:
             images[index] = int(away.argmin())
     for index, other in images.items():
         if other <= index and not sites[index].fixed:
@@ -146,7 +147,7 @@ def _are_twins(layout: Layout, first: CableRoute, second: CableRoute, images: di
         images.get(first.winch) == second.winch
         and first.points.shape == second.points.shape
         and first.lead == second.lead
-        and float(np.abs(reflect_points(layout, first.points) - second.points).max()) <= _MIRROR_TOLERANCE
+        and float(np.abs(reflect_points(layout, first.points) - second.points).max()) <= MIRROR_TOLERANCE
     )
 
 
@@ -155,6 +156,3 @@ def _lead(cable: Cable) -> int | None:
     sheathed = ~cable.bare
     count = int(np.argmin(sheathed)) if sheathed.any() else 0
     return None if sheathed[count:].any() else count
-
-
-_MIRROR_TOLERANCE = 1e-4  # what is so near to a mirror image [m] is that image

@@ -3,14 +3,13 @@
 from collections.abc import Iterable
 from dataclasses import replace
 
-from hydrostat.design.network import Alternative, Network, Size, size_of
+from hydrostat.design.network import Alternative, Better, Network, Size, StageCallback, ignore_stage, size_of
 from hydrostat.design.request import COUNTS, DesignRequest
 from hydrostat.design.routes.deadline import Deadline
 from hydrostat.design.routes.design_routes import FirstRobots, RouteSearch
 from hydrostat.design.routes.finalists import kit_fits
 from hydrostat.design.routes.search_record import SearchRecord
 from hydrostat.design.routes.search_rules import RULES
-from hydrostat.design.stage_callback import Better, StageCallback, ignore_stage
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.progress import Progress
 from hydrostat.robot import Robot

@@ -8,7 +8,15 @@ from functools import cached_property
 
 from hydrostat.design.buildable import violations
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.network import Alternative, Certificate, DesignStage, Network, RouteTrace
+from hydrostat.design.network import (
+    Alternative,
+    Certificate,
+    DesignStage,
+    Network,
+    RouteTrace,
+    StageCallback,
+    ignore_stage,
+)
 from hydrostat.design.region import Region
 from hydrostat.design.request import DesignRequest
 from hydrostat.design.routes.begin import layout_of
@@ -29,7 +37,6 @@ from hydrostat.design.routes.search_rules import RULES
 from hydrostat.design.routes.sketch import sketches
 from hydrostat.design.routes.thin import remove_via_points
 from hydrostat.design.skin_region import cable_region
-from hydrostat.design.stage_callback import StageCallback, ignore_stage
 from hydrostat.design.uncertainty import BuildTolerances
 from hydrostat.design.winch_room import built_in, limit_torque
 from hydrostat.errors import HydrostatError, InputError

@@ -21,11 +21,10 @@ from hydrostat.design.muscles.activation import (
     element_fibres,
     wanted_directions,
 )
-from hydrostat.design.network import Network, TreeTrace
+from hydrostat.design.network import Network, StageCallback, TreeTrace, ignore_stage
 from hydrostat.design.polyline import Route, length, sharpest_turn
 from hydrostat.design.region import Region
 from hydrostat.design.request import DesignRequest
-from hydrostat.design.stage_callback import StageCallback, ignore_stage
 from hydrostat.design.trees.grow_routes import GrowthLimits, grow_routes, keep_apart, lay_route, strongest
 from hydrostat.design.trees.judge_robots import judge, prune
 from hydrostat.design.trees.lead_paths import find_lead_paths

@@ -2,8 +2,7 @@
 
 from collections.abc import Sequence
 
-from hydrostat.design.network import DesignStage, rms_error
-from hydrostat.design.stage_callback import Better, StageCallback, ignore_stage
+from hydrostat.design.network import Better, DesignStage, StageCallback, ignore_stage, rms_error
 from hydrostat.ik import IKOptions, IKResult, solve_ik
 from hydrostat.progress import Progress
 from hydrostat.robot import PoseTarget, Robot

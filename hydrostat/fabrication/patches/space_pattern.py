@@ -29,7 +29,7 @@ from hydrostat.fabrication.patches.skin_holes import (
 )
 from hydrostat.fabrication.patches.skin_mesh import SkinMesh, skin_mesh
 from hydrostat.fabrication.patterns.labels import PanelLabels
-from hydrostat.fabrication.patterns.marks import dash_lines
+from hydrostat.fabrication.patterns.marks import HOLE_CLEARANCE, dash_lines
 from hydrostat.fabrication.patterns.opening import Opening, opening_at
 from hydrostat.fabrication.patterns.pattern import Pattern
 from hydrostat.fabrication.patterns.pinholes import Pinhole
@@ -39,8 +39,6 @@ from hydrostat.fabrication.patterns.skin import Skin, skin_of
 from hydrostat.fabrication.patterns.stitches import CableStitches, Side, Stitch
 from hydrostat.robot import Body, Mount, Robot
 from hydrostat.units import plural
-
-_HOLE_CLEARANCE = 0.8
 
 
 def patch_skin(patch: Patch, options: PatternOptions) -> Skin:
@@ -108,7 +106,7 @@ def _hole(hole: SkinHole, place: Place, options: PatternOptions) -> tuple[Shape,
 def _cable_lines(own: tuple[tuple[SkinHole, Place], ...], seam: Polygon, options: PatternOptions) -> tuple[Shape, ...]:
     """The cable between neighboring holes on this patch: solid outside, dashed inside."""
     shapes: list[Shape] = []
-    clear = options.pinhole / 2 + _HOLE_CLEARANCE
+    clear = options.pinhole / 2 + HOLE_CLEARANCE
     for (hole, place), (following, there) in pairwise(own):
         if following.point != hole.point + 1 or (hole.in_seam and following.in_seam):
             continue  # from seam to seam it runs along the seam

@@ -16,7 +16,7 @@ from hydrostat.fabrication.patterns.stitches import CableStitches, Side, runs_of
 from hydrostat.robot import Robot
 
 _DASH = 2.0  # length of a dash, and about that of the gap after it [mm]
-_HOLE_CLEARANCE = 0.8  # gap between lines and a hole [mm], so that none is engraved into it
+HOLE_CLEARANCE = 0.8  # gap between lines and a hole [mm], so that none is engraved into it
 
 
 def place(point: Iterable[float]) -> Place:
@@ -37,7 +37,7 @@ def cable_marks(
     """Cables from hole to hole, solid outside and dashed inside; sheaths as tubes; a bar at each stopper."""
     marks: list[Shape] = []
     pinholes = tuple(pinholes)
-    holes = shapely.union_all([shapely.Point(hole.center).buffer(hole.radius + _HOLE_CLEARANCE) for hole in pinholes])
+    holes = shapely.union_all([shapely.Point(hole.center).buffer(hole.radius + HOLE_CLEARANCE) for hole in pinholes])
     sheath = 3.0  # width of the drawn sheath [mm]
     for cable, sewn in zip(robot.cables, stitches, strict=True):
         for bare, points in runs_of(cable):
@@ -90,7 +90,7 @@ def marker_marks(robot: Robot) -> tuple[Shape, ...]:
 
 def decoration_marks(robot: Robot, seam: Polygon, pinholes: Iterable[Pinhole]) -> tuple[Shape, ...]:
     """Return the decorations of the body, such as eyes, with gaps at the holes."""
-    holes = shapely.union_all([shapely.Point(hole.center).buffer(hole.radius + _HOLE_CLEARANCE) for hole in pinholes])
+    holes = shapely.union_all([shapely.Point(hole.center).buffer(hole.radius + HOLE_CLEARANCE) for hole in pinholes])
     lines = [LineString([place(point) for point in line]) for line in robot.body.marks]
     drawn = [line.intersection(seam).difference(holes) for line in lines]
     return tuple(mark for line in drawn for mark in trace(line, Layer.MARK, PatternPart.DECORATION))

@@ -5,12 +5,11 @@ import warnings
 from typing import TYPE_CHECKING
 
 import numpy as np
-from shapely import Polygon
+from shapely import Polygon, get_coordinates
 
 from hydrostat.arrays import Float
 from hydrostat.errors import OutlineError
 from hydrostat.geometry.files.drawing_body import Inner, drawn_picture
-from hydrostat.geometry.files.paper import leave_table_out
 from hydrostat.geometry.files.rings import Drawing, Page, one_line, outline_on_page, page_about
 from hydrostat.geometry.files.silhouette import (
     Contrast,
@@ -19,6 +18,7 @@ from hydrostat.geometry.files.silhouette import (
     Silhouette,
     contrast,
     count_covered_pixels,
+    fit_ground,
     shaded_part,
     silhouette,
 )
@@ -26,6 +26,7 @@ from hydrostat.units import plural
 
 if TYPE_CHECKING:
     from PIL.Image import Image
+
 
 MAX_PIXELS = 50_000_000  # a picture with more pixels is refused
 
@@ -196,3 +197,34 @@ def _largest(patches: tuple[PixelPatch, ...], page: Page) -> str:
     x, y = patch.place[0] - page.origin[0], page.origin[1] - patch.place[1]
     across, where = 1e3 * scale * patch.extent, [round(1e3 * scale * value, 1) + 0.0 for value in (x, y)]
     return f"the largest {across:.2g} mm across at ({where[0]:.1f}, {where[1]:.1f}) mm"
+
+
+_SHARE = 0.3  # of the picture that a sheet covers at least
+_MARGIN = 0.02  # of its longer side: at its edge, paper is shaded or curled
+
+
+def leave_table_out(
+    pixels: Float[np.ndarray, "rows columns 3"], found: Silhouette
+) -> Float[np.ndarray, "rows columns 3"] | None:
+    """Return the picture with the color of the paper in place of all around a sheet; None if the body is no sheet.
+
+    A sheet is pale, large, and bounded by at most seven straight lines: four sides, cut at corners of the picture.
+    """
+    from PIL import Image, ImageDraw
+
+    shape = Polygon(found.body)
+    extent = float(np.ptp(found.body, axis=0).max())
+    hull = shape.convex_hull
+    corners = len(get_coordinates(hull.simplify(_MARGIN * extent))) - 1
+    most_corners, straight = 7, 0.96
+    if corners > most_corners or shape.area < max(straight * hull.area, _SHARE * pixels[..., 0].size):
+        return None
+    sheet = hull.buffer(-_MARGIN * extent)
+    canvas = Image.new("1", pixels.shape[1::-1])
+    ImageDraw.Draw(canvas).polygon([tuple(place) for place in get_coordinates(sheet)], fill=1)
+    inside = np.asarray(canvas, dtype=bool)
+    paper, around = np.median(pixels[inside], axis=0), np.median(pixels[~inside], axis=0)
+    most_colored = 60.0
+    if np.ptp(paper) > most_colored or paper.mean() < around.mean():
+        return None
+    return np.where(inside[..., None], pixels, fit_ground(pixels, inside, paper)[0])

@@ -8,16 +8,15 @@ from itertools import product
 
 import numpy as np
 
-from hydrostat.arrays import Points, Vector
+from hydrostat.arrays import Int, Points, Vector
 from hydrostat.design import Diagnostic, Severity
 from hydrostat.drawing import Color
 from hydrostat.errors import in_words
 from hydrostat.fabrication import winch_marks_of
 from hydrostat.geometry import Mesh
 from hydrostat.given import Point
-from hydrostat.robot import Cable, Mount, Pin, Robot, Winch, obstacle_lines
+from hydrostat.robot import Body, Cable, Mount, Pin, Robot, Winch, find_part_facets, find_rings, obstacle_lines
 from hydrostat.simulation import obstacles_in_pose
-from hydrostat.studio.view.part_lines import find_part_lines
 from hydrostat.studio.view.scene_items import Cloud, Dot, Look, RobotShape, SceneItem, Strand, Stroke
 
 
@@ -268,3 +267,33 @@ def diagnostic_items(robot: Robot, said: Iterable[Diagnostic], chosen: Diagnosti
             for place in finding.places[:most]
         ]
     return items
+
+
+@lru_cache(maxsize=8)
+def find_part_lines(body: Body) -> tuple[Points, ...]:
+    """Closed lines at rest [m]: borders of the parts of a flat body; in space sections through their middles."""
+    nodes = body.mesh.nodes
+    if body.mesh.dim == 2:
+        return tuple(nodes[[*loop, loop[0]]] for loops in body.part_rings for loop in loops)
+    lines = list[Points]()
+    for facets in find_part_facets(body.mesh, body.element_materials, len(body.parts)):
+        corners = nodes[facets]
+        for axis, middle in enumerate((corners.min(axis=(0, 1)) + corners.max(axis=(0, 1))) / 2):
+            lines += _find_sections(nodes, facets, axis, float(middle))
+    return tuple(lines)
+
+
+def _find_sections(nodes: Points, facets: Int[np.ndarray, "_ 3"], axis: int, place: float) -> list[Points]:
+    """Closed lines where a surface meets the plane across an axis at a place [m]."""
+    above = nodes[:, axis] > place
+    starts, ends = facets, np.roll(facets, -1, axis=1)
+    rising, falling = ~above[starts] & above[ends], above[starts] & ~above[ends]
+    met = rising.any(axis=1)
+    # each facet that is met has one rising and one falling side; its neighbor has the same side the other way round
+    sides = np.concatenate([[starts[met][flags[met]], ends[met][flags[met]]] for flags in (rising, falling)], axis=1).T
+    edges, numbers = np.unique(np.sort(sides, axis=1), axis=0, return_inverse=True)
+    heights = nodes[edges][:, :, axis] - place
+    shares = (heights[:, 0] / (heights[:, 0] - heights[:, 1]))[:, None]
+    points = nodes[edges[:, 0]] + shares * (nodes[edges[:, 1]] - nodes[edges[:, 0]])
+    chains = find_rings(numbers.reshape(2, -1).T)
+    return [points[[*chain, chain[0]]] for chain in chains]

@@ -7,8 +7,7 @@ from builders import gallery_robot
 
 from hydrostat.drawing import Color
 from hydrostat.robot import BodyPart, Robot, find_part_facets
-from hydrostat.studio.view.part_lines import find_part_lines
-from hydrostat.studio.view.robot_items import robot_items
+from hydrostat.studio.view.robot_items import find_part_lines, robot_items
 from hydrostat.studio.view.scene_items import Strand, Stroke
 
 MIDDLE, RADIUS = np.array([0.0, 0.0, -0.09]), 0.018
