@@ -179,6 +179,8 @@ def _bend_limb(
 ) -> dict[str, tuple[float, ...]]:
     """Targets that bend the longest limb, or a pair that is nearly as long away from the mirror line; other tips stay.
 
+    The limbs of a pair stand well apart, seen from a center on the mirror line: lobes of one fin do not bend apart.
+
     Args:
         names: a name for each tip.
         tips: ends of the limbs, the longest first [m].
@@ -186,15 +188,18 @@ def _bend_limb(
         center: place about which limbs turn [m].
     """
     arms, around = (tips - center) @ [1, 1j], complex(*center)
-    paired = np.round(np.abs(arms) * (twins != np.arange(len(tips))), 4)
-    first = int(np.argmax(paired)) if paired.max() >= _PAIR_LENGTH * abs(arms[0]) else 0
-    bent = [first, int(twins[first])]
-    apart = tips[first] - tips[bent[1]]
-    outward = -1 if (np.conj(apart @ [1, 1j]) * 1j * arms[first]).real < 0 else 1
+    apart = np.abs(np.angle(arms / arms[twins]))  # of a pair, seen from the center: 0 on the mirror line
+    level = np.isclose(np.abs(arms), np.abs(arms[twins]), rtol=0.05)  # the center is on the line
+    paired = np.round(np.abs(arms) * ((apart > 2 * _BESIDE) & level), 4)
+    has_pair, first = paired.max() >= _PAIR_LENGTH * abs(arms[0]), int(np.argmax(paired))
+    bent = [first, int(twins[first])] if has_pair else [0, 0]
+    first = bent[0]
+    across = tips[first] - tips[bent[1]]
+    outward = -1 if (np.conj(across @ [1, 1j]) * 1j * arms[first]).real < 0 else 1
     turned = around + 0.96 * arms[first] * np.exp(1j * _BEND * outward)
     place = np.array([turned.real, turned.imag])
-    targets = {names[bent[1]]: place * np.where(apart == 0, 1.0, -1.0), names[first]: place}
-    beside = np.abs(np.angle(arms[:, None] / arms[bent])).min(axis=1) <= 0.7  # such a tip moves as well: lobes of a fin
+    targets = {names[bent[1]]: place * np.where(across == 0, 1.0, -1.0), names[first]: place}
+    beside = np.abs(np.angle(arms[:, None] / arms[bent])).min(axis=1) <= _BESIDE
     targets |= {name: place for name, place, moves in zip(names, tips, beside, strict=True) if not moves}
     return {name: _point(place) for name, place in targets.items()}
 
@@ -202,6 +207,7 @@ def _bend_limb(
 _TWIN_DISTANCE = 0.1  # of one tip from the image of its twin, as a share of the body's size
 _AS_DEEP = 0.95  # share of the largest depth from which on a pin stands on the mirror line
 _PAIR_LENGTH = 2 / 3  # share of the longest limb's length from which on a pair of limbs is bent instead
+_BESIDE = 0.7  # angle from a bent limb up to which a tip moves as well, as lobes of a fin do [rad]
 _BEND = 0.3  # turn of the first pose about the pin [rad]: at 0.5 a fish with a narrow tail passes through itself
 
 

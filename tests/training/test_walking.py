@@ -188,7 +188,7 @@ def test_a_human_sees_what_is_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
     """On a page of this machine, after each reset and step; copies that learn show nothing."""
     from urllib.request import urlopen
 
-    from hydrostat.training.side_by_side import EnvCopies
+    from hydrostat.training.env_copies import EnvCopies
 
     opened: list[str] = []
     monkeypatch.setattr("webbrowser.open", opened.append)
