@@ -298,7 +298,7 @@ def _sharp_bends(parts: Parts, index: int) -> Iterator[str]:
             )
         if turn > limits.max_turn + ANGLE and not enters:
             most = f"{limits.max_turn:g} degrees"
-            yield f"{name}: turn too sharp ({turn:.4g} degrees). Maximum turn: {most}. Move the point."
+            yield f"{name}: turn too sharp ({turn:.3g} degrees). Maximum turn: {most}. Move the point."
         if limits.bend_radius * gentler[corner] > tangents[corner] + LENGTH:
             least = mm(limits.bend_radius)
             yield f"{name}: bend too sharp (radius {mm(arc)}). Minimum bend_radius: {least}. Move the point."

@@ -238,7 +238,7 @@ def test_long_names_are_shortened(name):
     assert len(shorten_text(name, 60)) <= 60
 
 
-@pytest.mark.parametrize(("make", "pages"), [(plush, 5), (foam, 5)])
+@pytest.mark.parametrize(("make", "pages"), [(plush, 5), (foam, 7)])
 @pytest.mark.slow
 def test_a_crowded_sheet_has_no_more_pages_but_of_maps(make, pages):
     long = "The spool of winch “pull 1” takes 71 mm of cable, but its travel asks for 740 mm; " * 4
