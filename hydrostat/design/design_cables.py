@@ -166,7 +166,8 @@ def _trees(robot: Robot, request: DesignRequest, body: BodyPhysics) -> list[Robo
     if robot.body.mesh.dim != 2 or request.warm_start:
         return []
     usual = Constraints(clearance=request.constraints.clearance, tension=request.constraints.tension)
-    asked = replace(request, method=DesignMethod.TREES, constraints=usual, options=TreeOptions(trials=_TREES))
+    plain = {"seconds": None, "front": False, "constraints": usual}
+    asked = replace(request, method=DesignMethod.TREES, options=TreeOptions(trials=_TREES), **plain)
     try:
         return [design_trees(robot, asked, progress=no_progress, body=body).robot]
     except HydrostatError:  # none can be built

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,13 +10,14 @@ import shapely
 from builders import mesh_body, strip_mesh, strip_robot
 from robustness import EXAMPLES
 
-from hydrostat.design import Constraints, FibreKind, Network, TreeOptions, TreeTrace, design_cables
+from hydrostat.design import Constraints, DesignRequest, FibreKind, Network, TreeOptions, TreeTrace, design_cables
+from hydrostat.design.design_cables import _trees
 from hydrostat.design.region import Region
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.fabrication import plush_pattern
 from hydrostat.ik import solve_ik
 from hydrostat.robot import PoseTarget, Robot, load_robot, robot_hash
-from hydrostat.simulation import Simulation
+from hydrostat.simulation import BodyPhysics, Simulation
 
 UP = PoseTarget(name="up", targets={"tip": (0.18, 0.06)})
 DOWN = PoseTarget(name="down", targets={"tip": (0.185, -0.05)})
@@ -207,3 +209,12 @@ def test_no_cable_turns_sharply(case: str, unchecked: None) -> None:
         spans = np.diff(np.array(cable.points), axis=0)
         turns = np.diff(np.unwrap(np.arctan2(spans[:, 1], spans[:, 0])))
         assert np.abs(turns).max(initial=0.0) <= np.radians(TreeOptions().turn) + 1e-3
+
+
+@pytest.mark.parametrize("asked", [{"seconds": 9.0}, {"front": True}, {"constraints": Constraints(mirror="x")}])
+def test_searches_that_trees_do_not_know_begin_from_trees_too(asked: dict[str, Any], unchecked: None) -> None:
+    """Oracle: the trees that the search begins from without a time limit, a front, or a mirror line."""
+    robot, request = body(), DesignRequest(poses=(UP,), winches=1, cables=2)
+    usual, given = (_trees(robot, each, BodyPhysics(robot)) for each in (request, replace(request, **asked)))
+    assert [robot_hash(found) for found in given] == [robot_hash(found) for found in usual]
+    assert len(usual) == 1
