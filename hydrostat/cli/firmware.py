@@ -101,8 +101,8 @@ def firmware(
     boards = [SERVO_BOARD] if chosen.bus else _boards(board, calibration)
     given = calibration if chosen.bus else control.on_boards(calibration, boards)
     _check_count(board, given)
-    given = _set_counts(given, usual, is_new=bool(counts or motor or chosen.bus))
-    given = given.with_model(chosen.key) if motor or chosen.bus else given
+    is_known = bool(motor or chosen.bus)
+    given = _set_counts(given, usual, is_new=bool(counts) or is_known, model=chosen.key if is_known else None)
     _check_turns(loaded, given, chosen)
     ports = port.split(",") if port else []
     if ports and len(ports) != given.boards:
@@ -186,13 +186,14 @@ def _choose_motor(asked: str | None, own: str, calibration: "Calibration", count
     return motor
 
 
-def _set_counts(calibration: "Calibration", counts: float, *, is_new: bool) -> "Calibration":
-    """Motors with counts: new ones, or those of motors.toml where it has them. Zeros in other counts are dropped."""
+def _set_counts(calibration: "Calibration", counts: float, *, is_new: bool, model: str | None) -> "Calibration":
+    """Motors with counts and a model: new ones, or those of motors.toml. Zeros in other counts are dropped."""
 
     def change(motor: "WinchMotor") -> "WinchMotor":
-        if motor.counts is None or not is_new:
+        if not is_new:
             return replace(motor, counts=motor.counts or counts)
-        return replace(motor, counts=counts, zero=motor.zero if motor.counts == counts else None)
+        kept = motor.counts in (None, counts)
+        return replace(motor, counts=counts, model=model, zero=motor.zero if kept else None)
 
     from hydrostat.control import Calibration
 

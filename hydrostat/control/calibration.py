@@ -123,10 +123,6 @@ class Calibration:
             motors.append(replace(each, zero=begin if each.zero is None else each.zero))
         return Calibration(tuple(motors))
 
-    def with_model(self, key: str) -> "Calibration":
-        """Return a copy in which all motors have the key of a model."""
-        return Calibration(tuple(replace(motor, model=key) for motor in self.motors))
-
     @property
     def model(self) -> str | None:
         """Key of the motor that all of them are; None if they differ or one is unknown."""

@@ -280,6 +280,19 @@ def test_a_camera_that_cannot_correct_is_refused(
     assert words in err
 
 
+def test_firmware_keeps_the_motor_that_is_known(run: Run, starfish: Path, tmp_path: Path) -> None:
+    """Oracle: options of the command: a servo is kept, and counts of a motor without a name clear it."""
+    own = Path(shutil.copytree(starfish, tmp_path / "own"))
+    for options, model in (
+        (("--motor", "st3020", "--board", "esp32s3"), "st3020"),
+        (("--board", "esp32s3"), "st3020"),
+        (("--counts", "900", "--board", "mega"), None),
+        (("--motor", "25d", "--board", "mega"), "25d"),
+    ):
+        assert run("firmware", own, *options, "--out", tmp_path / "made")[0] == 0
+        assert Calibration.read(own, load_robot(own)).model == model
+
+
 def test_a_board_drives_the_servos_of_feetech_alone(run: Run, starfish: Path, tmp_path: Path) -> None:
     """An ESP32-S3 gets a sketch for the servo of the command, of robot.toml or of motors.toml; other boards none."""
     made, own = tmp_path / "made", Path(shutil.copytree(starfish, tmp_path / "own"))
