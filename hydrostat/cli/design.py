@@ -198,7 +198,7 @@ def _write(network: "Network", out: Path, *, kit: bool, budget: float | None) ->
 
     began = time.perf_counter()
     if network.timed_out:
-        print("search ended by --time, which does not count the report", file=sys.stderr, flush=True)
+        print("search ended by --time. The report takes additional time", file=sys.stderr, flush=True)
     with progress_bar() as progress:
         progress("Writing results", 0, 1)
         with result_folder(out, stale=STALE, kept=RECORDS) as folder:

@@ -141,7 +141,7 @@ class DesignArguments:
             "--time",
             "--timeout",
             metavar="TIME",
-            help="Maximum search time. Keeps the best network so far. The report and the kit come on top.",
+            help="Maximum search time. Keeps the best network so far. The report and the kit take additional time.",
             show_default="none",
         ),
     ] = None

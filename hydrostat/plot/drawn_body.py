@@ -36,7 +36,7 @@ class DrawnBody:
         camera, _, image, thickness = self.sight
         depths = image.covers(camera.see(MILLIMETERS * points))
         levels = np.ceil(LEVELS * (1 - np.exp(-3 * depths / thickness))) / LEVELS
-        skin = min(MILLIMETERS * SEWN_DEPTH, 0.1 * thickness)  # cables on a skin lie as deep, and are to be seen
+        skin = min(MILLIMETERS * SEWN_DEPTH, 0.1 * thickness)  # depth of cables on a skin, which are visible
         return np.where(depths > max(skin, image.buffer.pixel), 0.26 + 0.42 * levels, 0.0)
 
     def cable(self, points: Points) -> DrawnCable:

@@ -81,7 +81,7 @@ class Labels:
             rectangles = shapely.box(*boxes.T)
             costs = outside * shapely.area(shapely.intersection(rectangles, self._body)) / areas
         for other in self._taken:
-            size = float(np.prod(other[2:] - other[:2]))  # a small thing is hidden by a small part of a long label
+            size = float(np.prod(other[2:] - other[:2]))  # a small part of a long label hides a spool
             costs = costs + 30 * _shared_areas(boxes, other) / np.minimum(areas, max(size, 1e-9))
         covered = ((self._avoid >= boxes[:, None, :2]) & (self._avoid <= boxes[:, None, 2:])).all(axis=2)
         beyond = 1 - _shared_areas(boxes, np.concatenate([self._sheet.low, self._sheet.high])) / areas

@@ -1,4 +1,4 @@
-"""Mirror lines: `find_mirror`, and `mirror_points`, which puts points on such a line or in pairs beside it."""
+"""Mirror lines: `find_mirror`, and `mirror_points`, which puts points on such a line or in pairs across it."""
 
 from collections.abc import Callable
 
@@ -21,7 +21,7 @@ def measure_asymmetry(body: Body, axis: int) -> float:
 def find_mirror(body: Body) -> int | None:
     """Axis about whose 0 a body is its own mirror image, the more exact one if both are; None without one.
 
-    A drawn body has 0 in the middle of its drawing. Lines aslant are not found.
+    A drawn body has 0 in the middle of its drawing. Slanted lines are not found.
     """
     off = [measure_asymmetry(body, axis) for axis in range(body.mesh.dim)]
     axis = int(np.argmin(np.round(off, 4)))
@@ -31,7 +31,7 @@ def find_mirror(body: Body) -> int | None:
 def mirror_points(
     points: Points, axis: int, *, near: float, holds: Callable[[Vector], bool]
 ) -> tuple[Nodes, Int[np.ndarray, " nodes"]]:
-    """Points on a mirror line or in pairs beside it, and the number of each one's twin (its own on the line).
+    """Points on a mirror line or in pairs across it, and the number of each one's twin (its own on the line).
 
     Twins are moved to the mean of each and the other's image. A point near the line without a twin goes to it if
     `holds` says that this place is in the body, else its image is added. A single point far from the line stays alone.

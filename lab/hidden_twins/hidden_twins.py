@@ -5,7 +5,7 @@
 
 A twin has another discretization than the fitted robot (half the element size), another modulus (25 %) and Poisson's
 ratio (0.15 to 0.42 for 0.3), routes 1 mm off, spools 4 % off, and noise of 0.3 mm. 20 poses are fitted (young, gain,
-frame), five of them with a hung mass; 8 others are predicted. Seeds are the numbers of the twins.
+frame), five of them with a hung mass; 8 others are predicted. Seeds are the numbers of the twins, from --first on.
 
 With --forces, cables rub (friction 0 to 0.1, none in the fit), one pose alone has a hung mass, and ten poses have
 motor currents: forces read to 3 %, of torque constants 10 % off. With --profile, intervals by profile likelihood are
@@ -203,6 +203,7 @@ def main() -> None:
     """Fit all twins and print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--twins", type=int, default=20, help="twins of each robot; 0 prints the rows that are there")
+    parser.add_argument("--first", type=int, default=0, help="number of the first twin")
     parser.add_argument("--rows", type=Path, help="file to keep rows in")
     parser.add_argument("--forces", action="store_true", help="rubbing cables, currents and one hung mass")
     parser.add_argument("--profile", action="store_true", help="intervals by profile likelihood, where doubtful")
@@ -211,7 +212,7 @@ def main() -> None:
     forces = given.forces or given.photos
     rows = list(csv.reader(given.rows.open(encoding="utf-8")))[1:] if given.rows and given.rows.exists() else []
     done = {(row[0], int(row[1])) for row in rows}
-    for seed in range(given.twins):
+    for seed in range(given.first, given.first + given.twins):
         for name in SIZES:
             if (name, seed) not in done:
                 rows.append(try_twin(name, seed, forces=forces, profile=given.profile, photos=given.photos))

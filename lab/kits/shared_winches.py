@@ -2,7 +2,7 @@
 
     python lab/kits/shared_winches.py [--out DIR]
 
-The side cables of fingers, then flexors too, go to one winch, from which they begin. Errors are rms over markers.
+The side cables of fingers go to one winch, from which they begin. Errors are rms over markers.
 """
 
 import argparse

@@ -329,7 +329,7 @@ def test_a_search_that_its_time_ends_names_what_comes_on_top(
     search.answer = replace(plain_network(), complete=False, timed_out=True)
     _, told, err = run("design", strip, "--time", "9 s", "--out", tmp_path / "out")
     assert told.endswith("time limit of 9 s reached: best network so far\n")
-    assert "search ended by --time, which does not count the report\n" in err
+    assert "search ended by --time. The report takes additional time\n" in err
 
 
 def test_the_best_so_far_where_the_search_is_stopped(

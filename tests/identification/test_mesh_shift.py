@@ -2,9 +2,12 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from builders import box_mesh, mesh_body, strip_mesh
 
+from hydrostat.identification import named_model
+from hydrostat.identification.identified_robot import start_of
 from hydrostat.identification.mesh_shift import soften_cables
 from hydrostat.robot import BodyPart, Cable, Mount, Pin, Robot, Winch
 from hydrostat.simulation import Simulation
@@ -75,3 +78,30 @@ def test_rigid_disks_have_no_dents() -> None:
     )
     held = replace(robot, body=replace(robot.body, parts=parts))
     assert soften_cables(held).cables[0].stiffness > 1e3 * soften_cables(robot).cables[0].stiffness
+
+
+@pytest.mark.parametrize(
+    ("shifts", "build", "ends", "low", "high"),
+    [
+        ([[0.0]], 0.0, None, -0.98, 0.98),
+        ([[3.0], [1.2]], 0.0, None, -0.98, 1.5 + 1.96 * 3 / 12**0.5),
+        ([[-1.0], [2.0]], 0.25, None, 0.5 - 1.96, 0.5 + 1.96),
+        ([[0.6], [0.3]], 0.0, (-2.0, 0.1), -2.0, 0.3 + 1.96 * 0.6 / 12**0.5),
+    ],
+    ids=["residuals alone", "one side", "both sides", "profiled"],
+)
+def test_intervals_are_the_hull_of_residuals_and_hidden_errors(
+    shifts: list[list[float]], build: float, ends: tuple[float, float] | None, low: float, high: float
+) -> None:
+    """Oracle: ends by hand, for residuals with a standard deviation of a half; a uniform range has a twelfth."""
+    model = named_model(strip(1, "straight"), ("gain",))
+    (parameter,) = model.parameters
+    fitted = replace(
+        start_of(model),
+        covariance=np.array([[0.25]]),
+        spread=1.0,
+        mesh_shift=np.array(shifts),
+        build_variance=np.array([build]),
+        ends=None if ends is None else np.array(ends)[:, None],
+    )
+    assert fitted.intervals[parameter.name] == pytest.approx((parameter.from_fitted(low), parameter.from_fitted(high)))

@@ -341,7 +341,7 @@ class PowerPlan:
 
 
 def check_motor_and_board(key: str, board: str | None, winches: int = 0) -> None:
-    """Check a motor by its key and the board that drives it on each winch, in no time.
+    """Check a motor by its key and the board that drives it on each winch.
 
     Raises:
         InputError: an unknown motor, or a board that does not drive it, or not so many of it.

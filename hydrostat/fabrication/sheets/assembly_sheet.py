@@ -87,7 +87,8 @@ def sheet_pictures(plan: KitPlan, lists: Lists, views: Sequence[Camera]) -> dict
 
 def _single_maps(plan: KitPlan, views: Sequence[Camera]) -> list[Canvas]:
     """Pages of maps with one cable each: for a plush robot, and where one map of all is too dense."""
-    if plan.method is not Method.PLUSH and len(plan.robot.cables) <= _DENSE:
+    dense = plan.method is Method.FOAM and len(plan.robot.cables) > _DENSE
+    if not (plan.method is Method.PLUSH and plan.robot.cables) and not dense:
         return []
     height, view = 235.0 - _shorter(plan.options.paper), views[0] if views else None
     return single_maps(plan.robot, plan.work.stitches, width=WIDE, height=height, view=view)
