@@ -42,10 +42,10 @@ def drag(page: "Page", key: str, dx: float, dy: float) -> None:
         x, y = place(page, key)
         page.mouse.move(x, y)
         page.mouse.down()
-        if moved(page, x + dx / 8, y + dy / 8, seconds=20):
-            break
+        if all(moved(page, x + dx * step / 8, y + dy * step / 8, seconds=20) for step in (1, 2, 3)):
+            break  # one paint may have another cause
         page.mouse.up()
-    for step in range(2, 9):
+    for step in range(4, 9):
         assert moved(page, x + dx * step / 8, y + dy * step / 8, seconds=300)
     page.mouse.up()
 
