@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from hydrostat.robot import Robot
 
-FAR_SHARE = 0.25  # a pose that leaves more than this share of the distance to its targets is told, and why
+FAR_SHARE = 0.25  # share of the distance to its targets above which a pose gets a warning
 _FAST_NODES = 2000  # nodes of a flat body of which each pose takes a second at most
 
 

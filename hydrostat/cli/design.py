@@ -3,20 +3,18 @@
 import math
 import sys
 import time
-from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import fields, is_dataclass, replace
-from functools import wraps
-from inspect import Parameter, signature
+from dataclasses import replace
 from pathlib import Path
 from shlex import quote
-from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from hydrostat.cli.check import print_sewing
 from hydrostat.cli.check_poses import FAR_SHARE
 from hydrostat.cli.design_arguments import DesignArguments, parse_request
+from hydrostat.cli.design_record import RECORDS, open_record, tell_record, write_record
 from hydrostat.cli.design_results import (
     STALE,
     find_over_budget,
@@ -30,9 +28,9 @@ from hydrostat.cli.fabricate import print_kit
 from hydrostat.cli.folders import OutFolder, RobotFolder, folder_of, note_others, require_folder, result_folder
 from hydrostat.cli.limits import print_far_targets
 from hydrostat.cli.options import parse_budget
+from hydrostat.cli.records import take_records
 from hydrostat.cli.remedies import body_refusals, design_remedy
 from hydrostat.cli.waiting import one_interrupt, progress_bar, read_robot
-from hydrostat.errors import InputError
 from hydrostat.units import plural
 
 if TYPE_CHECKING:
@@ -42,39 +40,12 @@ if TYPE_CHECKING:
     from hydrostat.fabrication import Kit
     from hydrostat.robot import Robot
 
-
 _IMPROVEMENT_RATIO = 0.95  # a network is printed below this share of the last printed error
 STOPPING = "stopping: solving and writing the best network so far ..."  # said when Ctrl-C ends a search
 
 
 Resume = Annotated[bool, typer.Option("--resume", help="Continue a search that was stopped: same command, same --out.")]
 WithKit = Annotated[bool, typer.Option("--kit", help="Also write the build kit.")]
-
-
-def take_records(command: Callable[..., None]) -> Callable[..., None]:
-    """Command with an option for each field of its records, in their order, with its annotation and its default."""
-    hints = get_type_hints(command, include_extras=True)
-    own = signature(command)
-    options: list[Parameter] = []
-    records = {name: hints[name] for name in own.parameters if is_dataclass(hints[name])}
-    for name, parameter in own.parameters.items():
-        if name not in records:
-            options.append(parameter.replace(annotation=hints[name], kind=Parameter.KEYWORD_ONLY))
-            continue
-        kinds = get_type_hints(records[name], include_extras=True)
-        options += [
-            Parameter(each.name, Parameter.KEYWORD_ONLY, default=each.default, annotation=kinds[each.name])
-            for each in fields(records[name])
-        ]
-
-    @wraps(command)
-    def run(**given: Any) -> None:
-        for name, record in records.items():
-            given[name] = record(**{each.name: given.pop(each.name) for each in fields(record)})
-        command(**given)
-
-    run.__signature__ = own.replace(parameters=options)  # type: ignore[attr-defined]
-    return run
 
 
 @take_records
@@ -281,60 +252,3 @@ def _tell_next(
         print(f"Next: hydrostat fabricate {quote(str(out / 'robot'))}{spend} --out {quote(str(out / 'kit'))}")
     print(f"Pose it within the limits of its robot.toml: hydrostat pose {quote(str(out / 'robot'))} --out DIR")
     print(f"Open {out / 'report.html'}")
-
-
-RECORDS = _FILE, _OLD = "search.json", "search.old.json"
-"""Files of a search that stand in a result folder before the results."""
-
-
-def open_record(out: Path, robot: "Robot", request: "DesignRequest", *, resume: bool) -> "SearchRecord":
-    """Open the record in a folder to resume its search, or a new one (InputError: the record is of another search).
-
-    The file is written while the search goes on, so that a killed one can be resumed.
-    """
-    from hydrostat.design import SearchRecord
-
-    if not resume:
-        if (out / _FILE).exists():  # a search that was stopped here is not overwritten
-            (out / _FILE).replace(out / _OLD)
-        return _keep_written(SearchRecord(), out, robot, request)
-    if not (out / _FILE).exists():
-        raise InputError(f"--resume: {out} has no {_FILE}, so no search was stopped there. Start without --resume.")
-    record = SearchRecord.read(out / _FILE, robot, request)
-    print(f"resuming after {plural(len(record.known), 'step')}", file=sys.stderr, flush=True)
-    return _keep_written(record, out, robot, request)
-
-
-def _keep_written(record: "SearchRecord", out: Path, robot: "Robot", request: "DesignRequest") -> "SearchRecord":
-    """Write a record after its steps, in at most a fiftieth of the time of the search."""
-    wait, share = 1.0, 50  # least time between two files [s]; the same in times that a file took
-    due = time.perf_counter() + wait
-
-    def write() -> None:
-        nonlocal due
-        began = time.perf_counter()
-        if began < due:
-            return
-        with suppress(InputError, OSError):  # a full disk ends no search
-            out.mkdir(parents=True, exist_ok=True)
-            record.write(out / _FILE, robot, request)
-        due = began + max(wait, share * (time.perf_counter() - began))
-
-    record.on_step = write
-    return record
-
-
-def tell_record(out: Path) -> str:
-    """Words on the record of a search that found no network."""
-    return f"to continue, add --resume ({out / _FILE})" if (out / _FILE).exists() else "no files written"
-
-
-def write_record(
-    record: "SearchRecord", network: "Network", out: Path, robot: "Robot", request: "DesignRequest"
-) -> None:
-    """Write the steps of a search that was stopped next to its results; remove those of one that is complete."""
-    if not network.complete and (record.steps or record.known):
-        record.write(out / _FILE, robot, request)
-        print(f"To continue the search, run the same command with --resume ({out / _FILE})")
-    elif network.complete:
-        (out / _FILE).unlink(missing_ok=True)

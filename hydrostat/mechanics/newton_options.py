@@ -37,10 +37,10 @@ class NewtonRules:
     """Rules of the steps, the same for all problems."""
 
     margin: float = 1.1
-    """Newton's step is the distance to equilibrium but for its square; so much more is told."""
+    """Estimated distance to equilibrium over the length of Newton's step, which is it to first order."""
 
     linear: float = 1e-2
-    """With less than this share of the largest applied force left over, Newton's step tells how far equilibrium is."""
+    """Residual, as a share of the largest applied force, below which Newton's step is the distance to equilibrium."""
 
     crushed: float = 0.2
     """No step leaves less than this share of the volume of the element that was squeezed most before it.
@@ -55,25 +55,25 @@ class NewtonRules:
     """A step of which less is taken is damped from then on."""
 
     damps: float = 4.0
-    """So many times more than before."""
+    """Factor by which damping then grows."""
 
     long_step: float = 0.5
     """After a step of which more was taken there is less damping."""
 
     eases: float = 8.0
-    """So many times less."""
+    """Factor by which damping then falls."""
 
     min_damping_share: float = 0.05
     """Damping that takes less than this share of a step's curvature is left out."""
 
     fast_decrease: float = 0.1
-    """After a step that leaves less than this share of the residual the full Hessian is tried at once."""
+    """After a step that leaves less than this share of the residual the full Hessian is tried immediately."""
 
     saddle_tolerance: float = 1e-4
-    """Only an equilibrium at least as sharp as this share of the largest applied force is told from a saddle."""
+    """Sharpness, as a share of the largest applied force, from which on an equilibrium differs from a saddle."""
 
     saddles: int = 3
-    """So many saddles are left in one solve."""
+    """Maximum number of saddles left in one solve."""
 
 
 RULES = NewtonRules()

@@ -118,11 +118,12 @@ def sketch_robot(
     as_fine = 2**-0.5 if kind is ElementKind.QUADRATIC else 1.0
     spacing = as_fine * (body.element_size or 0.0)  # of linear elements in place of these
     center = np.array(maximum_inscribed_circle(outline.polygon).coords[0])
-    center = _on_mirror(body, outline, center)
+    axis = find_mirror(body)
+    center = center if axis is None else _on_mirror(axis, outline, center)
     depth = outline.polygon.boundary.distance(ShapelyPoint(center))
     pin = Pin(at=_point(center), radius=_round(max(0.4 * depth, 1.3 * spacing)))
     pin = move_off_drawings(pin, body, outline.polygon)
-    tips, twins = _find_tips(body, pin, center, 2.5 * spacing)
+    tips, twins = _find_tips(body, pin, center, 2.5 * spacing, axis)
     names = name_tips(body.mesh, tips)
     return Robot(
         name=name,
@@ -133,19 +134,19 @@ def sketch_robot(
     )
 
 
-def _on_mirror(body: Body, outline: Outline, center: Vector) -> Vector:
-    """A deepest place of a drawing [m], on the mirror line of its body if that is nearly as deep."""
+def _on_mirror(axis: int, outline: Outline, center: Vector) -> Vector:
+    """A deepest place of a drawing [m], on its mirror line, where an axis is 0, if that is nearly as deep."""
     from shapely import Point as ShapelyPoint
 
-    axis, moved = find_mirror(body), center.copy()
-    if axis is None:
-        return center
+    moved = center.copy()
     moved[axis] = 0.0
     here, there = (outline.polygon.boundary.distance(ShapelyPoint(place)) for place in (center, moved))
     return moved if outline.polygon.contains(ShapelyPoint(moved)) and there >= _AS_DEEP * here else center
 
 
-def _find_tips(body: Body, pin: Pin, center: Vector, near: float) -> tuple[Points, Int[np.ndarray, " tips"]]:
+def _find_tips(
+    body: Body, pin: Pin, center: Vector, near: float, axis: int | None
+) -> tuple[Points, Int[np.ndarray, " tips"]]:
     """Tips of limbs, the longest first [m], on the mirror line or in pairs if there is one; number of each one's twin.
 
     Tips are nodes within a distance of the ends of limbs.
@@ -155,7 +156,6 @@ def _find_tips(body: Body, pin: Pin, center: Vector, near: float) -> tuple[Point
     insides = body.mesh.nodes[within], body.mesh.nodes[corners].mean(axis=1)
     ends = find_limb_tips(body.mesh, measure_geodesics(body.mesh, pin.holds(body.mesh))[0])
     tips = np.array([_inner_tip(insides, body.mesh.nodes[end], center, near) for end in ends])
-    axis = find_mirror(body)
     if axis is None:
         return tips, np.arange(len(tips))
     return mirror_points(

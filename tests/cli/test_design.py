@@ -291,7 +291,7 @@ def test_a_killed_search_leaves_its_steps(
 ) -> None:
     """Oracle: steps that a second run is given, after one whose end writes nothing, by a clock of 10 s a look."""
     clock = itertools.count(step=10.0)
-    monkeypatch.setattr("hydrostat.cli.design.time", SimpleNamespace(perf_counter=lambda: next(clock)))
+    monkeypatch.setattr("hydrostat.cli.design_record.time", SimpleNamespace(perf_counter=lambda: next(clock)))
     steps = [{"step": str(number), "tried": 1, "networks": None} for number in range(3)]
     known = []
 

@@ -10,7 +10,8 @@ import numpy as np
 
 from hydrostat.arrays import Nodes, Vector
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.routes.layout import Layout, Values, layout_values, read_layout
+from hydrostat.design.routes.layout import Layout
+from hydrostat.design.routes.layout_values import Values, layout_values, read_layout
 from hydrostat.design.routes.reach_from_rest import reach_from_rest
 from hydrostat.design.routes.search_record import SearchRecord, Step
 from hydrostat.design.routes.search_rules import RULES

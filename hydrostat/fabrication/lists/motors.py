@@ -344,7 +344,7 @@ def check_motor_and_board(key: str, board: str | None, winches: int = 0) -> None
     """Check a motor by its key and the board that drives it on each winch.
 
     Raises:
-        InputError: an unknown motor, or a board that does not drive it, or not so many of it.
+        InputError: an unknown motor, or a board that does not drive it, or drives fewer.
     """
     if key != "auto":
         _check_board(Motor.choose(key), board, winches)
