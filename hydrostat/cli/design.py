@@ -24,7 +24,7 @@ from hydrostat.cli.design_results import (
     write_kit,
     write_results,
 )
-from hydrostat.cli.fabricate import print_kit
+from hydrostat.cli.fabricate import print_kit, tell_zero_loss
 from hydrostat.cli.folders import OutFolder, RobotFolder, folder_of, note_others, require_folder, result_folder
 from hydrostat.cli.limits import print_far_targets
 from hydrostat.cli.options import parse_budget
@@ -87,6 +87,9 @@ def design(
     _tell_count(network, request, lifts)
     if not lifts:
         _tell_miss(network)
+    taken = [max(pulls) for pulls in zip(*(found.pose.contractions for found in network.ik_results), strict=True)]
+    if words := tell_zero_loss(network.robot, network.robot.motor, taken):
+        print(f"note: {words}")
     fits = kit_fits(network) and not (made is not None and made.problems)
     over = find_over_budget(network, spend) if made is None and fits else ()
     for problem in over:

@@ -11,6 +11,7 @@ from hydrostat.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from hydrostat.control import Calibration
     from hydrostat.design import Alternative, BuildCost, Constraints, Network
     from hydrostat.fabrication import Kit, KitOptions
     from hydrostat.ik import IKResult
@@ -107,18 +108,24 @@ def designed_motor(robot: "Robot", folder: Path) -> str:
 
 def kit_motor(robot: "Robot", folder: Path) -> str:
     """Key of the motor on a robot: that of robot.toml, of motors.toml, or of the kit of its design; or "auto"."""
-    from hydrostat.cli.folders import folder_of
-    from hydrostat.control import Calibration
 
     def take(card: "Any", network: "Any") -> str:
         return str(network["craft"]["motor"] if card["motor"] == "auto" else card["motor"])
 
     if robot.motor != "auto":
         return robot.motor
-    with suppress(InputError):  # without motors, or with others: commands that need them say so
-        if model := Calibration.read(folder_of(folder), robot).model:
-            return model
-    return _of_design(robot, folder, take) or "auto"
+    known = read_motors(robot, folder)
+    return (known and known.model) or _of_design(robot, folder, take) or "auto"
+
+
+def read_motors(robot: "Robot", folder: Path) -> "Calibration | None":
+    """The motors.toml of a robot; None without it, or with drives, of which it may hold the motors, too."""
+    from hydrostat.cli.folders import folder_of
+    from hydrostat.control import CALIBRATION, Calibration
+
+    if robot.drives or not (folder_of(folder) / CALIBRATION).exists():
+        return None
+    return Calibration.read(folder_of(folder), robot)
 
 
 def designed_cost(robot: "Robot", folder: Path) -> "BuildCost | None":

@@ -2,7 +2,7 @@
 
 import re
 import time
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -138,6 +138,7 @@ def fabricate(
     kit.write(out)
     _print_motors(loaded, kit, options)
     print_kit(kit)
+    _warn_of_zeros(loaded, kit.motor, board)
     if motor not in (None, "auto", loaded.motor):
         print(f'note: to keep this motor for calibrate and play, write motor = "{motor}" into robot.toml')
     if simple:
@@ -154,6 +155,34 @@ def fabricate(
         print(f"Cable tension: at most {kept:g} N, the limit of {where}. Override with --tension")
     seconds = time.perf_counter() - began
     print(f"Wrote {len(kit.files)} files in {seconds:.1f} s. Start with {out / 'assembly_sheet.pdf'}")
+
+
+def _warn_of_zeros(robot: "Robot", key: str, board: str | None) -> None:
+    """Print a warning if servos on this board lose their zeros without power."""
+    words = tell_zero_loss(robot, key) if board == SERVO_BOARD else ""
+    if words:
+        print(f"warning: {words}")
+
+
+def tell_zero_loss(robot: "Robot", key: str, taken: Sequence[float] = ()) -> str:
+    """Why Feetech servos on a board lose their zeros without power, in one line; empty for other motors.
+
+    Args:
+        robot: robot with the winches.
+        key: key of the motor.
+        taken: the most that poses take in with each winch [m]; empty: not known.
+    """
+    from hydrostat.control import Calibration, find_zero_loss
+    from hydrostat.fabrication import Motor
+
+    if key == "auto" or not robot.winches or not Motor.choose(key).is_feetech:
+        return ""
+    lost = find_zero_loss(robot, Calibration.usual(robot).motors, Motor.choose(key).bus, taken)
+    return lost and f"on an {SERVO_BOARD} servos lose their zeros without power: {lost}"
+
+
+SERVO_BOARD = "esp32s3"
+"""Board that drives Feetech servos."""
 
 
 def _print_summary(folder: Path, robot: "Robot", options: "KitOptions") -> None:

@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from hydrostat.cli.fabricate import SERVO_BOARD
 from hydrostat.cli.folders import OutFolder, OwnRobotFolder
 from hydrostat.cli.waiting import read_robot
 from hydrostat.errors import InputError
+from hydrostat.given import list_choices
 from hydrostat.units import plural
 
 if TYPE_CHECKING:
@@ -121,7 +123,7 @@ def firmware(
     images = control.build_images(loaded, given, boards, places, moves=text, **facts)
     if given != calibration:
         print(f"Wrote {given.write(folder)}, next to the robot: motors and counts for calibrate, play and drive")
-    _tell_changes(loaded, calibration, given)
+    _tell_changes(loaded, calibration, given, chosen.key)
     for number, (kind, image) in enumerate(zip(boards, images, strict=False), 1):
         _tell(kind, number, given, chosen.bus)
         _flash(kind, image, ports[number - 1] if ports else None)
@@ -133,19 +135,17 @@ def firmware(
         print(f"{port}: flashed. Pay out all cables, then: hydrostat calibrate {folder} --motors firmware:{port}")
 
 
-SERVO_BOARD = "esp32s3"
-"""Board that drives Feetech servos."""
-
-
 def _check_motor(where: str, key: str, board: str | None) -> None:
     """Reject a motor that boards do not drive, or that this board does not, or an unknown one."""
-    from hydrostat.fabrication import ALL_MOTORS, BOARDS
+    from hydrostat.fabrication import ALL_MOTORS, BOARDS, check_board
 
+    for kind in [] if board is None else board.split(","):
+        check_board(kind.strip())
     motor = next((each for each in ALL_MOTORS if each.key == key), None)
     if motor is None and key != "auto":
-        known = ", ".join(each.key for each in ALL_MOTORS if each.counts or each.is_feetech)
+        known = [each.key for each in ALL_MOTORS if each.counts or each.is_feetech]
         other = "" if any(each.key in key for each in ALL_MOTORS if each.bus) else " Or give --counts and --rpm."
-        raise InputError(f"{where} {key}: unknown motor. Available: {known}.{other}")
+        raise InputError(f"{where} {key}: unknown motor. {list_choices('motors', known, key)}{other}")
     if motor is None or not motor.bus:
         return
     if not motor.is_feetech:
@@ -177,7 +177,7 @@ def _choose_motor(asked: str | None, own: str, calibration: "Calibration", count
     elif asked is None and not (own in known and known[own].bus):
         told = {each.counts for each in calibration.motors}
         steps = {key: SERVO_STEPS.get(each.bus, each.counts) for key, each in known.items()}
-        own = next((key for key, each in steps.items() if told == {each}), _USUAL)
+        own = next((key for key, each in steps.items() if told == {each}), own if own in known else _USUAL)
     motor = known[asked or own]
     if motor.bus and counts is not None:
         raise InputError(f"--counts: a {motor.key} has {SERVO_STEPS[motor.bus]:g}. Remove it.")
@@ -210,10 +210,13 @@ def _check_turns(robot: "Robot", given: "Calibration", motor: "Motor") -> None:
         raise InputError(problems[0] + ".")
 
 
-def _tell_changes(robot: "Robot", before: "Calibration", after: "Calibration") -> None:
-    """Warn of counts and zeros that are replaced, and of spools that differ from those of the robot."""
+def _tell_changes(robot: "Robot", before: "Calibration", after: "Calibration", key: str) -> None:
+    """Warn of counts and zeros that are replaced, and of a motor and spools that differ from those of the robot."""
     from hydrostat.control import CALIBRATION
 
+    if robot.motor not in ("auto", key):
+        own = f'motor = "{robot.motor}" in robot.toml, which calibrate and play follow'
+        print(f"warning: motor {key} of this firmware contradicts {own}. Correct one of the two.")
     for winch, old, new in zip(robot.winches, before.motors, after.motors, strict=True):
         if old.counts and old.counts != new.counts:
             lost = ", and its zero is removed" if old.zero is not None else ""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hydrostat.cli.design_results import kit_motor
+from hydrostat.cli.design_results import kit_motor, read_motors
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result_folder
 from hydrostat.cli.option_errors import naming_option
 from hydrostat.cli.options import (
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from hydrostat.simulation import Simulation
 
 
+USUAL_SPEED = 0.05  # of winches whose motor is unknown or faster [m/s]
 REST = "rest"  # name of the pose without contractions, unless the robot has a pose of this name
 
 
@@ -54,7 +55,15 @@ def trajectory(
             help="Path between poses: smooth or linear contractions, or straight marker paths.",
         ),
     ] = "smooth",
-    speed: Annotated[str, typer.Option("--max-speed", metavar="SPEED", help="Maximum winch speed.")] = "50 mm/s",
+    speed: Annotated[
+        str | None,
+        typer.Option(
+            "--max-speed",
+            metavar="SPEED",
+            help="Maximum winch speed.",
+            show_default="50 mm/s, or the no-load speed of the robot's motor if that is less",
+        ),
+    ] = None,
     acceleration: Annotated[
         str | None,
         typer.Option(
@@ -83,13 +92,16 @@ def trajectory(
     from hydrostat.units import ACCELERATION, SPEED, TIME
 
     require_folder(out)
-    fastest = positive("--max-speed", speed, SPEED)
+    asked = None if speed is None else positive("--max-speed", speed, SPEED)
     hardest = parse_optional("--max-acceleration", acceleration, ACCELERATION)
     stay = positive("--hold", hold, TIME, zero=True)
     kind = parse_choice(PathKind, path, what="--path")
     check_width(width)
     loaded = read_robot(robot)
     limits = pose_limits(loaded, tension, torque, equal)
+    key = kit_motor(loaded, robot)
+    free = free_speeds(loaded, robot, key)
+    fastest = _usual_speed(free, key) if asked is None else asked
     names = _keyframe_names(loaded, poses)
     simulation = prepare_physics(loaded)
     began = time.process_time()
@@ -109,7 +121,7 @@ def trajectory(
         with result_folder(out) as folder:
             files = _write(simulation, made, facts, folder, width, progress)
     print(*made.lines(), sep="\n")
-    if warning := warn_of_speed(loaded, kit_motor(loaded, robot), made.peak_speeds):
+    if warning := warn_of_speed(loaded, free, key, made.peak_speeds):
         print(warning)
     print("Wrote " + ", ".join(str(out / file.relative_to(folder)) for file in files))
     stuck = (IKStatus.ITERATION_LIMIT, IKStatus.NO_EQUILIBRIUM)
@@ -117,14 +129,29 @@ def trajectory(
         raise typer.Exit(1)
 
 
-def warn_of_speed(robot: "Robot", key: str, peaks: "Vector") -> str:
-    """Warning of peak speeds [m/s], winches first, that a motor does not reach; empty if it does or is unknown."""
+def free_speeds(robot: "Robot", folder: Path, key: str) -> list[float]:
+    """No-load speed of each winch by its motor [m/s], on the spools of motors.toml if there are; empty: not known."""
     from hydrostat.fabrication import Motor
 
     if key == "auto":
-        return ""
-    turns = Motor.choose(key).speed / 60
-    free = [2 * math.pi * turns * winch.spool_radius for winch in robot.winches]
+        return []
+    known, turns = read_motors(robot, folder), Motor.choose(key).speed / 60
+    radii = [winch.spool_radius for winch in robot.winches] if known is None else [one.radius for one in known.motors]
+    return [2 * math.pi * turns * radius for radius in radii]
+
+
+def _usual_speed(free: list[float], key: str) -> float:
+    """The usual speed [m/s], or that of the slowest winch, which is printed."""
+    least = min(free, default=math.inf)
+    if least >= USUAL_SPEED:
+        return USUAL_SPEED
+    slower = math.floor(1e3 * least) / 1e3 or least
+    print(f"note: at most {1e3 * slower:g} mm/s, the no-load speed of its {key}. Override with --max-speed")
+    return slower
+
+
+def warn_of_speed(robot: "Robot", free: list[float], key: str, peaks: "Vector") -> str:
+    """Warning of peak speeds [m/s], winches first, that a motor does not reach; empty if it does or is unknown."""
     ratios = [peak / most for peak, most in zip(peaks.tolist(), free, strict=False)]
     if max(ratios, default=0.0) <= 1:
         return ""

@@ -17,6 +17,7 @@ from hydrostat.control.feetech_bus import FAULTS, FeetechBus
 from hydrostat.control.scs_bus import ScsBus
 from hydrostat.control.servo_bus import TURNED
 from hydrostat.robot import Robot
+from hydrostat.units import list_words
 
 SERVO_STEPS = {bus.kind: 2 * pi / bus.tick for bus in (FeetechBus, ScsBus)}
 """Steps of a turn of a servo, by kind of bus."""
@@ -50,21 +51,32 @@ def servo_settings(robot: Robot, motors: list[WinchMotor], bus: str) -> str:
     return f"/* registers and rules of the servos, from hydrostat/control/{bus}_bus.py */\n{lines}"
 
 
-def find_zero_loss(robot: Robot, motors: Sequence[WinchMotor], bus: str) -> str:
-    """Return why servos lose their zeros without power, with the fix; empty if they keep them."""
-    if bus == ScsBus.kind:
+def find_zero_loss(robot: Robot, motors: Sequence[WinchMotor], bus: str, taken: Sequence[float] = ()) -> str:
+    """Return why servos lose their zeros without power, with the fix; empty if they keep them.
+
+    Args:
+        robot: robot with the winches.
+        motors: motor of each winch.
+        bus: kind of the servos.
+        taken: the most that poses take in with each winch, in the order of the robot [m]; empty: not known.
+    """
+    ranges = {winch.name: winch.travel + winch.release for winch in robot.winches}
+    lost = [motor for motor in motors if ranges[motor.winch] + 2 * ALONE_SPARE >= 2 * pi * motor.radius]
+    if bus == ScsBus.kind or not lost:
         return ""
-    lengths = {winch.name: winch.travel + winch.release for winch in robot.winches}
-    worst = max(motors, key=lambda motor: (lengths[motor.winch] + 2 * ALONE_SPARE) / motor.radius)
-    length, turn = lengths[worst.winch], 2 * pi * worst.radius
-    if length + 2 * ALONE_SPARE < turn:
-        return ""
-    radius = ceil(1e4 * (length + 2 * ALONE_SPARE) / (2 * pi) + 1e-9) / 10
-    range_ = floor(1e3 * (turn - 2 * ALONE_SPARE) - 1e-9)
-    less = f", or travel and release of {range_} mm in all" if range_ > 0 else ""
+    names, turns = [motor.winch for motor in lost], max(ranges[each.winch] / (2 * pi * each.radius) for each in lost)
+    needed = {winch.name: winch.release + most for winch, most in zip(robot.winches, taken, strict=False)}
+    most = 1e3 * max((needed.get(name, 0.0) for name in names), default=0.0)
+    least = floor(1e3 * (2 * pi * min(motor.radius for motor in lost) - 2 * ALONE_SPARE) - 1e-9)
+    spool = ceil(1e4 * (max(ranges[name] for name in names) + 2 * ALONE_SPARE) / (2 * pi) + 1e-9) / 10
+    remedy = f"{'Use' if least <= most else 'or'} a spool radius of at least {spool:.1f} mm"
+    if least > most:
+        poses = f" (poses use {most:.3g} mm)" if needed else ""
+        remedy = f"Write travel and release of {least} mm in all into robot.toml{poses}, {remedy}"
+    much = f"{'turns' if len(lost) == 1 else 'turn up to'} {turns:.2f} times"
     return (
-        f"{worst.winch} turns {length / turn:.2f} times. Zeros last for less than one turn, with "
-        f"{1e3 * ALONE_SPARE:g} mm to spare at each end. Use a spool radius of at least {radius:.1f} mm{less}"
+        f"{list_words(names)} {much}. Zeros last for less than one turn, with {1e3 * ALONE_SPARE:g} mm to spare at "
+        f"each end. {remedy}"
     )
 
 

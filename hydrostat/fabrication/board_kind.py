@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from hydrostat.errors import InputError
+from hydrostat.given import list_choices
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,5 +101,5 @@ def board_for(motors: int) -> str:
 def check_board(board: str) -> BoardKind:
     """A board by its name (InputError: no such one)."""
     if board not in BOARDS:
-        raise InputError(f"--board {board}: unknown board. Available: {', '.join(BOARDS)}.")
+        raise InputError(f"--board {board}: unknown board. {list_choices('boards', list(BOARDS), board)}")
     return BOARDS[board]

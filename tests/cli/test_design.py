@@ -412,8 +412,10 @@ def test_what_keeps_a_network_from_its_targets_is_told(
     (reached,) = network.ik_results
     for share, told in ((0.5, True), (0.1, False)):
         miss = replace(reached, errors={"tip": share * network.rest_error}, active_limits=held)
-        search.answer = replace(network, ik_results=(miss,), complete=complete)
+        robot = replace(network.robot, motor="sts3215" if told else "auto")
+        search.answer = replace(network, robot=robot, ik_results=(miss,), complete=complete)
         _, out, _ = run("design", strip, "--out", tmp_path / "out")
+        assert ("note: on an esp32s3 servos lose their zeros without power: " in out) == told, "spools turn twice"
         assert ("note: 50 % of the way to the targets is left: " in out) == told
         assert (words in out) == told
 

@@ -22,6 +22,7 @@ from hydrostat.cli.design_results import (
     find_refused_better,
     kit_motor,
 )
+from hydrostat.cli.fabricate import tell_zero_loss
 from hydrostat.cli.remedies import design_remedy, kit_remedy, note_room
 from hydrostat.design import Alternative, BuildCost, Constraints, Network
 from hydrostat.errors import InputError
@@ -267,6 +268,37 @@ def test_motor_and_board_are_checked_before_the_robot_is_read(
     code, _, err = run("fabricate", tmp_path, "--motor", motor, "--board", board, "--out", tmp_path / "kit")
     assert code == 2
     assert words in err
+
+
+@pytest.mark.parametrize(
+    ("board", "key", "told"), [("esp32s3", "sts3215", 1), ("esp32s3", "n20", 0), (None, "sts3215", 0)]
+)
+def test_servos_that_lose_their_zeros_are_named(
+    run: Run, tmp_path: Path, starfish: Path, monkeypatch: pytest.MonkeyPatch, board: str | None, key: str, told: int
+) -> None:
+    """By hand: spools of 6 mm take in 37.7 mm a turn, travels are larger. A kit stands for the one that is made."""
+    kit = SimpleNamespace(motor=key, write=lambda out: None, files=())
+    for name, value in (("_build_or_report", kit), ("_print_motors", None), ("print_kit", None)):
+        monkeypatch.setattr(f"hydrostat.cli.fabricate.{name}", lambda *_, value=value: value)
+    options = () if board is None else ("--board", board)
+    code, out, _ = run("fabricate", starfish, "--motor", key, *options, "--out", tmp_path / "kit")
+    words = "on an esp32s3 servos lose their zeros without power: right, left and feet turn up to"
+    remedy = "Write travel and release of 33 mm in all into robot.toml, or a spool radius of at least"
+    assert (code, out.count(f"warning: {words}"), out.count(remedy)) == (0, told, told)
+
+
+def test_zeros_last_where_travel_is_short(starfish: Path) -> None:
+    """By hand: a spool of 6 mm takes in 37.7 mm a turn, less 2 mm at each end; poses that use more need a spool."""
+    robot = load_robot(starfish)
+    for travel, taken, told in (
+        (0.06, (0.0, 0.01, 0.02), "into robot.toml (poses use 20 mm), or a spool radius of at least 10.2 mm"),
+        (0.06, (0.0, 0.01, 0.04), "at each end. Use a spool radius of at least 10.2 mm"),
+        (0.033, (0.0, 0.01, 0.02), ""),
+    ):
+        winches = tuple(replace(winch, spool_radius=0.006, travel=travel, release=0.0) for winch in robot.winches)
+        assert tell_zero_loss(replace(robot, winches=winches), "sts3215", taken).endswith(told)
+        assert tell_zero_loss(replace(robot, winches=winches), "scs0009", taken) == ""
+    assert tell_zero_loss(replace(robot, winches=winches), "sts3215", taken) == ""
 
 
 def test_the_robots_own_motor_is_checked_with_the_board_before_its_loads() -> None:

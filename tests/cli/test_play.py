@@ -21,7 +21,8 @@ from hydrostat.cli.design_results import kit_motor
 from hydrostat.cli.play_camera import require_rest
 from hydrostat.control import Calibration, Motors, SimulatedLink
 from hydrostat.errors import HydrostatError, InputError
-from hydrostat.robot import Winch, gallery_folder, load_robot, robot_hash
+from hydrostat.fabrication import Motor
+from hydrostat.robot import Winch, gallery_folder, load_robot, robot_hash, save_robot
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -74,6 +75,10 @@ def test_motors_toml_remembers_the_motor(starfish: Path, tmp_path: Path) -> None
     assert kit_motor(replace(robot, motor="n20"), folder) == "n20"
     with pytest.raises(InputError, match='unknown motor "sts"'):
         replace(usual.motors[0], model="sts")
+    motors = folder / "motors.toml"
+    motors.write_text(motors.read_text().replace("sts3215", "sts321", 1))
+    with pytest.raises(InputError, match=r'motors\.toml: unknown motor "sts321"\. .* Did you mean "sts3215"'):
+        kit_motor(robot, folder)
 
 
 @pytest.mark.slow
@@ -293,6 +298,18 @@ def test_firmware_keeps_the_motor_that_is_known(run: Run, starfish: Path, tmp_pa
         assert Calibration.read(own, load_robot(own)).model == model
 
 
+def test_firmware_follows_robot_toml_or_names_the_contradiction(run: Run, starfish: Path, tmp_path: Path) -> None:
+    """Oracle: the motor that robot.toml names, with and without another in the command."""
+    own = Path(shutil.copytree(starfish, tmp_path / "own"))
+    robot = load_robot(own)
+    save_robot(replace(robot, motor="n20"), own)
+    for options, motor in (((), "n20"), (("--motor", "25d"), "25d"), (("--motor", "n20"), "n20")):
+        code, out, _ = run("firmware", own, *options, "--out", tmp_path / "made")
+        assert (code, Motor.choose(motor).title in out) == (0, True)
+        told = 'warning: motor 25d of this firmware contradicts motor = "n20" in robot.toml, which calibrate and play'
+        assert (told in out) == (motor == "25d")
+
+
 def test_a_board_drives_the_servos_of_feetech_alone(run: Run, starfish: Path, tmp_path: Path) -> None:
     """An ESP32-S3 gets a sketch for the servo of the command, of robot.toml or of motors.toml; other boards none."""
     made, own = tmp_path / "made", Path(shutil.copytree(starfish, tmp_path / "own"))
@@ -301,7 +318,12 @@ def test_a_board_drives_the_servos_of_feetech_alone(run: Run, starfish: Path, tm
         (("--motor", "scs0009", "--board", "mega"), "--board mega drives no bus servos. Use --board esp32s3"),
         (("--motor", "scs0009", "--counts", "4000"), "--counts: a scs0009 has 1228.8. Remove it."),
         (("--motor", "st3020", "--board", "esp32s3,esp32s3"), "one board drives up to 16 servos. Use --board esp32s3."),
-        (("--motor", "st3020,sts3215"), "Available: n20, 25d, sts3215, sts3215-12v, st3020, scs0009.\n"),
+        (("--board", "mega2"), '--board mega2: unknown board. Available: uno, mega, esp32s3. Did you mean "mega"?\n'),
+        (("--motor", "st3020", "--board", "mega2"), "--board mega2: unknown board."),
+        (
+            ("--motor", "st3020,sts3215"),
+            'Available: n20, 25d, sts3215, sts3215-12v, st3020, scs0009. Did you mean "sts3215"?\n',
+        ),
         (("--motor", "scs0009"), "degrees for its travel, scs0009 turns by 280. Choose another motor, or a spool"),
     ):
         code, _, err = run("firmware", own, *option, "--out", made)
@@ -319,7 +341,9 @@ def test_a_board_drives_the_servos_of_feetech_alone(run: Run, starfish: Path, tm
     assert "Motors stop below 6 V, as the servos measure it." in out
     assert "Button BOOT (pin 0) plays and stops it" in out
     assert re.search(
-        r"No zeros in the sketch: \w+ turns 1\.\d\d times.*\nCalibrate from a computer after each start", out
+        r"No zeros in the sketch: right, left and feet turn up to 1\.\d\d times\. .* at each end\. Write travel and "
+        r"release of 33 mm in all into robot\.toml, or a spool radius of at least .*\nCalibrate from a computer after",
+        out,
     )
     settings = (made / "winches" / "settings.h").read_text()
     assert "#define FEETECH 1" in settings

@@ -1,7 +1,9 @@
 """`hydrostat trajectory`; oracle: the library called directly, and the files read back."""
 
 import json
+import shutil
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -10,7 +12,8 @@ import pytest
 from PIL import Image
 
 import hydrostat as hs
-from hydrostat.cli.trajectory import warn_of_speed
+from hydrostat.cli.trajectory import free_speeds, warn_of_speed
+from hydrostat.control import Calibration
 from hydrostat.fabrication import Motor
 from hydrostat.ik import IKOptions, IKStatus, TrajectoryOptions, solve_ik_trajectory
 from hydrostat.simulation import ContractionProfile
@@ -20,15 +23,41 @@ Run = Callable[..., tuple[int, str, str]]
 pytestmark = pytest.mark.usefixtures("unchecked")
 
 
-def test_winches_faster_than_their_motor_are_named() -> None:
+def test_winches_faster_than_their_motor_are_named(tmp_path: Path) -> None:
     """Oracle: the no-load speed of the motor on its spool, 2 pi r n."""
     robot = hs.load_robot("gallery:starfish")
     free = 2 * np.pi * robot.winches[1].spool_radius * Motor.choose("sts3215").speed / 60
-    assert warn_of_speed(robot, "sts3215", np.array([0.0, 0.99 * free, 0.0])) == ""
-    assert warn_of_speed(robot, "auto", np.array([0.0, 9.0, 0.0])) == ""
-    warning = warn_of_speed(robot, "sts3215", np.array([0.0, 1.01 * free, 0.0]))
+    speeds = free_speeds(robot, tmp_path, "sts3215")
+    assert speeds == pytest.approx([free] * 3)
+    assert free_speeds(robot, tmp_path, "auto") == []
+    usual = Calibration.usual(robot).motors
+    Calibration((*usual[:2], replace(usual[2], radius=2 * usual[2].radius))).write(tmp_path)
+    assert free_speeds(robot, tmp_path, "sts3215") == pytest.approx([free, free, 2 * free])
+    assert warn_of_speed(robot, speeds, "sts3215", np.array([0.0, 0.99 * free, 0.0])) == ""
+    assert warn_of_speed(robot, [], "auto", np.array([0.0, 9.0, 0.0])) == ""
+    warning = warn_of_speed(robot, speeds, "sts3215", np.array([0.0, 1.01 * free, 0.0]))
     assert warning.startswith(f"warning: winch {robot.winches[1].name} takes in {1010 * free:.3g} mm/s, its sts3215")
     assert warning.endswith(f'--max-speed "{int(1e3 * free)} mm/s" or less')
+
+
+def test_the_motor_limits_the_usual_speed(run: Run, starfish: Path, tmp_path: Path) -> None:
+    """Oracle: the speed limits that are written, against 2 pi r n of the robot's motor."""
+    own = shutil.copytree(starfish, tmp_path / "robot")
+    robot = hs.load_robot(own)
+    least = 2 * np.pi * min(winch.spool_radius for winch in robot.winches) * Motor.choose("sts3215").speed / 60
+    assert 0.03 < least < 0.05
+    for motor, typed, speed in (
+        ("auto", (), 0.05),
+        ("sts3215", (), least),
+        ("sts3215", ("--max-speed", "0.1 m/s"), 0.1),
+    ):
+        hs.save_robot(replace(robot, motor=motor), own)
+        out = tmp_path / f"{motor}{len(typed)}"
+        code, text, _ = run("trajectory", own, "--poses", "rest", *typed, "--width", "160", "--out", out)
+        limits = json.loads((out / "trajectory.json").read_text())["speed_limit"]
+        assert (code, [*limits.values()]) == (0, pytest.approx([speed] * 3, abs=1e-3))
+        assert max(limits.values()) <= speed
+        assert ("note: at most 32 mm/s, the no-load speed of its sts3215." in text) == (speed == least)
 
 
 @pytest.mark.slow
