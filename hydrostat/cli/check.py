@@ -66,7 +66,7 @@ def check(
     if words := describe_cable_side(found):
         print(f"cables: {words}")
     review = _review(found)
-    refused = any(finding.weight.word == "error" for finding in review)
+    refused = any(finding.severity.word == "error" for finding in review)
     if found.cables:
         print("build: no kit, see the error below" if refused else _cost_line(found, robot))
     if found.poses and not found.cables and (axis := find_mirror_axis(found, found.poses.values())):
@@ -117,17 +117,17 @@ def _review(robot: "Robot") -> "tuple[Diagnostic, ...]":
 def _print_judgement(robot: "Robot", review: "Iterable[Diagnostic]", warnings: "Iterable[str]") -> None:
     """Print the findings of a robot, those of its skin, and the warnings of simulations."""
     from hydrostat.design import Diagnostic, Severity, find_no_room
-    from hydrostat.errors import NO_KIT, in_words
+    from hydrostat.errors import NO_KIT
 
-    weight, before = (Severity.REFUSED, "") if robot.cables else (Severity.MIND, NO_KIT)
-    found = [Diagnostic(text=before + text, weight=weight, places=()) for text in print_sewing(robot.body)]
+    severity, before = (Severity.REFUSED, "") if robot.cables else (Severity.WARNING, NO_KIT)
+    found = [Diagnostic(text=before + text, severity=severity, places=()) for text in print_sewing(robot.body)]
     found += review
     if not robot.cables and (words := find_no_room(robot)):
-        found.append(Diagnostic(text=words, weight=Severity.MIND, places=()))
-    found += [Diagnostic(text=text, weight=Severity.MIND, places=()) for text in warnings]
+        found.append(Diagnostic(text=words, severity=Severity.WARNING, places=()))
+    found += [Diagnostic(text=text, severity=Severity.WARNING, places=()) for text in warnings]
     for finding in found:
-        print(f"{finding.weight.word}: {in_words(finding.text)}")
-    refused, risky = (sum(one.weight is weight for one in found) for weight in (Severity.REFUSED, Severity.MIND))
+        print(f"{finding}")
+    refused, risky = (sum(one.severity is kind for one in found) for kind in (Severity.REFUSED, Severity.WARNING))
     missing = "" if robot.cables else " (body only: no cables yet)"
     print(f"{'' if refused else 'OK: '}{plural(refused, 'error')}, {plural(risky, 'warning')}{missing}.")
     if refused:

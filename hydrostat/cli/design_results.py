@@ -241,7 +241,7 @@ def _print_findings(network: "Network") -> tuple[str, ...]:
         if moved < network.expected_error:
             print(f"note: few elements across a limb: {words}")
         else:
-            print(f"{finding.weight.word}: {in_words(finding.text)}{words and f': {words}'}")
+            print(f"{finding.severity.word}: {in_words(finding.text)}{words and f': {words}'}")
     return tuple(finding.text for finding in found)
 
 

@@ -1,4 +1,4 @@
-"""`Diagnostic`, `places_in`: what is said of a robot that is to be built, and where on it that is."""
+"""`Diagnostic`, `places_in`: lines of a design review, and the places that they name."""
 
 import re
 from collections.abc import Iterator
@@ -8,6 +8,7 @@ from enum import StrEnum
 import numpy as np
 
 from hydrostat.design.polyline import nearest_shares
+from hydrostat.errors import in_words
 from hydrostat.given import Point
 from hydrostat.robot import Robot
 
@@ -17,17 +18,17 @@ class Severity(StrEnum):
 
     REFUSED = "refused"  # a kit is refused
     LIMIT = "limit"  # a limit that designs keep is not kept
-    MIND = "mind"  # it may disappoint
+    WARNING = "warning"  # it may fail later
 
     @property
     def word(self) -> str:
         """Beginning of its line in a command's output."""
-        return {Severity.REFUSED: "error", Severity.LIMIT: "note", Severity.MIND: "warning"}[self]
+        return {Severity.REFUSED: "error", Severity.LIMIT: "note", Severity.WARNING: "warning"}[self]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Place:
-    """A place that a sentence is about."""
+    """Place that a line of a review names."""
 
     part: str  # "winch:left", "cable:0", "via:0:2" (cable and point), "pin:0", "marker:tip" or "body"
     at: Point  # in the rest shape [m]
@@ -35,11 +36,20 @@ class Place:
 
 @dataclass(frozen=True, kw_only=True)
 class Diagnostic:
-    """A sentence on a robot that is to be built."""
+    """Line of a design review. `str` gives the line that `hydrostat check` prints.
 
-    text: str  # parts as they are named in robot.toml, by number from 0
-    weight: Severity
-    places: tuple[Place, ...]  # that it is about; none where it is about all of the robot
+    Attributes:
+        text: sentence; parts are named by their path in robot.toml, with numbers from 0.
+        severity: its severity.
+        places: places that it names; none if it concerns the whole robot.
+    """
+
+    text: str
+    severity: Severity
+    places: tuple[Place, ...]
+
+    def __str__(self) -> str:
+        return f"{self.severity.word}: {in_words(self.text)}"
 
 
 def places_in(text: str, robot: Robot) -> tuple[Place, ...]:

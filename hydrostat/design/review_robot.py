@@ -39,15 +39,15 @@ def review_robot(
     known = (*find_material_problems(robot, options=options), *find_refusals(robot, demand, options=options))
     refused = tuple(dict.fromkeys(known))
     risks = (*find_risks(robot), *find_pinned_drawings(robot))
-    weight = Severity.REFUSED if robot.cables else Severity.MIND
+    severity = Severity.REFUSED if robot.cables else Severity.WARNING
     before = "" if robot.cables else NO_KIT
     limits = _limits(robot, constraints) if constraints is not None and robot.cables else ()
     return (
-        *(Diagnostic(text=before + text, weight=weight, places=places_in(text, robot)) for text in refused),
+        *(Diagnostic(text=before + text, severity=severity, places=places_in(text, robot)) for text in refused),
         *limits,
-        *(Diagnostic(text=text, weight=Severity.MIND, places=places_in(text, robot)) for text in risks),
+        *(Diagnostic(text=text, severity=Severity.WARNING, places=places_in(text, robot)) for text in risks),
         *(
-            Diagnostic(text=text, weight=Severity.LIMIT, places=())
+            Diagnostic(text=text, severity=Severity.LIMIT, places=())
             for text in [describe_filled_holes(robot.body)]
             if text
         ),
@@ -63,7 +63,7 @@ def _limits(robot: Robot, constraints: Constraints) -> Iterator[Diagnostic]:
             continue
         more = _count_others(told)
         places = dict.fromkeys(place for text in told for place in places_in(text, robot))
-        yield Diagnostic(text=told[0] + more, weight=Severity.LIMIT, places=tuple(places))
+        yield Diagnostic(text=told[0] + more, severity=Severity.LIMIT, places=tuple(places))
 
 
 def _sewn_cables(robot: Robot) -> frozenset[int]:

@@ -187,7 +187,7 @@ def _all_findings(
         return ()
     told = {finding.text for finding in found}
     more = (text for text in (known.refused if known else ()) if text not in told)
-    return (*(Diagnostic(text=text, weight=Severity.REFUSED, places=places_in(text, robot)) for text in more), *found)
+    return (*(Diagnostic(text=text, severity=Severity.REFUSED, places=places_in(text, robot)) for text in more), *found)
 
 
 def _is_refused(robot: Robot, options: KitOptions, known: _RobotFacts | None) -> bool:

@@ -38,7 +38,7 @@ class SewnSkin:
     def findings(self) -> tuple[Diagnostic, ...]:
         """Why it cannot be sewn."""
         problems = self.sewing.problems if self.sewing is not None else ()
-        return tuple(Diagnostic(text=text, weight=Severity.REFUSED, places=()) for text in problems)
+        return tuple(Diagnostic(text=text, severity=Severity.REFUSED, places=()) for text in problems)
 
 
 class Skins:

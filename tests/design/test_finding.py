@@ -8,7 +8,7 @@ from builders import gallery_robot, strip_robot
 
 from hydrostat.design.buildable import violations
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.finding import places_in
+from hydrostat.design.finding import Diagnostic, Severity, places_in
 from hydrostat.design.region import Region
 from hydrostat.fabrication import find_refusals
 from hydrostat.robot import Robot, find_risks
@@ -81,3 +81,10 @@ def test_every_sentence_of_the_checks_that_names_a_part_has_a_place(name: str, u
     ]
     assert len(said) > 3
     assert [text for text in said if not places_in(text, robot)] == []
+
+
+@pytest.mark.parametrize(("severity", "word"), [*zip(Severity, ("error", "note", "warning"), strict=True)])
+def test_a_line_prints_as_check_prints_it(severity: Severity, word: str) -> None:
+    """Oracle: parts count from 1 for people."""
+    line = Diagnostic(text="cable[0]: only 2 mm inside the edge", severity=severity, places=())
+    assert str(line) == f"{word}: cable 1: only 2 mm inside the edge"

@@ -26,7 +26,7 @@ def designed(name: str, winches: int, cables: int) -> Network:
 
 def refused(robot: Robot, **given: object) -> list[str]:
     found = review_robot(robot, **given)  # type: ignore[arg-type]
-    return [finding.text for finding in found if finding.weight is Severity.REFUSED]
+    return [finding.text for finding in found if finding.severity is Severity.REFUSED]
 
 
 def crowded() -> Robot:
@@ -60,7 +60,7 @@ def test_nothing_refuses_a_robot_of_the_gallery(unchecked: None) -> None:
 def test_one_sentence_for_each_kind_of_limit_with_all_places(unchecked: None) -> None:
     """Oracle: the holes of letter_e that turn by more than 30 degrees, from their coordinates."""
     robot = gallery_robot("letter_e")
-    found = [one for one in review_robot(robot, constraints=Constraints()) if one.weight is Severity.LIMIT]
+    found = [one for one in review_robot(robot, constraints=Constraints()) if one.severity is Severity.LIMIT]
     (turns,) = [one for one in found if "turn too sharp" in one.text]
     sharp = set()
     for number, cable in enumerate(robot.cables):
@@ -89,8 +89,8 @@ def test_the_first_of_many_points_near_the_skin_is_the_shallowest_of_them(unchec
 def test_risks_are_told_last_as_they_are(unchecked: None) -> None:
     robot = gallery_robot("squid")
     found = review_robot(robot, constraints=Constraints())
-    assert [one.text for one in found if one.weight is Severity.MIND] == find_risks(robot)
-    order = [list(Severity).index(one.weight) for one in found]
+    assert [one.text for one in found if one.severity is Severity.WARNING] == find_risks(robot)
+    order = [list(Severity).index(one.severity) for one in found]
     assert order == sorted(order)
 
 

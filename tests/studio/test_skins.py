@@ -73,7 +73,9 @@ def test_a_skin_that_cannot_be_sewn_is_told_in_all_lists_and_in_the_words_of_che
     assert len(problems) > 0
     said = judge.of(robot, wishes)
     assert said is not None
-    assert [(one.text, one.weight) for one in said[: len(problems)]] == [(text, Severity.REFUSED) for text in problems]
+    assert [(one.text, one.severity) for one in said[: len(problems)]] == [
+        (text, Severity.REFUSED) for text in problems
+    ]
     assert said[len(problems) :] == first
     judge.learn(robot, refused=problems)
     judge.look(robot, wishes, 0.0)

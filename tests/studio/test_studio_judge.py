@@ -61,7 +61,7 @@ def test_other_wishes_and_other_kits_are_judged_anew(squid: Robot) -> None:
     judge.options = KitOptions(motor="25d")
     assert judge.of(squid, WISHES) is None
     strong = judged(judge, squid)
-    assert {one.weight for one in strong} > {one.weight for one in usual}
+    assert {one.severity for one in strong} > {one.severity for one in usual}
     of_robot = replace(squid, motor="25d")
     judge.options = KitOptions()
     assert {one.text for one in judged(judge, of_robot)} == {one.text for one in strong}
@@ -83,7 +83,7 @@ def test_loads_that_a_design_found_and_reasons_of_a_kit_count_for_the_accepted_n
     judge.learn(squid, refused=("cable[1].points[0] = [0, 80] mm is torn", loaded[0].text))
     told = judged(judge, squid)
     assert told[0].text.endswith("is torn")
-    assert told[0].weight is Severity.REFUSED
+    assert told[0].severity is Severity.REFUSED
     assert told[1:] == loaded
     other = squid.with_network(squid.winches, squid.cables[:-1])
     assert all("is torn" not in finding.text for finding in judged(judge, other))
@@ -123,7 +123,7 @@ def test_a_finding_is_chosen_and_let_go(squid: Robot) -> None:
 def test_a_ring_at_every_place_with_few_words(squid: Robot) -> None:
     said = review_robot(squid, constraints=WISHES.to_constraints(squid))
     dots = diagnostic_items(squid, said)
-    expected = {(place.at, TONES[one.weight], place.part) for one in said for place in one.places}
+    expected = {(place.at, TONES[one.severity], place.part) for one in said for place in one.places}
     assert flags(dots) == expected
     assert all(0 < len(dot.label) <= MAX_LABEL_LETTERS + 2 and dot.key == "" for dot in dots)  # type: ignore[union-attr]
     outside = squid.with_network([replace(squid.winches[0], mount=Mount.WORLD), *squid.winches[1:]], squid.cables)
@@ -142,6 +142,6 @@ def test_edit_design_and_export_mark_the_same(squid: Robot) -> None:
         seen[name] = flags(stage.scene_items())
     said = session.document.judge.of(squid, session.document.work.wishes)
     assert said
-    expected = {(place.at, TONES[one.weight], place.part) for one in said for place in one.places}
+    expected = {(place.at, TONES[one.severity], place.part) for one in said for place in one.places}
     assert seen == dict.fromkeys(seen, expected)
     session.close()

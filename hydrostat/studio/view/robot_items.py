@@ -238,7 +238,7 @@ def winch_bars(robot: Robot, shape: RobotShape, limit: float) -> list[Bar]:
     ]
 
 
-TONES = {Severity.REFUSED: "#c8243f", Severity.LIMIT: "#6d6875", Severity.MIND: Color.SEAM}  # color of each weight
+TONES = {Severity.REFUSED: "#c8243f", Severity.LIMIT: "#6d6875", Severity.WARNING: Color.SEAM}  # color of each severity
 MAX_LABEL_LETTERS = 64  # letters that are written beside a ring
 
 
@@ -258,7 +258,7 @@ def diagnostic_items(robot: Robot, said: Iterable[Diagnostic], chosen: Diagnosti
             Dot(
                 at=place.at,
                 look=Look.FLAG,
-                color=TONES[finding.weight],
+                color=TONES[finding.severity],
                 label=label,
                 about=place.part,
                 stuck=place.part not in loose,

@@ -13,11 +13,11 @@ from hydrostat.studio.skins import SewnSkin
 from hydrostat.studio.view.robot_items import TONES
 
 GOOD = "#00795f"
-ICONS = {Severity.REFUSED: "block", Severity.LIMIT: "straighten", Severity.MIND: "error_outline"}
+ICONS = {Severity.REFUSED: "block", Severity.LIMIT: "straighten", Severity.WARNING: "error_outline"}
 HEADS = {
     Severity.REFUSED: "Errors",
     Severity.LIMIT: "Design limits exceeded",
-    Severity.MIND: "Warnings",
+    Severity.WARNING: "Warnings",
 }
 
 
@@ -47,10 +47,10 @@ def finding_list(page: WindowPage, shown: Callable[[], Robot | None]) -> None:
             with ui.element("div").classes("studio-row"):
                 ui.icon("check_circle", size="18px").style(f"color: {GOOD}")
                 ui.label(_good(shown())).style("font-size: 13px")
-        for weight in Severity:
-            alike = [finding for finding in found if finding.weight is weight]
+        for severity in Severity:
+            alike = [finding for finding in found if finding.severity is severity]
             if alike:
-                ui.label(HEADS[weight]).classes("studio-hint")
+                ui.label(HEADS[severity]).classes("studio-hint")
             for finding in alike:
                 _line(page, finding, chosen=finding == judge.chosen)
 
@@ -70,6 +70,6 @@ def _line(page: WindowPage, finding: Diagnostic, *, chosen: bool) -> None:
     judge = page.session.document.judge
     kind = "finding" + (" finding-on" if chosen else "")
     line = pressable(kind, page.doing(judge.choose, finding)) if finding.places else ui.element("div").classes(kind)
-    with line.props(f'data-testid="finding-{finding.weight}"'):
-        ui.icon(ICONS[finding.weight], size="18px").style(f"color: {TONES[finding.weight]}; margin-top: 1px")
+    with line.props(f'data-testid="finding-{finding.severity}"'):
+        ui.icon(ICONS[finding.severity], size="18px").style(f"color: {TONES[finding.severity]}; margin-top: 1px")
         ui.label(in_words(finding.text)).style("font-size: 13px; line-height: 1.4; overflow-wrap: anywhere")
