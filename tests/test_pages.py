@@ -79,7 +79,11 @@ def test_python_of_a_page_runs(page: str, tmp_path: Path, monkeypatch: pytest.Mo
     assert code
     exec(compile(code, page, "exec"), {})
     written = {path.name for path in tmp_path.iterdir()}
-    assert written == ({"pose.png", "starfish_kit"} if page == "README.md" else {"pose.png", "poses.csv"})
+    assert written == (
+        {"pose.png", "starfish_kit"}
+        if page == "README.md"
+        else {"pose.png", "poses.csv", "arm.svg", "arm", "pose", "samples"}
+    )
 
 
 def test_the_design_of_the_python_guide_names_what_there_is() -> None:

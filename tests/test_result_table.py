@@ -13,6 +13,7 @@ from builders import gallery_robot, strip_robot
 
 import hydrostat as hs
 from hydrostat.identification import IdentifiedRobot
+from hydrostat.simulation import write_pose
 
 
 @pytest.fixture(scope="module")
@@ -100,3 +101,17 @@ def test_rooms_need_no_import_of_their_own() -> None:
     assert hs.learning.LearnOptions.__module__.startswith("hydrostat.learning")
     assert {"learning", "control", "grasp"} <= set(dir(hs))
     assert hs.check(gallery_robot("starfish")) == ()
+
+
+def test_files_are_written_into_folders_named_by_text(
+    simulation: hs.Simulation, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, unchecked: None
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    write_pose(simulation, simulation.rest, "rest")
+    assert {path.name for path in Path("rest").iterdir()} == {"pose.json", "pose.vtu", "cables.vtu"}
+    hs.learning.sample_robot(hs.learning.SamplePlan(robot=simulation.robot, count=2), "samples")
+    assert len(hs.learning.Samples.read("samples")) == 2
+    with pytest.raises(hs.InputError, match="SamplePlan"):
+        hs.learning.sample_robot(simulation.robot, "samples")  # type: ignore[arg-type]
+    with pytest.raises(hs.InputError, match="given by its path"):
+        write_pose(simulation, simulation.rest, 7)  # type: ignore[arg-type]

@@ -307,7 +307,7 @@ class LearnedModel:
         """
         return _FILE.read(path, _model)
 
-    def save(self, path: Path) -> Path:
+    def save(self, path: str | Path) -> Path:
         """Write a model whole, or not at all (InputError: it cannot be written)."""
         arrays = {name: getattr(self, name) for name in ("low", "high", "middle", "unit", "known", "reached")}
         for name in ("forward", "inverse"):

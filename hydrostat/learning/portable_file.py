@@ -39,7 +39,7 @@ class PortableFile:
     writer: str
     kinds: Mapping[str, tuple[str, int]]
 
-    def write(self, path: Path, facts: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) -> Path:
+    def write(self, path: str | Path, facts: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) -> Path:
         """Write a file whole, or not at all; arrays are kept as their kinds say (InputError: it cannot be written)."""
         kept = {name: np.ascontiguousarray(value, self.kinds[name][0]) for name, value in arrays.items()}
         table = [[name, value.dtype.str, list(value.shape)] for name, value in kept.items()]

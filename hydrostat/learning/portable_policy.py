@@ -44,13 +44,13 @@ class PortablePolicy:
             raise InputError("the policy answers with no number: it was never learned; use another")
         return action
 
-    def save(self, path: Path) -> Path:
+    def save(self, path: str | Path) -> Path:
         """Write it whole, or not at all (InputError: it cannot be written)."""
         arrays = {"actor.sizes": self.network.sizes, "actor.numbers": self.network.numbers}
         return _FILE.write(path, self.facts, arrays)
 
     @staticmethod
-    def load(path: Path) -> "PortablePolicy":
+    def load(path: str | Path) -> "PortablePolicy":
         """A policy that `hydrostat train` has written.
 
         Raises:

@@ -10,6 +10,7 @@ from typing import Any, cast
 import numpy as np
 
 from hydrostat.errors import HydrostatError, InputError
+from hydrostat.given import check_type, path_of
 from hydrostat.learning.sample_plan import SamplePlan
 from hydrostat.learning.sample_shard import sample_shard
 from hydrostat.learning.samples import SampleFolder
@@ -21,30 +22,32 @@ Sampled = tuple[int, np.ndarray]
 
 def sample_robot(
     plan: SamplePlan,
-    folder: Path,
+    folder: str | Path,
     *,
     part: tuple[int, int] = (0, 1),
     jobs: int = 1,
     backend: str = "loky",
     progress: Progress | None = None,
 ) -> SampleFolder:
-    """Sample a robot into a folder, or go on where an earlier run ended, perhaps one that was asked for fewer.
+    """Sample a robot into a folder, or continue an earlier run, which may have had a smaller count.
 
-    The bytes depend on the plan alone: not on how many work, on which machine of one kind, nor in which order. A worker
-    that dies is made good for as long as others get something done.
+    The bytes depend on the plan alone, not on the number of processes or their order, on machines of one kind. If a
+    worker dies, the others take over its samples.
 
     Args:
         plan: plan of the samples.
-        folder: folder for the samples.
-        part: work on part i of n, counted from 0, of the files.
-        jobs: processes; -1 for one on each core.
+        folder: folder for the samples (created if missing).
+        part: (i, n) to compute only part i of n of the files, counted from 0.
+        jobs: number of processes; -1 for one on each core.
         backend: one of `BACKENDS`.
         progress: callback for progress.
 
     Raises:
         InputError: a folder of another plan or of more samples, or one that cannot be written; a wrong part or backend.
-        HydrostatError: the workers died, and nothing was done since.
+        HydrostatError: the workers died without progress.
     """
+    check_type(plan, SamplePlan, "samples follow a SamplePlan, such as SamplePlan(robot=robot, count=100)")
+    folder = path_of(folder, "samples are written into a folder, given by its path")
     index, parts = part
     if not 0 <= index < parts:
         raise InputError(f"part must be i of n, with i from 0 to n - 1, not {index} of {parts}")

@@ -15,6 +15,7 @@ from hydrostat.arrays import Float, Vector
 from hydrostat.errors import NotConvergedError
 from hydrostat.files import csv_text, replace_file
 from hydrostat.geometry import write_lines_vtu, write_vtu
+from hydrostat.given import path_of
 from hydrostat.robot import Robot, robot_hash
 from hydrostat.simulation.equilibrium import Equilibrium
 from hydrostat.simulation.obstacle_frames import carried_frames
@@ -70,24 +71,25 @@ def _sensor_facts(simulation: Simulation, pose: Equilibrium) -> dict[str, Any]:
 def write_pose(
     simulation: Simulation,
     pose: Equilibrium,
-    folder: Path,
+    folder: str | Path,
     *,
     extra: Mapping[str, Any] | None = None,
     jacobian: bool = False,
 ) -> list[Path]:
     """Write pose.json, pose.vtu, cables.vtu and, if wanted, jacobian.npz into a folder; returns their paths.
 
-    Where the solver found no equilibrium, pose.json alone says so: `converged` is false there, and there are no fields.
+    If the solver found no equilibrium, only pose.json is written, with `converged` false.
     pose.vtu has `rest`, `displacement` [m], `strain` and `stress` (von Mises, [Pa]) at each node, cables.vtu the
     `tension` [N], the `winch` (its number) and the `contraction` [m] of each cable.
 
     Args:
         simulation: the robot's physics.
         pose: the equilibrium.
-        folder: made if need be.
+        folder: output folder (created if missing).
         extra: more entries for pose.json, such as seconds.
         jacobian: also write d nodes / d contractions, (nodes, dim, winches), under the key `jacobian`.
     """
+    folder = path_of(folder, "a pose is written into a folder, given by its path")
     folder.mkdir(parents=True, exist_ok=True)
     robot = simulation.robot
     facts = {**pose_facts(robot, pose), **_sensor_facts(simulation, pose), **(extra or {})}
@@ -144,7 +146,7 @@ class MotionTable:
 def write_motion(
     robot: Robot,
     motions: Iterable[Motion],
-    folder: Path,
+    folder: str | Path,
     *,
     frames_per_second: float = 30.0,
     reader: SensorReader | None = None,
@@ -154,7 +156,7 @@ def write_motion(
     Args:
         robot: moving robot.
         motions: its instants, at least one.
-        folder: made if need be; the meshes go to `frames` in it.
+        folder: output folder (created if missing); the meshes go to its subfolder `frames`.
         frames_per_second: frame rate of the meshes: each frame is the first instant at or after its time.
         reader: sensors that are read; none if left out.
 
@@ -164,6 +166,7 @@ def write_motion(
     Raises:
         NotConvergedError: from the motion, after all has been written.
     """
+    folder = path_of(folder, "a motion is written into a folder, given by its path")
     folder.mkdir(parents=True, exist_ok=True)
     frames: list[tuple[float, str]] = []
     seen: list[tuple] = []
