@@ -36,8 +36,8 @@ def not_judged(constants: Vector, names: Sequence[str]) -> str:
     """
     blind = [name for name, constant in zip(names, constants.tolist(), strict=True) if np.isnan(constant)]
     whose = "" if len(blind) == len(names) else f" of {', '.join(blind)}"
-    words = "what torque its motor has by its current is not known, so a slack, broken or held cable is not told by it"
-    return f"no guard by tensions{whose}: {words}" if blind else ""
+    words = "the torque per current of its motor is unknown, so a slack, broken or held cable goes undetected"
+    return f"no tension guard{whose}: {words}" if blind else ""
 
 
 class TensionGuard:

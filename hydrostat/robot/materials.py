@@ -190,7 +190,8 @@ _TABLE = (
         largest_stretch=1.5,
         largest_squeeze=FOAM_SQUEEZE,
         source="Plastazote LD33, data sheet (Zotefoams): 40 kPa at 25 % compression, breaks at 135 %; all else assumed",
-        note="Closed cells: the secant modulus is 160 kPa at 25 %, 230 kPa at 50 %. Part of a long squeeze remains.",
+        note="Closed cells: the secant modulus is 160 kPa at 25 %, 230 kPa at 50 %. "
+        "Long compression leaves a permanent set.",
     ),
     _silicone("ecoflex 00-10", gravity=1.04, modulus=8, breaks=800, measured=14.8),
     _silicone("ecoflex 00-30", gravity=1.07, modulus=10, breaks=900, measured=29.7),

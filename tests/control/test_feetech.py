@@ -306,8 +306,8 @@ def test_it_says_at_connection_that_no_guard_judges_its_cables() -> None:
     lines = list[str]()
     hand.link._log = lines.append
     hand.link.identify()
-    assert sum("no guard by tensions: what torque its motor has" in line for line in lines) == 1
-    assert not_judged(np.array([0.3, np.nan, np.nan]), "abc").startswith("no guard by tensions of b, c: ")
+    assert sum("no tension guard: the torque per current" in line for line in lines) == 1
+    assert not_judged(np.array([0.3, np.nan, np.nan]), "abc").startswith("no tension guard of b, c: ")
     rig = Rig()
     rig.link.identify()
     assert not any("no guard" in line for line in rig.log)

@@ -199,7 +199,7 @@ def describe_holes(outline: Outline) -> tuple[str, ...]:
     where = f"{1e3 * _extent(largest):.3g} mm across at ({round(x, 1) + 0.0:g}, {round(y, 1) + 0.0:g}) mm"
     which = where if len(holes) == 1 else f"the largest {where}"
     noun = "closed shape is a hole" if len(holes) == 1 else "closed shapes are holes"
-    return (f"{len(holes)} {noun} through the body ({which}); if drawn on it, such as an eye, say {DRAWN_HINT}",)
+    return (f"{len(holes)} {noun} through the body ({which}); for shapes drawn on it, such as eyes, add {DRAWN_HINT}",)
 
 
 def _extent(line: Ring) -> float:
