@@ -2,7 +2,7 @@
 Bend a starfish with one winch
 ==============================
 
-At the end you have the static equilibrium of a starfish whose left winch takes in 12 mm of cable, its picture, and how
+At the end, you have the static equilibrium of a starfish whose left winch takes in 12 mm of cable, its picture, and how
 far the tip of its arm moved.
 """
 

@@ -2,11 +2,11 @@
 Workspace of an arm
 ===================
 
-At the end you have the region that the left arm of a starfish reaches, from 400 equilibria.
+At the end, you have the region that the left arm of a starfish reaches, from 400 equilibria.
 """
 
 # %%
-# Draw contractions of all winches between none and full travel, and solve them in one call.
+# Draw random contractions of all winches between 0 and full travel, and solve them in one call.
 import numpy as np
 from matplotlib.figure import Figure
 from scipy.spatial import ConvexHull
@@ -20,7 +20,7 @@ contractions = np.random.default_rng(0).random((400, len(travel))) * travel
 batch = simulation.solve_batch(contractions, jacobians=False)
 
 # %%
-# The hull of the places is the workspace.
+# The hull of the tip positions is the workspace.
 names = [marker.name for marker in robot.markers]
 places = 1e3 * batch.markers[:, names.index("left")]
 area = float(ConvexHull(places).volume) / 100.0

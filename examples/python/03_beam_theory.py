@@ -2,7 +2,7 @@
 A bar against beam theory
 =========================
 
-At the end you have a bar that bends under a force at its tip, and how far that is from Timoshenko's beam.
+At the end, you have the tip deflection of a clamped bar, and its deviation from Timoshenko beam theory.
 """
 
 # %%

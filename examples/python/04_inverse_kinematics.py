@@ -2,7 +2,7 @@
 Inverse kinematics within limits
 ================================
 
-At the end you have the contractions that bring one arm to a target, without and with a limit on tension.
+At the end, you have the contractions that bring one arm to a target, without and with a limit on tension.
 """
 
 # %%

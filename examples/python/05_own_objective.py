@@ -2,7 +2,7 @@
 Your own objective
 ==================
 
-At the end inverse kinematics brings both feet of a starfish to one height, whatever it is.
+At the end, inverse kinematics brings both feet of a starfish to the same height.
 """
 
 # %%
@@ -43,7 +43,7 @@ class LevelResidual(hs.Residual):
 
 
 # %%
-# Check the Jacobian by differences, then use the objective beside a target.
+# Check the Jacobian by finite differences, then combine the objective with a target.
 simulation = hs.Simulation(hs.load_robot("gallery:starfish"))
 check_objective(LevelFeet(), simulation, [0.01, 0.015, 0.01])
 found = hs.solve_ik(simulation, {"left": (-0.121, 0.045)}, objectives=[LevelFeet()])

@@ -2,7 +2,8 @@
 Loads and compliance
 ====================
 
-At the end you have the compliance of an arm's tip in a pose, a force that confirms it, and the force for a place.
+At the end, you have the compliance of an arm's tip in a pose, a load that confirms it, and the force that reaches
+a target.
 """
 
 # %%
@@ -30,7 +31,7 @@ error = float(np.linalg.norm(moved - compliance @ force) / np.linalg.norm(moved)
 print(f"moved {1e3 * np.linalg.norm(moved):.3f} mm, predicted to {100 * error:.1f} %")
 
 # %%
-# 0.5 N is no longer small. As a control, the force in newtons is a number that the solver takes or finds.
+# 0.5 N is beyond the linear range. A load drive makes the force [N] a control that you set or the solver finds.
 load = hs.Load(name="thread", marker="left", force=(0.0, -1.0), drive="thread")
 drive = hs.LoadDrive(name="thread", min=0.0, max=2.0)
 pulled = hs.Simulation(replace(robot, loads=(load,), drives=(drive,)))

@@ -2,7 +2,7 @@
 A bone in an arm
 ================
 
-At the end one arm of a starfish has a rigid bone, and bends less than before.
+At the end, one arm of a starfish has a rigid bone, and bends less than before.
 """
 
 # %%
@@ -25,7 +25,7 @@ soft, with_bone = (float(np.linalg.norm(pose.markers["left"] - rest)) for pose i
 print(f"tip moves {1e3 * soft:.1f} mm, with the bone {1e3 * with_bone:.1f} mm")
 
 # %%
-# Distances within the rigid part stay.
+# Distances within the rigid part do not change.
 start, end = np.array(bone.at), np.array(bone.to)
 along = (stiff.body.mesh.nodes - start) @ (end - start) / np.sum((end - start) ** 2)
 axis = start + np.clip(along, 0.0, 1.0)[:, None] * (end - start)

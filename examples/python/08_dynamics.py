@@ -2,7 +2,7 @@
 Motion and settling
 ===================
 
-At the end you see how an arm swings after its winch stops, and when it has settled.
+At the end, you see how an arm swings after its winch stops, and when it has settled.
 """
 
 # %%
@@ -20,7 +20,7 @@ profile = hs.ContractionProfile(times=np.array([0.0, 0.2]), values=np.array([0.0
 motion = [(state.time, state.markers["left"][1]) for state in simulation.play(profile, 1.5, 0.01)]
 
 # %%
-# It ends where statics says it rests.
+# The motion ends at the static equilibrium.
 times, heights = np.array(motion).T
 rest = simulation.solve({"left": 0.02}).markers["left"][1]
 off = float(abs(heights[-1] - rest))

@@ -2,11 +2,11 @@
 Track a moving target at 50 Hz
 ==============================
 
-At the end an arm follows a target that swings twice in four seconds: one pose for each update.
+At the end, an arm follows a target that swings twice in four seconds: one pose for each update.
 """
 
 # %%
-# Each update is one step nearer. Winches are limited to 0.1 m/s.
+# Each update takes one step toward the target. Winches are limited to 0.1 m/s.
 import time
 
 import numpy as np

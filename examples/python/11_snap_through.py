@@ -2,7 +2,7 @@
 Several equilibria and snap-through
 ===================================
 
-At the end you know whether a starfish can rest in more than one pose at the same contractions.
+At the end, you know whether a starfish has more than one stable pose at the same contractions.
 """
 
 # %%
@@ -19,13 +19,13 @@ folds = len(branch.folds)
 print(*branch.lines(), sep="\n")
 
 # %%
-# Between the folds it can rest in two poses. Loading paths find both.
+# Between the folds, two poses are stable. Several loading paths find both.
 found = hs.find_equilibria(simulation, {winch: 0.93 * travel for winch, travel in full.items()}, count=6)
 stable = len(found.poses)
 print(*found.lines(), sep="\n")
 
 # %%
-# Where the curve turns back, the robot snaps.
+# Where the curve turns back, the robot snaps through.
 shares = np.array([point.share for point in branch.points])
 heights = np.array([1e3 * point.pose.markers["right"][1] for point in branch.points])
 near = shares > 0.88

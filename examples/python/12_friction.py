@@ -2,7 +2,8 @@
 Friction and hysteresis
 =======================
 
-At the end you have a hysteresis loop: with friction a cable pulls harder on the way in than on the way back.
+At the end, you have a hysteresis loop: with friction, the cable tension is higher while the winch takes in cable than
+while it pays out.
 """
 
 # %%
@@ -18,7 +19,7 @@ robot = hs.load_robot("gallery:starfish")
 robot = replace(robot, cables=tuple(replace(cable, friction=0.2) for cable in robot.cables))
 
 # %%
-# Load and unload in small steps, each from the pose before.
+# Load and unload in small steps, each starting from the previous pose.
 steps = np.linspace(0.0, 0.03, 16)
 there_and_back = np.concatenate([steps, steps[-2::-1]])
 cable = next(i for i, cable in enumerate(robot.cables) if cable.winch == "left")
@@ -36,7 +37,7 @@ def tension_on_the_way(simulation):
 tensions = tension_on_the_way(hs.Simulation(robot))
 
 # %%
-# The area of the loop is the work that friction takes.
+# The area of the loop is the work lost to friction.
 means = (tensions[1:] + tensions[:-1]) / 2
 work = float(means @ np.diff(there_and_back))
 print(f"friction takes {1e3 * work:.1f} mJ")

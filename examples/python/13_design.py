@@ -2,8 +2,8 @@
 Design cables for a pose
 ========================
 
-At the end you have two winches and a few cables that bring a bare starfish into a pose, and the error expected once it
-is sewn.
+At the end, you have two winches and a few cables that bring a bare starfish into a pose, and the
+expected as-built error.
 """
 
 # %%

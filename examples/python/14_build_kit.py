@@ -2,7 +2,7 @@
 Build kit
 =========
 
-At the end you have the files to build the starfish: pattern, printed parts, lists and the assembly sheet.
+At the end, you have the files to build the starfish: pattern, printed parts, lists and the assembly sheet.
 """
 
 # %%
@@ -15,7 +15,7 @@ files = sorted(kit.files)
 print(len(files), "files, such as", ", ".join(name for name in files if name.startswith("lists/")))
 
 # %%
-# The kit measures what it wrote, and says what it found.
+# Quality checks measure the finished files.
 checks = len(kit.checks)
 print(checks, "checks:", "passed" if all(check.passed for check in kit.checks) else "failed")
 

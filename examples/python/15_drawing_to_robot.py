@@ -2,7 +2,7 @@
 From a drawing to a robot
 =========================
 
-At the end a drawing is a meshed robot with a pin, a marker and a pose, ready for a design.
+At the end, a drawing is a meshed robot with a pin, a marker and a pose, ready for a design.
 """
 
 # %%
@@ -25,7 +25,7 @@ with tempfile.TemporaryDirectory() as folder:
     robot = hs.new_robot(drawing, size=0.24, thickness=0.04)
 
 # %%
-# Save it by ``hs.save_robot(robot, "gingerbread")`` and edit its robot.toml, or open it in the studio.
+# Save it with ``hs.save_robot(robot, "gingerbread")`` and edit its robot.toml, or open it in the studio.
 nodes = len(robot.body.mesh.nodes)
 size = float(robot.body.mesh.size)
 print(f"{nodes} nodes, {1e3 * size:.0f} mm, poses: {', '.join(robot.poses)}")

@@ -2,12 +2,12 @@
 Exact gradients by the adjoint
 ==============================
 
-At the end you know how a marker's error changes with every contraction, every point of every cable and the material, at
-the cost of one linear solve.
+At the end, you know how a marker's error changes with every contraction, every point of every cable and the material,
+at the cost of one linear solve.
 """
 
 # %%
-# L is half the square of the distance of one marker from its target.
+# L is half the squared distance of one marker from its target.
 import numpy as np
 
 import hydrostat as hs

@@ -2,11 +2,11 @@
 Fit a robot to measurements
 ===========================
 
-At the end the modulus of a hidden robot is found again from measured markers, with its interval.
+At the end, you have the modulus of a simulated twin, fitted to measured markers, with its confidence interval.
 """
 
 # %%
-# The hidden robot is 1.6 times as stiff. Masses hung at the left tip show it: lengths of cable alone do not.
+# The twin is 1.6 times as stiff. Masses hung from the left tip determine this; cable lengths alone do not.
 from dataclasses import replace
 
 import numpy as np
@@ -23,7 +23,7 @@ masses = np.zeros((8, len(names)))
 masses[:, names.index("left")] = np.linspace(0.0, 0.03, 8)
 
 # %%
-# Measured places have an error of 0.3 mm.
+# Measured positions have an error of 0.3 mm.
 places = np.zeros((8, len(names), 2))
 for row, (command, mass) in enumerate(zip(commands, masses[:, names.index("left")], strict=True)):
     loads = (hs.Load(name="cup", marker="left", mass=float(mass)),) if mass else ()
@@ -32,7 +32,7 @@ for row, (command, mass) in enumerate(zip(commands, masses[:, names.index("left"
 places += 3e-4 * random.standard_normal(places.shape)
 
 # %%
-# Fit the modulus. `found.robot` is the robot with the values found.
+# Fit the modulus. `found.robot` is the fitted robot.
 measured = hs.Measurements(commands=commands, markers=names, places=places, masses=masses)
 found = hs.identify(robot, measured, fit=("young",))
 young = found.robot.body.material.young

@@ -2,7 +2,7 @@
 A trajectory through poses
 ==========================
 
-At the end two poses are one smooth motion within the speed and acceleration of the winches.
+At the end, one smooth trajectory connects two poses within the speed and acceleration limits of the winches.
 """
 
 # %%

@@ -1,9 +1,9 @@
 """
-Forces in place of lengths
-==========================
+Tensions instead of contractions
+================================
 
-At the end you know the stiffness curve of an arm: the cable force that its winch needs for a contraction, and the way
-back from force to pose.
+At the end, you know the stiffness curve of an arm: the cable tension for each contraction, and the pose for a
+given tension.
 """
 
 # %%
@@ -22,7 +22,7 @@ poses = [simulation.solve({"right": float(contraction)}) for contraction in cont
 tensions = np.array([pose.tensions[cable] for pose in poses])
 
 # %%
-# The winch pulls with 3 N: which pose?
+# Find the pose in which the winch pulls with 3 N.
 pulled = hs.solve_pulls(simulation, {"right": 3.0})
 taken = float(pulled.contractions[right])
 print(f"3 N take in {1e3 * taken:.1f} mm")

@@ -2,8 +2,8 @@
 A gymnasium environment
 =======================
 
-At the end a random policy has played an episode of reaching, and you know the spaces that a policy of yours sees. Needs
-gymnasium (``pip install -e ".[rl]"``).
+At the end, a random policy has run one episode of the reaching task, and you know the observation and action spaces for
+your own policy. Needs gymnasium (``pip install -e ".[rl]"``).
 """
 
 # %%

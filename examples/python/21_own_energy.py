@@ -1,13 +1,13 @@
 """
-Energy of your own
-==================
+Your own energy
+===============
 
-At the end a spring that you wrote holds the tip of an arm, in every solve.
+At the end, a spring that you wrote holds the tip of an arm in every simulation.
 """
 
 # %%
 # An energy has a value, a gradient and a Hessian, for each of its terms. This one has one term: a spring from one node
-# to a fixed place.
+# to a fixed point.
 from dataclasses import replace
 
 import numpy as np
@@ -38,7 +38,7 @@ class Spring(hs.Energy):
 
 
 # %%
-# Check it by finite differences, then give it to a simulation. It also counts in inverse kinematics and in motion.
+# Check it by finite differences, then give it to a simulation. Inverse kinematics and dynamics include it, too.
 robot = hs.load_robot("gallery:starfish")
 rest = robot.body.mesh.nodes
 tip = int(np.argmin(rest[:, 0]))
@@ -47,7 +47,7 @@ hs.testing.check_energy(spring, rest + 0.01, np.zeros(3))
 pose = hs.Simulation(robot, energies=[spring]).solve({})
 
 # %%
-# The force of the spring, put on the arm without it, leads to the same pose.
+# As a check, apply the spring force as a load, without the spring. The pose is the same.
 force = spring.stiffest * (spring.place - pose.nodes[tip])
 pulled = hs.Load(name="hand", at=tuple(rest[tip]), force=tuple(force))
 loaded = hs.Simulation(replace(robot, loads=(pulled,))).solve({})

@@ -2,11 +2,11 @@
 Grasp and pull-out force
 ========================
 
-At the end you know how hard a starfish holds a ball: the force that pulls it out.
+At the end, you know how hard a starfish holds a ball: the force that pulls it out.
 """
 
 # %%
-# At rest the ball lies between two arms, clear of them. Contact is on; the friction coefficient is 0.8.
+# At rest, the ball lies between two arms and touches neither. Contact is on; the friction coefficient is 0.8.
 from dataclasses import replace
 
 import numpy as np
@@ -23,7 +23,7 @@ pull = hs.grasp.pull_out(robot, ball, {"right": 0.055}, options)
 print(f"largest force {pull.peak:.2f} N, {pull.status}")
 
 # %%
-# The pull and the forces of contact balance.
+# The pull balances the contact forces.
 error = float(np.abs(pull.forces + pull.contact @ options.direction).max())
 print(f"forces balance to {error:.1e} N")
 figure = hs.plot.draw_pull(robot, pull)

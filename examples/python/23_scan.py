@@ -2,11 +2,11 @@
 From a scan to a robot
 ======================
 
-At the end a scan with a hole and flipped triangles is a closed, meshed body.
+At the end, a scan with a hole and flipped triangles is a closed, meshed body.
 """
 
 # %%
-# A scan of an ellipsoid: a file of points and triangles, with some of them missing and some turned inside out.
+# A scan of an ellipsoid: points and triangles, some of them missing and some flipped.
 import tempfile
 from pathlib import Path
 

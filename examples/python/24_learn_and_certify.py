@@ -2,7 +2,7 @@
 Sample, learn and certify
 =========================
 
-At the end a small network answers inverse kinematics, and the simulator certifies its answer. Needs PyTorch
+At the end, a small network solves inverse kinematics, and the simulator verifies its solution. Needs PyTorch
 (``pip install -e ".[learn]"``).
 """
 
@@ -22,12 +22,12 @@ with tempfile.TemporaryDirectory() as folder:
 print(samples)
 
 # %%
-# Learn; half a minute here, minutes with the defaults.
+# Train the networks: half a minute here, minutes with the defaults.
 options = hs.learning.LearnOptions(members=2, width=48, steps=600, inverse_steps=300)
 model = hs.learning.learn_model(samples, options=options)
 
 # %%
-# Ask for a target. The network predicts its error; the simulator certifies it.
+# Solve for a target. The network predicts its error; the simulator verifies it.
 simulation = hs.Simulation(robot)
 answer = model.solve({"left": (-0.105, 0.052)})
 sure = hs.learning.verify(simulation, model, answer)

@@ -2,11 +2,11 @@
 Drive motors
 ============
 
-At the end simulated motors have played a trajectory within the speed of the winches.
+At the end, simulated motors have played a trajectory within the speed limits of the winches.
 """
 
 # %%
-# Contractions over time: take in 8 mm in half a second, which is 16 mm/s. The clock is one that does not wait.
+# Contractions over time: take in 8 mm in half a second, which is 16 mm/s. The clock of this example skips waiting.
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -32,7 +32,7 @@ class Clock:
 
 # %%
 # Real motors: ``motors = hs.control.arm_motors(folder, robot, "dynamixel:/dev/ttyUSB0", tensions)``, where ``tensions``
-# is ``hs.control.tensions_along(robot, profile)``, and ``player.run(motors, profile)`` by the clock of the computer.
+# is ``hs.control.tensions_along(robot, profile)``, and ``player.run(motors, profile)`` in real time.
 clock = Clock()
 motors = hs.control.Motors(robot.winches, hs.control.SimulatedLink(np.zeros(3)), fastest=0.03)
 player = hs.control.Player()

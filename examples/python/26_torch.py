@@ -2,7 +2,7 @@
 Gradients by PyTorch
 ====================
 
-At the end PyTorch has found the modulus of a body from one pose, by gradients through the equilibrium. Needs PyTorch
+At the end, PyTorch has found the modulus of a body from one pose, by gradients through the equilibrium. Needs PyTorch
 (``pip install -e ".[learn]"``).
 """
 

@@ -2,12 +2,12 @@
 A trained policy
 ================
 
-At the end a policy that learned by trial drives the simulated starfish to a target in ten actions. It runs without
-PyTorch.
+At the end, a policy trained by reinforcement learning moves the simulated starfish to a target in ten actions. It runs
+without PyTorch.
 """
 
 # %%
-# A policy is one file: a small network, and the facts of its training. This one comes from
+# A policy is one file: a small network and its training record. This one comes from
 # ``examples/policies/train_starfish.py``; ``hydrostat train`` writes the same file as ``actor.policy``.
 import numpy as np
 from matplotlib.figure import Figure
@@ -20,7 +20,7 @@ policy = hs.learning.PortablePolicy.load(file)
 print(policy.facts["task"], policy.facts["sees"], f"error in training {1e3 * policy.facts['error']:.1f} mm")
 
 # %%
-# The target: marker positions at contractions that the policy is not told.
+# The target: marker positions at contractions that the policy does not see.
 robot = hs.load_robot("gallery:starfish")
 simulation = hs.Simulation(robot)
 least, most = np.array([(-winch.release, winch.travel) for winch in robot.winches]).T
@@ -28,7 +28,8 @@ rest, size = np.array([marker.at for marker in robot.markers]), robot.body.mesh.
 goal = np.array(list(simulation.solve([0.02, 0.035, 0.01]).markers.values()))
 
 # %%
-# Closed loop: each action sees contractions, markers and target, and moves each winch by a tenth of its range at most.
+# Closed loop: each action follows from contractions, markers and target, and moves each winch by at most a tenth of its
+# range.
 contractions, pose, errors = np.zeros(len(robot.winches)), simulation.solve({}), []
 for _ in range(10):
     markers = np.array(list(pose.markers.values()))

@@ -2,7 +2,7 @@
 Hysteresis of a filling
 =======================
 
-At the end you have the hysteresis loop of a stuffed arm, and the bend that the arm keeps when you release it.
+At the end, you have the hysteresis loop of a stuffed arm, and the bend that the arm keeps when you release it.
 """
 
 # %%
@@ -39,7 +39,7 @@ tensions, tips = pull_and_release(hs.Simulation(robot))
 without, elastic_tips = pull_and_release(hs.Simulation(plain))
 
 # %%
-# The area of the loop is the work that the filling takes. The arm does not return to its place at rest.
+# The area of the loop is the work lost in the filling. The arm does not return to its rest position.
 work = (tensions[1:] + tensions[:-1]) / 2 * np.diff(pulled_and_released)
 moves = 1e3 * np.linalg.norm(tips - tips[0], axis=1)
 print(f"{work.sum() / work[:10].sum():.0%} of the work is lost; the tip keeps {moves[-1]:.1f} of {moves.max():.1f} mm")
