@@ -239,7 +239,7 @@ def _contraction(text: str) -> tuple[str, float]:
     """Name and length [m] from "left=12mm"."""
     from hydrostat.units import LENGTH, parse_quantity
 
-    name, length = _split_value("--contract", text, "WINCH=LENGTH, e.g. left=12mm")
+    name, length = split_value("--contract", text, "WINCH=LENGTH, e.g. left=12mm")
     sign = -1.0 if length.startswith("-") else 1.0
     try:
         return name, sign * parse_quantity(length.removeprefix("-"), LENGTH)
@@ -257,7 +257,7 @@ def moves(robot: "Robot", texts: Sequence[str] | None) -> dict[str, float]:
     drives = {drive.name: drive for drive in robot.drives}
     found = {}
     for text in texts or []:
-        name, value = _split_value("--move", text, "DRIVE=VALUE, e.g. leg=30deg")
+        name, value = split_value("--move", text, "DRIVE=VALUE, e.g. leg=30deg")
         if name not in drives:
             raise InputError(f'--move {text}: unknown drive "{name}". {list_choices("drives", list(drives), name)}')
         if name in found:
@@ -283,7 +283,7 @@ def loads(robot: "Robot", texts: Sequence[str] | None) -> "Robot":
 
     for number, text in enumerate(texts or [], start=1):
         right = f"{','.join('0' * (robot.body.mesh.dim - 1))},-1N"
-        marker, value = _split_value("--load", text, f"MARKER=FORCE or MARKER=MASS, e.g. tip={right} or tip=100g")
+        marker, value = split_value("--load", text, f"MARKER=FORCE or MARKER=MASS, e.g. tip={right} or tip=100g")
         form = f"Write one force for each axis, e.g. {marker}={right}, or a mass, e.g. {marker}=100g"
         numbers = [each.strip() for each in value.split(",")]
         try:
@@ -304,16 +304,16 @@ def _given_load(numbers: Sequence[str], dim: int, marker: str, form: str) -> dic
         axes = 1 if dim == 2 else 3
         example = f'Write "{marker}={_MOMENT} {",".join("0" * (axes - 1))}{"," * (axes > 1)}0.01Nm"'
         values = [numbers[0].removeprefix(_MOMENT).strip(), *numbers[1:]]
-        return {"moment": _components(values, axes, TORQUE, f"a moment with {plural(axes, 'component')}. {example}")}
+        return {"moment": axis_values(values, axes, TORQUE, f"a moment with {plural(axes, 'component')}. {example}")}
     if len(numbers) == 1:
         return {"mass": _hung_mass(numbers[0], form)}
-    return {"force": _components(numbers, dim, FORCE, f"a body with {dim} axes. {form}")}
+    return {"force": axis_values(numbers, dim, FORCE, f"a body with {dim} axes. {form}")}
 
 
 _MOMENT = "moment"
 
 
-def _components(numbers: Sequence[str], count: int, kind: "Dimension", form: str) -> tuple[float, ...]:
+def axis_values(numbers: Sequence[str], count: int, kind: "Dimension", form: str) -> tuple[float, ...]:
     """Quantity along each axis; the unit of the last number counts for those without one."""
     from hydrostat.units import parse_quantity
 
@@ -352,7 +352,7 @@ def pulls(robot: "Robot", texts: Sequence[str] | None) -> dict[str, float]:
     from hydrostat.units import FORCE, parse_quantity
 
     def read(text: str) -> tuple[str, float]:
-        name, force = _split_value("--pull", text, "WINCH=FORCE, e.g. left=5N")
+        name, force = split_value("--pull", text, "WINCH=FORCE, e.g. left=5N")
         try:
             robot.winch(name)
             value = parse_quantity(force, FORCE)
@@ -365,7 +365,7 @@ def pulls(robot: "Robot", texts: Sequence[str] | None) -> dict[str, float]:
     return _unique("--pull", map(read, texts or []))
 
 
-def _split_value(option: str, text: str, form: str) -> tuple[str, str]:
+def split_value(option: str, text: str, form: str) -> tuple[str, str]:
     """Name and value of "NAME=VALUE" (InputError: no "=")."""
     name, equals, value = (part.strip() for part in text.partition("="))
     if not equals:

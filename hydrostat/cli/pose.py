@@ -13,12 +13,21 @@ from hydrostat.cli.learned import learned_start, read_model
 from hydrostat.cli.limits import print_exceeded, print_far_targets
 from hydrostat.cli.option_errors import naming_option
 from hydrostat.cli.options import EqualWinches, MostTension, MostTorque, parse_optional, pose_limits
+from hydrostat.cli.pose_targets import (
+    Muscles,
+    Store,
+    Targets,
+    check_pose_options,
+    given_targets,
+    show_muscles,
+    store_pose,
+)
 from hydrostat.cli.waiting import read_robot, show_search
 from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
     from hydrostat.geometry import Outline
-    from hydrostat.ik import IKResult, Limits
+    from hydrostat.ik import IKOptions, IKResult, Limits
     from hydrostat.robot import PoseTarget, Robot
     from hydrostat.simulation import Equilibrium, Simulation
 
@@ -33,6 +42,9 @@ def pose(
     drawing: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Target shape, drawn over the body's own drawing.")
     ] = None,
+    goals: Targets = None,
+    store: Store = None,
+    muscles: Muscles = False,
     tension: MostTension = None,
     torque: MostTorque = None,
     equal: EqualWinches = None,
@@ -53,29 +65,33 @@ def pose(
 
     Writes contractions.json, pose.json, pose.vtu and cables.vtu (for ParaView) and pose.png. Several poses get one
     folder each.
-    A pose sets marker targets; --drawing sets a whole target shape. Give both to combine them. With --model, the
-    command prints the error that the model predicts and the simulated error, then starts the search from there.
+    A pose sets marker targets; --drawing sets a whole target shape. Give both to combine them. --target sets a pose
+    that robot.toml does not have yet; --muscles shows it before there are cables. With --model, the command prints the
+    error that the model predicts and the simulated error, then starts the search from there.
     A pose counts as reached if the distance of each marker to its target is at most 0.3 % of the body size.
 
     Example: hydrostat pose gallery:starfish --pose wave --out build/wave
     """
-    from hydrostat.ik import IKOptions, IKStatus, ShapeTarget, load_target_outline, solve_ik
+    from hydrostat.ik import IKStatus, ShapeTarget, load_target_outline, solve_ik
     from hydrostat.simulation import Simulation
     from hydrostat.units import TIME
 
     require_folder(out)
-    if restarts is not None and restarts < 0:
-        raise InputError(f"--restarts {restarts}: must be 0 or more")
-    options = IKOptions() if restarts is None else IKOptions(restarts=restarts, restart_error=0.0)
+    options = _search_options(restarts)
+    excluded = [key for key, given in (("--drawing", drawing), ("--model", model)) if muscles and given is not None]
+    check_pose_options(robot, name=name, targets=goals, store=store, by_cables=excluded)
     loaded = read_robot(robot)
     limits, seconds = pose_limits(loaded, tension, torque, equal), parse_optional("--timeout", timeout, TIME)
     outline = None if drawing is None else load_target_outline(loaded, drawing)
     wishes = [] if outline is None else [ShapeTarget(outline=outline)]
     asked_for: dict[str, Any] = {"limits": limits, "objectives": wishes, "options": options, "seconds": seconds}
-    targets = _asked_targets(loaded, robot, name, drawing)
+    targets = given_targets(loaded, goals, store) or _asked_targets(loaded, robot, name, drawing)
+    store_pose(robot, loaded, store, targets)
+    if muscles:
+        show_muscles(loaded, targets, out)
+        return
     learned, loaded = (None, loaded) if model is None else read_model(model, loaded)
-    simulation = Simulation(loaded)
-    stuck = False
+    simulation, stuck = Simulation(loaded), False
     for title, target in targets:
         began = time.process_time()
         start = None if learned is None or target is None else learned_start(simulation, learned, target)
@@ -84,16 +100,30 @@ def pose(
         seconds = time.process_time() - began
         folder: Path = out / title if len(targets) > 1 else out
         _write(simulation, reached, folder, title, limits, seconds, outline=outline, jacobian=jacobian)
-        _print_reached(loaded, reached, title, seconds)
-        _note_other_pose(simulation, reached)
-        _note_crossings(loaded, reached.pose)
-        print_exceeded(reached.pose, "  ")
-        for note in reached.pose.notes:
-            print(f"  note: {note}")
-        print(f"  wrote {folder}")
+        _print_all(simulation, reached, title, seconds, folder)
         stuck |= reached.status not in (IKStatus.REACHED, IKStatus.LOCAL_OPTIMUM)
     if stuck:
         raise typer.Exit(1)
+
+
+def _search_options(restarts: int | None) -> "IKOptions":
+    """Options of the search (InputError: a negative number of restarts)."""
+    from hydrostat.ik import IKOptions
+
+    if restarts is not None and restarts < 0:
+        raise InputError(f"--restarts {restarts}: must be 0 or more")
+    return IKOptions() if restarts is None else IKOptions(restarts=restarts, restart_error=0.0)
+
+
+def _print_all(simulation: "Simulation", reached: "IKResult", title: str, seconds: float, folder: Path) -> None:
+    """Print a pose, warnings about it, and where its files are."""
+    _print_reached(simulation.robot, reached, title, seconds)
+    _note_other_pose(simulation, reached)
+    _note_crossings(simulation.robot, reached.pose)
+    print_exceeded(reached.pose, "  ")
+    for note in reached.pose.notes:
+        print(f"  note: {note}")
+    print(f"  wrote {folder}")
 
 
 def _asked_targets(

@@ -2,6 +2,7 @@
 
 import json
 import re
+import shutil
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -12,6 +13,7 @@ from builders import strip_robot
 
 import hydrostat as hs
 from hydrostat.cli.pose import _note_other_pose
+from hydrostat.design import activate, edge_fibres
 from hydrostat.geometry import read_drawing
 from hydrostat.plot import FlatSkin
 
@@ -103,6 +105,13 @@ def test_equal_winches_take_in_the_same(run: Run, starfish: Path, tmp_path: Path
         (("--equal", "left,right", "--equal", "right,feet"), "in two groups"),
         (("--restarts", "-1"), "--restarts -1: must be 0 or more"),
         (("--drawing", "none.svg"), "none.svg: there is no such file"),
+        (("--target", "tip=1mm,2mm"), '--target tip=1mm,2mm: unknown marker "tip"'),
+        (("--target", "top=1,2"), "--target top=1,2: missing unit. Write MARKER=X,Y, e.g. top=11mm,121mm."),
+        (("--target", "top=1mm"), "1 values for 2 coordinates. Write MARKER=X,Y"),
+        (("--target", "top=1,2mm", "--target", "top=1,2mm"), '"top" is given twice'),
+        (("--target", "top=1,2mm", "--pose", "wave"), "--pose and --target: mutually exclusive"),
+        (("--store", "nod"), "--store: there is nothing to store"),
+        (("--muscles", "--drawing", "a.svg"), "--muscles and --drawing: mutually exclusive"),
     ],
 )
 def test_bad_options_are_one_line(
@@ -124,3 +133,37 @@ def test_a_pose_on_another_branch_is_told(capsys: pytest.CaptureFixture[str]) ->
     elsewhere = replace(reached.pose, nodes=reached.pose.nodes + np.array([0.0, 0.003]))
     _note_other_pose(simulation, replace(reached, pose=elsewhere))
     assert "another pose, up to 3.0 mm away" in capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_targets_on_the_command_line_are_a_pose(run: Run, starfish: Path, tmp_path: Path) -> None:
+    """Oracle: the pose of these targets in robot.toml; comments of the file."""
+    shutil.copytree(starfish, tmp_path / "robot")
+    wave = hs.load_robot(starfish).poses["wave"].targets
+    given = [text for name, (x, y) in wave.items() for text in ("--target", f"{name}={1e3 * x:g},{1e3 * y:g}mm")]
+    code, out, _ = run("pose", tmp_path / "robot", *given, "--store", "hello", "--out", tmp_path / "out")
+    assert code == 0
+    assert out.startswith('added pose "hello" to ')
+    robot = hs.load_robot(tmp_path / "robot")
+    stored = robot.poses["hello"].targets
+    assert {name: pytest.approx(place) for name, place in wave.items()} == stored
+    again = run("pose", tmp_path / "robot", *given, "--store", "hello", "--out", tmp_path / "other")[2]
+    assert 'the robot has a pose "hello"' in again
+    assert "# One arm curls up" in (tmp_path / "robot" / "robot.toml").read_text()
+    expected = hs.solve_ik(hs.Simulation(robot), robot.poses["wave"]).pose.contractions
+    taken = json.loads((tmp_path / "out" / "contractions.json").read_text())
+    assert list(taken.values()) == pytest.approx(expected.tolist(), abs=1e-6)
+    errors = run("pose", "gallery:starfish", *given, "--store", "hello", "--out", tmp_path / "other")[2]
+    assert "the gallery is read-only. Make a copy: hydrostat new my_starfish --from gallery:starfish" in errors
+
+
+def test_muscles_show_a_pose_before_there_are_cables(run: Run, starfish: Path, tmp_path: Path) -> None:
+    """Oracle: the same activation, called directly."""
+    robot = replace(hs.load_robot(starfish), winches=(), cables=())
+    hs.save_robot(robot, tmp_path / "bare")
+    code, out, _ = run("pose", tmp_path / "bare", "--target", "top=11mm,121mm", "--muscles", "--out", tmp_path / "out")
+    assert code == 0
+    target = hs.PoseTarget(name="target", targets={"top": (0.011, 0.121)})
+    found = activate(robot, target, edge_fibres(robot.body.mesh))
+    assert f"target: rms error {1e3 * found.rms_error:.2f} mm by muscles" in out
+    assert (tmp_path / "out" / "activation.png").read_bytes().startswith(b"\x89PNG")
