@@ -296,6 +296,7 @@ def _files(plan: KitPlan, lists: Lists, findings: KitFindings) -> dict[str, byte
         **_sheet_files(plan.drawn),
         **_channel_files(plan, lists),
         **{f"lists/{table.name}.csv": table.csv for table in lists.tables},
+        "lists/notes.txt": lists.notes_text.encode(),
         "assembly_sheet.pdf": assembly_sheet(plan, lists, findings),
         "steps.txt": sheet_text(sheet_facts(plan, lists, findings)).encode(),
     }

@@ -47,7 +47,10 @@ class Price:
         return self.packs(quantity) * self.pack * self.amount
 
 
-_SHEET = 0.2286 * 0.3048  # area of a sheet of craft felt, 9 by 12 inches [m^2]
+FELT_SHEET = (228.6, 304.8)
+"""Width and height of a sheet of craft felt, 9 by 12 inches [mm]."""
+
+_SHEET = 1e-6 * FELT_SHEET[0] * FELT_SHEET[1]  # area of that sheet [m^2]
 _BAG = 32 * 0.0283495  # mass of a bag of fibre filling, 32 oz [kg]
 _ANGLER = 91.44  # line on a spool, 100 yards [m]
 

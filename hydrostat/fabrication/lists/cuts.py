@@ -236,7 +236,7 @@ class SheathRow:
     tube: Annotated[float, number_column("outside", "mm")]
     run: Annotated[float, number_column("run", "mm")]
     seat: Annotated[float, number_column("seat", "mm")]
-    length: Annotated[float, number_column("cut to", "mm")]
+    length: Annotated[float, number_column("cut to", "mm", decimals=0)]
     number: int | None = None  # number of its cable, from 1; None for the total
 
 

@@ -1,5 +1,6 @@
 """`FishingLine`: braided fishing lines, and the check that they withstand the cable tensions."""
 
+import math
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -16,6 +17,10 @@ SAFETY = 0.5
 """Share of the strength at the knot that is used: the rest is for wear at pinholes and edges, and because polyethylene
 creeps under lasting loads. Assumed; no source."""
 
+
+STRETCH = 5.0
+"""Mass that stretches a line before it is cut, at most [kg]. A kite builder hangs one or two gallons of water from a
+line of polyethylene and reports that it gets no longer after 24 to 48 h (M. Eason, "Line preparation", 1996)."""
 
 SOURCE = (
     "Diameters and strengths of modern braided lines by their PE number: line diameter chart of Tasline (Australia); "
@@ -46,6 +51,12 @@ class FishingLine:
     def working_load(self) -> float:
         """Continuous working load [N]."""
         return SAFETY * self.at_knot
+
+    @property
+    def stretch_mass(self) -> float:
+        """Mass that stretches it before it is cut [kg], in steps of 0.5 kg within its working load."""
+        gravity = 9.81  # [m/s^2]
+        return min(STRETCH, max(0.5, math.floor(2 * self.working_load / gravity) / 2))
 
 
 LINES = tuple(
@@ -133,11 +144,11 @@ def check_line(robot: Robot, tensions: Vector, line: FishingLine, *, hold: float
                 verdict=verdict,
             )
         )
-    table = _line_table(tuple(rows), line, largest=float(max(tensions, default=0.0)))
+    table = _line_table(tuple(rows), line, largest=float(max(tensions, default=0.0)), hold=hold)
     return LineCheck(line=line, table=table, problems=tuple(problems), warnings=tuple(warnings))
 
 
-def _line_table(rows: tuple[LineRow, ...], line: FishingLine, *, largest: float) -> Table[LineRow]:
+def _line_table(rows: tuple[LineRow, ...], line: FishingLine, *, largest: float, hold: float | None) -> Table[LineRow]:
     """Strength of a line against the tension of each cable, and which line would do for the largest [N]."""
     enough = next((each for each in LINES if each.working_load >= largest), None)
     return Table(
@@ -146,8 +157,9 @@ def _line_table(rows: tuple[LineRow, ...], line: FishingLine, *, largest: float)
         row=LineRow,
         rows=rows,
         notes=(
-            f"At a knot a line keeps {KNOT:g} of its strength, if badly tied; tie a doubled Palomar. Working load: "
-            f"{SAFETY:g} of that.",
+            f"At a knot a line keeps {KNOT:g} of its strength, if badly tied; tie a doubled Palomar (Sport Fishing, "
+            f"August 2006). Working load: {SAFETY:g} of that.",
+            *_list_first_failure(line, hold),
             *(
                 [f"{enough.name} ({enough.diameter:g} mm) is strong enough, but thin lines cut into felt and foam."]
                 if enough and enough.diameter < line.diameter
@@ -164,3 +176,14 @@ def _remedy(tension: float) -> str:
         if line.working_load >= tension:
             return f"Use {line.name} ({line.diameter:g} mm) or thicker, or lower the tension"
     return f"No listed line is strong enough (maximum {LINES[-1].working_load:.0f} N). Split the load over more cables"
+
+
+def _list_first_failure(line: FishingLine, hold: float | None) -> tuple[str, ...]:
+    """A sentence on what gives way first under overload; none without stoppers or if the line breaks first."""
+    if hold is None or hold >= line.at_knot:
+        return ()
+    return (
+        f"Under overload the stopper slips first, at about {hold:.0f} N (estimated), before the line breaks at its "
+        f"knot, at {line.at_knot:.0f} N. Set a slipped stopper again. Nobody has measured when cloth or skin tears at "
+        "a hole.",
+    )

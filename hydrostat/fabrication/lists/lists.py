@@ -66,6 +66,16 @@ class Lists:
         return (*(table for table in found if table is not None), *([self.power.table] if self.power else []))
 
     @property
+    def notes_text(self) -> str:
+        """Notes that belong below the lists, by their files."""
+        found = [
+            "\n".join([f"{table.name}.csv: {table.title}", *(f"- {note}" for note in table.notes)])
+            for table in self.tables
+            if table.notes
+        ]
+        return "\n\n".join(found) + "\n"
+
+    @property
     def cost(self) -> tuple[float, float]:
         """Cost of all that is used up, and of all that is bought in whole packs [USD]."""
         total = self.bill.rows[-1]

@@ -7,7 +7,7 @@ from hydrostat.fabrication.board_kind import BOARDS
 from hydrostat.fabrication.inserts import Insert, InsertKind, filling_volume
 from hydrostat.fabrication.kit_options import Method
 from hydrostat.fabrication.kit_plan import Cloth, FoamNeeds, KitPlan
-from hydrostat.fabrication.lists.bill import PRICES, BillGroup, Item, Price
+from hydrostat.fabrication.lists.bill import FELT_SHEET, PRICES, BillGroup, Item, Price
 from hydrostat.fabrication.lists.cuts import CableCut, SheathCut
 from hydrostat.fabrication.lists.line import FishingLine
 from hydrostat.fabrication.lists.motors import PowerPlan
@@ -68,7 +68,7 @@ _NEEDLES = replace(_item(BillGroup.BODY, "needles", "sewing, and a long doll nee
 
 def _plush(plan: KitPlan, cloth: Cloth) -> list[Item]:
     mass, thread = filling_mass(plan), THREAD * cloth.seam
-    felt = "that a laser may cut: wool, polyester or acrylic, no PVC; 1 to 2 mm"
+    felt = f"that a laser may cut: wool, polyester or acrylic, no PVC; 1 to 2 mm{_felt_pieces(cloth)}"
     filling = plan.robot.body.material.name or "as the robot file says"
     zipper = f"zipper of {math.ceil(cloth.zipper / 10) * 10:g} mm or longer"
     marks = plan.robot.body.marks
@@ -88,6 +88,16 @@ def _plush(plan: KitPlan, cloth: Cloth) -> list[Item]:
         _item(BillGroup.BODY, "felt scraps and embroidery thread", drawn, float(bool(marks)), "decoration"),
         _NEEDLES,
     ]
+
+
+def _felt_pieces(cloth: Cloth) -> str:
+    """Size of the largest panel, and whether craft sheets are too small for it."""
+    if cloth.panel is None:
+        return ""
+    wide, high = (math.ceil(side) for side in cloth.panel)
+    fits = min(wide, high) <= FELT_SHEET[0] and max(wide, high) <= FELT_SHEET[1]
+    small = "" if fits else f", larger than craft sheets of {FELT_SHEET[0]:.0f} x {FELT_SHEET[1]:.0f} mm"
+    return f"; largest panel {wide} x {high} mm{small}"
 
 
 def _cast_name(plan: KitPlan, foam: FoamNeeds) -> str:

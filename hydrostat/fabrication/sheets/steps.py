@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from hydrostat.fabrication.inserts import Insert, InsertKind, insert_title
 from hydrostat.fabrication.kit_options import Method
 from hydrostat.fabrication.kit_plan import KitPlan
+from hydrostat.fabrication.lists.line import line_for
 from hydrostat.fabrication.parts.base_plate import BasePlate
 from hydrostat.fabrication.winch_marks import winch_marks_of
 from hydrostat.robot import Mount, Pin, Robot, SheetSide
@@ -79,6 +80,18 @@ def marks_on(plan: KitPlan, mount: Mount) -> tuple[str, ...]:
     """Marks of the winches that are mounted so."""
     marks = winch_marks_of(plan.robot)
     return tuple(marks[winch.name] for winch in plan.robot.winches if winch.mount is mount)
+
+
+def stretch_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
+    """The step that makes new line as long as it stays; none without cables."""
+    if not plan.robot.cables:
+        return ()
+    mass = line_for(plan.options.parts.cable).stretch_mass
+    words = (
+        f"Hang the uncut line from a hook with a bottle of {mass:g} L of water at its end, long lines in pieces. New "
+        "braid gets longer under load: cables would go slack in the first days."
+    )
+    return (AssemblyStep("Stretch the line", 5, words, wait="24 h under this weight"),)
 
 
 def winch_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:

@@ -8,12 +8,25 @@ from hydrostat.fabrication.motor_choice import drive_price
 from hydrostat.fabrication.sheets.foam_steps import mold_steps, skin_steps
 from hydrostat.fabrication.sheets.legible import sentence
 from hydrostat.fabrication.sheets.plush_steps import plush_steps
-from hydrostat.fabrication.sheets.steps import AssemblyStep, insert_steps, minutes_text, tie_step, winch_steps
+from hydrostat.fabrication.sheets.steps import (
+    AssemblyStep,
+    insert_steps,
+    minutes_text,
+    stretch_steps,
+    tie_step,
+    winch_steps,
+)
 from hydrostat.units import plural
 
 
 def all_steps(plan: KitPlan, lists: Lists) -> list[tuple[AssemblyStep, ...]]:
-    """The steps, page by page."""
+    """The steps, page by page. Stretching the line comes first, because you wait for it."""
+    first, *more = _body_steps(plan, lists)
+    return [(*stretch_steps(plan), *first), *more]
+
+
+def _body_steps(plan: KitPlan, lists: Lists) -> list[tuple[AssemblyStep, ...]]:
+    """The steps by the method of the body, page by page."""
     if plan.method is Method.PLUSH:
         return [plush_steps(plan)]
     if plan.method is Method.PRINT:

@@ -193,3 +193,19 @@ def test_a_servo_brings_its_cable() -> None:
     keys = {"sts3215": 0.0, "sts3215-12v": 0.0, "st3020": 2.0, "scs0009": 2.0, "xl330": 2.0}
     costs = {key: needs(given(square(), motor=Motor.choose(key)))["servo cable"].cost for key in keys}
     assert costs == keys
+
+
+@pytest.mark.parametrize(
+    ("panel", "words"),
+    [
+        ((290.2, 200.0), "; largest panel 291 x 200 mm"),
+        ((296.0, 283.0), "; largest panel 296 x 283 mm, larger than craft sheets of 229 x 305 mm"),
+        ((310.0, 50.0), "larger than craft sheets"),
+        (None, "that a laser may cut"),
+    ],
+)
+def test_felt_is_bought_in_pieces_that_hold_a_panel(panel, words):
+    """Oracle: a craft sheet of 9 x 12 inches, in either direction."""
+    found = needs(given(square(), cloth=Cloth(felt=1e5, seam=1e3, panel=panel)))["felt"].specification
+    assert words in found
+    assert ("craft" in found) == ("craft" in words)

@@ -69,3 +69,18 @@ def test_no_line_for_a_crane() -> None:
 def test_tensions_of_another_robot_are_refused() -> None:
     with pytest.raises(InputError, match="2 tensions given for 1 cables"):
         check_line(square(), np.ones(2), TEN)
+
+
+@pytest.mark.parametrize(("name", "mass"), [("PE 1, 15 lb", 1.5), ("PE 2, 25 lb", 2.5), ("PE 6, 80 lb", 5.0)])
+def test_a_line_is_stretched_within_its_working_load(name: str, mass: float) -> None:
+    """Oracle: the working loads 16.7, 27.8 and 89 N, divided by 9.81 m/s^2; 5 kg at most."""
+    (line,) = [line for line in LINES if line.name == name]
+    assert line.stretch_mass == mass
+
+
+@pytest.mark.parametrize(("hold", "words"), [(2.1, "the stopper slips first, at about 2 N"), (5.1, ""), (None, "")])
+def test_the_list_says_what_gives_way_first(hold: float | None, words: str) -> None:
+    """Oracle: a line that breaks at its knot at 5 N."""
+    notes = " ".join(check_line(square(), np.array([1.0]), TEN, hold=hold).table.notes)
+    assert ("slips first" in notes) == bool(words)
+    assert words in notes

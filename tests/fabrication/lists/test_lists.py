@@ -48,6 +48,16 @@ def test_a_pose_that_was_not_solved_is_told() -> None:
     assert 'pose "wave"' in make_lists(given(square(), demand=demand)).warnings[0]
 
 
+def test_notes_of_the_lists_are_written() -> None:
+    """Oracle: the notes that the tables hold, under the names of their files."""
+    lists = make_lists(given(square(), cloth=Cloth(felt=1e5, seam=1e3), stitches=stitches(square())))
+    lines = lists.notes_text.splitlines()
+    for table in lists.tables:
+        assert f"{table.name}.csv: {table.title}" in lines
+        assert {f"- {note}" for note in table.notes} <= set(lines)
+    assert "doubled Palomar" in lists.notes_text
+
+
 def test_lengths_of_no_cable_are_refused() -> None:
     with pytest.raises(InputError, match=r"leads\[3\]: the robot has 1 cables"):
         given(square(), leads={3: 1.0})

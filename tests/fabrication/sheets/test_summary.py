@@ -6,6 +6,7 @@ from types import SimpleNamespace
 from typing import cast
 
 import pytest
+from kit_plans import FewParts
 from pypdf import PdfReader
 from sheet_inputs import foam, lists, plush
 
@@ -14,7 +15,8 @@ from hydrostat.fabrication.lists.motors import power_plan
 from hydrostat.fabrication.parts.motor import ALL_MOTORS
 from hydrostat.fabrication.sheets.assembly_sheet import assembly_sheet
 from hydrostat.fabrication.sheets.sheet_facts import sheet_facts
-from hydrostat.fabrication.sheets.summary import find_difficulty, summary_rows
+from hydrostat.fabrication.sheets.steps import stretch_steps
+from hydrostat.fabrication.sheets.summary import all_steps, find_difficulty, summary_rows
 from hydrostat.fabrication.sheets.text_sheet import sheet_text
 from hydrostat.ik import IKResult
 
@@ -55,6 +57,17 @@ def test_difficulty_counts_hours_foam_and_wires(robot, hours, motor, level):
     power = power_plan({"pull 1": 40.0}, chosen[0]) if chosen else None
     told = find_difficulty(given.plan, lists(2, power=power), 60 * hours)
     assert told.startswith(level.lower())
+
+
+def test_line_is_stretched_before_all_else():
+    """Oracle: the rule: 5 L of water on the line of 80 lb, and a day of waiting on the first page; no line, no step."""
+    for given in (plush(), foam()):
+        first = all_steps(given.plan, given.lists)[0][0]
+        assert first.title == "Stretch the line"
+        assert "5 L of water" in first.text
+        assert "Stretch the line: 24 h under this weight." in dict(summary_rows(given.plan, given.lists))["Waiting"]
+        bare = replace(given.plan, robot=replace(given.plan.robot, cables=(), winches=()), rigid=FewParts())
+        assert stretch_steps(bare) == ()
 
 
 def test_the_words_of_a_sheet_are_a_text():
