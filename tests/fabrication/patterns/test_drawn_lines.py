@@ -32,7 +32,7 @@ def test_a_closed_shape_is_a_hole_and_that_is_told() -> None:
     assert found.marks == ()
     left, hole = found.notes
     assert left.startswith("left out 1 open line")
-    assert hole.startswith("1 closed shape is a hole through the body (12 mm across at (-60, 10) mm); if drawn on it")
+    assert hole.startswith("1 closed shape is a hole through the body (12 mm across at (-60, 10) mm); for shapes drawn")
     assert "--inner drawn" in hole
 
 
