@@ -299,7 +299,7 @@ def test_the_lists_of_what_is_cut_are_told_in_short():
     """Oracle: the rows of the lists, whose place in brackets is left out."""
     text = words(sheet_of(plush))
     assert "cable cut to slack spool mark C1 250 1.5 122 C2 250 1.5 122" in text
-    assert "cable from to cut to C1 1 2 23.2 C2 1 2 23.2" in text
+    assert "cable from to cut to C1 1 2 23 C2 1 2 23" in text
     assert "Cables, in mm" in words(assembly_sheet(*plush(lists=replace(lists(2), tubes=lists(0).tubes))))
 
 
