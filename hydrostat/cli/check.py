@@ -1,5 +1,6 @@
 """`hydrostat check`."""
 
+import re
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -126,12 +127,26 @@ def _print_judgement(robot: "Robot", review: "Iterable[Diagnostic]", warnings: "
         found.append(Diagnostic(text=words, severity=Severity.WARNING, places=()))
     found += [Diagnostic(text=text, severity=Severity.WARNING, places=()) for text in warnings]
     for finding in found:
-        print(f"{finding}")
+        print(name_cables(f"{finding}", robot))
     refused, risky = (sum(one.severity is kind for one in found) for kind in (Severity.REFUSED, Severity.WARNING))
     missing = "" if robot.cables else " (body only: no cables yet)"
     print(f"{'' if refused else 'OK: '}{plural(refused, 'error')}, {plural(risky, 'warning')}{missing}.")
     if refused:
         raise typer.Exit(1)
+
+
+def name_cables(text: str, robot: "Robot") -> str:
+    """Return a sentence with the name after the number of each cable that was given one; quoted words stay."""
+    names = robot.given_cable_names
+
+    def name(match: re.Match[str]) -> str:
+        given = dict(enumerate(names, 1)).get(int(match[1]))
+        return f'{match[0]} "{given}"' if given else match[0]
+
+    parts = re.split(r'("[^"]*")', text)
+    return "".join(
+        part if part.startswith('"') else re.sub(r"\bcable (\d+)(?=[,:.]| between|$)", name, part) for part in parts
+    )
 
 
 def print_sewing(body: "Body") -> tuple[str, ...]:

@@ -72,6 +72,7 @@ def design(
     _refuse_body(source, request)
     _tell_left_out(source)
     print_far_targets(source, request.poses)
+    warn_of_mirror(source, request)
     spend = parse_budget(asked.budget)
     _refuse_budget(request, request.motor_for(source), spend)
     record = open_record(out, source, request, resume=resume)
@@ -125,6 +126,24 @@ def _tell_left_out(source: "Robot") -> None:
     if any(winch.body for winch in source.winches):
         words = "body = true is left out, since the search places the units itself. Add it to the winches of the result"
         print(f"note: {words}", file=sys.stderr, flush=True)
+
+
+def warn_of_mirror(source: "Robot", request: "DesignRequest") -> None:
+    """Print a warning of poses that a symmetric network may not reach."""
+    from hydrostat.design import find_unmirrored_poses
+    from hydrostat.units import list_words
+
+    axis = request.constraints.mirror
+    if axis is None or not (names := find_unmirrored_poses(source, request.poses, axis)):
+        return
+    one = len(names) == 1
+    words = f"{'pose' if one else 'poses'} {list_words(names)} {'is' if one else 'are'} no mirror image about {axis} of"
+    print(
+        f"warning: {words} {'itself' if one else 'themselves'} or another pose. A symmetric network may miss "
+        f"{'it' if one else 'them'}. Remove --symmetric, or add the mirror image as a pose",
+        file=sys.stderr,
+        flush=True,
+    )
 
 
 def _refuse_budget(request: "DesignRequest", key: str, budget: float | None) -> None:

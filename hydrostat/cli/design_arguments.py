@@ -226,6 +226,7 @@ def _constraints(robot: "Robot", typed: DesignArguments) -> "Constraints":
         constraints = _read_noting(read_constraints, typed.constraints, robot)
     if typed.symmetric not in (None, "x", "y", "z"):
         raise InputError(f"--symmetric {typed.symmetric}: unknown axis. Allowed: x, y, z.")
+    _check_symmetric(robot, typed.symmetric)
     if typed.motor not in (None, "auto"):
         Motor.choose(typed.motor)
     given: dict[str, Any] = {
@@ -239,6 +240,17 @@ def _constraints(robot: "Robot", typed: DesignArguments) -> "Constraints":
     }
     limits = _limits_of(robot, constraints, typed)
     return replace(constraints, **limits, **{name: value for name, value in given.items() if value is not None})
+
+
+def _check_symmetric(robot: "Robot", axis: str | None) -> None:
+    """Reject an axis that a flat body does not have, or that the body is not centered on (InputError)."""
+    from hydrostat.design import Constraints
+
+    try:
+        Constraints(mirror=axis).check(robot)
+    except InputError as error:
+        words = str(error).replace(f' ("{axis}")', "").replace("set mirror to None", "remove --symmetric")
+        raise InputError(words.replace("constraints: mirror", f"--symmetric {axis}")) from None
 
 
 def _limits_of(robot: "Robot", constraints: "Constraints", typed: DesignArguments) -> dict[str, float]:

@@ -39,6 +39,14 @@ _UNSIGNED = {1: Struct("<B"), 2: Struct("<H"), 4: Struct("<I")}
 """Registers by their size [bytes]."""
 
 
+def _pick(formats: dict[int, Struct], size: int) -> Struct:
+    """Format of a register by its number of bytes."""
+    try:
+        return formats[size]
+    except KeyError:
+        raise ValueError(f"a register has 1, 2 or 4 bytes, not {size}") from None
+
+
 @dataclass
 class InjectedFaults:
     """Faults injected into an emulated servo.
@@ -116,12 +124,12 @@ class EmulatedServo:
         return self.angle - self.origin
 
     def get(self, place: int, size: int) -> int:
-        """A register."""
-        return _SIGNED[size].unpack_from(self.table, place)[0]
+        """A register of 1, 2 or 4 bytes (ValueError: another size)."""
+        return _pick(_SIGNED, size).unpack_from(self.table, place)[0]
 
     def set(self, place: int, value: int, size: int) -> None:
-        """Set a register."""
-        (_SIGNED if value < 0 else _UNSIGNED)[size].pack_into(self.table, place, int(value))
+        """Set a register of 1, 2 or 4 bytes (ValueError: another size; struct.error: a value that does not fit)."""
+        _pick(_SIGNED if value < 0 else _UNSIGNED, size).pack_into(self.table, place, int(value))
 
     @property
     def torque(self) -> float:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from hydrostat.design.first_cable import draw_first_cable, place_first_winch
     from hydrostat.design.lifts import Lift, find_lifts
     from hydrostat.design.marker_estimator import MarkerEstimator
-    from hydrostat.design.mirror_axis import find_mirror_axis
+    from hydrostat.design.mirror_axis import find_mirror_axis, find_unmirrored_poses
     from hydrostat.design.muscles.activation import Activation, FibreKind, activate, edge_fibres
     from hydrostat.design.muscles.free_posing import FreePosing
     from hydrostat.design.network import (
@@ -106,6 +106,7 @@ __all__ = [
     "find_no_room",
     "find_pinned_drawings",
     "find_stuffed_motion",
+    "find_unmirrored_poses",
     "front",
     "kit_fits",
     "nearest_shares",

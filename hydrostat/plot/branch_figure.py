@@ -115,9 +115,10 @@ def _name_poses(sheet: PictureSheet, pane: Pane, poses: Sequence[Equilibrium], n
     points: Spread = np.array([pose.markers[name] if name else _farthest(poses, pose) for pose in poses])
     places = pane.places(points)
     labels = Labels(sheet, rings=pane.outline(sheet, poses[0].nodes), avoid=places)
-    for index, (place, pose) in enumerate(zip(places, poses, strict=True)):
-        sheet.dots(place[None], 5, color=_color(index), markeredgecolor="white", markeredgewidth=0.8, zorder=12)
-        labels.flag(place, f"{index + 1}: {pose.energy:.4g} J", _color(index))
+    colors = [_color(index) for index in range(len(poses))]
+    for place, color in zip(places, colors, strict=True):
+        sheet.dots(place[None], 5, color=color, markeredgecolor="white", markeredgewidth=0.8, zorder=12)
+    labels.flags(places, [f"{number}: {pose.energy:.4g} J" for number, pose in enumerate(poses, start=1)], colors)
 
 
 def _farthest(poses: Sequence[Equilibrium], pose: Equilibrium) -> Vector:

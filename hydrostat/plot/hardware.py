@@ -121,9 +121,9 @@ def name_winches(labels: Labels, robot: Robot, centers: Places, notes: Sequence[
     colors = Color.of_winches(robot.winches)
     for center in centers:
         labels.reserve(center, 18)
-    for index, (winch, center) in enumerate(zip(robot.winches, centers, strict=True)):
-        note = f"\N{EN SPACE}{notes[index]}" if notes else ""
-        labels.flag(center, shorten(winch.name) + note, colors[winch.name])
+    notes = [f"\N{EN SPACE}{note}" for note in notes] or [""] * len(robot.winches)
+    words = [shorten(winch.name) + note for winch, note in zip(robot.winches, notes, strict=True)]
+    labels.flags(centers, words, [colors[winch.name] for winch in robot.winches])
 
 
 def draw_numbers(sheet: PictureSheet, runs: list[Places], colors: Sequence[str], labels: Labels) -> list[Place]:

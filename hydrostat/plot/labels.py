@@ -1,6 +1,6 @@
 """`Labels`: words beside points, where they cover least."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 import shapely
@@ -46,33 +46,63 @@ class Labels:
             ha=align, va="center_baseline", gid=HALO, zorder=30,
         )  # fmt: skip
 
-    def flag(self, at: Place, words: str, color: str) -> None:
-        """Write words on a colored flag that is tied to a point."""
-        extent = np.array([0.74 * len(words) + 1.2, 1.9]) * 7 * self._sheet.scale
-        center = self._find(at, extent, (12.0, 18.0, 27.0, 40.0, 60.0, 85.0, 115.0), 0.0)
-        self._sheet.curve(np.array([at, center]), color=color, linewidth=0.9, zorder=10)
-        self._sheet.text(
-            (center[0], center[1]), words, fontsize=7, color=Color.LIGHT, weight="bold", ha="center",
-            va="center_baseline", zorder=25, bbox={"boxstyle": "round,pad=0.32,rounding_size=0.6",
-            "facecolor": color, "edgecolor": Color.LIGHT, "linewidth": 0.7},
-        )  # fmt: skip
+    def flags(self, places: Places, words: Sequence[str], colors: Sequence[str]) -> None:
+        """Write words on colored flags, each tied to a point by a line that crosses other lines and boxes least."""
+        extents = np.array([[0.74 * len(text) + 1.2, 1.9] for text in words]) * 7 * self._sheet.scale
+        first, sweeps = len(self._taken), 6  # each flag is placed again, next to all others, until none moves
+        centers: dict[int, Place] = {}
+        for number in (*range(len(extents)),) * sweeps:
+            if number in centers:
+                del centers[number], self._taken[first]
+            leaders = [np.array([places[other], center]) for other, center in centers.items()]
+            centers[number] = self._find(
+                places[number], extents[number], (12.0, 18.0, 27.0, 40.0, 60.0, 85.0, 115.0), 0.0, leaders=leaders
+            )
+        for number, text in enumerate(words):
+            at, center = places[number], centers[number]
+            self.avoid([np.linspace(at, center, 12)])
+            self._sheet.curve(np.array([at, center]), color=colors[number], linewidth=0.9, zorder=10)
+            self._sheet.text(
+                (center[0], center[1]), text, fontsize=7, color=Color.LIGHT, weight="bold", ha="center",
+                va="center_baseline", zorder=25, bbox={"boxstyle": "round,pad=0.32,rounding_size=0.6",
+                "facecolor": colors[number], "edgecolor": Color.LIGHT, "linewidth": 0.7},
+            )  # fmt: skip
 
     def reserve(self, at: Place, size: float) -> None:
         """Keep a square [pt] around a point free of labels."""
         reach = size / 2 * self._sheet.scale
         self._taken.append(np.concatenate([at - reach, at + reach]))
 
-    def _find(self, at: Place, extent: np.ndarray, gaps: tuple[float, ...], outside: float) -> np.ndarray:
-        """Center of the best box of an extent beside a point, now taken; gaps [pt] from most to least preferred."""
+    def _find(
+        self,
+        at: Place,
+        extent: np.ndarray,
+        gaps: tuple[float, ...],
+        outside: float,
+        *,
+        leaders: Sequence[Places] | None = None,
+    ) -> np.ndarray:
+        """Center of the best box of an extent next to a point, now taken; gaps [pt] from most to least preferred.
+
+        With `leaders`, which may be none, the line to the box should cross neither these nor other boxes.
+        """
         angles = np.linspace(0, 2 * np.pi, RAYS, endpoint=False)
         rays = np.column_stack([np.cos(angles), np.sin(angles)])
         sides = np.where(np.abs(rays) > 0.2, np.sign(rays), 0.0) * extent / 2
         centers = np.concatenate([at + rays * gap * self._sheet.scale + sides for gap in gaps])
         boxes = np.concatenate([centers - extent / 2, centers + extent / 2], axis=1)
         far = np.repeat((np.array(gaps) - gaps[0]) / 16, RAYS)
-        best = int(np.argmin(far + self._costs(boxes, outside)))
+        crossed = 0.0 if leaders is None else self._count_crossed(at, centers, leaders)
+        best = int(np.argmin(far + 5 * crossed + self._costs(boxes, outside)))
         self._taken.append(boxes[best])
         return centers[best]
+
+    def _count_crossed(self, at: Place, centers: np.ndarray, leaders: Sequence[Places]) -> np.ndarray:
+        """Number of leaders and boxes that the line from a point to each center crosses, without boxes round it."""
+        lines = shapely.linestrings(np.stack([np.broadcast_to(at, centers.shape), centers], axis=1))
+        boxes = [box for box in self._taken if not ((at >= box[:2]) & (at <= box[2:])).all()]
+        others = [*map(shapely.LineString, leaders), *(shapely.box(*box) for box in boxes)]
+        return sum((shapely.intersects(lines, other) for other in others), np.zeros(len(lines)))
 
     def _costs(self, boxes: np.ndarray, outside: float) -> np.ndarray:
         areas = _shared_areas(boxes, boxes)
@@ -85,7 +115,7 @@ class Labels:
             costs = costs + 30 * _shared_areas(boxes, other) / np.minimum(areas, max(size, 1e-9))
         covered = ((self._avoid >= boxes[:, None, :2]) & (self._avoid <= boxes[:, None, 2:])).all(axis=2)
         beyond = 1 - _shared_areas(boxes, np.concatenate([self._sheet.low, self._sheet.high])) / areas
-        return costs + 0.2 * np.minimum(covered.sum(axis=1), 8) + 20 * beyond
+        return costs + 0.2 * np.minimum(covered.sum(axis=1), 8) + 100 * beyond
 
 
 def _shared_areas(boxes: np.ndarray, other: np.ndarray) -> np.ndarray:

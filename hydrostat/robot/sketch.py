@@ -122,7 +122,7 @@ def sketch_robot(
     center = center if axis is None else _on_mirror(axis, outline, center)
     depth = outline.polygon.boundary.distance(ShapelyPoint(center))
     pin = Pin(at=_point(center), radius=_round(max(0.4 * depth, 1.3 * spacing)))
-    pin = move_off_drawings(pin, body, outline.polygon)
+    pin = move_off_drawings(pin, body, outline.polygon, axis)
     tips, twins = _find_tips(body, pin, center, 2.5 * spacing, axis)
     names = name_tips(body.mesh, tips)
     return Robot(
@@ -240,8 +240,11 @@ _COVERABLE_SIZE = 0.3
 """Size of a drawn shape, as a share of the body's, from which on a pin may cover it, such as a belly."""
 
 
-def move_off_drawings(pin: Pin, body: Body, outline: shapely.Polygon) -> Pin:
-    """Return a pin at the nearest place in the body where it covers no small drawn shape; itself if there is none."""
+def move_off_drawings(pin: Pin, body: Body, outline: shapely.Polygon, axis: int | None = None) -> Pin:
+    """Return a pin at the nearest place in the body where it covers no small drawn shape; itself if there is none.
+
+    A pin on the mirror line, where an axis is 0, stays on it if there is room.
+    """
     hulls = [shapely.LineString(line).convex_hull for line in body.marks]
     sizes = [max(hull.bounds[2] - hull.bounds[0], hull.bounds[3] - hull.bounds[1]) for hull in hulls]
     limit = _COVERABLE_SIZE * body.mesh.size
@@ -258,5 +261,8 @@ def move_off_drawings(pin: Pin, body: Body, outline: shapely.Polygon) -> Pin:
     fits = (room >= pin.radius) & (shapely.distance(small, points) >= pin.radius)
     if not fits.any():
         return pin
+    on_line = fits & (places[:, axis or 0] == 0)
+    if axis is not None and pin.at[axis] == 0 and on_line.any():
+        fits = on_line
     x, y = places[np.argmax(fits)].tolist()
     return replace(pin, at=(x, y))

@@ -13,7 +13,7 @@ import pytest
 from builders import box_mesh
 from manifold3d import Manifold
 
-from hydrostat.cli.check import _across_words
+from hydrostat.cli.check import _across_words, name_cables
 from hydrostat.cli.check_poses import print_reached_poses
 from hydrostat.cli.main import main
 from hydrostat.design import BuildCost
@@ -232,6 +232,21 @@ def test_a_pose_that_one_search_misses_is_solved_with_restarts(monkeypatch: pyte
     robot = load_robot(gallery_folder("starfish"))
     assert print_reached_poses(robot) == ()
     assert asked == [0, IKOptions().restarts] * len(robot.poses)
+
+
+def test_cables_with_a_name_are_named() -> None:
+    """Oracle: by hand; names stand behind numbers, once, and quoted words stay."""
+    robot = load_robot(gallery_folder("starfish"))
+    first, *others = robot.cables
+    named = robot.with_network(robot.winches, [replace(first, name="arm"), *others])
+    for text, told in (
+        ("cable 1, point 3: too near", 'cable 1 "arm", point 3: too near'),
+        ("cable 1 between points 2 and 3", 'cable 1 "arm" between points 2 and 3'),
+        ("cable 2, point 3: too near", "cable 2, point 3: too near"),
+        ('cable 1 "arm": sharp', 'cable 1 "arm": sharp'),
+        ('"cable 1, point 3"', '"cable 1, point 3"'),
+    ):
+        assert name_cables(text, named) == told
 
 
 def test_reach_is_left_out_of_large_bodies(check: Check, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -470,8 +470,11 @@ BAD = {
     ("--tension", "0 N"): "--tension 0 N: must be above 0, e.g. 20 N",
     ("--slack", "-1 mm"): "--slack -1 mm: must be 0 or more, e.g. 12 mm",
     ("--symmetric", "w"): "--symmetric w: unknown axis. Allowed: x, y, z.",
-    ("--symmetric", "x"): "constraints: mirror: body not centered on x = 0 (0 to 200 mm). "
-    "Move it there or set mirror to None.",
+    (
+        "--symmetric",
+        "x",
+    ): "--symmetric x: body not centered on x = 0 (0 to 200 mm). Move it there or remove --symmetric.",
+    ("--symmetric", "z"): '--symmetric z: no such axis in a flat body. Allowed: "x" or "y".',
     ("--lock-winch", "bob"): '--lock-winch bob: unknown winch "bob". Available: up, down.',
     ("--lock-cable", "3"): '--lock-cable 3: unknown cable "3". Available: up 1, down 1.',
     ("--constraints", "none.toml"): "none.toml: there is no such file",

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from builders import gallery_robot, strip_robot
 
+from hydrostat.cli.design import warn_of_mirror
 from hydrostat.cli.design_arguments import DesignArguments, parse_request
 from hydrostat.design import BuildTolerances, DesignMethod, DesignRequest, RouteOptions, TreeOptions
 from hydrostat.project import Wishes
@@ -76,3 +77,17 @@ def test_measured_tolerances_are_taken_unless_a_file_is_given(tmp_path: Path) ->
         assert uncertainty.young == young
     exact = parse_request(robot(), DesignArguments(ideal=True), measured=measured).uncertainty
     assert exact == BuildTolerances.none()
+
+
+def test_poses_that_a_symmetric_network_may_miss_are_named_before_the_search(
+    unchecked: None, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Oracle: a tip on the mirror line that is lifted; with the pose that lowers it as much it is an image."""
+    down = replace(UP, name="down", targets={"tip": (0.18, -0.06)})
+    for poses, told in (((UP,), "pose up is no mirror image about y of itself or another pose."), ((UP, down), "")):
+        source = replace(robot(), poses={pose.name: pose for pose in poses})
+        warn_of_mirror(source, parse_request(source, DesignArguments(symmetric="y")))
+        err = capsys.readouterr().err
+        assert err.startswith(f"warning: {told}") if told else err == ""
+        warn_of_mirror(source, parse_request(source, DesignArguments()))
+        assert capsys.readouterr().err == ""

@@ -20,6 +20,18 @@ from hydrostat.errors import HydrostatError
 sdk = pytest.importorskip("dynamixel_sdk", reason="dynamixel-sdk is not installed")
 
 
+def test_registers_of_an_emulated_servo_have_1_2_or_4_bytes() -> None:
+    servo = EmulatedServo(1)
+    for size in (1, 2, 4):
+        servo.set(200, -1, size)
+        assert servo.get(200, size) == -1
+    for size in (0, 3, 8):
+        with pytest.raises(ValueError, match=f"a register has 1, 2 or 4 bytes, not {size}"):
+            servo.get(200, size)
+        with pytest.raises(ValueError, match="a register has 1, 2 or 4 bytes"):
+            servo.set(200, 0, size)
+
+
 def test_packets_are_those_of_the_manual() -> None:
     assert pack(1, PING).hex() == "fffffd0001030001194e"
     assert pack(1, READ, bytes([0x84, 0, 4, 0])).hex() == "fffffd0001070002840004001d15"

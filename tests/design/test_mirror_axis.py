@@ -7,7 +7,7 @@ import pytest
 from builders import mesh_body
 from plate_networks import network
 
-from hydrostat.design import find_mirror_axis
+from hydrostat.design import find_mirror_axis, find_unmirrored_poses
 from hydrostat.geometry import Mesh
 from hydrostat.robot import Marker, PoseTarget, Robot
 
@@ -54,3 +54,6 @@ def test_poses_may_be_images_of_each_other() -> None:
     assert find_mirror_axis(plate(), [one, two]) == "y"
     assert find_mirror_axis(plate(), [one, far]) is None
     assert find_mirror_axis(plate(), [one]) is None
+    assert find_unmirrored_poses(plate(), [one, two], "y") == ()
+    assert find_unmirrored_poses(plate(), [one, far, two], "y") == ("far",)
+    assert find_unmirrored_poses(plate(low=(0.15, -0.05)), [one], "y") == ("one",), "a marker without an image"

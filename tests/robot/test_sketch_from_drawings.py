@@ -10,7 +10,7 @@ from PIL import Image, ImageDraw
 
 from hydrostat.errors import OutlineError
 from hydrostat.geometry import Inner
-from hydrostat.robot import Plane, find_risks, load_robot, save_robot, sketch_robot
+from hydrostat.robot import Plane, find_mirror, find_risks, load_robot, save_robot, sketch_robot
 
 
 def bar_png() -> bytes:
@@ -86,3 +86,15 @@ def test_the_first_pin_covers_no_face() -> None:
     (pin,) = sketch_robot(svg, file="face.svg", name="face", inner=Inner.DRAWN).pins
     assert pin.at is not None
     assert min(dist(pin.at, (x, 0.010)) for x in (-0.010, 0.010)) >= pin.radius
+
+
+def test_a_pin_that_gives_way_to_a_drawing_stays_on_the_mirror_line() -> None:
+    """Oracle: the line x = 0 of an ellipse with a mouth in its middle, where the pin would be."""
+    page = '<svg xmlns="http://www.w3.org/2000/svg" width="300mm" height="200mm" viewBox="0 0 300 200">'
+    svg = f'{page}<ellipse cx="150" cy="100" rx="140" ry="60"/><circle cx="150" cy="100" r="4"/></svg>'.encode()
+    robot = sketch_robot(svg, file="face.svg", name="face", inner=Inner.DRAWN)
+    (pin,) = robot.pins
+    assert find_mirror(robot.body) == 0
+    assert pin.at is not None
+    assert pin.at[0] == 0
+    assert abs(pin.at[1]) >= pin.radius + 0.004

@@ -10,13 +10,14 @@ from hydrostat.fabrication.kit_plan import KitFindings, KitPlan
 from hydrostat.fabrication.lists.lists import Lists
 from hydrostat.fabrication.lists.stitching import CableDepths
 from hydrostat.fabrication.sheets.bench_words import SURFACES
-from hydrostat.fabrication.sheets.cable_map import flat_map, single_maps, space_map
+from hydrostat.fabrication.sheets.cable_map import flat_map, space_map
 from hydrostat.fabrication.sheets.diagrams import skin_scheme, stitch_scheme, stopper_scheme, wiring_scheme
 from hydrostat.fabrication.sheets.facts import PictureFacts, PictureName, SheetData, SheetFacts
 from hydrostat.fabrication.sheets.legible import PrintableText
 from hydrostat.fabrication.sheets.list_facts import piece_numbers
 from hydrostat.fabrication.sheets.map_layout import best_views, body_solid
 from hydrostat.fabrication.sheets.sheet_facts import sheet_facts, shown_stitches
+from hydrostat.fabrication.sheets.single_maps import single_maps
 from hydrostat.fabrication.sheets.solid_pictures import exploded_picture, portrait, undercut_picture
 from hydrostat.fabrication.winch_marks import winch_marks_of
 
@@ -90,7 +91,7 @@ def _single_maps(plan: KitPlan, views: Sequence[Camera]) -> list[Canvas]:
     dense = plan.method is Method.FOAM and len(plan.robot.cables) > _DENSE
     if not (plan.method is Method.PLUSH and plan.robot.cables) and not dense:
         return []
-    height, view = 235.0 - _shorter(plan.options.paper), views[0] if views else None
+    height, view = (223.0 if views else 235.0) - _shorter(plan.options.paper), views[0] if views else None
     return single_maps(plan.robot, plan.work.stitches, width=WIDE, height=height, view=view)
 
 

@@ -1,4 +1,4 @@
-"""`flat_map`, `space_map`, `single_maps`: the robot with its cables, holes, winches and stoppers, numbered."""
+"""`flat_map`, `space_map`: the robot with its cables, holes, winches and stoppers, numbered."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ from hydrostat.given import Point
 from hydrostat.robot import Mount, Robot
 
 _MARGIN = 7.0  # room round the body for labels [mm]
-_HOLE = 0.65  # radius of a drawn hole [mm]
+HOLE = 0.65  # radius of a drawn hole [mm]
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,14 +164,14 @@ def _stands(robot: Robot) -> dict[str, Point]:
 def _put_runs(canvas: Canvas, labels: LabelPlaces, runs: Sequence[CableRun], stands: Mapping[str, Spot]) -> None:
     """Cables, then holes and stoppers on them, then winches, then all words where they fit."""
     for run in runs:
-        _put_cable(canvas, run)
+        put_cable(canvas, run)
         labels.take_line(run.spots)
     for run in runs:
         for spot, hole in zip(run.spots[:-1], run.holes[:-1], strict=True):
             if hole:
-                canvas.disc(spot, _HOLE)
-                labels.take_box(box_round(spot, _HOLE))
-        _put_stopper(canvas, run)
+                canvas.disc(spot, HOLE)
+                labels.take_box(box_round(spot, HOLE))
+        put_stopper(canvas, run)
         labels.take_box(box_round(run.spots[-1], 1.4))
     _put_winches(canvas, labels, stands)
     for run in runs:
@@ -180,23 +180,6 @@ def _put_runs(canvas: Canvas, labels: LabelPlaces, runs: Sequence[CableRun], sta
         if middle is not None:
             canvas.text(middle, words, size=9.0, bold=True, halo=True, color=run.color)
     _put_numbers(canvas, labels, runs)
-
-
-def put_run(canvas: Canvas, labels: LabelPlaces, run: CableRun, mark: str) -> None:
-    """One cable alone, with its winch and the numbers of all of its holes."""
-    _put_cable(canvas, run)
-    labels.take_line(run.spots)
-    for spot, hole in zip(run.spots[:-1], run.holes[:-1], strict=True):
-        if hole:
-            canvas.disc(spot, _HOLE)
-            labels.take_box(box_round(spot, _HOLE))
-    _put_stopper(canvas, run)
-    labels.take_box(box_round(run.spots[-1], 1.4))
-    canvas.balloon(run.spots[0], mark, dark=True, size=7.5)
-    labels.take_box(box_round(run.spots[0], Canvas.balloon_radius(mark, 7.5)))
-    for place, hole in enumerate(run.holes[:-1]):
-        if hole and place:
-            _put_number(canvas, labels, run, place, led=True, words=str(place + 1))
 
 
 def _put_pins(canvas: Canvas, labels: LabelPlaces, robot: Robot, frame: CanvasFrame) -> None:
@@ -256,14 +239,14 @@ def _put_numbers(canvas: Canvas, labels: LabelPlaces, runs: Sequence[CableRun]) 
     numbered = [[place for place, hole in enumerate(run.holes[:-1]) if hole and place] for run in runs]
     for run, places in zip(runs, numbered, strict=True):
         for place in dict.fromkeys((*places[:1], *places[-1:])):
-            _put_number(canvas, labels, run, place, led=True)
+            put_number(canvas, labels, run, place, led=True)
     for first in (2, 1):
         for run, places in zip(runs, numbered, strict=True):
             for place in places[1:-1][first - 1 :: 2]:
-                _put_number(canvas, labels, run, place)
+                put_number(canvas, labels, run, place)
 
 
-def _put_number(
+def put_number(
     canvas: Canvas, labels: LabelPlaces, run: CableRun, place: int, *, led: bool = False, words: str = ""
 ) -> None:
     """Put a number next to its hole, or with `led` and the cable's name further away with a line to it."""
@@ -278,7 +261,8 @@ def _put_number(
     canvas.text(middle, words, size=7.5, halo=led, color=run.color)
 
 
-def _put_cable(canvas: Canvas, run: CableRun) -> None:
+def put_cable(canvas: Canvas, run: CableRun) -> None:
+    """A cable, dashed where it is behind; double in a tube."""
     for start, end, solid, sheathed in zip(run.spots[:-1], run.spots[1:], run.solid, run.sheathed, strict=True):
         if sheathed:
             canvas.line([[start, end]], width=1.25, color=run.color)
@@ -288,7 +272,7 @@ def _put_cable(canvas: Canvas, run: CableRun) -> None:
             canvas.line([[start, end]], width=Canvas.THICK, dash=None if solid else (1.1, 0.8), color=run.color)
 
 
-def _put_stopper(canvas: Canvas, run: CableRun) -> None:
+def put_stopper(canvas: Canvas, run: CableRun) -> None:
     """A black bar across the end of a cable."""
     end = np.array(run.spots[-1])
     way = end - np.array(run.spots[-2])
@@ -297,104 +281,3 @@ def _put_stopper(canvas: Canvas, run: CableRun) -> None:
     aside = np.array([-way[1], way[0]])
     corners = [end + 1.35 * a * aside + 0.55 * b * way for a, b in ((1, 1), (1, -1), (-1, -1), (-1, 1))]
     canvas.fill([[(float(x), float(y)) for x, y in corners]], grey=0.0)
-
-
-_CELL_HEAD, _CELL_MARGIN = 5.0, 4.0  # room for a title, and round the body [mm]
-_PALE = 0.72  # grey of what does not stand out
-
-
-@dataclass(frozen=True, eq=False)
-class _Scene:
-    """Content of all cells: runs in a frame, and the drawing of the body there."""
-
-    box: Float[np.ndarray, "2 2"]
-    runs: Callable[[CanvasFrame], list[CableRun]]
-    draw: Callable[[Canvas, CanvasFrame], None]
-
-
-def single_maps(
-    robot: Robot, stitches: Sequence[CableStitches], *, width: float, height: float, view: Camera | None = None
-) -> list[Canvas]:
-    """Return pages of maps with one cable each, as large as fit on one page; none for fewer than three cables.
-
-    Pages have up to three columns and four rows.
-
-    Args:
-        robot: robot with the cables.
-        stitches: stitches of a flat body that is sewn.
-        width: page width [mm].
-        height: maximum page height [mm].
-        view: camera for a body in space; None for a flat one.
-    """
-    fewest = 3  # With fewer cables one map shows them all
-    if len(robot.cables) < fewest:
-        return []
-    scene = _flat_scene(robot, stitches) if view is None else _space_scene(robot, view)
-    count = len(scene.runs(CanvasFrame.fit(scene.box, (0.0, 0.0, 1.0, 1.0))))
-    columns, tall = max((_cells(scene, count, each, (width, height)) for each in (1, 2, 3)), key=lambda cell: cell[2])[
-        :2
-    ]
-    room = width / columns
-    each = columns * max(int(height / tall), 1)
-    pages = []
-    for start in range(0, count, each):
-        shown = range(start, min(start + each, count))
-        canvas = Canvas(width, tall * -(-len(shown) // columns))
-        for place, number in enumerate(shown):
-            left, top = room * (place % columns), tall * (place // columns)
-            _put_cell(canvas, robot, scene, number, (left, top, left + room, top + tall))
-        pages.append(canvas)
-    return pages
-
-
-def _cells(scene: _Scene, count: int, columns: int, page: tuple[float, float]) -> tuple[int, float, float]:
-    """Columns, height of a cell [mm], and scale of what is drawn in it."""
-    width, height = page
-    rows = min(-(-count // columns), 4) if columns == 3 else -(-count // columns)
-    frame = np.array([2 * _CELL_MARGIN, _CELL_HEAD + 2 * _CELL_MARGIN])
-    across, up = np.ptp(scene.box, axis=0)
-    scale = min((width / columns - frame[0]) / across, (height / rows - frame[1]) / up)
-    return columns, frame[1] + scale * up, scale
-
-
-def _flat_scene(robot: Robot, stitches: Sequence[CableStitches]) -> _Scene:
-    rings = [1e3 * ring for ring in flat_rings(robot)]
-    places = np.concatenate([*rings, *(1e3 * np.array(cable.points) for cable in robot.cables)])
-
-    def draw(canvas: Canvas, frame: CanvasFrame) -> None:
-        canvas.line([frame.way(ring) for ring in rings], width=Canvas.THIN, grey=0.35, closed=True)
-        canvas.line([frame.way(mark) for mark in flat_marks(robot)], width=Canvas.THIN, grey=_PALE)
-
-    box = np.array([places.min(axis=0), places.max(axis=0)])
-    return _Scene(box, lambda frame: front_runs(robot, stitches, frame), draw)
-
-
-def _space_scene(robot: Robot, view: Camera) -> _Scene:
-    pane: SightedBody = pane_of(robot, view, 500)
-
-    def runs(frame: CanvasFrame) -> list[CableRun]:
-        return [project_cable(robot, index, way, pane.sight, frame) for index, way in enumerate(pane.cables)]
-
-    def draw(canvas: Canvas, frame: CanvasFrame) -> None:
-        canvas.line([frame.way(way) for way in pane.drawing.outlines], width=Canvas.THIN, grey=0.35)
-
-    return _Scene(pane.box, runs, draw)
-
-
-def _put_cell(canvas: Canvas, robot: Robot, scene: _Scene, number: int, cell: Box) -> None:
-    left, top, right, bottom = cell
-    frame = CanvasFrame.fit(
-        scene.box, (left + _CELL_MARGIN, top + _CELL_HEAD + _CELL_MARGIN, right - _CELL_MARGIN, bottom - _CELL_MARGIN)
-    )
-    runs = scene.runs(frame)
-    own = runs[number]
-    scene.draw(canvas, frame)
-    for run in runs:
-        if run is not own:
-            canvas.line([run.spots], width=Canvas.THIN, grey=_PALE)
-    labels = LabelPlaces((left + 0.2, top + _CELL_HEAD, right - 0.2, bottom - 0.2))
-    cable = robot.cables[own.cable - 1]
-    put_run(canvas, labels, own, winch_marks_of(robot)[cable.winch])
-    twin = "" if own.twin is None else f", and C{own.twin} behind it"
-    words = f"C{own.cable} from {winch_marks_of(robot)[cable.winch]}{twin}"
-    canvas.text((left + 1.0, top + 2.6), words, size=9.0, anchor="start", bold=True, color=own.color)

@@ -235,6 +235,8 @@ def _list_first_steps(plan: PowerPlan, *, is_measured: bool) -> list[str]:
     return [
         "Leave the switch off. The supply gives 1.5 times the current of all motors at full torque, and enough for two "
         f"that stall. Measure it behind the fuse: {plan.motor.volts:g} V, plus on the plus lead.",
+        "In the commands below, ROBOT is the folder with the robot.toml of this robot, and MOVES is the file "
+        "dance/trajectory.csv. To make it from the poses, run: hydrostat trajectory ROBOT --return --out dance.",
         *ready,
         'Install the motor package: pip install -e ".[motors]" in the folder of hydrostat. Then find the port: '
         "/dev/ttyUSB0 or /dev/ttyACM0 on Linux, and in WSL after usbipd has attached it.",

@@ -141,6 +141,7 @@ def test_the_first_start_ends_in_commands_that_the_robot_and_its_motors_take(key
         steps = " ".join(facts["start"])
         assert (f"hydrostat calibrate ROBOT --motors {kind}:PORT" in steps) == calibrated
         assert steps.count(f"--motors {kind}:PORT") == 1 + calibrated
+        assert steps.index("hydrostat trajectory ROBOT --return --out dance") < steps.index("--motors"), "makes MOVES"
 
 
 @pytest.mark.parametrize(("key", "told"), [("n20", "encoders from its pin 3V3"), ("25d", "the level shifter")])
@@ -238,7 +239,7 @@ def test_long_names_are_shortened(name):
     assert len(shorten_text(name, 60)) <= 60
 
 
-@pytest.mark.parametrize(("make", "pages"), [(plush, 5), (foam, 7)])
+@pytest.mark.parametrize(("make", "pages"), [(plush, 5), (foam, 8)])
 @pytest.mark.slow
 def test_a_crowded_sheet_has_no_more_pages_but_of_maps(make, pages):
     long = "The spool of winch “pull 1” takes 71 mm of cable, but its travel asks for 740 mm; " * 4

@@ -14,9 +14,10 @@ from hydrostat.fabrication.kit_options import Method, PatternOptions
 from hydrostat.fabrication.patterns.skin import flat_skin
 from hydrostat.fabrication.patterns.stitches import cable_stitches
 from hydrostat.fabrication.sheets.assembly_sheet import _single_maps
-from hydrostat.fabrication.sheets.cable_map import flat_map, single_maps
+from hydrostat.fabrication.sheets.cable_map import flat_map
 from hydrostat.fabrication.sheets.legible import note_lines
 from hydrostat.fabrication.sheets.map_layout import LabelPlaces, best_views, body_solid
+from hydrostat.fabrication.sheets.single_maps import single_maps
 from hydrostat.fabrication.sheets.solid_pictures import portrait
 from hydrostat.fabrication.winch_marks import marked_name, winch_marks_of
 from hydrostat.robot import Robot
@@ -43,8 +44,14 @@ def test_a_foam_hand_has_a_map_for_each_cable(unchecked: None) -> None:
     robot = gallery_robot("cupping_hand")
     views = best_views(robot, body_solid(robot))
     plan = make_plan(robot, Demand.of_results(robot, []), method=Method.FOAM)
-    told = [word for page in _single_maps(plan, views) for word in words(page.svg)]
-    assert {f"C{number}" for number in range(1, 11)} <= {word.split()[0] for word in told}
+    pages = _single_maps(plan, views)
+    told = [word for page in pages for word in words(page.svg)]
+    titles = [word for word in told if " from " in word]
+    assert [title.split()[0] for title in titles] == [f"C{number}" for number in range(1, 11)]
+    sides = [title.rpartition(", ")[2] for title in titles]
+    assert {*sides[2::2]} == {"near side"}, "flexors of fingers"
+    assert {*sides[3::2]} == {"far side"}, "extensors of fingers"
+    assert [sum(" from " in word for word in words(page.svg)) for page in pages] == [5, 5]
     few = robot.with_network(robot.winches[:6], robot.cables[:6])
     assert _single_maps(change_plan(plan, robot=few), views) == []
 
