@@ -1,4 +1,4 @@
-"""Learned inverse kinematics: samples of the simulator, networks trained on them, answers certified by it."""
+"""Learned inverse kinematics: simulated samples, networks trained on them, answers checked by simulation."""
 
 from typing import TYPE_CHECKING
 

@@ -14,14 +14,15 @@ from hydrostat.version import install_command
 
 
 def export_samples(folder: Path, out: Path) -> Path:
-    """Write all samples of a folder, those without an equilibrium too, as one file for others.
+    """Export all samples of a folder to one file, also those without an equilibrium.
 
     Args:
-        folder: folder of samples.
-        out: ends in one of `EXPORTS`: .parquet (a column for each number), or .zarr (an array for each quantity).
+        folder: sample folder.
+        out: output path, with an extension of `EXPORTS`: .parquet (one column for each value), or .zarr (one array for
+            each quantity).
 
     Raises:
-        InputError: an unknown ending, a missing library, a file that is there, or no samples.
+        InputError: an unknown file extension, a missing package, an existing file, or no samples.
     """
     check_export(out)
     write = EXPORTS[out.suffix]
@@ -38,10 +39,10 @@ def export_samples(folder: Path, out: Path) -> Path:
 
 
 def check_export(out: Path) -> None:
-    """Check, before any work, that samples can be written there.
+    """Check that samples can be exported to a path, before any other work.
 
     Raises:
-        InputError: an unknown ending, a file that is there, or a missing library.
+        InputError: an unknown file extension, an existing file, or a missing package.
     """
     if out.suffix not in EXPORTS:
         raise InputError(f"{out}: must end in {' or '.join(EXPORTS)}")

@@ -21,19 +21,19 @@ from hydrostat.progress import Progress, no_progress
 def learn_model(
     samples: Samples, *, options: LearnOptions | None = None, progress: Progress | None = None
 ) -> LearnedModel:
-    """Train forward networks on values and derivatives of samples, then an inverse network through them. Needs PyTorch.
+    """Train forward networks on sample values and derivatives, then an inverse network through them. Needs PyTorch.
 
-    Ctrl-C ends it early: the model is then the best so far, without an inverse network if that was not begun, and says
-    so in `card.stopped`.
+    Ctrl-C ends the training early and returns the best model so far, with `card.stopped` set. It has no inverse
+    network if that training had not begun.
 
     Args:
         samples: samples of one robot.
-        options: options of training.
-        progress: callback for progress in training steps, stages "forward" and "inverse".
+        options: training options.
+        progress: callback for progress in training steps; the stages are "forward" and "inverse".
 
     Raises:
-        InputError: too few samples, or no PyTorch.
-        KeyboardInterrupt: before there was anything to keep.
+        InputError: too few samples, or PyTorch is missing.
+        KeyboardInterrupt: interrupted before the first usable model.
     """
     from hydrostat.learning.train import train_forward, train_inverse
 
@@ -95,20 +95,20 @@ def _marker_distances(markers: np.ndarray) -> np.ndarray:
 def correct_model(
     model: LearnedModel, samples: Samples, *, options: LearnOptions | None = None, progress: Progress | None = None
 ) -> LearnedModel:
-    """A model whose forward networks have learned on from a few samples of another body: a finer mesh, or the robot.
+    """Train the forward networks further on a few samples of another body, such as a finer mesh or the real robot.
 
-    What they know of the first body stays where the samples say nothing against it. The inverse network stays as it
-    is, as a place for the search to begin; so answers are found by the search. Needs PyTorch.
+    Predictions change only where the new samples differ. The inverse network stays unchanged, as the start point of
+    the search; solve with `search=True`. Needs PyTorch.
 
     Args:
         model: model of the first body.
-        samples: samples of the other, with the same winches, markers, cables and travel.
-        options: options of training; its members, width and depth are the model's.
+        samples: samples of the other body, with the same winches, markers, cables and travel.
+        options: training options; members, width and depth are those of the model.
         progress: same as for `learn_model`.
 
     Raises:
-        InputError: too few samples, of a robot with other winches, markers, cables or travel, or no PyTorch.
-        KeyboardInterrupt: before there was anything to keep.
+        InputError: too few samples; other winches, markers, cables or travel; or PyTorch is missing.
+        KeyboardInterrupt: interrupted before the first usable model.
     """
     from hydrostat.learning.train import train_forward
 

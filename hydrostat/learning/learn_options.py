@@ -1,4 +1,4 @@
-"""`LearnOptions`: how networks are trained."""
+"""`LearnOptions`: options for training networks."""
 
 from dataclasses import dataclass
 from math import isfinite
@@ -8,24 +8,24 @@ from hydrostat.errors import InputError
 
 @dataclass(frozen=True, kw_only=True)
 class LearnOptions:
-    """Options for training networks. are trained. What the defaults reach: docs/decisions/0035-learning.md.
+    """Options for training networks. Results with the defaults: docs/decisions/0035-learning.md.
 
     Attributes:
-        members: forward networks, each of which holds out other samples; their disagreement is the model's doubt.
+        members: number of forward networks; each holds out other samples, and their spread is the model's uncertainty.
         width: units in each hidden layer.
-        depth: hidden layers.
-        steps: steps of training the forward networks; if left out 6,000, and 3 for each sample.
-        inverse_steps: steps of training the inverse network.
-        batch: samples in a step.
-        rate: largest learning rate; it rises, then falls as a cosine.
-        jacobians: weight of errors of Jacobians beside those of values; 0 learns from values alone.
-        directions: along which derivatives are compared, drawn again in each step.
-        tensions: weight of errors of tensions beside those of markers.
-        tension_jacobians: weight of errors of their derivatives, where samples hold them.
-        effort: weight of tension and contraction in the inverse network, so that its answer is unique.
-        held_out: share of the samples that a network does not learn from, but is chosen by.
+        depth: number of hidden layers.
+        steps: training steps of the forward networks; if left out, 6,000 plus 3 for each sample.
+        inverse_steps: training steps of the inverse network.
+        batch: number of samples in a training step.
+        rate: peak learning rate; the rate rises, then decays as a cosine.
+        jacobians: weight of Jacobian errors relative to value errors; 0 trains on values alone.
+        directions: number of random directions in which derivatives are compared, drawn again in each step.
+        tensions: weight of tension errors relative to marker errors.
+        tension_jacobians: weight of errors of tension derivatives, if the samples have them.
+        effort: weight of tension and contraction in the loss of the inverse network; it makes the answer unique.
+        held_out: share of the samples that is held out from the training of a network and used to select its weights.
         seed: random seed.
-        threads: cores that PyTorch may use.
+        threads: number of CPU threads for PyTorch.
     """
 
     members: int = 3
@@ -58,5 +58,5 @@ class LearnOptions:
             raise InputError(f"seed must be 0 or more, not {self.seed}")
 
     def steps_for(self, samples: int) -> int:
-        """Return the training steps of the forward networks for a number of samples."""
+        """Return the number of training steps of the forward networks for a number of samples."""
         return self.steps or 6000 + 3 * samples

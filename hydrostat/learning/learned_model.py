@@ -85,21 +85,21 @@ class LearnedPose:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LearnedModel:
-    """Networks of one robot; `solve` needs neither its simulator nor torch.
+    """Networks of one robot; `solve` needs neither the simulator nor PyTorch.
 
-    Inside, contractions are numbers from -1 to 1 between the least and the most that the winches take in, and what is
-    expected (markers, then tensions) is counted from its mean in a unit for each.
+    The networks use normalized values: contractions from -1 to 1 over the travel of each winch, and outputs (markers,
+    then tensions) minus their mean, divided by one scale for each quantity.
 
     Attributes:
-        card: the robot, the samples, the training and its accuracy.
+        card: robot, samples, training and accuracy.
         low: least contraction of each winch [m].
-        high: largest [m].
-        middle: mean of what is expected: of the coordinates of the markers [m], then of the tensions [N].
-        unit: unit of each of them.
-        forward: from contractions to what is expected; several, learned apart, so that they can disagree.
-        inverse: from markers to contractions; None where learning was stopped before.
-        known: contractions of samples to begin a search from [m].
-        reached: positions of the markers then [m], a row each.
+        high: largest contraction of each winch [m].
+        middle: mean of each output: marker coordinates [m], then tensions [N].
+        unit: scale of each output, in the same units.
+        forward: networks from contractions to outputs, trained separately; their spread estimates the uncertainty.
+        inverse: network from markers to contractions; None if training was interrupted before it.
+        known: contractions of the samples that a search can start from [m].
+        reached: marker positions of these samples [m], one row for each.
     """
 
     card: ModelCard
@@ -118,10 +118,10 @@ class LearnedModel:
         return f"<LearnedModel of {self.card.robot!r}: {known}, {1e3 * self.card.error:.3g} mm on average>"
 
     def check(self, robot: Robot) -> None:
-        """Check that this was learned of a robot.
+        """Check that the model was trained for a robot.
 
         Raises:
-            InputError: it was learned of another, or with another contact.
+            InputError: the model was trained for another robot, or with another contact setting.
         """
         if self.card.physics != physics_hash(robot):
             raise InputError(
@@ -131,19 +131,19 @@ class LearnedModel:
         check_contact(self.card.known_contact, robot)
 
     def predict(self, contractions: Vector) -> tuple[Vector, Vector]:
-        """Predict coordinates of the markers [m], then tensions [N], at contractions [m]; and their spread."""
+        """Predict marker coordinates [m], then tensions [N], at contractions [m]; also return their spread."""
         return self._predict_pose(self._winches(contractions))
 
     def jacobian(self, contractions: Vector) -> Float[np.ndarray, "coordinates winches"]:
-        """Predict the displacements of the markers for contractions of the winches."""
+        """Predict the Jacobian of the marker coordinates with respect to the contractions."""
         _, derivatives = self.forward.evaluate(self._scale_inputs(self._winches(contractions)))
         return (self.unit[:, None] * derivatives / self._half)[: self.card.coordinates]
 
     def predict_inverse(self, markers: Vector) -> Vector:
-        """Contractions [m] by the inverse network alone, for coordinates of all markers [m] in their order.
+        """Return the contractions [m] of the inverse network for the coordinates of all markers [m], in marker order.
 
         Raises:
-            InputError: there is no inverse network, or another number of coordinates.
+            InputError: no inverse network, or a wrong number of coordinates.
         """
         given, count = np.asarray(markers, dtype=float).ravel(), self.card.coordinates
         if given.shape != (count,) or not np.isfinite(given).all():
@@ -151,16 +151,17 @@ class LearnedModel:
         return self._apply_inverse(given)
 
     def solve(self, targets: Targets, *, search: bool = True) -> LearnedPose:
-        """Contractions that bring markers to targets, by the inverse network.
+        """Compute contractions that move markers to targets.
 
         Args:
-            targets: target positions [m]; markers that are not named may go anywhere.
-            search: True to search on the networks from the inverse network's answer, and, where that leaves more
-                than usual, from the nearest samples. The inverse network alone is faster.
+            targets: target positions [m]; markers without a target are free.
+            search: True to refine the answer of the inverse network by a search on the forward networks. If a large
+                error remains, the search also starts from the nearest samples. False is faster.
 
         Raises:
-            InputError: no targets, a marker that the model does not have, no place in the body's space; a model without
-                an inverse network that may not search.
+            InputError: no targets, an unknown marker, a target outside the space of the body, or `search=False` without
+                an
+                inverse network.
         """
         target = self._pose(targets)
         goal, asked = self._goal(target)
@@ -172,7 +173,7 @@ class LearnedModel:
         return self.evaluate(target, self._search(whole, asked), Tier.SEARCH)
 
     def evaluate(self, target: PoseTarget, contractions: Vector, tier: Tier) -> LearnedPose:
-        """An answer, with what the networks say of it."""
+        """Return an answer with the pose that the networks predict."""
         expected, spread = self._predict_pose(contractions)
         names, dim, count = self.card.markers, self.card.dim, self.card.coordinates
         places = expected[:count].reshape(-1, dim)
@@ -201,7 +202,7 @@ class LearnedModel:
         return self.middle + self.unit * mean, self.unit * spread
 
     def _search(self, goal: Vector, asked: np.ndarray) -> Vector:
-        """The best of descents from the inverse network's answer and, if need be, from samples."""
+        """Return the best local optimum, from the inverse network's answer and, if its error is large, from samples."""
         count = self.card.coordinates
         weights = np.zeros(len(self.unit))
         weights[:count] = asked * self.unit[:count]  # what is left is then in meters
@@ -220,7 +221,7 @@ class LearnedModel:
         return self._contractions(best)
 
     def _apply_pairs(self, contractions: Vector) -> Vector:
-        """Apply the pairs of the samples: of two winches only one takes in, by the difference of both."""
+        """Apply the antagonistic pairs of the samples: only one winch of a pair takes in, by the difference of both."""
         one, other = self._pairs
         if not len(one):
             return contractions
@@ -300,15 +301,16 @@ class LearnedModel:
 
     @staticmethod
     def load(path: str | Path) -> "LearnedModel":
-        """A model that `LearnedModel.save` has written.
+        """Load a model that `LearnedModel.save` has written.
 
         Raises:
-            InputError: there is none, it was changed since it was written, or it is not one that this version can use.
+            InputError: no such file, a file that was changed after it was written, or a format that this version cannot
+                read.
         """
         return _FILE.read(path, _model)
 
     def save(self, path: str | Path) -> Path:
-        """Write a model whole, or not at all (InputError: it cannot be written)."""
+        """Write the model to a file atomically (InputError: the file cannot be written)."""
         arrays = {name: getattr(self, name) for name in ("low", "high", "middle", "unit", "known", "reached")}
         for name in ("forward", "inverse"):
             network = getattr(self, name)
@@ -330,7 +332,7 @@ def span_of(low: Vector, high: Vector) -> Vector:
 
 
 TANH_SCALE = 1.02
-"""Factor on answers and actions of networks that end in tanh, clipped to 1 after it, so that they reach the limits."""
+"""Factor on outputs of networks that end in tanh; outputs are then clipped to 1, so that they can reach the limits."""
 
 _STARTS = 3
 """Samples that a search begins from where the inverse network's answer is not near enough."""

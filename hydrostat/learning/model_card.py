@@ -11,34 +11,34 @@ from hydrostat.learning.portable_file import check_fact
 
 @dataclass(frozen=True, kw_only=True)
 class ModelCard:
-    """Facts of a learned model. The file holds each under the name of its field.
+    """Metadata of a learned model. In the file, each value has the name of its field.
 
     Attributes:
         robot: name of the robot.
-        physics: SHA-256 of the robot, as `physics_hash` returns it.
-        draws: sampling schemes, one sample each in turn.
-        winches: names, in the order of the contractions.
-        markers: names, in the order of the coordinates.
-        cables: names, in the order of the tensions.
-        dim: coordinates of a point, 2 or 3.
-        node_count: nodes of the mesh.
+        physics: SHA-256 hash of the robot, from `physics_hash`.
+        draws: sampling schemes, which take turns from sample to sample.
+        winches: winch names, in the order of the contractions.
+        markers: marker names, in the order of the coordinates.
+        cables: cable names, in the order of the tensions.
+        dim: number of dimensions, 2 or 3.
+        node_count: number of mesh nodes.
         size: size of the body [m].
-        pairs: names of antagonistic winches, and of each winch without a partner alone. Empty unless every sample was
-            drawn by `SamplingScheme.ANTAGONIST`.
-        contact: self-contact in the samples.
+        pairs: winch names of each antagonistic pair, and of each winch without a partner. Empty unless
+            `SamplingScheme.ANTAGONIST` drew every sample.
+        contact: True if the samples include self-contact.
         contact_distance: distance at which contact begins [m]; None without contact.
-        contact_friction: Coulomb coefficient of the contact; None without contact.
+        contact_friction: Coulomb friction coefficient of the contact; None without contact.
         version: version of hydrostat that trained the model.
         samples: number of samples.
         lost: number of samples without a stable equilibrium or its derivatives.
         error: mean marker error of the forward networks on held-out samples [m].
         inverse_error: mean marker error of the inverse network on held-out samples [m]; None without one.
         displacement: mean distance of the markers from their mean position in the samples [m].
-        stopped: training was interrupted.
-        options: fields of `LearnOptions`, as far as that version had them.
+        stopped: True if training was interrupted.
+        options: values of the `LearnOptions` fields that this version had.
         seconds: CPU time of the training [s].
-        corrected: number of samples of `correct_model`; None if it was not called.
-        policy: method of the policy in the place of the inverse network; None without one.
+        corrected: number of samples that `correct_model` used; None if it was not called.
+        policy: training method of the policy that replaces the inverse network; None without a policy.
     """
 
     robot: str
@@ -68,10 +68,10 @@ class ModelCard:
 
     @classmethod
     def from_json(cls, facts: Mapping[str, Any]) -> "ModelCard":
-        """Return the card of a file's facts; keys of other versions are ignored.
+        """Return the card from the values in a file; keys of other versions are ignored.
 
         Raises:
-            ValueError: a fact is missing, of another kind or out of range. The message names its key.
+            ValueError: a value is missing, of the wrong type or out of range. The message names its key.
         """
         known: dict[str, Any] = {}
         for field in fields(cls):
@@ -84,17 +84,17 @@ class ModelCard:
         return cls(**known | contact_in_model(known)._asdict())
 
     def as_json(self) -> dict[str, Any]:
-        """Return the facts by key, for the file."""
+        """Return the values by key, for the file."""
         return {name: _as_lists(value) for name, value in asdict(self).items() if value is not None or name in _NULL}
 
     @property
     def coordinates(self) -> int:
-        """Number of coordinates of all markers."""
+        """Number of marker coordinates."""
         return len(self.markers) * self.dim
 
     @property
     def known_contact(self) -> KnownContact:
-        """Self-contact of the body in the samples."""
+        """Self-contact settings of the samples."""
         return KnownContact(self.contact, self.contact_distance, self.contact_friction)
 
 

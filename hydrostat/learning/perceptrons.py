@@ -14,11 +14,11 @@ from hydrostat.kernel import native
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Perceptrons:
-    """Networks of one shape, y = layers(x) + x S: layers with SiLU between them, and a linear map beside them.
+    """Networks of the same shape, y = layers(x) + x S: layers with SiLU between them, plus a linear skip connection S.
 
     Attributes:
-        sizes: sizes of input, hidden layers and output.
-        numbers: all of a network in a row: of each layer weights (inputs, outputs) and biases, then S.
+        sizes: number of inputs, units of each hidden layer, and outputs.
+        numbers: parameters, one row for each network: weights (inputs, outputs) and biases of each layer, then S.
     """
 
     sizes: Int[np.ndarray, " layers"]
@@ -29,13 +29,13 @@ class Perceptrons:
 
     @staticmethod
     def count(sizes: Int[np.ndarray, " layers"]) -> int:
-        """Number of weights of a network."""
+        """Return the number of parameters of a network."""
         wide = [int(size) for size in sizes]
         return sum((one + 1) * two for one, two in pairwise(wide)) + wide[0] * wide[-1]
 
     @classmethod
     def of(cls, arrays: Mapping[str, np.ndarray], name: str, inputs: int, outputs: int) -> Self:
-        """Networks of arrays NAME.sizes and NAME.numbers (ValueError: they have not these inputs and outputs)."""
+        """Return networks from the arrays NAME.sizes and NAME.numbers (ValueError: wrong inputs or outputs)."""
         sizes, numbers = arrays[f"{name}.sizes"], arrays[f"{name}.numbers"]
         layers, widest = 64, 100_000  # Most layers, and most units in one, of networks of a file
         if not 2 <= len(sizes) <= layers or sizes[0] != inputs or sizes[-1] != outputs:
@@ -46,21 +46,21 @@ class Perceptrons:
 
     @classmethod
     def of_layers(cls, layers: Sequence[tuple[np.ndarray, np.ndarray]]) -> Self:
-        """One network of weights (outputs, inputs) and biases of its layers, with no linear map beside them."""
+        """Return one network from the weights (outputs, inputs) and biases of its layers, without a skip connection."""
         sizes = np.array([layers[0][0].shape[1], *(len(offsets) for _, offsets in layers)])
         numbers = [np.concatenate([weights.T.ravel(), offsets]) for weights, offsets in layers]
         return cls(sizes=sizes, numbers=np.concatenate([*numbers, np.zeros(int(sizes[0] * sizes[-1]))])[None])
 
     def values(self, point: Vector) -> Float[np.ndarray, "members outputs"]:
-        """Compute the output of each network at a point."""
+        """Return the outputs of each network at a point."""
         found = np.empty((len(self), self.sizes[-1]))
         native.network_values(self.sizes, self.numbers, np.ascontiguousarray(point, dtype=float), found)
         return found
 
     def average_members(self, point: Vector) -> tuple[Vector, Vector]:
-        """The mean answer at a point, and how far the networks are from it: root of the mean square, of each output.
+        """Return the mean output of the networks at a point, and their root-mean-square deviation from it.
 
-        In single precision, which is what networks are trained and kept in, and takes half as long.
+        Uses single precision, as in training and in the file; it takes half the time.
         """
         mean, spread = np.empty(self.sizes[-1]), np.empty(self.sizes[-1])
         native.network_agreement(self.sizes, self._single, np.asarray(point, dtype=np.float32), mean, spread)
@@ -71,7 +71,7 @@ class Perceptrons:
         return np.ascontiguousarray(self.numbers, dtype=np.float32)
 
     def evaluate(self, point: Vector) -> tuple[Vector, Float[np.ndarray, "outputs inputs"]]:
-        """The mean answer at a point, and its derivatives."""
+        """Return the mean output at a point, and its derivatives."""
         value, derivatives = np.empty(self.sizes[-1]), np.empty((self.sizes[0], self.sizes[-1]))
         native.network_mean(self.sizes, self.numbers, np.ascontiguousarray(point, dtype=float), value, derivatives)
         return value, derivatives.T
@@ -79,16 +79,16 @@ class Perceptrons:
     def descend(
         self, start: Vector, goal: Vector, weights: Vector, box: tuple[Vector, Vector] | None = None
     ) -> tuple[Vector, float]:
-        """Levenberg-Marquardt from a point in a box to a local optimum, and its residual.
+        """Run Levenberg-Marquardt from a point in a box to a local optimum; return the optimum and its residual.
 
-        Minimizes the sum of squares of weights x (mean answer - goal) within the box. The first network leads there,
-        all of them finish it.
+        Minimizes the sum of squares of weights x (mean output - goal) within the box. The first network alone makes the
+        first steps, the mean of all networks the last.
 
         Args:
-            start: in the box.
-            goal: goal with one number for each output of the networks.
-            weights: 0 where the goal does not matter.
-            box: least and most of each input; -1 and 1 if left out.
+            start: start point, inside the box.
+            goal: target value of each output.
+            weights: weight of each output; 0 to ignore it.
+            box: lower and upper bound of each input; -1 and 1 if left out.
         """
         low, high = box or (np.full(len(start), -1.0), np.ones(len(start)))
         point = np.clip(start, low, high)

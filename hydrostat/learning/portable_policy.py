@@ -16,22 +16,23 @@ from hydrostat.learning.portable_file import PortableFile, check_fact
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PortablePolicy:
-    """From what is seen to an action: tanh of a network.
+    """Policy network with a tanh output, from an observation to an action.
 
     Attributes:
-        facts: the task, the robot and its physics, what is seen, and how well it did.
-        network: from all that is seen, in a row, to as many numbers as an action has.
+        facts: task, robot and its physics hash, observations, and accuracy.
+        network: network from the observations, joined in order, to the components of an action.
     """
 
     facts: Mapping[str, Any]
     network: Perceptrons
 
     def act(self, seen: Mapping[str, Vector]) -> Vector:
-        """The action for an observation, numbers from -1 to 1.
+        """Return the action for an observation, values from -1 to 1.
 
         Raises:
-            InputError: something is not seen, or has another number of coordinates than it was learned with; or its
-                network, which may be a stranger's, answers with no number.
+            InputError: an observation is missing or has a wrong number of coordinates, or the network returns a value
+                that
+                is not finite.
         """
         parts = []
         for name, count in self.facts["sees"]:
@@ -45,16 +46,17 @@ class PortablePolicy:
         return action
 
     def save(self, path: str | Path) -> Path:
-        """Write it whole, or not at all (InputError: it cannot be written)."""
+        """Write the policy to a file atomically (InputError: the file cannot be written)."""
         arrays = {"actor.sizes": self.network.sizes, "actor.numbers": self.network.numbers}
         return _FILE.write(path, self.facts, arrays)
 
     @staticmethod
     def load(path: str | Path) -> "PortablePolicy":
-        """A policy that `hydrostat train` has written.
+        """Load a policy that `hydrostat train` has written.
 
         Raises:
-            InputError: there is none, it was changed since it was written, or it is not one that this version can use.
+            InputError: no such file, a file that was changed after it was written, or a format that this version cannot
+                read.
         """
         return _FILE.read(path, _policy)
 

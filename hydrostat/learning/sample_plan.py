@@ -29,13 +29,13 @@ class SamplingScheme(StrEnum):
     TENSION = "tension"  # as box, let out until no cable pulls harder than allowed
 
     def contractions(self, points: Points, low: Vector, high: Vector, pairs: Winches) -> Rows:
-        """Contractions [m] of points in the unit cube.
+        """Return the contractions [m] for points in the unit cube.
 
         Args:
-            points: (samples, dimensions).
+            points: points in the unit cube (samples, dimensions).
             low: least contraction of each winch [m].
-            high: largest [m].
-            pairs: winches that work against one another, two by two; those that have no partner alone.
+            high: largest contraction of each winch [m].
+            pairs: winch indices of each antagonistic pair; a winch without a partner stands alone.
         """
         if self is SamplingScheme.ANTAGONIST:
             return _against(points, high, pairs)
@@ -44,12 +44,12 @@ class SamplingScheme(StrEnum):
 
 
 def dimensions(draw: SamplingScheme, pairs: Winches, winches: int) -> int:
-    """Number of random numbers of a sample."""
+    """Return the number of random numbers that a sample needs."""
     return {SamplingScheme.ANTAGONIST: len(pairs), SamplingScheme.FACES: 2 * winches}.get(draw, winches)
 
 
 def shared_numbers(rows: Rows, high: Vector, pairs: Winches) -> Points:
-    """Points in the unit cube, (samples, pairs), that give such contractions drawn by `SamplingScheme.ANTAGONIST`."""
+    """Return the unit-cube points (samples, pairs) that `SamplingScheme.ANTAGONIST` maps to these contractions."""
     shares = rows / np.where(high > 0, high, 1.0)
     columns = [
         shares[:, one] if not other else 0.5 + 0.5 * (shares[:, one] - shares[:, other[0]]) for one, *other in pairs
@@ -58,10 +58,12 @@ def shared_numbers(rows: Rows, high: Vector, pairs: Winches) -> Points:
 
 
 def antagonists(moves: Float[np.ndarray, "winches coordinates"]) -> tuple[tuple[int, ...], ...]:
-    """Winches two by two whose markers go opposite ways, and the others alone: each is the best partner of its partner.
+    """Return antagonistic pairs, whose markers move in opposite directions, then the single winches.
+
+    Each winch of a pair is the best partner of the other.
 
     Args:
-        moves: displacements of the markers for the contraction of each winch [m].
+        moves: displacements of the markers for the contraction of each winch, one row each.
     """
     lengths = np.linalg.norm(moves, axis=1, keepdims=True)
     ways = moves / np.where(lengths > 0, lengths, 1.0)
@@ -95,20 +97,20 @@ def _against(points: Points, high: Vector, pairs: Winches) -> Rows:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SamplePlan:
-    """Plan of samples of a robot. Equal plans give equal bytes, whoever works on them.
+    """Plan for sampling a robot. Equal plans give equal bytes, on any number of workers.
 
     Attributes:
-        robot: with contact if samples are to include it.
+        robot: robot to sample; with contact if the samples include it.
         count: number of samples.
         seed: random seed.
-        draws: ways in which contractions are drawn, one sample each in turn.
-        shard: samples in one file.
-        nodes: True if the positions of all nodes are kept.
-        tension: the most that a cable pulls [N]; for `SamplingScheme.TENSION`.
-        pairs: antagonistic pairs of winches, those without a partner alone; for `SamplingScheme.ANTAGONIST`.
+        draws: sampling schemes, which take turns from sample to sample.
+        shard: number of samples in one file.
+        nodes: True to keep the positions of all nodes.
+        tension: maximum cable tension [N]; for `SamplingScheme.TENSION`.
+        pairs: winch indices of antagonistic pairs and of single winches; for `SamplingScheme.ANTAGONIST`.
 
     Raises:
-        InputError: counts below 1, no draw, or a draw that lacks its limit.
+        InputError: a count below 1, no sampling scheme, or a scheme without its limit.
     """
 
     robot: Robot
@@ -142,15 +144,15 @@ class SamplePlan:
         return ceil(self.count / self.shard)
 
     def numbers(self, shard: int) -> range:
-        """Numbers of the samples in a file."""
+        """Return the indices of the samples in a file."""
         return range(shard * self.shard, min((shard + 1) * self.shard, self.count))
 
     def draw_of(self, number: int) -> SamplingScheme:
-        """Distribution of the contractions of a sample."""
+        """Return the sampling scheme of a sample."""
         return self.draws[number % len(self.draws)]
 
     def contractions(self, numbers: range) -> Rows:
-        """Contractions of samples in winch order [m], then values of drives, before any is let out for its tension."""
+        """Return contractions in winch order [m], then drive values, before the tension limit shortens any."""
         rows = np.zeros((len(numbers), self.robot.num_controls))
         low, high = self.robot.control_limits
         for place, draw in enumerate(self.draws):
@@ -161,13 +163,13 @@ class SamplePlan:
         return rows
 
     def _points(self, place: int, first: int, count: int) -> Float[np.ndarray, "samples dims"]:
-        """Some scrambled Sobol points of one of the draws."""
+        """Return scrambled Sobol points of one of the sampling schemes."""
         size = dimensions(self.draws[place], self.pairs, self.robot.num_controls)
         random = np.random.Generator(np.random.PCG64(np.random.SeedSequence([self.seed, place])))
         return draw_sobol(size, count, random, first=first)
 
     def facts(self) -> dict[str, object]:
-        """Facts that determine every byte, for the manifest."""
+        """Return the metadata that determines every byte, for the manifest."""
         robot, controls = self.robot, (*self.robot.winches, *self.robot.drives)
         low, high = robot.control_limits
         return {
@@ -207,17 +209,17 @@ class SamplePlan:
         nodes: bool = False,
         tension: float | None = None,
     ) -> "SamplePlan":
-        """Plan samples of a robot; winches that work against one another are found by one pose of each.
+        """Plan samples of a robot; finds the antagonistic pairs from one pose for each winch.
 
         Args:
             robot: robot to sample.
             count: number of samples.
-            contact: True for self-contact, also if the robot does not set it.
+            contact: True to add self-contact even if the robot has none.
             seed: random seed.
-            draws: ways in which contractions are drawn, one sample each in turn.
-            shard: samples in one file.
-            nodes: True if all nodes are kept.
-            tension: the most that a cable pulls [N]; for `SamplingScheme.TENSION`.
+            draws: sampling schemes, which take turns from sample to sample.
+            shard: number of samples in one file.
+            nodes: True to keep the positions of all nodes.
+            tension: maximum cable tension [N]; for `SamplingScheme.TENSION`.
 
         Raises:
             InputError: as for `SamplePlan`.
@@ -238,7 +240,7 @@ class SamplePlan:
 
 
 def physics_hash(robot: Robot) -> str:
-    """SHA-256 of all that the poses of a robot depend on, but contact: not of its name, nor of its target poses."""
+    """Return the SHA-256 hash of all data that determine poses, except contact, name and target poses."""
     bare = replace(robot, name="robot", poses={}, contact=None, sensors=())
     made = b"" if robot.body.content else robot.body.mesh.nodes.tobytes() + robot.body.mesh.elements.tobytes()
     sized = [pin.stiffness for pin in robot.pins if pin.is_sized]  # in no robot.toml

@@ -42,7 +42,7 @@ def sample_type(plan: SamplePlan) -> np.dtype:
 
 
 def sample_shard(plan: SamplePlan, shard: int) -> np.ndarray:
-    """Samples of one file, columns as in `sample_type`; NaN where there is no equilibrium, and the reason."""
+    """Compute the samples of one file, with the columns of `sample_type`: NaN and the reason where solving failed."""
     simulation, numbers = _simulation(plan), plan.numbers(shard)
     rows = np.zeros(len(numbers), sample_type(plan))
     for row, number, contractions in zip(rows, numbers, plan.contractions(numbers), strict=True):

@@ -168,21 +168,21 @@ def _write_whole(path: Path, content: bytes) -> None:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Samples(Tabular):
-    """Equilibria of a robot at contractions drawn at random; only those that were found.
+    """Equilibria of a robot at random contractions. Failed samples are left out.
 
     Attributes:
-        facts: facts of the samples, as in the manifest.
-        numbers: numbers of the samples.
-        contractions: [m], then values of drives [rad, m or share], (samples, winches and drives).
-        markers: positions [m], (samples, markers, dim).
-        jacobians: derivatives of the markers with the contractions, (samples, markers, dim, winches).
-        tensions: tension of each cable [N], (samples, cables).
-        tension_jacobians: dT/da [N/m], (samples, cables, winches); None in folders of an
+        facts: metadata of the samples, as in the manifest.
+        numbers: indices of the samples.
+        contractions: contractions [m], then drive values [rad, m or share] (samples, winches and drives).
+        markers: marker positions [m] (samples, markers, dim).
+        jacobians: derivatives of the markers with respect to the contractions (samples, markers, dim, winches).
+        tensions: tension of each cable [N] (samples, cables).
+        tension_jacobians: derivatives dT/da of the tensions [N/m] (samples, cables, winches); None in folders of an
             earlier version, which did not sample them.
-        touches: True if parts of the body push one another off.
-        crosses: True if the body passes through itself, as it may without contact.
+        touches: True where the body has self-contact.
+        crosses: True where the body intersects itself, which is possible without contact.
         nodes: positions of all nodes [m], float32; None if they were not kept.
-        sensors: readings with noise, in SI, (samples, values), names in `facts`; None without sensors.
+        sensors: sensor readings with noise, in SI units (samples, values), names in `facts`; None without sensors.
         lost: number of samples without a stable equilibrium, or without derivatives.
     """
 
@@ -203,7 +203,7 @@ class Samples(Tabular):
         return len(self.contractions)
 
     def columns(self) -> Columns:
-        """Return contractions, drives, markers and tensions as a table, a row for each sample."""
+        """Return a table of contractions, drive values, markers and tensions, one row for each sample."""
         drives: dict[str, str] = self.facts.get("drives", {})
         winches = [name for name in self.facts["winches"] if name not in drives]
         columns = control_columns(winches, drives, self.contractions)
@@ -216,17 +216,17 @@ class Samples(Tabular):
 
     @property
     def limits(self) -> tuple[Vector, Vector]:
-        """Least and largest contraction of each winch [m], then value of each drive."""
+        """Least and largest contraction of each winch [m], then of each drive value."""
         return -np.array(self.facts["release"], dtype=float), np.array(self.facts["travel"], dtype=float)
 
     def first(self, count: int) -> "Samples":
-        """A number of first samples (InputError: there are fewer)."""
+        """Return the first samples (InputError: fewer samples than `count`)."""
         if not 1 <= count <= len(self):
             raise InputError(f"there are {len(self)} samples, not {count}")
         return self.only(np.arange(count))
 
     def only(self, which: np.ndarray) -> "Samples":
-        """Some of them."""
+        """Return selected samples."""
         return Samples(
             facts=self.facts,
             numbers=self.numbers[which],
@@ -244,7 +244,7 @@ class Samples(Tabular):
 
     @staticmethod
     def read(folder: str | Path) -> "Samples":
-        """Samples of a folder that `sample_robot` has written; stable equilibria with derivatives alone.
+        """Read the samples that `sample_robot` has written, only those with a stable equilibrium and derivatives.
 
         Raises:
             InputError: as for `read_rows`.

@@ -43,9 +43,9 @@ class Trained:
 def train_forward(
     training_set: TrainingSet, dim: int, options: LearnOptions, progress: Progress, *, start: Perceptrons | None = None
 ) -> Trained:
-    """Networks from contractions to markers and tensions; each holds out other samples.
+    """Train networks from contractions to markers and tensions; each holds out other samples.
 
-    With networks to start from they are as many, of the same shape, and learn on from there.
+    With `start`, training continues from those networks, with the same number and shape.
     """
     torch.set_num_threads(options.threads)
     draw = torch.Generator().manual_seed(options.seed)
@@ -85,11 +85,11 @@ def train_inverse(
     progress: Progress,
     pairs: tuple[np.ndarray, np.ndarray],
 ) -> Trained:
-    """A network from markers to contractions, taught by what the forward networks make of its answers.
+    """Train a network from markers to contractions through the forward networks.
 
-    It sees the samples' markers, and what the networks expect between samples; so it is never told contractions, of
-    which many may do the same, but only what they lead to, and what effort they are. Of each of the pairs of winches
-    only one takes in, as in its samples.
+    Targets are the markers of the samples, and predictions between samples. Many contractions can reach the same
+    target, so the loss compares the markers that the answer reaches, and its effort, with no reference contractions.
+    Only one winch of each pair takes in cable, as in the samples.
     """
     draw = torch.Generator().manual_seed(options.seed + 1)
     inputs, markers = _tensor(training_set.inputs), _tensor(training_set.outputs[:, : training_set.coordinates])
@@ -181,9 +181,9 @@ def sobolev_loss(
 
 
 def answer(numbers: Numbers, points: Tensor, ways: "Tensor | None") -> "tuple[Tensor, Tensor | None]":
-    """Compute outputs at points (members, batch, inputs) and their changes along ways (members, batch, ways, ...).
+    """Compute outputs at points (members, batch, inputs), and derivatives in directions (members, batch, ways, ...).
 
-    Derivatives go forward with the values, as by `torch.func.jvp`, along several ways at once.
+    Uses forward-mode differentiation in all directions at once, like `torch.func.jvp`.
     """
     layers = (len(numbers) - 1) // 2
     value, moved = points, ways
@@ -200,7 +200,7 @@ def answer(numbers: Numbers, points: Tensor, ways: "Tensor | None") -> "tuple[Te
 
 
 def tensors_of(networks: Perceptrons, kind: torch.dtype = torch.float32) -> list[Tensor]:
-    """Numbers of networks as tensors."""
+    """Return the parameters of networks as tensors."""
     found, at, sizes = [], 0, networks.sizes.tolist()
     shapes = [shape for one, two in pairwise(sizes) for shape in ((one, two), (1, two))]
     for rows, columns in [*shapes, (sizes[0], sizes[-1])]:

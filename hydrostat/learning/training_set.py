@@ -12,18 +12,18 @@ from hydrostat.learning.samples import Samples
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TrainingSet:
-    """Inputs from -1 to 1 and their outputs, markers first, in a unit for each kind.
+    """Inputs scaled to -1 to 1, and normalized outputs: markers first, with one scale for each quantity.
 
     Attributes:
         low: least contraction of each winch [m].
-        high: largest [m].
-        middle: mean of what is expected.
-        unit: unit of each of it: one length for all coordinates of markers, one force for all tensions.
+        high: largest contraction of each winch [m].
+        middle: mean of each output before normalization.
+        unit: scale of each output: one length for all marker coordinates, one force for all tensions.
         inputs: inputs of the networks.
-        outputs: markers, then tensions.
-        derivatives: derivatives of the markers; then of the tensions, if they were sampled.
-        coordinates: number of outputs that are coordinates of markers.
-        linear: the best linear map from inputs to outputs, with its constant as the last row.
+        outputs: marker coordinates, then cable tensions.
+        jacobians: derivatives of the marker coordinates, then of the tensions if the samples have them.
+        coordinates: number of outputs that are marker coordinates.
+        linear: best linear map from inputs to outputs; the last row is the constant.
     """
 
     low: Vector
@@ -38,10 +38,10 @@ class TrainingSet:
 
     @staticmethod
     def of_samples(samples: Samples, like: LearnedModel | None = None) -> "TrainingSet":
-        """Return the training set of samples, in the units of a model if its networks are trained further.
+        """Return the training set of samples; further training of a model keeps the scales of that model.
 
         Raises:
-            InputError: there are fewer than `MIN_SAMPLES`, or `MIN_CORRECTION_SAMPLES` where a model learns on.
+            InputError: fewer than `MIN_SAMPLES`, or than `MIN_CORRECTION_SAMPLES` for further training of a model.
         """
         count, least = len(samples), MIN_SAMPLES if like is None else MIN_CORRECTION_SAMPLES
         if count < least:
@@ -75,19 +75,19 @@ class TrainingSet:
 
 
 def linear_map(inputs: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-    """Ridge regression; the constant is the last row."""
+    """Fit a linear map by ridge regression; its last row is the constant."""
     rows = np.hstack([inputs, np.ones((len(inputs), 1))])
     ridge = 1e-3
     return np.linalg.solve(rows.T @ rows + ridge * len(rows) * np.eye(rows.shape[1]), rows.T @ outputs)
 
 
 def _rms_scale(part: np.ndarray) -> float:
-    """Root of the mean square; 1 where there is none."""
+    """Return the root mean square; 1 if all values are 0."""
     return float(np.sqrt(np.mean(np.square(part)))) if np.any(part) else 1.0
 
 
 MIN_SAMPLES = 20
-"""Fewer samples teach nothing."""
+"""Minimum number of samples for training."""
 
 MIN_CORRECTION_SAMPLES = 5
-"""So many correct a model."""
+"""Minimum number of samples for correcting a model."""

@@ -18,19 +18,20 @@ from hydrostat.simulation import Equilibrium, Simulation
 def verify(
     simulation: Simulation, model: LearnedModel, answer: LearnedPose, *, steps: int = 0, enough: float = 0.0
 ) -> LearnedPose:
-    """A learned answer with the error that the simulator finds, if asked after exact Gauss-Newton steps from there.
+    """Simulate a learned answer and return it with the simulated error, after exact Gauss-Newton steps if requested.
 
-    The contractions are solved from rest, unless the answer was certified before, for the same robot; each step goes on
-    from the pose before, as an update of `Tracker`. Where no equilibrium is found, `certified` is None and `status`
-    says why. After steps the pose is that at the end of their way: the same contractions, taken in from rest, may lead
-    to another. What they leave from rest says `verify(simulation, model, replace(found, pose=None))`.
+    The contractions are solved from rest, unless the answer was already certified for the same robot. Each step starts
+    from the previous pose, as an update of `Tracker`. Without an equilibrium, `certified` is None and `status` gives
+    the
+    reason. The returned pose is the end of these steps: the same contractions, taken in from rest, may lead to another
+    pose. To get the error from rest, call `verify(simulation, model, replace(found, pose=None))`.
 
     Args:
         simulation: simulation of the robot of the model.
         model: model that gave the answer.
         answer: answer of `LearnedModel.solve` or of this function.
-        steps: exact steps to take at most.
-        enough: mean error below which none is taken [m]: a certificate that says so saves what a step costs.
+        steps: maximum number of exact steps.
+        enough: mean error below which no further step is taken [m]; this saves time if the answer is already good.
 
     Raises:
         InputError: a model of another robot.
@@ -53,17 +54,17 @@ def verify(
 def exact_steps(
     simulation: Simulation, pose: Equilibrium, target: Targets, steps: int, *, enough: float = 0.0
 ) -> tuple[Equilibrium, int]:
-    """The pose after exact steps towards a target, each an update of `Tracker`, and how many were taken.
+    """Take exact steps towards a target, each an update of `Tracker`; return the pose and the number of steps taken.
 
-    An update that finds no better pose is tried again with a shorter step, a few times. Where the pose is no
-    equilibrium, it stays.
+    If an update finds no better pose, it is tried again with a shorter step, up to 3 times in a row. A pose that is
+    not in equilibrium is returned unchanged.
 
     Args:
         simulation: simulation of the robot.
-        pose: to begin from.
+        pose: start pose.
         target: target positions of the markers [m].
-        steps: to take at most.
-        enough: mean error below which none is taken [m].
+        steps: maximum number of steps.
+        enough: mean error below which no further step is taken [m].
 
     Raises:
         InputError: as for `Tracker.update`.
@@ -83,7 +84,7 @@ def exact_steps(
 
 
 def _mean_error(pose: Equilibrium, goals: Mapping[str, Point]) -> float:
-    """Mean distance of the markers from their targets [m]."""
+    """Return the mean distance of the markers from their targets [m]."""
     return float(np.mean([np.linalg.norm(pose.markers[name] - np.asarray(goal)) for name, goal in goals.items()]))
 
 
@@ -95,7 +96,7 @@ def solve_exactly(
     limits: Limits | None = None,
     options: IKOptions | None = None,
 ) -> LearnedPose:
-    """The answer of `solve_ik` that begins where a learned answer leads, from rest where that is no equilibrium.
+    """Run `solve_ik` from the pose of a learned answer, or from rest if that is not an equilibrium.
 
     Args:
         simulation: simulation of the robot of the model.
@@ -116,7 +117,7 @@ def solve_exactly(
 
 
 def _same(one: Robot, other: Robot) -> bool:
-    """True if the poses of one robot are those of the other."""
+    """Return True if two robots have the same poses."""
     return one is other or (physics_hash(one), contact_facts(one)) == (physics_hash(other), contact_facts(other))
 
 
