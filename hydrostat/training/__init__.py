@@ -1,4 +1,4 @@
-"""Reinforcement learning: goal-based environments of any robot (gymnasium), and policies learned in them.
+"""Reinforcement learning: goal-based gymnasium environments for any robot, and training of policies in them.
 
 Needs the extra `rl`. Once this is imported, environments of all `TASKS`, such as hydrostat/Reach-v0, are registered.
 """

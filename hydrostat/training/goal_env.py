@@ -20,20 +20,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class TaskOptions:
-    """Options of a task by name; None leaves the default of the task.
+    """Options of a task by name; None keeps the default of the task.
 
     Attributes:
-        markers: markers that reach; all if empty.
-        pairs: winches that work against one another, moved by one number of the action.
-        steps: actions in an episode (T).
-        incremental: True if an action adds to the contractions.
-        tolerance: largest distance that is a success [m].
-        shaped: reward is minus the distance in units of the tolerance; else 0 for success and -1.
-        contact: True for self-contact if robot.toml does not set contact.
-        friction: coefficient, of what the task is about.
-        actions: meaning of an action: a name that the task knows.
-        tied: parts of names: winches whose names have one are moved by one number.
-        obstacle: object that is moved; the robot's own if None.
+        markers: markers that have goals; all if empty.
+        pairs: antagonistic pairs of winches, each moved by one component of the action.
+        steps: number of actions in an episode (T).
+        incremental: True if an action changes the contractions.
+        tolerance: largest distance of a success [m].
+        shaped: True for a reward of minus the distance in units of the tolerance; False for 0 on success, else -1.
+        contact: True to add self-contact if robot.toml does not set contact.
+        friction: friction coefficient of the cables, object or ground, by task.
+        actions: kind of actions, by a name that the task defines.
+        tied: parts of winch names; winches whose names share a part are moved by one component of the action.
+        obstacle: object to move; the robot's own if None.
     """
 
     markers: Sequence[str] = ()
@@ -49,11 +49,11 @@ class TaskOptions:
     obstacle: Obstacle | None = None
 
     def select_given(self, *names: str) -> dict[str, Any]:
-        """Those of these attributes that are not None, by name."""
+        """Return those of these attributes that are not None, by name."""
         return {name: value for name in names if (value := getattr(self, name)) is not None}
 
     def refuse(self, *names: str) -> None:
-        """Refuse what a task does not have (InputError: one of these attributes is given)."""
+        """Reject options that a task does not have (InputError: one of these attributes is set)."""
         for name in names:
             if getattr(self, name) not in (None, False, (), []):
                 raise InputError(f"this task has no {name}: leave it out")

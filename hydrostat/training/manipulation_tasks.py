@@ -16,13 +16,13 @@ from hydrostat.training.manipulation_world import ManipulationPhysics
 
 @dataclass(frozen=True, kw_only=True)
 class PushOptions(ManipulationOptions):
-    """Options of the task of pushing an object.
+    """Options for the pushing task.
 
     Attributes:
-        far: goals are drawn within this of the usual place of the object [m].
+        far: largest distance of a goal from the usual position of the object [m].
 
     Raises:
-        InputError: as for `ManipulationOptions`, or nothing to go.
+        InputError: as for `ManipulationOptions`, or no distance.
     """
 
     far: float = 20e-3
@@ -34,9 +34,9 @@ class PushOptions(ManipulationOptions):
 
 
 class PushEnv(ManipulationEnv):
-    """`ManipulationEnv` whose goals are places of the object's middle, drawn in a disc or ball about the usual one.
+    """`ManipulationEnv` with goals for the center of the object, drawn in a disc or ball around its usual position.
 
-    Goals are counted from there, in sizes of the body. Not every one need be within reach of the fingers.
+    Goals are relative to that position, in body sizes. Some goals may be out of reach of the fingers.
     """
 
     options: PushOptions
@@ -57,43 +57,43 @@ class PushEnv(ManipulationEnv):
 
     @classmethod
     def for_task(cls, robot: Robot | str, given: TaskOptions) -> Self:
-        """Push as the command line asks for it."""
+        """Create the environment from the options of the command line."""
         return cls._for_object(robot, given, PushOptions(**given.select_given("steps", "tolerance", "shaped", "tied")))
 
     @property
     def goal_size(self) -> int:
-        """Coordinates of a place."""
+        """Number of coordinates of a position."""
         return self.robot.body.mesh.dim
 
     def get_achieved(self) -> Vector:
-        """Position of the object from its usual place, in sizes of the body."""
+        """Return the position of the object relative to its usual position, in body sizes."""
         return (self.world.place - self._usual) / self._size
 
     def draw_goal(self, random: np.random.Generator) -> Vector:
-        """A place in the disc or ball."""
+        """Draw a position in the disc or ball."""
         way = random.normal(size=self._dim)
         share = random.uniform() ** (1.0 / self._dim)
         return self.options.far / self._size * share * way / np.linalg.norm(way)
 
     def distances(self, achieved: np.ndarray, desired: np.ndarray) -> np.ndarray:
-        """Distances from goals [m]."""
+        """Return the distances from goals [m]."""
         return self._size * np.linalg.norm(np.asarray(achieved) - np.asarray(desired), axis=-1)
 
     def words(self) -> str:
-        """Return the remaining distance, in words."""
+        """Return the remaining distance as text."""
         return f"{1e3 * self._info()['distance']:.1f} mm from the goal"
 
 
 @dataclass(frozen=True, kw_only=True)
 class TwistOptions(ManipulationOptions):
-    """Options of the task of turning an object.
+    """Options for the twisting task.
 
     Attributes:
-        turn: least and largest angle that is asked for; negative the other way round [rad].
-        tolerance: largest remaining turn of a success [rad].
+        turn: least and largest goal angle [rad]; negative to turn the other way.
+        tolerance: largest remaining angle of a success [rad].
 
     Raises:
-        InputError: as for `ManipulationOptions`, or angles of two signs.
+        InputError: as for `ManipulationOptions`, or angles of opposite signs.
     """
 
     turn: tuple[float, float] = (0.5 * np.pi, 0.5 * np.pi)
@@ -106,10 +106,10 @@ class TwistOptions(ManipulationOptions):
 
 
 class TwistEnv(ManipulationEnv):
-    """`ManipulationEnv` where goals are turns about an axis, in half turns; to turn further is no miss.
+    """`ManipulationEnv` with goals for the rotation about an axis, in half turns; turning further counts as success.
 
-    In space a spring keeps the object about where it begins, unless `options` say otherwise. The turn about the axis is
-    the twist of its rotation, whatever way it swings besides.
+    In 3D a spring holds the object near its start, unless `options` set another. The rotation about the axis is the
+    twist component of the total rotation, without the swing.
     """
 
     options: TwistOptions
@@ -133,7 +133,7 @@ class TwistEnv(ManipulationEnv):
 
     @classmethod
     def for_task(cls, robot: Robot | str, given: TaskOptions) -> Self:
-        """Twist as the command line asks for it."""
+        """Create the environment from the options of the command line."""
         made = prepare_robot(robot)
         options = TwistOptions(**given.select_given("steps", "shaped", "tied"), physics=_physics(made))
         given.refuse("tolerance")
@@ -141,24 +141,24 @@ class TwistEnv(ManipulationEnv):
 
     @property
     def goal_size(self) -> int:
-        """An angle."""
+        """Number of values of a goal: one angle."""
         return 1
 
     def get_achieved(self) -> Vector:
-        """Rotation of the object, in half turns."""
+        """Return the rotation of the object in half turns."""
         return np.array([self.world.turned / np.pi])
 
     def draw_goal(self, random: np.random.Generator) -> Vector:
-        """An angle that is asked for."""
+        """Draw a goal angle."""
         return np.array([random.uniform(min(self.options.turn), max(self.options.turn)) / np.pi])
 
     def distances(self, achieved: np.ndarray, desired: np.ndarray) -> np.ndarray:
-        """Return the remainders of turns [rad]; 0 for those that went further."""
+        """Return the remaining rotations [rad]; 0 for an object that turned further than its goal."""
         wanted = np.asarray(desired)[..., 0]
         return np.pi * np.maximum(np.sign(wanted) * (wanted - np.asarray(achieved)[..., 0]), 0.0)
 
     def words(self) -> str:
-        """Return the rotation of the object, in words."""
+        """Return the rotation of the object as text."""
         return f"turned by {np.rad2deg(self.world.turned):.0f} of {180 * self._goal[0]:.0f} degrees"
 
 

@@ -15,17 +15,17 @@ from hydrostat.simulation import BodyPhysics, Motion, Simulation, StepOptions
 
 @dataclass(frozen=True, kw_only=True)
 class ManipulationPhysics:
-    """Options of the motion of an object in time.
+    """Options for the dynamics of an object.
 
     Attributes:
-        seconds: from one action to the next [s].
-        beats: time steps of an action; winches speed up and slow down in between.
-        drag: against all motion, per mass and velocity [1/s].
-        hold: spring that keeps the object about where it begins, in place of a palm under it [N/m]; 0: none.
-        viscosity: viscosity of the body, if its material has none [Pa s].
+        seconds: time between actions [s].
+        beats: number of time steps in an action; winches accelerate and decelerate within it.
+        drag: damping of all motion, per mass and velocity [1/s].
+        hold: stiffness of a spring that holds the object near its start, in place of a palm under it [N/m]; 0 for none.
+        viscosity: viscosity of the body if its material has none [Pa s].
 
     Raises:
-        InputError: a number out of its range.
+        InputError: a value out of range.
     """
 
     seconds: float = 0.5

@@ -13,13 +13,13 @@ from hydrostat.training.reach_env import ReachEnv
 
 
 def policy_of(trained: Any, env: GoalEnv, *, task: str, error: float) -> PortablePolicy:
-    """The policy of a model of stable-baselines3, in any task.
+    """Return the policy of a stable-baselines3 model, for any task.
 
     Args:
         trained: trained policy.
-        env: in which it was.
+        env: environment of the training.
         task: name of the task.
-        error: mean distance that it leaves on unseen goals, in the unit of the task.
+        error: mean final distance on unseen goals, in the unit of the task.
     """
     seen = env.observation_space.spaces  # type: ignore[attr-defined]
     sees = [[name, int(np.prod(space.shape))] for name, space in seen.items()]
@@ -29,18 +29,18 @@ def policy_of(trained: Any, env: GoalEnv, *, task: str, error: float) -> Portabl
 
 
 def portable_policy(trained: Any, env: ReachEnv, model: LearnedModel) -> LearnedModel:
-    """The learned model with a policy in the place of its inverse network.
+    """Return a learned model in which a policy replaces the inverse network.
 
-    It answers as any learned model: `solve(targets, search=False)`. Only a policy of one action (T = 1), of all markers
-    and of each winch alone: then the goal is all that it sees; what it sees of the rest pose is added to its biases.
+    Use it as any learned model: `solve(targets, search=False)`. The policy must have one action (T = 1), all markers
+    and no pairs of winches: it then observes only the goal. The rest pose, which is constant, is added to its biases.
 
     Args:
-        trained: a model of stable-baselines3.
-        env: in which it was trained.
+        trained: stable-baselines3 model.
+        env: environment of the training.
         model: networks of the same robot.
 
     Raises:
-        InputError: a policy that needs to see more than the goal, or networks of another robot.
+        InputError: a policy with observations other than the goal, or networks of another robot.
     """
     model.check(env.robot)
     if not env.portable:

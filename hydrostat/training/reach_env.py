@@ -19,19 +19,19 @@ from hydrostat.units import quote
 
 @dataclass(frozen=True, kw_only=True)
 class ReachOptions:
-    """Options of the task of reaching.
+    """Options for the reaching task.
 
     Attributes:
-        markers: markers that reach; all if empty.
-        pairs: winches that work against one another, moved by one number of the action; others are moved alone.
-        steps: actions in an episode (T).
-        incremental: True if an action adds to the contractions, a tenth of their range at most.
-        tolerance: largest mean distance of the markers that is a success [m].
-        shaped: reward is minus the mean distance in units of the tolerance; else 0 for success and -1.
-        sensors: True if observations also hold `sensors`, the readings of the robot's sensors with noise, in SI.
+        markers: markers that have goals; all if empty.
+        pairs: antagonistic pairs of winches, each moved by one component of the action; other winches have their own.
+        steps: number of actions in an episode (T).
+        incremental: True if an action changes the contractions, by at most a tenth of their range.
+        tolerance: largest mean marker error of a success [m].
+        shaped: True for a reward of minus the mean distance in units of the tolerance; False for 0 on success, else -1.
+        sensors: True to add `sensors` to observations: readings of the robot's sensors with noise, in SI units.
 
     Raises:
-        InputError: markers that are no list, no step, or a tolerance that is not above 0.
+        InputError: markers that are not a list, steps below 1, or a tolerance that is not above 0.
     """
 
     markers: Sequence[str] = ()
@@ -51,16 +51,16 @@ class ReachOptions:
 
 
 class ReachEnv(GoalEnv):
-    """Goal-based environment: actions are contractions and values of drives, goals places of markers at random ones.
+    """Goal-based environment: actions set contractions and drive values; goals are marker positions at random actions.
 
-    Observations hold the contractions (from -1 to 1), where the markers are and where they should be, counted from rest
-    in units of the body's size. Goals are reached by an equilibrium each; they are counted with the others.
+    Observations hold the contractions (from -1 to 1), marker positions and their goals, minus the positions at rest, in
+    body sizes. Each goal costs one equilibrium, which is counted with the others.
 
     Attributes:
-        robot: robot that reaches.
+        robot: robot to move.
         backend: simulator or networks that compute marker positions.
-        options: options of the task.
-        seen: observed coordinates of all markers.
+        options: task options.
+        seen: indices of the observed marker coordinates.
         rest: coordinates of all markers at rest [m].
     """
 
@@ -122,7 +122,7 @@ class ReachEnv(GoalEnv):
     def reset(
         self, *, seed: int | None = None, options: Mapping[str, Any] | None = None
     ) -> tuple[dict[str, Vector], dict[str, Any]]:
-        """Go to rest, with a new goal; or with the goal given in `options` as "goal", coordinates [m]."""
+        """Return to rest, with a new goal; or with coordinates [m] given as "goal" in `options`."""
         super().reset(seed=seed)
         self.backend.begin()
         given = dict(options or {})
@@ -138,7 +138,7 @@ class ReachEnv(GoalEnv):
         return self._observation(), self._info()
 
     def step(self, action: np.ndarray) -> tuple[dict[str, Vector], float, bool, bool, dict[str, Any]]:
-        """Take in cable by an action; an episode is cut off after its steps."""
+        """Apply an action; the episode ends after its last step."""
         action = finite_numbers(action, int(np.prod(self.action_space.shape or (0,))), *AN_ACTION)
         self.taken_steps += 1
         if self.options.incremental:
@@ -157,18 +157,18 @@ class ReachEnv(GoalEnv):
         return observation, reward, False, self.taken_steps >= self.steps, info
 
     def compute_reward(self, achieved: np.ndarray, desired: np.ndarray, info: Any) -> float | np.ndarray:
-        """Reward of places for goals, one or a row each; nothing else decides about it."""
+        """Return the reward of positions and goals, for one or for each row; it depends on nothing else."""
         far = self.distances(achieved, desired)
         tolerance = self.options.tolerance
         return -far / tolerance if self.options.shaped else -np.asarray(far >= tolerance, dtype=float)
 
     def distances(self, achieved: np.ndarray, desired: np.ndarray) -> float | np.ndarray:
-        """Mean distance of the markers [m], one or a row each, of places as they are observed."""
+        """Return the mean marker error [m], for one or for each row of observed positions."""
         apart = self.unit * (np.asarray(achieved) - np.asarray(desired))
         return np.linalg.norm(apart.reshape(*apart.shape[:-1], -1, self._dim), axis=-1).mean(axis=-1)
 
     def contractions(self, action: np.ndarray) -> Vector:
-        """Contractions of an action [m]: alone from release to travel, or one of two winches from 0 to travel."""
+        """Return the contractions of an action [m]: release to travel for a winch, 0 to travel for one of a pair."""
         taken = np.zeros(len(self._low))
         for value, group in zip(
             np.clip(TANH_SCALE * np.asarray(action, dtype=float), -1, 1).tolist(), self._groups, strict=True
@@ -182,51 +182,51 @@ class ReachEnv(GoalEnv):
 
     @classmethod
     def for_task(cls, robot: Robot | str, given: TaskOptions) -> Self:
-        """Reach as the command line asks for it."""
+        """Create the environment from the options of the command line."""
         given.refuse("friction", "actions", "tied", "obstacle")
         return cls(robot, options=reach_options(given), contact=given.contact)
 
     @property
     def portable(self) -> bool:
-        """True if a policy sees nothing but the goal: one action, all markers, each winch alone."""
+        """True if a policy observes only the goal: one action, all markers, no pairs of winches."""
         options, names = self.options, [marker.name for marker in self.robot.markers]
         moved_alone = not (options.incremental or options.pairs or options.sensors)
         return options.steps == 1 and moved_alone and list(options.markers or names) == names
 
     @property
     def equilibria(self) -> int:
-        """Equilibria of the exact simulator that were asked for."""
+        """Number of equilibria that the exact simulator was asked to solve."""
         return self.backend.equilibria
 
     def sample_episode(self, random: np.random.Generator) -> dict[str, Any] | None:
-        """Draw a goal: where random contractions lead from rest."""
+        """Draw a goal: the marker positions that random contractions reach from rest."""
         self.backend.back()
         reached = self.backend.reach(self.anywhere(random))
         return None if reached is None else {"goal": reached[self.seen]}
 
     def anywhere(self, random: np.random.Generator) -> Vector:
-        """Contractions of an action at random [m]."""
+        """Return the contractions of a random action [m]."""
         return self.contractions(random.uniform(-1.0, 1.0, len(self._groups)))
 
     def learn_in(self, model: LearnedModel, *, exact: int = 0) -> None:
-        """Ask networks where markers go, and the simulator in every so many episodes (InputError: of another robot)."""
+        """Use networks for marker positions, and the simulator every `exact` episodes (InputError: another robot)."""
         self._check(model)
         networks = LearnedBackend(model)
         self.backend = MixedBackend(networks, self.backend, every=exact) if exact else networks
 
     def get_state(self) -> dict[str, Any]:
-        """State that the next episode depends on, and its cost until now."""
+        """Return the state that the next episode depends on, and the cost so far."""
         return {**super().get_state(), "backend": self.backend.get_state()}
 
     def go_on(self, kept: Mapping[str, Any]) -> None:
-        """Go on, from the next episode, where an environment was that has been kept."""
+        """Restore a saved state and continue with the next episode."""
         super().go_on(kept)
         self.backend.go_on(kept["backend"])
 
     def picture(self) -> np.ndarray:
-        """Picture of the robot and of its goal.
+        """Return a picture of the robot and its goal.
 
-        Networks know no shape: where they are asked, the pose is that of the simulator, from rest.
+        Networks predict no shape: in their episodes the picture shows the simulated pose, solved from rest.
         """
         from hydrostat.training.env_pictures import ReachPictures
 
@@ -297,13 +297,14 @@ CABLE_FRICTION = 0.2
 
 
 class HysteresisEnv(ReachEnv):
-    """`ReachEnv` where the way counts: cables have capstan friction, and an episode begins in a pose at random.
+    """`ReachEnv` with path dependence: cables have capstan friction, and an episode begins in a random pose.
 
-    The same contractions lead elsewhere from another pose. What has slipped is not observed: of the past a policy knows
-    the contractions and where the markers are. Goals are where contractions at random lead from rest, with friction.
+    The same contractions reach different poses from different start poses. Slip is not observed: a policy observes only
+    the contractions and the marker positions. Goals are the positions that random contractions reach from rest, with
+    friction.
 
     Attributes:
-        given: the robot as robot.toml has it. Networks of it may be learned in: then the model is wrong.
+        given: robot as in robot.toml. Training may use networks of it, but their model is wrong without the friction.
     """
 
     def __init__(
@@ -338,18 +339,18 @@ class HysteresisEnv(ReachEnv):
 
     @property
     def portable(self) -> bool:
-        """Never: the same contractions lead elsewhere from another pose."""
+        """False: the same contractions reach different poses from different start poses."""
         return False
 
     @classmethod
     def for_task(cls, robot: Robot | str, given: TaskOptions) -> Self:
-        """Reach as the command line asks for it."""
+        """Create the environment from the options of the command line."""
         given.refuse("actions", "tied", "obstacle")
         more = given.select_given("friction", "contact")
         return cls(robot, options=reach_options(given), **more)
 
     def sample_episode(self, random: np.random.Generator) -> dict[str, Any] | None:
-        """Draw a goal, and the contractions in which the episode begins [m]."""
+        """Draw a goal, and the contractions at which the episode begins [m]."""
         goal = super().sample_episode(random)
         return None if goal is None else {**goal, "start": self.anywhere(random)}
 

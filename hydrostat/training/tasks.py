@@ -38,7 +38,7 @@ TASKS: Mapping[str, Task] = {
 
 
 def task_of(name: str) -> Task:
-    """The task of a name (InputError: there is none)."""
+    """Return the task of a name (InputError: unknown name)."""
     if name not in TASKS:
         raise InputError(f'unknown task "{name}". Available: {", ".join(TASKS)}.')
     return TASKS[name]

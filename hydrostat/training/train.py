@@ -33,22 +33,22 @@ class TrainMethod(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class TrainOptions:
-    """Options of training a policy.
+    """Options for training a policy.
 
     Attributes:
         method: learning algorithm.
-        steps: actions, each an equilibrium of the world; each goal that is drawn is one more.
+        steps: number of actions; each action and each drawn goal costs one equilibrium.
         seed: random seed.
-        layers: hidden layers of actor and critic.
-        batch: transitions of an update.
+        layers: units in each hidden layer of actor and critic.
+        batch: number of transitions in an update.
         updates: gradient steps after each action.
-        learning_rate: step size of the optimizer, Adam.
-        noise: standard deviation of what is added to actions (DDPG, TD3).
-        eval_interval: actions from one evaluation to the next; or a few more, as no episode is cut short.
-        num_envs: episodes side by side; their actions are learned from together.
+        learning_rate: step size of the Adam optimizer.
+        noise: standard deviation of the action noise (DDPG, TD3).
+        eval_interval: number of actions between evaluations; a few more if an episode has to end first.
+        num_envs: number of parallel episodes; each update uses the actions of all.
 
     Raises:
-        InputError: a number that cannot be.
+        InputError: a value out of range.
     """
 
     method: TrainMethod = TrainMethod.SAC
@@ -72,15 +72,16 @@ class TrainOptions:
 
 @dataclass(frozen=True, kw_only=True)
 class CurvePoint:
-    """Evaluation of a policy; distances are in the unit of the task, [m], or [rad] to twist.
+    """Evaluation of a policy; distances are in the unit of the task: [m], or [rad] for twisting.
 
     Attributes:
-        steps: actions by then.
-        equilibria: solves of the exact simulator by then, drawn goals included; time steps in tasks that count these.
-        mean: distance left from goals that were not learned from.
+        steps: number of actions so far.
+        equilibria: equilibria that the exact simulator has solved so far, goals included; or time steps in dynamic
+            tasks.
+        mean: mean final distance from goals that were not used in training.
         median: median of these distances.
         worst: largest of these distances.
-        success: share of the goals within the tolerance.
+        success: share of goals reached within the tolerance.
     """
 
     steps: int
@@ -100,8 +101,8 @@ class Listener:
     """Callbacks for the progress of training.
 
     Attributes:
-        point: called after each evaluation.
-        progress: told how many actions are done, and how many goals judged.
+        point: callback after each evaluation.
+        progress: callback for the number of actions taken, and of goals evaluated.
     """
 
     point: Callable[[CurvePoint], None] = _no_point
@@ -109,7 +110,7 @@ class Listener:
 
 
 def held_out_goals(env: GoalEnv, count: int, seed: int, *, progress: Progress = no_progress) -> list[dict[str, Any]]:
-    """Goals that training does not see, from a generator of their own: `options` for `reset`; counted nowhere."""
+    """Draw goals that training never uses, by a separate generator: `options` for `reset`. Adds nothing to the cost."""
     before, goals = env.equilibria, []
     random = np.random.default_rng([seed, 77])
     while len(goals) < count:
@@ -128,7 +129,7 @@ def judge(
     *,
     progress: Progress = no_progress,
 ) -> Vector:
-    """Distance at the end of an episode for each goal, in the unit of the task; equilibria are counted nowhere."""
+    """Return the final distance for each goal, in the unit of the task. Adds nothing to the cost."""
     before, left = env.equilibria, []
     for goal in goals:
         progress("judged by unseen goals", len(left), len(goals))
@@ -144,7 +145,7 @@ def judge(
 def moves_of(
     env: GoalEnv, act: Callable[[dict[str, Vector]], np.ndarray], goal: Mapping[str, Any]
 ) -> ContractionProfile:
-    """Return the commands of an episode, contractions in time; its equilibria are counted nowhere."""
+    """Return the commands of an episode: contractions in time. Adds nothing to the cost."""
     judge(env, act, [goal])
     times, values = zip(*env.moves, strict=True)
     return ContractionProfile(times=np.array(times), values=np.array(values))
@@ -161,26 +162,26 @@ def train(
     judge_in: GoalEnv | None = None,
     listener: Listener | None = None,
 ) -> tuple[Any, list[CurvePoint]]:
-    """Learn a policy; `out` gets curve.json and a checkpoint after each evaluation, both whole whenever it is killed.
+    """Train a policy; write curve.json and a checkpoint to `out` after each evaluation, each atomically.
 
-    Where tensorboard is installed, `out`/tensorboard gets files for it.
+    If tensorboard is installed, write logs to `out`/tensorboard.
 
     Args:
         env: environment for training.
-        goals: goals that a policy is judged by, from `held_out_goals`.
-        options: options of training.
-        out: folder, made if need be.
-        judge_in: environment for judging policies, such as the exact simulator; `env` if left out.
-        resume: go on from the checkpoint in `out`: the same curve as without a break.
+        goals: goals for evaluation, from `held_out_goals`.
+        options: training options.
+        out: output folder, created if missing.
+        judge_in: environment for evaluation, such as the exact simulator; `env` if left out.
+        resume: continue from the checkpoint in `out`; the curve is the same as without a break.
         processes: number of processes that share the episodes; the curve does not depend on it.
         listener: callbacks for progress.
 
     Returns:
-        The model of stable-baselines3 and the curve.
+        The stable-baselines3 model and the learning curve.
 
     Raises:
-        InputError: stable-baselines3 is not there, or sb3-contrib where the method is of it.
-        InputError: there is no checkpoint to go on from, or one of other options; more processes than episodes.
+        InputError: stable-baselines3 is missing, or sb3-contrib if the method needs it.
+        InputError: no checkpoint to resume, or one of other options; more processes than episodes.
     """
     if not 1 <= processes <= options.num_envs:
         raise InputError(f"processes must be 1 to {options.num_envs}, the episodes side by side, not {processes}")
@@ -211,10 +212,10 @@ def train(
 
 
 def begun_curve(out: Path, options: TrainOptions, *, resume: bool) -> list[CurvePoint]:
-    """The curve of a folder, to go on from with `resume`; else an empty one.
+    """Return the learning curve of a folder to resume; without `resume`, an empty curve.
 
     Raises:
-        InputError: there is no checkpoint to go on from, or one of other options; or a run that would be lost.
+        InputError: no checkpoint to resume, a checkpoint of other options, or an earlier run that would be overwritten.
     """
     if not resume:
         if list(out.glob("checkpoint-*")):

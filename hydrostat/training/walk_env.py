@@ -22,12 +22,12 @@ MIN_PERIOD, MAX_PERIOD = 0.3, 2.0
 
 @dataclass(frozen=True, kw_only=True)
 class Gait:
-    """Raised cosines, one winch after the other.
+    """Gait of raised cosines, with a phase lag from winch to winch.
 
     Attributes:
-        amplitude: the most that each winch takes in [m].
-        lag: lag of each winch behind the one before, in cycles.
-        period: period of a cycle [s].
+        amplitude: largest contraction of each winch [m].
+        lag: lag of each winch behind the previous one, in cycles.
+        period: duration of a cycle [s].
     """
 
     amplitude: float
@@ -36,12 +36,12 @@ class Gait:
 
     @classmethod
     def of_action(cls, action: np.ndarray, most: float) -> "Gait":
-        """The gait of three numbers from -1 to 1: amplitude from 0 to `most` [m], lag of half a cycle, period."""
+        """Return the gait of three values from -1 to 1: amplitude from 0 to `most` [m], lag to half a cycle, period."""
         size, lag, period = np.clip(np.asarray(action, dtype=float), -1.0, 1.0).tolist()
         return cls(amplitude=0.5 * (size + 1.0) * most, lag=0.5 * lag, period=_MIDDLE + _HALF * period)
 
     def action(self, most: float) -> Vector:
-        """The action that asks for this gait (see `of_action`)."""
+        """Return the action of this gait; the inverse of `of_action`."""
         return np.array([2.0 * self.amplitude / most - 1.0, 2.0 * self.lag, (self.period - _MIDDLE) / _HALF])
 
 
@@ -94,19 +94,19 @@ BEATS: Mapping[WalkActions, int] = {WalkActions.GAIT: 25, WalkActions.CONTRACTIO
 
 @dataclass(frozen=True, kw_only=True)
 class WalkOptions:
-    """Options of the task of walking.
+    """Options for the walking task.
 
     Attributes:
-        actions: a member of `WalkActions`, or its text.
-        steps: actions in an episode (T); as many as make five seconds if None.
-        incremental: True if contractions are added, a third of what may be taken in at most; no gait is.
-        speed: at which the longest way that is wanted is gone in an episode, in sizes of the body a second.
-        spread: friction of an episode is drawn within this share of the ground's, up and down.
-        tolerance: error of the displacement that counts as a success [m].
-        shaped: reward is minus the distance in units of the tolerance; else 0 for success and -1.
+        actions: a member of `WalkActions`, or its value.
+        steps: number of actions in an episode (T); None for five seconds of actions.
+        incremental: True if an action changes the contractions, by at most a third of the range; not for gaits.
+        speed: maximum distance of a goal divided by the duration of an episode, in body sizes per second.
+        spread: largest relative deviation of an episode's friction from that of the ground, up or down.
+        tolerance: largest displacement error of a success [m].
+        shaped: True for a reward of minus the distance in units of the tolerance; False for 0 on success, else -1.
 
     Raises:
-        InputError: an unknown word for actions, a gait that is incremental, or a number out of its range.
+        InputError: unknown actions, an incremental gait, or a value out of range.
     """
 
     actions: WalkActions | str = WalkActions.GAIT
@@ -130,22 +130,22 @@ class WalkOptions:
 
 
 class WalkEnv(GoalEnv):
-    """Goal-based environment in time: a robot upright on the ground, without pins, goes a way in x.
+    """Goal-based dynamic environment: an upright robot without pins walks a distance in x on the ground.
 
-    What is achieved is the way of the middle of mass, in sizes of the body, and whether the robot has fallen (1, else
-    0); wanted is a way, and no fall. A fall counts as one more size of the body, and nothing moves after it. Friction
-    of the ground is drawn for each episode, and not observed.
+    The achieved goal is the displacement of the center of mass in body sizes, and a fall (1 if the robot has fallen,
+    else 0); the desired goal is a displacement without a fall. A fall counts as one more body size and stops the
+    motion. Ground friction is drawn for each episode and not observed.
 
-    An observation has contractions (from -1 to 1), where markers are about the middle of mass, counted from rest, in
-    sizes of the body, and their velocities in sizes a second; of a gait also sine and cosine of its phase, its
-    amplitude and its lag.
+    An observation has the contractions (from -1 to 1), marker positions relative to the center of mass, minus those at
+    rest, in body sizes, and marker velocities in body sizes per second. For a gait it also has sine and cosine of the
+    phase, amplitude and lag.
 
     Attributes:
         robot: robot on the ground.
         options: options of the task.
-        friction: mean friction coefficient of the ground, about which it is drawn.
-        most: the most that each winch takes in: half of the least travel [m].
-        motion: present motion; None before the first episode.
+        friction: mean friction coefficient of the ground; each episode draws a value near it.
+        most: largest contraction of each winch: half of the smallest travel [m].
+        motion: current motion; None before the first episode.
     """
 
     cost = "time steps"
@@ -197,7 +197,7 @@ class WalkEnv(GoalEnv):
     def reset(
         self, *, seed: int | None = None, options: Mapping[str, Any] | None = None
     ) -> tuple[dict[str, Vector], dict[str, Any]]:
-        """Stand at the beginning, with a new way and friction; or with "goal" [m] and "friction" of `options`."""
+        """Return to the start pose with a new distance and friction; or with "goal" [m] and "friction" of `options`."""
         super().reset(seed=seed)
         given = {**self.sample_episode(self.np_random), **(options or {})}
         wanted = finite_numbers(given["goal"], 1, "a goal", "way [m]")
@@ -211,7 +211,7 @@ class WalkEnv(GoalEnv):
         return self._observation(), self._info()
 
     def step(self, action: np.ndarray) -> tuple[dict[str, Vector], float, bool, bool, dict[str, Any]]:
-        """Go on by the time steps of an action; an episode is cut off after its actions."""
+        """Simulate the time steps of an action; the episode ends after its last action."""
         action = finite_numbers(action, int(np.prod(self.action_space.shape or (0,))), *AN_ACTION)
         self.taken_steps += 1
         for contractions in self._step_contractions(np.clip(action, -1.0, 1.0)):
@@ -224,41 +224,41 @@ class WalkEnv(GoalEnv):
         return observation, reward, False, self.taken_steps >= self.steps, info
 
     def compute_reward(self, achieved: np.ndarray, desired: np.ndarray, info: Any) -> float | np.ndarray:
-        """Reward of what is achieved for what is desired, one or a row each; nothing else decides about it."""
+        """Return the reward of achieved and desired goals, for one or for each row; it depends on nothing else."""
         del info
         far = self.distances(achieved, desired)
         tolerance = self.options.tolerance
         return -far / tolerance if self.options.shaped else -np.asarray(far >= tolerance, dtype=float)
 
     def distances(self, achieved: np.ndarray, desired: np.ndarray) -> float | np.ndarray:
-        """Return the errors of displacements [m], one or a row each; a fall counts as a size of the body."""
+        """Return displacement errors [m], for one goal or for each row; a fall counts as one body size."""
         return self.unit * np.abs(np.asarray(achieved) - np.asarray(desired)).sum(axis=-1)
 
     @classmethod
     def for_task(cls, robot: Robot | str, given: TaskOptions) -> Self:
-        """Walk as the command line asks for it."""
+        """Create the environment from the options of the command line."""
         given.refuse("markers", "pairs", "contact", "tied", "obstacle")
         options = WalkOptions(**given.select_given("actions", "steps", "incremental", "tolerance", "shaped"))
         return cls(robot, friction=given.friction, options=options)
 
     @property
     def equilibria(self) -> int:
-        """Time steps of the simulator that were asked for; none costs more than another."""
+        """Number of time steps that the simulator was asked to solve, each with the same cost."""
         return self._made
 
     def sample_episode(self, random: np.random.Generator) -> dict[str, Any]:
-        """Draw a distance up to the longest [m], and the friction of the ground."""
+        """Draw a distance up to the maximum [m], and the ground friction."""
         longest = self.options.speed * self.unit * self.steps * self.beat * STEP
         share = self.options.spread * random.uniform(-1.0, 1.0)
         return {"goal": [random.uniform(0.0, longest)], "friction": self.friction * (1.0 + share)}
 
     def go_on(self, kept: Mapping[str, Any]) -> None:
-        """Go on, from the next episode, where an environment was that has been kept."""
+        """Restore a saved state and continue with the next episode."""
         super().go_on(kept)
         self._made = kept["equilibria"]
 
     def picture(self) -> np.ndarray | None:
-        """Picture of the robot, and the ground that goes by below it; None before the first episode."""
+        """Return a picture of the robot, with the ground moving below it; None before the first episode."""
         if self.motion is None:
             return None
         from hydrostat.training.env_pictures import WalkPictures
@@ -271,7 +271,7 @@ class WalkEnv(GoalEnv):
 
     @property
     def way(self) -> float:
-        """Displacement of the center of mass in x since the beginning of the episode [m]."""
+        """Displacement of the center of mass in x since the start of the episode [m]."""
         return float((self._masses @ (self._now.nodes - self.robot.body.mesh.nodes))[0])
 
     @property
