@@ -1,4 +1,4 @@
-"""From a person to a robot: keys, knobs, gloves and cameras, and what is learned of a hand (R68 to R70)."""
+"""Teleoperation: keyboards, knobs, data gloves and cameras as inputs, and hand maps fitted to them (R68 to R70)."""
 
 from typing import TYPE_CHECKING
 

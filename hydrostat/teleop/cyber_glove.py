@@ -1,4 +1,4 @@
-"""`CyberGlove`: a glove with 22 bend sensors on a serial line; `EmulatedGlove`, `EmulatedPerson`: not there."""
+"""`CyberGlove`: a glove with 22 bend sensors on a serial line; `EmulatedGlove`, `EmulatedPerson`: its emulation."""
 
 import time
 from collections.abc import Callable
@@ -19,7 +19,7 @@ _SPREADS = {"middle": "middle-index abduction", "ring": "ring-middle abduction",
 
 
 def _names() -> tuple[str, ...]:
-    """Sensors in the order in which the glove tells them."""
+    """Return sensor names in the order of the glove."""
     names = list(_THUMB)
     for finger in _FINGERS:
         names += [f"{finger} inner", f"{finger} middle", f"{finger} outer"]
@@ -28,9 +28,9 @@ def _names() -> tuple[str, ...]:
 
 
 class CyberGlove(HandSource):
-    """A glove that is asked with G, and answers G, a byte from 1 to 255 of each of its 22 sensors, and a zero.
+    """CyberGlove data glove: sends G; the glove answers G, a byte from 1 to 255 for each of its 22 sensors, and a zero.
 
-    So do open programs read it; no glove of ours has answered yet.
+    Open-source programs use the same protocol. Not yet tested on a physical glove.
     """
 
     names = _names()
@@ -41,7 +41,7 @@ class CyberGlove(HandSource):
         self._port.timeout = 0.05
 
     def read(self) -> HandReading:
-        """The newest values; one answer that is cut short or spoilt is asked for again."""
+        """Return the latest values; an incomplete or corrupt answer is requested again."""
         asks = 3  # Number of queries before the glove counts as silent
         try:
             for _ in range(asks):
@@ -57,7 +57,7 @@ class CyberGlove(HandSource):
         raise HydrostatError(f"the glove does not answer with {SENSORS} sensors; look at its power and its port")
 
     def close(self) -> None:
-        """Let the line go."""
+        """Close the serial line."""
         with suppress(Exception):
             self._port.close()
 
@@ -101,7 +101,7 @@ class EmulatedGlove:
 
 
 class EmulatedPerson:
-    """A hand in an emulated glove, whose sensors follow the contractions of a robot by a fixed mixture.
+    """Hand in an emulated glove; its sensor values are a fixed mixture of the contractions of a robot.
 
     Attributes:
         glove: emulated glove.
@@ -130,13 +130,13 @@ class EmulatedPerson:
         self.mimic(np.clip(np.zeros(len(low)), low, high))
 
     def mimic(self, contractions: Vector) -> None:
-        """Take a pose like that of the robot at contractions [m]."""
+        """Mimic the pose of the robot at contractions [m]."""
         wanted = 2 * (contractions - self._low) / self._span - 1
         straight = wanted @ self._mixture
         self.glove.values = 0.5 + 0.45 * (straight + self._bent * straight**2)
 
     def wave(self, seconds: float) -> None:
-        """Close and open, one finger after the other, for those who try it alone."""
+        """Close and open one finger after the other, for tests without a robot."""
         phases = np.linspace(0.0, 2.0, len(self._low), endpoint=False)
         share = 0.25 * (1 - np.cos(seconds + phases)) * (np.arange(len(phases)) % 2 == 0)
         self.mimic(self._low + share * self._span)

@@ -18,13 +18,14 @@ SWITCHING = 5e-4
 
 
 class DriveLoop:
-    """Loop that drives motors, step by step, as a person commands.
+    """Loop that drives motors by the commands of a person, step by step.
 
     Attributes:
         silent: True without input; motors hold.
-        wish: the newest.
-        pause: to be made before the next step [s]: goals that nobody waited for an answer to must have left the line,
-            or a stop would come after all of them.
+        wish: latest command.
+        pause: time to wait before the next step [s]: goals that need no answer must have left the serial line, or a
+            stop
+            command would queue behind them.
     """
 
     def __init__(
@@ -38,14 +39,14 @@ class DriveLoop:
         self._numbers = {name: index for index, name in enumerate(way.channels.names)}
 
     def step(self, now: float, motor_time: float | None = None) -> bool:
-        """Read the input by its clock and command the motors by theirs [s]; return True if the person goes on.
+        """Read the input by its clock and command the motors by theirs [s]; return True to continue.
 
-        The time of the motors is that of the input if left out; emulated motors have a slower clock on a busy computer.
-        What is heard sooner than a tick after motors were read is told without reading them again, which takes as long
-        as their answers do on the line.
+        Without a motor time, the motors use the time of the input; emulated motors have a slower clock on a busy
+        computer. Input that arrives within one tick of the last motor reading is sent without another reading, which
+        takes as long as the answers of all motors on the line.
 
         Raises:
-            HydrostatError: of the source, of the motors, or of what solves poses; the motors hold.
+            HydrostatError: an error of the input, the motors or the pose solver; the motors hold.
         """
         told = now if motor_time is None else motor_time
         self.wish = wish = self.source.read()
@@ -89,18 +90,18 @@ def drive(
     tell: Callable[[DriveLoop], None] = lambda _: None,
     clock: Callable[[], float] = time.monotonic,
 ) -> None:
-    """Let motors follow a source in real time until it ends; they hold at its end, on any error and when interrupted.
+    """Drive motors from a source in real time until it ends; they hold at the end, on any error and on interruption.
 
     Args:
-        motors: within whose limits all stays.
-        way: from what is asked for to contractions.
+        motors: motors to drive; commands stay within their limits.
+        way: mapping from commands to contractions.
         source: input device.
-        seconds: it ends after so long [s].
-        tell: called after each command.
+        seconds: maximum duration [s].
+        tell: callback after each command.
         clock: monotonic clock of the source [s].
 
     Raises:
-        HydrostatError: of the source, of the motors, or of what solves poses.
+        HydrostatError: an error of the source, the motors or the pose solver.
     """
     news, switching = threading.Event(), sys.getswitchinterval()
     sys.setswitchinterval(SWITCHING)

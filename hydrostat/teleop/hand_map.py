@@ -1,4 +1,4 @@
-"""`HandMap`: what was learned of a hand, as a file: from sensors to contractions, or to the places of fingertips."""
+"""`HandMap`: fitted map of a hand, as a file: from sensors to contractions or fingertip positions."""
 
 import json
 from dataclasses import dataclass
@@ -16,15 +16,15 @@ FORMAT = "hydrostat hand map 1"
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class HandMap:
-    """A straight map from the sensors of a hand to the channels of a robot.
+    """Linear map from the sensors of a hand to the channels of a robot.
 
     Attributes:
-        robot: its name.
-        sensors: their names.
-        outputs: names of the channels.
-        ridge: from the one to the other, in [m].
-        poses: so many were mimicked.
-        error: root mean square error of poses left out [m].
+        robot: robot name.
+        sensors: sensor names.
+        outputs: channel names.
+        ridge: ridge regression from sensors to channels [m].
+        poses: number of mimicked poses.
+        error: root-mean-square error of held-out poses [m].
     """
 
     robot: str
@@ -35,11 +35,11 @@ class HandMap:
     error: float
 
     def __call__(self, sensors: Vector) -> dict[str, float]:
-        """Values of the channels [m]."""
+        """Return the channel values [m]."""
         return dict(zip(self.outputs, self.ridge(sensors).tolist(), strict=True))
 
     def check(self, sensors: tuple[str, ...], channels: tuple[str, ...]) -> None:
-        """Check that it fits a hand and a robot (InputError: other sensors, or other channels)."""
+        """Check that the map fits a hand and a robot (InputError: other sensors, or other channels)."""
         if self.sensors != sensors:
             raise InputError(f"--map: it was learned of {len(self.sensors)} sensors of another kind of hand")
         if self.outputs != channels:
@@ -49,7 +49,7 @@ class HandMap:
             )
 
     def save(self, path: Path) -> Path:
-        """Write it as JSON, whole or not at all; returns the path."""
+        """Write the map as JSON, atomically; return the path."""
         ridge = self.ridge
         table = {
             "format": FORMAT,
@@ -67,7 +67,7 @@ class HandMap:
 
     @classmethod
     def open(cls, path: Path) -> "HandMap":
-        """Read such a file (InputError: it is none)."""
+        """Read a map from a file (InputError: not a hand map)."""
         try:
             table = json.loads(path.read_text("utf-8"))
         except (OSError, ValueError) as error:

@@ -1,4 +1,4 @@
-"""`LessonPoses`: poses that a robot shows and a person mimics, one after the other, and the readings of a hold."""
+"""`LessonPoses`: poses that a robot shows and a person mimics, one after the other; `HeldStill`: averaged readings."""
 
 import time
 from collections.abc import Callable
@@ -15,13 +15,13 @@ from hydrostat.teleop.source import DriveChannels, HandSource
 from hydrostat.units import plural
 
 POOL = 400
-"""Poses of which the next is chosen."""
+"""Number of candidate poses for the next pose."""
 SHARE = 0.4
-"""Largest share of its range that a winch takes in for a pose."""
+"""Largest contraction of a winch in a pose, as a share of its range."""
 ARRIVAL_TIME = 2.0
-"""Motors may take so much longer than at their largest speed [s]."""
+"""Time that motors may take beyond that at full speed [s]."""
 HOLD = 0.3
-"""A person holds still for so long [s]; the readings of that time are averaged."""
+"""Time that a person holds still [s]; readings of that time are averaged."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +31,7 @@ class HeldStill:
     Attributes:
         values: mean of each sensor.
         spread: largest standard deviation of a sensor.
-        readings: so many were averaged.
+        readings: number of averaged readings.
     """
 
     values: Vector
@@ -53,9 +53,9 @@ class HeldStill:
         seconds: float = HOLD,
         clock: Callable[[], float] = time.monotonic,
     ) -> "HeldStill":
-        """Average the readings of a hand for a while.
+        """Average the readings of a hand for a duration [s].
 
-        A beat after each keeps motors (HydrostatError: it is not heard).
+        `beat` runs after each reading, to keep motors holding (HydrostatError: no answer from the hand).
         """
         end, told = clock() + seconds, [hand.read().values]
         while clock() < end:
@@ -66,7 +66,7 @@ class HeldStill:
 
 
 def go_there(motors: Motors, contractions: Vector, beat: Callable[[], object]) -> None:
-    """Let motors go to contractions [m]; each beat drives them (HydrostatError: they do not get there)."""
+    """Move motors to contractions [m], driven by each beat (HydrostatError: they do not reach them)."""
     clock = motors.clock
     motors.ask(contractions)
     latest = clock() + float(np.abs(motors.command - motors.places).max(initial=0.0)) / motors.fastest + ARRIVAL_TIME
@@ -81,11 +81,11 @@ def go_there(motors: Motors, contractions: Vector, beat: Callable[[], object]) -
 
 
 class LessonPoses:
-    """The course of a lesson: which pose comes next, and what is known after each.
+    """Sequence of poses in a lesson: the next pose, and the accuracy after each.
 
     Attributes:
-        made: the pairs so far.
-        span: output ranges [m]; they scale errors to the thesis's range from -1 to 1.
+        made: pairs of readings and contractions so far.
+        span: output ranges [m]; they scale errors to the range from -1 to 1 of the thesis.
     """
 
     def __init__(self, made: Mimicry, pool: Table, answers: Table) -> None:
@@ -96,21 +96,21 @@ class LessonPoses:
 
     @property
     def count(self) -> int:
-        """Poses so far."""
+        """Number of poses so far."""
         return len(set(self.made.poses))
 
     def next_pose(self) -> Vector:
-        """Contractions of the most informative pose [m]; the first is the rest."""
+        """Return the contractions of the most informative pose [m]; the first pose is the rest pose."""
         which = 0 if not self.made.poses and self._left[0] == 0 else self.made.next_pose(self._answers[self._left])
         return self._pool[self._left.pop(which)]
 
     def take(self, held: HeldStill, answer: Vector) -> None:
-        """Keep a pair."""
+        """Add a pair."""
         number = max(self.made.poses, default=-1) + 1
         self.made.add(number, held.values, answer, time.time())
 
     def summary(self) -> str:
-        """Summary of the cross-validation errors of the pairs so far, in words."""
+        """Return a text summary of the cross-validation errors so far."""
         if self.count < 4:
             return f"{plural(self.count, 'pose')}; errors are available from 4 poses on"
         known = self.made.learn()
@@ -120,7 +120,7 @@ class LessonPoses:
 
     @staticmethod
     def pool(channels: DriveChannels, seed: int = 0, count: int = POOL) -> Table:
-        """Contractions to choose from [m]: rest, and random ones in which about half of the winches are in use."""
+        """Return candidate contractions [m]: rest, and random ones in which about half of the winches take in cable."""
         random = np.random.default_rng(seed)
         size = (count, len(channels.names))
         share = random.uniform(0.0, SHARE, size) * (random.uniform(size=size) < 0.5)

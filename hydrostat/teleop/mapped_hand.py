@@ -19,9 +19,9 @@ class Smoothing:
     """Options of the one-euro filter for values from 0 to 1.
 
     Attributes:
-        least: frequency above which a value that rests is smoothed [Hz].
-        rise: by which that frequency rises with speed [Hz for the whole range in a second].
-        speed: frequency above which the speed is smoothed [Hz].
+        least: cutoff frequency for a value at rest [Hz].
+        rise: increase of the cutoff frequency with speed [Hz for the full range in a second].
+        speed: cutoff frequency for the speed [Hz].
     """
 
     least: float = 1.5
@@ -76,7 +76,7 @@ STARTUP_TIMEOUT = 5.0
 
 
 class MappedHand(DriveSource):
-    """A hand whose sensors are read all the time, in a thread of their own, and mapped to the channels of a robot."""
+    """Hand input that a separate thread reads continuously and maps to the channels of a robot."""
 
     silence = HAND_TIMEOUT
 
@@ -100,7 +100,7 @@ class MappedHand(DriveSource):
         self._thread.start()
 
     def read(self) -> DriveWish:
-        """Return the command of the newest reading."""
+        """Return the command of the latest reading."""
         reading, error = self._reading, self._error
         if error and self._clock() - self._well > STARTUP_TIMEOUT:
             raise HydrostatError(error)
@@ -109,7 +109,7 @@ class MappedHand(DriveSource):
         return DriveWish(stamp=reading.stamp, places=self._map(reading.values), words=error or "Ctrl-C: end")
 
     def close(self) -> None:
-        """End the thread, and let the hand go."""
+        """End the thread and close the hand input."""
         self._over.set()
         self._thread.join(1.0)
         self._hand.close()

@@ -16,16 +16,16 @@ from hydrostat.version import install_command
 
 
 class Mimicry:
-    """Pairs of sensor readings and robot outputs: its contractions, or positions of its fingertips.
+    """Pairs of sensor readings and robot outputs: contractions or fingertip positions.
 
-    Both ways to such pairs end here: the robot takes a pose and a person mimics it, or the robot wears the glove.
-    A pose may be told more than once; its rows are left out together when errors are asked for.
+    Pairs come from a person who mimics the robot, or from a robot that wears the glove. A pose may have several rows;
+    cross-validation leaves them out together.
 
     Attributes:
-        sensors: their names.
-        outputs: names of what is to be told by them.
-        poses: pose of each row.
-        stamps: when each row was told, since 1970 [s].
+        sensors: sensor names.
+        outputs: output names.
+        poses: pose index of each row.
+        stamps: time of each row, since 1970 [s].
     """
 
     def __init__(self, sensors: Sequence[str], outputs: Sequence[str]) -> None:
@@ -47,7 +47,7 @@ class Mimicry:
         return np.array(self._answers).reshape(-1, len(self.outputs))
 
     def add(self, pose: int, sensors: Vector, answer: Vector, stamp: float = 0.0) -> None:
-        """Store a pair of a pose (InputError: of another size, or not finite)."""
+        """Add a pair of a pose (InputError: wrong size, or not finite)."""
         if sensors.shape != (len(self.sensors),) or answer.shape != (len(self.outputs),):
             raise InputError(f"a pair has {len(self.sensors)} sensors and {len(self.outputs)} outputs")
         if not (np.isfinite(sensors).all() and np.isfinite(answer).all()):
@@ -58,25 +58,25 @@ class Mimicry:
         self._answers.append(answer.copy())
 
     def forget(self, pose: int) -> None:
-        """Drop a pose that went wrong."""
+        """Remove a pose."""
         for index in reversed(range(len(self.poses))):
             if self.poses[index] == pose:
                 del self.poses[index], self.stamps[index], self._inputs[index], self._answers[index]
 
     def learn(self) -> Ridge:
-        """From sensors to outputs by ridge regression (InputError: fewer than two poses)."""
+        """Fit a ridge regression from sensors to outputs (InputError: fewer than two poses)."""
         return fit_ridge(self.inputs, self.answers, self.poses)
 
     def errors(self, known: Ridge) -> tuple[float, float]:
-        """Root mean square error of poses left out one by one, and of five folds."""
+        """Return the root-mean-square errors of leave-one-pose-out and five-fold cross-validation."""
         table = self.inputs, self.answers, self.poses, known.penalty
         return left_out_error(*table), folded_error(*table)
 
     def next_pose(self, candidates: Table) -> int:
         """Return the index of the candidate to mimic next: it maximizes the determinant of the information (D-optimal).
 
-        Information is that of a straight map with a constant between candidates (rows, outputs) and sensors, so that
-        nothing has to be known of the sensors.
+        The information is that of an affine map between candidates (rows, outputs) and sensors; no sensor model is
+        needed.
         """
         known = np.column_stack([np.ones(len(self.poses)), self.answers])
         ways = np.column_stack([np.ones(len(candidates)), candidates])
@@ -85,7 +85,7 @@ class Mimicry:
         return int(np.argmax(np.einsum("ij,ij->i", ways, np.linalg.solve(information, ways.T).T)))
 
     def save(self, path: Path) -> Path:
-        """Write a table with a row for each pair, as text."""
+        """Write the pairs as a text table, one row for each."""
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
         writer.writerow(["pose", "time_s", *(f"sensor {name}" for name in self.sensors), *self.outputs])
@@ -95,7 +95,7 @@ class Mimicry:
 
     @classmethod
     def open(cls, path: Path) -> "Mimicry":
-        """Read such a table (InputError: it is none, with the line)."""
+        """Read a table of pairs (InputError: not such a table; names the line)."""
         try:
             rows = list(csv.reader(path.read_text("utf-8").splitlines()))
         except (OSError, UnicodeDecodeError) as error:
@@ -115,13 +115,13 @@ class Mimicry:
         return made
 
     def write_mcap(self, path: Path) -> Path:
-        """Write pairs as MCAP with JSON schemas for Foxglove and ROS 2; a channel each for glove and robot.
+        """Write pairs as MCAP with JSON schemas for Foxglove and ROS 2, one channel each for glove and robot.
 
         Args:
             path: path of the file.
 
         Raises:
-            InputError: the package mcap is not there.
+            InputError: the package mcap is missing.
         """
         try:
             from mcap.writer import Writer

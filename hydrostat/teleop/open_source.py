@@ -24,18 +24,18 @@ def open_source(
     *,
     smoothing: Smoothing | None = USUAL_SMOOTHING,
 ) -> DriveSource:
-    """Open the source of commands that drives a robot.
+    """Open the input source that drives a robot.
 
     Args:
-        text: KIND or KIND:PLACE, of a kind of `SOURCES`.
+        text: KIND or KIND:PLACE, with a kind of `SOURCES`.
         channels: channels that the source may move.
-        known: the map of a hand; gloves and cameras need one.
-        person: who wears an emulated glove.
+        known: map of a hand; required for gloves and cameras.
+        person: hand in an emulated glove.
         smoothing: smoothing of hand readings; None for none.
 
     Raises:
-        InputError: no such kind, or a wrong place.
-        HydrostatError: it is not there, or its package is not.
+        InputError: an unknown kind, or an invalid place.
+        HydrostatError: the device or its package is missing.
     """
     kind, _, place = text.partition(":")
     if kind not in (*SOURCES, *HANDS):
@@ -48,16 +48,16 @@ def open_source(
 
 
 def open_hand(text: str, person: "EmulatedHand | None" = None) -> HandSource:
-    """A glove or a camera.
+    """Open a glove or a camera.
 
     Args:
-        text: serial port of a glove; camera:FILE.task, with @1 for another camera than the first; camera:PORT for
-            landmarks of another program; or emulated.
-        person: who wears an emulated glove.
+        text: serial port of a glove; camera:FILE.task for the first camera, with @1 for the second; camera:PORT for
+            landmarks from another program; or emulated.
+        person: hand in an emulated glove.
 
     Raises:
-        InputError: a wrong port, or no such file.
-        HydrostatError: it cannot be opened, or its package is not there.
+        InputError: an invalid port, or a missing file.
+        HydrostatError: the device cannot be opened, or its package is missing.
     """
     kind, _, place = text.partition(":")
     if kind == "camera" and not place.isdecimal():
@@ -75,7 +75,7 @@ def open_hand(text: str, person: "EmulatedHand | None" = None) -> HandSource:
 
 
 class EmulatedHand(HandSource):
-    """An emulated hand in an emulated glove: it closes and opens by itself, or mimics what it is told to."""
+    """Emulated hand in an emulated glove: it closes and opens by itself, or mimics given contractions."""
 
     names = CyberGlove.names
 
@@ -92,7 +92,7 @@ class EmulatedHand(HandSource):
         return self._glove.read()
 
     def close(self) -> None:
-        """Let the glove go."""
+        """Close the glove."""
         self._glove.close()
 
 

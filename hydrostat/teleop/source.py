@@ -23,7 +23,7 @@ class HandReading:
 
 
 class HandSource(ABC):
-    """Contract of a hand input: a glove, a camera, a gamepad. A new kind is one class.
+    """Interface for hand inputs: a glove, a camera, a gamepad. A new kind is one class.
 
     Attributes:
         names: sensor names.
@@ -33,11 +33,11 @@ class HandSource(ABC):
 
     @abstractmethod
     def read(self) -> HandReading:
-        """The newest values (HydrostatError: no reading, or a wrong one; values are never made up)."""
+        """Return the latest values (HydrostatError: no reading, or an invalid one; values are never invented)."""
 
     @abstractmethod
     def close(self) -> None:
-        """Let it go. It may be called twice and never raises."""
+        """Close the input. You can call this twice, and it never raises."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -69,12 +69,12 @@ class DriveWish:
     """Command of a person at one instant.
 
     Attributes:
-        stamp: when the person was last heard, by a clock that only runs forward [s].
-        places: target positions of channels by name [m]; others stay.
+        stamp: time of the last input, by a monotonic clock [s].
+        places: target values of channels by name [m]; other channels stay.
         steps: increments of channels since the last request, by name [m].
         hold: True to hold the motors.
         over: True to end.
-        words: to be shown beside the motors.
+        words: message to show next to the motors.
     """
 
     stamp: float
@@ -86,14 +86,14 @@ class DriveWish:
 
 
 class DriveSource(ABC):
-    """Contract of what a robot is driven by: keys, knobs, a glove. A new kind is one class and a line in `SOURCES`.
+    """Interface for inputs: keys, knobs, a glove. A new kind is one class and a line in `SOURCES`.
 
-    Nothing that it asks for can leave the limits of the motors, nor move them faster than they may.
+    Its commands cannot leave the limits of the motors or exceed their speed.
 
     Attributes:
-        silence: a stamp that is older than this means that nobody drives, so motors hold [s]; infinite where a word
-            holds until the next, as that of a knob.
-        updated: event set on a newer request, if somebody waits for it and the source can tell.
+        silence: age of the last input after which motors hold [s]; infinite if a command stays valid until the next,
+            as for a knob.
+        updated: event that is set on a new command; None if the source cannot set one.
     """
 
     silence: float = inf
@@ -101,8 +101,8 @@ class DriveSource(ABC):
 
     @abstractmethod
     def read(self) -> DriveWish:
-        """The newest request, immediately (HydrostatError: input lost)."""
+        """Return the latest command immediately (HydrostatError: input lost)."""
 
     @abstractmethod
     def close(self) -> None:
-        """Let it go. It may be called twice and never raises."""
+        """Close the input. You can call this twice, and it never raises."""

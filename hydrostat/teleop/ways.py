@@ -18,19 +18,19 @@ if TYPE_CHECKING:
     from hydrostat.learning import LearnedModel
 
 CONTRACTION_TOLERANCE = 3e-3
-"""A guard judges where a pose is known within so much of each contraction [m]."""
+"""Largest distance to a known pose at which a guard checks tensions, in each contraction [m]."""
 REACH = 0.5
-"""Targets of a marker lie so far about its rest, as a share of the largest side of the body."""
+"""Largest distance of a marker target from its rest position, as a share of the longest side of the body."""
 
 
 class CommandMapper(ABC):
-    """Contract of how what a person asks for becomes contractions; what is slow is done by a process of its own.
+    """Interface for mapping commands of a person to contractions; slow computations run in a separate process.
 
     Attributes:
-        channels: channels that can be moved.
-        contractions: the newest that follow from it [m].
-        known: cable tensions of the poses so far, for a guard.
-        updated: event set on newer contractions, if somebody waits for it.
+        channels: channels that the person can move.
+        contractions: latest contractions for these commands [m].
+        known: cable tensions of the poses solved so far, for a guard.
+        updated: event that is set when contractions change; None if unused.
         words: message about the pose; empty for none.
     """
 
@@ -42,15 +42,15 @@ class CommandMapper(ABC):
 
     @abstractmethod
     def ask(self, values: Vector) -> None:
-        """Let the channels have values [m]; return immediately (HydrostatError: what solves has failed)."""
+        """Request channel values [m]; return immediately (HydrostatError: the solver has failed)."""
 
     def observe(self, places: Vector) -> None:
-        """Update the motors' contractions [m], for which a guard expects tensions."""
+        """Report the contractions of the motors [m], at which a guard needs tensions."""
         del places
 
     @abstractmethod
     def hold_at(self, places: Vector) -> Vector:
-        """Forget what was asked for, as motors hold at contractions [m]; give the values of the channels there [m]."""
+        """Discard the request because motors hold at contractions [m]; return the channel values there [m]."""
 
     @abstractmethod
     def close(self) -> None:
@@ -58,7 +58,7 @@ class CommandMapper(ABC):
 
 
 class WinchMapper(CommandMapper):
-    """Winches are what is turned; poses are solved behind it, so that a guard knows what should be felt."""
+    """Map commands to winches directly; poses are solved in the background, so that a guard has expected tensions."""
 
     def __init__(self, simulation: Simulation, contractions: Vector, *, solves: bool = True) -> None:
         """Begin at contractions [m]; poses need not be solved where there is no guard."""
@@ -70,25 +70,25 @@ class WinchMapper(CommandMapper):
         self._poses = PoseProcess(WinchPoses, (robot,), self._accept_pose) if solves else None
 
     def ask(self, values: Vector) -> None:
-        """Turn them."""
+        """Request contractions of the winches [m]."""
         self.contractions = values.copy()
         if self._poses is not None:
             self._poses.check()
 
     def observe(self, places: Vector) -> None:
-        """Let the pose there be solved [m]."""
+        """Request the pose at these contractions [m]."""
         apart = 2e-4  # Poses are solved so far apart [m]
         if self._poses is not None and np.abs(places - self._seen).max(initial=0.0) > apart:
             self._seen = places.copy()
             self._poses.give(self._seen)
 
     def hold_at(self, places: Vector) -> Vector:
-        """Contractions where they hold [m]."""
+        """Hold at contractions [m]; return them."""
         self.contractions = places.copy()
         return places.copy()
 
     def close(self) -> None:
-        """End its process."""
+        """End the background process."""
         if self._poses is not None:
             self._poses.close()
 
@@ -97,7 +97,7 @@ class WinchMapper(CommandMapper):
 
     @staticmethod
     def list_channels(robot: Robot) -> DriveChannels:
-        """The winches of a robot as channels, each a group of its own (InputError: it has none)."""
+        """Return the winches of a robot as channels, each a group of its own (InputError: no winches)."""
         if not robot.winches:
             raise InputError(f"{robot.name} has no winches; add some, or let `hydrostat design` find them")
         low, high = ([-winch.release for winch in robot.winches], [winch.travel for winch in robot.winches])
@@ -111,11 +111,11 @@ class WinchMapper(CommandMapper):
 
 
 class MarkerMapper(CommandMapper):
-    """Markers are what is moved: `Tracker` finds contractions, step by step, each of them a pose in equilibrium.
+    """Map marker targets to contractions: `Tracker` solves them step by step, each step a pose in equilibrium.
 
-    Targets do not wait for the step that is being solved: they are answered at once to first order about the newest
-    pose, within the limits, and the poses that follow mend the answer. With a learned model its inverse network
-    answers; what the simulator finds better from there, step by step, is added to its answers from then on.
+    Targets do not wait for the current step. They are first answered to first order about the latest pose, within the
+    limits, and later poses correct this answer. With a learned model, its inverse network gives the first answer, and
+    the corrections of the simulator, step by step, are added to its later answers.
     """
 
     def __init__(
@@ -148,7 +148,7 @@ class MarkerMapper(CommandMapper):
         )
 
     def ask(self, values: Vector) -> None:
-        """Move them."""
+        """Request marker positions [m]."""
         if self._asked is not None and np.array_equal(values, self._asked):
             self._poses.check()
         else:
@@ -166,7 +166,7 @@ class MarkerMapper(CommandMapper):
         return self._markers
 
     def close(self) -> None:
-        """End its process."""
+        """End the background process."""
         self._poses.close()
 
     def _begin(self, values: Vector) -> None:
@@ -207,7 +207,7 @@ class MarkerMapper(CommandMapper):
 
     @staticmethod
     def list_channels(simulation: Simulation) -> DriveChannels:
-        """The coordinates of all markers as channels, a group for each marker (InputError: there are none)."""
+        """Return the coordinates of all markers as channels, one group for each marker (InputError: no markers)."""
         markers, dim = simulation.rest.markers, simulation.robot.body.mesh.dim
         if not markers:
             raise InputError(f"{simulation.robot.name} has no markers to move; add [[marker]] to its robot.toml")
