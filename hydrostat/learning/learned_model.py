@@ -160,8 +160,7 @@ class LearnedModel:
 
         Raises:
             InputError: no targets, an unknown marker, a target outside the space of the body, or `search=False` without
-                an
-                inverse network.
+                an inverse network.
         """
         target = self._pose(targets)
         goal, asked = self._goal(target)

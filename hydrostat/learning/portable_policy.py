@@ -31,8 +31,7 @@ class PortablePolicy:
 
         Raises:
             InputError: an observation is missing or has a wrong number of coordinates, or the network returns a value
-                that
-                is not finite.
+                that is not finite.
         """
         parts = []
         for name, count in self.facts["sees"]:
