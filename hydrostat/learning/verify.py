@@ -22,9 +22,8 @@ def verify(
 
     The contractions are solved from rest, unless the answer was already certified for the same robot. Each step starts
     from the previous pose, as an update of `Tracker`. Without an equilibrium, `certified` is None and `status` gives
-    the
-    reason. The returned pose is the end of these steps: the same contractions, taken in from rest, may lead to another
-    pose. To get the error from rest, call `verify(simulation, model, replace(found, pose=None))`.
+    the reason. The returned pose is the end of these steps: the same contractions, taken in from rest, may lead to
+    another pose. To get the error from rest, call `verify(simulation, model, replace(found, pose=None))`.
 
     Args:
         simulation: simulation of the robot of the model.

@@ -24,8 +24,7 @@ class DriveLoop:
         silent: True without input; motors hold.
         wish: latest command.
         pause: time to wait before the next step [s]: goals that need no answer must have left the serial line, or a
-            stop
-            command would queue behind them.
+            stop command would queue behind them.
     """
 
     def __init__(
