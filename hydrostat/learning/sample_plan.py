@@ -63,7 +63,7 @@ def antagonists(moves: Float[np.ndarray, "winches coordinates"]) -> tuple[tuple[
     Each winch of a pair is the best partner of the other.
 
     Args:
-        moves: displacements of the markers for the contraction of each winch, one row each.
+        moves: displacements of the markers for the contraction of each winch, one row each [m].
     """
     lengths = np.linalg.norm(moves, axis=1, keepdims=True)
     ways = moves / np.where(lengths > 0, lengths, 1.0)
