@@ -170,6 +170,7 @@ class Item:
     is_tool: bool = False  # True for a tool, of which a robot uses up nothing
     is_poured: bool = False  # True for foam or silicone of the body
     is_named_by_kind: bool = False  # True if the sheet names it by the beginning of its specification
+    search: str = ""  # words that find it in a shop
 
     @property
     def cost(self) -> float:
@@ -194,6 +195,7 @@ class BillRow:
     group: Annotated[str, text_column("group")]
     what: Annotated[str, text_column("what")]
     spec: Annotated[str, text_column("specification")] = ""
+    search: Annotated[str, text_column("search for")] = ""
     amount: Annotated[float | None, number_column("quantity", decimals=2)] = None
     unit: Annotated[str, text_column("unit")] = ""
     mass: Annotated[float | None, number_column("mass", "g")]
@@ -236,6 +238,7 @@ def _item_row(item: Item) -> BillRow:
         group=item.group,
         what=item.what,
         spec=item.specification,
+        search=item.search,
         amount=item.quantity,
         unit=item.price.unit,
         mass=item.mass,

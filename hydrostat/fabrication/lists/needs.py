@@ -11,6 +11,7 @@ from hydrostat.fabrication.lists.bill import FELT_SHEET, PRICES, BillGroup, Item
 from hydrostat.fabrication.lists.cuts import CableCut, SheathCut
 from hydrostat.fabrication.lists.line import FishingLine
 from hydrostat.fabrication.lists.motors import PowerPlan
+from hydrostat.fabrication.lists.searches import search_term
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.units import plural
 
@@ -54,8 +55,16 @@ def _item(
     group: BillGroup, what: str, specification: str, quantity: float, price: str | Price, mass: float | None = None
 ) -> Item:
     """An item of the bill, its price by its key in the table."""
-    known = PRICES[price] if isinstance(price, str) else price
-    return Item(group=group, what=what, specification=specification, quantity=quantity, price=known, mass=mass)
+    known, key = (PRICES[price], price) if isinstance(price, str) else (price, "")
+    return Item(
+        group=group,
+        what=what,
+        specification=specification,
+        quantity=quantity,
+        price=known,
+        mass=mass,
+        search=search_term(key, specification),
+    )
 
 
 def _item_by_kind(group: BillGroup, what: str, specification: str, quantity: float, price: str) -> Item:

@@ -14,6 +14,7 @@ from hydrostat.fabrication.lists.cuts import cable_cuts, sheath_cuts
 from hydrostat.fabrication.lists.line import line_for
 from hydrostat.fabrication.lists.motors import power_plan
 from hydrostat.fabrication.lists.needs import all_needs, filling_mass
+from hydrostat.fabrication.lists.searches import SEARCHES, search_term
 from hydrostat.fabrication.parts.motor import ALL_MOTORS, MOTORS, Motor
 from hydrostat.fabrication.solids.construct import Box, solid_of
 from hydrostat.fabrication.solids.printed import Printed
@@ -180,6 +181,19 @@ def test_every_price_says_where_it_is_from() -> None:
         assert price.words == NO_SOURCE or price.words.startswith("rough, from ")
     assert {key for key, price in PRICES.items() if price.words == NO_SOURCE} == GUESSED
     assert [key for key, price in PRICES.items() if price.amount == 0] == ["servo's own cable"]
+
+
+def test_every_part_has_words_to_search_for() -> None:
+    """Oracle: what the author would type into a shop's search box."""
+    assert SEARCHES.keys() == PRICES.keys()
+    screw = "M2 x 20 mm countersunk screw (housing), machine thread, with a nut"
+    assert search_term("screws", screw) == "M2 x 20 mm countersunk screw"
+    assert search_term("supply", "12 V, 8 A or more") == "power supply 12 V 8 A"
+    assert search_term("uno board", "Arduino Uno or alike") == "Arduino Uno R3"
+    assert search_term("", "Feetech STS3215-C001, 7.4 V") == "Feetech STS3215-C001, 7.4 V"
+    found = needs(given(square(), cloth=Cloth(felt=2e5, seam=1e3, zipper=96.0)))
+    assert found["zipper"].search == "nylon zipper of 100 mm"
+    assert all(item.search for item in found.values())
 
 
 def test_no_robot_uses_up_a_tool() -> None:
