@@ -29,6 +29,7 @@ STUDIES: dict[str, str] = {
     "flat_or_round/flat_or_round": "--bodies starfish",
     "gallery_poses/example_poses": "--quick",
     "gallery_poses/gallery_poses": "trunk",
+    "gallery_poses/thumbs": "--count 9",
     "grasping/causes": "caging_gripper --factors friction --step 8",
     "grasping/grasp": "caging_gripper --closings 1 --step 8",
     "grasping/objects": "",
