@@ -1,4 +1,4 @@
-"""From contractions in time to motors: a bus and a link to them, motors within limits, playing (R58)."""
+"""Motor control: buses and links to motors, calibration, limits and guards, and playback of contractions (R58)."""
 
 from typing import TYPE_CHECKING
 

@@ -31,22 +31,22 @@ def arm_motors(
     motor: str | None = None,
     log: Callable[[str], None] = lambda _: None,
 ) -> Motors:
-    """Armed motors that follow commands, supervised by a deadline and a guard.
+    """Return armed motors that follow commands, monitored by a deadline and a guard.
 
-    A correction.json in the folder, which `hydrostat identify` writes, corrects their commands.
+    A correction.json in the folder, written by `hydrostat identify`, corrects their commands.
 
     Args:
         folder: robot folder with motors.toml; emulated motors need none.
         robot: robot whose winches the motors turn.
         port: motor connection, as for `open_bus`.
-        pulls: total cable tension of each winch [N] by contractions [m].
-        known: the same for the guard, NaN where it shall not judge; the same ones if left out.
-        motor: key of the motor that emulated ones are; that of the robot if left out.
-        log: hears each line about them.
+        pulls: total cable tension of each winch [N] as a function of contractions [m].
+        known: the same function for the guard, with NaN to skip its check; `pulls` if left out.
+        motor: key of the emulated motors; that of the robot if left out.
+        log: callback for each message about the motors.
 
     Raises:
-        InputError: no such port or calibration.
-        HydrostatError: a motor is silent, or wrong.
+        InputError: an invalid port or calibration.
+        HydrostatError: a motor is silent, or the wrong model.
     """
     correction = ContractionMap.read(folder, robot)
     found = Calibration.emulate if port == EMULATED else Calibration.read

@@ -14,7 +14,7 @@ _AWAKE = getattr(time, "CLOCK_BOOTTIME", getattr(time, "CLOCK_MONOTONIC", None))
 
 
 def steady() -> float:
-    """Time of a clock that only runs forward, and runs on while the computer sleeps [s]."""
+    """Return the time of a monotonic clock that continues while the computer sleeps [s]."""
     return time.monotonic() if _AWAKE is None else time.clock_gettime(_AWAKE)
 
 
@@ -60,7 +60,7 @@ class Reading:
 
 @runtime_checkable
 class Port(Protocol):
-    """A serial line, as pyserial has it."""
+    """Interface of a serial port, as in pyserial."""
 
     timeout: float | None
 
@@ -73,21 +73,22 @@ class Port(Protocol):
         ...
 
     def close(self) -> None:
-        """Let it go."""
+        """Close the port."""
         ...
 
 
 class Bus(ABC):
-    """Contract of a chain of motors, each with one spool: a new kind of motor is one class.
+    """Interface for a chain of motors, each with one spool; a new kind of motor is one class.
 
-    Only a `BusLink` uses a bus, which keeps to one thread at a time. A bus never stands in for another: what cannot be
-    reached is an error. Angles count from where the motor itself counts; contractions are made of them by a
-    `Calibration`. Motors turn to bounded positions only: they are never told a speed or a current to keep for ever.
+    Only a `BusLink` uses a bus, from one thread at a time. A bus has no fallback: if a motor cannot be reached, it
+    raises an error. Angles are in the motor's own count; a `Calibration` converts them to contractions. Motors get
+    bounded positions only: they never get a speed or a current without an end.
 
     Attributes:
-        kind: words that begin every line about it.
+        kind: prefix of every message about it.
         lost_position: True if motors are known to have lost their count since calibration.
-        silence: time without commands after which watchdogs may have fired that `restart_watchdog` begins again [s].
+        silence: time without commands after which the motors' watchdogs may have fired; `restart_watchdog` resets them
+            [s].
     """
 
     kind: ClassVar[str]
@@ -96,65 +97,65 @@ class Bus(ABC):
 
     @property
     def clock(self) -> Callable[[], float]:
-        """Monotonic clock of its readings, by which motors are watched [s]."""
+        """Return the time of its readings, by a monotonic clock, for monitoring motors [s]."""
         return steady
 
     def mark(self, zeros: Vector | None = None) -> None:  # noqa: B027 - most motors know their angle by themselves
-        """Remember that the motors are calibrated, where that can be lost (HydrostatError: it cannot be remembered).
+        """Record that the motors are calibrated, if they can lose that (HydrostatError: it cannot be recorded).
 
-        Angles of the zeros [rad] are for boards that play moves alone.
+        The zero angles [rad] are for boards that play moves without a computer.
         """
 
     @abstractmethod
     def identify(self) -> tuple[MotorFacts, ...]:
-        """Facts of the motors asked for, in their order, torque off (HydrostatError: who is silent, or another model).
+        """Read the data of the requested motors, torque off (HydrostatError: a silent motor, or another model).
 
-        Each motor's own watchdog is armed and then tried: told nothing for a moment, does it stop?
+        Arms the watchdog of each motor, then tests that the motor stops after a moment without commands.
         """
 
     @abstractmethod
     def arm(self, currents: Vector) -> None:
-        """Switch torque on where they stand, each bounded to a current [A] (HydrostatError: one did not take it)."""
+        """Switch torque on at present positions, with current limits [A] (HydrostatError: a limit was not set)."""
 
     def restart_watchdog(self) -> None:  # noqa: B027 - where nothing watches by itself there is nothing to do
-        """Let the own watchdogs of armed motors begin again: they may have fired while others were armed.
+        """Restart the watchdogs of armed motors, because they may have fired while other motors were armed.
 
         Raises:
-            HydrostatError: one does not.
+            HydrostatError: a watchdog does not restart.
         """
 
     def find_restarted(self) -> tuple[int, ...]:
-        """Return the places of armed motors whose torque is off: they lost power since. It never raises.
+        """Return the indices of armed motors whose torque is off because they lost power. It never raises.
 
-        It is asked only where a motor does not pull or follow. Empty where the bus reports it with its readings.
+        Called only if a motor does not pull or follow. Empty if the bus reports this with its readings.
         """
         return ()
 
     def restart(self, place: int) -> None:  # noqa: B027 - where faults end by themselves there is nothing to do
-        """Restart a motor that switched itself off; its torque is off then, and its count of turns may be lost.
+        """Restart a motor that switched itself off; its torque stays off, and it may lose its count of turns.
 
         Raises:
-            HydrostatError: it does not answer.
+            HydrostatError: the motor does not answer.
         """
 
     @abstractmethod
     def read(self) -> Reading:
-        """Return the latest reading; a silent motor keeps its old stamp (HydrostatError: the line itself is gone)."""
+        """Return the latest reading; a silent motor keeps its old time stamp (HydrostatError: the port is gone)."""
 
     @abstractmethod
     def write(self, angles: Vector, speeds: Vector) -> None:
-        """Let them go to angles [rad] at speeds of at most [rad/s]; return immediately (HydrostatError: line gone)."""
+        """Command angles [rad] at maximum speeds [rad/s]; return immediately (HydrostatError: the port is gone)."""
 
     def halt(self) -> None:  # noqa: B027 - where `stop` waits for nobody there is nothing to do
         """Command a stop at the last read positions, without waiting for an answer; `stop` follows. It never raises.
 
-        For the other lines this is the time in which `stop` asks one that does not answer.
+        This stops the other lines immediately, while `stop` may wait for a line that does not answer.
         """
 
     @abstractmethod
     def stop(self) -> None:
-        """Let them stand where they are, torque on. It may be called at any time, twice, and never raises."""
+        """Stop the motors at their positions, torque on. You can call this at any time, twice; it never raises."""
 
     @abstractmethod
     def close(self) -> None:
-        """Stop them and let the line go. It may be called twice and never raises."""
+        """Stop the motors and close the port. You can call this twice, and it never raises."""

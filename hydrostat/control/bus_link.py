@@ -66,17 +66,17 @@ class LinkLimits:
 
 
 class BusLink(Link):
-    """A link to real motors: limits, deadline, guard, state and log; all that turns goes through it.
+    """Link to real motors, with limits, deadline, guard, state and log; every motion goes through it.
 
-    `identify` asks every motor, `arm` lets them turn, and nothing else does. Contractions are clipped to the limits of
-    the winches, speeds rise and stay below theirs, and goals stay close ahead of the motors. A motor that is silent,
-    hot or at fault, a deadline that is missed, and a guard that objects stop all motors; the words say why.
+    `identify` reads every motor, and only `arm` lets them turn. Contractions are clipped to the limits of the winches,
+    speeds ramp up to their limits, and goals stay close to the present positions. A silent, hot or faulty motor, a
+    missed deadline or a fault from the guard stops all motors; `why` gives the reason.
 
     Attributes:
         state: state of the link.
-        facts: motor facts, once identified.
-        why: it stopped, in words.
-        reading: the newest.
+        facts: data of the motors, after `identify`.
+        why: reason of the last stop, as text.
+        reading: latest reading.
         limits: speed limits.
         near: position tolerance for motor steps and friction [m].
         guard: tension guard, if any.
@@ -122,7 +122,7 @@ class BusLink(Link):
         return None if self.reading is None else self._taking(self.reading)
 
     def identify(self) -> tuple[MotorFacts, ...]:
-        """Ask every motor who it is (HydrostatError: one is silent, or another model)."""
+        """Identify every motor (HydrostatError: a silent motor, or another model)."""
         with self._lock:
             self.facts = ()
             with self._stopping():
@@ -137,7 +137,7 @@ class BusLink(Link):
             return self.facts
 
     def arm(self) -> None:
-        """Arm the motors (HydrostatError: not calibrated, out of the limits, or no answer from one)."""
+        """Arm the motors (HydrostatError: not calibrated, outside the limits, or no answer from a motor)."""
         with self._lock:
             stops = self._stops
             self._must_be_known()
@@ -158,7 +158,7 @@ class BusLink(Link):
                 raise self._stop_with_error(LinkState.STOPPED, "stopped while they were armed")
 
     def send(self, contractions: Vector, now: float, *, speed: float) -> None:
-        """Let the motors go to contractions, within limits."""
+        """Command contractions [m], within limits."""
         with self._lock:
             self._must_be_armed()
             if np.shape(contractions) != self._low.shape or not np.isfinite(contractions).all() or not speed >= 0:
@@ -182,7 +182,7 @@ class BusLink(Link):
                 self._must_be_armed()
 
     def read(self, now: float) -> Vector:
-        """Contractions of the last reading [m]."""
+        """Return the contractions of the latest reading [m]."""
         with self._lock:
             if self.state is LinkState.FAULT:
                 raise HydrostatError(self.why)
@@ -192,7 +192,7 @@ class BusLink(Link):
             return self._places.copy()
 
     def stop(self) -> None:
-        """Stop the motors. A thread that is about to command or arm them sees it and stops them too."""
+        """Stop the motors. A thread that is about to command or arm them detects the stop and stops them, too."""
         self._stops += 1
         if self.state is LinkState.ARMED:
             self._stop_with_error(LinkState.STOPPED, "stopped")
@@ -201,7 +201,7 @@ class BusLink(Link):
                 self._bus.stop()
 
     def close(self) -> None:
-        """Stop the motors, and let them go for good."""
+        """Stop the motors and close the link."""
         self._over.set()
         self.stop()
         with suppress(Exception):
@@ -209,14 +209,14 @@ class BusLink(Link):
         self._to(LinkState.CLOSED)
 
     def check_deadline(self) -> None:
-        """Stop motors without a command for too long; `watch` calls it all the time."""
+        """Stop motors that got no command for too long; `watch` calls this continuously."""
         if self.state is LinkState.ARMED and self._clock() - self._sent > DEADLINE:
             with self._lock:
                 if self.state is LinkState.ARMED and (since := self._clock() - self._sent) > DEADLINE:
                     self._stop_with_error(LinkState.HOLD, _late(since))
 
     def watch(self) -> None:
-        """Keep the deadline from a thread of its own, whatever else this program is busy with; arming begins it."""
+        """Monitor the deadline in a separate thread, independent of other work of the program; starts with arming."""
         if self._watch is None or not self._watch.is_alive():
             self._watch = threading.Thread(target=self._watching, name="deadline of the motors", daemon=True)
             self._watch.start()

@@ -1,4 +1,4 @@
-"""`Calibration`: which motor turns which winch, and what its angle says of the cable; kept as motors.toml."""
+"""`Calibration`: the motor of each winch, and the map from its angle to contraction; stored as motors.toml."""
 
 import json
 from dataclasses import dataclass, replace
@@ -21,25 +21,25 @@ from hydrostat.units import quote
 
 CALIBRATION = "motors.toml"
 EMULATED_CALIBRATION = "motors_emulated.toml"
-"""Calibration file of emulated motors, kept apart: a trial run must not replace what was measured on real motors."""
+"""Calibration file of emulated motors, separate so that a trial run cannot replace measurements of real motors."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class WinchMotor:
-    """A motor and the spool on it.
+    """Motor of a winch, with its spool.
 
     Attributes:
-        winch: its name.
+        winch: winch name.
         number: motor number on its bus.
-        zero: angle at which the winch has taken in nothing [rad]; None: not calibrated yet.
-        turns: 1 where rising angles take cable in, -1 where they let it out.
+        zero: angle at zero contraction [rad]; None before calibration.
+        turns: 1 if rising angles take cable in, -1 if they pay it out.
         radius: spool radius at the zero [m].
-        curve: angles turned since the zero [rad] and cable taken in there [m], rising, as layers make them; straight
-            between and beyond. Empty: the radius alone.
-        current: the most that the motor may draw [A].
+        curve: measured points of spool angle since the zero [rad] and cable taken in [m], rising, because cable winds
+            in layers; linear between and beyond. Empty to use the radius alone.
+        current: maximum motor current [A].
         counts: encoder counts per spool turn; only for motors on a board with our firmware.
-        board: or line that it hangs on, from 1, where there are several.
-        model: key of the motor, as `hydrostat firmware` chose it; None: that of the robot or of its design.
+        board: number of its board or serial line, from 1, if there are several.
+        model: key of the motor, chosen by `hydrostat firmware`; None for that of the robot or of its design.
     """
 
     winch: str
@@ -76,18 +76,18 @@ class WinchMotor:
             raise InputError(f"{self.winch}: curve rises by more than 0.5 m a radian")
 
     def contraction(self, angle: float) -> float:
-        """Cable taken in at an angle of the motor [m], NaN before it is calibrated."""
+        """Return the cable taken in at an angle of the motor [m]; NaN before calibration."""
         turned = self.turns * (angle - (np.nan if self.zero is None else self.zero))
         begin, taken, radius = next((piece for piece in self._pieces if turned > piece[0]), (0.0, 0.0, self.radius))
         return taken + radius * (turned - begin)
 
     def angle(self, contraction: float) -> float:
-        """Angle of the motor at a contraction [rad]."""
+        """Return the angle of the motor at a contraction [rad]."""
         begin, taken, radius = self._piece(contraction)
         return (np.nan if self.zero is None else self.zero) + self.turns * (begin + (contraction - taken) / radius)
 
     def reach(self, contraction: float) -> float:
-        """Winding radius at a contraction [m]."""
+        """Return the winding radius at a contraction [m]."""
         return self._piece(contraction)[2]
 
     def _piece(self, contraction: float) -> tuple[float, float, float]:
@@ -102,15 +102,15 @@ class WinchMotor:
 
 @dataclass(frozen=True)
 class Calibration:
-    """Motors in the order of the winches of a robot."""
+    """Calibrated motors, in the order of the winches of a robot."""
 
     motors: tuple[WinchMotor, ...]
 
     def assume_zeros(self, robot: Robot) -> "Calibration":
-        """Return a copy in which motors without a known zero count from 0: for emulated motors.
+        """Return a copy in which motors without a known zero count from 0, for emulated motors.
 
-        A servo that turns less than a turn (`motor` of the robot) stands as kits mount it: with all cable paid out it
-        is `KIT_STEP` steps from its end.
+        A servo with less than one turn (`motor` of the robot) starts as kits mount it: with all cable paid out,
+        `KIT_STEP` steps from its end.
         """
         payouts = {winch.name: winch.release for winch in robot.winches}
         limited = robot.motor != "auto" and Motor.choose(robot.motor).turns < 1
@@ -125,23 +125,23 @@ class Calibration:
 
     @property
     def model(self) -> str | None:
-        """Key of the motor that all of them are; None if they differ or one is unknown."""
+        """Key of the motor model, the same for all; None if models differ or one is unknown."""
         models = {motor.model for motor in self.motors}
         return models.pop() if len(models) == 1 else None
 
     @property
     def boards(self) -> int:
-        """Number of boards or serial lines that its motors are connected to."""
+        """Number of boards or serial lines of the motors."""
         return max(motor.board for motor in self.motors)
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """Names of the winches for messages, with those of their boards where there are several."""
+        """Winch names for messages, with the board if there are several."""
         several = self.boards > 1
         return tuple(f"{motor.winch} (board {motor.board})" if several else motor.winch for motor in self.motors)
 
     def places(self, board: int) -> list[int]:
-        """Places of the motors of a board in the order of the winches."""
+        """Return the indices of the motors on a board, in winch order."""
         return [place for place, motor in enumerate(self.motors) if motor.board == board]
 
     @property
@@ -150,7 +150,7 @@ class Calibration:
         return all(spool.zero is not None for spool in self.motors)
 
     def check(self, robot: Robot) -> None:
-        """Check that these are the winches of a robot (InputError: another, one missing, a number twice, or drives)."""
+        """Check the winches against a robot (InputError: other or missing winches, a duplicate number, or drives)."""
         PinDrive.require_none(robot.drives, "motors")
         wanted, given = [winch.name for winch in robot.winches], [spool.winch for spool in self.motors]
         for name in wanted:
@@ -170,20 +170,20 @@ class Calibration:
             )
 
     def contractions(self, angles: Vector) -> Vector:
-        """Cable taken in by each winch [m]."""
+        """Return the cable taken in by each winch [m]."""
         return np.array([spool.contraction(angle) for spool, angle in zip(self.motors, angles.tolist(), strict=True)])
 
     def angles(self, contractions: Vector) -> Vector:
-        """Angle of each motor [rad], in its own count."""
+        """Return the angle of each motor [rad], in its own count."""
         return np.array([spool.angle(taken) for spool, taken in zip(self.motors, contractions.tolist(), strict=True)])
 
     def radii(self, contractions: Vector) -> Vector:
-        """Radius at which each cable runs on [m]."""
+        """Return the winding radius of each cable [m]."""
         return np.array([spool.reach(taken) for spool, taken in zip(self.motors, contractions.tolist(), strict=True)])
 
     @staticmethod
     def read(folder: Path, robot: Robot, *, name: str = CALIBRATION) -> "Calibration":
-        """The motors of a robot folder (InputError: no such file, or a wrong one, with the line of what is wrong)."""
+        """Read the motors of a robot folder (InputError: no such file, or an invalid one; names the line)."""
         import tomllib
 
         file = folder / name
@@ -214,7 +214,7 @@ class Calibration:
 
     @staticmethod
     def usual(robot: Robot) -> "Calibration":
-        """Motors 1, 2, ... on the winches in their order, with the spools of robot.toml and zeros unknown."""
+        """Return motors 1, 2, ... for the winches in order, with the spools of robot.toml and unknown zeros."""
         winches = enumerate(robot.winches, 1)
         return Calibration(
             tuple(WinchMotor(winch=each.name, number=n, radius=each.spool_radius) for n, each in winches)
@@ -222,10 +222,10 @@ class Calibration:
 
     @staticmethod
     def emulate(folder: Path | None, robot: Robot) -> "Calibration":
-        """Emulated motors: as calibrated, or as in motors.toml; without either their zeros are assumed.
+        """Return emulated motors: as calibrated, or as in motors.toml; without either, with assumed zeros.
 
         Raises:
-            InputError: a file that is wrong.
+            InputError: an invalid file.
         """
         for name in (EMULATED_CALIBRATION, CALIBRATION):
             if folder is not None and (folder / name).exists():
@@ -233,7 +233,7 @@ class Calibration:
         return Calibration.usual(robot).assume_zeros(robot)
 
     def write(self, folder: Path, *, name: str = CALIBRATION) -> Path:
-        """Write the motors of a robot next to its robot.toml, whole or not at all; returns the path."""
+        """Write the motors next to robot.toml, atomically; return the path."""
         known = any(spool.zero is not None for spool in self.motors)
         told = (
             "zero and curve are of this one robot" if known else "hydrostat calibrate finds where cables begin to pull"

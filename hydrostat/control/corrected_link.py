@@ -11,7 +11,7 @@ from hydrostat.simulation import ProfileTable
 
 
 def correct_table(table: ProfileTable, folder: Path, robot: Robot) -> ProfileTable:
-    """Table of commands to motors for a table of contractions, by the correction.json of a robot folder, if any."""
+    """Return the table of motor commands for a table of contractions, by the folder's correction.json, if any."""
     correction = ContractionMap.read(folder, robot)
     if correction is None:
         return table

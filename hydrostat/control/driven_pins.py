@@ -13,9 +13,10 @@ from hydrostat.simulation import ProfileTable
 
 
 def motor_stand(robot: Robot) -> Robot:
-    """Return a robot without drives, that has a winch without cables in place of each drive of pins.
+    """Return a robot in which a winch without cables replaces each pin drive.
 
-    A slide takes in its travel [m], a drive that turns its angle times `LEVER`. Without drives it is the robot itself.
+    A linear drive takes in its travel [m], a rotary drive its angle times `LEVER`. A robot without drives is returned
+    unchanged.
     """
     if not robot.drives:
         return robot
@@ -38,14 +39,14 @@ def motor_stand(robot: Robot) -> Robot:
 
 
 def stand_table(table: ProfileTable, robot: Robot) -> ProfileTable:
-    """Table of moves of a robot, for its `motor_stand`: without the shares of loads, which no motor changes."""
+    """Return a table of moves for the `motor_stand` of a robot, without load shares, which no motor changes."""
     if not robot.drives:
         return table
     return replace(table, profile=replace(table.profile, values=_select(robot, table.profile.values)))
 
 
 def list_moved_loads(table: ProfileTable, robot: Robot) -> list[str]:
-    """Columns of a table of moves that change a load; `stand_table` leaves them out."""
+    """Return the columns of a table of moves that change a load; `stand_table` leaves them out."""
     values = table.profile.values
     return [
         drive.column[0]
@@ -55,7 +56,7 @@ def list_moved_loads(table: ProfileTable, robot: Robot) -> list[str]:
 
 
 def stand_tensions(robot: Robot, table: ProfileTable) -> tuple[Callable[[Vector], Vector], Callable[[Vector], Vector]]:
-    """Return tensions along moves by the values of a `motor_stand`; drives pull 0 N, in the second function NaN."""
+    """Return tensions along moves by the values of a `motor_stand`; drives pull 0 N, or NaN in the second function."""
     if not robot.drives:
         pulls = tensions_along(robot, table.profile)
         return pulls, pulls

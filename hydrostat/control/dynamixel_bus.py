@@ -82,7 +82,7 @@ TRIED = 2
 
 
 class DynamixelBus(ServoBus):
-    """Servos in extended position mode, bounded in current where they can be (modes 5 and 4)."""
+    """Dynamixel servos in extended position mode, with a current limit where supported (modes 5 and 4)."""
 
     kind: ClassVar[str] = "dynamixel"
     braking: ClassVar[float] = ACCELERATION
@@ -95,7 +95,7 @@ class DynamixelBus(ServoBus):
         self._proved = set[int]()  # whose watchdog was seen to stop them
 
     def identify(self) -> tuple[MotorFacts, ...]:
-        """Facts of the servos; each watchdog is armed and tried."""
+        """Read the data of the servos; arm and test each watchdog."""
         with self._lock:
             firmware = {number: self._ping(number) for number in self._numbers}
             self._known, self._holding = True, False
@@ -116,7 +116,7 @@ class DynamixelBus(ServoBus):
             )
 
     def arm(self, currents: Vector) -> None:
-        """Switch torque on where they stand."""
+        """Switch torque on at present positions."""
         with self._lock:
             self._stand()
             for number, most in zip(self._numbers, currents.tolist(), strict=True):
@@ -128,7 +128,7 @@ class DynamixelBus(ServoBus):
             self.restart_watchdog()  # at last: who waits for others to be armed would be told nothing
 
     def restart_watchdog(self) -> None:
-        """Arm the watchdogs of all at once; one that has fired refuses goals until it is reset."""
+        """Arm all watchdogs at once; a servo whose watchdog has fired rejects goals until its reset."""
         with self._lock:
             self._tell_all(WATCHDOG, dict.fromkeys(self._numbers, bytes(1)))
             armed = set[int]()
@@ -154,7 +154,7 @@ class DynamixelBus(ServoBus):
         return Reading(**last, stamps=stamps, faults=tuple(faults))
 
     def write(self, angles: Vector, speeds: Vector) -> None:
-        """Send goals and speeds to all at once; none answers."""
+        """Send goals and speeds to all servos at once, without answers."""
         steps = np.rint(angles / TICK).astype(int).tolist()
         rates = np.clip(np.rint(np.abs(speeds) / TURNING), 1, 32767).astype(int).tolist()
         rise = max(1, min(32767, round(ACCELERATION / SPEEDING)))
@@ -167,7 +167,7 @@ class DynamixelBus(ServoBus):
             self._tell_all(PROFILE, values)
 
     def restart(self, place: int) -> None:
-        """Reboot a servo, which alone ends a hardware error; it counts from within one turn then."""
+        """Reboot a servo, the only way to clear a hardware error; it then counts from within one turn."""
         with self._lock:
             self._send(self._numbers[place], REBOOT)
             self._answers(1)

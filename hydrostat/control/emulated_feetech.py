@@ -33,12 +33,12 @@ from hydrostat.control.scs_bus import NUMBER, SCS_STALL, SCS_TICK
 
 
 class EmulatedLine:
-    """A serial line with emulated servos that a program of its own may open; nothing turns but numbers.
+    """Serial line with emulated servos for a separate program; no hardware is involved.
 
     Attributes:
-        chain: the servos.
+        chain: chain of the servos.
         path: pseudo-terminal to open in place of a serial port.
-        moved: when each servo last moved, by the time of the chain [s].
+        moved: last time at which each servo moved, by the clock of the chain [s].
     """
 
     def __init__(self, chain: EmulatedChain) -> None:
@@ -64,13 +64,13 @@ class EmulatedLine:
         self.close()
 
     def unplug(self) -> None:
-        """Pull the cable out: the servos keep their power."""
+        """Unplug the serial line; the servos keep their power."""
         for end in (self._outer, self._inner):
             with suppress(OSError):
                 os.close(end)
 
     def close(self) -> None:
-        """End it."""
+        """Close the line."""
         self._over.set()
         self._thread.join(5.0)
         self.unplug()
@@ -115,7 +115,7 @@ class _EmulatedFeetech(EmulatedServo, ABC):
 
 @dataclass
 class EmulatedSts(_EmulatedFeetech):
-    """A servo of the STS series; it has no watchdog."""
+    """Emulated STS servo; it has no watchdog."""
 
     model: int = 777
     supply: float = 7.4  # voltage that it measures [V]
@@ -131,14 +131,14 @@ class EmulatedSts(_EmulatedFeetech):
 
     @property
     def most(self) -> float:
-        """Largest torque that its bound allows [N m]."""
+        """Largest torque that its limit allows [N m]."""
         return self.constant * STALL * int.from_bytes(self.table[BOUND : BOUND + 2], "little") / FULL_TORQUE
 
     def _hold_place(self) -> None:
         self._write_register(GOAL, round(self.counted_angle / TICK))
 
     def step(self, now: float, dt: float) -> None:
-        """Let time pass, to an instant [s]."""
+        """Advance to a time [s]."""
         on = bool(self.table[TORQUE]) and not self.ails.is_off
         goal, rise = self.origin + self._number(GOAL) * TICK, (self.table[RISE] or 1000) * 100 * TICK
         limit = int.from_bytes(self.table[GOAL + 4 : GOAL + 6], "little") * TICK or 6.0
@@ -166,7 +166,7 @@ class EmulatedSts(_EmulatedFeetech):
 
 @dataclass
 class EmulatedScs(_EmulatedFeetech):
-    """A servo of the SCS series: words with the high byte first, 300 degrees, load in place of current."""
+    """Emulated SCS servo: high byte first, 300 degrees, load in place of current."""
 
     model: int = NUMBER
     supply: float = 6.0  # voltage that it measures [V]
@@ -181,20 +181,20 @@ class EmulatedScs(_EmulatedFeetech):
         self.step(0.0, 1e-3)
 
     def begin_anew(self) -> None:
-        """Lose power for a moment: its potentiometer forgets nothing."""
+        """Cycle the power: its potentiometer keeps the position."""
         self.speed = 0.0
         self.__post_init__()
 
     @property
     def most(self) -> float:
-        """Largest torque that its bound allows [N m]."""
+        """Largest torque that its limit allows [N m]."""
         return self.constant * SCS_STALL * self._word(SCS_BOUND) / FULL_TORQUE
 
     def _hold_place(self) -> None:
         self._write_word(GOAL, round(self.angle / SCS_TICK))
 
     def step(self, now: float, dt: float) -> None:
-        """Let time pass, to an instant [s]."""
+        """Advance to a time [s]."""
         on = bool(self.table[TORQUE]) and not self.ails.is_off
         limit = min(self._word(GOAL + 4) * SCS_TICK or 10.0, 10.0)
         way = self._word(GOAL) * SCS_TICK - self.angle
@@ -217,7 +217,7 @@ class EmulatedScs(_EmulatedFeetech):
 
 
 class EmulatedFeetechChain(EmulatedChain):
-    """A port with Feetech servos at its other end."""
+    """Port with emulated Feetech servos."""
 
     def __init__(self, servos: Sequence[EmulatedSts | EmulatedScs]) -> None:
         """Servos that all hear the same line."""

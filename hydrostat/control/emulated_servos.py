@@ -80,16 +80,16 @@ class InjectedFaults:
 
 @dataclass
 class EmulatedServo:
-    """A servo with its control table, gear and load.
+    """Emulated servo with its control table, gear and load.
 
     Attributes:
-        number: on its bus.
-        model: number of the model.
+        number: servo number on its bus.
+        model: model number.
         angle: spool angle [rad].
-        speed: [rad/s].
-        origin: angle from which it counts: 0, or begin of the turn in which it was switched on last [rad].
-        load: torque of its cable by angle [N m], which pulls it back.
-        constant: torque by current [N m/A].
+        speed: spool speed [rad/s].
+        origin: angle from which it counts: 0, or start of the turn in which it was last switched on [rad].
+        load: cable torque by angle [N m], which pulls the spool back.
+        constant: torque constant [N m/A].
         ails: injected faults.
     """
 
@@ -111,7 +111,7 @@ class EmulatedServo:
         self.heard, self.moved = -inf, 0.0
 
     def begin_anew(self) -> None:
-        """Lose power for a moment: what is not lasting is as when it is switched on, torque off, turns forgotten."""
+        """Cycle the power: volatile registers are reset, torque is off, and turns are lost."""
         mode = self.table[MODE]
         self.speed, self.origin = 0.0, 2 * pi * (self.angle // (2 * pi))
         self.__post_init__()
@@ -120,7 +120,7 @@ class EmulatedServo:
 
     @property
     def counted_angle(self) -> float:
-        """Angle by its own count [rad]."""
+        """Angle in its own count [rad]."""
         return self.angle - self.origin
 
     def get(self, place: int, size: int) -> int:
@@ -138,13 +138,13 @@ class EmulatedServo:
 
     @property
     def most(self) -> float:
-        """Largest torque that its bounds allow [N m]."""
+        """Largest torque that its limits allow [N m]."""
         model = MODELS[self.model]
         bound = 1e-3 * self.get(CURRENT, 2) if model.measures else model.stall * self.get(PWM, 2) / 885
         return self.constant * min(bound, model.stall)
 
     def take(self, place: int, data: bytes) -> int:
-        """Write registers as commanded over the bus; returns the error of the answer."""
+        """Write registers as commanded over the bus; return the error of the answer."""
         fired = self.get(WATCHDOG, 1) == -1
         if fired and place + len(data) > PWM and place < STATE:
             return 0x07  # goals are read-only
@@ -156,7 +156,7 @@ class EmulatedServo:
         return 0
 
     def step(self, now: float, dt: float) -> None:
-        """Let time pass, to an instant [s]."""
+        """Advance to a time [s]."""
         watch = self.get(WATCHDOG, 1)
         on = bool(self.table[TORQUE]) and not self.ails.is_off
         if watch > 0 and now - self.heard > 0.02 * watch:
@@ -189,13 +189,13 @@ class EmulatedServo:
 
 
 class EmulatedChain:
-    """A port with servos at its other end, in a time of its own, which passes while one waits or reads.
+    """Port with emulated servos, with its own clock, which advances while a program waits or reads.
 
-    What happens to bytes on the way is up to `towards` and `back`, which may drop, flip or double them.
+    `towards` and `back` transform bytes on the line; they may drop, flip or double them.
 
     Attributes:
-        servos: at the other end.
-        now: its time [s].
+        servos: servos on the line.
+        now: time of the chain [s].
         gone: True if the line is unplugged.
     """
 
@@ -211,11 +211,11 @@ class EmulatedChain:
         self._reader, self._told = PacketReader(), b""
 
     def clock(self) -> float:
-        """Its time [s]."""
+        """Return the time of the chain [s]."""
         return self.now
 
     def wait(self, seconds: float) -> None:
-        """Let time pass."""
+        """Advance the time."""
         end = self.now + seconds
         while self.now < end - 1e-12:
             dt = min(self.STEP, end - self.now)
@@ -226,7 +226,7 @@ class EmulatedChain:
 
     @property
     def in_waiting(self) -> int:
-        """Bytes that can be read at once."""
+        """Number of bytes that can be read immediately."""
         return len(self._told)
 
     def write(self, data: bytes, /) -> int:
@@ -241,7 +241,7 @@ class EmulatedChain:
         return len(data)
 
     def read(self, size: int, /) -> bytes:
-        """Bytes of their answers."""
+        """Read bytes of their answers."""
         if self.gone:
             raise OSError("the device is not there")
         self.wait(self.STEP if self._told or not self.timeout else min(max(self.timeout, 1e-4), 0.005))
@@ -249,7 +249,7 @@ class EmulatedChain:
         return taken
 
     def close(self) -> None:
-        """Unplug it."""
+        """Unplug the line."""
         self.gone = True
 
     def _answers(self, number: int, instruction: int, content: bytes) -> bytes:
@@ -292,7 +292,7 @@ class EmulatedChain:
 
 
 class LiveChain(EmulatedChain):
-    """The same in real time, for programs that run as they would with motors."""
+    """Emulated chain in real time, for programs that run as with motors."""
 
     def __init__(self, servos: Sequence[EmulatedServo], *, longest: float = 5.0) -> None:
         """Servos from now on, for which so much time passes at most between two looks at their clock [s].
@@ -304,25 +304,25 @@ class LiveChain(EmulatedChain):
         self._longest = longest
 
     def clock(self) -> float:
-        """Its time [s]."""
+        """Return the time of the chain [s]."""
         looked = time.monotonic()
         self._time += min(looked - self._looked, self._longest)
         self._looked = looked
         return self._time
 
     def sleep(self, seconds: float) -> None:
-        """Wait until so much of its time has passed."""
+        """Wait for a duration of the chain's time [s]."""
         end = self.clock() + seconds
         while (left := end - self.clock()) > 0:
             time.sleep(min(left, self._longest))
 
     def write(self, data: bytes, /) -> int:
-        """Send bytes to all servos as they are by now."""
+        """Send bytes to all servos at their present state."""
         self._catch_up()
         return super().write(data)
 
     def read(self, size: int, /) -> bytes:
-        """Bytes of their answers."""
+        """Read bytes of their answers."""
         if not self._told and self.timeout:
             time.sleep(min(self.timeout, self.STEP))
         self._catch_up()

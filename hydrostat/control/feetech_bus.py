@@ -112,7 +112,7 @@ FAULTS = {
 
 
 class FeetechBus(ServoBus):
-    """Servos in position mode, bounded in torque."""
+    """Feetech servos in position mode, with a torque limit."""
 
     kind: ClassVar[str] = "feetech"
     packets = SumReader
@@ -125,7 +125,7 @@ class FeetechBus(ServoBus):
         self._low, self._high = np.zeros(len(self._numbers)), np.zeros(len(self._numbers))  # steps they may go to
 
     def identify(self) -> tuple[MotorFacts, ...]:
-        """Facts of the servos; none has a watchdog, none is written to its lasting memory."""
+        """Read the data of the servos; they have no watchdog, and their permanent memory is not written."""
         with self._lock:
             facts = tuple(self._fact(index, number) for index, number in enumerate(self._numbers))
             self._check_supply()
@@ -133,7 +133,7 @@ class FeetechBus(ServoBus):
             return facts
 
     def arm(self, currents: Vector) -> None:
-        """Switch torque on where they stand; a bound of current is a share of the torque at stall."""
+        """Switch torque on at present positions; a current limit becomes a share of the stall torque."""
         with self._lock:
             for number, most in zip(self._numbers, currents.tolist(), strict=True):
                 share = max(1, round(FULL_TORQUE * min(most / STALL, 1.0)))
@@ -161,7 +161,7 @@ class FeetechBus(ServoBus):
         return Reading(**last, stamps=stamps, faults=tuple(faults))
 
     def write(self, angles: Vector, speeds: Vector) -> None:
-        """Send goals and speeds to all at once; none answers."""
+        """Send goals and speeds to all servos at once, without answers."""
         steps = np.rint(angles / self.tick)
         if beyond := np.flatnonzero((steps < self._low) | (steps > self._high)).tolist():
             raise self._tell_beyond(beyond[0], float(steps[beyond[0]]))
@@ -171,7 +171,7 @@ class FeetechBus(ServoBus):
             self._go(steps.astype(int).tolist(), rates, self._numbers)
 
     def restart(self, place: int) -> None:
-        """Switch its torque off, which ends a fault by overload (from memory, tried on none); it keeps its count."""
+        """Switch its torque off, which clears an overload fault (not yet tested on a servo); it keeps its count."""
         with self._lock:
             self._set(self._numbers[place], TORQUE, b"\x00", "its torque switch")
 

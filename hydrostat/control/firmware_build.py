@@ -23,10 +23,10 @@ SPARE_LENGTH = 0.025
 
 
 def on_boards(calibration: Calibration, boards: Sequence[str]) -> Calibration:
-    """Motors as they are if the boards fit them; else one board filled after the other, zeros unknown.
+    """Return the motors unchanged if they fit the boards; else fill the boards in order, zeros unknown.
 
     Raises:
-        InputError: the boards do not bear all.
+        InputError: too few places on the boards.
     """
     room = [check_board(board).motors for board in boards]
     if calibration.boards <= len(room) and all(
@@ -43,7 +43,7 @@ def on_boards(calibration: Calibration, boards: Sequence[str]) -> Calibration:
 
 
 def robot_word(robot: Robot, calibration: Calibration, board: int = 1) -> str:
-    """The word by which a board says what it was built for: the robot's name, which of several, a sum of settings."""
+    """Return the identifier that a board reports: robot name, board number, and checksum of its settings."""
     name = re.sub(r"[^A-Za-z0-9_-]+", "-", robot.name)[:20] or "robot"
     which = f"-{board}" if calibration.boards > 1 else ""
     turns = [motor.turns for motor in _motors_of_board(calibration, board)]
@@ -61,7 +61,7 @@ bound of current that it may take to gain speed."""
 def firmware_settings(
     robot: Robot, calibration: Calibration, *, rpm: float, stall: float = 2.0, board: int = 1, bus: str = ""
 ) -> str:
-    """The text of settings.h for one board of a robot.
+    """Return the text of settings.h for one board of a robot.
 
     Args:
         robot: robot with the limits.
@@ -69,10 +69,10 @@ def firmware_settings(
         rpm: no-load speed [turns/min].
         stall: stall current [A]; acceleration leaves half of the current limit for the load.
         board: board number.
-        bus: kind of bus of servos, of `SERVO_STEPS`; empty for DC motors.
+        bus: kind of servo bus, a key of `SERVO_STEPS`; empty for DC motors.
 
     Raises:
-        InputError: motors that are not numbered from 1 without a gap, turn the wrong way, or have no counts.
+        InputError: motors that are not numbered from 1 without gaps, turn the wrong way, or have no counts.
     """
     ordered = _motors_of_board(calibration, board)
     if [motor.number for motor in ordered] != list(range(1, len(ordered) + 1)):
@@ -146,7 +146,7 @@ def build_images(
 ) -> list[Path]:
     """Compile the firmware of each board into its folder, and return the images.
 
-    Arguments as `firmware_settings`; `moves` is text that the settings of each get, too.
+    Arguments as for `firmware_settings`; `moves` is text that is added to the settings of each board.
     """
     texts = [
         firmware_settings(robot, calibration, rpm=rpm, stall=stall, board=number + 1, bus=bus) + moves
@@ -156,7 +156,7 @@ def build_images(
 
 
 def flash_command(board: str, port: str, image: Path) -> list[str]:
-    """The command of avrdude that writes an image to a board on a port, or of arduino-cli for a sketch."""
+    """Return the avrdude command that writes an image to a board, or the arduino-cli command for a sketch."""
     kind = check_board(board)
     if not kind.loader:
         return ["arduino-cli", "compile", "-b", f"esp32:esp32:{kind.chip}", "-u", "-p", port, str(image.parent)]
@@ -164,14 +164,14 @@ def flash_command(board: str, port: str, image: Path) -> list[str]:
 
 
 def check_ports(ports: Sequence[str]) -> None:
-    """Refuse ports that are not there, as avrdude tries them for ever (HydrostatError)."""
+    """Reject missing ports, because avrdude retries them forever (HydrostatError)."""
     for port in ports:
         if port.startswith("/") and not Path(port).exists():
             raise HydrostatError(f"{port} is not there; look at the plug and the name")
 
 
 def flash(command: Sequence[str]) -> None:
-    """Write firmware to a board (HydrostatError: the program for it is not there, or it could not)."""
+    """Write firmware to a board (HydrostatError: the program is missing, or it failed)."""
     if not shutil.which(command[0]):
         fix = "On Debian/Ubuntu: sudo apt install avrdude"
         if command[0] != "avrdude":

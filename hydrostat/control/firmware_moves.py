@@ -73,19 +73,19 @@ def bake_moves(
     rate: int = 25,
     rpm: float | None = None,
 ) -> BakedMoves:
-    """Moves for the one board of a robot, as `hydrostat play` would command them.
+    """Convert moves for a robot with one board, with the commands of `hydrostat play`.
 
     Args:
         path: table of contractions.
         folder: robot folder; its correction.json, if any, corrects the table.
         robot: robot with the winches.
-        calibration: motors with counts; their zeros are not needed.
-        board: kind of the board.
-        rate: rows a second, of `RATES`.
-        rpm: no-load speed of the motors [turns/min], which moves must not exceed; None: not known.
+        calibration: motors with encoder counts; zeros are not needed.
+        board: kind of board.
+        rate: rows per second, one of `RATES`.
+        rpm: no-load speed of the motors [turns/min], which moves must not exceed; None if unknown.
 
     Raises:
-        InputError: several boards, another rate, a table that motors cannot play or that the board has no room for.
+        InputError: several boards, another rate, or a table that motors cannot play or that exceeds the board's memory.
     """
     if rate not in RATES:
         raise InputError(f"--rate {rate}: unknown rate. Available: {', '.join(map(str, RATES))} rows/s.")

@@ -20,7 +20,7 @@ from hydrostat.robot import Robot
 from hydrostat.units import list_words
 
 SERVO_STEPS = {bus.kind: 2 * pi / bus.tick for bus in (FeetechBus, ScsBus)}
-"""Steps of a turn of a servo, by kind of bus."""
+"""Steps per turn of a servo, by kind of bus."""
 
 GUIDED_SPARE, ALONE_SPARE = 0.045, 0.002
 """Cable length beyond travel and release that a board allows to a computer, which searches slack within 40 mm; and to
@@ -52,13 +52,13 @@ def servo_settings(robot: Robot, motors: list[WinchMotor], bus: str) -> str:
 
 
 def find_zero_loss(robot: Robot, motors: Sequence[WinchMotor], bus: str, taken: Sequence[float] = ()) -> str:
-    """Return why servos lose their zeros without power, with the fix; empty if they keep them.
+    """Return the reason why servos lose their zeros without power, with the fix; empty if they keep them.
 
     Args:
         robot: robot with the winches.
         motors: motor of each winch.
         bus: kind of the servos.
-        taken: the most that poses take in with each winch, in the order of the robot [m]; empty: not known.
+        taken: largest contraction of each winch over the poses, in winch order [m]; empty if unknown.
     """
     ranges = {winch.name: winch.travel + winch.release for winch in robot.winches}
     lost = [motor for motor in motors if ranges[motor.winch] + 2 * ALONE_SPARE >= 2 * pi * motor.radius]

@@ -28,10 +28,10 @@ class GuardLimits:
 
 
 def not_judged(constants: Vector, names: Sequence[str]) -> str:
-    """Say whose cables a guard cannot judge; "" for nobody's.
+    """Return a warning that names the cables a guard cannot check; "" if none.
 
     Args:
-        constants: torque of each motor by its current [N m/A]; NaN where it is not known.
+        constants: torque constant of each motor [N m/A]; NaN if unknown.
         names: winch names.
     """
     blind = [name for name, constant in zip(names, constants.tolist(), strict=True) if np.isnan(constant)]
@@ -41,7 +41,7 @@ def not_judged(constants: Vector, names: Sequence[str]) -> str:
 
 
 class TensionGuard:
-    """Holds motors by what a simulation says of the tensions: too much is a jam, too little a slack or broken cable."""
+    """Compare motor torque with simulated tensions: too much is a jam, too little a slack or broken cable."""
 
     def __init__(
         self,
@@ -63,17 +63,17 @@ class TensionGuard:
         self._missed = np.full(len(names), np.nan)  # since when a cable is not felt [s]
 
     def begin(self) -> None:
-        """Forget what was missed before motors were armed."""
+        """Reset the guard before motors are armed."""
         self._missed = np.full(len(self._names), np.nan)
 
     def fault(self, contractions: Vector, currents: Vector, radii: Vector, now: float) -> str:
-        """Return the fault in words; empty for none.
+        """Return the fault as text; empty for none.
 
         Args:
             contractions: present contractions [m].
-            currents: motor currents [A]; NaN if unknown, then not judged.
-            radii: at which the cables run on [m].
-            now: clock that only runs forward [s].
+            currents: motor currents [A]; NaN if unknown, which skips the check.
+            radii: winding radii of the cables [m].
+            now: time of a monotonic clock [s].
         """
         model, felt, limits = self._tensions(contractions), self._constants * currents / radii, self._limits
         ways = np.where(model < 0, -1.0, 1.0)  # reversed cables pull the other way

@@ -10,25 +10,24 @@ WATCHDOG_TIMEOUT = 0.5  # time without a command [s] after which motors stop whe
 
 
 class Link(ABC):
-    """Contract of what lies between commands and motors.
+    """Interface between commands and motors; a new kind of motor is one class.
 
-    A new kind of motor is one class; whoever drives passes an instance of it.
+    Contractions are the cable lengths that winches take in beyond rest [m], in the order of the robot's winches; speeds
+    are cable speeds [m/s]; times are of one monotonic clock, such as `time.monotonic` [s].
 
-    Contractions are what each winch takes in [m], beyond its length at rest, in the order of the robot's winches;
-    speeds are those of the cables [m/s]; times are of one clock that only runs forward, such as `time.monotonic` [s].
+    Only `Motors` uses a link, from one thread at a time. While motors may move, it calls `send` and `read` in turn,
+    about 60 times a second, and less often if solving is slow. Only the newest command counts; commands are not queued.
+    Neither call waits for a motor. A link that fails raises a `HydrostatError` with the fix. After this or any other
+    error, `stop` is called and nothing is sent until the next request.
 
-    Only `Motors` uses a link, from one thread at a time. While anything shall move it calls `send` and `read` in turn,
-    about 60 times a second, and less often where solving is slow; only the newest command counts, none is queued.
-    Neither waits for a motor. A link that fails raises a `HydrostatError` that says what to do. On that, and on any
-    other error, `stop` is called and nothing is sent before somebody asks again.
+    A link to real motors must guarantee that
 
-    Whoever puts real motors behind this keeps four promises: they stop `WATCHDOG_TIMEOUT` after the last `send`, even
-    if this process has died, so the watch is on the side of the motors; they stop on any error of theirs, and on
-    `stop`, and hold what they have; no command makes them move beyond the limits of their winch, or faster than it
-    says, which `Motors` asks for too.
+    - motors stop `WATCHDOG_TIMEOUT` after the last `send`, even if this process has died: the watchdog is in the
+    motors; - motors stop on any error of theirs and on `stop`, and hold their position; - no command moves them beyond
+    the limits of their winch, or faster than it says (`Motors` checks this, too).
 
     Attributes:
-        near: motors this close to a command are where they shall be [m].
+        near: distance to a command within which it counts as reached [m].
     """
 
     near: float = 1e-7
@@ -40,27 +39,27 @@ class Link(ABC):
 
     @abstractmethod
     def send(self, contractions: Vector, now: float, *, speed: float) -> None:
-        """Let the motors go to contractions [m] at so fast a cable [m/s], by a clock [s]; return immediately.
+        """Command contractions [m] at a maximum cable speed [m/s], by a clock [s]; return immediately.
 
         Raises:
-            HydrostatError: it cannot be sent.
+            HydrostatError: the command cannot be sent.
         """
 
     @abstractmethod
     def read(self, now: float) -> Vector:
-        """Contraction of each winch at the last reading [m] (HydrostatError: motors report an error, or nothing)."""
+        """Return the latest contractions [m] (HydrostatError: the motors report an error, or do not answer)."""
 
     @abstractmethod
     def stop(self) -> None:
-        """Let the motors stay where they are. It may be called at any time and never raises."""
+        """Stop the motors at their positions. You can call this at any time, and it never raises."""
 
     @abstractmethod
     def close(self) -> None:
-        """Stop the motors, and let them go for good. It may be called twice and never raises."""
+        """Stop the motors and close the link. You can call this twice, and it never raises."""
 
 
 class SimulatedLink(Link):
-    """Motors that go straight to their newest command, at its speed; their watchdog is like that of real ones."""
+    """Simulated motors that move straight to the newest command, at its speed, with a watchdog like real ones."""
 
     def __init__(self, contractions: Vector) -> None:
         """Motors that have taken in so much [m] and stand still."""
@@ -69,21 +68,21 @@ class SimulatedLink(Link):
         self._time = self._heard = -np.inf
 
     def send(self, contractions: Vector, now: float, *, speed: float) -> None:
-        """Go there."""
+        """Command contractions."""
         self._move(now)
         self._goal, self._heard, self._speed = contractions.copy(), now, speed
 
     def read(self, now: float) -> Vector:
-        """Contractions by now [m]."""
+        """Return the present contractions [m]."""
         self._move(now)
         return self._places.copy()
 
     def stop(self) -> None:
-        """Stay where they were read last."""
+        """Stop at the last read positions."""
         self._goal = self._places
 
     def close(self) -> None:
-        """Stop; there is nothing to let go."""
+        """Stop the motors."""
         self.stop()
 
     def _move(self, now: float) -> None:

@@ -48,7 +48,7 @@ RULES = FeedbackRules()
 
 
 class LostAction(StrEnum):
-    """Reaction to a camera that sees no marker."""
+    """Reaction if the camera sees no marker."""
 
     HOLD = "hold"
     CONTINUE = "continue"
@@ -60,7 +60,7 @@ class MarkerSight:
 
     Attributes:
         time: time at which the frame arrived, by the clock of the motors [s].
-        places: places of the markers in sight, in the frame of the robot [m].
+        places: positions of the visible markers, in the frame of the robot [m].
     """
 
     time: float
@@ -88,16 +88,16 @@ class _Past:
 class MarkerFeedback:
     """Correct contractions so that markers follow the simulated ones (integral control with a known lag).
 
-    Each frame shows an error at the time when it was taken. A damped least-squares step by the exact derivatives of the
-    model states the correction that would have removed it; the present correction approaches that one. Lag does not
-    add up, as the correction of that time is remembered. Corrections stay within 20 % of the travel of each winch, and
-    commands within its limits. They raise no simulated pull beyond what `TensionGuard` allows, also where motors do not
-    report their torque.
+    Each frame measures the error at the time when it was taken. A damped least-squares step with the exact derivatives
+    of the model gives the correction that would have removed this error, and the present correction approaches it.
+    Errors do not accumulate over the lag, because the correction of that time is stored. Corrections stay within 20 %
+    of the travel of each winch, and commands within its limits. They raise no simulated pull beyond the limit of
+    `TensionGuard`, even if motors do not report their torque.
 
     Attributes:
         is_waiting: True while motors hold because no marker is in sight.
-        errors: mean distance of the markers in each frame from the simulated ones [m].
-        open_errors: the same without the correction, to first order [m].
+        errors: mean distance of measured from simulated markers in each frame [m].
+        open_errors: the same distance without the correction, to first order [m].
     """
 
     settle = RULES.settle
@@ -140,20 +140,20 @@ class MarkerFeedback:
 
     @property
     def rate(self) -> float:
-        """Frames with markers in a second; 0 before the second one."""
+        """Frames with markers per second; 0 before the second one."""
         seconds = (self._seen or 0.0) - (self._began or 0.0)
         return (len(self.errors) - 1) / seconds if len(self.errors) > 1 and seconds > 0 else 0.0
 
     def correct(self, contractions: Vector, time: float, now: float) -> Vector:
-        """Contractions to command [m], within the limits of the winches.
+        """Return the contractions to command [m], within the limits of the winches.
 
         Args:
             contractions: contractions of the profile [m].
             time: time in the profile [s].
-            now: clock that only runs forward [s].
+            now: time of a monotonic clock [s].
 
         Raises:
-            HydrostatError: held motors saw no marker for too long.
+            HydrostatError: motors held for too long because no marker was in sight.
         """
         self._start = now if self._start is None else self._start
         step = now - self._past[-1].now if self._past else 0.0

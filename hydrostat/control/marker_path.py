@@ -20,13 +20,13 @@ POSES = 4000
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MarkerPath:
-    """Simulated markers and pulls along a profile, with their exact derivatives by the contractions.
+    """Simulated markers and pulls along a profile, with exact derivatives with respect to the contractions.
 
     Attributes:
         times: times of the profile [s].
-        places: places of all markers [m].
-        jacobians: derivatives dx/da of these places.
-        pulls: pull of each winch [N], as by `winch_tensions`.
+        places: positions of all markers [m].
+        jacobians: derivatives dx/da of these positions.
+        pulls: pull of each winch [N], from `winch_tensions`.
         pull_jacobians: derivatives dF/da of these pulls [N/m].
     """
 
@@ -71,11 +71,11 @@ class MarkerPath:
         )
 
     def at(self, time: float) -> tuple[np.ndarray, np.ndarray]:
-        """Places and derivatives at a time [s], linear between poses."""
+        """Return positions and derivatives at a time [s], linear between poses."""
         return self._mix(time, self.places), self._mix(time, self.jacobians)
 
     def pulls_at(self, time: float) -> tuple[np.ndarray, np.ndarray]:
-        """Pulls and their derivatives at a time [s], linear between poses."""
+        """Return pulls and their derivatives at a time [s], linear between poses."""
         return self._mix(time, self.pulls), self._mix(time, self.pull_jacobians)
 
     def _mix(self, time: float, values: np.ndarray) -> np.ndarray:

@@ -20,9 +20,9 @@ class WinchPull:
     """Cable tension of a winch as a function of its contraction, with all other winches at rest.
 
     Attributes:
-        taut: contraction at which its first cable begins to pull at rest [m].
-        places: contractions, rising, two at least [m].
-        pulls: total cable tensions of the winches there [N].
+        taut: contraction at which its first cable becomes taut, with the body at rest [m].
+        places: contractions in rising order, at least two [m].
+        pulls: total cable tension of the winch at these contractions [N].
     """
 
     taut: float
@@ -30,13 +30,13 @@ class WinchPull:
     pulls: Vector
 
     def at(self, contractions: Vector | float) -> Vector:
-        """Pull at contractions [N]; beyond the last it rises on as before it."""
+        """Return the pull at contractions [N]; extrapolated with the last slope."""
         last = max(float(self.pulls[-1] - self.pulls[-2]), 0.0) / float(self.places[-1] - self.places[-2])
         beyond = np.maximum(np.asarray(contractions) - self.places[-1], 0.0)
         return np.interp(contractions, self.places, self.pulls) + last * beyond
 
     def stiffness(self, beyond: float) -> float:
-        """Pull so far beyond where it is taut, by that way [N/m]."""
+        """Return the secant stiffness at a distance beyond the taut point [N/m]."""
         return float(self.at(self.taut + beyond)) / beyond
 
     @staticmethod
@@ -64,9 +64,9 @@ class WinchPull:
 
 
 class TensionLookup:
-    """Total cable tension of each winch [N], interpolated by contractions [m] between solved poses.
+    """Total cable tension of each winch [N] at contractions [m], interpolated between solved poses.
 
-    Between poses the nearest two are mixed by their distances. One thread may add while others ask.
+    Between poses, the nearest two are mixed by their distances. One thread may add poses while others query.
     """
 
     def __init__(self, robot: Robot, *, near: float = np.inf, most: int = 1000) -> None:
@@ -75,18 +75,18 @@ class TensionLookup:
         self._known: tuple[np.ndarray, np.ndarray] = (np.zeros((0, robot.num_controls)), np.zeros((0, 0)))
 
     def add(self, pose: Equilibrium) -> None:
-        """Remember a pose; one that is no equilibrium is left out."""
+        """Add a pose; a pose that is not in equilibrium is ignored."""
         if pose.result.converged:
             self.store(pose.controls, winch_tensions(self._robot, pose.tensions))
 
     def store(self, contractions: Vector, pulls: Vector) -> None:
-        """Remember what winches pull [N] at contractions [m]."""
+        """Add the pulls of the winches [N] at contractions [m]."""
         places, known = self._known
         more = np.concatenate([known, pulls[None]]) if len(known) else pulls[None]
         self._known = np.concatenate([places, contractions[None]])[-self._most :], more[-self._most :]
 
     def nearest(self, contractions: Vector) -> Vector:
-        """Pulls [N] however far the next pose is."""
+        """Return the pulls [N] of the nearest poses, at any distance."""
         return self._blend_tensions(contractions, np.inf)
 
     def __call__(self, contractions: Vector) -> Vector:
@@ -107,8 +107,8 @@ class TensionLookup:
 def tensions_along(robot: Robot, profile: ContractionProfile) -> Callable[[Vector], Vector]:
     """Return total cable tensions of each winch [N] by contractions [m], near a profile and the path to its start.
 
-    Equilibria are solved at even steps of the way, from one to the next; between, the nearest two are mixed by their
-    distances. A pose that is not found is left out.
+    Equilibria are solved at even steps along the path, each from the one before; between them, the nearest two are
+    mixed by their distances. Poses without an equilibrium are left out.
     """
     simulation, known, pose = Simulation(robot), TensionLookup(robot), None
     for taken in _samples(profile):
@@ -127,7 +127,7 @@ def _samples(profile: ContractionProfile) -> list[Vector]:
 
 
 def winch_tensions(robot: Robot, tensions: Vector) -> Vector:
-    """Pull at each winch at the radius of its own spool [N]; that of reversed cables counts negative."""
+    """Return the pull of each winch at the radius of its own spool [N]; reversed cables count negative."""
     pulls = dict.fromkeys((winch.name for winch in robot.winches), 0.0)
     for cable, ratio, tension in zip(robot.cables, robot.spool_ratios, tensions.tolist(), strict=True):
         pulls[cable.winch] += ratio * tension

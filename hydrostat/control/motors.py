@@ -30,28 +30,27 @@ class DriveAxis(Winch):
 
 
 DEFAULT_MAX_SPEED = 0.15
-"""Speed limit of the cables by default [m/s]: brisk for a small motor, and knobs feel direct."""
+"""Default speed limit of the cables [m/s]: fast for a small motor, and direct under a knob."""
 SPEEDS = (1e-3, 1.0)  # slowest and fastest that motors may be told to turn [m/s]
 CONTRACTION_TOLERANCE = 1e-7  # contractions this close [m] are the same
 
 
 class Motors:
-    """The winches of a robot behind a link: no command leaves their limits, and on any error or silence they hold.
+    """Winches of a robot behind a link: commands stay within their limits, and on any error or silence the motors hold.
 
-    It is used from one thread at a time, by whoever calls `drive` again and again while anything shall move, and
-    `hold` when nothing shall any more.
+    Use it from one thread at a time: call `drive` repeatedly while motors may move, and `hold` when they must not.
 
     Attributes:
         names: winch names.
-        units: unit of each for messages: mm, or deg of a drive that turns, a millimeter each.
-        low: the least that each can take in [m]; below 0 it lets out.
-        high: the most that each can take in [m].
+        units: unit of each winch in messages: mm, or deg for a rotary drive (one millimeter for each degree).
+        low: least contraction of each winch [m]; below 0 it pays out.
+        high: largest contraction of each winch [m].
         command: commanded contractions [m].
         places: contractions at the last reading [m].
-        fastest: largest speed of their cables [m/s].
+        fastest: maximum speed of the cables [m/s].
         link: link to the motors.
-        command_timeout: from one `drive` to the next, before they hold for want of commands [s].
-        clock: monotonic clock by which to drive them [s].
+        command_timeout: time between two calls of `drive` after which motors hold [s].
+        clock: monotonic clock for `drive` [s].
     """
 
     def __init__(
@@ -84,16 +83,16 @@ class Motors:
         return bool(np.abs(self.places - self.command).max(initial=0.0) > self.link.near)
 
     def set_fastest(self, speed: float) -> None:
-        """Let the cables be so fast [m/s] (InputError: that is too slow or too fast)."""
+        """Set the maximum cable speed [m/s] (InputError: too slow or too fast)."""
         if not SPEEDS[0] <= speed <= SPEEDS[1]:
             low, high = 1e3 * SPEEDS[0], 1e3 * SPEEDS[1]
             raise InputError(f"motors may turn from {low:g} to {high:g} mm/s, not {1e3 * speed:g}")
         self.fastest = speed
 
     def check(self, table: ProfileTable, *, speed: float = 1.0) -> None:
-        """Refuse a table that these motors cannot play at a multiple of its own speed.
+        """Reject a table that these motors cannot play at a multiple of its own speed.
 
-        The InputError names the line and the column of what is beyond the limits of its winch, or too fast.
+        The InputError names the line and the column that exceeds the limits of its winch or is too fast.
         """
         times, values = table.profile.times, table.profile.values
         if times[0] < 0:
@@ -117,7 +116,7 @@ class Motors:
             )
 
     def ask(self, contractions: Vector) -> str:
-        """Command contractions within limits [m]; return those beyond (InputError: not finite; the command stays)."""
+        """Command contractions [m] within limits; return those beyond (InputError: not finite; command unchanged)."""
         self.command = self._within(contractions)
         beyond = np.abs(contractions - self.command)
         if beyond.max(initial=0.0) <= CONTRACTION_TOLERANCE:
@@ -128,7 +127,7 @@ class Motors:
         return f"{self.names[index]} is at its limit of {limit:.1f} {unit} and was asked for {wanted:.1f} {unit}"
 
     def turn(self, name: str, contraction: float) -> None:
-        """Command one winch [m], within its limits (InputError: it is no finite number; the command stays)."""
+        """Command one winch [m], within its limits (InputError: not a finite number; command unchanged)."""
         command = self.command.copy()
         command[self.names.index(name)] = contraction
         self.command = self._within(command)
@@ -136,10 +135,10 @@ class Motors:
     def drive(self, now: float, *, look: bool = True) -> bool:
         """Send the command, read the motors by a monotonic clock [s]; return True if any moved.
 
-        Reading all motors of a line takes milliseconds: who has news for them may look again a little later.
+        Reading all motors of a line takes milliseconds: with `look=False` the command is sent without a reading.
 
         Raises:
-            HydrostatError: of the link, or there was no `drive` for too long; the motors hold, and must be asked again.
+            HydrostatError: an error of the link, or no `drive` for too long; the motors hold until the next request.
         """
         before = self.places
         try:
@@ -157,7 +156,7 @@ class Motors:
         return bool(np.abs(self.places - before).max(initial=0.0) > CONTRACTION_TOLERANCE)
 
     def hold(self) -> None:
-        """Stop where they are."""
+        """Stop the motors at their present positions."""
         with suppress(Exception):
             self.link.stop()
         self.command, self._driven = self.places.copy(), None

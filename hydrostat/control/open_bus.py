@@ -56,9 +56,9 @@ class LiveFeetechChain(LiveChain, EmulatedFeetechChain):
 
 
 def add_cable_layers(calibration: Calibration) -> Calibration:
-    """Return a calibration with slightly larger spools, whose cable lies on itself after the first turn.
+    """Return a calibration with slightly larger spools, on which cable winds in layers after the first turn.
 
-    Emulated motors have such spools while they are calibrated, and nobody but the ruler is told of it.
+    Emulated motors have such spools during calibration; only the ruler readings reveal it.
     """
     turn, cable = 2 * np.pi, 4e-4  # [rad], [m]
     spools = []
@@ -73,17 +73,17 @@ def add_cable_layers(calibration: Calibration) -> Calibration:
 
 
 def open_bus(text: str, robot: Robot, calibration: Calibration, tensions: Callable[[Vector], Vector]) -> Bus:
-    """A bus to the motors of a calibration.
+    """Open a bus to the motors of a calibration.
 
     Args:
-        text: KIND:PORT or KIND:PORT@BAUD, with a comma between the ports of several boards; or "emulated".
+        text: KIND:PORT or KIND:PORT@BAUD, with commas between the ports of several boards; or "emulated".
         robot: robot with the winches.
         calibration: motor calibration.
-        tensions: total cable tension of each winch [N] by contractions [m], the load of emulated motors.
+        tensions: total cable tension of each winch [N] at contractions [m], as load of emulated motors.
 
     Raises:
-        InputError: no such kind, or not a port for each board of the calibration.
-        HydrostatError: a port cannot be opened, or pyserial is not there.
+        InputError: an unknown kind, or a wrong number of ports for the boards of the calibration.
+        HydrostatError: a port cannot be opened, or pyserial is missing.
     """
     check_port(text)
     if text == EMULATED:
@@ -107,7 +107,7 @@ def open_bus(text: str, robot: Robot, calibration: Calibration, tensions: Callab
 
 
 def check_port(text: str) -> None:
-    """Check words for motors, as in `open_bus` (InputError: no such kind, no port, or no baud rate)."""
+    """Check the text of a motor connection, as in `open_bus` (InputError: unknown kind, no port, or no baud rate)."""
     kind, _, rest = text.partition(":")
     ports = rest.split(",")
     if text != EMULATED and (kind not in _KINDS or not all(ports) or len(set(ports)) < len(ports)):
@@ -122,7 +122,7 @@ def check_port(text: str) -> None:
 
 
 def servo_ratings() -> dict[str, Any]:
-    """Ratings of the servos that a page drives: numbers of models, current at stall [A], torque by current [N m/A]."""
+    """Return ratings of servos that a page drives: model numbers, stall current [A], torque constant [N m/A]."""
     return {
         "feetech": {"models": list(FEETECH_MODELS), "stall": STALL},
         "dynamixel": {
@@ -179,7 +179,7 @@ _LIKE_STS: dict[str, dict[str, Any]] = {
 
 
 def open_line(name: str, baud: int) -> Port:
-    """A serial line (HydrostatError: it cannot be opened, or pyserial is not there)."""
+    """Open a serial line (HydrostatError: it cannot be opened, or pyserial is missing)."""
     try:
         import serial
     except ModuleNotFoundError:

@@ -18,7 +18,7 @@ ARRIVAL_TIMEOUT = 2.0  # extra time for motors to arrive, beyond the time at the
 
 
 class Player:
-    """Playhead that follows a clock; whoever looks seldom misses what was between, so nothing is ever late."""
+    """Playhead that follows a clock: slow callers skip frames, so playback is never late."""
 
     def __init__(self) -> None:
         self.time = 0.0  # of the playhead [s]
@@ -30,27 +30,27 @@ class Player:
 
     @property
     def loop(self) -> bool:
-        """Return True if it begins again at the end until it is stopped."""
+        """Return True if it repeats until it is stopped."""
         return self.rounds == inf
 
     def play(self, seconds: float) -> None:
-        """Run, from the start if it stands at the end of a timeline so long [s]."""
+        """Play a timeline of this duration [s], from the start if the playhead is at its end."""
         if self.time >= seconds - 1e-9:
             self.time = 0.0
         self.playing, self.done, self._seen = True, 0, None
 
     def stop(self) -> None:
-        """Stand still."""
+        """Pause."""
         self.playing, self._seen = False, None
 
     def set_speed(self, speed: float) -> None:
-        """Run at another speed (InputError: it is too slow or too fast)."""
+        """Set the playback speed (InputError: too slow or too fast)."""
         if not (isfinite(speed) and SPEEDS[0] <= speed <= SPEEDS[1]):
             raise InputError(f"the speed must be from {SPEEDS[0]:g} to {SPEEDS[1]:g} times, not {speed:g}")
         self.speed = speed
 
     def advance(self, now: float, seconds: float) -> None:
-        """Advance by a clock [s], from its first call; at the end of the timeline repeat, or stop."""
+        """Advance by a clock [s], from its first call; repeat or stop at the end of the timeline."""
         if not self.playing:
             return
         passed = 0.0 if self._seen is None else max(0.0, now - self._seen)
@@ -75,16 +75,16 @@ class Player:
         clock: Callable[[], float] | None = None,
         wait: Callable[[float], None] = time.sleep,
     ) -> None:
-        """Play contractions in time on motors, in real time; they hold at its end, on any error and when interrupted.
+        """Play contractions on motors in real time; they hold at the end, on any error and on interruption.
 
-        First they go to where the player begins, in a profile from 0 s to its last time. What the player is told
-        meanwhile counts at once: its speed, its rounds, to stop. `tell` is called after each command, the clock only
-        runs forward [s] and is that of the motors if left out, `wait` lets so much time pass [s]. With feedback,
-        commands are corrected by the markers in sight; while it waits for a marker, the playhead stands still.
+        First the motors move to the position of the playhead, in a profile from 0 s to its last time. Changes to the
+        player take effect immediately: its speed, its number of repetitions, a stop. `tell` is called after each
+        command. `clock` is monotonic [s], that of the motors if left out. `wait` sleeps for a duration [s]. With
+        feedback, markers in sight correct the commands; while feedback waits for a marker, the playhead pauses.
 
         Raises:
-            InputError: a winch cannot take in what it should.
-            HydrostatError: of the link; or motors do not get to where they should be.
+            InputError: a contraction is outside the limits of its winch.
+            HydrostatError: an error of the link, or motors that do not reach their positions.
         """
         seconds, now = float(profile.times[-1]), clock or motors.clock
 

@@ -29,13 +29,13 @@ def restart_motors(
     clock: Callable[[], float] = steady,
     wait: Callable[[float], None] = time.sleep,
 ) -> tuple[str, ...]:
-    """Wait until motors at fault by overload or heat are cool, then restart them; return the names of their winches.
+    """Wait until motors with an overload or heat fault are cool, then restart them; return the names of their winches.
 
-    Nothing turns: identify and arm the motors afterwards. `say` gets their temperatures, and `forget` the places of the
-    motors before any is restarted: a restarted motor may lose its count of turns, so its old zero is void.
+    Nothing turns: identify and arm the motors afterwards. `say` gets their temperatures. `forget` gets the motor
+    indices before any restart: a restarted motor may lose its count of turns, so its old zero is void.
 
     Raises:
-        HydrostatError: one stays warm for too long, or at fault.
+        HydrostatError: a motor stays warm for too long, or keeps its fault.
     """
     began = clock()
     while True:

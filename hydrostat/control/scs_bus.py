@@ -28,13 +28,13 @@ SCS_STALL = 1.0  # current at stall [A], of Waveshare's SC09: load is reported a
 
 
 class ScsBus(FeetechBus):
-    """Servos in position mode within their 300 degrees, bounded in torque; they tell load in place of current."""
+    """SCS servos in position mode within their 300 degrees, with a torque limit; they report load, not current."""
 
     kind: ClassVar[str] = "scs"
     tick: ClassVar[float] = SCS_TICK
 
     def arm(self, currents: Vector) -> None:
-        """Switch torque on where they stand; a bound of current is a share of the torque at stall."""
+        """Switch torque on at present positions; a current limit becomes a share of the stall torque."""
         with self._lock:
             for number, most in zip(self._numbers, currents.tolist(), strict=True):
                 self._set(number, LOCK, b"\x01", "its lock")

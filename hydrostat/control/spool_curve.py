@@ -28,10 +28,10 @@ class SpoolCurve:
     """Ruler measurement of one spool.
 
     Attributes:
-        motor: with its radius and curve.
-        turned: angles of the spool since its zero at each reading [rad].
-        readings: cable taken in by the mark, from the first on [m].
-        before: lengths by the motor's old radius and curve [m].
+        motor: motor with the fitted radius and curve.
+        turned: spool angle since its zero at each reading [rad].
+        readings: measured cable taken in, from the first reading on [m].
+        before: cable taken in by the motor's old radius and curve [m].
     """
 
     motor: WinchMotor
@@ -41,31 +41,31 @@ class SpoolCurve:
 
     @property
     def fitted_lengths(self) -> Vector:
-        """Cable taken in by the curve, at each reading [m]."""
+        """Cable taken in by the fitted curve, at each reading [m]."""
         return _cable_length(self.motor, self.turned)
 
     @property
     def scatter(self) -> float:
-        """Mean distance of the readings from the curve, root of squares [m]."""
+        """Root-mean-square distance of the readings from the curve [m]."""
         beside = self.readings - self.fitted_lengths
         return float(np.sqrt(np.mean((beside - beside.mean()) ** 2)))
 
     @property
     def more(self) -> float:
-        """The most that was taken in beside what was thought, counted from the first reading [m]."""
+        """Largest excess of the measured over the assumed cable length, from the first reading [m]."""
         apart = (self.fitted_lengths - self.fitted_lengths[0]) - (self.before - self.before[0])
         return float(apart[np.abs(apart).argmax()])
 
     @staticmethod
     def fit(motor: WinchMotor, turned: Vector, readings: Vector) -> "SpoolCurve":
-        """Fit a curve to readings of a ruler [m] at angles of a spool since its zero [rad].
+        """Fit a curve to ruler readings [m] at spool angles since the zero [rad].
 
-        The ruler may begin anywhere and count either way. Cable on cable lies further out, never further in: so the
-        curve is straight pieces between the angles, each at least as steep as the one before (least squares, none
-        negative).
+        The ruler may have any origin and direction. Cable on cable lies further out, never further in, so the curve is
+        piecewise linear between the angles, and no piece is less steep than the one before (non-negative least
+        squares).
 
         Raises:
-            HydrostatError: readings that lie on no such curve, or on one far from the spool's radius.
+            HydrostatError: readings that fit no such curve, or one far from the spool's radius.
         """
         from scipy.optimize import nnls
 
@@ -110,23 +110,23 @@ class SpoolCurve:
         clock: Callable[[], float] = time.monotonic,
         wait: Callable[[float], None] = time.sleep,
     ) -> "SpoolCurve":
-        """Let a winch take cable in step by step, and ask at each where the mark is; it then goes back to its zero.
+        """Take in cable step by step and ask for the ruler reading at each step; then return to the zero.
 
-        Motors cannot measure this by themselves: they feel forces, and know no length. While somebody reads, motors
-        stand and are told nothing; each step is armed again.
+        Motors measure force, not cable length, so a person reads the ruler. During a reading motors hold without
+        commands; each step arms them again.
 
         Args:
-            link: to all motors, identified and calibrated.
+            link: link to all motors, identified and calibrated.
             motor: calibrated motor of this winch.
             place: index of the winch among the motors.
-            most: cable to take in at most [m], of the winch's travel.
-            read: given what the cable should have taken in [m], asks where the mark is on the ruler [m].
+            most: largest cable length to take in [m], within the winch's travel.
+            read: function that takes the expected cable length [m] and returns the ruler reading [m].
             clock: monotonic clock [s].
-            wait: lets so much time pass [s].
+            wait: function that sleeps for a duration [s].
 
         Raises:
-            HydrostatError: of the link; a body so stiff that the motor takes too little in; or readings that are no
-            curve.
+            HydrostatError: an error of the link, a body so stiff that the motor takes in too little, or readings that
+                fit no curve.
         """
         turned, readings, taken = list[float](), list[float](), 0.0
         try:

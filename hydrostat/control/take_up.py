@@ -75,12 +75,12 @@ class SlackCalibration:
     """Calibrated slack and zero of one winch.
 
     Attributes:
-        motor: with its zero.
-        slack: cable that was taken up from where the motor stood [m]; below 0: it was let out.
+        motor: motor with its zero.
+        slack: cable taken up from the start position of the motor [m]; below 0 if paid out.
         apart: spread of its measurements [m].
-        gain: current by what the model pulls with [A/N].
-        places: cable taken in from the edge at each step of the last measurement [m].
-        currents: there [A].
+        gain: ratio of motor current to simulated pull [A/N].
+        places: cable taken in beyond the edge at each step of the last measurement [m].
+        currents: motor current at these steps [A].
         floor: current of the motor while its cable is slack [A].
         seconds: duration [s].
     """
@@ -96,7 +96,7 @@ class SlackCalibration:
 
     @property
     def reeled_length(self) -> float:
-        """Cable length that a winch reeled in beyond the edge, where its cable goes taut [m]."""
+        """Cable length that the winch took in beyond the edge, where its cable goes taut [m]."""
         return max(float(self.places.max()), 1e-3)
 
 
@@ -110,20 +110,20 @@ def find_cable_zeros(
     clock: Callable[[], float] | None = None,
     wait: Callable[[float], None] = time.sleep,
 ) -> tuple[SlackCalibration, ...]:
-    """Find the zeros of all motors, one after the other, while the others stand; all stand at their zeros at the end.
+    """Find the zeros of all motors one by one, while the others hold; at the end all motors are at their zeros.
 
     Args:
         bus: bus with identified motors.
         motors: motors of the winches, in the order of the bus.
-        model: simulated tension of each winch: its onset and its rise; its scale is measured.
-        found: told of each winch as soon as it is known.
-        most: cable that may be taken up or let out at most [m].
+        model: simulated tension of each winch, for its onset and its slope; the scale is measured.
+        found: callback for each calibrated winch.
+        most: largest cable length to take up or pay out [m].
         clock: monotonic clock [s]; that of the bus if left out.
-        wait: lets so much time pass [s].
+        wait: function that sleeps for a duration [s].
 
     Raises:
-        HydrostatError: a cable is not felt, or always; measurements differ; a motor is silent or reports a fault. The
-            motors stand.
+        HydrostatError: a cable that never pulls, or always; measurements that differ; a motor that is silent or
+            reports a fault. The motors hold.
     """
     taker = _Taker(bus, motors, most, clock or bus.clock, wait)
     try:

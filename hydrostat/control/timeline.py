@@ -31,7 +31,7 @@ class Key:
 
 @dataclass(frozen=True, kw_only=True)
 class Timeline:
-    """Keyframes in the order of their times, no two at the same time."""
+    """Keyframes in order of their times, at most one at a time."""
 
     keys: tuple[Key, ...] = field(default=())  # of all winches
     smooth: bool = False  # gently from key to key, rather than along a line
@@ -50,11 +50,11 @@ class Timeline:
 
     @property
     def seconds(self) -> float:
-        """Length in time [s]."""
+        """Duration [s]."""
         return max(self.length, self.keys[-1].time if self.keys else 0.0)
 
     def profile(self, winches: Sequence[str]) -> ContractionProfile:
-        """Contractions in time of these winches, a column each; nothing is taken in where there is no key."""
+        """Return the contractions of these winches in time, one column each; 0 where a winch has no key."""
         keys = self.keys or (Key(time=0.0, contractions={}),)
         values = [[key.contractions.get(name, 0.0) for name in winches] for key in keys]
         return ContractionProfile(
@@ -64,16 +64,16 @@ class Timeline:
         )
 
     def index_at(self, time: float) -> int | None:
-        """Number of the key at a time [s]; None if there is none."""
+        """Return the index of the key at a time [s]; None without one."""
         return next((index for index, key in enumerate(self.keys) if abs(key.time - time) <= KEY_TOLERANCE), None)
 
     def with_key(self, key: Key) -> Self:
-        """The same with one more key, in place of one at the same time."""
+        """Return a timeline with one more key; it replaces a key at the same time."""
         others = [other for other in self.keys if abs(other.time - key.time) > KEY_TOLERANCE]
         return replace(self, keys=tuple(sorted([*others, key], key=lambda other: other.time)))
 
     def without(self, index: int) -> Self:
-        """The same without one key."""
+        """Return a timeline without one key."""
         return replace(self, keys=self.keys[:index] + self.keys[index + 1 :])
 
     def move_key(self, index: int, time: float) -> Self:
@@ -82,9 +82,9 @@ class Timeline:
 
     @staticmethod
     def read(robot: Robot, name: str, content: bytes) -> "Timeline":
-        """Read a timeline from the table of a named file, its times counted from its first row.
+        """Read a timeline from the table of a named file, with times from its first row.
 
-        The InputError of one that is too large, or no such table, names the line.
+        The InputError for an invalid or too large table names the line.
         """
         if len(content) > MAX_BYTES:
             raise InputError(f"{name}: a table may have {MAX_BYTES / 1e6:g} MB, not {len(content) / 1e6:.1f} MB")
@@ -106,7 +106,7 @@ class Timeline:
         return replace(timeline, length=max(float(times[-1]), MIN_DURATION)) if len(keys) > 1 else timeline
 
     def table(self, robot: Robot) -> bytes:
-        """Contractions in time as a CSV of seconds and millimeters; see `ProfileTable` (InputError: no keyframes)."""
+        """Return the timeline as a CSV of seconds and millimeters; see `ProfileTable` (InputError: no keyframes)."""
         if not self.keys:
             raise InputError("there are no keyframes to export; turn the knobs and press Add")
         profile = self.profile([winch.name for winch in robot.winches])
