@@ -1,4 +1,4 @@
-"""Camera: places of a robot's markers from photographs, and the tags to print for them."""
+"""Camera: measure marker positions from photographs and films, and print the tags for them."""
 
 from typing import TYPE_CHECKING
 

@@ -75,10 +75,10 @@ SHAPE = 0.002
 
 @dataclass(frozen=True, kw_only=True)
 class LensFile:
-    """A lens and the size of the pictures that it made.
+    """Lens calibration, with the size of its pictures.
 
     Attributes:
-        lens: the camera.
+        lens: camera model.
         size: width and height of its pictures [pixels].
         name: name of the file, for messages.
     """
@@ -88,12 +88,12 @@ class LensFile:
     name: str = field(default="lens", compare=False)
 
     def text(self) -> bytes:
-        """Text of its file."""
+        """Text of the file."""
         told = {"about": "Lens of a camera by hydrostat measure, in pixels.", "size": self.size, **asdict(self.lens)}
         return (json.dumps(told, indent=1) + "\n").encode()
 
     def scale_to(self, size: tuple[int, int]) -> Lens:
-        """Lens for pictures of another size with the same view (InputError: they are cropped)."""
+        """Return the lens for pictures of another size with the same view (InputError: cropped pictures)."""
         (width, height), (own_width, own_height) = size, self.size
         if abs(width * own_height / (height * own_width) - 1) > SHAPE:
             raise InputError(
@@ -107,7 +107,7 @@ class LensFile:
 
     @classmethod
     def read(cls, file: Path) -> "LensFile":
-        """Lens of a file (InputError: it is none)."""
+        """Read a lens from a file (InputError: not a lens file)."""
         try:
             told = json.loads(read_stranger(file, most=100_000))
             numbers = np.array([told["focal"], *told["center"], *told["distortion"]], dtype=float)

@@ -31,7 +31,7 @@ class FrameSource(Protocol):
 
 
 class CameraFrames:
-    """Frames of a camera of this computer, by OpenCV."""
+    """Frames of a camera of this computer, from OpenCV."""
 
     def __init__(self, name: str) -> None:
         """Open a camera by its number, device or address.
@@ -52,7 +52,7 @@ class CameraFrames:
             raise HydrostatError(f"--camera {name}: gives no pictures. Check its number, plug and permissions.")
 
     def read(self) -> Gray | None:
-        """Wait for the next frame; return None when there are no more."""
+        """Wait for the next frame; return None after the last."""
         is_read, pixels = self._camera.read()
         return self._cv2.cvtColor(pixels, self._gray) if is_read else None
 
@@ -62,10 +62,10 @@ class CameraFrames:
 
 
 class MarkerCamera:
-    """Camera that is read in a thread of its own, so that motors never wait for it.
+    """Camera that a separate thread reads, so that motors never wait for it.
 
     Attributes:
-        trouble: reason why the last frame shows no marker; "" if it does.
+        trouble: reason why the last frame shows no marker; "" if it shows one.
     """
 
     def __init__(
@@ -101,11 +101,11 @@ class MarkerCamera:
         self._thread.start()
 
     def look(self) -> Any:
-        """Newest sight of markers; None before the first."""
+        """Return the latest sight of markers; None before the first."""
         return self._newest
 
     def close(self) -> None:
-        """Stop looking and release the camera. It may be called twice."""
+        """Stop the thread and release the camera. You can call this twice."""
         self._is_open = False
         self._thread.join(timeout=1.0)
         self._frames.close()

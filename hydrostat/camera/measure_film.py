@@ -21,7 +21,7 @@ from hydrostat.robot import PinDrive, Robot
 from hydrostat.simulation import ContractionProfile, Simulation
 
 FILMS = (".mp4", ".mov", ".m4v", ".avi", ".mkv", ".webm")
-"""Ends of the names of films."""
+"""File extensions of films."""
 
 MAX_FRAMES = 10_000
 """Frames that a table takes."""
@@ -32,12 +32,12 @@ FAST_WINCH_SPEED = 20e-3
 
 @dataclass(frozen=True, kw_only=True)
 class FilmOptions:
-    """Numbers that a film does not show.
+    """Options for measuring a film.
 
     Attributes:
         every: time between two measured frames [s].
-        start: time in the film at which the table of contractions begins [s].
-        photo: numbers that frames do not show.
+        start: time in the film at which the table of contractions starts [s].
+        photo: options for its frames.
     """
 
     every: float = 0.2
@@ -86,19 +86,19 @@ def measure_film(
     options: FilmOptions | None = None,
     progress: Progress = no_progress,
 ) -> FilmMeasurements:
-    """Measure the places of markers in a film.
+    """Measure marker positions in a film.
 
-    The first frame places board and robot: the robot stands in it as the table of contractions begins.
+    The first frame locates board and robot; in it the robot must be in the first pose of the table.
 
     Args:
-        robot: robot as it is assumed to be built.
-        film: film of a camera that stands still.
+        robot: model of the robot, as designed.
+        film: film from a fixed camera.
         profile: contractions in time.
-        options: numbers that the film does not show.
+        options: options of the measurement.
         progress: callback for progress, after each frame.
 
     Raises:
-        InputError: a file that is no film, no board or too few markers in its first frame, a camera that moved, or a
+        InputError: a file that is not a film, no board or too few markers in its first frame, a camera that moved, or a
             robot with drives.
         HydrostatError: OpenCV is not installed.
     """

@@ -36,12 +36,12 @@ MIN_TAGS = 4
 
 @dataclass(frozen=True, kw_only=True)
 class PhotoOptions:
-    """Numbers that photographs do not show.
+    """Options for measuring photographs.
 
     Attributes:
         side: side of the black square of the markers' tags [m].
         height: height of these tags above the board [m], for flat robots; the thickness of the body if left out.
-        lens: lens that other photographs of the camera showed; found from the given ones alone if left out.
+        lens: lens from other photographs of this camera; estimated from the given ones if left out.
     """
 
     side: float = MARKER_SIDE
@@ -82,19 +82,19 @@ class MeasuredPhoto:
 
 @dataclass(frozen=True, eq=False)
 class PhotoMeasurements:
-    """Measured photographs.
+    """Measurements from photographs.
 
     Attributes:
-        measurements: a row for each photograph; in space one for each pose.
+        measurements: one row for each photograph; in space one for each pose.
         rows: photographs of each row, by index.
-        photos: the photographs.
-        camera: the camera, with the size of its pictures.
+        photos: measured photographs.
+        camera: camera model, with the size of its pictures.
         height: height of the tags above the board [m]; 0 in space.
         turn: rotation from the frame of the board to that of the robot, (dim, dim).
-        shift: place of the board's origin in the frame of the robot [m].
-        error: root mean square distance of the board's corners [pixels].
+        shift: position of the board's origin in the frame of the robot [m].
+        error: root-mean-square distance of the board's corners [pixels].
         scale: size of a pixel on the board [m].
-        warnings: texts of what is likely to be wrong.
+        warnings: warnings, one text each.
     """
 
     measurements: Measurements
@@ -109,7 +109,7 @@ class PhotoMeasurements:
     warnings: list[str]
 
     def project(self, index: int, points: Float[np.ndarray, "points dim"]) -> Float[np.ndarray, "points 2"]:
-        """Pixels of points of the robot's frame [m] in a photograph."""
+        """Project points in the robot's frame [m] to pixels of a photograph."""
         board = (points - self.shift) @ self.turn
         if board.shape[1] == 2:
             board = np.column_stack([board, np.full(len(board), self.height)])
@@ -117,18 +117,18 @@ class PhotoMeasurements:
 
 
 def measure_photos(robot: Robot, photos: Sequence[Photo], options: PhotoOptions | None = None) -> PhotoMeasurements:
-    """Measure the places of markers in photographs of a robot on its board.
+    """Measure marker positions in photographs of a robot on its board.
 
-    Places are in the frame of the robot: the board's frame, moved as a whole to where simulated markers are closest.
+    Positions are in the frame of the robot: the board's frame is moved rigidly to fit the simulated markers best.
 
     Args:
-        robot: robot as it is assumed to be built.
+        robot: model of the robot, as designed.
         photos: photographs of one camera with its zoom fixed; the board does not move.
-        options: numbers that photographs do not show.
+        options: options of the measurement.
 
     Raises:
-        InputError: a file that is no picture, no board or no marker in sight, tags that are there twice or belong to
-            another robot, a mirrored photograph, or a board that moved.
+        InputError: a file that is not a picture, no board or no visible marker, duplicate tags or tags of another
+            robot, a mirrored photograph, or a board that moved.
         HydrostatError: OpenCV is not installed.
     """
     load_opencv()
@@ -321,7 +321,7 @@ def _table(robot: Robot, photos: Sequence[Photo], places: Found) -> Measurements
 
 
 def table_text(robot: Robot, found: PhotoMeasurements) -> bytes:
-    """CSV with the columns pose, left_mm per winch, tip_x_mm ... per marker, tip_load_g per marker with a mass."""
+    """Return a CSV: pose, left_mm per winch, tip_x_mm ... per marker, tip_load_g per marker with a mass."""
     measured = found.measurements
     axes = "xyz"[: measured.places.shape[2]]
     hung = np.asarray(measured.hung_masses.any(axis=0))

@@ -30,14 +30,15 @@ MAX_PIXELS = 100_000_000
 
 @dataclass(frozen=True, kw_only=True)
 class Photo:
-    """A photograph of a pose.
+    """Photograph of a pose.
 
     Attributes:
-        file: its file.
-        contractions: contraction of winches [m]; others do not contract.
+        file: path of the photograph.
+        contractions: contractions of winches [m]; 0 for other winches.
         masses: masses hung at markers [kg].
-        loads: other loads, which are in no table.
-        step: number of the pose in a motion, so that equal contractions up and down are two poses; None without one.
+        loads: other loads, which a table cannot contain.
+        step: index of the pose in a motion, which separates equal contractions on the way up and down; None without
+            one.
     """
 
     file: Path
@@ -48,12 +49,12 @@ class Photo:
 
     @property
     def name(self) -> str:
-        """Name of the file."""
+        """File name."""
         return self.file.name
 
     @property
     def pose(self) -> tuple[object, ...]:
-        """Step, contractions and loads, which photographs of one pose share."""
+        """Step, contractions and loads, which all photographs of a pose share."""
         pulls = sorted((name, value) for name, value in self.contractions.items() if value)
         return (self.step, *pulls, *self.loads_of_pose)
 
@@ -65,15 +66,14 @@ class Photo:
 
     @staticmethod
     def read_all(files: Sequence[Path], robot: Robot, table: Path | None = None) -> "list[Photo]":
-        """Photographs with contractions from their names, such as "left=12mm,right=0mm.jpg", or from a table.
+        """Return photographs with contractions from file names, such as "left=12mm,right=0mm.jpg", or from a table.
 
-        A name may also hold hung masses, such as "tip=100g", begin with the number of its step in a motion, such as
-        "03 ", and end in a number in brackets, such as " (2)", for more photographs of one pose.
-
-        Photographs with steps come in their order.
+        A name can also have hung masses, such as "tip=100g"; begin with the step of a motion, such as "03 "; and end
+        with a number in parentheses, such as " (2)", for more photographs of one pose.
+        Photographs with steps are sorted by step.
 
         Raises:
-            InputError: a photograph without contractions, an unknown winch or marker, or a file that is named twice.
+            InputError: a photograph without contractions, an unknown winch or marker, or a file listed twice.
         """
         if not files:
             raise InputError("no photographs. Name at least one file.")
@@ -197,7 +197,7 @@ def read_pixels(file: Path) -> tuple[Gray, float | None]:
 
 
 def read_colors(file: Path) -> UInt8[np.ndarray, "height width 3"]:
-    """Colors of the pixels of a photograph, as its sensor lies (InputError: it is no picture)."""
+    """Read the pixel colors of a photograph in sensor orientation (InputError: not a picture)."""
     with _open(file) as picture:
         return np.asarray(picture.convert("RGB"))
 

@@ -48,11 +48,11 @@ STEPS = (
 
 
 def tags_pdf(robot: Robot, paper: Paper = Paper.A4, side: float = MARKER_SIDE) -> bytes:
-    """Sheets of the board and tags of the markers, in true size, and a page with their places.
+    """Return pages with the board and the marker tags, in true size, and a page with the tag positions.
 
     Args:
         robot: robot to measure.
-        paper: paper of the printer.
+        paper: paper size of the printer.
         side: side of the black square of a marker's tag [m].
 
     Raises:
@@ -64,7 +64,7 @@ def tags_pdf(robot: Robot, paper: Paper = Paper.A4, side: float = MARKER_SIDE) -
 
 
 def find_overhangs(robot: Robot, side: float = MARKER_SIDE) -> list[str]:
-    """Markers of a flat robot whose tags lie on the body by less than half, with their white rims.
+    """Return the markers of a flat robot whose tags, with their white margins, lie less than half on the body.
 
     Args:
         robot: robot to measure.
@@ -83,7 +83,7 @@ def find_overhangs(robot: Robot, side: float = MARKER_SIDE) -> list[str]:
 
 
 def tag_files(robot: Robot, paper: Paper) -> dict[str, bytes]:
-    """Pages of tags as files of a kit, by their path; none for a robot without markers."""
+    """Return the tag pages as files of a kit, by path; none for a robot without markers."""
     return {"tags.pdf": tags_pdf(robot, paper)} if robot.markers else {}
 
 
