@@ -1,4 +1,4 @@
-"""Robots for other simulators: MuJoCo (MJCF) and USD."""
+"""Export of robots to other simulators: MuJoCo (MJCF) and USD."""
 
 from typing import TYPE_CHECKING
 

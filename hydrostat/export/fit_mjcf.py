@@ -116,19 +116,19 @@ class MjcfFit:
 
 
 def fit_mjcf(robot: Robot, num_poses: int = 20, *, share: float = 0.25, progress: Progress | None = None) -> MjcfFit:
-    """Fit Young's modulus, Poisson's ratio and a gain of each winch of a MuJoCo model to poses of hydrostat.
+    """Fit Young's modulus, Poisson's ratio and a gain of each winch of a MuJoCo model to hydrostat poses.
 
-    Contractions are scrambled Sobol points up to a share of the travel. Bounded least squares on the markers. The
-    numbers also compensate for what the model leaves out (`find_omissions`).
+    Contractions are scrambled Sobol points up to a share of the travel. The fit is a bounded least-squares fit to the
+    markers, and also compensates for omissions of the model (`find_omissions`).
 
     Args:
         robot: robot with markers and winches.
-        num_poses: number of fitted poses, 3 or more; 12 others are held out, the same for each number.
+        num_poses: number of fitted poses, 3 or more; 12 others are held out, the same for every `num_poses`.
         share: share of the travel of each winch, such as `MjcfError.range_share`.
-        progress: called with the evaluations of the model.
+        progress: callback with the number of model evaluations.
 
     Raises:
-        InputError: MuJoCo is not installed, too few poses, a share beyond 0 to 1, a robot without markers or winches,
+        InputError: MuJoCo is not installed, too few poses, a share outside 0 to 1, a robot without markers or winches,
             one that `mjcf_text` rejects, or too few poses with an equilibrium in MuJoCo.
     """
     if find_spec("mujoco") is None:

@@ -66,7 +66,7 @@ def measure_mjcf(
     shares: Sequence[float] = SHARES,
     progress: Progress | None = None,
 ) -> MjcfError:
-    """Measure the MuJoCo model of a robot: markers in poses of random contractions, settled in time.
+    """Measure the marker error of a robot's MuJoCo model in poses of random contractions, settled in time.
 
     Contractions are scrambled Sobol points up to a share of the travel of each winch. If an element inverts or a
     pose does not settle, the next smaller share is measured.
@@ -74,12 +74,12 @@ def measure_mjcf(
     Args:
         robot: robot with markers and winches.
         num_poses: number of poses.
-        tuning: numbers of the model that differ from the robot's, found by `fit_mjcf`.
-        shares: shares of the travel, in the order in which they are tried.
-        progress: called with the number of measured poses.
+        tuning: parameters that differ from the robot's, found by `fit_mjcf`.
+        shares: shares of the travel, in the order of the attempts.
+        progress: callback with the number of measured poses.
 
     Raises:
-        InputError: MuJoCo is not installed, no pose, a robot without markers, or one that `mjcf_text` rejects.
+        InputError: MuJoCo is not installed, no poses, a robot without markers, or a robot that `mjcf_text` rejects.
     """
     if find_spec("mujoco") is None:
         raise InputError(f"MuJoCo is not installed: {install_command('export')}")

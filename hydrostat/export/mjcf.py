@@ -24,20 +24,20 @@ CHORD = (7 / 8, 5 / 7)  # slope and zero of the line for a cable's tension: shar
 def mjcf_text(
     robot: Robot, *, remarks: Iterable[str] = (), range_share: float = 1.0, tuning: MjcfTuning | None = None
 ) -> str:
-    """Text of a MuJoCo model of a robot; it needs MuJoCo 4 or newer.
+    """Return the MuJoCo model of a robot as text; it needs MuJoCo 4 or newer.
 
-    Nodes are bodies on slide joints, elements a flex for each material, nodes in pins parts of the world. Each via
-    point and marker is a small body, tied to the nodes of its element by springs. Each cable is a tendon with an
-    actuator that only pulls; its control is the contraction of its winch [m].
+    Nodes are bodies on slide joints, elements are flexes (one for each material), and pinned nodes are fixed to the
+    world. Each via point and marker is a small body, tied to the nodes of its element by springs. Each cable is a
+    tendon with an actuator that only pulls; its control is the contraction of its winch [m].
 
     Args:
         robot: robot to write.
-        remarks: lines of the comment at the start.
-        range_share: share of the travel of each winch that its controls allow.
-        tuning: numbers that differ from the robot's, found by `fit_mjcf`.
+        remarks: comment lines at the start.
+        range_share: share of the travel of each winch that its control range covers.
+        tuning: parameters that differ from the robot's, found by `fit_mjcf`.
 
     Raises:
-        InputError: a drive, rod or sheet, which have no counterpart.
+        InputError: a drive, rod or sheet, which have no counterpart in MuJoCo.
     """
     for what, parts in (("drive", robot.drives), ("rod", robot.rods), ("sheet", robot.sheets)):
         if parts:
@@ -46,7 +46,7 @@ def mjcf_text(
 
 
 def find_omissions(robot: Robot) -> tuple[str, ...]:
-    """Parts and laws of a robot that its MuJoCo model leaves out or replaces, a phrase for each."""
+    """Return the parts and laws of a robot that its MuJoCo model omits or replaces, one phrase each."""
     materials = robot.body.materials
     found = {
         "contact and obstacles": robot.contact is not None or bool(robot.obstacles),

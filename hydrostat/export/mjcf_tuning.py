@@ -12,7 +12,7 @@ MAX_POISSON = 0.49  # largest Poisson's ratio of a model
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MjcfTuning:
-    """Numbers that compensate for the other law of materials of a MuJoCo model.
+    """Parameters that compensate for the different material law of a MuJoCo model.
 
     Attributes:
         young: factor of Young's modulus of each material [-].
@@ -25,16 +25,16 @@ class MjcfTuning:
     gains: Vector
 
     def shift_poisson(self, poisson: float) -> float:
-        """Poisson's ratio of a material in the model [-]."""
+        """Return Poisson's ratio of a material in the model [-]."""
         return float(np.clip(poisson + self.poisson, 0.0, max(MAX_POISSON, poisson)))
 
     def describe(self, robot: Robot) -> str:
-        """Sentence with all numbers."""
+        """Return a sentence with all parameters."""
         pairs = zip(robot.winches, self.gains, strict=True)
         gains = ", ".join(f"{winch.name} {gain:.3f}" for winch, gain in pairs)
         return f"Young's modulus x {self.young:.3f}, Poisson's ratio {self.poisson:+.3f}, contraction x: {gains}"
 
     @classmethod
     def none(cls, robot: Robot) -> "MjcfTuning":
-        """Return the robot's own numbers."""
+        """Return the tuning that changes nothing."""
         return cls(young=1.0, poisson=0.0, gains=np.ones(len(robot.winches)))

@@ -12,15 +12,15 @@ from hydrostat.robot import Mount, Robot
 
 
 def usd_text(robot: Robot, frames: Sequence[Nodes], *, step: float) -> str:
-    """Text of a USD scene in which the body and its cables deform: points by time, meters, z up.
+    """Return a USD scene as text, in which body and cables deform: time-sampled points, meters, z up.
 
     Args:
         robot: robot to write; a flat body is a slab of its thickness.
         frames: positions of the nodes at equal times [m].
-        step: time from one to the next [s].
+        step: time between frames [s].
 
     Raises:
-        InputError: no frame, one that does not fit the robot, or a time that is not above 0.
+        InputError: no frame, a frame that does not fit the robot, or a step that is not above 0.
     """
     shape = robot.body.mesh.nodes.shape
     for index, frame in enumerate(frames):

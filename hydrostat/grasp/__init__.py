@@ -1,4 +1,4 @@
-"""Grasps: a robot closes on an object, which is pulled out again."""
+"""Grasp simulation: close a robot on an object, then pull the object out."""
 
 from typing import TYPE_CHECKING
 

@@ -17,16 +17,17 @@ FORMS = ("sphere:65mm", "cylinder:40mm,120mm", "capsule:40mm,120mm", "box:40mm,4
 
 
 def read_object(text: str, dim: int, *, mass: float, friction: float) -> Obstacle:
-    """Create an object from a text as in `FORMS`, at the origin.
+    """Create an object at the origin from a text, as in `FORMS`.
 
     Args:
-        text: its shape and sizes.
+        text: shape and sizes.
         dim: dimension of the body that grasps it; a sphere is a disc in the plane.
-        mass: [kg].
-        friction: Coulomb's coefficient.
+        mass: mass [kg].
+        friction: Coulomb friction coefficient.
 
     Raises:
-        InputError: no such shape, a wrong number of sizes, no length, or a size that is not above 0.
+        InputError: an unknown shape, a wrong number of sizes, a size without a length unit, or a size that is not above
+            0.
     """
     if text.lower().endswith(SURFACE_SUFFIXES):
         return _from_file(text, dim, mass=mass, friction=friction)
@@ -70,7 +71,7 @@ def move_object(obstacle: Obstacle, place: Vector) -> Obstacle:
 
 
 def find_overlaps(robot: Robot, obstacle: Obstacle) -> list[str]:
-    """Names of the robot's obstacles that an object overlaps; a pull has no contact between them."""
+    """Return the names of the robot's obstacles that an object overlaps; a pull has no contact between them."""
 
     def samples(one: Obstacle) -> Points:
         return np.concatenate([*rims(one, robot), one.spine()])
@@ -83,15 +84,15 @@ def find_overlaps(robot: Robot, obstacle: Obstacle) -> list[str]:
 
 
 def place_object(robot: Robot, obstacle: Obstacle, closed: Points) -> Obstacle:
-    """Place an object amid the markers of the closed robot, moved out of the body at rest.
+    """Place an object between the markers of the closed robot, moved out of the body at rest.
 
     Args:
-        robot: robot; at rest it must be clear of the object.
+        robot: robot; at rest it must not touch the object.
         obstacle: object at any position.
         closed: marker positions in the closed pose [m].
 
     Raises:
-        InputError: no place is found near by.
+        InputError: no free position nearby.
     """
     mesh, room = robot.body.mesh, 2.0 * robot.contact_distance
     skin, place = mesh.nodes[np.unique(mesh.boundary)], closed.mean(axis=0)

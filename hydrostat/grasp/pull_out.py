@@ -34,11 +34,11 @@ class PullOptions:
         step: displacement of the pulling hand in each step [m].
         travel: maximum displacement of the hand [m]; None: 1.5 times the size of the object.
         along: stiffness of the pull along its direction [N/m].
-        across: stiffness that holds the object across the pull [N/m], and, at its rim, against rotation: as stiff as
-            the pull, the object moves straight; if much softer, it finds its own path.
+        across: stiffness that holds the object across the pull [N/m] and, at its rim, against rotation. A value as
+            large as `along` moves the object straight; a much smaller value lets it find its own path.
 
     Raises:
-        InputError: no direction, or a number that is not above 0.
+        InputError: no direction, or a value that is not above 0.
     """
 
     direction: tuple[float, ...]
@@ -71,7 +71,7 @@ class PullOut:
         forces: force along the pull that holds the object there [N], (rows,).
         contact: force of the robot on the object [N], (rows, dim).
         poses: equilibria of the robot with the object.
-        released: True if nothing touched the object at the end.
+        released: True if nothing touches the object at the end.
         status: reason why the pull ended.
     """
 
@@ -91,17 +91,17 @@ class PullOut:
 
     @property
     def is_rising(self) -> bool:
-        """True if the force was still at its largest when the pull ended with the object not free."""
+        """True if the force was still at its maximum when the pull ended before release."""
         return not self.released and int(self.forces.argmax()) == len(self.forces) - 1
 
     @property
     def work(self) -> float:
-        """Largest work done by the pull up to any position [J]: without friction, the energy to escape."""
+        """Largest work done by the pull up to any position [J]: without friction, the escape energy."""
         done = 0.5 * (self.forces[1:] + self.forces[:-1]) * np.diff(self.moved)
         return float(np.cumsum(done).max(initial=0.0))
 
     def object_at(self, row: int) -> Obstacle:
-        """Return the object at its position in a row; its rotation, hardly visible, is left out."""
+        """Return the object at its position in a row, without its rotation."""
         pose = self.poses[row]
         assert pose.carried is not None
         return move_object(self.robot.obstacles[-1], pose.carried[-1 - pose.carried.shape[1]])
@@ -115,10 +115,10 @@ def pull_out(
     *,
     progress: Progress | None = None,
 ) -> PullOut:
-    """Close a robot on a held object, let the object find its equilibrium, then pull it away in small steps.
+    """Close a robot on a held object, let the object find its equilibrium, then pull it out in small steps.
 
-    The object is held by springs so stiff that the force may fall after its peak. Friction remembers the way, so the
-    answer does not depend on the steps.
+    Stiff springs hold the object, so the force may fall after its peak. Friction depends on the path; the result does
+    not depend on the step length.
 
     Args:
         robot: robot that grasps the object.
@@ -128,7 +128,7 @@ def pull_out(
         progress: callback for progress.
 
     Raises:
-        InputError: an object that stands in the body, has no mass, or is never touched.
+        InputError: an object that overlaps the body, has no mass, or is never touched.
         NotConvergedError: the robot could not be closed.
     """
     if obstacle.mass is None:
@@ -234,7 +234,7 @@ def pull_bands(
     *,
     progress: Progress | None = None,
 ) -> tuple[PullCase, ...]:
-    """Pull with friction, stiffness and position varied one at a time, and without friction, for the cage alone.
+    """Pull with friction, stiffness and position varied one at a time, and without friction, to test caging alone.
 
     Args:
         robot: robot that grasps the object.

@@ -1,4 +1,4 @@
-"""Conformance checks that anyone can run on a part of their own; our tests use the same."""
+"""Conformance checks for your own energies and objectives; our tests use the same checks."""
 
 from typing import TYPE_CHECKING
 

@@ -13,28 +13,28 @@ from hydrostat.testing.differences import ConformanceError, central_differences,
 def check_energy(
     energy: Energy, nodes: Nodes, controls: Vector, *, tolerance: float = 1e-6, coordinates: int = 200, seed: int = 0
 ) -> None:
-    """Check all that an energy promises, at one state; run it at several, strongly deformed ones too.
+    """Check all guarantees of an energy at one state; run it at several states, also strongly deformed ones.
 
-    The oracle is central differences: of the value for the gradient, of the gradient for the Hessian and for the
-    control derivative. Each is tried at several steps and judged by the best, for a wrong derivative agrees at none.
-    Further: shapes, symmetry, terms that depend on nothing but their stencil and their control, a value that is never
-    NaN, a projected Hessian that is semidefinite and lowers no eigenvalue, the claim of `convex`, and what a solver may
-    ask: low-rank Hessians with their law, largest force and step, terms that come and go, supports, loads, parameters,
+    The reference is central differences: of the value for the gradient, of the gradient for the Hessian and for the
+    control derivative. Each is computed with several steps, and the best counts, because a wrong derivative agrees with
+    none. Other checks: shapes, symmetry, terms that depend only on their stencil and their control, a value that is
+    never NaN, a projected Hessian that is semidefinite and lowers no eigenvalue, the flag `convex`, and the optional
+    methods: low-rank Hessians with their law, largest force and step, changing terms, supports, loads, parameters,
     history.
 
-    A term of an energy with a part of low rank may depend on the nodes of other terms through it. So there the whole
-    Hessian is compared, the blocks of all terms and G D G^T, with the derivative of the whole gradient.
+    If part of the Hessian has low rank, a term may depend on the nodes of other terms through it. Then the check
+    compares the total Hessian, the blocks of all terms plus G D G^T, with the derivative of the total gradient.
 
     Args:
         energy: energy to check.
         nodes: a state where its value is finite [m].
         controls: all controls of the robot.
         tolerance: largest relative error of a derivative.
-        coordinates: number of nodal coordinates to vary, drawn at random from a larger body.
+        coordinates: number of nodal coordinates to vary, drawn at random if the body has more.
         seed: random seed.
 
     Raises:
-        ConformanceError: the first check that failed, how far it is off and where.
+        ConformanceError: the first failed check, with its error and position.
     """
     check = _EnergyCheck(energy, nodes, controls, tolerance, np.random.default_rng(seed), coordinates)
     check.shapes()

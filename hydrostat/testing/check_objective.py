@@ -21,27 +21,27 @@ def check_objective(
     postures: int = 5,
     seed: int = 0,
 ) -> None:
-    """Check all that an objective promises on one robot, at one pose; run it at several, strongly bent ones too.
+    """Check all guarantees of an objective on one robot, at one pose; run it at several poses, also strongly bent ones.
 
-    The oracle is central differences of equilibria solved as sharply as rounding allows, at contractions a little to
-    either side. They are tried at several steps and judged by the best, for wrong derivatives agree at none.
-    Further: shapes, as many rows in every posture, finite numbers, the same answer to the same question, errors that
-    are not negative, and none of them above 0 where the residual is zero. An objective is not asked about at a kink,
-    such as a cable that just becomes taut: choose another pose there. Where cables rub, every equilibrium is come to
-    straight from rest, so that the derivatives are those of going on.
+    The reference is central differences of equilibria, solved to rounding precision at slightly different contractions.
+    They are computed with several steps, and the best counts, because a wrong derivative agrees with none.
+    Other checks: shapes, the same number of rows in every posture, finite values, repeatable results, errors that are
+    not negative, and no error above 0 where the residual is zero. Avoid poses at a kink of the objective, such as a
+    cable that just becomes taut. If cables have friction, every equilibrium is reached straight from rest, so that the
+    derivatives are those of continued motion.
 
     Args:
         objective: objective to check.
         simulation: simulation of a robot; its cables may have friction.
         contractions: the pose [m].
         tolerance: largest relative error of the derivatives.
-        solver: residual of the sharp solves, as a fraction of the largest applied force.
-        postures: number of other equilibria, for contractions drawn at random between 0 and twice those given.
+        solver: residual of the precise solves, as a fraction of the largest applied force.
+        postures: number of other equilibria, at random contractions between 0 and twice those given.
         seed: random seed.
 
     Raises:
-        ConformanceError: the first check that failed, how far it is off and where.
-        NotConvergedError: there is no equilibrium at one of these contractions.
+        ConformanceError: the first failed check, with its error and position.
+        NotConvergedError: no equilibrium at one of these contractions.
     """
     options = replace(simulation.options, tolerance=solver)
     sharp = Simulation(simulation.robot, options=options, body=simulation.body)

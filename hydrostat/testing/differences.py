@@ -8,7 +8,7 @@ from hydrostat.arrays import Float
 
 
 class ConformanceError(AssertionError):
-    """A conformance check, such as "gradient", failed: the entry that is furthest off, and how far, as a fraction."""
+    """Failed conformance check, such as "gradient", with the worst entry and its relative error."""
 
     def __init__(self, check: str, message: str, *, index: tuple[int, ...] = (), relative_error: float = 0.0) -> None:
         where = f" at {list(index)}" if index else ""
@@ -23,7 +23,7 @@ def central_differences(
     variables: np.ndarray,
     step: float,
 ) -> Float[np.ndarray, "values chosen"]:
-    """Derivative of `function` by the chosen variables; fourth order in `step` (Richardson).
+    """Return the derivative of `function` by selected variables; fourth order in `step` (Richardson).
 
     A column is NaN where the function is not finite within reach of the step.
     """
