@@ -30,7 +30,7 @@ def joined_groups(pairs: Int[np.ndarray, "2 joins"], count: int) -> Int[np.ndarr
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """Linear simplices: triangles (dim 2) or tetrahedra (dim 3), positively oriented.
+    """Mesh of linear simplices: triangles (dim 2) or tetrahedra (dim 3), positively oriented.
 
     Raises InputError: wrong shapes, nodes that are not finite, indices out of range, or an element without positive
     volume.
@@ -74,7 +74,7 @@ class Mesh:
         return self.nodes.shape[1]
 
     def to_quadratic(self) -> "Mesh":
-        """Mesh with a node in the middle of each edge; its elements are cut into 4 triangles or 8 tetrahedra."""
+        """Return a mesh with a node in the middle of each edge; elements are cut into 4 triangles or 8 tetrahedra."""
         linear = self.to_linear()
         pairs = list(combinations(range(self.dim + 1), 2))
         count = len(linear.nodes)
@@ -86,7 +86,7 @@ class Mesh:
         return Mesh(nodes, _split_quadratic(nodes, quadratic), quadratic)
 
     def to_linear(self) -> "Mesh":
-        """Mesh of linear elements of the same corners; itself if it is one."""
+        """Return a mesh of linear elements with the same corners; itself if it is linear."""
         if self.quadratic is None:
             return self
         corners = self.quadratic[:, : self.dim + 1]
@@ -94,31 +94,31 @@ class Mesh:
 
     @cached_property
     def parts(self) -> Int[np.ndarray, " nodes"]:
-        """Number of the part of the mesh that each node belongs to: elements that share a node are of one part."""
+        """Index of the connected part that each node belongs to; elements that share a node are in one part."""
         ends = np.stack([self.elements[:, :-1].ravel(), self.elements[:, 1:].ravel()])
         return joined_groups(ends, len(self.nodes))
 
     @property
     def kind(self) -> str:
-        """Name of the shape of its elements."""
+        """Name of the element shape."""
         return "triangles" if self.dim == 2 else "tetrahedra"
 
     def describe(self) -> str:
-        """Numbers of nodes and elements in words."""
+        """Return the numbers of nodes and elements as text."""
         if self.quadratic is None:
             return f"{len(self.nodes)} nodes, {len(self.elements)} {self.kind}"
         return f"{len(self.nodes)} nodes, {len(self.quadratic)} quadratic {self.kind}"
 
     @cached_property
     def volumes(self) -> Float[np.ndarray, " elements"]:
-        """Area [m^2] of each triangle or volume [m^3] of each tetrahedron, with sign."""
+        """Signed area [m^2] of each triangle or volume [m^3] of each tetrahedron."""
         corners = self.nodes[self.elements]
         factorial = 2.0 if self.dim == 2 else 6.0
         return np.linalg.det(corners[:, 1:] - corners[:, :1]) / factorial
 
     @cached_property
     def boxes(self) -> tuple[Float[np.ndarray, "elements dim"], Float[np.ndarray, "elements dim"]]:
-        """Lowest and highest corner of the box around each element, a millionth of its longest side wider [m]."""
+        """Lowest and highest corner of the box around each element, enlarged by a millionth of its longest side [m]."""
         corners = [self.nodes[corner] for corner in self.elements.T]
         low, high = reduce(np.minimum, corners), reduce(np.maximum, corners)
         margin = 1e-6 * (high - low).max(axis=1)[:, None]
@@ -126,9 +126,9 @@ class Mesh:
 
     @cached_property
     def cells(self) -> tuple[tuple[np.ndarray, float, np.ndarray], np.ndarray, np.ndarray]:
-        """Grid in which elements are found: lowest corner, side [m] and counts; where each cell begins; its elements.
+        """Search grid for elements: lowest corner, side [m] and counts; where each cell begins; its elements.
 
-        An element stands in all cells that its box touches, rising in each; cells are as wide as the largest box.
+        An element is listed in all cells that its box touches, in rising order; cells are as wide as the largest box.
         """
         low, high = self.boxes
         corner, size = low.min(axis=0), float((high - low).max()) * (1 + 1e-9)
@@ -154,7 +154,7 @@ class Mesh:
 
     @cached_property
     def facet_balls(self) -> tuple[Float[np.ndarray, "facets dim"], Float[np.ndarray, " facets"]]:
-        """Middle and radius of the ball about the middle of each facet of `boundary` [m]."""
+        """Center and radius of the bounding ball of each facet of `boundary` [m]."""
         corners = self.nodes[self.boundary]
         middles = corners.mean(axis=1)
         return middles, np.linalg.norm(corners - middles[:, None], axis=2).max(axis=1)
@@ -169,7 +169,7 @@ class Mesh:
 
     @cached_property
     def boundary(self) -> Int[np.ndarray, "facets dim"]:
-        """Facets that belong to one element only, oriented with the body inside (left in the plane)."""
+        """Facets that belong to only one element, oriented with the body inside (left in the plane)."""
         return self._outer_facets[0]
 
     @cached_property
@@ -179,7 +179,7 @@ class Mesh:
 
     @cached_property
     def element_groups(self) -> Int[np.ndarray, " elements"]:
-        """Group of each element; elements of one group are joined through facets, not only at nodes."""
+        """Group of each element; elements of a group are connected through facets, not only at nodes."""
         _, order, again = self._ordered_facets
         joins = np.stack([order[:-1][again], order[1:][again]])
         return joined_groups(joins % max(len(self.elements), 1), len(self.elements))
@@ -211,7 +211,7 @@ class Mesh:
         return np.unique(self.boundary)
 
     def cavity(self, point: Float[np.ndarray, " dim"]) -> Int[np.ndarray, "facets dim"]:
-        """Facets of `boundary` that close a hole of the body around a point [m]; none if it lies in no hole."""
+        """Return the facets of `boundary` that close a hole around a point [m]; none if it is in no hole."""
         facets = self.boundary
         group = joined_groups(facets[:, [0, -1]].T, len(self.nodes))
         if self.dim == 3:
@@ -238,15 +238,15 @@ class Mesh:
 
     @property
     def spacings(self) -> Float[np.ndarray, " elements"]:
-        """Edge [m] of the regular triangle or tetrahedron that is as large as each element."""
+        """Edge length [m] of the regular triangle or tetrahedron with the size of each element."""
         return (_REGULAR[self.dim] * self.volumes) ** (1 / self.dim)
 
     def dihedral_angles(self) -> Float[np.ndarray, " elements"]:
-        """Smallest angle between two faces of each tetrahedron [degrees]: 70.5 at best, 0 where it is flat."""
+        """Smallest angle between two faces of each tetrahedron [degrees]: at best 70.5, 0 for a flat one."""
         return dihedral_angles(self.nodes, self.elements)
 
     def facet_areas(self) -> tuple[Vector, Vector]:
-        """Area (length, in the plane) of each boundary facet at rest, and of each node's share of it [m^dim-1]."""
+        """Area (length in the plane) of each boundary facet at rest, and of each node's share of it [m^dim-1]."""
         corners = self.nodes[self.boundary]
         spans = corners[:, 1:] - corners[:, :1]
         if self.dim == 2:

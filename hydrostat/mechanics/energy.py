@@ -130,23 +130,24 @@ class Gaps(NamedTuple):
 class Energy(ABC):
     """Sum of terms, each of which depends on the few nodes of its stencil and on at most one control.
 
-    A control is what an actuator commands: the contraction of a winch [m], the tension of a muscle fibre [N].
-    A new energy needs value, gradient and Hessian to be assembled and minimized, and is given to a `Simulation` in a
-    list. All other methods have defaults; they tell what a solver may have to ask. Run
-    `hydrostat.testing.check_energy` on it.
+    A control is the command of an actuator: the contraction of a winch [m] or the tension of a muscle fibre [N].
+    A new energy needs value, gradient and Hessian for assembly and minimization; pass it to a `Simulation` in a list.
+    All other methods have defaults; they answer optional requests of a solver. Test an energy with
+    `hydrostat.testing.check_energy`.
 
     Attributes:
         stencils: nodes of each term, (terms, corners).
         controls: index of the control of each term, (terms,); None for an energy without controls.
-        supports: index of the support that holds each term, (terms,); None for an energy that nothing outside holds.
+        supports: index of the support that holds each term, (terms,); None for an energy without supports.
         convex: True if every Hessian block is positive semidefinite wherever the energy is defined.
         has_constant_hessian: True if the Hessian is the same for all nodes and controls; then it is assembled once.
-        projects_first: True if its whole Hessian is projected first where the sum is indefinite.
+        projects_first: True if its total Hessian is projected first when the sum is indefinite.
         has_history: True if the energy depends on the loading path, as with friction. A solve then follows the path by
             `history_residual`, `with_corrected_history` and `with_advanced_history`, and `history` is kept with the
             pose.
-        follows_tangent: True if, with a history, its Hessian after an increment is that of going on.
-        max_stalled_corrections: number of corrections in a row without progress after which a solve with history stops.
+        follows_tangent: True if, with a history, its Hessian after an increment is that of continued motion.
+        max_stalled_corrections: number of consecutive corrections without progress after which a solve with history
+            stops.
         stiffest: stiffness of its stiffest spring to a fixed place [N/m], which scales rounding errors of positions to
             forces.
     """
@@ -164,23 +165,23 @@ class Energy(ABC):
 
     @abstractmethod
     def value(self, nodes: Nodes, controls: Vector) -> float:
-        """Energy [J]; infinite where it is not defined, as for an inverted element."""
+        """Return the energy [J]; infinite where it is undefined, as for an inverted element."""
 
     @abstractmethod
     def gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
-        """dE/dx of each term [N], (terms, corners, dim)."""
+        """Return dE/dx of each term [N], (terms, corners, dim)."""
 
     @abstractmethod
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
-        """d2E/dx2 of each term [N/m], (terms, corners x dim, corners x dim), without the part in `low_rank_hessian`."""
+        """Return d2E/dx2 of each term [N/m], (terms, corners x dim, corners x dim), without `low_rank_hessian`."""
 
     def projected_hessian(self, nodes: Nodes, controls: Vector, share: float) -> HessianBlocks:
-        """Hessian blocks without this share, 0 to 1, of their negative part: projected Newton."""
+        """Return Hessian blocks without this share, 0 to 1, of their negative part (projected Newton)."""
         blocks = self.hessian(nodes, controls)
         return blocks if self.convex else blocks + share * (nearest_semidefinite(blocks) - blocks)
 
     def add_gradient(self, nodes: Nodes, controls: Vector, total: Nodes) -> None:
-        """Add dE/dx to the forces of all nodes [N]; override only if that is faster than by `gradient`."""
+        """Add dE/dx to the forces of all nodes [N]; override only if this is faster than `gradient`."""
         native.add_vectors(self.stencils, self.gradient(nodes, controls), total)
 
     def add_hessian(self, nodes: Nodes, controls: Vector, share: float, places: ScatterMap) -> None:
@@ -192,34 +193,34 @@ class Energy(ABC):
         native.add_blocks(self.stencils, places.slots, places.strides, blocks, places.data)
 
     def low_rank_hessian(self, nodes: Nodes, controls: Vector) -> LowRankStiffness | None:
-        """Springs that couple many nodes, with the Hessian G D G^T kept in low rank; None for most energies."""
+        """Return springs that couple many nodes, with a low-rank Hessian G D G^T; None for most energies."""
         return None
 
     def span_columns(self, nodes: Nodes) -> LowRankBasis | None:
-        """Gradients of the elongations whose compliance `with_corrected_history` needs; None for most energies."""
+        """Return gradients of elongations whose compliance `with_corrected_history` needs; None for most energies."""
         return None
 
     def control_gradient(self, nodes: Nodes, controls: Vector) -> Blocks:
-        """d2E/dx da of each term, (terms, corners, dim), a being the term's own control."""
+        """Return d2E/dx da of each term, (terms, corners, dim), where a is the term's own control."""
         raise NotImplementedError(f"{type(self).__name__} has no controls")
 
     def largest_force(self, nodes: Nodes, controls: Vector) -> float:
-        """Largest force that it applies to the body [N], to which a solver's tolerance is relative; 0 for none."""
+        """Return its largest force on the body [N], the scale of a solver's tolerance; 0 for none."""
         return 0.0
 
     def largest_step(self, nodes: Nodes, move: Nodes) -> float:
-        """Largest share of a straight move [m] that is admissible, above 0, at most 1: up to the first touch.
+        """Return the largest admissible share of a straight move [m], above 0 and at most 1: up to the first contact.
 
-        It is asked of the energy near the start, and must look at all terms that the move may bring near.
+        The solver calls this near the start; the result must cover all terms that the move can activate.
         """
         return 1.0
 
     def min_volume_ratio(self, nodes: Nodes) -> float:
-        """J of the element that is squeezed most, at most 1; 1 for an energy without elements."""
+        """Return the smallest volume ratio J of any element, at most 1; 1 for an energy without elements."""
         return 1.0
 
     def with_active_terms(self, nodes: Nodes) -> "Energy":
-        """Energy with the terms that count near `nodes`, where these come and go; itself where they never change."""
+        """Return the energy with the terms that are active near `nodes`; itself if its terms never change."""
         return self
 
     def continues(self, other: "Energy") -> bool:
@@ -231,22 +232,22 @@ class Energy(ABC):
         return None
 
     def gaps(self, nodes: Nodes) -> Gaps | None:
-        """Gaps of the pairs near one another at `nodes`, by which a step slides along them; None without contact."""
+        """Return the gaps of pairs that are close at `nodes`, along which a step slides; None without contact."""
         return None
 
     def with_load(self, share: float) -> "Energy":
-        """Energy with this share of its dead load, for load steps; itself if it has none."""
+        """Return the energy with this share of its dead load, for load stepping; itself if it has none."""
         return self
 
     def with_supports_moved(self, shifts: Points) -> "Energy":
-        """Energy with each support moved by its row of `shifts` [m]; itself if nothing outside holds it."""
+        """Return the energy with each support moved by its row of `shifts` [m]; itself if it has no supports."""
         return self
 
     def parameter_derivative(self, nodes: Nodes, field: Nodes) -> Mapping[str, Vector]:
-        """d(dE/dx . field) / dp for parameters p by name, each as a vector; those of energies with equal names add up.
+        """Return d(dE/dx . field) / dp for parameters p by name, one vector each; energies with equal names add up.
 
-        `mu` and `lame` are Lame's parameters [Pa]; `load` is a factor of all dead loads, `thickness` one of what
-        grows with the thickness of a flat body; `support_stiffness` is that of each support [N/m].
+        `mu` and `lame` are Lame's parameters [Pa]; `load` is a factor on all dead loads, `thickness` one on terms
+        proportional to the thickness of a flat body; `support_stiffness` is that of each support [N/m].
         """
         return {}
 
@@ -256,11 +257,11 @@ class Energy(ABC):
         return np.zeros(0)
 
     def with_history(self, history: Vector, nodes: Nodes, controls: Vector) -> Self:
-        """Energy that remembers `history`, at equilibrium in a given state."""
+        """Return the energy with history variables `history`, at equilibrium in a given state."""
         return self
 
     def history_residual(self, nodes: Nodes, controls: Vector) -> float:
-        """Error [N] of the quantities held fixed in a minimization, at `nodes`; 0 for most energies."""
+        """Return the error [N] of the quantities held fixed in a minimization, at `nodes`; 0 for most energies."""
         return 0.0
 
     def with_corrected_history(
@@ -269,7 +270,7 @@ class Energy(ABC):
         """Return the energy with these quantities corrected; by Newton's method if the compliance is given.
 
         Args:
-            nodes: equilibrium with what is held fixed [m].
+            nodes: equilibrium with these quantities fixed [m].
             controls: contractions [m].
             compliance: compliance of the body to the springs of this energy; None if unknown.
             response: displacement of the body under arbitrary forces; None if unknown.

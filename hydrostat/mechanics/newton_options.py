@@ -13,13 +13,13 @@ class NewtonOptions:
         tolerance: largest residual nodal force, as a fraction of the largest applied force.
         iterations: maximum number of iterations.
         halvings: maximum number of halvings of one step.
-        whole: give up immediately, at no cost, if the first step cannot be taken whole.
+        whole: True to stop immediately, at no cost, if the first full step fails.
         deadline: latest time at which the solver stops [s], on the clock of `time.monotonic`.
         accuracy: approximate distance of a node from equilibrium [m], estimated from the next step. The solver stops
-            there even if the residual force exceeds the tolerance. None: only the tolerance counts.
-        near: largest residual nodal force at which factors of the Hessian serve at the end of the step too, as a
+            there even if the residual force exceeds the tolerance. None to use only the tolerance.
+        near: largest residual nodal force at which the factorized Hessian is used again at the end of the step, as a
             fraction of the largest applied force.
-        known: True if those of the first step, known before, may also serve there.
+        known: True if the factors of the first step, known before, may also be used there.
     """
 
     tolerance: float = 1e-10

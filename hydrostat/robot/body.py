@@ -34,11 +34,11 @@ class Source(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Body:
-    """Meshed body. Two bodies are equal when they come from the same file and numbers.
+    """Meshed body. Two bodies are equal if they come from the same file with the same values.
 
-    A text stands for the source, the material, the volume, the plane or the elements of that name.
+    `source`, `material`, `volume`, `plane` and `elements` also accept the name of a value.
 
-    Raises InputError: a thickness that is missing or too much, a length out of its range, or an unknown name.
+    Raises InputError: a missing or unexpected thickness, a length out of its range, or an unknown name.
     """
 
     source: Source  # kind of content of the file
@@ -108,7 +108,7 @@ class Body:
         return (replace(whole, mesh=conform(linear.mesh, parts)) if parts else whole).with_elements(self.elements)
 
     def with_elements(self, kind: "ElementKind | str") -> "Body":
-        """Return the body with linear or quadratic elements of the same corners.
+        """Return the body with linear or quadratic elements that have the same corners.
 
         Raises InputError: quadratic elements and volume = "patch", or an unknown name.
         """
@@ -139,7 +139,7 @@ class Body:
 
     @cached_property
     def stiffness_factors(self) -> Float[np.ndarray, " elements"]:
-        """Factor of Young's modulus of each element by the grading; 1 without one."""
+        """Factor on Young's modulus of each element from the grading; 1 without grading."""
         if self.grading is None:
             return np.ones(len(self.mesh.elements))
         if self.mesh.quadratic is not None:
@@ -149,7 +149,7 @@ class Body:
 
     @cached_property
     def part_rings(self) -> tuple[tuple[Int[np.ndarray, " _"], ...], ...]:
-        """Nodes along the closed borders of each part of a flat body, the part to the left; empty in space."""
+        """Nodes along the closed borders of each part of a flat body, with the part on the left; empty in space."""
         if self.mesh.dim == 3:
             return tuple(() for _ in self.parts)
         own = [self.mesh.elements[self.element_materials == index + 1] for index in range(len(self.parts))]
@@ -163,7 +163,7 @@ class Body:
 
     @cached_property
     def element_foams(self) -> np.ndarray:
-        """Mask of the elements whose material has a foam law, (elements,)."""
+        """Mask of the elements whose material has a foam law (elements,)."""
         return np.array([bool(material.foam) for material in self.materials])[self.element_materials]
 
     @property
@@ -177,7 +177,7 @@ class Body:
         return mu, lame
 
     def element_size_for(self, nodes: int) -> float:
-        """Element size [m] for about so many nodes (InputError: a ready mesh, or no mesh has so few or so many)."""
+        """Return the element size [m] for a number of nodes (InputError: a ready mesh, or nodes out of range)."""
         from hydrostat.geometry import size_for, tetrahedralize, triangulate
 
         if self.outline is not None:
@@ -198,12 +198,12 @@ class Body:
 
     @cached_property
     def solid(self) -> Solid | None:
-        """Solid that the closed surface of a body in space encloses; None for other bodies."""
+        """Solid enclosed by the closed surface of a body in space; None for other bodies."""
         return None if self.healing is None else Solid(self.healing.surface)
 
     @cached_property
     def mark_anchors(self) -> tuple[Anchors, ...]:
-        """Nodes and weights that hold each line drawn on the body."""
+        """Nodes and weights that anchor each line drawn on the body."""
         return tuple(locate(self.mesh, line) for line in self.marks)
 
     @cached_property
@@ -212,7 +212,7 @@ class Body:
         return Thickness.measure(self.mesh)
 
     def distances(self, points: Points) -> Float[np.ndarray, " points"]:
-        """Distance of points outside the body [m], 0 inside its drawing, its surface or its mesh."""
+        """Return the distance of points from the body [m], 0 inside its drawing, surface or mesh."""
         distances = locate(self.mesh, points).distances
         beyond = distances > 0
         if not beyond.any():
@@ -238,7 +238,7 @@ class Body:
         thickness: float | None = None,
         volume: Volume = Volume.ELEMENT,
     ) -> "Body":
-        """Body from a ready mesh, in units of `unit` meters (InputError: no file or no such mesh)."""
+        """Create a body from a ready mesh, in units of `unit` meters (InputError: no such file, or not a mesh)."""
         from hydrostat.files import read_stranger
         from hydrostat.geometry import read_labeled_mesh
 
@@ -267,7 +267,7 @@ class Body:
         volume: Volume = Volume.ELEMENT,
         **reading: Unpack["DrawingReading"],
     ) -> "Body":
-        """Body from a drawing or picture, by its name (InputError: no closed outline, or a number is out of range)."""
+        """Create a body from a drawing or picture (InputError: no closed outline, or a value out of range)."""
         size, inner, drawing_part = (
             reading.get("size"),
             Inner(reading.get("inner", "holes")),
@@ -315,20 +315,20 @@ class Body:
         thickness: float | None = None,
         volume: Volume = Volume.ELEMENT,
     ) -> "Body":
-        """Body in space from a scan or CAD model (STL, OBJ, PLY, OFF or 3MF, by its name), healed if need be.
+        """Create a body in space from a scan or CAD model (STL, OBJ, PLY, OFF or 3MF, by its name), repaired.
 
         Args:
             content: bytes of the file.
-            file: its name.
-            unit: meters that a coordinate counts, if the file does not say.
+            file: file name.
+            unit: length of one coordinate unit [m], if the file does not define it.
             material: material of the body.
             element_size: mean length of a mesh edge [m].
-            size: longest side of the bounding box [m] to scale to; None: as the file says.
-            thickness: must be None; refused as bodies in space have none.
+            size: longest side of the bounding box after scaling [m]; None to keep the size of the file.
+            thickness: must be None, because bodies in space have none.
             volume: measure of volume change.
 
         Raises:
-            InputError: the file holds no surface, it encloses no body, or a number is out of its range.
+            InputError: the file has no surface, the surface encloses no body, or a value is out of range.
         """
         _check_lengths(size=size, element_size=element_size, thickness=thickness)
 

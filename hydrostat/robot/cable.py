@@ -35,14 +35,14 @@ class Cable:
         sheathed: pairs (i, j) of point indices between which it runs in a sheath of fixed length.
         friction: friction coefficient mu at the via points: where the cable bends by an angle, its tension differs
             between the two sides by at most a factor exp(mu * angle) (capstan).
-        spool_radius: radius of the cable's own step on the shaft of its winch [m]; None: that of the winch. The cable's
-            contraction is that of the winch times the ratio of both radii.
-        reverse: True if it is wound the other way round: it is taken in as its winch pays out, and paid out as the
-            winch takes in.
-        name: unique in the robot; a `Robot` gives one to a cable that has none.
+        spool_radius: radius of the cable's own step on the shaft of its winch [m]; None for that of the winch. The
+            cable's contraction is that of the winch times the ratio of both radii.
+        reverse: True if it is wound in the opposite direction: it is taken in when its winch turns to pay out, and paid
+            out when the winch takes in.
+        name: name, unique in the robot; a `Robot` names cables without one.
 
     Raises:
-        InputError: fewer than two points, coincident points, or a number out of its range.
+        InputError: fewer than two points, coincident points, or a value out of range.
     """
 
     winch: str
@@ -100,7 +100,7 @@ class Cable:
 
     @property
     def bare(self) -> np.ndarray:
-        """Booleans of the segments that are not sheathed, (points - 1,)."""
+        """Mask of the segments outside sheaths, (points - 1,)."""
         bare = np.ones(len(self.points) - 1, dtype=bool)
         for start, end in self.sheathed:
             bare[start:end] = False

@@ -89,7 +89,7 @@ class Contact:
         friction: Coulomb friction coefficient between parts of the body, and between it and obstacles that state none.
 
     Raises:
-        InputError: a distance or a friction that cannot be.
+        InputError: a distance or a friction coefficient out of range.
     """
 
     distance: float | None = None
@@ -135,11 +135,11 @@ class Obstacle:
         mesh: closed surface, moved by `at`.
         mass: mass of an object that moves under forces [kg], evenly distributed; None: it is static.
         path: keyframes: times [s] and the position of `at` then [m]. The motion starts at `at`, is linear between
-            keyframes without rotation, and ends at the last one. Only dynamics uses it; in statics the obstacle is
-            static.
+            keyframes without rotation, and ends at the last one. Only dynamics uses the path; in statics the obstacle
+            does not move.
 
     Raises:
-        InputError: a key that is missing or does not belong to the shape, or a wrong value.
+        InputError: a missing key, a key that its shape does not have, or a wrong value.
     """
 
     name: str
@@ -201,7 +201,7 @@ class Obstacle:
             before = instant
 
     def spine(self) -> Points:
-        """Points inside it [m], (points, dim): along the line from `at` to `to`; none for a plane, which has no end."""
+        """Points inside the obstacle [m], (points, dim): along the line from `at` to `to`; none for a plane."""
         at = np.array(self.at)
         if self.shape == ObstacleShape.PLANE:
             return np.zeros((0, len(at)))
@@ -212,17 +212,17 @@ class Obstacle:
         return at + np.linspace(0, 1, spine)[:, None] * ((self.to or self.at) - at)
 
     def field(self) -> DistanceField:
-        """Distance of points from it."""
+        """Distance field of the obstacle."""
         return _FIELDS[ObstacleShape(self.shape)](self)
 
     def shift(self, instant: float) -> Vector:
-        """Displacement along its path at an instant of a motion [m]."""
+        """Return the displacement along its path at a time of a motion [m]."""
         times = [0.0, *(time for time, _ in self.path)]
         places = np.array([self.at, *(place for _, place in self.path)])
         return np.array([np.interp(instant, times, column) for column in places.T]) - self.at
 
     def frame(self) -> tuple[Vector, Points]:
-        """Center [m] and axes, a row for each; the first is the longitudinal axis of a long obstacle."""
+        """Center [m] and axes, one row each; the first is the longitudinal axis of a long obstacle."""
         at, dim = np.array(self.at), len(self.at)
         if self.mesh is not None:
             _, middle, products = self.mesh.masses()

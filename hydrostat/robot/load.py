@@ -25,16 +25,16 @@ class Load:
         at: point of the body at rest, for a pressure in the cavity [m]; None with `marker`.
         marker: name of the marker that carries it; None with `at`.
         force: force along each axis [N]; None for others.
-        mass: point mass [kg]: gravity pulls at it, and it has inertia in motion; None for others.
-        pressure: pressure in the hole around `at` that the body closes [Pa], below 0 for a vacuum.
-        moment: moment on the elements there [N m]: one number in the plane, from x to y, or one about each axis.
-        path: keyframes of a motion: times [s] and the share of the load then, linear between them, constant before and
-            after. Without a path, and in statics, all of it acts.
-        drive: name of the `LoadDrive` whose value is the share that acts; None without one.
+        mass: point mass [kg], with weight under gravity and inertia in motion; None for others.
+        pressure: pressure in the closed hole of the body around `at` [Pa], below 0 for a vacuum.
+        moment: moment on the elements there [N m]: one value in the plane, from x to y, or one about each axis.
+        path: keyframes of a motion: times [s] and load shares, linear between them, constant before and after. Without
+            a path, and in statics, the full load acts.
+        drive: name of the `LoadDrive` that scales the load; None without one.
 
     Raises:
-        InputError: not one of `at` and `marker`, not one of `force`, `mass`, `pressure` and `moment`, or a number out
-            of range.
+        InputError: not exactly one of `at` and `marker`, not exactly one of `force`, `mass`, `pressure` and `moment`,
+            or a value out of range.
     """
 
     name: str
@@ -97,13 +97,13 @@ class Load:
             before = instant
 
     def share_at(self, instant: float) -> float:
-        """Share of the load that acts at an instant of a motion [s]."""
+        """Return the share of the load that acts at a time of a motion [s]."""
         if not self.path:
             return 1.0
         return float(np.interp(instant, [time for time, _ in self.path], [share for _, share in self.path]))
 
     def held_at(self, instant: float) -> "Load | None":
-        """The load as it acts at an instant of a motion [s], without a path; None where none of it does."""
+        """Return the load that acts at a time of a motion [s], without a path; None if none of it acts."""
         share = self.share_at(instant)
         if share == 0.0:
             return None
@@ -119,11 +119,11 @@ class Load:
 
     @property
     def body_points(self) -> tuple[Point, ...]:
-        """Its `at` if that is a point of the body; that of a pressure lies in a hole."""
+        """Its `at` if that is a point of the body; the point of a pressure is in a hole."""
         return () if self.at is None or self.pressure is not None else (self.at,)
 
     def force_under(self, gravity: tuple[float, ...] | None, dim: int) -> Vector:
-        """Force on the body [N], (dim,): the weight of a mass under gravity [m/s^2]."""
+        """Return the force on the body [N], (dim,): for a mass, its weight under gravity [m/s^2]."""
         if self.force is not None:
             return np.array(self.force, dtype=float)
         return (self.mass or 0.0) * (np.zeros(dim) if gravity is None else np.array(gravity))

@@ -12,7 +12,7 @@ from hydrostat.robot.load import MAX_SHARE, Load
 
 @dataclass(frozen=True, kw_only=True)
 class LoadDrive:
-    """Control whose value is the share that acts of the loads which name it; 0, none of them, at rest.
+    """Control that scales the loads that name it; its value is the share that acts, 0 at rest.
 
     Attributes:
         name: name, unique among drives and winches.
@@ -20,7 +20,7 @@ class LoadDrive:
         max: largest share, at least 0.
 
     Raises:
-        InputError: limits that do not hold 0, or a share beyond 100.
+        InputError: limits that do not include 0, or a share beyond 100.
     """
 
     name: str
@@ -44,15 +44,15 @@ class LoadDrive:
 
     @property
     def column(self) -> tuple[str, float]:
-        """Head of a column of values in tables, and the factor from SI."""
+        """Column header in tables, and the factor from SI."""
         return f"{self.name}_share", 1.0
 
     def format_value(self, value: float) -> str:
-        """Value as text."""
+        """Return a value as text."""
         return f"{value:.4g}"
 
     def parse(self, text: str) -> float:
-        """Share of a text such as "0.5" (InputError: it is none)."""
+        """Return the share from a text such as "0.5" (InputError: not a share)."""
         try:
             value = float(text)
         except ValueError:

@@ -11,7 +11,7 @@ from hydrostat.given import Point, check_point
 
 @dataclass(frozen=True, kw_only=True)
 class Marker:
-    """Named point that is tracked on the body.
+    """Named point on the body to track.
 
     Attributes:
         name: name, unique in the robot.
@@ -48,5 +48,5 @@ class PoseTarget:
             check_point(f"targets.{name}", target)
 
     def mean_square_error(self, places: Mapping[str, Point]) -> float:
-        """Return the mean squared distance of markers at places [m] from their targets [m^2]."""
+        """Return the mean squared distance of markers at given positions [m] from their targets [m^2]."""
         return float(np.mean([np.sum((np.array(places[name]) - goal) ** 2) for name, goal in self.targets.items()]))

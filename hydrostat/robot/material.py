@@ -131,28 +131,28 @@ class FoamTerm:
 class Material:
     """Isotropic material: elastic, and optionally viscous.
 
-    Stretched along one axis, foam has the stress sum of 2 mu share / alpha (s^(alpha - 1) - s^(-1 - alpha nu)).
+    Under uniaxial stretch, foam has the stress sum of 2 mu share / alpha (s^(alpha - 1) - s^(-1 - alpha nu)).
 
     Attributes:
         young: Young's modulus [Pa].
         poisson: Poisson's ratio.
         density: mass density [kg/m^3].
-        young_interval: 95 % interval of a measured Young's modulus [Pa]; None: not measured.
+        young_interval: 95 % interval of a measured Young's modulus [Pa]; None if not measured.
         viscosity: shear viscosity of a dashpot parallel to the elastic material (Kelvin-Voigt) [Pa s].
         relaxation: Maxwell branches parallel to the elastic material, together a Prony series.
         hysteresis: Prandtl elements parallel to the elastic material, together an Iwan model.
         foam: terms of the foam law; empty for a Neo-Hookean material.
-        largest_stretch: maximum stretch (length / rest length) for which the values are valid; None: unknown.
-        largest_squeeze: maximum compression, as a share of the length, for which the values are valid, for a foam until
-            its walls touch; None: unknown.
-        loss_factor: tangent of the angle between stress and strain in a slow vibration; None: unknown.
+        largest_stretch: maximum stretch (length / rest length) for which the values are valid; None if unknown.
+        largest_squeeze: maximum compression, as a share of the length, for which the values are valid; for a foam,
+            until its cell walls touch; None if unknown.
+        loss_factor: tangent of the phase angle between stress and strain in slow vibration; None if unknown.
         name: name in the material table; empty for a material given by its values.
         source: source of the values.
         loss_source: source of the loss factor.
-        note: limits of the values, and sources that disagree.
+        note: limits of the values, and conflicting sources.
 
     Raises:
-        InputError: a number out of its range.
+        InputError: a value out of range.
     """
 
     young: float
@@ -217,9 +217,9 @@ class Material:
         return replace(self, viscosity=0.0, relaxation=(), hysteresis=())
 
     def with_damping(self, frequency: float) -> Self:
-        """Return the material with the viscosity that has its loss factor in shear at a frequency [Hz].
+        """Return the material with the viscosity that gives its loss factor in shear at a frequency [Hz].
 
-        A mode of that frequency then has about half the loss factor as damping ratio; others in proportion to theirs.
+        A mode of that frequency then has a damping ratio of about half the loss factor; other modes in proportion.
 
         Raises InputError: no loss factor, or a frequency that is not above 0.
         """
@@ -229,7 +229,7 @@ class Material:
         return replace(self, viscosity=self.loss_factor * self.lame[0] / (2 * math.pi * frequency))
 
     def with_hysteresis(self) -> Self:
-        """Return the material with the sliders that the table has for its name.
+        """Return the material with the hysteresis elements that the table has for its name.
 
         Raises InputError: the table has none.
         """
@@ -248,12 +248,12 @@ class Material:
         return mu, self.young * self.poisson / ((1 + self.poisson) * (1 - 2 * self.poisson))
 
     def with_young(self, young: float) -> Self:
-        """Return the material with another Young's modulus [Pa], whose interval is unknown."""
+        """Return the material with another Young's modulus [Pa], without its interval."""
         return replace(self, young=young, young_interval=None)
 
     @property
     def young_deviation(self) -> float | None:
-        """Standard deviation of the logarithm of Young's modulus by its interval; None: not measured."""
+        """Standard deviation of the logarithm of Young's modulus, from its interval; None if not measured."""
         if self.young_interval is None:
             return None
         low, high = self.young_interval
@@ -266,7 +266,7 @@ class Material:
 
     @property
     def range_text(self) -> str:
-        """Valid range of the length, in percent: compression and extension, such as "-30 to +50 %"."""
+        """Valid range of length changes in percent: compression and extension, such as "-30 to +50 %"."""
         squeeze = "" if self.largest_squeeze is None else f"{-100 * self.largest_squeeze:.0f}"
         stretch = "" if self.largest_stretch is None else f"{100 * (self.largest_stretch - 1):+.0f}"
         return f"{squeeze or '?'} to {stretch or '?'} %"

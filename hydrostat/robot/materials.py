@@ -291,16 +291,16 @@ FOAMS = MappingProxyType({material.name: material for material in _FOAM_TABLE}) 
 
 
 def get_material(name: str, law: MaterialLaw | str | None = None) -> Material:
-    """Material of the table, else of the user's own file; capitals do not matter (InputError: no such material).
+    """Return a material from the table or the user's file; names are case-insensitive (InputError: unknown name).
 
-    One of the user's own comes without its name, as a robot keeps its values: it is the same on another computer.
+    A material from the user's file comes without its name, because a robot stores its values for use on any computer.
 
     Args:
         name: name of the material.
         law: "foam" for its foam law, "neo-hookean" by default.
 
     Raises:
-        InputError: no material has this name, or no such law.
+        InputError: an unknown material or law.
     """
     check_type(name, str, 'a material is found by its name, such as "flexfoam-it x"')
     material = MATERIALS.get(name.lower())

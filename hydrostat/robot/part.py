@@ -16,15 +16,15 @@ RIGID_RATIO = 1e6
 class BodyPart(PartRegion):
     """Region of a body with its own material, such as a soft joint, a bone or a plate.
 
-    An element belongs to the part that holds its middle. Nodes near the border are moved onto it, see `conform`.
+    An element belongs to the part that contains its center. Nodes near the border are moved onto it, see `conform`.
 
     Attributes:
         material: material of the part, or its name in the table; None for a rigid part.
-        density: mass density of a rigid part [kg/m^3]; None for others, whose material has one.
-        winch: name of the winch whose motor and housing it is, for `fit_winch_bodies`; empty for others.
+        density: mass density of a rigid part [kg/m^3]; None for other parts, whose material has one.
+        winch: name of the winch whose motor and housing form this part, for `fit_winch_bodies`; empty for other parts.
 
     Raises:
-        InputError: as for `PartRegion`, a material and a density, or neither.
+        InputError: as for `PartRegion`, both a material and a density, or neither.
     """
 
     material: Material | None = None
@@ -46,11 +46,11 @@ class BodyPart(PartRegion):
 
     @property
     def is_rigid(self) -> bool:
-        """True if the part has no material, so does not deform."""
+        """True if the part has no material and cannot deform."""
         return self.material is None
 
     def material_in(self, body: Material) -> Material:
-        """Material of the part; that of a rigid one is `RIGID_RATIO` times as stiff as the body's."""
+        """Return the material of the part; that of a rigid part is `RIGID_RATIO` times as stiff as the body's."""
         if self.material is not None:
             return self.material
         return Material(young=RIGID_RATIO * body.young, poisson=0.3, density=self.density or 0.0)

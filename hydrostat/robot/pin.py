@@ -26,15 +26,15 @@ DEFAULT_STIFFNESS = DefaultStiffness(100e3)  # of a pin in plush [N/m] (M2)
 
 @dataclass(frozen=True, kw_only=True)
 class Pin:
-    """Boundary condition: holds every node within `radius` of `at`, or in a box; if none, the point itself.
+    """Boundary condition: holds every node within `radius` of `at` or in a box; if there is none, the point itself.
 
     Attributes:
         at: center of the pin [m]; None with `box`.
         radius: radius within which nodes are held [m].
         box: two opposite corners [m].
-        stiffness: stiffness of the whole pin [N/m], shared equally by all nodes that it holds. Left out it is 100
-            kN/m; where that is less than 5 times (in space 15 times) its `held_stiffness`, it is 100 times that.
-        drive: name of the drive that moves it; None: it stands still.
+        stiffness: stiffness of the whole pin [N/m], shared equally by its nodes. The default is 100 kN/m, or 100 times
+            its `held_stiffness` if 100 kN/m is less than 5 times (in space 15 times) that value.
+        drive: name of the drive that moves it; None for a fixed pin.
     """
 
     at: Point | None = None
@@ -57,11 +57,11 @@ class Pin:
 
     @property
     def is_sized(self) -> bool:
-        """True if its stiffness was chosen by the body that it holds, above the default in plush."""
+        """True if its stiffness was derived from the body, above the default for plush."""
         return isinstance(self.stiffness, DefaultStiffness) and self.stiffness != DEFAULT_STIFFNESS
 
     def held_stiffness(self, body: "Body") -> float:
-        """Stiffness of an element of the stiffest material at the held nodes, times their number [N/m].
+        """Return the stiffness of an element of the stiffest material at the held nodes, times their number [N/m].
 
         A rigid part counts as the body's material.
         """
@@ -74,7 +74,7 @@ class Pin:
         return len(anchors.weights) * young * length
 
     def sized_for(self, body: "Body") -> Self:
-        """Return the pin with the default stiffness for a body; itself if one was given."""
+        """Return the pin with the default stiffness for a body; itself if its stiffness was given."""
         if not isinstance(self.stiffness, DefaultStiffness):
             return self
         needed = self.held_stiffness(body)
@@ -95,7 +95,7 @@ class Pin:
         return anchors
 
     def holds(self, mesh: Mesh) -> np.ndarray:
-        """Mask of the nodes inside the pin, (nodes,)."""
+        """Return the mask of the nodes inside the pin, (nodes,)."""
         if self.box is not None:
             low, high = np.min(self.box, axis=0), np.max(self.box, axis=0)
             return ((mesh.nodes >= low) & (mesh.nodes <= high)).all(axis=1)

@@ -20,18 +20,18 @@ from hydrostat.robot.winch import Winch
 
 @dataclass(frozen=True, kw_only=True)
 class PinDrive:
-    """Actuator that moves the pins which name it: it turns them about an axis, or slides them along a direction.
+    """Actuator that rotates the pins that name it about an axis, or slides them along a direction.
 
     Attributes:
         name: name, unique among drives and winches.
-        at: a point of the axis of rotation [m]; None for a slide.
+        at: point on the axis of rotation [m]; None for a slide.
         axis: direction of the axis, in space only; angles count by the right-hand rule, in the plane from x to y.
         slide: direction of travel; None for a rotation.
-        min: least angle [rad] or travel [m]; None: -180 degrees.
-        max: largest angle [rad] or travel [m]; None: 180 degrees.
+        min: least angle [rad] or travel [m]; None for -180 degrees.
+        max: largest angle [rad] or travel [m]; None for 180 degrees.
 
     Raises:
-        InputError: both or neither of `at` and `slide`, a direction of no length, or limits that do not hold 0.
+        InputError: both or neither of `at` and `slide`, a direction of length 0, or limits that do not include 0.
     """
 
     name: str
@@ -89,19 +89,19 @@ class PinDrive:
         return self.min, self.max
 
     def limit_texts(self) -> tuple[str, str]:
-        """Limits with their unit; they read back to the very same values."""
+        """Limits as texts with units; they read back to exactly the same values."""
         low, high = self.limits
         if not self.turns:
             return units.format_quantity(low, units.LENGTH), units.format_quantity(high, units.LENGTH)
         return format_angle(low), format_angle(high)
 
     def format_value(self, value: float) -> str:
-        """Value as text: degrees or millimeters."""
+        """Return a value as text, in degrees or millimeters."""
         return f"{math.degrees(value):.4g} deg" if self.turns else f"{1e3 * value:.4g} mm"
 
     @property
     def column(self) -> tuple[str, float]:
-        """Head of a column of values in tables, and the factor from SI: degrees, or millimeters."""
+        """Column header in tables, and the factor from SI to degrees or millimeters."""
         return (f"{self.name}_deg", math.degrees(1.0)) if self.turns else (f"{self.name}_mm", 1e3)
 
     def with_transform(self, move: Callable[[Point], Point], scale: Callable[[float], float]) -> "PinDrive":
@@ -112,7 +112,7 @@ class PinDrive:
         return replace(self, min=scale(low), max=scale(high))
 
     def directions(self, points: Points) -> tuple[Points, Points]:
-        """Return D, E with moves sin(a) D + (1 - cos a) E of points that turn by a, or a D that slide [m or 1]."""
+        """Return D and E: points move by sin(a) D + (1 - cos a) E if turned by a, or by a D if they slide [m or 1]."""
         if self.slide is not None:
             way = np.array(self.slide, dtype=float)
             return np.tile(way / np.linalg.norm(way), (len(points), 1)), np.zeros_like(points)
@@ -124,19 +124,19 @@ class PinDrive:
         return first, np.cross(axis, first)
 
     def move(self, points: Points, value: float) -> Points:
-        """Return where points at rest are [m] at a value of the drive [rad or m]."""
+        """Return the positions of rest points [m] at a drive value [rad or m]."""
         first, second = self.directions(points)
         return points + (np.sin(value) * first + (1 - np.cos(value)) * second if self.turns else value * first)
 
     @staticmethod
     def require_none(drives: "Sequence[PinDrive | LoadDrive]", what: str) -> None:
-        """Reject a robot with drives where only its winches are controls (InputError: it has one)."""
+        """Reject a robot with drives where only winches can be controls (InputError: it has a drive)."""
         if drives:
             raise InputError(f'drives, such as "{drives[0].name}", are not available in {what}. Remove them.')
 
     @staticmethod
     def check_values(drives: "Sequence[PinDrive | LoadDrive]", values: Iterable[float]) -> list[str]:
-        """Drives out of their limits, in words; empty where none is."""
+        """Return a text that names drives beyond their limits; empty if none is."""
         hair = 1e-9  # Tolerance for rounding errors [rad or m]
         told = []
         for drive, value in zip(drives, values, strict=True):
@@ -157,12 +157,12 @@ class PinDrive:
                 )
 
     def parse(self, text: str) -> float:
-        """Value of a text [rad or m], as `parse_value` reads it."""
+        """Return the value of a text [rad or m], as `parse_value`."""
         return self.parse_value(text, turns=self.turns)
 
     @staticmethod
     def parse_value(text: str, *, turns: bool) -> float:
-        """Angle [rad] or travel [m] of a text such as "30 deg" or "-5 mm" (InputError: it is none)."""
+        """Return the angle [rad] or travel [m] from a text such as "30 deg" or "-5 mm" (InputError: invalid)."""
         bare = text.strip()
         sign = -1.0 if bare.startswith("-") else 1.0
         value = units.parse_quantity(bare.removeprefix("-"), units.ANGLE if turns else units.LENGTH)

@@ -48,7 +48,7 @@ def is_of_gallery(source: object) -> TypeGuard[str]:
 
 
 def list_gallery() -> list[str]:
-    """Names of the robots in the gallery, sorted."""
+    """Return the names of the robots in the gallery, sorted."""
     return sorted(folder.name for folder in _shelf().iterdir() if (folder / "robot.toml").is_file())
 
 
@@ -73,7 +73,7 @@ def load_robot(path: str | Path) -> Robot:
     """Read a robot from its folder, its robot.toml, or the gallery, as "gallery:starfish".
 
     Raises:
-        InputError: one line with file, line or key, what is wrong and what is allowed.
+        InputError: an invalid robot; one line with the file, line or key, the problem and the allowed values.
     """
     if not isinstance(path, str | os.PathLike):
         raise InputError(f'a robot is read from its folder, its robot.toml or "gallery:NAME", not from {path!r:.60}')

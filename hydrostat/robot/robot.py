@@ -42,24 +42,25 @@ class Robot:
     Attributes:
         name: name of the robot.
         body: soft body.
-        pins: boundary conditions that together exclude rigid motion. None: the robot lies on the ground, an obstacle.
+        pins: boundary conditions that together exclude rigid motion. Without pins the robot lies on the ground, an
+            obstacle.
         drives: actuators that move pins or scale loads, in the order of every array of drive values.
         winches: winches in the order of every array of contractions.
         cables: cables in the order of every array of tensions; a cable without a name gets one.
         markers: tracked points.
         poses: target poses by name.
         length_unit: length unit of the coordinates in its file.
-        gravity: acceleration along each axis of the body [m/s^2], or a word such as "-y"; None: weightless.
-        face: side of a flat body on which its cables run, or a word such as "pairs"; None: unspecified.
-        motor: key of the motor of its winches, such as "sts3215"; "auto": the weakest that fits.
-        max_tension: maximum cable tension in poses [N], as a design keeps it; None: no limit.
-        max_torque: maximum torque of a winch in poses [N m]; None: no limit.
-        contact: self-contact and obstacle contact; None: disabled, so the body passes through itself.
+        gravity: acceleration along each axis of the body [m/s^2], or a direction such as "-y"; None for weightless.
+        face: side of a flat body on which its cables run, or a text such as "pairs"; None if unspecified.
+        motor: key of the motor of its winches, such as "sts3215"; "auto" for the weakest that fits.
+        max_tension: maximum cable tension in poses [N], from a design; None for no limit.
+        max_torque: maximum torque of a winch in poses [N m]; None for no limit.
+        contact: self-contact and obstacle contact; None disables contact, so the body can pass through itself.
         obstacles: rigid objects next to the body.
         loads: forces at points of the body, and hung masses.
         rods: elastic rods in the body.
         sheets: elastic sheets on its skin.
-        sensors: sensors in the body; they change nothing of its physics.
+        sensors: sensors in the body; they do not affect its physics.
 
     Raises:
         InputError: parts that do not fit together, such as a cable point outside the body.
@@ -128,7 +129,7 @@ class Robot:
 
     @property
     def given_cable_names(self) -> tuple[str, ...]:
-        """Name of each cable, but "" where it is the one that a cable without a name gets here."""
+        """Name of each cable, or "" if the robot named it."""
         return given_names(self.cables)
 
     def pose(self, name: str) -> PoseTarget:
@@ -142,16 +143,16 @@ class Robot:
         return DISTANCE * self.body.mesh.size if given is None else given
 
     def friction_of(self, obstacle: Obstacle) -> float:
-        """Coulomb's coefficient between the body and an obstacle."""
+        """Return the Coulomb friction coefficient between the body and an obstacle."""
         if obstacle.friction is not None:
             return obstacle.friction
         return 0.0 if self.contact is None else self.contact.friction
 
     @property
     def spool_ratios(self) -> Vector:
-        """Cable that each takes in [m] when its winch takes in 1 m, by the radii of their spools, (cables,).
+        """Length that each cable takes in when its winch takes in 1 m [m], from the spool radii, (cables,).
 
-        Negative for cables that are wound the other way round.
+        Negative for cables that are wound in the opposite direction.
         """
         radii = {winch.name: winch.spool_radius for winch in self.winches}
         own = [
@@ -161,7 +162,7 @@ class Robot:
         return np.array(own, dtype=float)
 
     def largest_spool(self, winch: Winch) -> float:
-        """Radius of the largest step on the shaft of a winch [m]."""
+        """Return the radius of the largest step on the shaft of a winch [m]."""
         return max(
             [winch.spool_radius, *(cable.spool_radius or 0 for cable in self.cables if cable.winch == winch.name)]
         )
@@ -179,7 +180,7 @@ class Robot:
         return low, high
 
     def with_network(self, winches: Iterable[Winch], cables: Iterable[Cable]) -> Self:
-        """Return the same robot with other winches and cables, the units of winches that are gone out of its body."""
+        """Return the robot with other winches and cables; body parts for the units of removed winches are removed."""
         kept = tuple(winches)
         staying = {"", *(winch.name for winch in kept if winch.body)}
         parts = tuple(part for part in self.body.parts if part.winch in staying)
@@ -187,14 +188,14 @@ class Robot:
         return replace(self, body=body, winches=kept, cables=tuple(cables))
 
     def with_material(self, material: Material | str | None = None, **changed: float) -> Self:
-        """Return the same robot of another material, its mesh kept.
+        """Return the robot with another material on the same mesh.
 
         Args:
-            material: a `Material`, or the name of one in the table; that of the robot if left out.
-            changed: numbers of it that differ, such as `young=50e3`.
+            material: a `Material`, or a name in the material table; that of the robot if left out.
+            changed: values to change, such as `young=50e3`.
 
         Raises:
-            InputError: no material has this name, or a number that none has or that is out of its range.
+            InputError: an unknown material, an unknown value, or a value out of range.
         """
         known = get_material(material) if isinstance(material, str) else material or self.body.material
         if not isinstance(known, Material):
@@ -208,10 +209,10 @@ class Robot:
         return replace(self, body=replace(self.body, material=known))
 
     def with_grading(self, factor: Callable[[Points], Vector] | None) -> Self:
-        """Return the same robot with Young's modulus times a function of places at rest [m], (points, dim).
+        """Return the robot with Young's modulus multiplied by a function of rest positions [m], (points, dim).
 
-        It is evaluated in the middle of each element, and may give one number for all; None: no grading. Raises
-        InputError: it does not give numbers above 0.
+        The function is evaluated at the center of each element and may return one value for all; None for no grading.
+        Raises InputError: a value that is not above 0.
         """
         mesh = self.body.with_elements("linear").mesh
         grading = None if factor is None else Grading.from_function(factor, mesh.nodes[mesh.elements].mean(axis=1))

@@ -17,23 +17,23 @@ SHARPEST = 100.0
 
 @dataclass(frozen=True, kw_only=True)
 class Rod:
-    """Elastic rod along a polyline of the body, which moves with it; it resists stretch, bending and, if given, twist.
+    """Elastic rod embedded in the body along a polyline; it resists stretch, bending and, if given, twist.
 
-    A round rod follows from its diameter and Young's modulus: EA = E pi d^2 / 4, EI = E pi d^4 / 64. One that is glued
-    in has GJ = EI / (1 + nu), 0.77 EI for steel; one that turns in its sheath resists no twist.
+    The stiffness of a round rod follows from its diameter and Young's modulus: EA = E pi d^2 / 4, EI = E pi d^4 / 64.
+    A bonded rod has GJ = EI / (1 + nu), 0.77 EI for steel; a rod that turns in its sheath resists no twist.
 
     Attributes:
         name: name, unique in the robot.
-        points: its corners in the body at rest [m], at least two. A rod that is bent at rest keeps how sharp its
-            bends are, not their sides.
+        points: corners in the body at rest [m], at least two. A rod that is bent at rest keeps the angles of its bends,
+            not their sides.
         diameter: diameter of a round rod [m]; None with stiffnesses.
         young: Young's modulus of a round rod [Pa]; None with stiffnesses.
         axial_stiffness: EA [N]; None for a round rod.
         bending_stiffness: EI [N m^2]; None for a round rod.
-        torsional_stiffness: GJ [N m^2], only in space; None for a rod that resists no twist.
+        torsional_stiffness: GJ [N m^2], only in space; None if the rod resists no twist.
 
     Raises:
-        InputError: too few points, a number out of its range, or neither diameter and young nor both stiffnesses.
+        InputError: too few points, a value out of range, or neither diameter and young nor both stiffnesses.
     """
 
     name: str
@@ -79,7 +79,7 @@ class Rod:
         return float(np.linalg.norm(np.diff(np.array(self.points), axis=0), axis=1).sum())
 
     def with_transform(self, move: Callable[[Point], Point], factor: float) -> "Rod":
-        """Rod with its points moved by `move` and its diameter scaled by `factor`, and GJ with it; EA and EI stay."""
+        """Return the rod with points moved by `move`, and diameter scaled by `factor`, GJ included; EA and EI stay."""
         given: dict[str, float] = {}
         if self.diameter is not None:
             given["diameter"] = factor * self.diameter

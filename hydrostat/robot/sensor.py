@@ -52,16 +52,16 @@ class Sensor:
 
     Attributes:
         name: name, unique in the robot.
-        kind: quantity that it reads.
-        points: corners of its path at rest [m], for a bend, a strain or a string; empty for others.
-        at: its place at rest [m], for others.
-        normal: direction across a bend sensor in space, to which it bends when its reading rises; None for others. In
-            the plane a reading rises as the path turns from x to y.
-        radius: radius around `at` of the face that a pressure sensor covers [m]; None for others.
+        kind: measured quantity.
+        points: corners of its path at rest [m], for a bend, strain or string sensor; empty for others.
+        at: position at rest [m], for other sensors.
+        normal: direction across a bend sensor in space; bending towards it raises the reading. None for others. In the
+            plane the reading rises as the path turns from x to y.
+        radius: radius around `at` of the surface that a pressure sensor covers [m]; None for others.
         noise: standard deviation of its readings, in their unit.
 
     Raises:
-        InputError: a key that its kind does not have, or one that it lacks; a number out of its range.
+        InputError: a missing key, a key that its kind does not have, or a value out of range.
     """
 
     name: str
@@ -108,28 +108,28 @@ class Sensor:
 
     @property
     def places(self) -> tuple[tuple[str, Point], ...]:
-        """Its points in the body, with their keys."""
+        """Points in the body, with their keys."""
         keyed = tuple((f"points[{index}]", point) for index, point in enumerate(self.points))
         return keyed if self.at is None else (("at", self.at),)
 
     def count_values(self, dim: int) -> int:
-        """Number of values of a reading in a body of `dim` dimensions."""
+        """Return the number of values in a reading for a body of `dim` dimensions."""
         if self.kind is SensorKind.ACCELEROMETER:
             return dim
         return 3 if dim == 3 and self.kind in (SensorKind.ORIENTATION, SensorKind.GYROSCOPE) else 1
 
     def heads(self, dim: int) -> list[str]:
-        """Name of each value of a reading, such as "imu_x"."""
+        """Return the name of each value in a reading, such as "imu_x"."""
         count = self.count_values(dim)
         return [self.name] if count == 1 else [f"{self.name}_{axis}" for axis in "xyz"[:count]]
 
     def columns(self, dim: int) -> list[str]:
-        """Name of each value with its unit, as in tables, such as "imu_x_deg"."""
+        """Return the table header of each value with its unit, such as "imu_x_deg"."""
         unit = self.column[0].replace("/", "_").replace("^", "")
         return [f"{head}_{unit}" if unit else head for head in self.heads(dim)]
 
     def with_transform(self, move: Callable[[Point], Point], scale: Callable[[float], float]) -> "Sensor":
-        """Return the same sensor moved, its lengths [m] scaled."""
+        """Return the sensor moved, with its lengths [m] scaled."""
         noise = scale(self.noise) if self.kind is SensorKind.LENGTH else self.noise
         return replace(
             self,
@@ -140,13 +140,13 @@ class Sensor:
         )
 
     def face(self, mesh: Mesh) -> np.ndarray:
-        """Facets of the boundary that a pressure sensor covers, (facets, dim): their middles lie within its radius."""
+        """Return the boundary facets of a pressure sensor, (facets, dim), whose centers are within its radius."""
         middles = mesh.nodes[mesh.boundary].mean(axis=1)
         return mesh.boundary[np.linalg.norm(middles - np.array(self.at), axis=1) <= (self.radius or 0.0)]
 
     @staticmethod
     def parse_noise(kind: SensorKind, given: object) -> float:
-        """Noise in SI of a value in robot.toml (InputError: it has no unit, or another one)."""
+        """Return the noise in SI from a value in robot.toml (InputError: no unit, or a wrong one)."""
         if kind is SensorKind.STRAIN:
             if isinstance(given, str):
                 raise InputError(f"noise of a strain is a number, such as 0.01, not {units.quote(given)}")
@@ -159,7 +159,7 @@ class Sensor:
         return math.radians(value) if _UNITS[kind] is units.ANGLE else value
 
     def noise_value(self) -> str | float:
-        """Noise as robot.toml has it; `parse_noise` reads it back."""
+        """Noise in the format of robot.toml, for `parse_noise`."""
         if self.kind is SensorKind.STRAIN:
             return self.noise
         if self.kind is SensorKind.GYROSCOPE:

@@ -27,19 +27,19 @@ class SheetSide(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Membrane(PartRegion):
-    """Elastic sheet that sticks to the skin of a body; it resists stretch and shear in its surface, not bending.
+    """Elastic sheet bonded to the skin of a body; it resists in-plane stretch and shear, not bending.
 
-    It covers the facets of the mesh whose middle is in its region, all of the skin without a shape. It adds no size to
-    the body: contact and drawing stay those of the body.
+    It covers the mesh facets whose center is in its region, or the whole skin without a shape. It adds no thickness to
+    the body: contact and drawing stay unchanged.
 
     Attributes:
         thickness: thickness of the sheet [m].
         material: elastic material, or its name in the table. It is Neo-Hookean, without viscosity or hysteresis.
         on: sides of a flat body that it covers.
-        wrinkles: True if it resists no compression, as cloth; False for a layer that sticks to the body all over.
+        wrinkles: True if it resists no compression, as cloth; False for a layer that is bonded everywhere.
 
     Raises:
-        InputError: as for `PartRegion`, a number out of its range, or a material that is not only elastic.
+        InputError: as for `PartRegion`, a value out of range, or a material that is not purely elastic.
     """
 
     thickness: float
@@ -64,7 +64,7 @@ class Membrane(PartRegion):
             )
 
     def find_facets(self, mesh: Mesh) -> tuple[Int[np.ndarray, "triangles 3"], Int[np.ndarray, "edges 2"]]:
-        """Triangles and edges of a mesh that it covers; both faces of a flat body are the same triangles.
+        """Return the triangles and edges of a mesh that it covers; both faces of a flat body are the same triangles.
 
         Raises InputError: it covers nothing.
         """
@@ -79,12 +79,12 @@ class Membrane(PartRegion):
         return triangles, edges
 
     def find_rings(self, mesh: Mesh) -> tuple[Int[np.ndarray, " _"], ...]:
-        """Nodes along the closed borders of the part of a flat body that it covers; empty without faces, in space."""
+        """Return the nodes along the closed borders of its part of a flat body; empty without faces, and in space."""
         triangles, _ = self.find_facets(mesh)
         return tuple(find_rings(Mesh(mesh.nodes, triangles).boundary)) if mesh.dim == 2 and len(triangles) else ()
 
     def find_area(self, mesh: Mesh, depth: float | None) -> float:
-        """Area that it covers [m^2], on both faces of a flat body of this thickness [m].
+        """Return its covered area [m^2], on both faces of a flat body of this thickness [m].
 
         Raises InputError: it covers nothing.
         """

@@ -20,19 +20,19 @@ class Mount(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class Winch:
-    """Winch whose cables share its contraction, on its spool or on steps of their own.
+    """Winch whose cables share its contraction, on its spool or on their own steps of the shaft.
 
     Attributes:
         name: name, unique in the robot.
         at: position in the rest pose [m].
         spool_radius: spool radius at which contraction, travel and release are measured [m].
         travel: maximum contraction [m].
-        release: maximum cable length let out beyond the rest length [m].
-        body: True if motor and housing are a rigid part of the body, see `fit_winch_bodies`.
-        mount: `Mount.WORLD` (or its text) fixes `at` in space: there its cables begin.
+        release: maximum cable length paid out beyond the rest length [m].
+        body: True if motor and housing form a rigid part of the body, see `fit_winch_bodies`.
+        mount: `Mount.WORLD` (or its text) fixes `at` in space, where its cables begin.
 
     Raises:
-        InputError: an empty name, a number out of its range, or no such mount.
+        InputError: an empty name, a value out of range, or an unknown mount.
     """
 
     name: str

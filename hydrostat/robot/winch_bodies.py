@@ -11,9 +11,9 @@ from hydrostat.robot.robot import Robot
 
 
 def fit_winch_bodies(robot: Robot) -> Robot:
-    """Return the robot with a rigid part for the unit of each winch that has `body`, and of no other winch.
+    """Return the robot with a rigid part for the unit of each winch that has `body`, and for no other winch.
 
-    Call it after winches were changed: the part of a unit stays where it is. The mesh is fitted to the borders.
+    Call it after changes to winches; otherwise parts stay at the old positions. The mesh is fitted to the borders.
 
     Raises:
         InputError: no motor is chosen, or a unit that does not fit, such as one outside the body.

@@ -35,18 +35,17 @@ from hydrostat.robot.winch import Mount
 
 
 def save_robot(robot: Robot, folder: str | Path, *, text: str | None = None) -> Path:
-    """Write robot.toml and the body's file into a folder, made if need be; returns the path of robot.toml.
+    """Write robot.toml and the body's file to a folder, created if missing; return the path of robot.toml.
 
-    Each file is written under a temporary name and renamed, so that a reader never sees half of it. Comments of a
-    robot.toml that was there are lost, but for a `text` that has them.
+    Each file is written atomically. Comments of an existing robot.toml are lost unless `text` has them.
 
     Args:
         robot: robot to save.
         folder: folder of the robot.
-        text: text of robot.toml, such as `merged_text` returns; None: `robot_text`.
+        text: text of robot.toml, such as from `merged_text`; None for `robot_text`.
 
     Raises:
-        InputError: a name that robot.toml does not allow, or a folder that cannot be written.
+        InputError: a name that robot.toml does not allow, or a folder that is not writable.
     """
     check_type(robot, Robot, "a folder is written of a Robot, such as load_robot gives")
     folder = path_of(folder, "a robot is kept in a folder")

@@ -22,17 +22,17 @@ from hydrostat.units import quote
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ContractionProfile:
-    """Contractions of the winches at given times; in between along a line, or gently: at rest at each given time.
+    """Contractions of the winches at given times; linear between them, or smooth with zero speed at each given time.
 
-    Before the first time and after the last the contractions stand still.
+    Contractions are constant before the first time and after the last.
 
     Attributes:
         times: times in rising order [s].
-        values: contractions at these times [m], a row for each time, in winch order, then values of drives [rad or m].
-        gentle: interpolate by 3 s^2 - 2 s^3 instead of linearly.
+        values: contractions at these times [m], one row for each time, in winch order, then drive values [rad or m].
+        gentle: True to interpolate by 3 s^2 - 2 s^3 instead of linearly.
 
     Raises:
-        InputError: times that do not rise, numbers that are not finite, or rows that are not one for each time.
+        InputError: times that do not rise, values that are not finite, or a wrong number of rows.
     """
 
     times: Vector
@@ -57,13 +57,13 @@ class ContractionProfile:
 
     @classmethod
     def ramp(cls, contractions: Vector, seconds: float) -> Self:
-        """Gently from rest to the contractions [m] within some time [s] (InputError: names, not an array)."""
+        """Create a smooth profile from rest to contractions [m] in a duration [s] (InputError: names, not an array)."""
         _check_array(contractions)
         return cls(times=np.array([0.0, seconds]), values=np.array([0 * contractions, contractions]), gentle=True)
 
     @classmethod
     def step(cls, contractions: Vector, begin: float = 0.0) -> Self:
-        """Suddenly, within a microsecond, from 0 to the contractions [m] at a time [s].
+        """Create a step from 0 to contractions [m] at a time [s], within a microsecond.
 
         Raises InputError: names, not an array, or a time below 0.
         """
@@ -72,7 +72,7 @@ class ContractionProfile:
         return cls(times=np.array([begin, begin + 1e-6]), values=np.array([0 * contractions, contractions]))
 
     def at(self, time: float) -> Vector:
-        """Contractions at a time [s]."""
+        """Return the contractions at a time [s]."""
         place = int(np.clip(np.searchsorted(self.times, time) - 1, 0, max(len(self.times) - 2, 0)))
         if len(self.times) == 1:
             return self.values[0]
@@ -86,19 +86,19 @@ class ContractionProfile:
         """Read a profile from a `ProfileTable`.
 
         Raises:
-            InputError: the file cannot be read, or is no such table; the text names the line.
+            InputError: the file cannot be read, or is not such a table; names the line.
         """
         return ProfileTable.open(path, robot).profile
 
     def write(self, path: Path, robot: Robot) -> Path:
-        """Write a profile as `ContractionProfile.read` reads it, whole or not at all; returns its path.
+        """Write a profile for `ContractionProfile.read`, atomically; return its path.
 
-        A gentle one loses that.
+        A smooth profile becomes linear.
         """
         return replace_file(path, self.text(robot))
 
     def text(self, robot: Robot) -> bytes:
-        """Write a profile as the bytes of a `ProfileTable`; a gentle one becomes linear."""
+        """Return a profile as the bytes of a `ProfileTable`; a smooth profile becomes linear."""
         heads, factors = zip(*_columns(robot).values(), strict=True) if _columns(robot) else ((), ())
         rows = zip(self.times, np.array(factors) * self.values + 0.0, strict=True)
         return csv_text(

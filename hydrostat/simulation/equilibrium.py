@@ -37,8 +37,8 @@ class Equilibrium(Tabular):
         result: solver result: stop reason, residual [N], iterations, stability and the factorized Hessian.
         history: history variables of the physics: cable slip at each point with friction so far and the anchors of the
             skin on obstacles with friction [m]; empty without friction.
-        robot: robot that is in this pose.
-        drives: value of each drive: angle [rad], travel [m] or share of loads.
+        robot: robot in this pose.
+        drives: value of each drive: angle [rad], travel [m] or load share.
         carried: unknowns of moving obstacles [m]: position and axes of each; empty if no obstacle moves.
     """
 
@@ -62,19 +62,19 @@ class Equilibrium(Tabular):
                 object.__setattr__(self, field_name, NamedVector(values, parts))
 
     def columns(self) -> Columns:
-        """Return contractions, drives, markers, tensions and energy as a table of one row."""
+        """Return a table of contractions, drive values, markers, tensions and energy, with one row."""
         return {**pose_columns(self), "energy_J": np.array([self.energy])}
 
     @property
     def warnings(self) -> tuple[str, ...]:
         """Warnings as texts: winches beyond travel or release, self-intersection, strain beyond the material.
 
-        Also a missing equilibrium, a saddle, or buckling on the way there. Empty if there is nothing to report.
+        Also a missing equilibrium, a saddle, or buckling along the path. Empty if there is no warning.
         """
         return self.find_warnings()
 
     def find_warnings(self, *, crossings: bool = True) -> tuple[str, ...]:
-        """Find `warnings`; without those of self-intersection, which take long in space, if `crossings` is False."""
+        """Return `warnings`; with `crossings=False` without self-intersection, which takes long in space."""
         told = []
         if not self.result.converged:
             told.append(f"no equilibrium: {self.result.status}")
@@ -89,7 +89,7 @@ class Equilibrium(Tabular):
 
     @property
     def squeezed_corners(self) -> str:
-        """Warning of quadratic elements that are held open by the barrier against inversion; empty if none is."""
+        """Warning about quadratic elements that only the inversion barrier holds open; empty if there are none."""
         mesh = self.robot.body.mesh
         pushed = [] if mesh.quadratic is None else pushed_elements(mesh.nodes, mesh.quadratic, self.nodes)
         if not len(pushed):
@@ -101,12 +101,12 @@ class Equilibrium(Tabular):
 
     @property
     def overstrain(self) -> str:
-        """Warning of elements outside the known range of their material; empty if there are hardly any."""
+        """Warning about elements outside the valid range of their material; empty if there are hardly any."""
         return find_overstrain(self.robot, self.nodes) if self.result.converged else ""
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Remarks on how exact the pose is: linear elements that are far too stiff in it; empty for most bodies."""
+        """Notes on accuracy: linear elements that are far too stiff in this pose; empty for most bodies."""
         stiffening = estimate_stiffening(self.robot.body, self.nodes)
         if stiffening < WORTH_A_NOTE:
             return ()
@@ -115,7 +115,7 @@ class Equilibrium(Tabular):
 
     @property
     def strains(self) -> Vector:
-        """Largest principal stretch at each node less 1, (nodes,); see `node_strains`."""
+        """Largest principal stretch at each node minus 1, (nodes,); see `node_strains`."""
         return node_strains(self.robot, self.nodes)
 
     @property
@@ -125,7 +125,7 @@ class Equilibrium(Tabular):
 
     @property
     def pin_forces(self) -> Points:
-        """Reaction force of each pin on the body [N], (pins, dim); drives have moved those of theirs."""
+        """Reaction force of each pin on the body [N], (pins, dim), with driven pins at their moved positions."""
         mesh, forces = self.robot.body.mesh, []
         values = {
             drive.name: (drive, float(value)) for drive, value in zip(self.robot.drives, self.drives, strict=True)
@@ -140,7 +140,7 @@ class Equilibrium(Tabular):
         return np.array(forces).reshape(-1, mesh.dim)
 
     def plot(self, **options: Any) -> "Figure":
-        """Draw it over the ghost of the rest shape, as a Matplotlib figure.
+        """Draw the pose over a ghost of the rest shape, as a Matplotlib figure.
 
         Args:
             options: `title`, `note` and `width` of `hydrostat.plot.draw_pose`.
@@ -169,7 +169,7 @@ class Equilibrium(Tabular):
 
     @property
     def controls(self) -> Vector:
-        """Contractions [m], then values of the drives [rad or m]: all that the energies read."""
+        """Contractions [m], then drive values [rad or m]: all inputs of the energies."""
         return np.concatenate([self.contractions, self.drives]) if len(self.drives) else self.contractions
 
     @property
@@ -183,7 +183,7 @@ class Equilibrium(Tabular):
         return self.result.nodes is (self.nodes if self.carried is None else self.nodes.base)
 
     def without_factors(self) -> "Equilibrium":
-        """Pose without its factorized Hessian, to be kept with many others: that takes megabytes."""
+        """Return the pose without its factorized Hessian, which takes megabytes, to keep many poses."""
         return replace(self, result=replace(self.result, stiffness=None))
 
     @property

@@ -17,7 +17,7 @@ class ContactPatch:
 
     Attributes:
         place: center of the patch, weighted by force [m].
-        force: force on the body there [N]. For self-contact: on one of both sides; the other has the opposite force.
+        force: force on the body there [N]. For self-contact: on one of the two sides; the other has the opposite force.
         obstacle: name of the touched obstacle; None for self-contact.
     """
 
@@ -46,17 +46,17 @@ class ContactPatch:
 
 
 def find_contacts(simulation: Simulation, pose: Equilibrium) -> tuple[ContactPatch, ...]:
-    """Find where a pose touches itself and obstacles, the hardest first; nothing where contact is off.
+    """Find contacts of a pose with itself and with obstacles, largest force first; empty if contact is off.
 
-    Pairs and samples that have a node in common are one patch. Forces on the body by an obstacle add up to what it
-    feels, friction included (`obstacle_forces` with the other sign); those of the body on itself are normal.
+    Contact pairs and samples with a common node form one patch. Forces from an obstacle include friction and add up to
+    its total force on the body (`obstacle_forces` with the opposite sign); forces of self-contact are normal forces.
 
     Args:
         simulation: simulation of the robot.
-        pose: an equilibrium of it.
+        pose: equilibrium of this robot.
 
     Raises:
-        InputError: no pose of this robot.
+        InputError: a pose of another robot.
     """
     check_pose(pose, simulation.robot.body.mesh.nodes.shape, simulation.robot.num_controls, what="the pose")
     where = pose.unknowns

@@ -14,12 +14,12 @@ from hydrostat.simulation.simulation import Simulation
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Modes(Tabular):
-    """Vibration modes about a pose at fixed controls, by rising frequency.
+    """Vibration modes about a pose at fixed controls, in order of frequency.
 
     Attributes:
         frequencies: frequency of each mode [Hz], without damping and with relaxed Maxwell branches.
-        damping: damping ratio of each mode, to first order in viscosity and Maxwell branches; 1 is critical.
-        shapes: displacement of the nodes in each mode, (modes, nodes, dim), of unit modal mass [1/kg^0.5].
+        damping: damping ratio of each mode, to first order in viscosity and Maxwell branches; 1 is critical damping.
+        shapes: node displacements in each mode, (modes, nodes, dim), of unit modal mass [1/kg^0.5].
     """
 
     frequencies: Vector
@@ -27,7 +27,7 @@ class Modes(Tabular):
     shapes: Float[np.ndarray, "modes nodes dim"]
 
     def columns(self) -> Columns:
-        """Return frequency and damping ratio, a row for each mode."""
+        """Return a table of frequency and damping ratio, one row for each mode."""
         return {"frequency_Hz": self.frequencies, "damping_ratio": self.damping}
 
     def __repr__(self) -> str:
@@ -36,16 +36,16 @@ class Modes(Tabular):
 
 
 def find_modes(simulation: Simulation, pose: Equilibrium | None = None, *, count: SupportsIndex = 6) -> Modes:
-    """Lowest vibration modes about an equilibrium, with taut cables as springs and winches that stand still.
+    """Compute the lowest vibration modes about an equilibrium; taut cables act as springs, and winches are fixed.
 
     Args:
         simulation: physics of the robot.
-        pose: an equilibrium; that without contractions if left out.
+        pose: equilibrium; that without contractions if left out.
         count: number of modes.
 
     Raises:
         InputError: friction, or a count that is not from 1 to the number of unknowns.
-        NotConvergedError: the pose is no stable equilibrium.
+        NotConvergedError: the pose is not a stable equilibrium.
     """
     pose = simulation.rest if pose is None else pose
     linear = LinearPose(simulation, pose)

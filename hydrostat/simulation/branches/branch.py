@@ -70,8 +70,8 @@ class Branch(Tabular):
     """Equilibria along a straight line of contractions.
 
     Attributes:
-        begin: contractions at the start [m], then values of drives [rad, m or share].
-        goal: those at the intended end.
+        begin: contractions at the start [m], then drive values [rad, m or share].
+        goal: contractions and drive values at the intended end.
         points: equilibria in order along the branch.
         critical: folds and bifurcations in the same order.
         status: reason why the branch ends.
@@ -88,7 +88,7 @@ class Branch(Tabular):
         return f"<Branch of {plural(len(self.points), 'pose')}: {self.status}>"
 
     def columns(self) -> Columns:
-        """Return share of the way, stability (1 or 0), contractions, markers and tensions, a row for each pose."""
+        """Return a table of path share, stability (1 or 0), contractions, markers and tensions, a row for each pose."""
         shares, stable = zip(*((point.share, float(point.stable)) for point in self.points), strict=True)
         columns = {"share": np.array(shares), "stable": np.array(stable)}
         return columns | ResultTable.of(point.pose for point in self.points).columns()
@@ -100,16 +100,16 @@ class Branch(Tabular):
 
     @property
     def end(self) -> Equilibrium:
-        """Its last equilibrium."""
+        """Last equilibrium of the branch."""
         return self.points[-1].pose
 
     @property
     def folds(self) -> tuple[float, ...]:
-        """Shares of the way at which the branch reverses."""
+        """Path shares at which the branch reverses."""
         return tuple(point.share for point in self.critical if point.kind is CriticalKind.FOLD)
 
     def runs(self) -> list[tuple[slice, bool]]:
-        """Parts from one critical point to the next, these included, with the stability of each part."""
+        """Sections between critical points, these included, with the stability of each section."""
         cuts = sorted({0, *(point.index for point in self.critical), len(self.points) - 1})
         parts = [slice(first, last + 1) for first, last in pairwise(cuts)]
         return [(part, self._stable(part)) for part in parts]
@@ -122,7 +122,7 @@ class Branch(Tabular):
         return inner[len(inner) // 2].stable
 
     def lines(self) -> list[str]:
-        """Report as lines of text."""
+        """Return a report as lines of text."""
         unstable = sum(not point.stable for point in self.points)
         told = f"{len(self.points)} equilibria" + (f", {unstable} of them unstable" if unstable else ", all stable")
         lines = [f"{self.status} at {100 * self.points[-1].share:.1f} % of the path ({told})"]

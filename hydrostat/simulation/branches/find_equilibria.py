@@ -37,13 +37,13 @@ class Multistability(Tabular):
     """Equilibria of a robot at the same contractions after different loading paths.
 
     Attributes:
-        contractions: contractions of all the poses [m], then values of drives [rad, m or share].
-        poses: distinct equilibria, least energy first.
+        contractions: contractions of all the poses [m], then drive values [rad, m or share].
+        poses: distinct equilibria, lowest energy first.
         lost: description of each loading path without an equilibrium or without a stable one.
         spread: largest distance of each marker between two of the poses [m].
         node_spread: largest distance of any node between two of the poses [m].
         near: largest node distance at which two poses count as one [m].
-        friction: True if cables have friction, so that the pose depends on the loading path anyway.
+        friction: True if cables have friction, which makes the pose depend on the loading path.
     """
 
     contractions: Vector
@@ -59,14 +59,14 @@ class Multistability(Tabular):
         return f"<Multistability: {plural(len(self.poses), 'pose')} after {plural(self.starts, 'start')}>"
 
     def columns(self) -> Columns:
-        """Return energy, number of loading paths, contractions, markers and tensions, a row for each pose."""
+        """Return a table of energy, number of paths, contractions, markers and tensions, one row for each pose."""
         energies, paths = np.array([[found.pose.energy, len(found.ways)] for found in self.poses]).reshape(-1, 2).T
         table = ResultTable.of(found.pose for found in self.poses).columns() if self.poses else {}
         return {"energy_J": energies, "loading_paths": paths} | table
 
     @property
     def unique(self) -> bool:
-        """True if all starts lead to one pose, so the contractions alone determine it."""
+        """True if all starts lead to one pose, so that the contractions alone determine it."""
         return len(self.poses) == 1
 
     @property
@@ -76,13 +76,13 @@ class Multistability(Tabular):
 
     @property
     def largest(self) -> tuple[str, float]:
-        """Marker that differs most between poses, and its distance [m]; "a node" for a robot without markers."""
+        """Marker with the largest distance between poses, and this distance [m]; "a node" without markers."""
         if not self.spread:
             return "a node", self.node_spread
         return max(self.spread.items(), key=lambda item: item[1])
 
     def lines(self) -> list[str]:
-        """Report as lines of text."""
+        """Return a report as lines of text."""
         if not self.poses:
             lines = ["no pose found"]
         elif self.unique:
@@ -114,20 +114,20 @@ def find_equilibria(
     tolerance: float = 1e-4,
     progress: Progress | None = None,
 ) -> Multistability:
-    """Solve the same contractions from different starts, and return the distinct poses.
+    """Solve for the same contractions from different starts; return the distinct poses.
 
-    The paths are those of `loading_paths_to`. One pose is no proof of uniqueness: it is the result of these paths only.
+    The loading paths are from `loading_paths_to`. A single pose does not prove uniqueness: other paths may differ.
 
     Args:
         simulation: the robot's physics.
-        contractions: contractions at the end of every loading path [m], and values of drives.
+        contractions: contractions at the end of every loading path [m], and drive values.
         count: number of loading paths.
         seed: random seed of the loading paths.
-        tolerance: poses whose nodes are all within this share of the body's size are one.
+        tolerance: largest node distance, as a share of the body's size, at which two poses count as one.
         progress: callback for progress.
 
     Raises:
-        InputError: contractions that do not fit the robot, or no ways.
+        InputError: contractions that do not fit the robot, or no loading paths.
     """
     goal = simulation.as_contractions(contractions)
     check_type(count, int, "count must be a whole number of at least 1")

@@ -50,21 +50,21 @@ class PoseRow(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BatchResult(Tabular):
-    """Equilibria at many contractions, a row for each; NaN marks a missing value.
+    """Equilibria at many contractions, one row each; NaN marks a missing value.
 
     Attributes:
         contractions: contractions [m], (poses, winches).
         markers: marker positions [m], (poses, markers, dim), in the robot's order.
         tensions: tension of each cable [N], (poses, cables).
-        jacobians: exact Jacobians of the markers by the contractions, (poses, markers, dim, winches); None if not
-            requested.
+        jacobians: exact Jacobians of the markers with respect to the contractions, (poses, markers, dim, winches); None
+            if not requested.
         nodes: node positions [m], (poses, nodes, dim); None if not requested.
         statuses: stop reason of each solve; None after an error.
         stable: True where the equilibrium is an energy minimum, not a saddle, (poses,).
         errors: error text of each solve; empty without an error.
-        warnings: `Equilibrium.warnings` of each solve; empty after an error. Self-intersection is found in flat bodies
-            only: in space, this takes as long as the solve.
-        robot: robot that was solved.
+        warnings: `Equilibrium.warnings` of each solve; empty after an error. Self-intersection is checked in flat
+            bodies only: in space, this takes as long as the solve.
+        robot: simulated robot.
     """
 
     contractions: Float[np.ndarray, "poses winches"]
@@ -79,7 +79,7 @@ class BatchResult(Tabular):
     robot: Robot
 
     def columns(self) -> Columns:
-        """Return contractions, drives, markers and tensions as a table, a row for each pose."""
+        """Return a table of contractions, drive values, markers and tensions, one row for each pose."""
         robot = self.robot
         drives = {drive.name: drive.unit for drive in robot.drives}
         columns = control_columns([winch.name for winch in robot.winches], drives, self.contractions)
@@ -87,7 +87,7 @@ class BatchResult(Tabular):
         return columns | named_columns("tension", [cable.name for cable in robot.cables], self.tensions, "N")
 
     def texts(self) -> dict[str, list[str]]:
-        """Return the status of each row, and its error and warnings in one text."""
+        """Return the status of each row, and its error and warnings as one text."""
         told = zip(self.errors, self.warnings, strict=True)
         return {
             "status": [str(status or "error") for status in self.statuses],
@@ -96,7 +96,7 @@ class BatchResult(Tabular):
 
     @property
     def converged(self) -> Bool[np.ndarray, " poses"]:
-        """Mask of the rows that are equilibria."""
+        """Mask of the rows with an equilibrium."""
         return np.array([status is NewtonStatus.CONVERGED for status in self.statuses], dtype=bool)
 
     def __len__(self) -> int:

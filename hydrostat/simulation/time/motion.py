@@ -16,7 +16,7 @@ from hydrostat.simulation.equilibrium import Equilibrium, name_values, pose_colu
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Motion(Tabular):
-    """State of a motion at one instant: everything that the next step depends on, and the observable quantities.
+    """State of a motion at one time: all inputs of the next step, and the observable quantities.
 
     Attributes:
         robot: moving robot.
@@ -36,8 +36,8 @@ class Motion(Tabular):
         drives: value of each drive [rad or m].
         carried: unknowns of moving obstacles [m], their velocities [m/s] and accelerations [m/s^2]; None if no obstacle
             moves.
-        result: result of the last minimization of the step; its energy is that of the step, its iterations are those of
-            all.
+        result: result of the last minimization of the step, with the energy of the step and the total number of
+            iterations.
     """
 
     robot: Robot
@@ -65,7 +65,7 @@ class Motion(Tabular):
                 object.__setattr__(self, field_name, NamedVector(values, parts))
 
     def columns(self) -> Columns:
-        """Return time, contractions, drives, markers, tensions and energies as a table of one row."""
+        """Return a table of time, contractions, drive values, markers, tensions and energies, with one row."""
         energies = {"kinetic_J": np.array([self.kinetic]), "potential_J": np.array([self.potential])}
         return {"time_s": np.array([self.time]), **pose_columns(self), **energies}
 
@@ -80,7 +80,7 @@ class Motion(Tabular):
 
     @property
     def controls(self) -> Vector:
-        """Contractions [m], then values of the drives [rad or m]."""
+        """Contractions [m], then drive values [rad or m]."""
         return np.concatenate([self.contractions, self.drives])
 
     @property
@@ -90,10 +90,10 @@ class Motion(Tabular):
 
     @property
     def pose(self) -> Equilibrium:
-        """Observable quantities as a pose; not an equilibrium, and its result is that of the last step.
+        """Observable quantities as a pose; it is not an equilibrium, and its result is that of the last step.
 
         Raises:
-            ValueError: the motion has not made a step yet.
+            ValueError: the motion has made no step yet.
         """
         if self.result is None:
             raise ValueError("a motion that has not begun has no result; use the pose that it began in")
