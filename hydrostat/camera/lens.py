@@ -88,7 +88,7 @@ class LensFile:
     name: str = field(default="lens", compare=False)
 
     def text(self) -> bytes:
-        """Text of the file."""
+        """Return the text of the file."""
         told = {"about": "Lens of a camera by hydrostat measure, in pixels.", "size": self.size, **asdict(self.lens)}
         return (json.dumps(told, indent=1) + "\n").encode()
 

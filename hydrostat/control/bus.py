@@ -97,7 +97,7 @@ class Bus(ABC):
 
     @property
     def clock(self) -> Callable[[], float]:
-        """Return the time of its readings, by a monotonic clock, for monitoring motors [s]."""
+        """Monotonic clock of its readings, also used to monitor motors [s]."""
         return steady
 
     def mark(self, zeros: Vector | None = None) -> None:  # noqa: B027 - most motors know their angle by themselves

@@ -30,7 +30,7 @@ class Player:
 
     @property
     def loop(self) -> bool:
-        """Return True if it repeats until it is stopped."""
+        """True if it repeats until it is stopped."""
         return self.rounds == inf
 
     def play(self, seconds: float) -> None:

@@ -15,7 +15,7 @@ from hydrostat.simulation import Equilibrium
 
 
 class IKStatus(StrEnum):
-    """Why inverse kinematics ended."""
+    """Reason for the end of an inverse-kinematics search."""
 
     REACHED = "target reached"
     LOCAL_OPTIMUM = "local optimum"
@@ -36,16 +36,16 @@ class IKResult(Tabular):
 
     Attributes:
         target: requested marker targets; None if only objectives were given.
-        pose: equilibrium found; its `contractions` are the answer.
+        pose: equilibrium found; its `contractions` are the solution.
         errors: remaining error of each goal, such as the distance of a marker from its target [m].
         status: reason why the search ended.
         iterations: number of Gauss-Newton steps taken.
-        solves: number of equilibria solved for.
+        solves: number of solved equilibria.
         optimality: largest admissible decrease of the residual norm per meter of one channel's contraction [m/m]; near
-            0 at an optimum, but not where a pose is reached.
+            0 at an optimum, but not if the target is reached.
         active_limits: limits that keep the pose from coming closer to the target.
         friction_hysteresis: distance of each marker from its position when the same contractions are reached from a
-            tenth above [m]; empty without friction, in answers of a `Tracker`, and where that path cannot be followed.
+            tenth above [m]; empty without friction, in results of a `Tracker`, or if that path cannot be followed.
     """
 
     target: PoseTarget | None
@@ -59,7 +59,7 @@ class IKResult(Tabular):
     friction_hysteresis: Mapping[str, float] = field(default_factory=dict)
 
     def columns(self) -> Columns:
-        """Return the table of its pose, and the error of each marker."""
+        """Return a table of the pose, and the error of each marker."""
         errors = {f"error_{name}_m": np.array([float(error)]) for name, error in self.errors.items()}
         return {**self.pose.columns(), **errors}
 
@@ -74,7 +74,7 @@ class IKResult(Tabular):
 
     @property
     def outcome(self) -> str:
-        """Reason why the search ended, in words; at an optimum that is close to its targets, how close."""
+        """Reason for the end of the search, as text; for an optimum close to its targets, with the distance."""
         if self.status is not IKStatus.LOCAL_OPTIMUM or not self.errors:
             return str(self.status)
         if not self.is_close:
@@ -100,7 +100,7 @@ class IKResult(Tabular):
 
     @property
     def rms_error(self) -> float:
-        """Root of the mean squared error over the goals [m]."""
+        """Root-mean-square error over the goals [m]."""
         return float(np.sqrt(np.mean(np.square(list(self.errors.values()))))) if self.errors else 0.0
 
 

@@ -16,15 +16,15 @@ from hydrostat.simulation import Simulation, contraction_values
 
 @dataclass(frozen=True, kw_only=True)
 class Limits:
-    """Limits of the winches, in addition to travel and release. Tension and torque are those of the robot if left out.
+    """Limits of the winches, in addition to travel and release. Tension and torque default to those of the robot.
 
     Attributes:
         contraction: minimum and maximum contraction of a winch [m], instead of -release and travel.
-        rate: maximum rate of change of a contraction [m/s], for every winch or by name; counted from the start.
+        rate: maximum rate of change of a contraction [m/s], for every winch or by name; measured from the start.
         interval: time available for the change from the start [s]; required with a rate.
         tension: maximum cable tension [N], for every winch's cables or by the winch's name.
         torque: maximum torque of a winch [N m], for every winch or by name: the sum over its cables of spool radius
-            times tension, less that of cables that are wound the other way round.
+            times tension, minus that of cables wound in the opposite direction.
         equal: groups of winches that share one contraction.
     """
 

@@ -83,31 +83,31 @@ def solve_ik(
     seconds: float | None = None,
     progress: SearchProgress | None = None,
 ) -> IKResult:
-    """Bounded Gauss-Newton through the sensitivities of the equilibrium.
+    """Solve inverse kinematics by bounded Gauss-Newton with sensitivities of the equilibrium.
 
-    Minimizes half the squares of what targets and objectives miss while the winches stay within their limits. Each step
-    is linearized by dx/da; equilibria on the way are only as sharp as they must be, the last one is exact. The answer
-    is a local optimum; where it misses its goal, the search begins elsewhere a few times. docs/theory/inverse.md.
+    Minimizes half the squared errors of targets and objectives within the limits of the winches. Each step is
+    linearized by dx/da; intermediate equilibria are solved only as precisely as needed, the last one exactly. The
+    result is a local optimum; if it misses its goal, the search restarts elsewhere a few times. docs/theory/inverse.md.
 
-    Where cables rub, the way counts. The answer is the pose in which the robot ends when the winches go straight from
-    `start`, or from rest, to the contractions, all in proportion, as in `Simulation.solve`. Friction on obstacles is
-    left out of the search; the way to its answer is then followed with it, and errors are those at its end.
+    With cable friction, the loading path matters. The result is the pose that the robot reaches when the winches move
+    in a straight line from `start`, or from rest, to the contractions, as in `Simulation.solve`. The search ignores
+    friction on obstacles; the path to the result is then simulated with it, and errors are those at its end.
 
     Args:
-        simulation: the robot's physics.
+        simulation: simulation of the robot.
         targets: target positions of markers [m].
         limits: limits of the winches, in addition to travel and release.
-        objectives: more that is wished for, or instead.
-        start: a pose to begin from, and to count rates from; the rest pose if left out. Where the goals leave a choice
-            it does not matter, unless `options.min_tension` is off.
+        objectives: objectives in addition to the targets, or in their place.
+        start: start pose, from which rates are measured; the rest pose if left out. If several contractions reach the
+            goals, the start does not matter, unless `options.min_tension` is off.
         options: tolerances and limits of the search.
-        seconds: after which it ends with the best pose that it has; no limit if left out.
-        progress: called at each step with the number of steps in this descent and the rms error [m] it has.
+        seconds: time limit, after which the best pose so far is returned [s]; no limit if left out.
+        progress: callback at each step, with the number of steps in this descent and its rms error [m].
 
     Raises:
-        InputError: nothing to reach, something that the robot does not have, limits without room, a robot without
-            cables, or other physics that remember the way.
-        NotConvergedError: no equilibrium where the search begins.
+        InputError: no targets or objectives, unknown names, limits without room, a robot without cables, or other
+            path-dependent physics.
+        NotConvergedError: no equilibrium at the start of the search.
     """
     check_type(simulation, Simulation, "simulation must be a Simulation(robot)")
     check_type(options, (IKOptions, type(None)), "options must be IKOptions(...)")

@@ -23,20 +23,20 @@ def solve_pulls(
     *,
     start: Equilibrium | None = None,
 ) -> Equilibrium:
-    """Equilibrium where some winches pull with given forces, by Newton's method on their contractions.
+    """Solve for the equilibrium at given pull forces of some winches, by Newton's method on their contractions.
 
-    The pull of a winch is its torque over the radius of its spool: the sum of the tensions of its cables times their
-    spool ratios. Limits of travel are not looked at: compare `pose.contractions` with them.
+    The pull of a winch is its torque divided by its spool radius: the sum of its cable tensions times their spool
+    ratios. Travel limits are not checked: compare `pose.contractions` with them.
 
     Args:
-        simulation: the robot.
-        pulls: pull by name of a winch [N], at least 0.
-        contractions: contractions of all other winches [m], and values of drives; 0 by default.
-        start: a pose to begin from; the rest pose if left out.
+        simulation: simulation of the robot.
+        pulls: pull of each winch by name [N], at least 0.
+        contractions: contractions of all other winches [m], and drive values; 0 by default.
+        start: start pose; the rest pose if left out.
 
     Raises:
-        InputError: an unknown winch, one that pulls both ways, or a pull below 0.
-        NotConvergedError: no such equilibrium was found, such as beyond a snap, where a winch goes on by itself.
+        InputError: an unknown winch, a winch that pulls both ways, or a pull below 0.
+        NotConvergedError: no such equilibrium was found, for example beyond a snap-through.
     """
     names = [winch.name for winch in simulation.robot.winches]
     for name, pull in pulls.items():

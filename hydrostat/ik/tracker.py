@@ -56,12 +56,12 @@ class PoseModel(Protocol):
 
 
 class Tracker:
-    """Any-time inverse kinematics: each update is one trust-region step nearer, and a pose of its own.
+    """Any-time inverse kinematics: each update takes one trust-region step and returns a pose.
 
-    Every pose is a stable equilibrium within all limits, so its contractions can be sent to motors at once; with an
-    accuracy its nodes may be so far from it [m]. Slack cables are kept just short of taut, so that they can join
-    without a delay. Where cables rub, each update goes straight on from the pose before: its poses are those of a robot
-    to which they are sent one after the other::
+    Every pose is a stable equilibrium within all limits, so you can send its contractions to motors immediately; with
+    an accuracy, its nodes are within that distance of equilibrium [m]. Slack cables are kept just short of taut, so
+    that they can pull without delay. With cable friction, each update continues straight from the previous pose: the
+    poses are those of a robot that receives them in sequence::
 
         tracker = hs.Tracker(simulation, limits=hs.Limits(rate=0.1))
         while True:
@@ -112,16 +112,16 @@ class Tracker:
     def update(
         self, targets: Targets | None = None, *, seconds: float, objectives: Sequence[Objective] = ()
     ) -> IKResult:
-        """One step towards where the targets are now.
+        """Take one step towards the current targets.
 
         Args:
             targets: target positions of markers [m].
-            seconds: since the last update; what a limit on the rate allows follows from it.
+            seconds: time since the last update, for rate limits [s].
             objectives: objectives for this update, in addition to those given at the start.
 
         Raises:
             InputError: as for `solve_ik`, or seconds not above 0.
-            NotConvergedError: no equilibrium where it begins.
+            NotConvergedError: no equilibrium at the start.
         """
         if isinstance(seconds, bool) or not isinstance(seconds, int | float | np.number) or not seconds > 0:
             raise InputError(f"seconds since the last update must be above 0, not {seconds!r:.60}")
@@ -147,13 +147,13 @@ class Tracker:
     def linearize(self, *, seconds: float) -> LinearizedPose:
         """Return the first-order model of the contractions around the pose of the last update.
 
-        It answers targets that have just moved at once, while the next update is still to be done.
+        Use it to answer targets that have just moved, before the next update.
 
         Args:
             seconds: time over which rate limits apply [s].
 
         Raises:
-            InputError: there was no update with targets yet.
+            InputError: no update with targets yet.
         """
         if self._state is None or not self._targets:
             raise InputError("an outlook needs an update with targets before it")

@@ -8,11 +8,11 @@ from hydrostat.simulation.simulation import Simulation
 
 
 def marker_compliance(simulation: Simulation, pose: Equilibrium) -> Float[np.ndarray, "markers dim dim"]:
-    """Displacement of each marker under a small force on itself at an equilibrium [m/N]: dx/dF, symmetric.
+    """Return the displacement of each marker under a small force on itself at an equilibrium [m/N]: dx/dF, symmetric.
 
     Raises:
-        InputError: physics that remember the way, such as cables with friction.
-        NotConvergedError: the Hessian is singular there: the pose is about to snap.
+        InputError: path-dependent physics, such as cables with friction.
+        NotConvergedError: the Hessian is singular: the pose is at a snap-through.
     """
     anchors, (rows, dim) = simulation.marker_anchors, simulation.assembly.shape
     count = len(anchors.stencils)

@@ -20,7 +20,7 @@ _State = tuple[Nodes, Nodes, Nodes, tuple[tuple[ContactForces, bool], ...]]
 
 
 class SensorReader:
-    """Readings of all sensors of a robot, for poses and instants of motions.
+    """Readings of all sensors of a robot, for poses and states of motions.
 
     Attributes:
         simulation: physics of the robot.
@@ -39,11 +39,11 @@ class SensorReader:
     def read(
         self, state: Equilibrium | Motion, *, random: np.random.Generator | None = None
     ) -> dict[str, float | Vector]:
-        """Reading of each sensor by name, in SI: a number, or an array for several axes.
+        """Return the reading of each sensor by name, in SI units: a number, or an array for several axes.
 
         Args:
-            state: a pose, whose velocities are 0, or an instant of a motion.
-            random: source of noise; none if left out.
+            state: pose, with zero velocities, or state of a motion.
+            random: random generator for noise; no noise if left out.
         """
         found: dict[str, float | Vector] = {}
         given = self._state(state)
@@ -55,20 +55,20 @@ class SensorReader:
         return found
 
     def read_vector(self, state: Equilibrium | Motion, *, random: np.random.Generator | None = None) -> Vector:
-        """All readings as one vector, in the order of `heads`; arguments as for `read`."""
+        """Return all readings as one vector, in the order of `heads`; arguments as for `read`."""
         return np.concatenate([np.zeros(0), *map(np.atleast_1d, self.read(state, random=random).values())])
 
     def find_jacobians(
         self, pose: Equilibrium, moves: Float[np.ndarray, "moves nodes dim"]
     ) -> tuple[Jacobian, Jacobian]:
-        """Jacobians of readings about a pose, by central differences: of moves of the nodes, and of such velocities.
+        """Return Jacobians of readings about a pose, by central differences: for node moves, and for velocities.
 
         Args:
-            pose: pose about which readings change.
+            pose: pose to linearize about.
             moves: displacement of the nodes [m], or their velocity [m/s], for a change of 1.
 
         Raises:
-            InputError: an accelerometer or a pressure sensor, which read accelerations and contact.
+            InputError: an accelerometer or a pressure sensor, because these measure accelerations and contact.
         """
         for sensor in self.simulation.robot.sensors:
             if sensor.kind in (SensorKind.ACCELEROMETER, SensorKind.PRESSURE):

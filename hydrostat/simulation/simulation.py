@@ -32,17 +32,17 @@ from hydrostat.simulation.time.motion import Motion
 class Simulation:
     """Quasi-static equilibrium of a tendon-driven robot at given contractions of its winches.
 
-    Immutable, thread-safe and picklable: the factorized Hessian of a pose travels with the pose.
+    Immutable, thread-safe and picklable: a pose keeps its factorized Hessian.
 
     Attributes:
-        robot: robot that is simulated.
+        robot: simulated robot.
         options: tolerance and limits of Newton's method.
         body: physics of the body, shared by all cable networks on it.
         route_points: anchors of the cable points.
         cables: energy of the cables without friction.
-        friction: energy of the cables with friction, used in its place; None without friction.
+        friction: energy of the cables with friction, used in place of `cables`; None without friction.
         assembly: sum of all energies.
-        solver: Newton's method on it; `solver.relax` follows a pose step by step.
+        solver: Newton's method on `assembly`; `solver.relax` follows a pose step by step.
     """
 
     def __init__(
@@ -78,7 +78,7 @@ class Simulation:
         self.solver = StaticSolver(self.assembly, self.options, hidden, self.body.warp)
 
     def as_contractions(self, given: Contractions) -> Vector:
-        """Contractions [m], then values of drives [rad or m], as an array (InputError: not one number for each)."""
+        """Return contractions [m], then drive values [rad or m], as an array (InputError: wrong number of values)."""
         return contraction_values(self.robot, given)
 
     def solve(
@@ -90,21 +90,22 @@ class Simulation:
         seconds: float | None = None,
         accuracy: float | None = None,
     ) -> Equilibrium:
-        """Equilibrium at the given contractions.
+        """Solve for the equilibrium at given contractions.
 
-        With friction it depends on the way there, which is followed from `start` in small steps, all in proportion.
+        With friction the result depends on the loading path, a straight line from `start`, followed in small steps.
 
         Args:
-            contractions: cable taken in [m], and value of each drive [rad or m]; those left out are 0.
-            start: a pose to begin from; the rest pose if left out.
-            strict: raise if the solver does not converge; warn (`HydrostatWarning`) of contractions beyond travel.
-            seconds: after which it stops, with what it has; no limit if left out.
-            accuracy: approximate distance of a node from equilibrium [m] for streamed poses, for instance 1e-5; what
-                remains is `pose.result.error`. None: solved to rounding, as always with friction.
+            contractions: cable taken in [m], and value of each drive [rad or m]; 0 for those left out.
+            start: start pose; the rest pose if left out.
+            strict: True to raise an error without convergence, and to warn (`HydrostatWarning`) of contractions beyond
+                travel.
+            seconds: time limit, after which the solver returns its current state [s]; no limit if left out.
+            accuracy: approximate distance of a node from equilibrium [m] for streamed poses, for instance 1e-5; the
+                remaining error is `pose.result.error`. None to solve to rounding precision, as always with friction.
 
         Raises:
-            InputError: contractions that do not fit the robot, or a limit or an accuracy that is not above 0.
-            NotConvergedError: the solver stopped early; its text says why, and what stands in the way.
+            InputError: contractions that do not fit the robot, or a time limit or an accuracy that is not above 0.
+            NotConvergedError: the solver stopped early; the message gives the reason and the obstacle.
         """
         goal = self.as_contractions(contractions)
         self.check_start(start)
@@ -131,20 +132,20 @@ class Simulation:
         start: Equilibrium | None = None,
         seconds: float | None = None,
     ) -> BatchResult:
-        """Equilibria at many contractions, each found by itself: the same bytes for any number of threads.
+        """Solve at many contractions, each independently; the bytes are the same for any number of threads.
 
-        A pose that is not found leaves NaN and its reason in its row. Ctrl-C ends it after the poses under way.
+        A failed pose leaves NaN and the reason in its row. Ctrl-C ends the batch after the poses in progress.
 
         Args:
-            contractions: values of the controls, (poses, controls), or each as in `solve`.
-            jacobians: also compute Jacobians of the markers.
-            nodes: keep all nodes.
-            threads: largest number of threads; small bodies, where two are slower, use one.
-            start: a pose to begin each from; the rest pose if left out.
-            seconds: after which one pose is given up; no limit if left out.
+            contractions: control values, (poses, controls), or each as in `solve`.
+            jacobians: True to compute Jacobians of the markers.
+            nodes: True to keep the positions of all nodes.
+            threads: maximum number of threads; small bodies use one, because two are slower.
+            start: start pose of each solve; the rest pose if left out.
+            seconds: time limit for each pose [s]; no limit if left out.
 
         Raises:
-            InputError: as for `solve`; or no number of threads.
+            InputError: as for `solve`, or an invalid number of threads.
         """
         goals = contraction_rows(self.robot, contractions)
         self.check_start(start)
@@ -160,12 +161,12 @@ class Simulation:
         return solve_rows(self.robot, goals, row, jacobians=jacobians, nodes=nodes, threads=threads, cost=cost)
 
     def diagnose(self, pose: Equilibrium) -> tuple[str, ...]:
-        """Explain a solve without an equilibrium: the cable with the highest tension, an almost flat element."""
+        """Return causes of a failed solve, such as the cable with the highest tension or an almost flat element."""
         forces = self.forces(pose.unknowns, pose.controls).reshape(self.assembly.shape)[: len(pose.nodes)]
         return diagnose_failure(self.robot, self.cables, pose.nodes, pose.contractions, forces)
 
     def check_start(self, start: Equilibrium | None) -> None:
-        """Check that a solve can begin there (InputError: another robot, not finite, no slips, or crossing itself)."""
+        """Check that a solve can start from a pose (InputError: another robot, not finite, no slips, or crossing)."""
         if start is not None:
             history = self.assembly.history if self.assembly.has_history else None
             check_pose(start, self.robot.body.mesh.nodes.shape, self.robot.num_controls, history)
@@ -173,13 +174,13 @@ class Simulation:
                 check_apart(self.robot.body.mesh, start.nodes)
 
     def jacobian(self, pose: Equilibrium) -> Float[np.ndarray, "nodes dim winches"]:
-        """Sensitivities dx/da of the nodes at an equilibrium, by the full Hessian: H dx/da = -d2E/dx da.
+        """Return sensitivities dx/da of the nodes at an equilibrium, from the full Hessian: H dx/da = -d2E/dx da.
 
-        Cables with friction go on slipping where they are at the limit of it, and stick elsewhere.
+        Cables at the friction limit continue to slip; other cables with friction stick.
 
         Raises:
-            InputError: other energies that remember the way, or others beside cables with friction.
-            NotConvergedError: the Hessian is singular there: the pose is about to snap.
+            InputError: other path-dependent energies, or other energies together with cable friction.
+            NotConvergedError: the Hessian is singular: the pose is at a snap-through.
         """
         check_pose(pose, self.robot.body.mesh.nodes.shape, self.robot.num_controls, what="the pose")
         if self.assembly.follows_tangent:
@@ -190,22 +191,22 @@ class Simulation:
         return cables.moves(pose.nodes, pose.controls, compliance).reshape(*pose.nodes.shape, -1)
 
     def marker_jacobian(self, pose: Equilibrium) -> Float[np.ndarray, "markers dim winches"]:
-        """Sensitivities of the markers at an equilibrium, in marker order; errors as for `jacobian`."""
+        """Return sensitivities of the markers at an equilibrium, in marker order; errors as for `jacobian`."""
         anchors = self.marker_anchors
         return np.einsum("pc,pcdw->pdw", anchors.weights, self.jacobian(pose)[anchors.stencils])
 
     def adjoint(self, pose: Equilibrium, nodes: Nodes, *, tensions: Vector | None = None) -> Sensitivity:
-        """Sensitivities of a number L of an equilibrium to contractions, slack, routes, material, by one solve.
+        """Return the gradient of a scalar L to contractions, slack, routes and material, by one adjoint solve.
 
-        Cables with friction slip on or stick as for `jacobian`; what has slipped before the pose was begun from stays.
+        Cables with friction slip or stick as for `jacobian`; slip before the start pose stays constant.
 
         Args:
-            pose: an equilibrium.
+            pose: equilibrium.
             nodes: dL / d nodes at fixed tensions.
             tensions: dL / d tensions; none if left out.
 
         Raises:
-            InputError: other energies that remember the way; cotangents of a wrong shape; obstacles that move.
+            InputError: other path-dependent energies, cotangents of a wrong shape, or moving obstacles.
             NotConvergedError: as for `jacobian`.
         """
         require_static_obstacles(self.robot, "the adjoint")
@@ -217,7 +218,7 @@ class Simulation:
         return sensitivity(self.body, self.assembly, self.cables, pose, **given, response=partial(self.response, pose))
 
     def friction_sensitivities(self, pose: Equilibrium, rows: tuple[np.ndarray, np.ndarray]) -> FrictionSensitivities:
-        """Sensitivities of a pose with cable friction: `rows` are by nodes, then by tensions; as for `adjoint`."""
+        """Return sensitivities of a pose with friction: `rows` are by nodes, then by tensions; as for `adjoint`."""
         return friction_sensitivities(self.robot, self.route_points, *self._rubbing(pose), pose, rows)
 
     def _rubbing(self, pose: Equilibrium) -> tuple[FrictionCableEnergy, FactorizedHessian]:
@@ -228,15 +229,15 @@ class Simulation:
     def response(
         self, pose: Equilibrium, forces: Float[np.ndarray, "dofs columns"]
     ) -> Float[np.ndarray, "dofs columns"]:
-        """Displacement of the nodes under small forces at an equilibrium [m]: H u = f, by the full Hessian.
+        """Return node displacements under small forces at an equilibrium [m]: H u = f, with the full Hessian.
 
         Args:
-            pose: an equilibrium.
-            forces: force on every degree of freedom [N], a column for each load case.
+            pose: equilibrium.
+            forces: force on every degree of freedom [N], one column for each load case.
 
         Raises:
-            InputError: physics that remember the way, such as cables with friction.
-            NotConvergedError: the Hessian is singular there: the pose is about to snap.
+            InputError: path-dependent physics, such as cables with friction.
+            NotConvergedError: the Hessian is singular: the pose is at a snap-through.
         """
         if not self.assembly.follows_tangent:
             raise InputError("with friction a pose gives way to forces as it goes on or back; ask for its adjoint")
@@ -268,13 +269,13 @@ class Simulation:
         Args:
             motion: state at the start of the step.
             contractions: contractions at the end of the step [m].
-            dt: length of the step [s].
-            options: scheme, drag, and how often a step that fails is cut in two.
+            dt: time step [s].
+            options: scheme, drag, and number of halvings of a failed step.
             pin_shifts: displacement of pins from their rest positions at the end of the step [m].
 
         Raises:
             InputError: arguments that do not fit the robot.
-            NotConvergedError: not even the smallest steps converged; its text says why.
+            NotConvergedError: even the smallest steps did not converge; the message gives the reason.
         """
         goal = self.as_contractions(contractions)
         return self.dynamics.step(motion, goal, dt, options or StepOptions(), pin_shifts or {})
@@ -291,9 +292,9 @@ class Simulation:
         """Yield the motion under a contraction profile: its start, then each step.
 
         Args:
-            profile: the contractions; its time is that of the motion.
+            profile: contractions in time; its time is that of the motion.
             seconds: duration [s].
-            dt: longest step [s]; the steps are even, and the last ends in time.
+            dt: maximum time step [s]; steps are equal, and the last one ends at the duration.
             start: initial state; at rest by default.
             options: options as for `step`.
 
@@ -308,7 +309,7 @@ class Simulation:
 
     @cached_property
     def dynamics(self) -> Dynamics:
-        """Steps in time."""
+        """Time integrator of this simulation."""
         if any(obstacle.path for obstacle in self.robot.obstacles) and not self.body.guides:
             body = BodyPhysics(self.robot, in_time=True)
             return Simulation(self.robot, options=self.options, body=body, energies=self._more).dynamics
@@ -316,18 +317,18 @@ class Simulation:
 
     @cached_property
     def marker_anchors(self) -> Anchors:
-        """Nodes and weights that hold the markers."""
+        """Nodes and weights that anchor the markers."""
         return hold_markers(self.robot.body.mesh, (marker.at for marker in self.robot.markers))
 
     def tensions(self, nodes: Nodes, contractions: Vector, history: Vector | None = None) -> Vector:
-        """Tension of each cable [N]; at its winch if it has friction and remembers its slips in `history` [m]."""
+        """Return the tension of each cable [N]; with friction, at its winch, given its slips in `history` [m]."""
         if self.friction is not None and history is not None:
             slips = self.assembly.part_of(history, self.friction)
             return self.friction.with_history(slips, nodes, contractions).tensions(nodes, contractions)
         return self.cables.tensions(nodes, contractions)
 
     def stiffness(self, pose: Equilibrium) -> FactorizedHessian:
-        """Factorized Hessian at a pose; after a solve it may be that of the start of its last step."""
+        """Return the factorized Hessian at a pose; after a solve it may be that of the start of its last step."""
         known = None if self.assembly.has_history else self.stiffness_of(pose)
         return known or self.assembly_at(pose).stiffness(pose.unknowns, pose.controls)
 
@@ -337,14 +338,14 @@ class Simulation:
         return stiffness
 
     def assembly_at(self, pose: Equilibrium) -> Assembly:
-        """Sum of the energies that are active at a pose; contact is searched for only if the pose keeps no Hessian."""
+        """Return the sum of energies active at a pose; contact is searched for only if the pose keeps no Hessian."""
         if self.assembly.has_history:
             return self.path.with_history(pose)
         known = self.stiffness_of(pose)
         return self.assembly.continuing(None if known is None else known.source).with_active_terms(pose.unknowns)
 
     def stiffness_of(self, pose: Equilibrium) -> FactorizedHessian | None:
-        """Hessian kept with a pose of this simulation; None if it has none, or its nodes were moved."""
+        """Return the Hessian kept with a pose of this simulation; None if it has none, or its nodes were moved."""
         known = pose.result.stiffness
         return known if known is not None and pose.is_unmodified and known.token is self.assembly.token else None
 
@@ -363,7 +364,7 @@ class Simulation:
         return FactorizedHessian(self.body.rest_factors, now.low_rank_hessian(nodes, idle), token=now.token, source=now)
 
     def with_deadline(self, deadline: float) -> "Simulation":
-        """Return the same physics whose solves stop at a time of `time.monotonic` [s]; itself if that is infinite."""
+        """Return the same physics with a deadline for solves, on the clock `time.monotonic` [s]; itself if infinite."""
         if np.isinf(deadline):
             return self
         other = copy(self)
@@ -377,11 +378,11 @@ class Simulation:
         return LoadingPath(self.robot, self.solver, self.body.rest_unknowns)
 
     def forces(self, nodes: Nodes, contractions: Vector) -> Vector:
-        """Residual forces dE/dx [N], (nodes x dim,), on every degree of freedom; 0 at rest."""
+        """Return residual forces dE/dx [N], (nodes x dim,), on every degree of freedom; 0 at rest."""
         return self.assembly.with_active_terms(nodes).gradient(nodes, contractions)
 
     def make_pose(self, contractions: Vector, result: NewtonResult, history: Vector | None = None) -> Equilibrium:
-        """Pose that Newton found, with all that the robot shows there."""
+        """Return the pose of a Newton result, with all observable quantities of the robot."""
         positions, count = self.marker_anchors.positions(result.nodes), self.body.node_count
         return Equilibrium(
             robot=self.robot,

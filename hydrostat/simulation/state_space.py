@@ -21,8 +21,8 @@ from hydrostat.simulation.simulation import Simulation
 class StateSpace(Tabular):
     """Linear model dz/dt = A z + B u, y = C z of small motions about a pose.
 
-    z holds modal displacements, modal velocities, then those displacements as each Maxwell branch of the material
-    remembers them. SciPy takes the matrices: `scipy.signal.StateSpace(space.A, space.B, space.C, 0)`.
+    z holds modal displacements, modal velocities, then the displacements stored by each Maxwell branch of the material.
+    SciPy takes the matrices: `scipy.signal.StateSpace(space.A, space.B, space.C, 0)`.
 
     Attributes:
         pose: equilibrium about which the model holds; z = 0, u = 0 and y = 0 there.
@@ -30,8 +30,8 @@ class StateSpace(Tabular):
         B: input matrix, (states, controls).
         C: output matrix, (outputs, states).
         inputs: name of each winch [m of contraction] and drive [rad or m].
-        outputs: name of each output: displacement of each marker along each axis [m], such as "tip_x", then with
-            `sensors` the change of each reading, in SI.
+        outputs: name of each output: displacement of each marker along each axis [m], such as "tip_x", then, with
+            `sensors`, the change of each reading, in SI units.
         basis: displacement of each degree of freedom in each modal displacement [1/kg^0.5], (dofs, modes).
         masses: mass of each degree of freedom [kg].
     """
@@ -46,7 +46,7 @@ class StateSpace(Tabular):
     masses: Vector
 
     def columns(self) -> Columns:
-        """Return the poles, slowest first."""
+        """Return a table of the poles, slowest first."""
         return {"pole_real_1/s": self.poles.real, "pole_imaginary_1/s": self.poles.imag}
 
     def __repr__(self) -> str:
@@ -71,7 +71,7 @@ class StateSpace(Tabular):
         return float(np.log(50) / -slowest) if slowest < -1e-9 * float(np.abs(self.A).max()) ** 0.5 else np.inf
 
     def project(self, nodes: Nodes, velocities: Nodes | None = None) -> Vector:
-        """State z of nodes [m] with velocities [m/s] near the pose, by least kinetic energy; relaxed branches."""
+        """Return the state z of nodes [m], velocities [m/s] near the pose by least kinetic energy; relaxed branches."""
         count, modes = len(self.pose.nodes) * self.pose.nodes.shape[1], self.basis.shape[1]
         weighted = (self.basis * self.masses[:, None])[:count].T
         place = weighted @ (nodes - self.pose.nodes).ravel()
@@ -87,21 +87,22 @@ def linearize(
     drag: float = 0.0,
     sensors: bool = False,
 ) -> StateSpace:
-    """Linear state space about an equilibrium, from its lowest modes and the static move under each control.
+    """Compute a linear state space about an equilibrium, from its lowest modes and the static move of each control.
 
-    The static moves make gains exact with few modes. Damping is that of the material and `drag`. Taut cables are
-    springs and slack ones absent, as in the pose.
+    Static moves make gains exact with few modes. Damping is that of the material and `drag`. Taut cables act as springs
+    and slack ones are left out, as in the pose.
 
     Args:
         simulation: physics of the robot.
-        pose: an equilibrium; that without contractions if left out, with a warning of slack cables, which move nothing.
-        modes: number of modes, without the static moves.
+        pose: equilibrium; that without contractions if left out, with a warning about slack cables, which have no
+            effect.
+        modes: number of modes in addition to the static moves.
         drag: mass-proportional (Rayleigh) damping, alpha [1/s], as in `StepOptions`.
-        sensors: True for readings of the robot's sensors as outputs, after the markers.
+        sensors: True to add readings of the robot's sensors as outputs, after the markers.
 
     Raises:
-        InputError: friction, a number out of its range, or with `sensors` an accelerometer or a pressure sensor.
-        NotConvergedError: the pose is no stable equilibrium.
+        InputError: friction, a value out of range, or with `sensors` an accelerometer or a pressure sensor.
+        NotConvergedError: the pose is not a stable equilibrium.
     """
     check_not_negative("drag", drag, "1/s")
     if pose is None:

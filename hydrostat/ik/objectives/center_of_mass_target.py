@@ -36,7 +36,7 @@ class CenterOfMassTarget(Objective):
         """Return the residual on this robot.
 
         Raises:
-            InputError: a target that is no place in the body's space, not finite or not in meters, or a weight below 0.
+            InputError: a target outside the body's space, not finite or not in meters, or a weight below 0.
         """
         target = place("target of the center of mass", self.target, simulation.robot.body.mesh)
         weight = not_negative("weight of the center of mass", self.weight)

@@ -35,10 +35,10 @@ class Effort(Objective):
     """Squared contractions, tensions or slack lengths, against co-contraction and loose cables.
 
     Attributes:
-        of: quantity that is kept small.
-        weight: error, as a fraction of the body's size, that `scale` is worth.
-        scale: contraction or slack [m], or tension [N]; None: the contraction of each winch or cable at full travel, or
-            10 N.
+        of: quantity to minimize.
+        weight: marker error, as a fraction of the body's size, that is equivalent to `scale`.
+        scale: contraction or slack [m], or tension [N]; None for the contraction of each winch or cable at full travel,
+            or 10 N.
     """
 
     of: EffortKind | str = EffortKind.CONTRACTION

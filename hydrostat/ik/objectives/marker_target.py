@@ -32,7 +32,8 @@ class PointTarget(Objective):
     """Targets for material points, for example where a hand holds a body.
 
     Attributes:
-        points: position of each point in the rest shape [m]; a point outside the body stands for the nearest one on it.
+        points: position of each point in the rest shape [m]; a point outside the body is replaced by the nearest one on
+            it.
         targets: target position of each point [m], by the same names.
         weight: weight of these errors relative to a marker's error.
     """
@@ -45,8 +46,8 @@ class PointTarget(Objective):
         """Return the residual on this robot.
 
         Raises:
-            InputError: no points, one without a target or the other way round, a place that is not in the body's space,
-                not finite or not in meters, or a weight below 0.
+            InputError: no points, a point without a target or a target without a point, a position outside the body's
+                space, not finite or not in meters, or a weight below 0.
         """
         mesh = simulation.robot.body.mesh
         points = by_name("points of the body", self.points, '{"knuckle": (0.1, 0.02)}')
@@ -67,7 +68,7 @@ AXES = "xyz"
 
 @dataclass(frozen=True, kw_only=True)
 class MarkerTarget(Objective):
-    """Targets for markers: weight x (position - target) of each, along the axes that are not free.
+    """Targets for markers: the residual is weight x (position - target) of each marker, along the constrained axes.
 
     Attributes:
         targets: target position of each marker [m].
@@ -83,8 +84,8 @@ class MarkerTarget(Objective):
         """Return the residual on this robot.
 
         Raises:
-            InputError: no targets, a marker that it does not have, a target that is no place in the body's space, not
-                finite or not in meters, a weight below 0, an axis that there is not.
+            InputError: no targets, an unknown marker, a target outside the body's space, not finite or not in meters, a
+                weight below 0, or an unknown axis.
         """
         robot = simulation.robot
         mesh = robot.body.mesh

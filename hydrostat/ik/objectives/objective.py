@@ -58,12 +58,12 @@ class StateJacobian:
 
     @staticmethod
     def at(simulation: Simulation, pose: Equilibrium) -> "StateJacobian":
-        """Sensitivities of that posture to contractions: ds/da = B + (dl/dx)^T dx/da, and dT/da = T' ds/da.
+        """Return sensitivities of a state to contractions: ds/da = B + (dl/dx)^T dx/da, and dT/da = T' ds/da.
 
-        Cables that rub slip on as they slip, and their tension is that at the winch.
+        Cables with friction continue to slip as they do, and their tension is that at the winch.
 
         Raises:
-            NotConvergedError: the pose is about to snap, its Hessian is singular.
+            NotConvergedError: the Hessian is singular: the pose is at a snap-through.
         """
         if simulation.friction is not None:
             stiffness = simulation.stiffness(pose)
@@ -79,19 +79,19 @@ class StateJacobian:
 class Residual(ABC):
     """Objective on one robot: half the square of a residual in meters.
 
-    `hydrostat.testing.check_objective` tells whether a term is right.
+    `hydrostat.testing.check_objective` tests a residual.
     """
 
     @abstractmethod
     def residual(self, posture: EquilibriumState) -> Rows:
-        """Residual that the search drives to zero [m], (rows,); its number of rows is the same in every state."""
+        """Return the residual that the search minimizes [m], (rows,); the number of rows is the same in every state."""
 
     @abstractmethod
     def jacobian(self, posture: EquilibriumState, moves: StateJacobian) -> Jacobian:
-        """D residual / d contractions, (rows, winches)."""
+        """Return d residual / d contractions, (rows, winches)."""
 
     def errors(self, posture: EquilibriumState) -> Mapping[str, float]:
-        """Remaining error of each goal, by name [m]. Empty for a term without a goal, such as effort."""
+        """Return the remaining error of each goal, by name [m]. Empty for a term without a goal, such as effort."""
         return {}
 
 

@@ -36,8 +36,8 @@ class PoseRegularizer(Objective):
 
     Attributes:
         pose: reference pose.
-        of: quantity to keep: the whole body (root mean square over its nodes), markers, or the contractions; the range
-            of a drive counts as the size of the body.
+        of: quantity to keep: the whole body (root mean square over its nodes), markers, or contractions; the range of a
+            drive counts as the size of the body.
         weight: weight of this distance relative to a marker's error.
         markers: names of the markers to keep; None for all.
     """

@@ -30,19 +30,19 @@ from hydrostat.simulation import Simulation
 class ShapeTarget(Objective):
     """Target shape for the body's boundary, by distances in both directions.
 
-    1/2 (mean of d^2 over the boundary's nodes + mean of e^2 over places spread evenly over the shape): d is how far a
-    node is from the shape, e how far a place of the shape is from the body. With d alone a finger may hide in the palm,
-    with e alone it may point anywhere as another part reaches its place. Material may slide along the shape.
+    1/2 (mean of d^2 over the boundary's nodes + mean of e^2 over sample points of the shape): d is the distance of a
+    node from the shape, e that of a sample point from the body. With d alone, a finger may hide in the palm; with e
+    alone, it may point anywhere if another part covers its target. Material may slide along the shape.
 
-    The nearest place is a guess of where a part belongs, as good as the pose that it is made in. A shape far from rest
-    may hold the body in a wrong pose; markers beside it, or shapes on the way there, lead it.
+    Correspondence is by nearest point, so it is only as good as the current pose. A shape far from rest can lead to a
+    wrong pose; add marker targets, or intermediate shapes, to guide the search.
 
     Attributes:
         outline: target shape for a flat body [m], in robot coordinates: `load_target_outline` reads one from a drawing.
-        surface: closed target surface for a body in space [m], in robot coordinates: drawn in those of its file and
-            read with the same unit.
-        weight: weight of the root mean square distance relative to a marker's error.
-        samples: number of sample points on the shape; None: the number of boundary nodes, at least 200.
+        surface: closed target surface for a body in space [m], in robot coordinates: use the coordinates and the unit
+            of the body's file.
+        weight: weight of the root-mean-square distance relative to a marker's error.
+        samples: number of sample points on the shape; None for the number of boundary nodes, at least 200.
     """
 
     outline: Outline | None = field(default=None, repr=False)
@@ -54,8 +54,8 @@ class ShapeTarget(Objective):
         """Return the residual on this robot.
 
         Raises:
-            InputError: not exactly one shape, one of another dimension than the body, far larger or smaller than it, or
-                not closed; a weight below 0; too few or many samples.
+            InputError: not exactly one shape, a shape of another dimension than the body, far larger or smaller than
+                it, or not closed; a weight below 0; too few or too many samples.
         """
         mesh = simulation.robot.body.mesh
         weight = not_negative("weight of a shape", self.weight)
@@ -184,20 +184,20 @@ def _check(name: str, shell: Shell, mesh: Mesh) -> None:
 
 
 def load_target_outline(robot: Robot, drawing: Path | str) -> Outline:
-    """Outline of a pose in the coordinates of the robot, for `ShapeTarget`.
+    """Load the outline of a pose in robot coordinates, for `ShapeTarget`.
 
-    Copy the drawing or picture of the body, and bend what is on it; the page must stay as it is. Read by itself, a
-    drawing would be put into the middle of its own bounding box, and the pose would no longer be where it was drawn.
-    Another page is noticed by the page and unit of an SVG drawing, the unit of a DXF drawing, the pixels of a picture;
-    DXF has no page, so where its program counts from another corner, the pose is shifted without a word.
+    Copy the drawing or picture of the body, and bend its contents; keep the page unchanged. Without the page, a drawing
+    would be centered on its own bounding box, and the pose would be shifted. A changed page is detected by the page and
+    unit of an SVG drawing, the unit of a DXF drawing, or the pixels of a picture. DXF has no page, so a different
+    origin shifts the pose without an error.
 
     Args:
-        robot: a flat one, whose body was drawn.
+        robot: flat robot with a drawn body.
         drawing: file of the same kind as the body's: SVG, DXF, PNG or JPG.
 
     Raises:
-        InputError: the body was not drawn, or the file cannot be read.
-        OutlineError: no pose can be made of the drawing, or it has another page.
+        InputError: a body without a drawing, or a file that cannot be read.
+        OutlineError: a drawing that gives no pose, or has another page.
     """
     body, file = robot.body, path_of(drawing, "a pose is read from the path of a drawing")
     if body.source is not Source.OUTLINE:

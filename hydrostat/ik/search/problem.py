@@ -31,19 +31,20 @@ class IKOptions:
     """Options for the inverse-kinematics solver.
 
     Attributes:
-        effort: marker error, as a fraction of the body's size, that the tension at full travel of a winch is worth: a
-            small regularizer against co-contraction. It falls with the error, so it hides no target.
+        effort: marker error, as a fraction of the body's size, that is equivalent to the tension at full travel of a
+            winch: a small regularizer against co-contraction. It falls with the error, so it does not hide targets.
         tolerance: error, as a fraction of the body's size, at which a goal counts as reached.
-        progress: minimum relative decrease of the objective that the linearized problem must predict; below it the
-            search ends.
+        progress: minimum relative decrease of the objective that the linearized problem must predict; the search ends
+            below it.
         iterations: maximum number of steps from one start.
-        largest_step: largest change of a contraction in one step, as a fraction of the winch's whole range.
-        min_tension: among equally good contractions, choose those with the least tension, for any start.
+        largest_step: largest change of a contraction in one step, as a fraction of the winch's total range.
+        min_tension: True to choose, among equally good contractions, those with the least tension, for any start.
         restarts: maximum number of restarts while a target is missed by more than `restart_error`; 0 to save time.
-        restart_error: largest error of a marker, as a fraction of the body's size, up to which a local optimum is not
-            restarted: robots are built less exactly. With `objectives` each local optimum is.
-        hold_free_markers: keep markers without a target where they are. This changes nothing if the target is in reach.
-            Otherwise they move a distance d from rest only if that gains about d^2 over four times the body's size.
+        restart_error: largest marker error, as a fraction of the body's size, at which a local optimum is accepted
+            without a restart: robots are built less precisely. With `objectives`, every local optimum is restarted.
+        hold_free_markers: True to keep markers without a target where they are. This changes nothing if the target is
+            in reach. Otherwise they move a distance d from rest only if this gains about d^2 over four times the body's
+            size.
     """
 
     effort: float = 1e-3

@@ -23,13 +23,13 @@ from hydrostat.units import plural
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Keyframe:
-    """Target of a trajectory at an instant.
+    """Target of a trajectory at one time.
 
     Attributes:
-        target: target positions of markers [m]; or a solved pose, whose contractions are taken as they are, such as
-            `simulation.rest` or a taught pose.
-        time: time from the start [s]; None: as soon as the limits allow.
-        name: name for reports; None: that of the pose.
+        target: target positions of markers [m]; or a solved pose, whose contractions are used unchanged, such as
+            `simulation.rest` or a recorded pose.
+        time: time from the start [s]; None for as soon as the limits allow.
+        name: name for reports; None for that of the pose.
     """
 
     target: Targets | Equilibrium

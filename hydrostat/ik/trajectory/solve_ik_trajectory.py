@@ -23,14 +23,14 @@ from hydrostat.simulation import Equilibrium, Simulation
 
 @dataclass(frozen=True, kw_only=True)
 class TrajectoryOptions:
-    """Sampling and accuracy options of a trajectory.
+    """Options for sampling and accuracy of a trajectory.
 
     Attributes:
         rate: minimum number of samples per second.
-        knots: number of steps of a straight path from one keyframe to the next.
-        compare: also search from rest if a keyframe is not reached from the one before.
+        knots: number of steps of a straight path between keyframes.
+        compare: True to search from rest, too, if a keyframe is not reached from the previous one.
         jump: distance of a node from its predicted position, as a share of the body's size, that counts as a
-            snap-through if it stays however small the step is.
+            snap-through if it remains at any step size.
         inverse: options of the search for each keyframe.
     """
 
@@ -56,34 +56,35 @@ def solve_ik_trajectory(
     options: TrajectoryOptions | None = None,
     progress: Progress | None = None,
 ) -> Trajectory:
-    """From a pose through keyframes, each found from the one before, so that the branch is kept.
+    """Compute a trajectory from a pose through keyframes, each solved from the previous one, which keeps the branch.
 
-    "smooth": contractions are C2 in time and pass keyframes without a stop where they can. "linear": contractions go
-    along lines, as the thesis has it; their speed changes at once. "straight": markers go along straight lines.
-    Keyframes without times are reached as soon as the limits allow. Where cables rub, each keyframe is found for a way
-    straight from the one before, and the poses are those of the way that is played, which remembers all of it.
+    "smooth": contractions are C2 in time and pass keyframes without a stop where possible. "linear": contractions are
+    piecewise linear, as in the thesis; their speed changes instantly. "straight": markers move along straight lines.
+    Keyframes without times are reached as soon as the limits allow. With cable friction, each keyframe is solved for a
+    straight path from the previous one, and the poses are those of the whole played path.
     docs/theory/trajectories.md.
 
     Args:
-        simulation: the robot's physics.
-        keyframes: targets, or (time [s], target), or `Keyframe`; a solved pose is a target too.
-        speed: maximum speed of each winch [m/s], or by name of winches and drives; drives that are not named take 1
-            rad/s, 0.05 m/s or a share of 1 a second.
+        simulation: simulation of the robot.
+        keyframes: targets, or (time [s], target), or `Keyframe`; a solved pose can also be a target.
+        speed: maximum speed of each winch [m/s], or by name of winches and drives; drives without a name have 1 rad/s,
+            0.05 m/s or a share of 1 per second.
         acceleration: maximum acceleration of each winch [m/s^2], or by name; 0.2 by default, none for a linear path;
-            of drives four times their usual speed a second.
-        limits: other limits of the winches in keyframes; a start and solved poses must keep to all but the tension.
+            for drives, four times their default speed per second.
+        limits: other limits of the winches in keyframes; start and solved poses must keep all of them except the
+            tension.
         objectives: objectives in keyframes, in addition to their targets.
         path: quantity that follows a simple path.
-        start: the pose to begin in, not moving; the rest pose if left out.
-        loop: go back to the start at the end.
-        hold: time in each keyframe but the last [s].
-        options: samples, and how keyframes are searched for.
+        start: start pose, at rest; the rest pose if left out.
+        loop: True to return to the start at the end.
+        hold: waiting time in each keyframe but the last [s].
+        options: options for sampling and the search for keyframes.
         progress: callback for progress.
 
     Raises:
-        InputError: keyframes, limits or options that do not fit, a given pose of another robot or out of the limits,
-            or times that are too short for them.
-        NotConvergedError: no equilibrium somewhere on the way.
+        InputError: keyframes, limits or options that do not fit, a given pose of another robot or beyond the limits, or
+            times that are too short for the limits.
+        NotConvergedError: no equilibrium at a point of the path.
     """
     chosen = options or TrajectoryOptions()
     kind = parse_choice(PathKind, path, what="path")

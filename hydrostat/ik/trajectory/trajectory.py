@@ -70,15 +70,15 @@ class Trajectory(Tabular):
     """Contractions over time, and the equilibrium at each sample.
 
     Attributes:
-        path: quantity that follows a simple path from one keyframe to the next.
+        path: quantity that follows a simple path between keyframes.
         times: times of the samples, from 0 [s].
-        contractions: contractions at each sample [m], in winch order, then values of drives [rad, m or share].
+        contractions: contractions at each sample [m], in winch order, then drive values [rad, m or share].
         speeds: rates of change of these values [1/s].
-        accelerations: their second derivatives [1/s^2]; 0 for a linear path, infinite at its corners.
-        peak_speeds: maximum speed of each winch and drive, between samples too [1/s].
-        peak_accelerations: maximum acceleration of each, between samples too [1/s^2].
-        limits: limits on both.
-        poses: equilibria, each continued from the one before.
+        accelerations: second derivatives of these values [1/s^2]; 0 for a linear path, infinite at its corners.
+        peak_speeds: maximum speed of each winch and drive, also between samples [1/s].
+        peak_accelerations: maximum acceleration of each, also between samples [1/s^2].
+        limits: limits on speed and acceleration.
+        poses: equilibria, each continued from the previous one.
         keyframes: results of the keyframes, without the start.
         branch_jumps: jumps of the robot to another branch (snap-through).
         winches: names of the winches.
@@ -102,7 +102,7 @@ class Trajectory(Tabular):
     tension: Vector = field(repr=False)
 
     def columns(self) -> Columns:
-        """Return time, contractions, drives, markers and tensions as a table, a row for each sample."""
+        """Return a table of time, contractions, drive values, markers and tensions, one row for each sample."""
         drives = {drive.name: drive.unit for drive in self.poses[0].robot.drives}
         columns = {"time_s": self.times, **control_columns(self.winches, drives, self.contractions)}
         names = [cable.name for cable in self.poses[0].robot.cables]
@@ -133,11 +133,11 @@ class Trajectory(Tabular):
         return np.array([pose.tensions for pose in self.poses])
 
     def profile(self) -> ContractionProfile:
-        """Contractions for `Simulation.play` and for motors, linear from sample to sample."""
+        """Return contractions for `Simulation.play` and for motors, linear between samples."""
         return ContractionProfile(times=self.times, values=self.contractions)
 
     def lines(self) -> list[str]:
-        """Report as lines of text: keyframes, used share of the limits, and violated limits."""
+        """Return a report as lines of text: keyframes, used share of the limits, and violated limits."""
         lines = [line for key in self.keyframes for line in key.lines()]
         lines.append(f"{self.seconds:.2f} s in total, {len(self.times)} samples; path {self.path}")
         if self.winches:

@@ -68,20 +68,20 @@ def continue_branch(
     around_folds: bool = False,
     options: BranchOptions | None = None,
 ) -> Branch:
-    """Branch of equilibria from a pose on, by numerical continuation, while contractions go straight to others.
+    """Follow a branch of equilibria from a pose to other contractions along a straight line, by numerical continuation.
 
-    Unlike `Simulation.solve` it never falls to another branch: it goes by pseudo-arclength (Keller 1977), with the
-    predictor dx/da and steps that are shortened until the equilibrium is where it was predicted.
+    Unlike `Simulation.solve` it never jumps to another branch: it uses pseudo-arclength continuation (Keller 1977),
+    with the predictor dx/da and steps that are shortened until the equilibrium is close to the prediction.
 
     Args:
-        simulation: the robot's physics.
-        start: an equilibrium to begin from, stable or not.
-        contractions: contractions at the end of the branch [m], and values of drives.
-        around_folds: go on where stability is lost, along the unstable part; else the branch ends there.
-        options: length of the steps.
+        simulation: simulation of the robot.
+        start: start equilibrium, stable or not.
+        contractions: contractions and drive values at the end of the branch [m].
+        around_folds: True to follow the unstable part after a loss of stability; False to end the branch there.
+        options: step lengths.
 
     Raises:
-        InputError: a start that is no equilibrium, contractions that do not fit, or cables with friction.
+        InputError: a start that is not an equilibrium, contractions that do not fit, or cables with friction.
     """
     goal = simulation.as_contractions(contractions)
     if simulation.assembly.has_history:

@@ -158,18 +158,18 @@ _STEP = 0.1
 
 
 def friction_hysteresis(simulation: Simulation, pose: Equilibrium, *, overshoot: float = 0.1) -> dict[str, float]:
-    """Distance of each marker between a pose and that at the same contractions, reached by paying out [m].
+    """Return the distance of each marker between a pose and the pose at the same contractions after paying out [m].
 
-    From the pose all winches take in a share more, and let it out again. Empty where no physics remember the way.
+    All winches take in a share more than in the pose and pay it out again. Empty without path-dependent physics.
 
     Args:
-        simulation: the robot's physics.
-        pose: an equilibrium of it.
-        overshoot: share by which all contractions grow on the way; beyond the travel of a winch too.
+        simulation: simulation of the robot.
+        pose: equilibrium of the robot.
+        overshoot: relative increase of all contractions on the path, even beyond the travel of a winch.
 
     Raises:
-        InputError: a share that is not above 0.
-        NotConvergedError: the way there or back cannot be followed.
+        InputError: an overshoot that is not above 0.
+        NotConvergedError: the path cannot be followed.
     """
     if not overshoot > 0:
         raise InputError(f"overshoot must be a share above 0, not {overshoot:g}")
