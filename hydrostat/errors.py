@@ -9,7 +9,7 @@ _LONG_WORD = re.compile(r"[^\s/\\]{120,}")
 class HydrostatError(Exception):
     """Base of all errors of hydrostat. Its text is one line: place, problem, allowed values, fix.
 
-    Words that are longer than the name of a file may be are cut: they come from broken files.
+    Very long words, which come from corrupt files, are cut to the maximum length of a file name.
     """
 
     def __init__(self, message: str = "") -> None:
@@ -45,7 +45,7 @@ class SurfaceError(InputError):
 
 
 class NotConvergedError(HydrostatError):
-    """Solver that stopped before it reached its tolerance.
+    """Error of a solver that stopped before it reached its tolerance.
 
     Attributes:
         result: result of the solver, with its stop reason and the best point found.
@@ -57,7 +57,7 @@ class NotConvergedError(HydrostatError):
 
 
 class HydrostatWarning(UserWarning):
-    """Pose that is computed but that the robot cannot take, such as one beyond the travel of a winch."""
+    """Warning about a computed pose that the robot cannot take, such as one beyond the travel of a winch."""
 
 
 NO_KIT = "no kit can be made of this body: "

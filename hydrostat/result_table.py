@@ -62,10 +62,10 @@ class ResultTable(Tabular):
 
     @staticmethod
     def of(results: Iterable[Tabular]) -> "ResultTable":
-        """Return the rows of several poses, motions or other results below each other.
+        """Return one table with the rows of several poses, motions or other results.
 
         Raises:
-            InputError: none, or results whose columns differ.
+            InputError: no results, or results with different columns.
         """
         parts = [result.columns() for result in results]
         if not parts or any(list(part) != list(parts[0]) for part in parts):

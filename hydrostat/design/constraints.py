@@ -73,16 +73,16 @@ def _limit(default: Any, allowed: Range | None = None, *, trees: bool = False) -
 
 @dataclass(frozen=True, kw_only=True)
 class Constraints:
-    """Limits that every returned network keeps; lengths in meters, at rest.
+    """Limits for every designed network; lengths in meters, at rest.
 
-    `hydrostat.design.buildable` tells whether a network keeps them, and how each of them is measured.
+    `hydrostat.design.buildable` checks a network against them, and defines the measure of each.
 
     Attributes:
-        winch_zones: zones for winches; anywhere in the body if there is none.
+        winch_zones: zones for winches; without zones, anywhere in the body.
         keep_out: zones without cables.
-        drawing_gap: minimum distance of cables from small shapes drawn on a flat body, such as eyes [m]; 0: cables may
+        drawing_gap: minimum distance of cables from small drawn shapes on a flat body, such as eyes [m]; 0 lets cables
             cross them.
-        passive_zones: passive zones: cables run in sheaths here, so that they move nothing.
+        passive_zones: zones in which cables run in sheaths, so that they move nothing.
         mount: place of the winches, in the body or in the world; None: as the robot's own winches are, in the body if
             it has none.
             Winches in the world stand at places of the robot's own winches.
@@ -100,24 +100,25 @@ class Constraints:
             winch may be nearer within two spool radii of it. 0: cables may cross.
         max_turn: maximum turn of a cable at a via point [degrees].
         bend_radius: minimum radius of the arc that fits a turn between the middles of its two segments [m].
-        max_length: maximum length of a cable from winch to stopper [m]; None: any.
+        max_length: maximum length of a cable from winch to stopper [m]; None for no limit.
         tension: maximum cable tension [N].
-        torque: maximum torque of the motor of a winch [N m]; None: as much as the tensions need.
-        motor: key of the motor of the winches, such as "sts3215"; "auto": the weakest that is strong enough and fits.
+        torque: maximum torque of the motor of a winch [N m]; None for as much as the tensions need.
+        motor: key of the motor of the winches, such as "sts3215"; "auto" for the weakest that is strong enough and
+            fits.
         travel: maximum contraction of a winch [m].
         release: maximum payout of a winch [m].
         spool_radius: radius of the spools [m].
         slack: maximum slack at a stopper [m].
-        spool_ratio: maximum ratio of a cable's own spool to its winch's, or its inverse; 1: equal spools.
-        two_way: True if a winch may pull when it turns back too, by cables that are wound the other way round.
-        leads: True if a cable may run in a sheath from its winch to where bending should begin.
-        mirror: axis across which the network is symmetric: "x", "y" or "z"; None: no symmetry. The
-            mirror is the plane where that coordinate is 0, the middle of what was drawn.
-        locked_winches: names of the robot's own winches that stay.
-        locked_cables: names of the robot's own cables that stay as they are, and their winches with them.
+        spool_ratio: maximum ratio of a cable's own spool to its winch's, or its inverse; 1 for equal spools.
+        two_way: True if a winch may also pull when it turns back, by cables wound in the opposite direction.
+        leads: True if a cable may run in a sheath from its winch to the start of the bending part.
+        mirror: axis across which the network is symmetric: "x", "y" or "z"; None for no symmetry. The mirror is the
+            plane where that coordinate is 0, the center of the drawing.
+        locked_winches: names of the robot's own winches to keep.
+        locked_cables: names of the robot's own cables to keep unchanged, with their winches.
 
     Raises:
-        InputError: a value of the wrong kind or out of its range.
+        InputError: a value of the wrong type or out of range.
     """
 
     STEPPED = 2.0
@@ -175,10 +176,10 @@ class Constraints:
 
     @property
     def tension_limit(self) -> float:
-        """The most that any cable may be pulled with [N].
+        """Maximum tension of any cable [N].
 
-        By the cable itself, or by the motor of a winch that pulls no other, on its smallest spool. Cables that share a
-        winch share its torque (`Limits.torque`).
+        The limit is that of the cable, or of the motor of a winch without other cables, on its smallest spool. Cables
+        that share a winch share its torque (`Limits.torque`).
         """
         if self.torque is None:
             return self.tension
@@ -191,7 +192,7 @@ class Constraints:
 
     @property
     def reverse_release(self) -> float:
-        """The most that a winch which pulls reversed cables may pay out [m]."""
+        """Maximum payout of a winch that pulls reversed cables [m]."""
         return max(self.release, self.travel)
 
     def stand_outside(self, robot: Robot) -> bool:
@@ -206,29 +207,29 @@ class Constraints:
         return Limits(tension=self.tension, torque=self.torque)
 
     def limit_robot(self, robot: Robot) -> Robot:
-        """The robot with the limits on tension and torque, which its poses keep to."""
+        """Return the robot with the limits on tension and torque, which its poses keep."""
         given = {"max_tension": self.tension_limit, "max_torque": self.torque}
         return replace(robot, **{name: value and float(f"{value:.4g}") for name, value in given.items()})
 
     def restrict_to_trees(self) -> "Constraints":
-        """The constraints that winch trees keep; the others ask nothing."""
+        """Return only the constraints that winch trees keep."""
         return Constraints(**{one.name: getattr(self, one.name) for one in fields(self) if one.name not in ROUTES_ONLY})
 
     def flip(self, dim: int) -> Vector:
-        """Signs that make of coordinates those of their mirror image, (dim,); all 1 without a mirror."""
+        """Return the signs that mirror coordinates, (dim,); all 1 without a mirror."""
         return np.array([-1.0 if axis == self.mirror else 1.0 for axis in "xyz"[:dim]])
 
     def staying(self, robot: Robot) -> tuple[tuple[Winch, ...], tuple[Cable, ...]]:
-        """Winches and cables of a robot that stay: those that are locked, and the winches of locked cables."""
+        """Return the winches and cables of a robot that stay: locked ones, and the winches of locked cables."""
         cables = tuple(cable for cable in robot.cables if cable.name in self.locked_cables)
         names = {*self.locked_winches, *(cable.winch for cable in cables)}
         return tuple(winch for winch in robot.winches if winch.name in names), cables
 
     def check(self, robot: Robot) -> None:
-        """Refuse a robot that these constraints do not fit.
+        """Reject a robot that these constraints do not fit.
 
-        Raises InputError: a zone of another dimension, a winch or cable to lock that it does not have, a mirror that
-        its body is not centered on, or winches in the world where it has no winch to stand for one.
+        Raises InputError: a zone of another dimension, an unknown locked winch or cable, a mirror on which its body is
+        not centered, or winches in the world without a winch of the robot as position.
         """
         mesh = robot.body.mesh
         for field in ("winch_zones", "keep_out", "passive_zones"):

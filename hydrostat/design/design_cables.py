@@ -48,19 +48,19 @@ def design_cables(
     watch: StageCallback | None = None,
     **asked: Unpack[DesignKeywords],
 ) -> Network:
-    """Find a network of winches and cables that brings a robot into some poses.
+    """Design a network of winches and cables that moves a robot into given poses.
 
     Args:
-        robot: body, pins and markers; its own winches and cables are left aside but for those that are locked.
-        poses: poses that the network should reach, all with the same cables.
-        progress: called as the work goes on.
-        watch: called with each better network that is found on the way, not yet judged as those are that are returned.
-        asked: `winches`, `cables`, `method`, `constraints`, `options`, `warm_start`, `stuffed`, `front` and
-            `seconds` of a `DesignRequest`. With `winches="auto"` the alternatives of the network hold the best that was
-            found of every size tried.
+        robot: body, pins and markers; its own winches and cables are ignored unless they are locked.
+        poses: poses to reach, all with the same cables.
+        progress: callback for progress.
+        watch: callback for each better network during the search, before its final evaluation.
+        asked: `winches`, `cables`, `method`, `constraints`, `options`, `warm_start`, `stuffed`, `front` and `seconds`
+            of a `DesignRequest`. With `winches="auto"` the alternatives of the network are the best of every size
+            tried.
 
     Raises:
-        InputError: no pose, a pose of a marker that does not exist, counts, constraints or options that do not fit.
+        InputError: no pose, a pose with an unknown marker, or counts, constraints or options that do not fit.
         HydrostatError: no network can be built.
     """
     if isinstance(poses, PoseTarget) or not isinstance(poses, Iterable):

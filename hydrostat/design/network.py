@@ -100,20 +100,20 @@ class Alternative:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Network:
-    """Winches and cables that were designed, and what led to them.
+    """Designed winches and cables, with the record of the search.
 
     Attributes:
-        robot: the robot with the new network.
-        source: the robot that it was designed for.
-        request: request, with the constraints that the network keeps.
+        robot: robot with the new network.
+        source: robot that was given to the design.
+        request: design request, with the constraints that the network keeps.
         ik_results: inverse-kinematics result of the new network for each pose, by its own winches; the true score.
         expected_error: rms error over markers and poses expected of a robot as it is built, its commands played open
             loop [m]: `hydrostat.design.expected_error` with the uncertainty of the request.
-        alternatives: other networks, best first; by counts where the number of winches was found.
+        alternatives: other networks, best first; by counts if the search chose the number of winches.
         trace: trace of the search.
         num_evaluated: number of networks with solved poses.
         seconds: CPU time of the design [s].
-        complete: True if the search came to its end; False if it was interrupted or its time was up.
+        complete: True if the search finished; False if it was interrupted or its time was up.
         timed_out: True if its time was up.
         stuffed: results on the stuffed body; None if not requested.
     """
@@ -142,9 +142,9 @@ class Network:
 
     @cached_property
     def idle_winches(self) -> dict[str, float]:
-        """Rms error in the model without each winch that hardly lowers it [m]: poses solved again without its cables.
+        """Rms error without each winch that hardly lowers it [m]; poses are solved again without its cables.
 
-        Without two of them it may be larger. Empty for bodies in space, where this takes long, and robots with drives.
+        Without two of them the error may be larger. Empty for robots with drives, and for bodies in space (too slow).
         """
         robot, found, once = self.robot, dict[str, float](), IKOptions(restarts=0)
         mesh = robot.body.mesh
@@ -162,7 +162,7 @@ class Network:
 
     @cached_property
     def cost(self) -> BuildCost:
-        """Work and money that its robot takes."""
+        """Work and cost of building the robot."""
         return BuildCost.of_robot(self.robot, self.ik_results)
 
     @property
@@ -176,7 +176,7 @@ class Network:
         return rms_error(self.ik_results)
 
     def best_errors(self, alternatives: Iterable[Alternative]) -> "dict[Size, float]":
-        """The least error as built of each size [m], in order of the sizes; where the chosen network is, its own."""
+        """Return the least as-built error of each size [m], in order of size; at the chosen size, that network's."""
         found: dict[Size, float] = {}
         for network in alternatives:
             found[size_of(network)] = min(network.expected_error, found.get(size_of(network), float("inf")))
@@ -185,9 +185,9 @@ class Network:
 
     @property
     def element_error(self) -> float:
-        """Rms move of the markers on quadratic elements, by the same contractions [m]; infinite where unknown.
+        """Rms difference of the markers on quadratic elements at the same contractions [m]; infinite if unknown.
 
-        Unknown are bodies in space, and bodies whose elements are quadratic already or whose volume is kept by patches.
+        Unknown for bodies in space, bodies with quadratic elements, and bodies whose volume is kept by patches.
         """
         body = self.robot.body
         if body.mesh.dim == 3 or body.elements is not ElementKind.LINEAR or body.volume is not Volume.ELEMENT:

@@ -44,20 +44,20 @@ class DesignMethod(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class RouteOptions:
-    """Options of the search for routes.
+    """Options for the search for routes.
 
-    Raises InputError for a number out of its range.
+    Raises InputError for a value out of range.
 
     Attributes:
-        stop_error: rms error, as a fraction of the body's size, at which nothing more is sought.
+        stop_error: rms error, as a fraction of the body's size, at which the search stops.
         tolerance: rms error of each pose [m] that the fewest winches must reach where their number is left open; a
             hundredth of the body's size if left out.
         spacing: distance between via points, in mean mesh edges.
-        max_edges: maximum number of edges of a path that is priced.
-        lead_penalty: share of the promised gain that a lead as long as the body costs.
+        max_edges: maximum number of edges in a candidate path.
+        lead_penalty: share of the predicted gain that a lead as long as the body costs.
         trials: number of paths with solved networks before one is added.
         starts: effort of the growth: more sketches are refined, and more cables may fail in a row before it ends.
-        exchanges: most cables that are taken out, one at a time, for the best to be put in their place.
+        exchanges: maximum number of cables that are removed, one at a time, and replaced by the best alternative.
         steps: steps of refinement after each cable.
         refine_steps: steps of refinement of a whole network.
         simplicity: weight of a simple network: at 1 a cable must lower the error as built by 2 %, a winch by
@@ -127,9 +127,9 @@ class TreeSettings:
 
 @dataclass(frozen=True, kw_only=True)
 class TreeOptions:
-    """Options of the growth of winch trees; lengths in units of the mean mesh edge unless said otherwise.
+    """Options for growing winch trees; lengths in units of the mean mesh edge unless stated otherwise.
 
-    Raises InputError for muscles of no kind that there is.
+    Raises InputError for an unknown kind of muscles.
 
     Attributes:
         fibres: a muscle on every mesh edge, or one in every element.
@@ -141,9 +141,9 @@ class TreeOptions:
         turn: maximum turn of a route [degrees].
         shortest: minimum length of a route.
         phis: weights of the mean against the spread in the score to try.
-        shares: most ways to share the cables among the winches to try, the evenest first.
+        shares: maximum number of ways to try for sharing cables among winches, the most even first.
         trials: maximum number of networks with solved poses.
-        loss: largest increase of the pose error by leaving out cables, as a fraction.
+        loss: largest relative increase of the pose error by leaving out cables.
         lead_penalty: loss of score for a lead as long as the body.
     """
 

@@ -25,7 +25,7 @@ def review_robot(
     constraints: Constraints | None = None,
     options: KitOptions | None = None,
 ) -> tuple[Diagnostic, ...]:
-    """Collect the diagnostics of a robot before it is built, the gravest first, each sentence with its places.
+    """Collect diagnostics of a robot before it is built, the most severe first, each with its positions.
 
     - What a kit is refused for (`find_material_problems`, `find_refusals`): with the demand of its poses all that is
       known before it is made. Without cables it is a warning, as a body may be for simulation alone.

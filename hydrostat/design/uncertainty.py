@@ -15,21 +15,21 @@ from hydrostat.robot import Body, Mount, Robot
 class BuildTolerances:
     """Standard deviations of build tolerances, and the range of unknown friction.
 
-    The default is hand-sewn plush: a needle goes in some 2 mm beside the mark, filling and felt differ from bag to
-    bag, and fishing line in grommets rubs more or less. These are estimates by us, not measurements: measure yours.
+    The default is hand-sewn plush: a needle misses its mark by about 2 mm, filling and felt differ from bag to bag, and
+    the friction of fishing line in grommets varies. These values are our estimates, not measurements: measure yours.
 
     Attributes:
         sewing: deviation of each coordinate of each hole, winches included [m].
-        friction: least and largest coefficient at via points; each robot has one, all between as likely.
+        friction: least and largest friction coefficient at via points; uniform between them, one value for each robot.
         young: deviation of the logarithm of Young's modulus.
         thickness: deviation of the logarithm of a flat body's thickness.
         stiffness: deviation of the logarithm of each cable's stiffness.
         pins: deviation of the logarithm of each pin's stiffness.
-        slack: deviation of the position of each cable's knot [m]; a winch counts from where its first cable is taut.
-        spool: deviation of the logarithm of each winch's radius: line on line, and the print.
+        slack: deviation of the position of each cable's knot [m]; winches count from where their first cable goes taut.
+        spool: deviation of the logarithm of each winch's radius, from layers of line and printing.
 
     Raises:
-        InputError: a number out of its range.
+        InputError: a value out of range.
     """
 
     sewing: float = 2e-3
@@ -53,9 +53,9 @@ class BuildTolerances:
 
     @classmethod
     def of(cls, body: Body) -> Self:
-        """Return the usual tolerances of a body: sewn where it is flat, cast with tubes in the mold in space.
+        """Return the default tolerances for a body: sewn if flat, cast with tubes in the mold if in space.
 
-        The deviation of Young's modulus is that of the material's interval, if it was measured.
+        The deviation of Young's modulus is that of the material's interval, if measured.
         """
         usual = cls() if body.mesh.dim == 2 else cls(sewing=1e-3, friction=(0.0, 0.15), thickness=0.0)
         measured = body.material.young_deviation
@@ -63,15 +63,15 @@ class BuildTolerances:
 
     @classmethod
     def none(cls) -> Self:
-        """A robot that is built just as its model."""
+        """Return zero tolerances, for a robot built exactly as its model."""
         return cls(
             sewing=0.0, friction=(0.0, 0.0), young=0.0, thickness=0.0, stiffness=0.0, pins=0.0, slack=0.0, spool=0.0
         )
 
     def draw(self, robot: Robot, chance: np.random.Generator) -> Robot:
-        """Make a robot as it might be built; every draw takes as many random numbers, whatever the deviations are.
+        """Draw a robot with random build errors; every draw takes the same number of random values.
 
-        Holes stay in the body: one that would lie outside is moved half as far, and so on.
+        Holes stay in the body: a hole that would be outside is moved half as far, repeatedly.
         """
         dim = robot.body.mesh.dim
         young, thick = np.exp(self._deviations[:2] * chance.standard_normal(2))

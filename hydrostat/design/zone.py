@@ -17,16 +17,16 @@ from hydrostat.given import Point
 
 @dataclass(frozen=True, kw_only=True)
 class Zone:
-    """A disc or ball, a box, or a polygon in the plane [m].
+    """Zone: a disc or ball, a box, or a polygon in the plane [m].
 
     Attributes:
-        at: middle of the disc or ball.
+        at: center of the disc or ball.
         radius: radius of the zone [m].
-        box: its lowest and its highest corner.
-        outline: corners of the polygon, either way round.
+        box: lowest and highest corner of the box.
+        outline: corners of the polygon, in either direction.
 
     Raises:
-        InputError: not exactly one of these, or one that is no such thing.
+        InputError: not exactly one of these, or an invalid shape.
     """
 
     at: Point | None = None
@@ -52,11 +52,11 @@ class Zone:
         return len(self.at if self.at is not None else self.box[0] if self.box is not None else self.outline[0])
 
     def distances(self, points: Points) -> Float[np.ndarray, " points"]:
-        """Distance of points from the rim of the zone [m]; negative inside."""
+        """Return the distance of points from the border of the zone [m]; negative inside."""
         return self._measure(points)[0]
 
     def away(self, points: Points) -> Float[np.ndarray, "points dim"]:
-        """Unit vectors in which `distances` grows the fastest, its gradient."""
+        """Return the gradient of `distances` at points, as unit vectors."""
         return self._measure(points)[1]
 
     def least(
@@ -67,7 +67,7 @@ class Zone:
         limit: float = 0.0,
         resolution: float = 1e-4,
     ) -> Float[np.ndarray, " segments"]:
-        """The least of `distances` along each straight segment [m], if it is below a limit (`least_along`)."""
+        """Return the least of `distances` along each straight segment [m], if it is below a limit (`least_along`)."""
         return least_along(self.distances, starts, ends, limit, resolution=resolution)
 
     def _measure(self, points: Points) -> tuple[Float[np.ndarray, " points"], Float[np.ndarray, "points dim"]]:
@@ -94,7 +94,7 @@ class Zone:
         return starts, ends, normals / np.linalg.norm(normals, axis=1, keepdims=True)
 
     def move(self, move: Callable[[Point], Point]) -> "Zone":
-        """A zone whose places are moved."""
+        """Return the zone with its points moved."""
         at = None if self.at is None else move(self.at)
         box = None if self.box is None else (move(self.box[0]), move(self.box[1]))
         return replace(self, at=at, box=box, outline=tuple(map(move, self.outline)))

@@ -44,7 +44,7 @@ from hydrostat.units import plural
 def write_kit(
     robot: Robot, folder: str | Path, *, options: KitOptions | None = None, progress: Progress | None = None
 ) -> Kit:
-    """Make the kit of a robot and write it into a folder. Nothing is written unless all can be.
+    """Build the kit of a robot and write it to a folder; on an error, nothing is written.
 
     Raises:
         UnbuildableError: the robot cannot be built well (unless `force`).
@@ -63,13 +63,13 @@ def build_kit(
     progress: Progress | None = None,
     added: Mapping[str, bytes] | None = None,
 ) -> Kit:
-    """Make the kit of a robot; the same robot and options give the same bytes.
+    """Build the kit of a robot; the same robot and options give the same bytes.
 
     Args:
         robot: robot to build.
-        options: choices of the builder.
-        progress: called with each stage.
-        added: more files of the kit by path, such as tags of the camera.
+        options: options of the kit.
+        progress: callback for each stage.
+        added: additional files of the kit by path, such as camera tags.
 
     Raises:
         UnbuildableError: the robot cannot be built well (unless `force`).

@@ -35,7 +35,7 @@ _MAKERS = ("hydrostat", "ezdxf", "libigl", "manifold3d", "numpy", "scipy", "shap
 
 
 class UnbuildableError(InputError):
-    """A robot cannot be built well as it is.
+    """Error for a robot that cannot be built well.
 
     Attributes:
         reasons: problems, one line each.
@@ -49,14 +49,14 @@ class UnbuildableError(InputError):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Kit:
-    """Everything that a robot is built from.
+    """Build kit: all files and parts for a robot.
 
     Attributes:
         robot: robot of the kit.
-        method: method by which the body is made.
+        method: fabrication method of the body.
         motor: key of the motor in its winches.
         torques: largest torque of each winch in its poses [N m], for `motor_offers`.
-        printed: all parts for a 3D printer.
+        printed: all 3D-printed parts.
         files: content by path.
         summary: contents, one line each.
         problems: reasons why it cannot be built well; empty without `force`.
@@ -88,12 +88,12 @@ class Kit:
         return f"<pre>{html.escape(chr(10).join(lines))}</pre>"
 
     def write(self, folder: str | Path) -> list[Path]:
-        """Write all files into a folder, in place of an earlier kit (InputError: a file cannot be written)."""
+        """Write all files to a folder, replacing an earlier kit (InputError: a file cannot be written)."""
         return write_files(self.files, folder)
 
     @staticmethod
     def forget_files(folder: str | Path) -> None:
-        """Remove a kit from a folder, but for what was changed or added since."""
+        """Remove a kit from a folder, except files that were changed or added since."""
         folder = Path(folder)
         for path in (*_written_before(folder), MANIFEST):
             _remove(folder / path, folder)

@@ -77,16 +77,16 @@ def identify(
     profile: bool = False,
     progress: Progress = no_progress,
 ) -> IdentifiedRobot:
-    """Parameters of a built robot from measurements (Gauss-Newton, exact sensitivities, guesses as a normal prior).
+    """Fit parameters of a built robot to measurements (Gauss-Newton, exact sensitivities, normal priors).
 
     Drives are at rest in all measurements.
 
     Args:
-        robot: robot as it is assumed to be built.
-        measurements: rows of contractions and places of markers.
-        fit: kinds of parameters, such as ("young", "gain") or "young,gain", named as by `hydrostat identify`; those
-            that are fitted by default if left out, with `force` where forces were measured.
-        profile: take intervals by profile likelihood where linearized ones are doubtful.
+        robot: model of the robot, as designed.
+        measurements: rows of contractions and marker positions.
+        fit: kinds of parameters, such as ("young", "gain") or "young,gain", named as in `hydrostat identify`; the
+            default kinds if left out, with `force` if forces were measured.
+        profile: True to compute intervals by profile likelihood where linearized ones are doubtful.
         progress: callback for progress, after each evaluation.
 
     Raises:

@@ -11,22 +11,22 @@ from hydrostat.result_table import Columns, Tabular, marker_columns, named_colum
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Measurements(Tabular):
-    """Rows of measurements of a built robot.
+    """Measurements of a built robot, in rows.
 
     Attributes:
-        commands: contraction asked of each winch [m], (rows, winches).
+        commands: commanded contraction of each winch [m], (rows, winches).
         markers: names of the measured markers.
-        places: measured places [m], (rows, markers, dim), in any fixed frame; NaN where a marker was not seen.
+        places: measured positions [m], (rows, markers, dim), in any fixed frame; NaN for a marker that was not visible.
         masses: mass hung at each marker [kg], (rows, markers); none if left out.
-        pairs: pairs of markers, by their numbers in `markers`, whose distances were measured.
-        lengths: these distances [m], (rows, pairs); NaN where they were not measured, none if left out.
-        forces: force with which each winch pulls [N], (rows, winches): torque over the radius of its spool; NaN where
-            it was not measured, none if left out.
-        in_order: True if the rows are one loading path, in their order, so that each begins where the one before
-            ended. Counts for robots whose pose depends on the path: friction of cables, hysteresis of materials.
+        pairs: pairs of markers, by index in `markers`, with measured distances.
+        lengths: these distances [m], (rows, pairs); NaN if not measured, none if left out.
+        forces: pull of each winch [N], (rows, winches): torque divided by spool radius; NaN if not measured, none if
+            left out.
+        in_order: True if the rows are one loading path, in order, each starting where the previous one ended. Matters
+            for path-dependent robots: friction of cables, hysteresis of materials.
 
     Raises:
-        InputError: arrays that do not fit one another, or numbers that are not finite.
+        InputError: arrays that do not fit each other, or values that are not finite.
     """
 
     commands: Float[np.ndarray, "rows winches"]
@@ -39,7 +39,7 @@ class Measurements(Tabular):
     in_order: bool = False
 
     def columns(self) -> Columns:
-        """Return commands of the winches in their order, and measured places, a row for each pose."""
+        """Return a table of winch commands and measured positions, one row for each pose."""
         names = [str(number) for number in range(1, 1 + self.commands.shape[1])]
         columns = named_columns("command", names, self.commands, "m")
         return columns | marker_columns({name: self.places[:, at] for at, name in enumerate(self.markers)})
@@ -91,14 +91,14 @@ class Measurements(Tabular):
         return np.full(self.commands.shape, np.nan) if self.forces is None else self.forces
 
     def is_measured(self, row: int) -> Bool[np.ndarray, " markers"]:
-        """Markers of which a coordinate or a distance is known in a row."""
+        """Return the markers with a measured coordinate or distance in a row."""
         known = np.isfinite(self.places[row]).any(axis=1)
         for pair, length in zip(self.pairs, self.known_lengths[row], strict=True):
             known[list(pair)] |= bool(np.isfinite(length))
         return known
 
     def rows(self, chosen: np.ndarray) -> "Measurements":
-        """Some of the rows, by index or mask; of a loading path, all commands with these measurements alone."""
+        """Return selected rows, by index or mask; for a loading path, all commands with only these measurements."""
         if self.in_order:
             left = np.ones(len(self.commands), dtype=bool)
             left[chosen] = False

@@ -20,15 +20,15 @@ MAX_BYTES = 20_000_000
 
 
 def read_measurements(file: str | Path, robot: Robot) -> Measurements:
-    """Measurements from a CSV file.
+    """Read measurements from a CSV file.
 
-    Columns: `left_mm`, the contraction of winch `left`; `tip_x_mm`, `tip_y_mm` (and `tip_z_mm`), the place of marker
-    `tip`; `tip_load_g`, a mass that hung there; `tip_to_root_mm`, the distance of two markers by ruler; `left_force_n`,
-    the pull of winch `left`. A winch without a column does not contract. An empty cell of a measured quantity says that
-    it is unknown. Columns `time_s`, `pose` and `row` are skipped.
+    Columns: `left_mm`, the contraction of winch `left`; `tip_x_mm`, `tip_y_mm` (and `tip_z_mm`), the position of marker
+    `tip`; `tip_load_g`, a mass hung at this marker; `tip_to_root_mm`, the distance between two markers, by ruler;
+    `left_force_n`, the pull of winch `left`. A winch without a column does not contract. An empty cell means that the
+    quantity was not measured. Columns `time_s`, `pose` and `row` are skipped.
 
     Raises:
-        InputError: a file that cannot be read, or a column or number that does not fit; the text names file and line.
+        InputError: a file that cannot be read, or a column or value that does not fit; names file and line.
     """
     path = Path(file)
     try:

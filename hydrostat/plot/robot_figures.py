@@ -36,9 +36,9 @@ from hydrostat.units import MILLIMETERS, plural
 
 
 def draw_rest(robot: Robot, *, title: str | None = None, width: float = WIDTH) -> Figure:
-    """The robot as it is made: mesh, pins, winches, cables and markers, on a millimeter grid.
+    """Draw the robot at rest: mesh, pins, winches, cables and markers, on a millimeter grid.
 
-    The title is the robot's name if left out, nothing if empty; width in inches.
+    The default title is the robot's name; an empty one omits it. Width in inches.
     """
     _check(robot, width)
     body = robot.body
@@ -78,9 +78,9 @@ def draw_target(robot: Robot, pose: PoseTarget, *, title: str | None = None, wid
 
 
 def draw_network(robot: Robot, *, title: str | None = None, width: float = WIDTH) -> Figure:
-    """Draw the winches where they sit and the cables where they run, numbered as in the tables.
+    """Draw winches and cables at their positions, numbered as in the tables.
 
-    The title counts winches and cables if left out, nothing if empty; width in inches.
+    The default title gives the numbers of winches and cables; an empty one omits it. Width in inches.
     """
     _check(robot, width)
     count = f"{plural(len(robot.winches), 'winch')}, {plural(len(robot.cables), 'cable')}"
@@ -163,10 +163,10 @@ def stage_frame(robots: Iterable[Robot]) -> Spread:
 def draw_pose(
     robot: Robot, pose: Equilibrium, *, title: str | None = None, note: str | None = None, width: float = WIDTH
 ) -> Figure:
-    """A simulated pose over the ghost of the rest shape; cables colored by tension, winches with their contraction.
+    """Draw a simulated pose over a ghost of the rest shape: cables colored by tension, winches with contraction.
 
-    The title is the robot's name if left out, nothing if empty; the note below tells, if left out, whether it rests
-    under its contractions; width in inches.
+    The default title is the robot's name; an empty one omits it. The default note below gives the state of equilibrium.
+    Width in inches.
     """
     _check(robot, width)
     check_pose(pose, robot.body.mesh.nodes.shape, robot.num_controls, what="the pose")
@@ -198,8 +198,8 @@ def draw_reached(
 ) -> Figure:
     """Draw the inverse-kinematics result of a pose: targets as crosses, marker errors as red lines labeled in mm.
 
-    The title is the pose's name if left out, nothing if empty; the outline is the shape that a flat body should take,
-    dashed; width in inches.
+    The default title is the pose's name; an empty one omits it. The outline is the target shape of a flat body, dashed.
+    Width in inches.
     """
     _check(robot, width)
     check_type(reached, IKResult, "what is reached must be what solve_ik gives")
