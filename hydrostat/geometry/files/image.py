@@ -19,7 +19,6 @@ from hydrostat.geometry.files.silhouette import (
     contrast,
     count_covered_pixels,
     fit_ground,
-    leave_shadow_out,
     shaded_part,
     silhouette,
 )
@@ -150,12 +149,6 @@ def _find_on_ground(
             "or cut it out"
         )
     level, shadow = _body_level(seen)
-    if (bare := leave_shadow_out(seen, level)) is not None:
-        share = float((bare < seen.field).sum() / max((seen.field > level).sum(), 1))
-        words = (
-            f"a darker part of the ground beside the body, {share:.0%} of both, was taken for its shadow and left out"
-        )
-        return silhouette(bare, level, seen.faint, name), None, (words,)
     note = ("a grey part beside the body was taken for its shadow and left out",) if shadow else ()
     return silhouette(seen.field, level, seen.faint, name), shaded_part(seen, level), note
 

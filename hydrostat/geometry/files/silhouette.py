@@ -3,14 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import (
-    binary_dilation,
-    distance_transform_edt,
-    find_objects,
-    gaussian_filter,
-    gaussian_filter1d,
-    label,
-)
+from scipy.ndimage import distance_transform_edt, find_objects, gaussian_filter, gaussian_filter1d, label
 from shapely import Polygon, get_coordinates
 
 from hydrostat.arrays import Bool, Float, Int, Vector
@@ -32,7 +25,6 @@ class Contrast:
     # which pixels have the color of the ground, only darker, as in a soft shadow
     shaded: Bool[np.ndarray, "rows columns"]
     edge: float  # share of the image border that stands out from the ground
-    hue: Field  # distance in color of each pixel from the ground there, made as dark or bright as the pixel
 
 
 def contrast(pixels: Float[np.ndarray, "rows columns 3"]) -> Contrast:
@@ -54,10 +46,7 @@ def contrast(pixels: Float[np.ndarray, "rows columns 3"]) -> Contrast:
         field = np.linalg.norm(pixels - ground, axis=2)
     faint = _faint(noise)
     edge = float((field[border] > faint).mean())
-    share, hue = _compare_hues(pixels, ground)
-    darkest_shadow = 0.4
-    shaded = (hue < 0.5 * faint) & (share < 1.0) & (share > darkest_shadow)
-    return Contrast(field, max(_otsu(field), faint), faint, shaded, edge, hue)
+    return Contrast(field, max(_otsu(field), faint), faint, _find_shadow(pixels, ground, 0.5 * faint), edge)
 
 
 def _faint(noise: float) -> float:
@@ -105,36 +94,12 @@ def _mean(sums: Vector, counts: np.ndarray) -> Vector:
     return sums / np.maximum(counts, 1)
 
 
-def _compare_hues(pixels: np.ndarray, ground: np.ndarray) -> tuple[Field, Field]:
-    """Brightness of each pixel as a share of the ground's, and its distance in color from the ground times that."""
+def _find_shadow(pixels: np.ndarray, ground: np.ndarray, tolerance: float) -> Bool[np.ndarray, "rows columns"]:
+    """Find the pixels that are the ground times a number below one."""
     share = np.einsum("rcd,rcd->rc", pixels, ground) / np.maximum(np.einsum("rcd,rcd->rc", ground, ground), 1.0)
-    return share, np.linalg.norm(pixels - share[..., None] * ground, axis=2)
-
-
-def leave_shadow_out(seen: Contrast, level: float) -> Field | None:
-    """Contrast without the shadow beside a body that has a color of its own; None if there is none.
-
-    A shadow is of the ground's color, wide, touches the ground, and lies on one side: a line of that color all around
-    belongs to the body, and so does what lies within it.
-    """
-    body = seen.field > level
-    rest = body & ~seen.shaded
-    own_hue = float(np.median(seen.hue[rest])) if rest.any() else 0.0
-    if own_hue < 2.0 * seen.faint:
-        return None
-    shade = body & seen.shaded
-    parts, _ = label(shade)
-    least_depth = 3.0  # pixels: along its edge every body is mixed with the ground
-    wide = set(np.unique(parts[np.asarray(distance_transform_edt(shade)) > least_depth]).tolist())
-    open_sides = set(np.unique(parts[binary_dilation(~body) & shade]).tolist())
-    shadow = np.isin(parts, sorted((wide & open_sides) - {0}))
-    most_around = 0.75
-    edge = rest & binary_dilation(~rest)
-    if not shadow.any() or float(binary_dilation(shadow, iterations=2)[edge].mean()) > most_around:
-        return None
-    bleed = 6  # pixels within which JPEG mixes the hues on both sides of an edge, which lies where both are equal
-    shadow = binary_dilation(shadow, iterations=bleed, mask=body & (seen.hue < 0.5 * own_hue))
-    return np.where(shadow, 0.0, seen.field)
+    off = np.linalg.norm(pixels - share[..., None] * ground, axis=2)
+    darkest_shadow = 0.4
+    return (off < tolerance) & (share < 1.0) & (share > darkest_shadow)
 
 
 @dataclass(frozen=True)
