@@ -78,7 +78,9 @@ def pose(
 
     require_folder(out)
     options = _search_options(restarts)
-    excluded = [key for key, given in (("--drawing", drawing), ("--model", model)) if muscles and given is not None]
+    cables = {"--drawing": drawing, "--model": model, "--tension": tension, "--torque": torque, "--restarts": restarts}
+    others = {"--timeout": timeout, "--equal": equal or None, "--jacobian": jacobian or None}
+    excluded = [key for key, given in (cables | others).items() if muscles and given is not None]
     check_pose_options(robot, name=name, targets=goals, store=store, by_cables=excluded)
     loaded = read_robot(robot)
     limits, seconds = pose_limits(loaded, tension, torque, equal), parse_optional("--timeout", timeout, TIME)
@@ -86,9 +88,9 @@ def pose(
     wishes = [] if outline is None else [ShapeTarget(outline=outline)]
     asked_for: dict[str, Any] = {"limits": limits, "objectives": wishes, "options": options, "seconds": seconds}
     targets = given_targets(loaded, goals, store) or _asked_targets(loaded, robot, name, drawing)
-    store_pose(robot, loaded, store, targets)
     if muscles:
         show_muscles(loaded, targets, out)
+        store_pose(robot, loaded, store, targets)
         return
     learned, loaded = (None, loaded) if model is None else read_model(model, loaded)
     simulation, stuck = Simulation(loaded), False
@@ -102,6 +104,7 @@ def pose(
         _write(simulation, reached, folder, title, limits, seconds, outline=outline, jacobian=jacobian)
         _print_all(simulation, reached, title, seconds, folder)
         stuck |= reached.status not in (IKStatus.REACHED, IKStatus.LOCAL_OPTIMUM)
+    store_pose(robot, loaded, store, targets)
     if stuck:
         raise typer.Exit(1)
 

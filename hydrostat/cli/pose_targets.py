@@ -9,6 +9,7 @@ import typer
 
 from hydrostat.cli.folders import folder_of, require_writable, result_folder
 from hydrostat.cli.limits import print_far_targets
+from hydrostat.cli.option_errors import naming_option
 from hydrostat.cli.options import axis_values, split_value
 from hydrostat.errors import InputError
 
@@ -21,7 +22,7 @@ UNNAMED = "target"
 Targets = Annotated[
     list[str] | None,
     typer.Option(
-        "--target", metavar="MARKER=X,Y", help="Target of a marker in a new pose, e.g. top=11mm,121mm. Repeatable."
+        "--target", metavar="MARKER=X,Y", help="Target of a marker in a new pose, e.g. top=30mm,110mm. Repeatable."
     ),
 ]
 Store = Annotated[str | None, typer.Option(metavar="NAME", help="Add the pose of --target to robot.toml by this name.")]
@@ -64,11 +65,12 @@ def given_targets(robot: "Robot", texts: Sequence[str] | None, store: str | None
     if store is not None:
         if store in robot.poses:
             raise InputError(f'--store {store}: the robot has a pose "{store}". Choose another name.')
-        check_name(store)
+        with naming_option(f"--store {store}"):
+            check_name(store)
     dim = robot.body.mesh.dim
     found: dict[str, tuple[float, ...]] = {}
     for text in texts:
-        example = f"MARKER={','.join('XYZ'[:dim])}, e.g. top={'11mm,121mm,0mm'[: 10 if dim == 2 else 14]}"
+        example = "MARKER=X,Y, e.g. top=30mm,110mm" if dim == 2 else "MARKER=X,Y,Z, e.g. top=30mm,110mm,0mm"
         marker, value = split_value("--target", text, example)
         if marker in found:
             raise InputError(f'--target: "{marker}" is given twice. Give each name once.')
@@ -113,5 +115,5 @@ def show_muscles(robot: "Robot", poses: "Sequence[tuple[str, PoseTarget | None]]
         print(f"{title}: rms error {1e3 * found.rms_error:.2f} mm by muscles: {errors}")
         with result_folder(out / title if len(poses) > 1 else out) as made:
             save_png(draw_activation(robot, found), made / "activation.png")
-    print("note: muscles pull anywhere. Cables of a design leave more error")
+    print("note: muscles pull anywhere in the body. Expect a larger error with cables")
     print(f"  wrote {out}")

@@ -310,4 +310,4 @@ def test_it_says_at_connection_that_no_guard_judges_its_cables() -> None:
     assert not_judged(np.array([0.3, np.nan, np.nan]), "abc").startswith("no tension guard of b, c: ")
     rig = Rig()
     rig.link.identify()
-    assert not any("no guard" in line for line in rig.log)
+    assert not any("no tension guard" in line for line in rig.log)

@@ -11,7 +11,7 @@ from hydrostat.fabrication.lists.bill import FELT_SHEET, PRICES, BillGroup, Item
 from hydrostat.fabrication.lists.cuts import CableCut, SheathCut
 from hydrostat.fabrication.lists.line import FishingLine
 from hydrostat.fabrication.lists.motors import PowerPlan
-from hydrostat.fabrication.lists.searches import search_term
+from hydrostat.fabrication.lists.searches import UNNAMED, search_term
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.units import plural
 
@@ -78,7 +78,7 @@ _NEEDLES = replace(_item(BillGroup.BODY, "needles", "sewing, and a long doll nee
 def _plush(plan: KitPlan, cloth: Cloth) -> list[Item]:
     mass, thread = filling_mass(plan), THREAD * cloth.seam
     felt = f"that a laser may cut: wool, polyester or acrylic, no PVC; 1 to 2 mm{_felt_pieces(cloth)}"
-    filling = plan.robot.body.material.name or "as the robot file says"
+    filling = plan.robot.body.material.name or UNNAMED
     zipper = f"zipper of {math.ceil(cloth.zipper / 10) * 10:g} mm or longer"
     marks = plan.robot.body.marks
     drawn = f"for {plural(len(marks), 'drawn line')}, such as eyes"
@@ -111,7 +111,7 @@ def _felt_pieces(cloth: Cloth) -> str:
 
 def _cast_name(plan: KitPlan, foam: FoamNeeds) -> str:
     """Name of the casting material of the body."""
-    return foam.material or plan.robot.body.material.name or "as the robot file says"
+    return foam.material or plan.robot.body.material.name or UNNAMED
 
 
 def _foam(plan: KitPlan, foam: FoamNeeds) -> list[Item]:
@@ -133,7 +133,7 @@ def _filament(plan: KitPlan) -> Item:
     """Filament of a printed body, solid."""
     material = plan.robot.body.material
     mass = 1e-6 * material.density * sum(part.volume for part in plan.work.printed)
-    name = f"{material.name or 'as the robot file says'}, solid"
+    name = f"{material.name or UNNAMED}, solid"
     return _item(BillGroup.BODY, "filament for the body", name, 1e-3 * mass, "flexible filament", mass)
 
 

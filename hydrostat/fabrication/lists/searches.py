@@ -1,4 +1,4 @@
-"""Search terms for the bill of materials: words that find a part in any shop."""
+"""Search terms for the bill of materials: words to type into the search box of a shop."""
 
 import re
 from types import MappingProxyType
@@ -22,7 +22,7 @@ SEARCHES = MappingProxyType(
         "driver": "DRV8874 motor driver carrier",
         "supply": "power supply {all}",
         "fuse": "inline holder with {all}",
-        "switch": "toggle switch 12 V 10 A",
+        "switch": "toggle switch {kind}",
         "lead": "two-core copper cable {all}",
         "servo cable": "three-wire servo cable {kind}",
         "servo's own cable": "three-wire servo cable {kind}",
@@ -49,14 +49,17 @@ SEARCHES = MappingProxyType(
 )
 """By the key of the price. kind: what the specification begins with; all: the whole specification."""
 
-_REMOVED = (" or more", " or thicker", " or longer", " or alike", "for ", "of three wires with ", "plugs of ")
+UNNAMED = "as the robot file says"
+"""Specification of a material without a name."""
+
+_REMOVED = (" or more", " or thicker", " or longer", " or alike", "for ", "of three wires with ", "plugs of ", UNNAMED)
 """Words of specifications that find nothing in a shop."""
 
 
 def search_term(key: str, specification: str) -> str:
-    """Words that find a part in a shop, by the key of its price (empty: a motor) and its specification."""
-    words = re.sub(r" \([a-z ]+\)", "", specification)  # a screw's place, such as (plate)
+    """Words to search for in a shop, by the key of a price (empty: a motor) and the specification of the part."""
+    words = re.sub(r" \([^)]*\)", "", specification)  # a screw's place, a shop's number
     for removed in _REMOVED:
         words = words.replace(removed, "")
     kind = words.partition(",")[0]
-    return SEARCHES[key].format(kind=kind, all=words.replace(",", "")) if key else words
+    return SEARCHES[key].format(kind=kind, all=words.replace(",", "")).strip() if key else words

@@ -189,8 +189,10 @@ def test_every_part_has_words_to_search_for() -> None:
     screw = "M2 x 20 mm countersunk screw (housing), machine thread, with a nut"
     assert search_term("screws", screw) == "M2 x 20 mm countersunk screw"
     assert search_term("supply", "12 V, 8 A or more") == "power supply 12 V 8 A"
+    assert search_term("switch", "for 25 A, large enough to be hit") == "toggle switch 25 A"
     assert search_term("uno board", "Arduino Uno or alike") == "Arduino Uno R3"
-    assert search_term("", "Feetech STS3215-C001, 7.4 V") == "Feetech STS3215-C001, 7.4 V"
+    assert search_term("", "Feetech STS3215-C001, 7.4 V (DFRobot: SER0069)") == "Feetech STS3215-C001, 7.4 V"
+    assert search_term("foam", "as the robot file says") == "flexible foam kit"
     found = needs(given(square(), cloth=Cloth(felt=2e5, seam=1e3, zipper=96.0)))
     assert found["zipper"].search == "nylon zipper of 100 mm"
     assert all(item.search for item in found.values())
