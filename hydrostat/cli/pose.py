@@ -27,7 +27,7 @@ from hydrostat.errors import InputError
 
 if TYPE_CHECKING:
     from hydrostat.geometry import Outline
-    from hydrostat.ik import IKOptions, IKResult, Limits
+    from hydrostat.ik import IKResult, Limits
     from hydrostat.robot import PoseTarget, Robot
     from hydrostat.simulation import Equilibrium, Simulation
 
@@ -72,21 +72,17 @@ def pose(
 
     Example: hydrostat pose gallery:starfish --pose wave --out build/wave
     """
-    from hydrostat.ik import IKStatus, ShapeTarget, load_target_outline, solve_ik
+    from hydrostat.ik import IKStatus, load_target_outline, solve_ik
     from hydrostat.simulation import Simulation
-    from hydrostat.units import TIME
 
     require_folder(out)
-    options = _search_options(restarts)
     cables = {"--drawing": drawing, "--model": model, "--tension": tension, "--torque": torque, "--restarts": restarts}
-    others = {"--timeout": timeout, "--equal": equal or None, "--jacobian": jacobian or None}
-    excluded = [key for key, given in (cables | others).items() if muscles and given is not None]
-    check_pose_options(robot, name=name, targets=goals, store=store, by_cables=excluded)
+    by_cables = cables | {"--timeout": timeout, "--equal": equal, "--jacobian": jacobian or None} if muscles else {}
+    check_pose_options(robot, name=name, targets=goals, store=store, by_cables=by_cables)
     loaded = read_robot(robot)
-    limits, seconds = pose_limits(loaded, tension, torque, equal), parse_optional("--timeout", timeout, TIME)
+    limits = pose_limits(loaded, tension, torque, equal)
     outline = None if drawing is None else load_target_outline(loaded, drawing)
-    wishes = [] if outline is None else [ShapeTarget(outline=outline)]
-    asked_for: dict[str, Any] = {"limits": limits, "objectives": wishes, "options": options, "seconds": seconds}
+    asked_for = _search_options(restarts, timeout, outline)
     targets = given_targets(loaded, goals, store) or _asked_targets(loaded, robot, name, drawing)
     if muscles:
         show_muscles(loaded, targets, out)
@@ -98,7 +94,7 @@ def pose(
         began = time.process_time()
         start = None if learned is None or target is None else learned_start(simulation, learned, target)
         with show_search(title) as tell:
-            reached = solve_ik(simulation, target, start=start, progress=tell, **asked_for)
+            reached = solve_ik(simulation, target, start=start, progress=tell, limits=limits, **asked_for)
         seconds = time.process_time() - began
         folder: Path = out / title if len(targets) > 1 else out
         _write(simulation, reached, folder, title, limits, seconds, outline=outline, jacobian=jacobian)
@@ -109,13 +105,18 @@ def pose(
         raise typer.Exit(1)
 
 
-def _search_options(restarts: int | None) -> "IKOptions":
-    """Options of the search (InputError: a negative number of restarts)."""
-    from hydrostat.ik import IKOptions
+def _search_options(restarts: int | None, timeout: str | None, outline: "Outline | None") -> dict[str, Any]:
+    """Options, time and outline of a search (InputError: a negative number of restarts, or a wrong time)."""
+    from hydrostat.ik import IKOptions, ShapeTarget
+    from hydrostat.units import TIME
 
     if restarts is not None and restarts < 0:
         raise InputError(f"--restarts {restarts}: must be 0 or more")
-    return IKOptions() if restarts is None else IKOptions(restarts=restarts, restart_error=0.0)
+    return {
+        "options": IKOptions() if restarts is None else IKOptions(restarts=restarts, restart_error=0.0),
+        "seconds": parse_optional("--timeout", timeout, TIME),
+        "objectives": [] if outline is None else [ShapeTarget(outline=outline)],
+    }
 
 
 def _print_all(simulation: "Simulation", reached: "IKResult", title: str, seconds: float, folder: Path) -> None:

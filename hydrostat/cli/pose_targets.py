@@ -1,6 +1,6 @@
 """`given_targets`, `store_pose`, `show_muscles`: a pose by targets of the command line, stored, or shown by muscles."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -32,17 +32,18 @@ Muscles = Annotated[
 
 
 def check_pose_options(
-    robot: Path, *, name: str | None, targets: Sequence[str] | None, store: str | None, by_cables: Sequence[str]
+    robot: Path, *, name: str | None, targets: Sequence[str] | None, store: str | None, by_cables: Mapping[str, object]
 ) -> None:
-    """Check that options of a pose fit together (InputError); `by_cables`: given options that --muscles excludes."""
+    """Check that options of a pose fit together (InputError); `by_cables`: options that --muscles excludes, or None."""
     if name and targets:
         raise InputError("--pose and --target: mutually exclusive. Give one of them.")
     if store is not None and not targets:
         raise InputError(
             "--store: there is nothing to store. Give the targets with --target, e.g. --target top=0,120mm"
         )
-    if by_cables:
-        raise InputError(f"--muscles and {by_cables[0]}: mutually exclusive. Give one of them.")
+    for key, given in by_cables.items():
+        if given is not None:
+            raise InputError(f"--muscles and {key}: mutually exclusive. Give one of them.")
     if store is not None:
         from hydrostat.robot import GALLERY, gallery_folder, list_gallery
 
