@@ -72,7 +72,7 @@ def design(
     _refuse_body(source, request)
     _tell_left_out(source)
     print_far_targets(source, request.poses)
-    warn_of_mirror(source, request)
+    warn_of_mirror(source, request, asked)
     spend = parse_budget(asked.budget)
     _refuse_budget(request, request.motor_for(source), spend)
     record = open_record(out, source, request, resume=resume)
@@ -128,8 +128,8 @@ def _tell_left_out(source: "Robot") -> None:
         print(f"note: {words}", file=sys.stderr, flush=True)
 
 
-def warn_of_mirror(source: "Robot", request: "DesignRequest") -> None:
-    """Print a warning of poses that a symmetric network may not reach."""
+def warn_of_mirror(source: "Robot", request: "DesignRequest", asked: DesignArguments) -> None:
+    """Print a warning of poses that a symmetric network may not reach, with the option or the key that asks for it."""
     from hydrostat.design import find_unmirrored_poses
     from hydrostat.units import list_words
 
@@ -137,10 +137,10 @@ def warn_of_mirror(source: "Robot", request: "DesignRequest") -> None:
     if axis is None or not (names := find_unmirrored_poses(source, request.poses, axis)):
         return
     one = len(names) == 1
-    words = f"{'pose' if one else 'poses'} {list_words(names)} {'is' if one else 'are'} no mirror image about {axis} of"
+    cause = "--symmetric" if asked.symmetric is not None else f'mirror = "{axis}" from {asked.constraints}'
     print(
-        f"warning: {words} {'itself' if one else 'themselves'} or another pose. A symmetric network may miss "
-        f"{'it' if one else 'them'}. Remove --symmetric, or add the mirror image as a pose",
+        f"warning: no pose mirrors {'pose' if one else 'poses'} {list_words(names)} about {axis}. A symmetric network "
+        f"may miss {'it' if one else 'them'}. Remove {cause}, or add the mirror image as a pose",
         file=sys.stderr,
         flush=True,
     )

@@ -246,6 +246,8 @@ def _check_symmetric(robot: "Robot", axis: str | None) -> None:
     """Reject an axis that a flat body does not have, or that the body is not centered on (InputError)."""
     from hydrostat.design import Constraints
 
+    if axis is None:
+        return
     try:
         Constraints(mirror=axis).check(robot)
     except InputError as error:

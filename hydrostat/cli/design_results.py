@@ -108,18 +108,22 @@ def designed_motor(robot: "Robot", folder: Path) -> str:
 
 def kit_motor(robot: "Robot", folder: Path) -> str:
     """Key of the motor on a robot: that of robot.toml, of motors.toml, or of the kit of its design; or "auto"."""
+    return robot.motor if robot.motor != "auto" else choose_motor(robot, folder, read_motors(robot, folder))
+
+
+def choose_motor(robot: "Robot", folder: Path, known: "Calibration | None") -> str:
+    """Key of the motor of a robot by robot.toml, by known motors, or by the kit of its design; or "auto"."""
 
     def take(card: "Any", network: "Any") -> str:
         return str(network["craft"]["motor"] if card["motor"] == "auto" else card["motor"])
 
     if robot.motor != "auto":
         return robot.motor
-    known = read_motors(robot, folder)
     return (known and known.model) or _of_design(robot, folder, take) or "auto"
 
 
 def read_motors(robot: "Robot", folder: Path) -> "Calibration | None":
-    """The motors.toml of a robot; None without it, or with drives, of which it may hold the motors, too."""
+    """The motors.toml of a robot; None without it, or if the robot has drives."""
     from hydrostat.cli.folders import folder_of
     from hydrostat.control import CALIBRATION, Calibration
 

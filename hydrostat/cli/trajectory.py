@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hydrostat.cli.design_results import kit_motor, read_motors
+from hydrostat.cli.design_results import choose_motor, read_motors
 from hydrostat.cli.folders import OutFolder, RobotFolder, require_folder, result_folder
 from hydrostat.cli.option_errors import naming_option
 from hydrostat.cli.options import (
@@ -28,6 +28,7 @@ from hydrostat.progress import Progress
 
 if TYPE_CHECKING:
     from hydrostat.arrays import Vector
+    from hydrostat.control import Calibration
     from hydrostat.ik import Keyframe, Limits, Trajectory
     from hydrostat.robot import Robot
     from hydrostat.simulation import Simulation
@@ -99,8 +100,9 @@ def trajectory(
     check_width(width)
     loaded = read_robot(robot)
     limits = pose_limits(loaded, tension, torque, equal)
-    key = kit_motor(loaded, robot)
-    free = free_speeds(loaded, robot, key)
+    known = read_fitting_motors(loaded, robot)
+    key = choose_motor(loaded, robot, known)
+    free = free_speeds(loaded, known, key)
     fastest = _usual_speed(free, key) if asked is None else asked
     names = _keyframe_names(loaded, poses)
     simulation = prepare_physics(loaded)
@@ -129,13 +131,22 @@ def trajectory(
         raise typer.Exit(1)
 
 
-def free_speeds(robot: "Robot", folder: Path, key: str) -> list[float]:
-    """No-load speed of each winch by its motor [m/s], on the spools of motors.toml if there are; empty: not known."""
+def read_fitting_motors(robot: "Robot", folder: Path) -> "Calibration | None":
+    """The motors.toml of a robot; None without it, or with a warning if it does not fit the robot."""
+    try:
+        return read_motors(robot, folder)
+    except InputError as error:
+        print(f"warning: {str(error).rstrip('.')}. This plan uses the spools of robot.toml")
+        return None
+
+
+def free_speeds(robot: "Robot", known: "Calibration | None", key: str) -> list[float]:
+    """No-load speed of each winch by its motor [m/s], on the spools of known motors if given; empty: not known."""
     from hydrostat.fabrication import Motor
 
     if key == "auto":
         return []
-    known, turns = read_motors(robot, folder), Motor.choose(key).speed / 60
+    turns = Motor.choose(key).speed / 60
     radii = [winch.spool_radius for winch in robot.winches] if known is None else [one.radius for one in known.motors]
     return [2 * math.pi * turns * radius for radius in radii]
 
@@ -146,7 +157,8 @@ def _usual_speed(free: list[float], key: str) -> float:
     if least >= USUAL_SPEED:
         return USUAL_SPEED
     slower = math.floor(1e3 * least) / 1e3 or least
-    print(f"note: at most {1e3 * slower:g} mm/s, the no-load speed of its {key}. Override with --max-speed")
+    words = f"{1e3 * slower:g} mm/s, the no-load speed of the {key}. A loaded motor is slower"
+    print(f"note: at most {words}. Override with --max-speed")
     return slower
 
 

@@ -149,25 +149,26 @@ class Calibration:
         """True if the zeros of all motors are known."""
         return all(spool.zero is not None for spool in self.motors)
 
-    def check(self, robot: Robot) -> None:
-        """Check the winches against a robot (InputError: other or missing winches, a duplicate number, or drives)."""
+    def check(self, robot: Robot, *, file: Path = Path(CALIBRATION)) -> None:
+        """Check the winches against a robot (InputError: other or missing winches, a duplicate number, or drives).
+
+        Args:
+            robot: robot with the winches.
+            file: file that error messages name.
+        """
         PinDrive.require_none(robot.drives, "motors")
         wanted, given = [winch.name for winch in robot.winches], [spool.winch for spool in self.motors]
         for name in wanted:
             if name not in given:
-                raise InputError(f'{CALIBRATION}: winch "{name}" has no motor; add [[motor]] with winch = "{name}"')
+                raise InputError(f'{file}: winch "{name}" has no motor; add [[motor]] with winch = "{name}"')
         for name in given:
             if name not in wanted:
-                raise InputError(f"{CALIBRATION}: unknown winch {quote(name)}. Available: {', '.join(wanted)}.")
+                raise InputError(f"{file}: unknown winch {quote(name)}. Available: {', '.join(wanted)}.")
         numbers = [(spool.board, spool.number) for spool in self.motors]
         if len(set(numbers)) < len(numbers) or len(set(given)) < len(given):
-            raise InputError(
-                f"{CALIBRATION}: each winch has one motor, and each motor a number of its own on its board"
-            )
+            raise InputError(f"{file}: each winch has one motor, and each motor a number of its own on its board")
         if missing := set(range(1, self.boards + 1)) - {spool.board for spool in self.motors}:
-            raise InputError(
-                f"{CALIBRATION}: boards are counted 1, 2, ...; none of the motors is on board {min(missing)}"
-            )
+            raise InputError(f"{file}: boards are counted 1, 2, ...; none of the motors is on board {min(missing)}")
 
     def contractions(self, angles: Vector) -> Vector:
         """Return the cable taken in by each winch [m]."""
@@ -206,7 +207,7 @@ class Calibration:
             if sum(spool.winch == winch for spool in motors) > 1:
                 raise InputError(f'{file}: winch "{winch}" has more than one [[motor]]; keep one')
         found = Calibration(tuple(by_name.values()))
-        found.check(robot)
+        found.check(robot, file=file)
         for axis in robot.winches:
             if isinstance(axis, DriveAxis) and axis.turns:
                 _require_gear(by_name[axis.name], file)

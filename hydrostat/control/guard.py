@@ -36,7 +36,8 @@ def not_judged(constants: Vector, names: Sequence[str]) -> str:
     """
     blind = [name for name, constant in zip(names, constants.tolist(), strict=True) if np.isnan(constant)]
     whose = "" if len(blind) == len(names) else f" of {', '.join(blind)}"
-    words = "the torque per current of its motor is unknown, so a slack, broken or held cable goes undetected"
+    motors = "the motor" if len(blind) == 1 else "these motors"
+    words = f"the torque per current of {motors} is unknown, so a slack, broken or held cable goes undetected"
     return f"no tension guard{whose}: {words}" if blind else ""
 
 

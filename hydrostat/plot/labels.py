@@ -49,15 +49,19 @@ class Labels:
     def flags(self, places: Places, words: Sequence[str], colors: Sequence[str]) -> None:
         """Write words on colored flags, each tied to a point by a line that crosses other lines and boxes least."""
         extents = np.array([[0.74 * len(text) + 1.2, 1.9] for text in words]) * 7 * self._sheet.scale
-        first, sweeps = len(self._taken), 6  # each flag is placed again, next to all others, until none moves
+        first, max_sweeps = len(self._taken), 6  # each flag is placed again, next to all others, until none moves
         centers: dict[int, Place] = {}
-        for number in (*range(len(extents)),) * sweeps:
-            if number in centers:
-                del centers[number], self._taken[first]
-            leaders = [np.array([places[other], center]) for other, center in centers.items()]
-            centers[number] = self._find(
-                places[number], extents[number], (12.0, 18.0, 27.0, 40.0, 60.0, 85.0, 115.0), 0.0, leaders=leaders
-            )
+        for _ in range(max_sweeps):
+            before = dict(centers)
+            for number in range(len(extents)):
+                if number in centers:
+                    del centers[number], self._taken[first]
+                leaders = [np.array([places[other], center]) for other, center in centers.items()]
+                centers[number] = self._find(
+                    places[number], extents[number], (12.0, 18.0, 27.0, 40.0, 60.0, 85.0, 115.0), 0.0, leaders=leaders
+                )
+            if before and all(np.array_equal(center, before[number]) for number, center in centers.items()):
+                break
         for number, text in enumerate(words):
             at, center = places[number], centers[number]
             self.avoid([np.linspace(at, center, 12)])

@@ -80,14 +80,20 @@ def test_measured_tolerances_are_taken_unless_a_file_is_given(tmp_path: Path) ->
 
 
 def test_poses_that_a_symmetric_network_may_miss_are_named_before_the_search(
-    unchecked: None, capsys: pytest.CaptureFixture[str]
+    unchecked: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Oracle: a tip on the mirror line that is lifted; with the pose that lowers it as much it is an image."""
     down = replace(UP, name="down", targets={"tip": (0.18, -0.06)})
-    for poses, told in (((UP,), "pose up is no mirror image about y of itself or another pose."), ((UP, down), "")):
+    file = tmp_path / "limits.toml"
+    file.write_text('mirror = "y"\n')
+    for poses, told in (((UP,), "no pose mirrors pose up about y. A symmetric network may miss it."), ((UP, down), "")):
         source = replace(robot(), poses={pose.name: pose for pose in poses})
-        warn_of_mirror(source, parse_request(source, DesignArguments(symmetric="y")))
-        err = capsys.readouterr().err
-        assert err.startswith(f"warning: {told}") if told else err == ""
-        warn_of_mirror(source, parse_request(source, DesignArguments()))
+        for typed, cause in (
+            (DesignArguments(symmetric="y"), "--symmetric"),
+            (DesignArguments(constraints=file), f'mirror = "y" from {file}'),
+        ):
+            warn_of_mirror(source, parse_request(source, typed), typed)
+            words = f"warning: {told} Remove {cause}, or add the mirror image as a pose\n"
+            assert capsys.readouterr().err == (words if told else "")
+        warn_of_mirror(source, parse_request(source, DesignArguments()), DesignArguments())
         assert capsys.readouterr().err == ""

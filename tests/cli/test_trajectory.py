@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 
 import hydrostat as hs
-from hydrostat.cli.trajectory import free_speeds, warn_of_speed
+from hydrostat.cli.trajectory import free_speeds, read_fitting_motors, warn_of_speed
 from hydrostat.control import Calibration
 from hydrostat.fabrication import Motor
 from hydrostat.ik import IKOptions, IKStatus, TrajectoryOptions, solve_ik_trajectory
@@ -27,12 +27,13 @@ def test_winches_faster_than_their_motor_are_named(tmp_path: Path) -> None:
     """Oracle: the no-load speed of the motor on its spool, 2 pi r n."""
     robot = hs.load_robot("gallery:starfish")
     free = 2 * np.pi * robot.winches[1].spool_radius * Motor.choose("sts3215").speed / 60
-    speeds = free_speeds(robot, tmp_path, "sts3215")
+    speeds = free_speeds(robot, read_fitting_motors(robot, tmp_path), "sts3215")
     assert speeds == pytest.approx([free] * 3)
-    assert free_speeds(robot, tmp_path, "auto") == []
+    assert free_speeds(robot, None, "auto") == []
     usual = Calibration.usual(robot).motors
     Calibration((*usual[:2], replace(usual[2], radius=2 * usual[2].radius))).write(tmp_path)
-    assert free_speeds(robot, tmp_path, "sts3215") == pytest.approx([free, free, 2 * free])
+    known = read_fitting_motors(robot, tmp_path)
+    assert free_speeds(robot, known, "sts3215") == pytest.approx([free, free, 2 * free])
     assert warn_of_speed(robot, speeds, "sts3215", np.array([0.0, 0.99 * free, 0.0])) == ""
     assert warn_of_speed(robot, [], "auto", np.array([0.0, 9.0, 0.0])) == ""
     warning = warn_of_speed(robot, speeds, "sts3215", np.array([0.0, 1.01 * free, 0.0]))
@@ -57,7 +58,20 @@ def test_the_motor_limits_the_usual_speed(run: Run, starfish: Path, tmp_path: Pa
         limits = json.loads((out / "trajectory.json").read_text())["speed_limit"]
         assert (code, [*limits.values()]) == (0, pytest.approx([speed] * 3, abs=1e-3))
         assert max(limits.values()) <= speed
-        assert ("note: at most 32 mm/s, the no-load speed of its sts3215." in text) == (speed == least)
+        assert ("note: at most 32 mm/s, the no-load speed of the sts3215. A loaded" in text) == (speed == least)
+
+
+def test_motors_that_do_not_fit_stop_no_plan(run: Run, starfish: Path, tmp_path: Path) -> None:
+    """Oracle: the usual speed, as without motors.toml, and one warning that names the file."""
+    own = shutil.copytree(starfish, tmp_path / "robot")
+    usual = Calibration.usual(hs.load_robot(own)).motors
+    Calibration((*usual[:2], replace(usual[2], winch="tail", model="sts3215"))).write(own)
+    code, text, _ = run("trajectory", own, "--poses", "rest", "--width", "160", "--out", tmp_path / "out")
+    limits = json.loads((tmp_path / "out" / "trajectory.json").read_text())["speed_limit"]
+    assert (code, [*limits.values()]) == (0, [0.05] * 3)
+    (warning,) = [line for line in text.splitlines() if line.startswith("warning:")]
+    assert warning.startswith(f'warning: {own / "motors.toml"}: winch "{usual[2].winch}" has no motor; ')
+    assert warning.endswith(". This plan uses the spools of robot.toml")
 
 
 @pytest.mark.slow

@@ -1,6 +1,7 @@
 """Labels beside points. Oracle: boxes of labels and of what they must not hide, which hide at most a tenth."""
 
 import numpy as np
+import pytest
 from matplotlib.figure import Figure
 
 from hydrostat.plot.labels import Labels
@@ -45,6 +46,16 @@ def test_flags_hide_no_spools_and_no_flags() -> None:
             sides = np.minimum(one[2:], other[2:]) - np.maximum(one[:2], other[:2])
             smaller = min(np.prod(box[2:] - box[:2]) for box in (one, other))
             assert np.maximum(sides, 0.0).prod() < 0.1 * smaller
+
+
+def test_flags_that_stay_are_placed_twice(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Oracle: far spools, whose flags do not move when they are placed again."""
+    placed, find = list[int](), Labels._find
+    monkeypatch.setattr(Labels, "_find", lambda *args, **given: placed.append(1) or find(*args, **given))
+    Labels(Paper(), rings=[], avoid=np.zeros((0, 2))).flags(
+        np.array([(-200.0, 0.0), (200.0, 0.0)]), WORDS[:2], ["black"] * 2
+    )
+    assert len(placed) == 2 * 2
 
 
 def test_lines_of_flags_do_not_cross() -> None:

@@ -149,7 +149,7 @@ def check_line(robot: Robot, tensions: Vector, line: FishingLine, *, hold: float
 
 
 def _line_table(rows: tuple[LineRow, ...], line: FishingLine, *, largest: float, hold: float | None) -> Table[LineRow]:
-    """Strength of a line against the tension of each cable, and which line would do for the largest [N]."""
+    """Strength of a line against the tension of each cable, and the line for the largest tension [N]."""
     enough = next((each for each in LINES if each.working_load >= largest), None)
     return Table(
         name="line_strength",

@@ -67,7 +67,7 @@ class Lists:
 
     @property
     def notes_text(self) -> str:
-        """Notes that belong below the lists, by their files."""
+        """Notes on the lists, each under the name of its file."""
         found = [
             "\n".join([f"{table.name}.csv: {table.title}", *(f"- {note}" for note in table.notes)])
             for table in self.tables

@@ -44,8 +44,8 @@ def single_maps(
 ) -> list[Canvas]:
     """Return pages of maps with one cable each, the same number on each; none for fewer than three cables.
 
-    Pages have up to three columns and four rows; two rows for a body in space. Its cables are drawn from the side that
-    most of their points are on.
+    One or two columns hold all cables on one page. Pages of three columns have up to four rows, or two for a body in
+    space. Its cables are drawn from the side that most of their points are on.
 
     Args:
         robot: robot with the cables.
@@ -58,8 +58,8 @@ def single_maps(
     if len(robot.cables) < fewest:
         return []
     scenes = _space_scenes(robot, view) if view is not None else [_flat_scene(robot, stitches)]
-    unit = CanvasFrame.fit(scenes[0].box, (0.0, 0.0, 1.0, 1.0))
-    count, rows = len(scenes[0].runs(unit)), 4 if view is None else 2
+    shares = [_shares_in_front(scene) for scene in scenes]
+    count, rows = len(shares[0]), 4 if view is None else 2
     sizes = [_fit_cells(scenes, count, columns, rows, (width, height)) for columns in (1, 2, 3)]
     columns, tall, _ = max(sizes, key=lambda size: size[2])
     each = -(-count // -(-count // (columns * max(int(height / tall), 1))))
@@ -69,18 +69,18 @@ def single_maps(
         canvas = Canvas(width, tall * -(-len(shown) // columns))
         for place, number in enumerate(shown):
             row, column = divmod(place, columns)
-            beside = min(columns, len(shown) - row * columns)
-            left, room = width * (column + (columns - beside) / 2) / columns, width / columns
-            scene = max(scenes, key=lambda scene, number=number: _share_in_front(scene, number))
-            _put_cell(canvas, robot, scene, number, (left, tall * row, left + room, tall * (row + 1)))
+            num_in_row = min(columns, len(shown) - row * columns)
+            left, room = width * (column + (columns - num_in_row) / 2) / columns, width / columns
+            nearest = int(np.argmax([each[number] for each in shares]))
+            _put_cell(canvas, robot, scenes[nearest], number, (left, tall * row, left + room, tall * (row + 1)))
         pages.append(canvas)
     return pages
 
 
-def _share_in_front(scene: _Scene, number: int) -> float:
-    """Share of a cable in the near half of the body, without its way from the winch."""
-    run = scene.runs(CanvasFrame.fit(scene.box, (0.0, 0.0, 1.0, 1.0)))[number]
-    return float(np.mean(run.solid[1:] or run.solid))
+def _shares_in_front(scene: _Scene) -> list[float]:
+    """Share of each cable in the near half of the body, without the segment from the winch."""
+    runs = scene.runs(CanvasFrame.fit(scene.box, (0.0, 0.0, 1.0, 1.0)))
+    return [float(np.mean(run.solid[1:] or run.solid)) for run in runs]
 
 
 def _fit_cells(

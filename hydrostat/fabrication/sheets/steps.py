@@ -83,13 +83,13 @@ def marks_on(plan: KitPlan, mount: Mount) -> tuple[str, ...]:
 
 
 def stretch_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
-    """The step that makes new line as long as it stays; none without cables."""
+    """The step that stretches new line before it is cut; none without cables."""
     if not plan.robot.cables:
         return ()
     mass = line_for(plan.options.parts.cable).stretch_mass
     words = (
-        f"Hang the uncut line from a hook with a bottle of {mass:g} L of water at its end, long lines in pieces. New "
-        "braid gets longer under load: cables would go slack in the first days."
+        f"Hang the uncut line from a hook with a bottle of {mass:g} L of water at its end. Hang a line that is too "
+        "long in several pieces. New braid gets longer under load: cables would go slack in the first days."
     )
     return (AssemblyStep("Stretch the line", 5, words, wait="24 h under this weight"),)
 
