@@ -319,7 +319,7 @@ def axis_values(numbers: Sequence[str], count: int, kind: "Dimension", form: str
 
     form = form.partition(". ")[2] if len(numbers) == count else form
     if len(numbers) != count:
-        raise InputError(f"{len(numbers)} values for {form}.")
+        raise InputError(f"{plural(len(numbers), 'value')} for {form}.")
     unit = numbers[-1][len(numbers[-1].rstrip(ascii_letters)) :]
     if not unit:
         raise InputError(f"missing unit. {form}.")

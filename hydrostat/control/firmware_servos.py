@@ -1,6 +1,6 @@
 """Settings of firmware for Feetech servos: registers and rules of our drivers, as constants of C."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from math import ceil, floor, pi
 
 from hydrostat.control import feetech_bus, scs_bus
@@ -64,20 +64,39 @@ def find_zero_loss(robot: Robot, motors: Sequence[WinchMotor], bus: str, taken: 
     lost = [motor for motor in motors if ranges[motor.winch] + 2 * ALONE_SPARE >= 2 * pi * motor.radius]
     if bus == ScsBus.kind or not lost:
         return ""
-    names, turns = [motor.winch for motor in lost], max(ranges[each.winch] / (2 * pi * each.radius) for each in lost)
     needed = {winch.name: winch.release + most for winch, most in zip(robot.winches, taken, strict=False)}
-    most = 1e3 * max((needed.get(name, 0.0) for name in names), default=0.0)
-    least = floor(1e3 * (2 * pi * min(motor.radius for motor in lost) - 2 * ALONE_SPARE) - 1e-9)
-    spool = ceil(1e4 * (max(ranges[name] for name in names) + 2 * ALONE_SPARE) / (2 * pi) + 1e-9) / 10
-    remedy = f"{'Use' if least <= most else 'or'} a spool radius of at least {spool:.1f} mm"
-    if least > most:
-        poses = f" (poses use {most:.3g} mm)" if needed else ""
-        remedy = f"Write travel and release of {least} mm in all into robot.toml{poses}, {remedy}"
+    turns = max(ranges[each.winch] / (2 * pi * each.radius) for each in lost)
     much = f"{'turns' if len(lost) == 1 else 'turn up to'} {turns:.2f} times"
     return (
-        f"{list_words(names)} {much}. Zeros last for less than one turn, with {1e3 * ALONE_SPARE:g} mm to spare at "
-        f"each end. {remedy}"
+        f"{list_words(motor.winch for motor in lost)} {much}. Zeros last for less than one turn, with "
+        f"{1e3 * ALONE_SPARE:g} mm to spare at each end. {_zero_remedies(lost, ranges, needed)}"
     )
+
+
+def _zero_remedies(lost: Sequence[WinchMotor], ranges: Mapping[str, float], needed: Mapping[str, float]) -> str:
+    """Remedies for winches that turn too far, grouped by their spools, travels and releases.
+
+    Args:
+        lost: motors of these winches.
+        ranges: travel and release in all, by winch [m].
+        needed: release and largest contraction over the poses in all, by winch [m]; empty if unknown.
+    """
+    groups: dict[tuple[float, float], list[str]] = {}
+    for motor in lost:
+        groups.setdefault((motor.radius, ranges[motor.winch]), []).append(motor.winch)
+    remedies = []
+    for (radius, total), names in groups.items():
+        most = 1e3 * max(needed.get(name, 0.0) for name in names)
+        least = floor(1e3 * (2 * pi * radius - 2 * ALONE_SPARE) - 1e-9)
+        spool = f"a spool radius of at least {ceil(1e4 * (total + 2 * ALONE_SPARE) / (2 * pi) + 1e-9) / 10:.1f} mm"
+        whose = f" for {list_words(names)}" if len(groups) > 1 else ""
+        used = f" (poses and release use {most:.3g} mm)" if needed else ""
+        if least > most:
+            remedy = f"Write travel and release of {least} mm in all into robot.toml{whose}{used}, or use {spool}"
+        else:
+            remedy = f"Use {spool}{whose}"
+        remedies.append(remedy)
+    return ". ".join(remedies)
 
 
 def _list_constants(bus: str) -> dict[str, object]:

@@ -196,15 +196,14 @@ def _cloth(pattern: Pattern) -> Cloth:
         felt=pattern.width * pattern.height,
         seam=sum(seams) / 2,
         zipper=0.0 if pattern.opening is None else float(pattern.opening.zipper),
-        panel=_panel_size(pattern),
+        panels=_panel_sizes(pattern),
     )
 
 
-def _panel_size(pattern: Pattern) -> tuple[float, float]:
-    """Width and height of the largest panel [mm]."""
+def _panel_sizes(pattern: Pattern) -> tuple[tuple[float, float], ...]:
+    """Width and height of each panel [mm]."""
     bounds = [
         shapely.total_bounds([shape.geometry for shape in panel.shapes if shape.part is PatternPart.EDGE])
         for panel in pattern.panels
     ]
-    sizes = [(float(box[2] - box[0]), float(box[3] - box[1])) for box in bounds]
-    return max(sizes, key=lambda size: size[0] * size[1])
+    return tuple((float(box[2] - box[0]), float(box[3] - box[1])) for box in bounds)

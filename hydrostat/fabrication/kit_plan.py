@@ -26,7 +26,7 @@ class Cloth:
     felt: float  # area of all panels [mm^2]
     seam: float  # length of all seams [mm]
     zipper: float = 0.0  # length of the opening [mm]; 0 for none
-    panel: tuple[float, float] | None = None  # width and height of the largest panel [mm]
+    panels: tuple[tuple[float, float], ...] = ()  # width and height of each panel [mm]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -283,15 +283,22 @@ def test_servos_that_lose_their_zeros_are_named(
     options = () if board is None else ("--board", board)
     code, out, _ = run("fabricate", starfish, "--motor", key, *options, "--out", tmp_path / "kit")
     words = "on an esp32s3 servos lose their zeros without power: right, left and feet turn up to"
-    remedy = "Write travel and release of 33 mm in all into robot.toml, or a spool radius of at least"
+    remedy = "Write travel and release of 33 mm in all into robot.toml, or use a spool radius of at least"
     assert (code, out.count(f"warning: {words}"), out.count(remedy)) == (0, told, told)
 
 
 def test_zeros_last_where_travel_is_short(starfish: Path) -> None:
-    """By hand: a spool of 6 mm takes in 37.7 mm a turn, less 2 mm at each end; poses that use more need a spool."""
+    """By hand: a spool of 6 mm takes in 37.7 mm a turn, less 2 mm at each end; poses that use more need a spool.
+
+    Where winches differ, each has its own remedy: 75.4 mm a turn of the second, 125.7 mm of the third, which lasts.
+    """
     robot = load_robot(starfish)
     for travel, taken, told in (
-        (0.06, (0.0, 0.01, 0.02), "into robot.toml (poses use 20 mm), or a spool radius of at least 10.2 mm"),
+        (
+            0.06,
+            (0.0, 0.01, 0.02),
+            "into robot.toml (poses and release use 20 mm), or use a spool radius of at least 10.2 mm",
+        ),
         (0.06, (0.0, 0.01, 0.04), "at each end. Use a spool radius of at least 10.2 mm"),
         (0.033, (0.0, 0.01, 0.02), ""),
     ):
@@ -299,6 +306,14 @@ def test_zeros_last_where_travel_is_short(starfish: Path) -> None:
         assert tell_zero_loss(replace(robot, winches=winches), "sts3215", taken).endswith(told)
         assert tell_zero_loss(replace(robot, winches=winches), "scs0009", taken) == ""
     assert tell_zero_loss(replace(robot, winches=winches), "sts3215", taken) == ""
+    own = zip(robot.winches, (0.006, 0.012, 0.02), (0.06, 0.09, 0.09), strict=True)
+    winches = tuple(replace(winch, spool_radius=r, travel=most, release=0.0) for winch, r, most in own)
+    first, second = (f"for {winch.name}" for winch in winches[:2])
+    told = tell_zero_loss(replace(robot, winches=winches), "sts3215", (0.02, 0.08, 0.0))
+    assert told.endswith(
+        f" 33 mm in all into robot.toml {first} (poses and release use 20 mm), or use a spool radius of at least "
+        f"10.2 mm. Use a spool radius of at least 15.0 mm {second}"
+    )
 
 
 def test_the_robots_own_motor_is_checked_with_the_board_before_its_loads() -> None:

@@ -342,7 +342,8 @@ def test_a_board_drives_the_servos_of_feetech_alone(run: Run, starfish: Path, tm
     assert "Button BOOT (pin 0) plays and stops it" in out
     assert re.search(
         r"No zeros in the sketch: right, left and feet turn up to 1\.\d\d times\. .* at each end\. Write travel and "
-        r"release of 33 mm in all into robot\.toml, or a spool radius of at least .*\nCalibrate from a computer after",
+        r"release of 33 mm in all into robot\.toml, or use a spool radius of at least .*\n"
+        r"Calibrate from a computer after",
         out,
     )
     settings = (made / "winches" / "settings.h").read_text()

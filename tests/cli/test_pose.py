@@ -107,7 +107,7 @@ def test_equal_winches_take_in_the_same(run: Run, starfish: Path, tmp_path: Path
         (("--drawing", "none.svg"), "none.svg: there is no such file"),
         (("--target", "tip=1mm,2mm"), '--target tip=1mm,2mm: unknown marker "tip"'),
         (("--target", "top=1,2"), "--target top=1,2: missing unit. Write MARKER=X,Y, e.g. top=30mm,110mm."),
-        (("--target", "top=1mm"), "1 values for 2 coordinates. Write MARKER=X,Y"),
+        (("--target", "top=1mm"), "1 value for 2 coordinates. Write MARKER=X,Y"),
         (("--target", "top=1,2mm", "--target", "top=1,2mm"), '"top" is given twice'),
         (("--target", "top=1,2mm", "--pose", "wave"), "--pose and --target: mutually exclusive"),
         (("--store", "nod"), "--store: there is nothing to store"),

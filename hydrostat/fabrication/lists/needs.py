@@ -100,13 +100,17 @@ def _plush(plan: KitPlan, cloth: Cloth) -> list[Item]:
 
 
 def _felt_pieces(cloth: Cloth) -> str:
-    """Size of the largest panel, and whether craft sheets are too small for it."""
-    if cloth.panel is None:
+    """Size of the largest panel, and of the largest that fits on no craft sheet."""
+    if not cloth.panels:
         return ""
-    wide, high = (math.ceil(side) for side in cloth.panel)
-    fits = min(wide, high) <= FELT_SHEET[0] and max(wide, high) <= FELT_SHEET[1]
-    small = "" if fits else f", larger than craft sheets of {FELT_SHEET[0]:.0f} x {FELT_SHEET[1]:.0f} mm"
-    return f"; largest panel {wide} x {high} mm{small}"
+    sheet = [math.ceil(side) for side in FELT_SHEET]
+    panels = sorted(((math.ceil(wide), math.ceil(high)) for wide, high in cloth.panels), key=math.prod)
+    misfits = [sides for sides in panels if min(sides) > sheet[0] or max(sides) > sheet[1]]
+    words = "; largest panel {} x {} mm".format(*panels[-1])
+    if not misfits:
+        return words
+    whose = "" if misfits[-1] == panels[-1] else " one of {} x {} mm is".format(*misfits[-1])
+    return f"{words},{whose} larger than craft sheets of {sheet[0]} x {sheet[1]} mm"
 
 
 def _cast_name(plan: KitPlan, foam: FoamNeeds) -> str:

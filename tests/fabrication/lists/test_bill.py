@@ -212,16 +212,21 @@ def test_a_servo_brings_its_cable() -> None:
 
 
 @pytest.mark.parametrize(
-    ("panel", "words"),
+    ("panels", "words"),
     [
-        ((290.2, 200.0), "; largest panel 291 x 200 mm"),
-        ((296.0, 283.0), "; largest panel 296 x 283 mm, larger than craft sheets of 229 x 305 mm"),
-        ((310.0, 50.0), "larger than craft sheets"),
-        (None, "that a laser may cut"),
+        ([(200.0, 90.0), (290.2, 200.0)], "; largest panel 291 x 200 mm"),
+        ([(296.0, 283.0), (290.2, 200.0)], "; largest panel 296 x 283 mm, larger than craft sheets of 229 x 305 mm"),
+        (
+            [(400.0, 60.0), (220.0, 290.0)],
+            "; largest panel 220 x 290 mm, one of 400 x 60 mm is larger than craft sheets of 229 x 305 mm",
+        ),
+        ([(304.8, 200.0)], "; largest panel 305 x 200 mm"),
+        ([(310.0, 50.0)], "larger than craft sheets"),
+        ((), "that a laser may cut"),
     ],
 )
-def test_felt_is_bought_in_pieces_that_hold_a_panel(panel, words):
+def test_felt_is_bought_in_pieces_that_hold_each_panel(panels, words):
     """Oracle: a craft sheet of 9 x 12 inches, in either direction."""
-    found = needs(given(square(), cloth=Cloth(felt=1e5, seam=1e3, panel=panel)))["felt"].specification
+    found = needs(given(square(), cloth=Cloth(felt=1e5, seam=1e3, panels=tuple(panels))))["felt"].specification
     assert words in found
     assert ("craft" in found) == ("craft" in words)
