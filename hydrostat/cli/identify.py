@@ -98,11 +98,12 @@ def identify(
     _write(robot, table, found, out)
     _print_values(found)
     _print_errors(found, table, time.process_time() - began)
-    _warn(loaded, table, found)
+    usable = _warn(loaded, table, found)
     if save_material is not None:
         rows = plural(len(table.commands), "row")
         _save_material(save_material, found, f"hydrostat identify, {rows} of {measurements.name}")
-    print(f"Wrote {out}. Next: hydrostat check {out}")
+    step = f"hydrostat check {out}" if usable else "correct the table and fit again. Do not use this robot"
+    print(f"Wrote {out}. Next: {step}")
 
 
 def _suggest(
@@ -238,11 +239,11 @@ def _print_values(found: "IdentifiedRobot") -> None:
             )
 
 
-def _warn(robot: "Robot", table: "Measurements", found: "IdentifiedRobot") -> None:
-    """Print what in the table is likely to be wrong."""
+def _warn(robot: "Robot", table: "Measurements", found: "IdentifiedRobot") -> bool:
+    """Print the probable errors in the table; return whether the fit can be used."""
     import numpy as np
 
-    from hydrostat.identification import find_slip, find_swaps, rms
+    from hydrostat.identification import find_slip, find_swaps, is_mirrored, rms
 
     swaps = find_swaps(found.fitted, found.assumed, table)
     for swap in swaps:
@@ -251,7 +252,13 @@ def _warn(robot: "Robot", table: "Measurements", found: "IdentifiedRobot") -> No
             f"warning: {' and '.join(swap.markers)} seem to be swapped in {plural(len(swap.rows), 'row')} ({rows}). "
             "Exchange their cells."
         )
-    slip = None if swaps else find_slip(found.fitted, table)
+    mirrored = not swaps and is_mirrored(found.assumed, table)
+    if mirrored:
+        print(
+            "warning: the positions are mirrored: one axis points the wrong way, as y does in pictures. Change the "
+            "sign of its columns, and fit again."
+        )
+    slip = None if swaps or mirrored else find_slip(found.fitted, table)
     if slip is not None:
         print(
             f"warning: from row {slip.row + 1} on, {slip.winch} acts as if {1e3 * abs(slip.length):.1f} mm of cable "
@@ -282,6 +289,7 @@ def _warn(robot: "Robot", table: "Measurements", found: "IdentifiedRobot") -> No
             f"warning: row {row + 1}: {table.markers[marker]} is {1e3 * found.after[row, marker]:.1f} mm off, much "
             "more than others. Measure it again, or empty its cells."
         )
+    return not mirrored and error <= BAD * size
 
 
 BAD = 0.05

@@ -6,7 +6,7 @@ from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
     from hydrostat.identification.contraction_map import ContractionMap
-    from hydrostat.identification.find_faults import find_slip, find_swaps
+    from hydrostat.identification.find_faults import find_slip, find_swaps, is_mirrored
     from hydrostat.identification.fit import FittedModel, fit_model
     from hydrostat.identification.identified_robot import IdentifiedRobot, identified_tolerances, identify
     from hydrostat.identification.kinds import named_model
@@ -30,6 +30,7 @@ __all__ = [
     "fit_model",
     "identified_tolerances",
     "identify",
+    "is_mirrored",
     "named_model",
     "profile_intervals",
     "read_measurements",

@@ -1,4 +1,4 @@
-"""`find_swaps` and `find_slip`: markers that were swapped, and a winch that slipped, in fitted measurements."""
+"""`find_swaps`, `find_slip` and `is_mirrored`: faults in the measurements of a fit."""
 
 from dataclasses import dataclass
 from itertools import combinations
@@ -13,7 +13,7 @@ from hydrostat.identification.residuals import Residuals
 from hydrostat.units import MM
 
 CLEARER = 0.25
-"""Share of the distance of two markers that must remain at most if their places are exchanged."""
+"""Share of the distances that must remain at most if two markers are exchanged, or all are mirrored."""
 
 EXPLAINED = 0.6
 """Share of the squared residuals that one slip must explain."""
@@ -69,6 +69,24 @@ def find_swaps(fitted: FittedModel, assumed: FittedModel, measurements: Measurem
             names = measurements.markers[one], measurements.markers[other]
             found.append(Swap(markers=names, rows=tuple(np.flatnonzero(swapped).tolist())))
     return found
+
+
+def is_mirrored(assumed: FittedModel, measurements: Measurements) -> bool:
+    """Check whether a mirror image of the measured positions fits the assumed robot much better than they do.
+
+    Both are moved and rotated to fit best (Kabsch 1976). Positions in one plane of space have no such mirror image.
+    """
+    predicted = assumed.predict(measurements)
+    known = np.isfinite(measurements.places).all(axis=2) & np.isfinite(predicted).all(axis=2)
+    if known.sum() <= predicted.shape[2]:
+        return False
+    one, other = (places[known] - places[known].mean(axis=0) for places in (predicted, measurements.places))
+    left, singular, right = np.linalg.svd(one.T @ other)
+    last = float(np.sign(np.linalg.det(left @ right)) * singular[-1])
+    total = float((one**2).sum() + (other**2).sum() - 2 * singular[:-1].sum())
+    straight, mirrored = (np.sqrt(max(total - 2 * end, 0.0) / len(one)) for end in (last, -last))
+    size = assumed.model.robot(assumed.values).body.mesh.size
+    return bool(mirrored < CLEARER * straight and straight > MIN_SHIFT * size)
 
 
 def find_slip(fitted: FittedModel, measurements: Measurements) -> Slip | None:

@@ -19,7 +19,7 @@ from hydrostat.identification import (
     identify,
     read_measurements,
 )
-from hydrostat.identification.find_faults import Swap, find_slip, find_swaps
+from hydrostat.identification.find_faults import Swap, find_slip, find_swaps, is_mirrored
 from hydrostat.identification.fit import robust_scale
 from hydrostat.identification.identified_robot import start_of
 from hydrostat.identification.kinds import named_model
@@ -264,7 +264,7 @@ def test_the_noise_is_that_of_most_errors_not_of_the_fitted_half() -> None:
     assert 0.5 < robust_scale(np.where(np.arange(4000) % 2, errors, 0.0)) < 0.5**0.5
 
 
-def test_swapped_markers_and_a_slip_are_found() -> None:
+def test_swapped_or_mirrored_markers_and_a_slip_are_found() -> None:
     """Oracle: the faults that were made; none are found in noisy measurements without."""
     robot, rng = strip(), np.random.default_rng(8)
     asked = measured(robot, rng.uniform(0.002, 0.014, (10, 2)))
@@ -287,6 +287,8 @@ def test_swapped_markers_and_a_slip_are_found() -> None:
             assert slip.length == pytest.approx(length, rel=0.1)
             continue
         assert slip is None
+        assert not is_mirrored(assumed, table)
+        assert is_mirrored(assumed, replace(table, places=table.places * (1, -1) + (0, 0.05)))
         for rows in ([3], list(range(10))):
             swapped = table.places.copy()
             swapped[rows] = swapped[rows, ::-1]
