@@ -74,29 +74,32 @@ def find_zero_loss(robot: Robot, motors: Sequence[WinchMotor], bus: str, taken: 
 
 
 def _zero_remedies(lost: Sequence[WinchMotor], ranges: Mapping[str, float], needed: Mapping[str, float]) -> str:
-    """Remedies for winches that turn too far, grouped by their spools, travels and releases.
+    """Remedies for winches that turn too far, one for those of the same spool.
 
     Args:
         lost: motors of these winches.
         ranges: travel and release in all, by winch [m].
         needed: release and largest contraction over the poses in all, by winch [m]; empty if unknown.
     """
-    groups: dict[tuple[float, float], list[str]] = {}
+    groups: dict[float, list[str]] = {}
     for motor in lost:
-        groups.setdefault((motor.radius, ranges[motor.winch]), []).append(motor.winch)
+        groups.setdefault(motor.radius, []).append(motor.winch)
     remedies = []
-    for (radius, total), names in groups.items():
-        most = 1e3 * max(needed.get(name, 0.0) for name in names)
-        least = floor(1e3 * (2 * pi * radius - 2 * ALONE_SPARE) - 1e-9)
-        spool = f"a spool radius of at least {ceil(1e4 * (total + 2 * ALONE_SPARE) / (2 * pi) + 1e-9) / 10:.1f} mm"
+    for radius, names in groups.items():
+        most = max(ranges[name] for name in names) + 2 * ALONE_SPARE
+        spool = f"a spool radius of at least {ceil(1e4 * most / (2 * pi) + 1e-9) / 10:.1f} mm"
         whose = f" for {list_words(names)}" if len(groups) > 1 else ""
-        used = f" (poses and release use {most:.3g} mm)" if needed else ""
-        if least > most:
-            remedy = f"Write travel and release of {least} mm in all into robot.toml{whose}{used}, or use {spool}"
-        else:
-            remedy = f"Use {spool}{whose}"
-        remedies.append(remedy)
+        use = max(needed.get(name, 0.0) for name in names)
+        used = f" (poses and release use {1e3 * use:.3g} mm)" if needed else ""
+        total = f"{1e3 * _lasting_range(radius):.0f} mm"
+        remedy = f"Write travel and release of {total} in all into robot.toml{whose}{used}, or use {spool}"
+        remedies.append(remedy if use < _lasting_range(radius) else f"Use {spool}{whose}")
     return ". ".join(remedies)
+
+
+def _lasting_range(radius: float) -> float:
+    """Travel and release in all that keep the zero of a servo on a spool [m], in whole millimeters."""
+    return 1e-3 * floor(1e3 * (2 * pi * radius - 2 * ALONE_SPARE) - 1e-9)
 
 
 def _list_constants(bus: str) -> dict[str, object]:
