@@ -22,9 +22,9 @@ class Link(ABC):
 
     A link to real motors must guarantee that
 
-    - motors stop `WATCHDOG_TIMEOUT` after the last `send`, even if this process has died: the watchdog is in the
-    motors; - motors stop on any error of theirs and on `stop`, and hold their position; - no command moves them beyond
-    the limits of their winch, or faster than it says (`Motors` checks this, too).
+    - motors stop `WATCHDOG_TIMEOUT` after the last `send`, even if this process has died (by a watchdog in them),
+    - motors stop on any error of theirs and on `stop`, and hold their position,
+    - no command moves them beyond the limits of their winch, or faster than it says (`Motors` checks this, too).
 
     Attributes:
         near: distance to a command within which it counts as reached [m].

@@ -113,7 +113,7 @@ def _sketch(report: Report, draft: BodyDraft) -> Sketch:
 
 def _here(words: str) -> str:
     """Text on a drawing, with the name of the control in the studio in place of the option."""
-    return words.replace(f"say {DRAWN_HINT}", 'choose "Surface lines" for shapes inside')
+    return words.replace(f"add {DRAWN_HINT}", 'choose "Surface lines"')
 
 
 def _flat(report: Report, draft: BodyDraft, file: str, content: bytes) -> Robot:

@@ -12,10 +12,14 @@ NAMED = re.compile(r"[\w/]*\w\.(?:pdf|csv|svg|dxf|3mf|stl|json|toml|step)\b")
 FOLDER = re.compile(r"\b(?:lists|parts|pattern|mould|positive)/(?=\W|$)")
 
 
+OTHERS = {"robot.toml", "dance/trajectory.csv"}
+"""Files of the robot and of a command in First start, not of the kit."""
+
+
 def named(kit: Kit) -> set[str]:
-    """All paths on the pages, by another program."""
+    """All paths of the kit on the pages, by another program."""
     text = read_words(kit.files["assembly_sheet.pdf"])
-    return {*NAMED.findall(text), *FOLDER.findall(text)}
+    return {*NAMED.findall(text), *FOLDER.findall(text)} - OTHERS
 
 
 def wrong(kit: Kit) -> set[str]:
