@@ -24,12 +24,13 @@ from hydrostat.cli.design_results import (
     write_kit,
     write_results,
 )
-from hydrostat.cli.fabricate import print_kit, tell_zero_loss
+from hydrostat.cli.fabricate import print_kit
 from hydrostat.cli.folders import OutFolder, RobotFolder, folder_of, note_others, require_folder, result_folder
 from hydrostat.cli.limits import print_far_targets
 from hydrostat.cli.options import parse_budget
 from hydrostat.cli.records import take_records
 from hydrostat.cli.remedies import body_refusals, design_remedy
+from hydrostat.cli.servo_zeros import tell_zero_loss
 from hydrostat.cli.waiting import one_interrupt, progress_bar, read_robot
 from hydrostat.units import plural
 

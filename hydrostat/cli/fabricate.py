@@ -2,7 +2,7 @@
 
 import re
 import time
-from collections.abc import Collection, Sequence
+from collections.abc import Collection
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -12,6 +12,7 @@ import typer
 from hydrostat.cli.design_results import designed_motor, designed_tension, designed_torque
 from hydrostat.cli.folders import RobotFolder, require_folder
 from hydrostat.cli.options import Budget, MotorOption, parse_budget, parse_optional, positive
+from hydrostat.cli.servo_zeros import SERVO_BOARD, tell_zero_loss
 from hydrostat.cli.waiting import progress_bar, read_robot
 from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
@@ -162,27 +163,6 @@ def _warn_of_zeros(robot: "Robot", key: str, board: str | None) -> None:
     words = tell_zero_loss(robot, key) if board == SERVO_BOARD else ""
     if words:
         print(f"warning: {words}")
-
-
-def tell_zero_loss(robot: "Robot", key: str, taken: Sequence[float] = ()) -> str:
-    """Why Feetech servos on a board lose their zeros without power, in one line; empty for other motors.
-
-    Args:
-        robot: robot with the winches.
-        key: key of the motor.
-        taken: the most that poses take in with each winch [m]; empty: not known.
-    """
-    from hydrostat.control import Calibration, find_zero_loss
-    from hydrostat.fabrication import Motor
-
-    if key == "auto" or not robot.winches or not Motor.choose(key).is_feetech:
-        return ""
-    lost = find_zero_loss(robot, Calibration.usual(robot).motors, Motor.choose(key).bus, taken)
-    return lost and f"on an {SERVO_BOARD} servos lose their zeros without power: {lost}"
-
-
-SERVO_BOARD = "esp32s3"
-"""Board that drives Feetech servos."""
 
 
 def _print_summary(folder: Path, robot: "Robot", options: "KitOptions") -> None:

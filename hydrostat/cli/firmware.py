@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hydrostat.cli.fabricate import SERVO_BOARD
 from hydrostat.cli.folders import OutFolder, OwnRobotFolder
+from hydrostat.cli.servo_zeros import SERVO_BOARD
 from hydrostat.cli.waiting import read_robot
 from hydrostat.errors import InputError
 from hydrostat.given import list_choices

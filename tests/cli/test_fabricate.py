@@ -22,8 +22,8 @@ from hydrostat.cli.design_results import (
     find_refused_better,
     kit_motor,
 )
-from hydrostat.cli.fabricate import tell_zero_loss
 from hydrostat.cli.remedies import design_remedy, kit_remedy, note_room
+from hydrostat.cli.servo_zeros import tell_zero_loss
 from hydrostat.design import Alternative, BuildCost, Constraints, Network
 from hydrostat.errors import InputError
 from hydrostat.fabrication import ALL_MOTORS, Demand, KitOptions, build_kit, find_refusals

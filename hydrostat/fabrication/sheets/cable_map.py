@@ -167,12 +167,7 @@ def _put_runs(canvas: Canvas, labels: LabelPlaces, runs: Sequence[CableRun], sta
         put_cable(canvas, run)
         labels.take_line(run.spots)
     for run in runs:
-        for spot, hole in zip(run.spots[:-1], run.holes[:-1], strict=True):
-            if hole:
-                canvas.disc(spot, HOLE)
-                labels.take_box(box_round(spot, HOLE))
-        put_stopper(canvas, run)
-        labels.take_box(box_round(run.spots[-1], 1.4))
+        put_holes(canvas, labels, run, HOLE)
     _put_winches(canvas, labels, stands)
     for run in runs:
         words = f"C{run.cable}" if run.twin is None else f"C{run.cable} C{run.twin}"
@@ -180,6 +175,16 @@ def _put_runs(canvas: Canvas, labels: LabelPlaces, runs: Sequence[CableRun], sta
         if middle is not None:
             canvas.text(middle, words, size=9.0, bold=True, halo=True, color=run.color)
     _put_numbers(canvas, labels, runs)
+
+
+def put_holes(canvas: Canvas, labels: LabelPlaces, run: CableRun, radius: float) -> None:
+    """Draw the holes of a cable as discs of a radius [mm], and its stopper, and keep labels off them."""
+    for spot, hole in zip(run.spots[:-1], run.holes[:-1], strict=True):
+        if hole:
+            canvas.disc(spot, radius)
+            labels.take_box(box_round(spot, radius))
+    put_stopper(canvas, run)
+    labels.take_box(box_round(run.spots[-1], 1.4))
 
 
 def _put_pins(canvas: Canvas, labels: LabelPlaces, robot: Robot, frame: CanvasFrame) -> None:

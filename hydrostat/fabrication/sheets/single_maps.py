@@ -16,8 +16,8 @@ from hydrostat.fabrication.sheets.cable_map import (
     pane_of,
     project_cable,
     put_cable,
+    put_holes,
     put_number,
-    put_stopper,
 )
 from hydrostat.fabrication.sheets.map_layout import LabelPlaces, box_round, flat_marks, flat_rings
 from hydrostat.fabrication.winch_marks import winch_marks_of
@@ -149,12 +149,7 @@ def _put_run(canvas: Canvas, labels: LabelPlaces, run: CableRun, mark: str, radi
     """One cable alone, with its winch and the numbers of all of its holes."""
     put_cable(canvas, run)
     labels.take_line(run.spots)
-    for spot, hole in zip(run.spots[:-1], run.holes[:-1], strict=True):
-        if hole:
-            canvas.disc(spot, radius)
-            labels.take_box(box_round(spot, radius))
-    put_stopper(canvas, run)
-    labels.take_box(box_round(run.spots[-1], 1.4))
+    put_holes(canvas, labels, run, radius)
     canvas.balloon(run.spots[0], mark, dark=True, size=7.5)
     labels.take_box(box_round(run.spots[0], Canvas.balloon_radius(mark, 7.5)))
     for place, hole in enumerate(run.holes[:-1]):
