@@ -25,12 +25,10 @@ if TYPE_CHECKING:
     from hydrostat import teleop as teleop
     from hydrostat import testing as testing
     from hydrostat import training as training
-    from hydrostat.design import BuildTolerances, Constraints, Network, RouteOptions, TreeOptions, Zone
-    from hydrostat.design.design_cables import design_cables
-    from hydrostat.design.review_robot import review_robot as check
+    from hydrostat.design import BuildTolerances, Constraints, Network, RouteOptions, TreeOptions, Zone, design_cables
+    from hydrostat.design import review_robot as check
     from hydrostat.errors import HydrostatError, HydrostatWarning, InputError, NotConvergedError
-    from hydrostat.fabrication import Kit, KitOptions, PatternOptions, UnbuildableError, write_kit
-    from hydrostat.fabrication.build_kit import build_kit
+    from hydrostat.fabrication import Kit, KitOptions, PatternOptions, UnbuildableError, build_kit, write_kit
     from hydrostat.geometry import Mesh
     from hydrostat.identification import Measurements, identify, read_measurements
     from hydrostat.ik import (
@@ -53,11 +51,11 @@ if TYPE_CHECKING:
         Trajectory,
         TrajectoryOptions,
         load_target_outline,
+        new_robot,
+        solve_ik,
         solve_ik_trajectory,
+        solve_pulls,
     )
-    from hydrostat.ik.new_robot import new_robot
-    from hydrostat.ik.solve_ik import solve_ik
-    from hydrostat.ik.solve_pulls import solve_pulls
     from hydrostat.mechanics import Energy, NewtonOptions
     from hydrostat.plot import draw_network, draw_pose, draw_reached, draw_rest
     from hydrostat.result_table import ResultTable
@@ -100,13 +98,13 @@ if TYPE_CHECKING:
         StateSpace,
         StepOptions,
         continue_branch,
+        find_contacts,
         find_equilibria,
         find_modes,
         friction_hysteresis,
         linearize,
+        marker_compliance,
     )
-    from hydrostat.simulation.find_contacts import find_contacts
-    from hydrostat.simulation.marker_compliance import marker_compliance
 
 __all__ = [
     "BatchResult",

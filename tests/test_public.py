@@ -77,7 +77,7 @@ NEVER += " hydrostat.learning hydrostat.training hydrostat.studio jaxtyping asyn
     [
         (
             "simulate R --contract left=12mm --out pose",
-            "scipy.optimize scipy.spatial scipy.sparse scipy.linalg hydrostat.ik.solve_ik hydrostat.design",
+            "scipy.optimize scipy.spatial scipy.sparse scipy.linalg hydrostat.ik.inverse_kinematics hydrostat.design",
         ),
         ("simulate H --out pose", "igl scipy.sparse scipy.spatial numpy.f2py scipy.optimize scipy.linalg"),
         ("pose R --pose wave --out pose", "scipy.sparse scipy.linalg urllib.request hydrostat.design"),

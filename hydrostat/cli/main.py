@@ -152,7 +152,7 @@ def _print_usage_error(error: Any, *_: object) -> None:
 def _run() -> None:
     """Run the app; what it printed is out when it ends, so that a full disk or a closed pipe is noticed here."""
     try:
-        _only(sys.argv[1:2])()
+        _only(sys.argv[1:2])(prog_name="hydrostat")
     except SystemExit as stop:
         sys.stdout.flush()
         if isinstance(getattr(stop.__context__, "__cause__", None), KeyboardInterrupt):  # while typer read the options

@@ -8,11 +8,11 @@ if TYPE_CHECKING:
     from hydrostat.design.build_cost import BuildCost, front
     from hydrostat.design.buildable import violations
     from hydrostat.design.built_error import built_errors, expected_error
+    from hydrostat.design.cable_design import design_cables, find_network
     from hydrostat.design.cable_sides import assign_cable_sides
     from hydrostat.design.constraints import Constraints, Range
     from hydrostat.design.constraints_file import cable_name, read_constraints, read_uncertainty
     from hydrostat.design.corrected_error import corrected_errors
-    from hydrostat.design.design_cables import design_cables, find_network
     from hydrostat.design.drawn_shapes import find_pinned_drawings
     from hydrostat.design.fewer_cables import PosedNetwork, drop_cables
     from hydrostat.design.finding import Diagnostic, Severity, places_in
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from hydrostat.design.polyline import nearest_shares, turns
     from hydrostat.design.region import Region
     from hydrostat.design.request import DesignMethod, DesignRequest, RouteOptions, TreeOptions, TreeSettings
-    from hydrostat.design.review_robot import review_robot
+    from hydrostat.design.robot_review import review_robot
     from hydrostat.design.routes.finalists import kit_fits
     from hydrostat.design.routes.layout import CableRoute, Layout, WinchSite
     from hydrostat.design.routes.price import PricedPath

@@ -6,10 +6,10 @@ from hydrostat.lazy import open_package
 
 if TYPE_CHECKING:
     from hydrostat.fabrication.board_kind import BOARDS, board_for, check_board
-    from hydrostat.fabrication.build_kit import build_kit, summarize_kit, write_kit
     from hydrostat.fabrication.cable_work import CableWork
     from hydrostat.fabrication.demand import Demand, shaft_torques
     from hydrostat.fabrication.kit import Check, Kit, UnbuildableError
+    from hydrostat.fabrication.kit_build import build_kit, summarize_kit, write_kit
     from hydrostat.fabrication.kit_options import (
         MATERIAL_FIX,
         OVER_BUDGET,

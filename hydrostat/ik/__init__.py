@@ -7,19 +7,19 @@ from hydrostat.lazy import open_package
 if TYPE_CHECKING:
     from hydrostat.ik.correct_contractions import CORRECTION_DAMPING, correct_contractions
     from hydrostat.ik.ik_result import IKResult, IKStatus
+    from hydrostat.ik.inverse_kinematics import Targets, solve_ik
     from hydrostat.ik.limits import Limits, spool_arms
     from hydrostat.ik.linearized_pose import LinearizedPose, unconstrained_motion
-    from hydrostat.ik.new_robot import BegunRobot, NewRobotWish, new_robot, with_first_pose
     from hydrostat.ik.objectives.center_of_mass_target import CenterOfMassTarget
     from hydrostat.ik.objectives.effort import Effort
     from hydrostat.ik.objectives.marker_target import MarkerTarget, PointTarget, named_targets
     from hydrostat.ik.objectives.objective import EquilibriumState, Objective, Residual, StateJacobian, place
     from hydrostat.ik.objectives.pose_regularizer import PoseRegularizer
     from hydrostat.ik.objectives.shape_target import ShapeTarget, load_target_outline
+    from hydrostat.ik.pulls import solve_pulls
+    from hydrostat.ik.robot_draft import BegunRobot, NewRobotWish, new_robot, with_first_pose
     from hydrostat.ik.search.linear_model import least_squares
     from hydrostat.ik.search.problem import IKOptions
-    from hydrostat.ik.solve_ik import Targets, solve_ik
-    from hydrostat.ik.solve_pulls import solve_pulls
     from hydrostat.ik.tracker import Tracker
     from hydrostat.ik.trajectory.keys import Keyframe
     from hydrostat.ik.trajectory.solve_ik_trajectory import TrajectoryOptions, solve_ik_trajectory

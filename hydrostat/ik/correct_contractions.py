@@ -8,11 +8,11 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.given import check_type
 from hydrostat.ik.ik_result import IKResult
+from hydrostat.ik.inverse_kinematics import solve_ik
 from hydrostat.ik.limits import Limits
 from hydrostat.ik.objectives.marker_target import named_targets
 from hydrostat.ik.objectives.pose_regularizer import ClosenessKind, PoseRegularizer
 from hydrostat.ik.search.problem import IKOptions
-from hydrostat.ik.solve_ik import solve_ik
 from hydrostat.simulation import Simulation
 
 CORRECTION_DAMPING = 0.35

@@ -12,12 +12,12 @@ from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
 from hydrostat.given import Point, check_type
 from hydrostat.ik.ik_result import IKResult, IKStatus
+from hydrostat.ik.inverse_kinematics import Targets, as_pose, wishes
 from hydrostat.ik.limits import Limits, bounds
 from hydrostat.ik.linearized_pose import LinearizedPose
 from hydrostat.ik.objectives.objective import Objective, Residual
 from hydrostat.ik.search.inverse_search import EXCESS, Descent, InverseSearch, StepRules, ends, reached_pose, try_step
 from hydrostat.ik.search.problem import IKOptions, InverseProblem, InverseState
-from hydrostat.ik.solve_ik import Targets, as_pose, wishes
 from hydrostat.robot import PoseTarget, Robot
 from hydrostat.simulation import Equilibrium, Simulation
 

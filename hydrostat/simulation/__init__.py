@@ -11,11 +11,11 @@ if TYPE_CHECKING:
     from hydrostat.simulation.branches.find_equilibria import Multistability, find_equilibria
     from hydrostat.simulation.branches.loading_paths import friction_hysteresis
     from hydrostat.simulation.cable_sensitivities import CableSensitivities, cable_sensitivities
+    from hydrostat.simulation.compliance import marker_compliance
+    from hydrostat.simulation.contact_patches import ContactPatch, find_contacts
     from hydrostat.simulation.contraction_profile import ContractionProfile, ProfileTable
     from hydrostat.simulation.controls import Contractions, contraction_values
     from hydrostat.simulation.equilibrium import Equilibrium, check_pose, largest_distance
-    from hydrostat.simulation.find_contacts import ContactPatch, find_contacts
-    from hydrostat.simulation.marker_compliance import marker_compliance
     from hydrostat.simulation.modes import Modes, find_modes
     from hydrostat.simulation.motion_file import MotionTable, write_motion, write_pose
     from hydrostat.simulation.obstacle_frames import obstacle_forces, obstacles_in_pose, with_obstacles, with_replaced

@@ -11,7 +11,7 @@ from builders import mesh_body, strip_mesh, strip_robot
 from robustness import EXAMPLES
 
 from hydrostat.design import Constraints, DesignRequest, FibreKind, Network, TreeOptions, TreeTrace, design_cables
-from hydrostat.design.design_cables import _trees
+from hydrostat.design.cable_design import _trees
 from hydrostat.design.region import Region
 from hydrostat.errors import HydrostatError, InputError
 from hydrostat.fabrication import plush_pattern

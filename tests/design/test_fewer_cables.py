@@ -24,7 +24,7 @@ def test_the_better_of_more_and_fewer_cables(
             raise HydrostatError("no network can be built")
         return replace(plain, request=request, expected_error=share * plain.expected_error)
 
-    module = import_module("hydrostat.design.design_cables")  # its name is that of a function, too
+    module = import_module("hydrostat.design.cable_design")
     monkeypatch.setattr(module, "design_routes", search)
     monkeypatch.setattr(module, "kit_fits", lambda network: True)
     found = design_cables(plain.source, plain.request.poses, winches=2, cables=6)

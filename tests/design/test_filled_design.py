@@ -17,7 +17,7 @@ from hydrostat.design import (
     find_stuffed_motion,
     score_card,
 )
-from hydrostat.design.design_cables import evaluate_stuffed
+from hydrostat.design.cable_design import evaluate_stuffed
 from hydrostat.design.network import Alternative
 from hydrostat.design.stuffed_results import solve_stuffed
 from hydrostat.errors import InputError

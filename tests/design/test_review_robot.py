@@ -9,7 +9,7 @@ from builders import gallery_robot, gallery_texts
 
 from hydrostat.design import Constraints, Network, RouteOptions, design_cables
 from hydrostat.design.finding import Severity
-from hydrostat.design.review_robot import review_robot
+from hydrostat.design.robot_review import review_robot
 from hydrostat.design.skin_region import cable_region
 from hydrostat.fabrication import ALL_MOTORS, Demand, KitOptions, UnbuildableError, build_kit
 from hydrostat.robot import Robot, find_risks, robot_hash

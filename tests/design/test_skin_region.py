@@ -9,7 +9,7 @@ from builders import box_mesh, box_robot, gallery_robot, mesh_body, strip_robot
 
 from hydrostat.design import Constraints, Network, RouteOptions, design_cables
 from hydrostat.design.buildable import violations
-from hydrostat.design.review_robot import review_robot
+from hydrostat.design.robot_review import review_robot
 from hydrostat.design.routes.route_graph import RouteGraph
 from hydrostat.design.skin_region import SINK, STITCH, SkinRegion, cable_region
 from hydrostat.errors import InputError

@@ -10,8 +10,8 @@ from moulds.mould_robots import blob_body, foam_robot, slab_body
 from plot.designs import plain_network
 
 from hydrostat.design import DesignRequest, QuickSearch, draw_first_cable
+from hydrostat.design.cable_design import design_cables
 from hydrostat.design.constraints import Constraints
-from hydrostat.design.design_cables import design_cables
 from hydrostat.design.request import RouteOptions
 from hydrostat.design.routes.finalists import kit_fits
 from hydrostat.design.winch_room import _example, built_in, find_holding_torque, find_no_room, limit_torque, winch_room

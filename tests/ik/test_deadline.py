@@ -9,7 +9,7 @@ import pytest
 from builders import gallery_robot
 
 from hydrostat.ik import IKStatus, solve_ik
-from hydrostat.ik.solve_ik import _follow_friction
+from hydrostat.ik.inverse_kinematics import _follow_friction
 from hydrostat.robot import Obstacle
 from hydrostat.simulation import Simulation
 

@@ -12,13 +12,13 @@ from wishes import BEFORE, BENT, BODIES, FLAT, PLANE, SPACE, arc, box
 from hydrostat.errors import InputError
 from hydrostat.geometry import Outline, Surface
 from hydrostat.ik.ik_result import IKStatus
+from hydrostat.ik.inverse_kinematics import solve_ik
 from hydrostat.ik.objectives.center_of_mass_target import CenterOfMassTarget
 from hydrostat.ik.objectives.effort import Effort
 from hydrostat.ik.objectives.marker_target import MarkerTarget
 from hydrostat.ik.objectives.objective import EquilibriumState, Objective, checked_objectives
 from hydrostat.ik.objectives.pose_regularizer import PoseRegularizer
 from hydrostat.ik.objectives.shape_target import ShapeTarget
-from hydrostat.ik.solve_ik import solve_ik
 from hydrostat.simulation import Simulation
 from hydrostat.testing import check_objective
 

@@ -5,9 +5,9 @@ import pytest
 from wishes import BENT, FLAT, SPACE
 
 from hydrostat.errors import InputError
+from hydrostat.ik.inverse_kinematics import solve_ik
 from hydrostat.ik.objectives.marker_target import MarkerTarget, PointTarget
 from hydrostat.ik.objectives.objective import EquilibriumState
-from hydrostat.ik.solve_ik import solve_ik
 from hydrostat.ik.tracker import Tracker
 from hydrostat.testing import check_objective
 

@@ -10,11 +10,11 @@ import numpy as np
 
 from hydrostat.errors import InputError, NotConvergedError
 from hydrostat.ik.ik_result import IKResult, IKStatus
+from hydrostat.ik.inverse_kinematics import Targets, as_pose, solve_ik
 from hydrostat.ik.limits import Bounds, Limits
 from hydrostat.ik.objectives.effort import Effort, EffortKind
 from hydrostat.ik.objectives.objective import Objective, describe
 from hydrostat.ik.search.problem import IKOptions
-from hydrostat.ik.solve_ik import Targets, as_pose, solve_ik
 from hydrostat.ik.trajectory.poses import follow
 from hydrostat.robot import PinDrive, PoseTarget
 from hydrostat.simulation import Equilibrium, Simulation

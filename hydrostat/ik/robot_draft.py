@@ -239,7 +239,7 @@ _SHARES, _REACHED = (0.5, 0.25, 0.1), 0.01  # travels to try, in shares of all; 
 
 def with_first_pose(robot: Robot) -> Robot:
     """Robot with a pose that its one cable makes, the farthest of a few that inverse kinematics finds again."""
-    from hydrostat.ik.solve_ik import solve_ik
+    from hydrostat.ik.inverse_kinematics import solve_ik
     from hydrostat.simulation import Simulation
 
     if len(robot.body.mesh.nodes) > _MAX_POSED:
