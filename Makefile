@@ -1,6 +1,6 @@
 # The two commands of the README: make demo, make test. Each works alone on a fresh clone.
 PYTHON ?= python3
-# Of wheels: make wheels PYTHONS="python3.11 python3.12 python3.13"
+# Of wheels: make wheels PYTHONS="python3.11 python3.12 python3.13 python3.14"
 PYTHONS ?= $(PYTHON)
 VENV := .venv
 BIN := $(VENV)/bin

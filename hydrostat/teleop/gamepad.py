@@ -31,7 +31,7 @@ class Gamepad(DriveSource):
             import pygame
             from pygame._sdl2 import controller
         except ModuleNotFoundError:
-            raise InputError(f"gamepads need pygame; install it: {install_command('teleop')}") from None
+            raise InputError(f"gamepads need pygame-ce; install it: {install_command('teleop')}") from None
         pygame.display.init()
         controller.init()
         if number >= controller.get_count() or not controller.is_controller(number):
