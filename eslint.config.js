@@ -3,7 +3,8 @@ import js from "@eslint/js";
 
 const page = ["window", "document", "console", "location", "performance", "WebSocket", "URL", "Path2D", "ResizeObserver",
   "MutationObserver", "requestAnimationFrame", "cancelAnimationFrame", "setTimeout", "clearTimeout", "getComputedStyle",
-  "TextDecoder", "TextEncoder", "navigator", "atob"];
+  "TextDecoder", "TextEncoder", "navigator", "atob", "setInterval", "addEventListener", "getSelection", "Element",
+  "HTMLElement"];
 
 export default [
   js.configs.recommended,

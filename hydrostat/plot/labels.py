@@ -103,7 +103,7 @@ class Labels:
 
     def _count_crossed(self, at: Place, centers: np.ndarray, leaders: Sequence[Places]) -> np.ndarray:
         """Number of leaders and boxes that the line from a point to each center crosses, without boxes round it."""
-        lines = shapely.linestrings(np.stack([np.broadcast_to(at, centers.shape), centers], axis=1))
+        lines = np.asarray(shapely.linestrings(np.stack([np.broadcast_to(at, centers.shape), centers], axis=1)))
         boxes = [box for box in self._taken if not ((at >= box[:2]) & (at <= box[2:])).all()]
         others = [*map(shapely.LineString, leaders), *(shapely.box(*box) for box in boxes)]
         return sum((shapely.intersects(lines, other) for other in others), np.zeros(len(lines)))

@@ -26,6 +26,7 @@ const say = (kind, event) => (ears[kind] ?? []).forEach((ear) => ear(event));
 globalThis.addEventListener = (kind, ear) => (ears[kind] ??= []).push(ear);
 globalThis.setInterval = (beat) => beats.push(beat);
 globalThis.getSelection = () => "";
+globalThis.Element = globalThis.HTMLElement = Element;
 const nothing = () => null;
 globalThis.document = { body: new Element("body"), getElementById: nothing, querySelector: nothing, hidden: true };
 document.activeElement = document.body;

@@ -3,18 +3,21 @@
 // A page that is seen gives signs of life, without which motors hold.
 export {}; // a module, so that its names are its own
 
-const isMounted = () => document.getElementById("app")?.__vue_app__; // before, emitEvent has no page to ask
+const isMounted = () => "__vue_app__" in (document.getElementById("app") ?? {}); // before, emitEvent has no page to ask
 setInterval(() => document.hidden || (isMounted() && window.emitEvent("hydrostat_alive")), 150);
 
 // A clicked button does not keep the focus, or Space would press it instead of starting playback. A button that is
 // reached by Tab keeps it.
 addEventListener("click", (event) => {
-  const letGo = () => document.activeElement?.closest("button, [role=button]") && document.activeElement.blur();
+  const letGo = () => {
+    const focused = document.activeElement;
+    if (focused instanceof HTMLElement && focused.closest("button, [role=button]")) focused.blur();
+  };
   if (event.detail) setTimeout(letGo);
 });
 
 addEventListener("keydown", (event) => {
-  const at = event.target.closest ? event.target : document.body;
+  const at = event.target instanceof Element ? event.target : document.body;
   const typing = at.closest("input, textarea, select, [contenteditable=true]");
   const word = (event.ctrlKey || event.metaKey) && "acdsv".includes(event.key.toLowerCase());
   if (word && !typing && !String(getSelection())) event.preventDefault();
