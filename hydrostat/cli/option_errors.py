@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 from hydrostat.errors import InputError
@@ -43,6 +44,9 @@ def describe_usage_error(error: Any) -> str:
     """Return a usage error of typer in words, with the value of an option out of its range."""
     words = " ".join(error.format_message().split()).rstrip(".").replace("Value error, ", "")
     words = re.sub(r"^Invalid value for '(-[^']+)':", r"\1:", words)
+    if words == "Missing option '--from'":
+        shape = Path((error.ctx and error.ctx.params.get("name")) or "")
+        words += f". Did you mean: hydrostat new {shape.stem} --from {shape}?" if shape.suffix else ""
     list_faults = getattr(error.__cause__, "errors", None)
     fault = list_faults()[0] if list_faults else {}
     if not words.startswith("-") or fault.get("type") not in _FAULTS:

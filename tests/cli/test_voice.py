@@ -85,6 +85,10 @@ def test_a_bad_text_is_found(text: str, fault: str) -> None:
     [
         (("studio", "--port", "abc"), "error: --port abc: not a whole number. See hydrostat studio -h."),
         (
+            ("new", "bear.svg"),
+            "error: Missing option '--from'. Did you mean: hydrostat new bear --from bear.svg? See hydrostat new -h.",
+        ),
+        (
             ("studio", "--port", "99999"),
             "error: --port 99999: too large. Allowed: at most 65535. See hydrostat",
         ),
