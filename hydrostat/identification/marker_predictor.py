@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 
@@ -79,10 +80,10 @@ class MarkerPredictor:
         rows, markers = len(contractions), self.measurements.markers
         anchors = _anchors(robot, markers)
         places = np.full((rows, len(markers), robot.body.mesh.dim), np.nan)
-        changes = self._changes(numbers, values, robot) if with_jacobian else []
-        jacobian = np.zeros((*places.shape, len(changes))) if with_jacobian else None
+        changes = _Changes(self._changes(numbers, values, robot) if with_jacobian else [])
+        jacobian = np.zeros((*places.shape, len(changes.all))) if with_jacobian else None
         forces, scale = np.full(contractions.shape, np.nan), self.model.force_scale(values)
-        force_jacobian = np.zeros((*forces.shape, len(changes))) if with_jacobian else None
+        force_jacobian = np.zeros((*forces.shape, len(changes.all))) if with_jacobian else None
         network = winch_ratios(robot)
         loaded, loads = np.unique(self.measurements.hung_masses, axis=0, return_inverse=True)
         simulations = [Simulation(_with_masses(robot, markers, masses)) for masses in loaded]
@@ -97,8 +98,9 @@ class MarkerPredictor:
             places[row], forces[row] = self.model.places(values, at), scale * network @ pose.tensions
             if jacobian is not None and force_jacobian is not None:
                 try:
-                    jacobian[row] = self._marker_jacobian(simulation, pose, (values, at, anchors), changes, row)
-                    force_jacobian[row] = self._force_jacobian(simulation, pose, (network, scale), changes, row)
+                    jacobian[row], force_jacobian[row] = self._jacobians(
+                        simulation, pose, (values, at, anchors), (network, scale), changes, row
+                    )
                 except NotConvergedError:
                     places[row], forces[row], self._poses[row] = np.nan, np.nan, None
         found = MarkerPrediction(places, jacobian, forces, force_jacobian)
@@ -157,18 +159,27 @@ class MarkerPredictor:
         pose = simulation.solve(contractions, strict=False)
         return pose if pose.result.converged else None
 
-    def _marker_jacobian(
+    def _jacobians(
         self,
         simulation: Simulation,
         pose: Equilibrium,
         here: tuple[Values, np.ndarray, Anchors],
-        changes: list["_Change"],
+        network: tuple[np.ndarray, float],
+        changes: "_Changes",
         row: int,
-    ) -> np.ndarray:
-        """Jacobian of the places of one row, (markers, dim, parameters)."""
-        values, at, anchors = here
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Jacobians of the places, (markers, dim, parameters), and of the forces of one row, (winches, parameters)."""
+        (values, at, anchors), (ratios, scale) = here, network
         count, dim = at.shape
-        found = np.zeros((count, dim, len(changes)))
+        markers = np.flatnonzero(self.measurements.is_measured(row))
+        winches = np.flatnonzero(np.isfinite(self.measurements.known_forces[row]))
+        asked = len(markers) * dim
+        nodes = np.zeros((asked + len(winches), *pose.nodes.shape))
+        for index, (marker, axis) in enumerate(product(markers, range(dim))):
+            np.add.at(nodes[index, :, axis], anchors.stencils[marker], anchors.weights[marker])
+        tensions = np.zeros((len(nodes), len(pose.tensions)))
+        tensions[asked:] = ratios[winches]
+        through = changes.through(simulation.adjoints(pose, (nodes, tensions)) if len(nodes) else [], row)
         step = 1e-6 * simulation.robot.body.mesh.size
         turns = np.stack(  # (dim, markers, dim): derivatives of the places by each coordinate of the robot's frame
             [
@@ -176,41 +187,14 @@ class MarkerPredictor:
                 for axis in np.eye(dim)
             ]
         )
-        measured = self.measurements.is_measured(row)
-        for marker in range(count):
-            if not measured[marker]:
-                continue
-            by_axis = []
-            for axis in range(dim):
-                nodes = np.zeros_like(pose.nodes)
-                np.add.at(nodes[:, axis], anchors.stencils[marker], anchors.weights[marker])
-                sensitivity = simulation.adjoint(pose, nodes)
-                flat = flatten_sensitivity(sensitivity)
-                by_axis.append([change.through(flat, sensitivity.contractions, row) for change in changes])
-            found[marker] = turns[:, marker].T @ np.array(by_axis)
-        for index, change in enumerate(changes):
+        found, forces = np.zeros((count, dim, len(changes.all))), np.zeros((len(ratios), len(changes.all)))
+        by_axis = through[:asked].reshape(len(markers), dim, -1)
+        found[markers] = np.einsum("ami,mak->mik", turns[:, markers], by_axis)
+        for index, change in enumerate(changes.all):
             found[:, :, index] += change.direct(pose)
-        return found
-
-    def _force_jacobian(
-        self,
-        simulation: Simulation,
-        pose: Equilibrium,
-        here: tuple[np.ndarray, float],
-        changes: list["_Change"],
-        row: int,
-    ) -> np.ndarray:
-        """Jacobian of the forces of one row, (winches, parameters)."""
-        network, scale = here
-        found = np.zeros((len(network), len(changes)))
-        for winch in np.flatnonzero(np.isfinite(self.measurements.known_forces[row])):
-            sensitivity = simulation.adjoint(pose, np.zeros_like(pose.nodes), tensions=network[winch])
-            flat, force = flatten_sensitivity(sensitivity), float(network[winch] @ pose.tensions)
-            found[winch] = [
-                scale * change.through(flat, sensitivity.contractions, row) + change.force_scale * force
-                for change in changes
-            ]
-        return found
+        by_scale = np.array([change.force_scale for change in changes.all])
+        forces[winches] = scale * through[asked:] + np.outer(ratios[winches] @ pose.tensions, by_scale)
+        return found, forces
 
 
 @dataclass(frozen=True, eq=False)
@@ -247,12 +231,6 @@ class _Change:
             force_scale=(model.force_scale(values[1]) - model.force_scale(values[0])) / (2 * STEP),
         )
 
-    def through(self, sensitivity: dict[str, Vector], contractions: Vector, row: int) -> float:
-        """Derivative of one coordinate through the equilibrium."""
-        return float(self.contractions[row] @ contractions) + sum(
-            float(change @ sensitivity[name][: len(change)]) for name, change in self.numbers.items()
-        )
-
     def direct(self, pose: Equilibrium) -> np.ndarray:
         """Derivatives of the places with the nodes held."""
         if self.values[0] is self.values[1]:
@@ -262,6 +240,28 @@ class _Change:
             for values, anchors in zip(self.values, self.anchors, strict=True)
         )
         return (more - less) / (2 * STEP)
+
+
+class _Changes:
+    """Changes of all coordinates of the fit, with those of each of `robot_numbers` as a matrix."""
+
+    def __init__(self, changes: list[_Change]) -> None:
+        self.all, self._by_name = changes, dict[str, tuple[list[int], np.ndarray]]()
+        for name in dict.fromkeys(name for change in changes for name in change.numbers):
+            own = [index for index, change in enumerate(changes) if name in change.numbers]
+            self._by_name[name] = own, np.array([changes[index].numbers[name] for index in own])
+
+    def through(self, sensitivities: list[Sensitivity], row: int) -> Float[np.ndarray, "numbers parameters"]:
+        """Derivatives of some numbers of the pose of a row through the equilibrium."""
+        found = np.zeros((len(sensitivities), len(self.all)))
+        if not sensitivities:
+            return found
+        pulls = np.array([change.contractions[row] for change in self.all]).reshape(len(self.all), -1)
+        found += np.array([each.contractions for each in sensitivities]) @ pulls.T
+        flat = [flatten_sensitivity(each) for each in sensitivities]
+        for name, (own, matrix) in self._by_name.items():
+            found[:, own] += np.array([each[name][: matrix.shape[1]] for each in flat]) @ matrix.T
+        return found
 
 
 def _with_masses(robot: Robot, markers: tuple[str, ...], masses: Vector) -> Robot:

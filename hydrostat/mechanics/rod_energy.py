@@ -33,6 +33,9 @@ class RodEnergy(Energy):
             weights[:, side, side + 1] = anchors.weights[joints[:, side + 1]]
             weights[:, side, side] = -anchors.weights[joints[:, side]]
         self._weights = weights.reshape(len(joints), 2, 3 * corners)
+        eye = np.eye(nodes.shape[1])
+        by_corners = self._weights[:, :, None, :, None] * eye[:, None]  # of both spans by all corners
+        self._by_corners = by_corners.reshape(len(joints), 2 * len(eye), 3 * corners * len(eye))
         spans = self._spans(nodes)
         self._lengths = np.linalg.norm(spans, axis=2)
         # Each segment stands at two joints, the first and the last one at one.
@@ -65,9 +68,8 @@ class RodEnergy(Energy):
     def hessian(self, nodes: Nodes, controls: Vector) -> HessianBlocks:
         blocks = self._derivatives(nodes, second=True)[1]
         assert blocks is not None
-        joints, _, size = self._weights.shape
-        found = np.einsum("jsa,jtb,jsdte->jadbe", self._weights, self._weights, blocks, optimize=True)
-        return found.reshape(joints, size * nodes.shape[1], size * nodes.shape[1])
+        joints, spans, _ = self._by_corners.shape
+        return np.swapaxes(self._by_corners, 1, 2) @ (blocks.reshape(joints, spans, spans) @ self._by_corners)
 
     def stiffness_work(self, nodes: Nodes, field: Nodes) -> tuple[float, float]:
         """d(dE/dx . field) / dEA and / dEI."""

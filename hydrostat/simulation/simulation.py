@@ -19,8 +19,8 @@ from hydrostat.simulation.controls import Contractions, contraction_rows, contra
 from hydrostat.simulation.drive_energies import drive_energies
 from hydrostat.simulation.equilibrium import Equilibrium, check_apart, check_pose, warn_beyond_travel
 from hydrostat.simulation.route_points import RoutePoints, hold_markers, route_points
-from hydrostat.simulation.sensitivities.adjoint import Sensitivity, cotangents, response, sensitivity
-from hydrostat.simulation.sensitivities.friction import FrictionSensitivities, friction_adjoint, friction_sensitivities
+from hydrostat.simulation.sensitivities.adjoint import Sensitivity, cotangents, response, sensitivities
+from hydrostat.simulation.sensitivities.friction import FrictionSensitivities, friction_adjoints, friction_sensitivities
 from hydrostat.simulation.static_obstacles import require_static_obstacles
 from hydrostat.simulation.statics.batch_result import BatchResult, PoseRow, pose_row, solve_rows
 from hydrostat.simulation.statics.loading_path import LoadingPath
@@ -73,9 +73,8 @@ class Simulation:
         more = [self.friction or self.cables, *drive_energies(robot, self.body), *energies]
         self.assembly: Assembly = self.body.assembly.with_added_energies(more, control_count=robot.num_controls)
         self._more = tuple(energies)
-        springs = [*(cable.stiffness for cable in robot.cables), *(energy.stiffest for energy in energies)]
-        hidden = self.body.round_off(max(springs, default=0.0))
-        self.solver = StaticSolver(self.assembly, self.options, hidden, self.body.warp)
+        springs = (*(cable.stiffness for cable in robot.cables), *(energy.stiffest for energy in energies), 0.0)
+        self.solver = StaticSolver(self.assembly, self.options, self.body.round_off(max(springs)), self.body.warp)
 
     def as_contractions(self, given: Contractions) -> Vector:
         """Return contractions [m], then drive values [rad or m], as an array (InputError: wrong number of values)."""
@@ -210,12 +209,16 @@ class Simulation:
             NotConvergedError: as for `jacobian`.
         """
         require_static_obstacles(self.robot, "the adjoint")
+        one, other = cotangents(pose, self.assembly.shape, len(self.robot.cables), nodes, tensions)
+        return self.adjoints(pose, (one[None], other[None]))[0]
+
+    def adjoints(self, pose: Equilibrium, rows: tuple[np.ndarray, np.ndarray]) -> list[Sensitivity]:
+        """Return the gradient of each row, as by `adjoint`, with one Hessian: `rows` are by nodes, then by tensions."""
         if not self.assembly.follows_tangent:
-            right, pulls = cotangents(pose, self.assembly.shape, len(self.robot.cables), nodes, tensions)
-            sensitivities = self.friction_sensitivities(pose, (right.reshape(1, -1), pulls[None]))
-            return friction_adjoint(self.body, self.route_points, pose, sensitivities)
-        given = {"nodes": nodes, "tensions": tensions, "points": self.route_points}
-        return sensitivity(self.body, self.assembly, self.cables, pose, **given, response=partial(self.response, pose))
+            found = self.friction_sensitivities(pose, (rows[0].reshape(len(rows[0]), -1), rows[1]))
+            return friction_adjoints(self.body, self.route_points, pose, found)
+        given = {"points": self.route_points, "response": partial(self.response, pose)}
+        return sensitivities(self.body, self.assembly, self.cables, pose, rows=rows, **given)
 
     def friction_sensitivities(self, pose: Equilibrium, rows: tuple[np.ndarray, np.ndarray]) -> FrictionSensitivities:
         """Return sensitivities of a pose with friction: `rows` are by nodes, then by tensions; as for `adjoint`."""

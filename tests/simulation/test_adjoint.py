@@ -1,7 +1,7 @@
 """Slopes of a pose by all that a robot is made of (E16). Oracle: central differences of fully converged solves."""
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -29,7 +29,7 @@ from hydrostat.robot import (
 )
 from hydrostat.simulation import Simulation
 from hydrostat.simulation.route_points import route_points
-from hydrostat.simulation.sensitivities.adjoint import Sensitivity, sensitivity
+from hydrostat.simulation.sensitivities.adjoint import Sensitivity, sensitivities
 
 TIGHT = NewtonOptions(tolerance=1e-13)
 RUBBER = replace(FOAM, poisson=0.47)
@@ -280,22 +280,40 @@ def test_the_projected_hessian_or_a_wrong_sign_would_fail() -> None:
     loss = Loss(strip(), np.array([0.05, 0.0095]))
     simulation, pose = loss.simulation, loss.pose
     lifted = simulation.assembly.stiffness(pose.nodes, pose.contractions, projection=1.0)
-    wrong = sensitivity(
+    wrong = sensitivities(
         simulation.body,
         simulation.assembly,
         simulation.cables,
         pose,
-        nodes=loss.nodes,
-        tensions=loss.tensions,
+        rows=(loss.nodes[None], loss.tensions[None]),
         points=route_points(loss.robot),
         response=lifted.solve,
-    )
+    )[0]
     right, found = loss.slopes(), loss.by_contractions()
     assert agree(right.contractions, found)
     assert not agree(wrong.contractions, found, within=1e-3)
     assert not agree(-right.contractions, found, within=1e-3)
     routes = loss.by_routes(1e-5)
     assert not agree(np.concatenate(wrong.routes), np.concatenate(routes), within=1e-3)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.2])
+def test_rows_together_have_the_gradients_of_each(friction: float) -> None:
+    """Oracle: the adjoint of each row alone, by nodes and by tensions, with and without cable friction."""
+    robot = in_parts(strip())
+    robot = robot.with_network(robot.winches, [replace(cable, friction=friction) for cable in robot.cables])
+    simulation = Simulation(robot)
+    pose, rng = simulation.solve([0.02, 0.009]), np.random.default_rng(2)
+    nodes, tensions = rng.standard_normal((3, *pose.nodes.shape)), rng.standard_normal((3, len(pose.tensions)))
+    for found, by_node, by_tension in zip(simulation.adjoints(pose, (nodes, tensions)), nodes, tensions, strict=True):
+        alone = simulation.adjoint(pose, by_node, tensions=by_tension)
+        for field in fields(alone):
+            values = (getattr(each, field.name) for each in (found, alone))
+            one, other = (
+                np.concatenate([np.ravel(part) for part in value]) if field.name == "routes" else np.ravel(value)
+                for value in values
+            )
+            assert one == pytest.approx(other, rel=1e-8, abs=1e-8 * np.abs(other).max(initial=0.0)), field.name
 
 
 def test_by_contractions_it_is_the_jacobian_transposed() -> None:

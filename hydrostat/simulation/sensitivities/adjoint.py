@@ -1,4 +1,4 @@
-"""`sensitivity`: sensitivities of a number that depends on a pose to all that the robot is made of, by the adjoint."""
+"""`sensitivities`: sensitivities of numbers that depend on a pose to all that the robot is made of, by the adjoint."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -102,18 +102,17 @@ class Sensitivity:
     drives: Vector = field(default_factory=lambda: np.zeros(0))
 
 
-def sensitivity(
+def sensitivities(
     body: BodyPhysics,
     assembly: Assembly,
     cables: CableEnergy,
     pose: Equilibrium,
     *,
-    nodes: Nodes,
-    tensions: Vector | None,
+    rows: tuple[Float[np.ndarray, "rows nodes dim"], Float[np.ndarray, "rows cables"]],
     points: RoutePoints,
     response: Response,
-) -> Sensitivity:
-    """Sensitivities of L by the adjoint: H u = dL/dx, then dL/dtheta = -u . d2E/dx dtheta, one solve for all theta.
+) -> list[Sensitivity]:
+    """Sensitivities of some L by the adjoint: H u = dL/dx, then dL/dtheta = -u . d2E/dx dtheta, one solve for all.
 
     A tension is T(s) with s = l(x) - l(X) + ratio a - slack: what is given by tensions adds dL/dT T' dl/dx to dL/dx,
     and dL/dT dT/dtheta to the sensitivities.
@@ -123,35 +122,41 @@ def sensitivity(
         assembly: its energies.
         cables: those of its cables.
         pose: an equilibrium.
-        nodes: dL/dx at fixed tensions.
-        tensions: dL/dT of each cable; none if left out.
+        rows: dL/dx at fixed tensions, and dL/dT of each cable, of each L, as `cotangents` checks them.
         points: those of its cables.
         response: solves with the full Hessian at the pose.
-
-    Raises:
-        InputError: no solved pose or one of another robot, or cotangents of a wrong shape or not finite.
     """
-    nodes, tensions = cotangents(pose, assembly.shape, len(cables.winches), nodes, tensions)
     assembly = assembly.with_active_terms(pose.nodes)
     elongations = cables.elongations(pose.nodes, pose.controls)
     tangents, pulls = cables.law.tangent(elongations), cables.law.tension(elongations)
     columns = cables.columns(pose.nodes)
-    right = nodes.ravel() + columns @ (tangents * tensions)
-    field = response(right[:, None])[:, 0]
-    taken = np.bincount(cables.winches, cables.ratios * tangents * tensions, assembly.control_count).astype(float)
-    by_controls = taken - assembly.control_derivative(pose.nodes, pose.controls).T @ field
-    by_tension = tensions - columns.T @ field
+    nodes, tensions = rows
+    fields = response(nodes.reshape(len(nodes), -1).T + columns @ (tangents * tensions).T).T
+    by_controls = -(assembly.control_derivative(pose.nodes, pose.controls).T @ fields.T).T
+    np.add.at(by_controls, (slice(None), cables.winches), cables.ratios * tangents * tensions)
+    by_tension = tensions - fields @ columns
     by_elongation = tangents * by_tension
-    field = field.reshape(assembly.shape)
-    return Sensitivity(
-        contractions=by_controls[: len(pose.contractions)],
-        drives=by_controls[len(pose.contractions) :],
-        slack=-by_elongation,
-        routes=points.by_cable(by_routes(points, cables, pose.nodes, field[None], by_elongation[None], pulls)[0]),
-        cable_stiffness=by_tension * pulls / cables.law.stiffness,
-        friction=np.zeros(len(tensions)),
-        **by_body(body, pose, field),
-    )
+    fields = fields.reshape(-1, *assembly.shape)
+    count = len(pose.contractions)
+    return [
+        Sensitivity(
+            contractions=controls[:count],
+            drives=controls[count:],
+            slack=-lever,
+            routes=points.by_cable(routes),
+            cable_stiffness=by_pull * pulls / cables.law.stiffness,
+            friction=np.zeros(len(pulls)),
+            **of_body,
+        )
+        for controls, lever, routes, by_pull, of_body in zip(
+            by_controls,
+            by_elongation,
+            by_routes(points, cables, pose.nodes, fields, by_elongation, pulls),
+            by_tension,
+            by_body(body, pose, fields),
+            strict=True,
+        )
+    ]
 
 
 def cotangents(
@@ -160,7 +165,7 @@ def cotangents(
     """dL/dx and dL/dT as numbers, for a robot with nodes of this shape and so many cables.
 
     Raises:
-        InputError: as for `sensitivity`.
+        InputError: no solved pose or one of another robot, or cotangents of a wrong shape or not finite.
     """
     if not isinstance(pose, Equilibrium):
         raise InputError(f"an adjoint needs an Equilibrium, as solve() returns it, not a {type(pose).__name__}")
@@ -181,22 +186,33 @@ def _check_shape(name: str, given: np.ndarray, shape: tuple[int, ...]) -> np.nda
     return values
 
 
-def by_body(body: BodyPhysics, pose: Equilibrium, field: Nodes) -> dict[str, Any]:
-    """Sensitivities by materials, thickness and stiffness of pins, by their names in `Sensitivity`."""
-    works = _parameter_derivatives(body, pose, field)
-    for moved in pin_drives(pose.robot, body.pins):
-        works["support_stiffness"] = works["support_stiffness"] + moved.support_work(field, pose.controls)
+def by_body(body: BodyPhysics, pose: Equilibrium, fields: Float[np.ndarray, "rows nodes dim"]) -> list[dict[str, Any]]:
+    """Sensitivities by materials, thickness and stiffness of pins, by their names in `Sensitivity`, for each field."""
     materials = pose.robot.body.materials
-    shear, squeeze = (_add(np.zeros(len(materials)), works.get(name, np.zeros(0))) for name in ("mu", "lame"))
-    sensitivities = np.array(
-        [_lame_derivatives(material) for material in materials]
-    )  # (materials, young and poisson, mu and lame)
-    young, poisson = -(sensitivities[:, :, 0] * shear[:, None] + sensitivities[:, :, 1] * squeeze[:, None]).T
-    density = _density_gradient(pose.robot, field)
+    by_lame = np.array([_lame_derivatives(material) for material in materials])
     rigid = np.array([False, *(part.is_rigid for part in pose.robot.body.parts)])
     stiffness = np.array([material.young for material in materials]) / body.material.young  # what rigid parts keep
-    rods = np.array([rod.stiffness_work(pose.nodes, field) for rod in body.rods]).reshape(-1, 2)
-    twists = [0.0 if twist is None else twist.stiffness_work(pose.nodes, field) for twist in body.twists]
+    loads = _load_gradients(pose, fields)
+    return [
+        _by_materials(pose.robot, _parameter_derivatives(body, pose, field), field, (by_lame, rigid, stiffness))
+        | _by_pieces(body, pose, field)
+        | {"loads": by_load}
+        for field, by_load in zip(fields, loads, strict=True)
+    ]
+
+
+def _by_materials(
+    robot: Robot, works: dict[str, Vector], field: Nodes, materials: tuple[np.ndarray, np.ndarray, np.ndarray]
+) -> dict[str, Any]:
+    """Sensitivities by materials, thickness, moments and pins.
+
+    `materials` are derivatives of mu and lambda (materials, young and poisson, mu and lame), those of rigid parts, and
+    moduli over that of the body.
+    """
+    by_lame, rigid, stiffness = materials
+    shear, squeeze = (_add(np.zeros(len(by_lame)), works.get(name, np.zeros(0))) for name in ("mu", "lame"))
+    young, poisson = -(by_lame[:, :, 0] * shear[:, None] + by_lame[:, :, 1] * squeeze[:, None]).T
+    density, thickness = _density_gradient(robot, field), robot.body.thickness
     return {
         "young": float(young[0] + stiffness[rigid] @ young[rigid]),
         "poisson": float(poisson[0]),
@@ -204,10 +220,17 @@ def by_body(body: BodyPhysics, pose: Equilibrium, field: Nodes) -> dict[str, Any
         "part_young": np.where(rigid, 0.0, young)[1:],
         "part_poisson": np.where(rigid, 0.0, poisson)[1:],
         "part_density": density[1:],
-        "thickness": None if body.thickness is None else -float(works["thickness"][0]) / body.thickness,
-        "loads": _load_gradients(pose, field),
-        "moments": -_add(np.zeros(len(pose.robot.loads)), works.get("moment", np.zeros(0))),
+        "thickness": None if thickness is None else -float(works["thickness"][0]) / thickness,
+        "moments": -_add(np.zeros(len(robot.loads)), works.get("moment", np.zeros(0))),
         "pin_stiffness": -works["support_stiffness"],
+    }
+
+
+def _by_pieces(body: BodyPhysics, pose: Equilibrium, field: Nodes) -> dict[str, Any]:
+    """Sensitivities by gravity, rods and sheets."""
+    rods = np.array([rod.stiffness_work(pose.nodes, field) for rod in body.rods]).reshape(-1, 2)
+    twists = [0.0 if twist is None else twist.stiffness_work(pose.nodes, field) for twist in body.twists]
+    return {
         "gravity": body.heavy_masses @ field,
         "rod_axial": -rods[:, 0],
         "rod_bending": -rods[:, 1],
@@ -229,6 +252,8 @@ def _parameter_derivatives(body: BodyPhysics, pose: Equilibrium, field: Nodes) -
     works: dict[str, Vector] = {}
     for name, work in (item for each in found for item in each.items()):
         works[name] = _add(works.get(name, np.zeros(0)), work)
+    for moved in pin_drives(pose.robot, body.pins):
+        works["support_stiffness"] = works["support_stiffness"] + moved.support_work(field, pose.controls)
     return works
 
 
@@ -292,9 +317,12 @@ def by_routes(
     )
 
 
-def _load_gradients(pose: Equilibrium, field: Nodes) -> Points:
+def _load_gradients(
+    pose: Equilibrium, fields: Float[np.ndarray, "rows nodes dim"]
+) -> Float[np.ndarray, "rows loads dim"]:
     """Derivatives by the forces of loads; a pressure or moment is no force at a point, so its row is 0."""
     shares: dict[str | None, float] = dict(zip((drive.name for drive in pose.robot.drives), pose.drives, strict=True))
-    sensitivities = locate(pose.robot.body.mesh, pose.robot.load_points()).positions(field[: len(pose.nodes)])
-    sensitivities[[load.force is None and load.mass is None for load in pose.robot.loads]] = 0.0
-    return sensitivities * np.array([shares.get(load.drive, 1.0) for load in pose.robot.loads])[:, None]
+    anchors = locate(pose.robot.body.mesh, pose.robot.load_points())
+    found = np.array([anchors.positions(field[: len(pose.nodes)]) for field in fields])
+    found[:, [load.force is None and load.mass is None for load in pose.robot.loads]] = 0.0
+    return found * np.array([shares.get(load.drive, 1.0) for load in pose.robot.loads])[:, None]

@@ -96,18 +96,21 @@ def friction_sensitivities(
     )
 
 
-def friction_adjoint(
-    body: BodyPhysics, points: RoutePoints, pose: Equilibrium, sensitivities: FrictionSensitivities
-) -> Sensitivity:
-    """Return the sensitivities of one scalar with cable friction, including those to body parameters."""
-    return Sensitivity(
-        contractions=sensitivities.contractions[0],
-        slack=sensitivities.slack[0],
-        routes=points.by_cable(sensitivities.points[0]),
-        cable_stiffness=sensitivities.stiffness[0],
-        friction=sensitivities.friction[0],
-        **by_body(body, pose, sensitivities.fields[0]),
-    )
+def friction_adjoints(
+    body: BodyPhysics, points: RoutePoints, pose: Equilibrium, found: FrictionSensitivities
+) -> list[Sensitivity]:
+    """Return the sensitivities of each scalar with cable friction, including those to body parameters."""
+    return [
+        Sensitivity(
+            contractions=found.contractions[row],
+            slack=found.slack[row],
+            routes=points.by_cable(found.points[row]),
+            cable_stiffness=found.stiffness[row],
+            friction=found.friction[row],
+            **of_body,
+        )
+        for row, of_body in enumerate(by_body(body, pose, found.fields))
+    ]
 
 
 def _by_turns(
