@@ -15,8 +15,8 @@ from hydrostat.arrays import UInt8
 from hydrostat.camera.find_tags import Gray
 from hydrostat.errors import InputError
 from hydrostat.files import read_stranger
-from hydrostat.robot import Load, Robot
-from hydrostat.units import LENGTH, MASS, parse_quantity
+from hydrostat.robot import Load, Robot, Winch
+from hydrostat.units import LENGTH, MASS, MM, parse_quantity
 
 if TYPE_CHECKING:
     from PIL import Image
@@ -122,6 +122,7 @@ def _sort(
         if name in winches and not (name in markers and value.endswith("g")):
             sign = -1.0 if value.startswith("-") else 1.0
             contractions[name] = sign * parse_quantity(value.removeprefix("-"), LENGTH)
+            _check_travel(robot.winch(name), contractions[name])
         elif name in markers:
             masses[name] = parse_quantity(value, MASS)
         else:
@@ -129,6 +130,19 @@ def _sort(
             raise InputError(f'unknown winch "{name[:60]}". Available: {allowed}.')
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
+
+
+def _check_travel(winch: Winch, contraction: float) -> None:
+    """Check that a contraction is within about the travel of a winch (InputError: a wrong unit)."""
+    if abs(contraction) > TRAVELS * winch.travel:
+        raise InputError(
+            f"{winch.name} contracts by {contraction / MM:.0f} mm, but its travel is {winch.travel / MM:.0f} mm. "
+            "Check the unit."
+        )
+
+
+TRAVELS = 2
+"""Contractions over the travel of their winch from which on their unit is wrong."""
 
 
 def _with_table(files: Sequence[Path], robot: Robot, table: Path) -> list[Photo]:

@@ -46,7 +46,9 @@ def find_missing(
 ) -> list[str]:
     """Name markers without a tag in a row, or in all photographs."""
     never = [name for name in names if not any(name in found for found in markers)]
-    texts = [f"{name}: its tag is in no photograph. The table leaves it out." for name in never]
+    texts = [
+        f"{name}: its tag is in no photograph: hidden, blurred or mirrored. The table leaves it out." for name in never
+    ]
     for row in rows:
         seen = {name for index in row for name in markers[index]}
         if gone := [name for name in names if name not in seen and name not in never]:

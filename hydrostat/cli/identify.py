@@ -134,8 +134,8 @@ def _suggest(
     hidden = [name for name, share in found.deviations.items() if share > UNIDENTIFIED_RATIO]
     if hidden:
         print(
-            f"note: if markers are read to {1e3 * found.noise:.1f} mm, these photographs hardly show "
-            f"{', '.join(hidden)}. Sharper photographs or more of them do."
+            f"note: at assumed marker errors of {1e3 * found.noise:.1f} mm (1 % of the body: reading, model), these "
+            f"photographs hardly determine {', '.join(hidden)}. Take more."
         )
     if not hang and any(name.endswith(".young") for name in hidden):
         print("note: a hung mass shows a modulus. Add --hang 50g, and gravity to robot.toml.")
@@ -277,19 +277,21 @@ def _warn(robot: "Robot", table: "Measurements", found: "IdentifiedRobot") -> bo
                 f"its travel of {1e3 * winch.travel:.0f} mm. Columns are in mm."
             )
     size, error = robot.body.mesh.size, rms(found.after)
+    if swaps or mirrored or slip is not None:  # one fault, one line
+        return not mirrored and error <= BAD * size
     if error > BAD * size:
         print(
             f"warning: the fit is {100 * error / size:.0f} % of the body off. Check units (mm), the frame's axes, and "
             "which marker and winch is which."
         )
+        return False
     far = np.argwhere(found.after > max(OUTLIER * rms(found.after), 0.01 * size)).tolist()
-    known = {(row, table.markers.index(marker)) for swap in swaps for row in swap.rows for marker in swap.markers}
-    for row, marker in [cell for cell in far if tuple(cell) not in known][:5]:
+    for row, marker in far[:5]:
         print(
             f"warning: row {row + 1}: {table.markers[marker]} is {1e3 * found.after[row, marker]:.1f} mm off, much "
             "more than others. Measure it again, or empty its cells."
         )
-    return not mirrored and error <= BAD * size
+    return True
 
 
 BAD = 0.05

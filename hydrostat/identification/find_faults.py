@@ -1,7 +1,7 @@
 """`find_swaps`, `find_slip` and `is_mirrored`: faults in the measurements of a fit."""
 
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, product
 
 import numpy as np
 
@@ -108,8 +108,10 @@ def find_slip(fitted: FittedModel, measurements: Measurements) -> Slip | None:
     base = np.linalg.qr(np.concatenate([jacobian[:, :own], np.eye(own)]))[0]
     errors = _without(base, np.concatenate([residuals.errors[known] / scales, fitted.numbers]))
     best, found = EXPLAINED * float(errors @ errors), None
-    for row in range(2, count - 1):
-        after = jacobian[:, own:] @ ratios.T * (residuals.rows[known] >= row)[:, None]
+    effects = jacobian[:, own:] @ ratios.T
+    is_tight = (measurements.commands > 0)[residuals.rows[known]]  # lost cable only loosens others further
+    for row, moved in product(range(2, count - 1), (np.ones_like(is_tight), is_tight)):
+        after = effects * moved * (residuals.rows[known] >= row)[:, None]
         changed = _without(base, np.concatenate([after, prior]))
         squares = np.maximum((changed**2).sum(axis=0), np.finfo(float).tiny)
         along = errors @ changed

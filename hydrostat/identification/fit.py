@@ -173,7 +173,7 @@ def fit_model(
         InputError: measurements that do not fit the robot, or fewer measured coordinates than one.
     """
     robot = model.robot(model.start)
-    _check(robot, measurements)
+    check_fit(robot, measurements)
     fit = MarkerFit(model, measurements, noise or 0.02 * robot.body.mesh.size, progress)
     numbers = np.zeros(len(model.parameters))
     limits = np.array([parameter.limits for parameter in model.parameters]).reshape(-1, 2).T
@@ -342,7 +342,8 @@ class MarkerFit:
         ), RULES.impossible
 
 
-def _check(robot: Robot, measurements: Measurements) -> None:
+def check_fit(robot: Robot, measurements: Measurements) -> None:
+    """Check that measurements have the winches, axes, markers and unit of a robot (InputError: others)."""
     winches, dim = len(robot.winches), robot.body.mesh.dim
     if measurements.commands.shape[1] != winches:
         raise InputError(f"commands have {measurements.commands.shape[1]} columns, but the robot has {winches} winches")

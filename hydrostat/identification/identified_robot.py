@@ -7,8 +7,9 @@ import numpy as np
 
 from hydrostat.arrays import Vector
 from hydrostat.errors import InputError
+from hydrostat.identification.check_columns import check_columns
 from hydrostat.identification.contraction_map import ContractionMap
-from hydrostat.identification.fit import FittedModel, fit_model
+from hydrostat.identification.fit import FittedModel, check_fit, fit_model
 from hydrostat.identification.fit_contraction_map import fit_contraction_map
 from hydrostat.identification.kinds import KINDS, kind_names, named_model
 from hydrostat.identification.measurements import Measurements
@@ -90,7 +91,7 @@ def identify(
         progress: callback for progress, after each evaluation.
 
     Raises:
-        InputError: an unknown kind, or measurements that do not fit the robot.
+        InputError: an unknown kind, or measurements that do not fit the robot, also by unit, axes or order.
     """
     fit = kind_names(fit)
     if robot.drives:
@@ -103,6 +104,10 @@ def identify(
     if "scale" in (fit or ()) and np.isfinite(measurements.known_lengths).any():
         raise InputError(_ruler_error(measurements))
     model, assumed = named_model(robot, fit), start_of(named_model(robot, ()))
+    check_fit(robot, measurements)
+    predicted = assumed.predict(measurements)
+    check_columns(assumed, measurements, predicted)
+    before = np.linalg.norm(predicted - measurements.places, axis=2)
     count = len(measurements.commands)
     held_out = np.arange(2, count, 5) if count >= 10 else np.zeros(0, dtype=int)
     nothing = np.zeros((0, len(measurements.markers)))
@@ -116,9 +121,9 @@ def identify(
             refine=False,
             progress=lambda stage, done, total: progress(f"without held-out rows, {stage}", done, total),
         )
-        held_before, held_after = _distances(assumed, asked), _distances(part, asked)
+        held_before, held_after = before[held_out], _distances(part, asked)
         if measurements.in_order:
-            held_before, held_after = held_before[held_out], held_after[held_out]
+            held_after = held_after[held_out]
     fitted = fit_model(model, measurements, progress=progress)
     fitted = profile_intervals(fitted, measurements, progress=progress) if profile else fitted
     changed, pretension = _robot(model, fitted, robot)
@@ -128,7 +133,7 @@ def identify(
         robot=changed,
         assumed=assumed,
         pretension=pretension,
-        before=_distances(assumed, measurements),
+        before=before,
         after=_distances(fitted, measurements),
         held_out=held_out,
         held_out_before=held_before,

@@ -73,7 +73,7 @@ class _Columns:
                 raise InputError(f'{where}: unknown column "{name[:60]}". Available: {allowed}.{mark}')
         self._meanings = {column: known[name] for column, name in enumerate(head) if name in known}
         self._check_once(where)
-        self._winches = winches
+        self._winches, self._travels = winches, {winch.name: winch.travel for winch in robot.winches}
         self.markers = tuple(dict.fromkeys(name for kind in ("place", "length") for name in self._names_of(kind)))
         self.pairs = tuple(
             (self.markers.index(one), self.markers.index(other)) for _, one, other in self._of("length").values()
@@ -117,6 +117,11 @@ class _Columns:
                 raise InputError(f"{where}, column {self._head[column]}: must be 0 or more, not {value:g}")
             if kind == "winch":
                 command[self._winches.index(name)] = MM * value
+                if MM * abs(value) > TRAVELS * (travel := self._travels[name]):
+                    raise InputError(
+                        f"{where}, column {self._head[column]}: {value:g} mm, but the travel of {name} is "
+                        f"{travel / MM:.0f} mm. Write mm."
+                    )
             elif kind == "force":
                 forces[self._winches.index(name)] = value
             elif kind == "load":
@@ -144,6 +149,9 @@ class _Columns:
 
 EMPTY, POSITIVE = ("place", "length", "force", "load"), ("load", "length")
 """Kinds of columns whose cells may be empty (no mass hung, else not measured), and whose numbers are not below 0."""
+
+TRAVELS = 10
+"""Contractions over the travel of their winch from which on their unit is wrong."""
 
 _SKIPPED = ("time_s", "pose", "row")
 """Columns that are not read."""

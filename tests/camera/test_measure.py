@@ -149,7 +149,9 @@ def test_faults_of_photographs_are_said_in_one_line(rest: Path, tmp_path: Path) 
     with pytest.raises(InputError, match="is of another robot"):
         measure_photos(replace(robot, name="another"), Photo.read_all([rest], robot))
     found = measure_photos(robot, Photo.read_all([save(without(numbers["middle"]), tmp_path / "rest.png")], robot))
-    assert found.warnings == ["middle: its tag is in no photograph. The table leaves it out."]
+    assert found.warnings == [
+        "middle: its tag is in no photograph: hidden, blurred or mirrored. The table leaves it out."
+    ]
     assert found.measurements.markers == ("root", "tip")
     high = measure_photos(robot, Photo.read_all([rest], robot), PhotoOptions(height=0.0))
     assert "Check --height and --tag" in high.warnings[0]
