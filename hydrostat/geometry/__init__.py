@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from hydrostat.geometry.tetrahedra.manifold import euler
     from hydrostat.geometry.tetrahedra.small_holes import HOLE_SHARE, fill_small_holes
     from hydrostat.geometry.tetrahedra.tetrahedralize import BOUNDARY_TOLERANCE, fit, tetrahedralize
-    from hydrostat.geometry.thickness import Thickness
+    from hydrostat.geometry.thickness import Thickness, build_point_tree
     from hydrostat.geometry.triangles.triangulate import triangulate
 
 __all__ = [
@@ -57,6 +57,7 @@ __all__ = [
     "Solid",
     "Surface",
     "Thickness",
+    "build_point_tree",
     "clearance",
     "contour",
     "contrast",

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from hydrostat.ik.objectives.shape_target import ShapeTarget, load_target_outline
     from hydrostat.ik.pulls import solve_pulls
     from hydrostat.ik.robot_draft import BegunRobot, NewRobotWish, new_robot, with_first_pose
-    from hydrostat.ik.search.linear_model import least_squares
+    from hydrostat.ik.search.linear_model import least_squares, solve_nonnegative
     from hydrostat.ik.search.problem import IKOptions
     from hydrostat.ik.tracker import Tracker
     from hydrostat.ik.trajectory.keys import Keyframe
@@ -62,6 +62,7 @@ __all__ = [
     "place",
     "solve_ik",
     "solve_ik_trajectory",
+    "solve_nonnegative",
     "solve_pulls",
     "spool_arms",
     "unconstrained_motion",

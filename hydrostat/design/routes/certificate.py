@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-from scipy.optimize import nnls
 
 from hydrostat.arrays import Vector
 from hydrostat.design.network import Certificate
@@ -11,6 +10,7 @@ from hydrostat.design.routes.evaluator import Trial
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.refine import linear_model
 from hydrostat.design.routes.search_rules import RULES
+from hydrostat.ik import solve_nonnegative
 
 
 def certify(proposals: Proposals, trial: Trial) -> Certificate:
@@ -40,5 +40,5 @@ def _descent_rate(matrix: np.ndarray, right: Vector, limits: np.ndarray, error: 
     norms = np.linalg.norm(limits, axis=1)
     limits = limits[norms > 0] / norms[norms > 0, None]
     if len(limits):
-        gradient = gradient + limits.T @ nnls(limits.T, -gradient)[0]
+        gradient = gradient + limits.T @ solve_nonnegative(limits.T, -gradient)
     return float(np.abs(gradient).max(initial=0.0))

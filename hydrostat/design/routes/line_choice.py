@@ -9,14 +9,13 @@ from itertools import combinations, product
 
 import numpy as np
 from scipy.sparse import csc_array, hstack
-from scipy.spatial import KDTree
 
 from hydrostat.arrays import Bool, Vector
 from hydrostat.design.polyline import Route, resample
 from hydrostat.design.routes.evaluator import Trial
 from hydrostat.design.routes.propose import Proposals
 from hydrostat.design.routes.search_rules import RULES
-from hydrostat.geometry import locate
+from hydrostat.geometry import build_point_tree, locate
 from hydrostat.kernel import native
 from hydrostat.robot import Cable
 
@@ -205,7 +204,7 @@ class LineChoice:
         owners = np.repeat(np.arange(len(fine)), [len(points) for points in fine])
         points, places = np.concatenate(fine), self._places[owners]
         away = np.linalg.norm(points - graph.points[places], axis=1)
-        tree = KDTree(points)
+        tree = build_point_tree(points)
         one, other = tree.query_pairs(np.nextafter(near, 0.0), output_type="ndarray").T
         beside = RULES.meeting_radii * constraints.spool_radius
         both = (places[one] == places[other]) & ((away[one] < beside) | (away[other] < beside))

@@ -11,7 +11,7 @@ from hydrostat.design.constraints import Constraints
 from hydrostat.design.region import Region
 from hydrostat.design.zone import Zone
 from hydrostat.errors import InputError
-from hydrostat.geometry import Anchors, locate
+from hydrostat.geometry import Anchors, build_point_tree, locate
 from hydrostat.given import Point
 from hydrostat.robot import Mount, Robot
 
@@ -184,11 +184,8 @@ def _point_in(zone: Zone) -> Point:
 
 def _near(points: Points, nodes: Int[np.ndarray, " points"], mesh_edges: Pairs, spacing: float) -> Pairs:
     """Pairs of points that are close by, or were joined in the mesh."""
-    # Imported here: those who do not design start sooner.
-    from scipy.spatial import KDTree
-
     count = min(_NEIGHBORS[points.shape[1]] + 1, len(points))
-    away, near = map(np.asarray, KDTree(points).query(points, k=count, distance_upper_bound=_REACH * spacing))
+    away, near = map(np.asarray, build_point_tree(points).query(points, k=count, distance_upper_bound=_REACH * spacing))
     rows, columns = np.nonzero(np.isfinite(away))
     pairs = np.column_stack([rows, near[rows, columns]])
     number = np.full(max(int(mesh_edges.max(initial=0)), int(nodes.max())) + 1, -1)
