@@ -302,15 +302,20 @@ OUTLIER = 3.0
 
 
 def _print_errors(found: "IdentifiedRobot", table: "Measurements", seconds: float) -> None:
+    import numpy as np
+
     from hydrostat.identification import rms
 
     seen = plural(len(table.commands), "row")
+    has_places = bool(np.isfinite(found.after).any())
+    before, after = (found.before, found.after) if has_places else found.length_errors(table)
+    error = "rms error" if has_places else "rms error of distances"
     missing = f", {plural(found.fitted.num_failed, 'row')} without equilibrium" if found.fitted.num_failed else ""
     print(
-        f"{seen}: rms error {1e3 * rms(found.before):.2f} mm as assumed, {1e3 * rms(found.after):.2f} mm fitted "
+        f"{seen}: {error} {1e3 * rms(before):.2f} mm as assumed, {1e3 * rms(after):.2f} mm fitted "
         f"({seconds:.1f} s{missing})"
     )
-    if len(found.held_out):
+    if len(found.held_out) and has_places:
         print(
             f"held out ({plural(len(found.held_out), 'row')}): {1e3 * rms(found.held_out_before):.2f} mm as assumed, "
             f"{1e3 * rms(found.held_out_after):.2f} mm by a fit that did not see them"

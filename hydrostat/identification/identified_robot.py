@@ -64,6 +64,15 @@ class IdentifiedRobot(Tabular):
         """Return a one-line summary."""
         return f"<IdentifiedRobot {self.robot.name}: {len(self.fitted.values)} parameters from {len(self.after)} poses>"
 
+    def length_errors(self, measurements: Measurements) -> tuple[np.ndarray, np.ndarray]:
+        """Return errors of predicted distances of markers before and after the fit [m], each (rows, pairs)."""
+        one, other = (np.array([pair[end] for pair in measurements.pairs], dtype=int) for end in (0, 1))
+        before, after = (
+            np.linalg.norm(places[:, one] - places[:, other], axis=2) - measurements.known_lengths
+            for places in (self.assumed.predict(measurements), self.fitted.predict(measurements))
+        )
+        return before, after
+
     @property
     def unknown(self) -> tuple[str, ...]:
         """Parameters that the measurements do not show; they stay near where they began."""

@@ -86,3 +86,18 @@ def test_a_material_is_saved_with_its_interval(run: Run, tmp_path: Path, monkeyp
         code, _, errors = run("identify", "gallery:starfish", table, *options, "--save-material", name)
         assert code == 2
         assert told in errors
+
+
+def test_ruler_distances_have_an_error_of_their_own(run: Run, starfish: Path, tmp_path: Path) -> None:
+    """Oracle: distances of the assumed robot, 2 mm too long in all rows."""
+    robot = load_robot(starfish)
+    simulation, lines = Simulation(robot), ["left_mm,top_to_left_mm"]
+    for pull in (0, 15, 30):
+        markers = simulation.solve({"left": 1e-3 * pull}).markers
+        lines.append(f"{pull},{2 + 1e3 * np.linalg.norm(markers['top'] - markers['left']):.4f}")
+    table = tmp_path / "ruler.csv"
+    table.write_text("\n".join(lines) + "\n")
+    code, text, _ = run("identify", starfish, table, "--fit", "gain", "--out", tmp_path / "fitted")
+    assert code == 0
+    assert "3 rows: rms error of distances 2.00 mm as assumed, " in text
+    assert "nan" not in text
