@@ -80,6 +80,9 @@ def fabricate(
             "--simple", help="Simpler kit: fewer cables, one panel if the body stays flat, no grommets. Plush only."
         ),
     ] = False,
+    stopper: Annotated[
+        str, typer.Option(metavar="cleat|screw", help="Ends of cables: cleats set by hand, or clamps with a screw.")
+    ] = "cleat",
     swap: Annotated[
         bool, typer.Option("--swap-core", help="Let foam cores be swapped in minutes: core plates and line couplers.")
     ] = False,
@@ -109,7 +112,10 @@ def fabricate(
         paper=parse_choice(kits.Paper, paper, what="--paper"),
         pattern=kits.PatternOptions(seam_allowance=_millimeters("--seam", seam)),
         parts=kits.PartOptions(
-            cable=_millimeters("--line", line), clearance=_millimeters("--print-clearance", clearance), swap=swap
+            cable=_millimeters("--line", line),
+            clearance=_millimeters("--print-clearance", clearance),
+            stopper=parse_choice(kits.StopperKind, stopper, what="--stopper"),
+            swap=swap,
         ),
         board=board,
         step=step,

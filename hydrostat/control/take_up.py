@@ -273,7 +273,7 @@ class _Taker:
             if self._goals[index] > self._most:
                 raise HydrostatError(
                     f"{self._name(index)}: no pull is felt after {1e3 * self._most:.0f} mm were taken in; its cable is "
-                    "broken, off its spool or loose at its stopper (pull it tight there with a small screwdriver), or "
+                    "broken, off its spool or loose at its stopper (pull the line straight there and fix it again), or "
                     f"its motor turns the other way (turns = {-self._motors[index].turns})"
                 )
             current = self._turn(index, self._goals[index] + RULES.search_speed * RULES.interval)

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
         Paper,
         PartOptions,
         PatternOptions,
+        StopperKind,
     )
     from hydrostat.fabrication.lists.motors import check_motor_and_board
     from hydrostat.fabrication.lists.stitching import depth_table
@@ -72,6 +73,7 @@ __all__ = [
     "PatternOptions",
     "PocketRoom",
     "Sewing",
+    "StopperKind",
     "UnbuildableError",
     "UnitBox",
     "board_for",

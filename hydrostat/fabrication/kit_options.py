@@ -47,6 +47,13 @@ class MoldKind(StrEnum):
     SILICONE = "silicone"
 
 
+class StopperKind(StrEnum):
+    """End of a cable: a cleat that the line is wound round by hand, or the clamp of Chang (2018) with a screw."""
+
+    CLEAT = "cleat"
+    SCREW = "screw"
+
+
 class Method(StrEnum):
     """Method by which the body is made."""
 
@@ -133,10 +140,11 @@ class PartOptions:
         run: distance between the base of winches outside the body and the body [mm].
         spare_wraps: turns of cable that stay on a spool at maximum payout.
         grommets: True to print a grommet for each pinhole.
+        stopper: end of each cable.
         swap: True for a base whose cores are swapped: tubes end in a plate of their own, lines have couplers.
 
     Raises:
-        InputError: a number out of its range.
+        InputError: a number out of its range, or a text that is no kind of stopper.
     """
 
     clearance: float = 0.3
@@ -148,9 +156,11 @@ class PartOptions:
     run: float = 100.0
     spare_wraps: float = 2.0
     grommets: bool = True
+    stopper: StopperKind = StopperKind.CLEAT
     swap: bool = False
 
     def __post_init__(self) -> None:
+        make_member(self, "stopper", StopperKind)
         _check_sizes(self, above_zero=("wall", "cable", "tube", "bore"))
         if not self.cable < self.bore < self.tube:
             raise InputError(

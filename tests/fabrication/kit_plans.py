@@ -4,12 +4,15 @@ from types import MappingProxyType
 from typing import Any
 
 from hydrostat.fabrication.demand import Demand
-from hydrostat.fabrication.kit_options import KitOptions
+from hydrostat.fabrication.kit_options import KitOptions, PartOptions
 from hydrostat.fabrication.kit_plan import BodyWork, KitPlan
 from hydrostat.fabrication.parts.body_seat import BodySeat
+from hydrostat.fabrication.parts.cleat import cleat
 from hydrostat.fabrication.parts.motor import MOTORS
 from hydrostat.fabrication.parts.rigid_parts import RigidParts
 from hydrostat.robot import Robot
+
+_STOPPER = cleat(PartOptions())
 
 
 class FewParts(RigidParts):
@@ -27,7 +30,9 @@ class FewParts(RigidParts):
     stopper_assembly = None
 
     def __init__(self, **facts: Any) -> None:
-        super().__init__(motor=MOTORS[0], units=(), base=None, seat=BodySeat(), stopper=None, grommet=None, cables=0)
+        super().__init__(
+            motor=MOTORS[0], units=(), base=None, seat=BodySeat(), stopper=_STOPPER, grommet=None, cables=0
+        )
         self.__dict__.update(facts)
 
 

@@ -65,7 +65,7 @@ def test_lists_of_pairs_are_those_of_one_face_twice(single: Kit, pairs: Kit) -> 
     line = [float(item(kit, "braided fishing line")["quantity"]) for kit in (single, pairs)]
     assert line[1] == pytest.approx(2 * line[0], rel=0.02)
     printed = [{part.name: part.count for part in kit.printed} for kit in (single, pairs)]
-    for name in ("stopper_base", "stopper_lid", "grommet"):
+    for name in ("stopper", "grommet"):
         assert printed[1][name] == 2 * printed[0][name]
     grooves = {unit.winch: [len(cables) for cables in unit.wound] for unit in _units(pairs)}
     assert grooves == {"right": [2], "left": [2, 2], "feet": [2, 2]}

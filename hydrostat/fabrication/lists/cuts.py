@@ -16,9 +16,6 @@ from hydrostat.simulation import Simulation
 KNOT = 120.0
 """Line for the knot at the spool [mm]: a doubled Palomar takes about this much in two hands. Assumed; trimmed after."""
 
-TAIL = 80.0
-"""Line beyond the stopper [mm]: to hold while the stopper is set, and to let out when it is adjusted (R13). Assumed."""
-
 STEP = 10.0
 """Cables are cut to full steps of this [mm]: a tape on a table is no more precise, and the rest goes to the knot."""
 
@@ -40,7 +37,7 @@ class CableCut:
     wraps: float  # line that stays on the spool when all is let out
     release: float  # line on the spool that can be let out beyond the rest length
     knot: float = KNOT  # for the knot at the spool
-    tail: float = TAIL  # beyond the stopper
+    tail: float  # beyond the stopper
     reverse: bool = False  # True if it is wound the other way round
 
     @property
@@ -67,10 +64,12 @@ def cable_cuts(
     leads: Mapping[int, float],
     outside: Mapping[int, float],
     spare_wraps: float,
+    tail: float,
     coupled: bool = False,
 ) -> tuple[CableCut, ...]:
-    """Find how long each cable of a robot is cut; `spare_wraps` are turns that stay on each spool.
+    """Find how long each cable of a robot is cut.
 
+    `spare_wraps` are turns that stay on each spool, `tail` is beyond the stopper [mm].
     By cable index [mm]: `leads` from the winch's exit to its spool, 0 if left out, and tube `outside` the body, from
     the base with the motors to where the cable begins. Lines in two pieces, `coupled`, have two loops more to knot.
     """
@@ -87,6 +86,7 @@ def cable_cuts(
                 outside=float(outside.get(index, 0.0)),
                 knot=3 * KNOT if coupled and index in outside else KNOT,
                 lead=float(leads.get(index, 0.0)),
+                tail=tail,
                 wraps=1e3 * spare_wraps * 2 * math.pi * radius,
                 release=1e3 * abs(float(ratio)) * (winch.travel if cable.reverse else winch.release),
                 reverse=cable.reverse,

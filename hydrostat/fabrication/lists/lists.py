@@ -86,7 +86,12 @@ def make_lists(plan: KitPlan) -> Lists:
     """All lists of a robot (InputError: a demand of another robot, or lengths for cables that it does not have)."""
     robot, options, demand, rigid = plan.robot, plan.options.parts, plan.demand, plan.rigid
     cuts = cable_cuts(
-        robot, leads=rigid.leads, outside=rigid.outside, spare_wraps=options.spare_wraps, coupled=options.swap
+        robot,
+        leads=rigid.leads,
+        outside=rigid.outside,
+        spare_wraps=options.spare_wraps,
+        tail=rigid.stopper.tail if rigid.stopper else 0.0,
+        coupled=options.swap,
     )
     pieces = sheath_cuts(robot, seats=rigid.seats, outside=rigid.tubes)
     cables, tubes = cable_table(cuts), sheath_table(robot, pieces, bore=options.bore, tube=options.tube)

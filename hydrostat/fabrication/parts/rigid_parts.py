@@ -5,16 +5,19 @@ from collections import Counter
 from dataclasses import dataclass, replace
 
 from hydrostat.errors import InputError
-from hydrostat.fabrication.kit_options import PartOptions
+from hydrostat.fabrication.kit_options import PartOptions, StopperKind
 from hydrostat.fabrication.parts.base_plate import BasePlate, base_plate
 from hydrostat.fabrication.parts.body_seat import BodySeat, body_seat
+from hydrostat.fabrication.parts.cleat import cleat
 from hydrostat.fabrication.parts.motor import Motor
-from hydrostat.fabrication.parts.stopper import Stopper, stopper
+from hydrostat.fabrication.parts.stopper import Stopper, screw_stopper
 from hydrostat.fabrication.parts.winch_unit import WinchUnit, find_crowded_units, winch_units
 from hydrostat.fabrication.solids.assembly import PartAssembly
 from hydrostat.fabrication.solids.construct import Construction, Cylinder, Revolve
 from hydrostat.fabrication.solids.printed import Printed
 from hydrostat.robot import Robot
+
+_STOPPERS = {StopperKind.CLEAT: cleat, StopperKind.SCREW: screw_stopper}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -57,7 +60,7 @@ class RigidParts:
             counts[unit.motor.title] += 1
         for one in (*self.units, self.seat, *((self.base,) if self.base else ())):
             counts.update(dict(one.bought))
-        if self.stopper is not None:
+        if self.stopper is not None and self.stopper.screw is not None:
             counts[self.stopper.screw] += self.cables
         return tuple(counts.items())
 
@@ -168,7 +171,7 @@ def rigid_parts(
         units=units,
         base=base,
         seat=seat,
-        stopper=stopper(options) if robot.cables else None,
+        stopper=_STOPPERS[options.stopper](options) if robot.cables else None,
         grommet=replace(grommet(options, hole), count=holes) if holes else None,
         cables=len(robot.cables),
         between=find_crowded_units(robot, units),

@@ -1,4 +1,4 @@
-"""`stopper`: the clamp in two pieces that ends a cable and is adjusted with a screwdriver (thesis, Fig 3.3)."""
+"""`screw_stopper`: the clamp in two pieces that ends a cable and is adjusted with a screwdriver (thesis, Fig 3.3)."""
 
 import math
 from dataclasses import dataclass
@@ -57,17 +57,21 @@ _SIZES = _StopperSizes()
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Stopper:
-    """A clamp for the end of a cable."""
+    """End of a cable."""
 
-    printed: tuple[Printed, ...]  # the base, which lies on the cloth, and the lid
-    # both with the screw, closed on a cable that is pressed to half its thickness; the cloth is at z = 0
+    printed: tuple[Printed, ...]  # the piece that lies on the cloth first
+    # of the clamp with its screw, closed on a cable that is pressed to half its thickness; the cloth is at z = 0
     assembly: PartAssembly
-    screw: str  # title of the screw that closes it
+    screw: str | None  # title of the screw that closes it; None without
     hold: float  # tension at which the cable begins to slip, estimated [N]
+    tail: float  # line beyond it, to hold while it is set and to let out when it is adjusted [mm], assumed
+    fix: str  # what holds the line, as a command
+    reset: str  # what takes up slack, as a command
+    check: str  # what to look at, after the word Stoppers
 
 
-def stopper(options: PartOptions) -> Stopper:
-    """The stopper for a cable: a button in two pieces, closed by one countersunk screw.
+def screw_stopper(options: PartOptions) -> Stopper:
+    """The clamp for the end of a cable: a button in two pieces, closed by one countersunk screw.
 
     The cable comes up from the cloth beside the screw (it is laid in through the slot, nothing is threaded), goes 300
     degrees round the post of the screw between ribs of base and lid that bend it up and down, and leaves through the
@@ -107,7 +111,14 @@ def stopper(options: PartOptions) -> Stopper:
         ),
     )
     return Stopper(
-        printed=printed, assembly=PartAssembly(name="stopper", pieces=pieces), screw=M2X6.title, hold=holding_force()
+        printed=printed,
+        assembly=PartAssembly(name="stopper", pieces=pieces),
+        screw=M2X6.title,
+        hold=holding_force(),
+        tail=80.0,
+        fix="clamp it there",
+        reset="loosen its stopper by half a turn, pull the line straight and tighten the screw",
+        check="screws tight",
     )
 
 

@@ -11,7 +11,8 @@ SURFACES = {Method.PLUSH: "cloth", Method.FOAM: "skin", Method.PRINT: "body"}
 
 def list_calibration(plan: KitPlan) -> list[str]:
     """Steps that set the zero of each cable; empty without cables."""
-    if not plan.robot.cables:
+    ends = plan.rigid.stopper
+    if ends is None or not plan.robot.cables:
         return []
     both = any(cable.reverse for cable in plan.robot.cables)
     return [
@@ -19,10 +20,10 @@ def list_calibration(plan: KitPlan) -> list[str]:
         + turn_words(plan),
         "Pull the first cable straight by its tail, not tight: the body must not move.",
         f"Slide its stopper along the line until it touches the {SURFACES[plan.method]} at the cable's last point; "
-        "then move it back by the listed slack, and clamp it there.",
+        f"then move it back by the listed slack, and {ends.fix}.",
         "Do the same for the other cables. Then reel in 10 mm with one winch after the other. Each limb must move, "
         "and return when you pay out.",
-        "If a limb moves late, retension the line and reset its stopper. If it is bent at zero, move the stopper "
+        f"If a limb moves late, its cable is slack: {ends.reset}. If it is bent at zero, move the stopper "
         "outward. Then trim the tail to 30 mm.",
         "A winch that pulls both ways is never slack, so hydrostat calibrate cannot find its zero. Write the angle of "
         "each such winch at its spool marks as its zero in motors.toml."
@@ -86,7 +87,8 @@ def list_last_checks(plan: KitPlan) -> list[str]:
         ],
         Method.FOAM: ["Parts A and B weighed, not judged by eye", _whole_body(plan)],
     }[plan.method]
-    if not plan.robot.cables:
+    ends = plan.rigid.stopper
+    if ends is None or not plan.robot.cables:
         return first
     plush, spools = plan.method is Method.PLUSH, "All spools turn freely by hand"
     own = "no two crossed" if plush else "every tube held at both ends"
@@ -94,7 +96,7 @@ def list_last_checks(plan: KitPlan) -> list[str]:
         *first,
         *(["No line caught in the seam", spools] if plush else []),
         f"Every cable in its own channel, {own}",
-        *(["Stoppers outside, screws tight"] if plush else [spools, "Stoppers tight, tails trimmed"]),
+        *([f"Stoppers outside, {ends.check}"] if plush else [spools, f"Stoppers: {ends.check}, trimmed"]),
         "Each winch ran to full travel and back",
         "Power switch within reach",
     ]

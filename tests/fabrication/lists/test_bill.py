@@ -26,7 +26,7 @@ CUBES = 3 * 1.24e-3 * (1.2 * 600 + 0.15 * (1000 - 1.2 * 600))
 
 
 def needs(this: KitPlan) -> dict[str, Item]:
-    cuts = cable_cuts(this.robot, leads={}, outside=this.rigid.outside, spare_wraps=2.0)
+    cuts = cable_cuts(this.robot, leads={}, outside=this.rigid.outside, spare_wraps=2.0, tail=80.0)
     tubes = sheath_cuts(this.robot, seats={}, outside=this.rigid.outside)
     power = power_plan({cable.winch: 10.0 for cable in this.robot.cables}, this.rigid.motor)
     return {item.what: item for item in all_needs(this, line_for(0.4), cuts, tubes, power)}

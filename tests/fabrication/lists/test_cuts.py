@@ -9,7 +9,6 @@ from small_inputs import square
 from hydrostat.fabrication.lists.cuts import (
     KNOT,
     STEP,
-    TAIL,
     cable_cuts,
     cable_table,
     check_lengths,
@@ -21,12 +20,13 @@ from hydrostat.robot import Cable
 from hydrostat.simulation import Simulation
 
 START = (-0.02, -0.01)
+TAIL = 80.0  # line beyond the stopper [mm]
 
 
 def test_sum_of_a_cable_of_known_points() -> None:
     cable = Cable(winch="pull", points=(START, (0.01, 0.03), (0.04, 0.03)), slack=0.007)
     (cut,) = cable_cuts(
-        square(cable, spool_radius=0.005, release=0.01), leads={0: 12.0}, outside={0: 300.0}, spare_wraps=2.0
+        square(cable, spool_radius=0.005, release=0.01), leads={0: 12.0}, outside={0: 300.0}, spare_wraps=2.0, tail=TAIL
     )
     assert cut.body == pytest.approx(50 + 30)  # a triangle of 30, 40, 50 and a straight piece
     assert cut.wraps == pytest.approx(20 * math.pi)
@@ -38,13 +38,13 @@ def test_sum_of_a_cable_of_known_points() -> None:
 
 def test_in_the_body_the_spool_is_where_the_cable_is_counted_from():
     """Oracle: the body's length is counted from the shaft, so the way from the exit to the spool is in it already."""
-    (cut,) = cable_cuts(square(), leads={0: 12.0}, outside={}, spare_wraps=2.0)
+    (cut,) = cable_cuts(square(), leads={0: 12.0}, outside={}, spare_wraps=2.0, tail=TAIL)
     assert cut.spool_mark == pytest.approx(TAIL + 80)
 
 
 def test_the_table_tells_no_mark_more_precisely_than_it_is_known():
     """Oracle: where the stopper goes is a matter of the robot, not of the list."""
-    table = cable_table(cable_cuts(square(), leads={0: 12.3}, outside={0: 7.7}, spare_wraps=2.0))
+    table = cable_table(cable_cuts(square(), leads={0: 12.3}, outside={0: 7.7}, spare_wraps=2.0, tail=TAIL))
     titles = [column.title for column in table.columns.values()]
     assert {"cable", "cut to", "slack", "spool mark from end", "body"} <= set(titles)
     assert not any("stopper" in title or "exit" in title for title in titles)
@@ -58,7 +58,9 @@ def test_the_table_tells_no_mark_more_precisely_than_it_is_known():
 
 def test_a_stepped_spool_has_its_own_wraps_and_release() -> None:
     cable = Cable(winch="pull", points=(START, (0.01, 0.03)), spool_radius=0.009)
-    (cut,) = cable_cuts(square(cable, spool_radius=0.006, release=0.01), leads={}, outside={}, spare_wraps=3.0)
+    (cut,) = cable_cuts(
+        square(cable, spool_radius=0.006, release=0.01), leads={}, outside={}, spare_wraps=3.0, tail=TAIL
+    )
     assert cut.wraps == pytest.approx(3 * 2 * math.pi * 9)
     assert cut.release == pytest.approx(15)
 
@@ -66,14 +68,14 @@ def test_a_stepped_spool_has_its_own_wraps_and_release() -> None:
 def test_a_reversed_cable_lets_out_what_its_winch_takes_in() -> None:
     cable = Cable(winch="pull", points=(START, (0.01, 0.03)), reverse=True, spool_radius=0.009)
     robot = square(cable, spool_radius=0.006, release=0.01)
-    cuts = cable_cuts(robot, leads={}, outside={}, spare_wraps=3.0)
+    cuts = cable_cuts(robot, leads={}, outside={}, spare_wraps=3.0, tail=TAIL)
     assert cuts[0].release == pytest.approx(1.5e3 * robot.winches[0].travel)
     assert "C1" in cable_table(cuts).notes[-1]
 
 
 def test_columns_add_up_to_the_total() -> None:
     robot = square(Cable(winch="pull", points=(START, (0.01, 0.03)), slack=0.003), release=0.004)
-    table = cable_table(cable_cuts(robot, leads={0: 9.0}, outside={0: 40.0}, spare_wraps=2.0))
+    table = cable_table(cable_cuts(robot, leads={0: 9.0}, outside={0: 40.0}, spare_wraps=2.0, tail=TAIL))
     parts = ("body", "slack", "outside", "lead", "wraps", "release", "knot", "tail")
     numbers = dict(zip(table.headings, table.texts[0], strict=True))
     assert sum(float(numbers[f"{part} [mm]"]) for part in parts) == pytest.approx(float(numbers["total [mm]"]), abs=0.3)
@@ -82,7 +84,7 @@ def test_columns_add_up_to_the_total() -> None:
 def test_lengths_are_those_of_the_simulation_and_others_are_caught() -> None:
     cable = Cable(winch="pull", points=(START, (0.0, 0.0), (0.01, 0.03), (0.04, 0.03)), sheathed=((0, 1),))
     robot = square(cable)
-    cuts = cable_cuts(robot, leads={}, outside={}, spare_wraps=2.0)
+    cuts = cable_cuts(robot, leads={}, outside={}, spare_wraps=2.0, tail=TAIL)
     assert check_lengths(cable_table(cuts), Simulation(robot)).passed
     wrong = cable_table((replace(cuts[0], body=cuts[0].body + 1.3),))
     check = check_lengths(wrong, Simulation(robot))

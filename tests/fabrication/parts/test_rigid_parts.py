@@ -29,7 +29,7 @@ def test_parts_of_the_gallery(name: str, unchecked: None):
     assert len(count) == len(parts.printed)
     for kind in ("spool_", "housing_", "motor_plate_"):
         assert sum(number for part, number in count.items() if part.startswith(kind)) == len(robot.winches)
-    assert count["stopper_base"] == count["stopper_lid"] == len(robot.cables)
+    assert count["stopper"] == len(robot.cables)
     assert count["grommet"] == 12
     assert all(part.name.replace("_", "a").isalnum() for part in parts.printed)
     pieces = {piece.name.split(" ")[0] for made in parts.assemblies for piece in made.pieces if piece.printed}

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from hydrostat.fabrication.checks.solid_checks import watertight_problems
 from hydrostat.fabrication.kit_options import PartOptions, PatternOptions
 from hydrostat.fabrication.parts.screws import M2X6
-from hydrostat.fabrication.parts.stopper import Stopper, holding_force, stopper
+from hydrostat.fabrication.parts.stopper import Stopper, holding_force, screw_stopper
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed, interferences
 
 CABLES = [PartOptions(), PartOptions(cable=0.2, fit=0.1), PartOptions(cable=0.9, bore=1.5, tube=2.5, clearance=0.5)]
@@ -29,7 +29,7 @@ def moved_lid(made: Stopper, down: float = 0.0, turned: float = 0.0) -> PartAsse
 @pytest.mark.parametrize("options", CABLES)
 def test_it_prints_without_support(options: PartOptions):
     """Oracle: triangles that face down."""
-    for printed in stopper(options).printed:
+    for printed in screw_stopper(options).printed:
         assert watertight_problems(printed) == ()
         assert overhang(printed) < 0.05
         assert max(printed.size) < 13.0
@@ -37,7 +37,7 @@ def test_it_prints_without_support(options: PartOptions):
 
 def test_the_measure_of_overhangs_can_fail():
     """Oracle: the lid upside down: its rim would hang in the air."""
-    _, lid = stopper(PartOptions()).printed
+    _, lid = screw_stopper(PartOptions()).printed
     solid = lid.solid.rotate((180, 0, 0)).translate((0, 0, lid.size[2]))
     upside_down = type(lid)(name="lid", title="Lid", solid=solid)
     assert overhang(upside_down) > 50
@@ -46,7 +46,7 @@ def test_the_measure_of_overhangs_can_fail():
 @pytest.mark.parametrize("options", CABLES)
 def test_nothing_is_in_the_way_until_the_cable_is_pressed_flat(options: PartOptions):
     """Oracle: boolean intersections of the pieces with the lid moved: what stops it is a rib on the floor."""
-    made = stopper(options)
+    made = screw_stopper(options)
     assert interferences(made.assembly) == ()
     assert interferences(moved_lid(made, down=0.24 * options.cable)) == ()
     assert interferences(moved_lid(made, down=0.55 * options.cable)) != ()
@@ -54,13 +54,13 @@ def test_nothing_is_in_the_way_until_the_cable_is_pressed_flat(options: PartOpti
 
 @pytest.mark.parametrize("turned", [8, 90, 180, 352])
 def test_the_lid_does_not_turn_with_the_screw(turned: float):
-    assert interferences(moved_lid(stopper(PartOptions()), turned=turned)) != ()
+    assert interferences(moved_lid(screw_stopper(PartOptions()), turned=turned)) != ()
 
 
 @pytest.mark.parametrize("options", CABLES)
 def test_the_screw_holds_and_does_not_come_out_at_the_cloth(options: PartOptions):
     """Oracle: heights in the assembly: three millimeters of thread, and plastic under the point pressed down."""
-    base, lid, screw = (piece.solid for piece in stopper(options).assembly.pieces)
+    base, lid, screw = (piece.solid for piece in screw_stopper(options).assembly.pieces)
     point, head = screw.bounding_box()[2], screw.bounding_box()[5]
     assert base.bounding_box()[5] - point >= 3.0
     assert head == pytest.approx(lid.bounding_box()[5])
@@ -72,7 +72,7 @@ def test_the_screw_holds_and_does_not_come_out_at_the_cloth(options: PartOptions
 @pytest.mark.parametrize("options", CABLES)
 def test_a_cable_comes_up_goes_round_and_leaves(options: PartOptions):
     """Oracle: bars as wide as the cable, moved through the pieces on the way of R13 that the docstring tells."""
-    made = stopper(options)
+    made = screw_stopper(options)
     base, lid, _ = (piece.solid for piece in made.assembly.pieces)
     x = 2.4 + (options.cable + 0.8) / 2
     up = Manifold.cylinder(30, options.cable / 2).translate((x, 0, -10))
@@ -88,7 +88,7 @@ def test_a_cable_comes_up_goes_round_and_leaves(options: PartOptions):
 @pytest.mark.parametrize("options", CABLES)
 def test_it_is_larger_than_a_pinhole_round_the_cable(options: PartOptions):
     """Oracle: a disc of twice the pinhole's width about the cable lies on the base, but for hole and slot."""
-    base = stopper(options).assembly.pieces[0].solid
+    base = screw_stopper(options).assembly.pieces[0].solid
     x = 2.4 + (options.cable + 0.8) / 2
     pinhole = PatternOptions().pinhole
     outline = base.slice(1.0).hull()
@@ -111,7 +111,7 @@ def test_what_it_holds(friction: float):
 
 
 def test_what_is_told_of_it():
-    made = stopper(PartOptions())
+    made = screw_stopper(PartOptions())
     assert made.hold == holding_force()
     assert 10 < made.hold < 20
     assert made.screw.startswith("M2 x 6 mm")

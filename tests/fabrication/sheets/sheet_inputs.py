@@ -88,7 +88,9 @@ def lists(cables: int, items: int | tuple[Item, ...] = 8, **more: Any) -> Lists:
             Item(group=BillGroup.BODY, what=name, specification="", quantity=1.0, price=price) for name in names
         )
     cuts = [
-        CableCut(number=number, winch="pull", body=40.0, slack=1.5, outside=0.0, lead=0.0, wraps=0.0, release=0.0)
+        CableCut(
+            number=number, winch="pull", body=40.0, slack=1.5, outside=0.0, lead=0.0, wraps=0.0, release=0.0, tail=80.0
+        )
         for number in range(1, cables + 1)
     ]
     tubes = [
