@@ -12,8 +12,6 @@ from hydrostat.fabrication.parts.motor import MOTORS
 from hydrostat.fabrication.parts.rigid_parts import RigidParts
 from hydrostat.robot import Robot
 
-_STOPPER = cleat(PartOptions())
-
 
 class FewParts(RigidParts):
     """Rigid parts whose facts are given in place of being computed; none if left out."""
@@ -30,9 +28,8 @@ class FewParts(RigidParts):
     stopper_assembly = None
 
     def __init__(self, **facts: Any) -> None:
-        super().__init__(
-            motor=MOTORS[0], units=(), base=None, seat=BodySeat(), stopper=_STOPPER, grommet=None, cables=0
-        )
+        stopper = cleat(PartOptions())
+        super().__init__(motor=MOTORS[0], units=(), base=None, seat=BodySeat(), stopper=stopper, grommet=None, cables=0)
         self.__dict__.update(facts)
 
 
