@@ -129,7 +129,9 @@ def fabricate(
     kept = designed_tension(loaded, robot) if limit is None else None
     torque = designed_torque(loaded, robot)
     planned = designed_motor(loaded, robot) if motor is None else motor
+    zeros = tell_zero_loss(loaded, loaded.motor if planned == "auto" else planned) if board == SERVO_BOARD else ""
     options = replace(options, tension=kept or limit, torque=torque, motor=planned, budget=spend)
+    options = replace(options, cautions=(f"{zeros[:1].upper()}{zeros[1:]}.",) if zeros else ())
     if motor is None and planned != "auto":
         print(f"note: motor {planned}, that of its design. Override with --motor")
     if mould is not None and options.method_for(loaded.body) is not kits.Method.FOAM:

@@ -270,21 +270,17 @@ def test_motor_and_board_are_checked_before_the_robot_is_read(
     assert words in err
 
 
-@pytest.mark.parametrize(
-    ("board", "key", "told"), [("esp32s3", "sts3215", 1), ("esp32s3", "n20", 0), (None, "sts3215", 0)]
-)
-def test_servos_that_lose_their_zeros_are_named(
-    run: Run, tmp_path: Path, starfish: Path, monkeypatch: pytest.MonkeyPatch, board: str | None, key: str, told: int
+def test_servos_that_lose_their_zeros_are_named_and_stand_on_the_sheet(
+    run: Run, tmp_path: Path, starfish: Path
 ) -> None:
-    """By hand: spools of 6 mm take in 37.7 mm a turn, travels are larger. A kit stands for the one that is made."""
-    kit = SimpleNamespace(motor=key, write=lambda out: None, files=())
-    for name, value in (("_build_or_report", kit), ("_print_motors", None), ("print_kit", None)):
-        monkeypatch.setattr(f"hydrostat.cli.fabricate.{name}", lambda *_, value=value: value)
-    options = () if board is None else ("--board", board)
-    code, out, _ = run("fabricate", starfish, "--motor", key, *options, "--out", tmp_path / "kit")
-    words = "on an esp32s3 servos lose their zeros without power: right, left and feet turn up to"
+    """By hand: spools of 6 mm take in 37.7 mm a turn, travels are larger."""
+    options = ("--motor", "sts3215", "--board", "esp32s3", "--force", "--out", tmp_path / "kit")
+    code, out, _ = run("fabricate", starfish, *options)
+    words = "n an esp32s3 servos lose their zeros without power: right, left and feet turn up to"
     remedy = "Write travel and release of 33 mm in all into robot.toml, or use a spool radius of at least"
-    assert (code, out.count(f"warning: {words}"), out.count(remedy)) == (0, told, told)
+    assert (code, out.count(f"warning: o{words}"), out.count(remedy)) == (0, 1, 1)
+    assert f"O{words}" in (tmp_path / "kit" / "steps.txt").read_text(encoding="utf-8")
+    assert tell_zero_loss(load_robot(starfish), "n20") == ""
 
 
 def test_zeros_last_where_travel_is_short(starfish: Path) -> None:

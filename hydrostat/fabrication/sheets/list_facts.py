@@ -140,7 +140,7 @@ def _short_title(placed: Placed) -> str:
     return placed.title if placed.printed else placed.title.partition(",")[0]
 
 
-def power_facts(plan: PowerPlan | None, robot: Robot) -> PowerFacts | None:
+def power_facts(plan: PowerPlan | None, robot: Robot, cautions: tuple[str, ...] = ()) -> PowerFacts | None:
     """Supply, fuse, leads, battery, warnings, first start and wiring table; None without motors."""
     if plan is None:
         return None
@@ -153,6 +153,7 @@ def power_facts(plan: PowerPlan | None, robot: Robot) -> PowerFacts | None:
         f"With NiMH cells, use {plan.cells} in series with the same fuse; never charge them in the robot.",
     ]
     warnings += [plan.motor.caution] if plan.motor.caution else []
+    warnings += cautions
     if plan.servos:
         if plan.motor.is_feetech:
             warnings += [

@@ -67,7 +67,7 @@ def sheet_facts(plan: KitPlan, lists: Lists, findings: KitFindings, *, letters: 
             for check in findings.checks
         ],
         "mould": _mould(mould),
-        "power": power_facts(lists.power, plan.robot),
+        "power": power_facts(lists.power, plan.robot, plan.options.cautions),
         "other_way": list(other_way(mould)) if mould else [],
         "cures": [list(cure) for cure in cure_times(mould)],
     }
