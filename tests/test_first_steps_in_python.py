@@ -61,6 +61,29 @@ def test_a_robot_from_a_file(tmp_path: Path) -> None:
         hs.new_robot(drawing, siez=0.1)  # type: ignore[call-arg]
 
 
+def test_a_robot_from_corners(tmp_path: Path) -> None:
+    """Oracle: the robot of a drawing of the same polygon, y down; and what is saved and read again."""
+    (tmp_path / "arm.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 200 32"><polygon points="0,0 200,8 200,24 0,28"/></svg>'
+    )
+    drawn = hs.new_robot(tmp_path / "arm.svg", size=0.2)
+    robot = hs.new_robot([(0.3, 0.0), (0.5, -0.008), (0.5, -0.024), (0.3, -0.028)], name="arm")
+    np.testing.assert_allclose(robot.body.mesh.nodes, drawn.body.mesh.nodes, atol=1e-9)
+    assert (robot.name, robot.poses.keys()) == ("arm", drawn.poses.keys())
+    hs.save_robot(robot, tmp_path / "arm")
+    assert hs.load_robot(tmp_path / "arm") == robot
+
+
+def test_a_robot_from_a_mesh(tmp_path: Path) -> None:
+    """Oracle: nodes of the mesh, also after it is saved and read."""
+    mesh = hs.load_robot("gallery:trunk").body.mesh
+    robot = hs.new_robot(mesh, name="nose", material="ecoflex 00-30")
+    np.testing.assert_allclose(robot.body.mesh.nodes, mesh.nodes, atol=1e-9)
+    assert robot.body.material.name == "ecoflex 00-30"
+    hs.save_robot(robot, tmp_path / "nose")
+    assert hs.load_robot(tmp_path / "nose") == robot
+
+
 def test_slopes_of_markers_are_those_of_finite_differences(simulation: hs.Simulation, pose: hs.Equilibrium) -> None:
     """Central differences of the markers themselves."""
     step, winch = 1e-5, 1
@@ -223,6 +246,19 @@ ASTRAY = {
     "a file of constraints": (
         lambda s: hs.design_cables(s.robot, s.robot.poses.values(), constraints="limits.toml"),
         r"constraints must be Constraints\(...\), not 'limits.toml'",
+    ),
+    "corners in space": (
+        lambda _: hs.new_robot([(0, 0, 0), (1, 0, 0)]),
+        r"outline: shape \(2, 3\) is no list of corners. Give shape \(corners, 2\), in m",
+    ),
+    "words as corners": (lambda _: hs.new_robot([("a", 1)]), "outline: corners must be numbers. Give an array"),
+    "corners that cross": (
+        lambda _: hs.new_robot([(0, 0), (0.1, 0.1), (0.1, 0), (0, 0.1)]),
+        r"the outline crosses itself at \(50, 50\) mm",
+    ),
+    "a flat mesh": (
+        lambda s: hs.new_robot(s.robot.body.mesh),
+        "from a mesh of tetrahedra. For a flat body, give its outline as an array",
     ),
     "no file": (lambda _: hs.new_robot(None), "starts from the path of a file"),
     "a size with a unit": (lambda _: hs.new_robot("a.svg", size="200 mm"), "size must be a number in m, not '200 mm'"),

@@ -82,7 +82,7 @@ def test_python_of_a_page_runs(page: str, tmp_path: Path, monkeypatch: pytest.Mo
     assert written == (
         {"pose.png", "starfish_kit"}
         if page == "README.md"
-        else {"pose.png", "poses.csv", "arm.svg", "arm", "pose", "samples"}
+        else {"pose.png", "poses.csv", "arm", "pose", "samples"}
     )
 
 

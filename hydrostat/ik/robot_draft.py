@@ -1,15 +1,19 @@
-"""`new_robot`: a first robot, with a first pose, from a file of any kind that hydrostat reads."""
+"""`new_robot`: a first robot, with a first pose, from corners, a mesh or a file of any kind that hydrostat reads."""
 
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TypedDict, Unpack
+
+import numpy as np
+from numpy.typing import ArrayLike
 
 from hydrostat.closed_set import parse_choice
 from hydrostat.errors import InputError
 from hydrostat.files import read_stranger
-from hydrostat.geometry import Inner
+from hydrostat.geometry import Inner, Mesh, Outline
 from hydrostat.given import check_number, check_type, path_of
 from hydrostat.robot import (
     GALLERY,
@@ -65,7 +69,10 @@ class NewRobotWish:
                 raise InputError(f"{key}: {what}; leave it out")
 
     def begin(
-        self, source: str | Path, *, run: "Callable[[Sketch], BegunRobot]" = lambda sketch: sketch()
+        self,
+        source: "str | Path | ArrayLike | Mesh",
+        *,
+        run: "Callable[[Sketch], BegunRobot]" = lambda sketch: sketch(),
     ) -> "BegunRobot":
         """Create a first robot, with notes; see `new_robot`.
 
@@ -73,11 +80,15 @@ class NewRobotWish:
         """
         from hydrostat.geometry import OUTLINE_SUFFIXES, STEP_SUFFIXES, SURFACE_SUFFIXES
 
+        if isinstance(source, Mesh):
+            return _add_first_pose(_of_mesh_object(source, self))
+        if isinstance(source, np.ndarray | list | tuple):
+            return _of_drawing(_drawn_bytes(source), Path(f"{self.name or 'body'}.svg"), self)
         if is_of_gallery(source):
             return BegunRobot(_of_gallery(source, self))
         path = path_of(source, 'a robot starts from the path of a file, or "gallery:NAME"')
         surfaces = (*SURFACE_SUFFIXES, *STEP_SUFFIXES)
-        kinds = {OUTLINE_SUFFIXES: _of_drawing, surfaces: _of_surface, MESH_SUFFIXES: _of_mesh}
+        kinds = {OUTLINE_SUFFIXES: _of_drawing_file, surfaces: _of_surface, MESH_SUFFIXES: _of_mesh}
         for suffixes, make in kinds.items():
             if path.suffix.lower() in suffixes:
                 if not path.is_file():
@@ -116,17 +127,20 @@ class _Wished(TypedDict, total=False):
     drawing_part: int
 
 
-def new_robot(source: str | Path, **wished: Unpack[_Wished]) -> Robot:
-    """Make a first robot from a file, with sensible numbers where none are given; `save_robot` keeps it.
+def new_robot(source: "str | Path | ArrayLike | Mesh", **wished: Unpack[_Wished]) -> Robot:
+    """Make a first robot from a file, an outline or a mesh, with sensible numbers where none are given.
+
+    `save_robot` keeps it. An outline or mesh is moved like a drawing or mesh file of the same coordinates.
 
     Args:
         source: a drawing (SVG, DXF, PNG, JPG), a scan or CAD model (STL, OBJ, PLY, OFF, 3MF, STEP), a ready mesh (VTK,
-            VTU, MSH), or "gallery:NAME".
+            VTU, MSH), or "gallery:NAME"; the corners of a flat body, shape (corners, 2) [m], y up; or a `Mesh` of
+            tetrahedra.
         wished: `name`, `size`, `element_size`, `nodes`, `thickness`, `inflate`, `material`, `inner` ("holes" or
             "drawn") and `drawing_part`; lengths in meters.
 
     Raises:
-        InputError: a file that is no body, or wishes that do not fit it.
+        InputError: a file, corners or a mesh that is no body, or wishes that do not fit it.
     """
     unknown = set(wished) - set(NewRobotWish.__dataclass_fields__)
     if unknown:
@@ -147,11 +161,45 @@ def _of_gallery(source: str, wish: NewRobotWish) -> Robot:
     return robot if wish.name is None else replace(robot, name=wish.name)
 
 
-def _of_drawing(path: Path, wish: NewRobotWish) -> BegunRobot:
+def _drawn_bytes(corners: ArrayLike) -> bytes:
+    """Drawing (SVG) of an outline, of corners (corners, 2) [m] (InputError: they are no outline)."""
+    try:
+        places = np.asarray(corners, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError("outline: corners must be numbers. Give an array of shape (corners, 2), in m") from None
+    if places.ndim != 2 or places.shape[1:] != (2,):
+        raise InputError(f"outline: shape {places.shape} is no list of corners. Give shape (corners, 2), in m")
+    ring = 1e3 * Outline(places).exterior * (1, -1)
+    low, extent = ring.min(axis=0), np.ptp(ring, axis=0)
+    points = " ".join(f"{x:.9g},{y:.9g}" for x, y in ring)
+    size = " ".join(f"{number:.9g}" for number in (*low, *extent))
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{extent[0]:.9g}mm" height="{extent[1]:.9g}mm" '
+        f'viewBox="{size}"><polygon points="{points}"/></svg>'
+    ).encode()
+
+
+def _of_mesh_object(mesh: Mesh, wish: NewRobotWish) -> BegunRobot:
+    from hydrostat.geometry import write_vtu
+
+    if mesh.dim != 3:
+        raise InputError("a robot starts from a mesh of tetrahedra. For a flat body, give its outline as an array")
+    linear = mesh.to_linear()
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / f"{_file_name(wish.name or 'body')}.vtu"
+        path.write_bytes(write_vtu(linear, 1e3 * linear.nodes, {}))
+        return _of_mesh(path, wish)
+
+
+def _of_drawing_file(path: Path, wish: NewRobotWish) -> BegunRobot:
+    return _of_drawing(read_stranger(path), path, wish)
+
+
+def _of_drawing(content: bytes, path: Path, wish: NewRobotWish) -> BegunRobot:
     from hydrostat.geometry import read_drawing
     from hydrostat.robot import inflate_outline
 
-    content, file = read_stranger(path), _file_name(path.name)
+    file = _file_name(path.name)
     inner = parse_choice(Inner, wish.inner or Inner.HOLES, what="inner")
     reading = {"size": wish.size, "inner": inner}
     drawing = read_drawing(content, name=file, part=wish.drawing_part, **reading)
