@@ -80,9 +80,7 @@ def test_python_of_a_page_runs(page: str, tmp_path: Path, monkeypatch: pytest.Mo
     exec(compile(code, page, "exec"), {})
     written = {path.name for path in tmp_path.iterdir()}
     assert written == (
-        {"pose.png", "starfish_kit"}
-        if page == "README.md"
-        else {"pose.png", "poses.csv", "arm", "pose", "samples"}
+        {"pose.png", "starfish_kit"} if page == "README.md" else {"pose.png", "poses.csv", "arm", "pose", "samples"}
     )
 
 

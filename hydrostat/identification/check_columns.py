@@ -109,10 +109,10 @@ def _check_rows(predicted: np.ndarray, places: np.ndarray, before: float) -> Non
 
 def _check_idle(robot: Robot, measurements: Measurements, predicted: np.ndarray) -> None:
     """Check that a winch contracts, if markers move without another reason."""
-    away = np.where(measurements.hung_masses.any(axis=1)[:, None, None], np.nan, measurements.places - predicted)
+    away = np.where(np.any(measurements.hung_masses, axis=1)[:, None, None], np.nan, measurements.places - predicted)
     if measurements.commands.any() or not robot.winches or not np.isfinite(away).any():
         return
-    seen = np.isfinite(away).all(axis=2).any(axis=0)  # markers
+    seen = np.any(np.isfinite(away).all(axis=2), axis=0)  # markers
     away[:, seen] -= np.nanmedian(away[:, seen], axis=0)
     moved = np.nan_to_num(np.linalg.norm(away, axis=2))
     row, marker = np.unravel_index(int(np.argmax(moved)), moved.shape)
@@ -129,7 +129,7 @@ def _changed_commands(robot: Robot, measurements: Measurements) -> Iterator[tupl
     """Contractions with other units or order, within the travel of the winches, and the message if they fit."""
     commands, names = measurements.commands, [winch.name for winch in robot.winches]
     travel = np.array([winch.travel for winch in robot.winches])
-    is_used = commands.any(axis=0)
+    is_used = np.any(commands, axis=0)
     used = np.flatnonzero(is_used).tolist()
     for factor, unit in UNITS.items():
         for chosen in dict.fromkeys([tuple(used), *((winch,) for winch in used)]):

@@ -133,7 +133,7 @@ def sensitivities(
     nodes, tensions = rows
     fields = response(nodes.reshape(len(nodes), -1).T + columns @ (tangents * tensions).T).T
     by_controls = -(assembly.control_derivative(pose.nodes, pose.controls).T @ fields.T).T
-    np.add.at(by_controls, (slice(None), cables.winches), cables.ratios * tangents * tensions)
+    np.add.at(by_controls.T, cables.winches, (cables.ratios * tangents * tensions).T)
     by_tension = tensions - fields @ columns
     by_elongation = tangents * by_tension
     fields = fields.reshape(-1, *assembly.shape)
