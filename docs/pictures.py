@@ -6,7 +6,7 @@ the pictures of `make demo` alone; demo.json next to them holds its network and 
 
 import json
 import sys
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from hashlib import sha256
 from io import BytesIO
 from pathlib import Path
@@ -115,6 +115,7 @@ def draw_demo() -> None:
         "rms_error": network.rms_error,
         "rms_error_as_built": network.expected_error,
         "tension_limit": limits.tension_limit,
+        "torque_limit": own.max_torque,
         "contractions": network.ik_results[0].pose.contractions.tolist(),
         "face": own.face,
         "winches": [asdict(winch) for winch in own.winches],
@@ -135,7 +136,9 @@ def demo_robot(record: dict[str, Any]) -> hs.Robot:
     """Starfish of the gallery with the network of a record of the demo."""
     starfish = hs.load_robot(gallery_folder("starfish"))
     winches = [hs.Winch(**_as_tuples(winch) | {"mount": Mount(winch["mount"])}) for winch in record["winches"]]
-    return assign_cable_sides(starfish).with_network(winches, [hs.Cable(**_as_tuples(c)) for c in record["cables"]])
+    cables = [hs.Cable(**_as_tuples(cable)) for cable in record["cables"]]
+    robot = assign_cable_sides(starfish).with_network(winches, cables)
+    return replace(robot, max_tension=record["tension_limit"], max_torque=record["torque_limit"])
 
 
 def _as_tuples(value: Any) -> Any:
