@@ -264,7 +264,9 @@ def test_not_plain_ground() -> None:
 
 
 def test_size() -> None:
-    """Oracle: the message asks for the size, or names the bad one."""
+    """Oracle: the message asks for the size, or names the bad one; what is no picture needs none."""
+    with pytest.raises(OutlineError, match=r"a.png: neither PNG nor JPEG"):
+        read_outline(b"noise", name="a.png")
     with pytest.raises(OutlineError, match=r"a.png: a picture has no physical size: give"):
         read_outline(GOOD, name="a.png")
     with pytest.raises(InputError, match=r"a.png: the size must be positive, not 0.0 m"):

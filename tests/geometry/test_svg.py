@@ -112,6 +112,7 @@ USES = "".join(f'<g id="u{n}"><use href="#u{n + 1}"/><use href="#u{n + 1}"/></g>
         (svg(SQUARE, 'width="50" height="50px"'), "a.svg: the drawing has no physical size"),
         (svg(SQUARE, 'width="100%" viewBox="0 0 9 9"'), "a.svg: the drawing has no physical size"),
         (svg(""), "a.svg: no closed shape"),
+        (svg("<text>hi</text>", ""), "a.svg: no closed shape"),
         (svg("<text>hi</text>"), "a.svg: no closed shape.*Text must become paths"),
         (
             svg(f'<path {LINE} d="M0,0 h10 v10 h-7"/>'),

@@ -48,13 +48,13 @@ def read_image(
     """
     if part not in (None, 1):
         raise OutlineError(f"{name}: parts are numbered in SVG and DXF drawings only: cut the picture to the body")
-    if size is None and page is None:
-        raise OutlineError(f'{name}: a picture has no physical size: give the longest side of the body, as "200 mm"')
     pixels, step = _pixels(content, name)
     kind = f"a picture of {step * pixels.shape[1]} x {step * pixels.shape[0]} pixels"
     if page is not None:
         page.check(kind, name)
     found, shadow, notes = _find_body(pixels, name)
+    if size is None and page is None:
+        raise OutlineError(f'{name}: a picture has no physical size: give the longest side of the body, as "200 mm"')
     page = page or page_about(found.body, kind, (1.0, -1.0), size)
     outline, scale = outline_on_page(found.body, list(found.holes), page, name), page.scale[0]
     coarse = (f"read at one pixel in {step * step}: the outline is known to {1e3 * scale:.2g} mm",) if step > 1 else ()

@@ -260,10 +260,10 @@ def read_svg(
     kind = _kind_of_page(document)
     if page is not None:
         page.check(kind, name)
-    elif size is None and document.unit is None:
-        raise OutlineError(f"{name}: the drawing has no physical size (width in mm, cm or in): {GIVE_SIZE}")
     lines = _read_lines(document, name)
     shapes = sorted_shapes(lines, _sheet_of(document), name)
+    if page is None and size is None and document.unit is None:
+        raise OutlineError(f"{name}: the drawing has no physical size (width in mm, cm or in): {GIVE_SIZE}")
 
     def page_of(body: Ring) -> Page:
         return page or page_about(body, kind, (across, -down), size)
