@@ -7,11 +7,15 @@ import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from shlex import quote
 from typing import Annotated
 
 import typer
 
 from hydrostat.errors import InputError
+
+_TABLES = (".csv", ".json")
+"""Endings of tables and poses, which some commands take after the robot."""
 
 
 def found_folder(robot: Path) -> Path:
@@ -20,9 +24,9 @@ def found_folder(robot: Path) -> Path:
         if not (robot / "robot.toml").exists() and (robot / "robot" / "robot.toml").is_file():
             raise InputError(f"{robot}: results of a design. The robot is {robot / 'robot'}")
         if not robot.exists() and robot.suffix != ".toml":
-            raise InputError(
-                f"{robot}: there is no such file. Begin a robot: hydrostat new {robot} --from gallery:starfish"
-            )
+            begin = f"Begin a robot: hydrostat new {quote(str(robot))} --from gallery:starfish"
+            give = "Give the folder of a robot, or gallery:NAME"
+            raise InputError(f"{robot}: there is no such file. {give if robot.suffix in _TABLES else begin}")
         return robot
     from hydrostat.robot import GALLERY, gallery_folder
 

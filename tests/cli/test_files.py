@@ -41,7 +41,7 @@ def test_parts_are_counted_from_one(said: str, words: str) -> None:
 @pytest.mark.parametrize(
     "said",
     [
-        "rod[1].dir: there is no such file. Begin a robot: hydrostat new rod[1].dir --from gallery:starfish",
+        "rod[1].dir: there is no such file. Begin a robot: hydrostat new 'rod[1].dir' --from gallery:starfish",
         "../rod[1]/winch[0].toml: there is no such file",
         "my.pin[0]: is a folder",
         'stands in "winch[0] left", not in "rod[1].at"',
@@ -55,7 +55,7 @@ def test_paths_and_quotes_stay(said: str) -> None:
 def test_a_missing_folder_keeps_its_name(run: Run) -> None:
     code, _, err = run("check", "rod[1].dir")
     assert code == 2
-    assert "hydrostat new rod[1].dir " in err
+    assert "hydrostat new 'rod[1].dir' " in err
 
 
 def test_a_new_robot_is_commented_and_not_risky(run: Run, tmp_path: Path) -> None:
