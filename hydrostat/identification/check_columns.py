@@ -41,14 +41,14 @@ def check_columns(
         predicted: positions that the assumed robot predicts for them [m].
 
     Raises:
-        InputError: axes exchanged or reversed; positions in other rows than their contractions; contractions in cm or
-            m, of two winches exchanged, or of a winch left out.
+        InputError: axes exchanged or reversed; two markers exchanged in all rows; positions in other rows than their
+            contractions; contractions in cm or m, of two winches exchanged, or of a winch left out.
     """
     robot = assumed.model.robot(assumed.values)
     apart = _distances(predicted, measurements.places)
     if not _rms(apart) > FAR * robot.body.mesh.size:
         return
-    _check_axes(predicted, measurements.places, _rms(apart))
+    _check_axes(predicted, measurements, _rms(apart))
     _check_idle(robot, measurements, predicted)
     worst = np.sort(np.argsort(-np.nansum(apart**2, axis=1))[:WORST_ROWS])
     for commands, message in _changed_commands(robot, measurements):
@@ -70,15 +70,24 @@ def _rms(distances: np.ndarray) -> float:
     return float(np.sqrt((known**2).mean())) if len(known) else 0.0
 
 
-def _check_axes(predicted: np.ndarray, places: np.ndarray, before: float) -> None:
-    """Check the order and signs of the axes."""
+def _check_axes(predicted: np.ndarray, measurements: Measurements, before: float) -> None:
+    """Check the order and signs of the axes, and the order of the markers: on a symmetric body both may fit."""
+    places, names = measurements.places, measurements.markers
     axes = "xyz"[: places.shape[2]]
+    exchanges = []
+    for one, other in combinations(range(len(names)), 2):
+        order = np.arange(len(names))
+        order[[one, other]] = other, one
+        exchanges.append((_rms(_distances(predicted, places[:, order])), names[one], names[other]))
     tried = [
         (_rms(_distances(predicted, places[..., list(order)] * signs)), order, signs)
         for order in permutations(range(len(axes)))
         for signs in product((1, -1), repeat=len(axes))
     ]
     least, order, signs = min(tried)
+    swapped, *pair = min(exchanges, default=(np.inf,))
+    if swapped < min(least, CLEARER * before):
+        raise InputError(f"positions: those of {' and '.join(pair)} are exchanged. Exchange their columns.")
     if least < CLEARER * before:
         changes = [
             f"{axis} by {'-' * (sign < 0)}{axes[other]}"

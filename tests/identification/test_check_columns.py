@@ -67,6 +67,10 @@ FAULTS = {
         r"all 0, but .* moves by \d+ mm .* right_mm, left_mm, feet_mm",
     ),
     "y down": (place_change(lambda one: one * [1, -1]), "Replace y by -y in all"),
+    "markers exchanged": (
+        place_change(lambda one: one[:, [0, 2, 1, *range(3, one.shape[1])]]),
+        r"those of right and right_foot are exchanged\. Exchange their columns",
+    ),
     "axes exchanged": (place_change(lambda one: one[..., ::-1]), "Replace x by y and y by x in all"),
     "rows shifted": (place_change(lambda one: np.roll(one, 1, axis=0)), "row 1 fit the positions of row 2"),
 }
