@@ -216,7 +216,7 @@ class KitOptions:
             winches. A designed robot keeps to the limit of its design.
         torque: maximum torque of a winch in its poses [N m], as the tension.
         paper: paper size of the pages; assembly sheets for A3 are of A4.
-        cautions: warnings for the page of wires, a sentence each, beside those of the kit.
+        cautions: further warnings for the page of wires, a sentence each.
         left_out: parts that a simple version leaves out, for the first page.
         step: also write each printed part as STEP; needs the extra `cad`.
         force: True to write a kit that cannot be built well, with the reasons on the sheet.

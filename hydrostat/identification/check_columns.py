@@ -48,7 +48,8 @@ def check_columns(
     apart = _distances(predicted, measurements.places)
     if not _rms(apart) > FAR * robot.body.mesh.size:
         return
-    _check_axes(predicted, measurements, _rms(apart))
+    rotates = any(name.startswith("frame.about") for name in assumed.values)
+    _check_axes(predicted, measurements, _rms(apart), rotates=rotates)
     _check_idle(robot, measurements, predicted)
     worst = np.sort(np.argsort(-np.nansum(apart**2, axis=1))[:WORST_ROWS])
     for commands, message in _changed_commands(robot, measurements):
@@ -70,8 +71,11 @@ def _rms(distances: np.ndarray) -> float:
     return float(np.sqrt((known**2).mean())) if len(known) else 0.0
 
 
-def _check_axes(predicted: np.ndarray, measurements: Measurements, before: float) -> None:
-    """Check the order and signs of the axes, and the order of the markers: on a symmetric body both may fit."""
+def _check_axes(predicted: np.ndarray, measurements: Measurements, before: float, *, rotates: bool) -> None:
+    """Check the order and signs of the axes, and the order of the markers: on a symmetric body both may fit.
+
+    Axes that a rotation explains pass if the fit finds rotations (`rotates`).
+    """
     places, names = measurements.places, measurements.markers
     axes = "xyz"[: places.shape[2]]
     exchanges = []
@@ -88,7 +92,8 @@ def _check_axes(predicted: np.ndarray, measurements: Measurements, before: float
     swapped, *pair = min(exchanges, default=(np.inf,))
     if swapped < min(least, CLEARER * before):
         raise InputError(f"positions: those of {' and '.join(pair)} are exchanged. Exchange their columns.")
-    if least < CLEARER * before:
+    is_turn = np.linalg.det(np.eye(len(axes))[list(order)] * signs) > 0
+    if least < CLEARER * before and not (rotates and is_turn):
         changes = [
             f"{axis} by {'-' * (sign < 0)}{axes[other]}"
             for axis, other, sign in zip(axes, order, signs, strict=True)
@@ -96,7 +101,7 @@ def _check_axes(predicted: np.ndarray, measurements: Measurements, before: float
         ]
         raise InputError(
             f"positions: axes differ from those of the robot, whose y points up. Replace {' and '.join(changes)} in "
-            "all markers."
+            f"all markers{', or add frame to --fit' if is_turn else ''}."
         )
 
 

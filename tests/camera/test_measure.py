@@ -146,6 +146,8 @@ def test_faults_of_photographs_are_said_in_one_line(rest: Path, tmp_path: Path) 
         with pytest.raises(InputError, match=words) as caught:
             measure_photos(robot, [Photo(file=tmp_path / file, contractions={}, masses={})])
         assert "\n" not in str(caught.value)
+    with pytest.raises(InputError, match=r"contracts by \d+ mm, but its travel is \d+ mm. Check the unit"):
+        Photo.read_all([tmp_path / f"{robot.winches[0].name}=12m.jpg"], robot)
     with pytest.raises(InputError, match="is of another robot"):
         measure_photos(replace(robot, name="another"), Photo.read_all([rest], robot))
     found = measure_photos(robot, Photo.read_all([save(without(numbers["middle"]), tmp_path / "rest.png")], robot))

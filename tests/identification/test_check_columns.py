@@ -4,12 +4,13 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from hydrostat.errors import InputError
-from hydrostat.identification import Measurements, identify
+from hydrostat.identification import Measurements, identify, read_measurements
 from hydrostat.identification.check_columns import check_columns
 from hydrostat.identification.identified_robot import start_of
 from hydrostat.identification.kinds import named_model
@@ -94,6 +95,19 @@ def test_a_right_table_passes() -> None:
     check(replace(right_table(), places=misread))
 
 
+@pytest.mark.parametrize("turn", [[[0, -1], [1, 0]], [[-1, 0], [0, -1]]])
+def test_a_turned_frame_is_left_to_a_fit_of_the_frame(turn: list[list[int]]) -> None:
+    """Oracle: the rotation; a mirror image is no rotation."""
+    table = replace(right_table(), places=right_table().places @ np.array(turn))
+    assumed = start_of(named_model(starfish(), ("frame",)))
+    check_columns(assumed, table, assumed.predict(table))
+    with pytest.raises(InputError, match="in all markers, or add frame to --fit"):
+        check(table)
+    mirrored = replace(right_table(), places=right_table().places * [1, -1])
+    with pytest.raises(InputError, match="Replace y by -y in all markers\\."):
+        check_columns(assumed, mirrored, assumed.predict(mirrored))
+
+
 def test_hung_masses_alone_are_no_fault() -> None:
     """Oracle: the robot 60 % softer than assumed, pulled by masses, whose markers move by 4 % of the body and more."""
     robot = replace(starfish(), gravity=(0.0, -9.81))
@@ -115,3 +129,15 @@ def test_identify_refuses_before_it_fits() -> None:
     with pytest.raises(InputError, match="written in cm"):
         identify(starfish(), table, fit="gain", progress=lambda *given: fits.append(given))
     assert not fits
+
+
+@pytest.mark.parametrize(("contraction", "is_refused"), [("500", False), ("20000", True)])
+def test_contractions_far_beyond_the_travel_are_refused(tmp_path: Path, contraction: str, is_refused: bool) -> None:
+    """Oracle: ten times the travel of the winch, 60 mm."""
+    file = tmp_path / "measured.csv"
+    file.write_text(f"right_mm,right_x_mm,right_y_mm\n0,128,41\n{contraction},100,50\n")
+    if is_refused:
+        with pytest.raises(InputError, match=r"line 3, column right_mm: 20000 mm, but the travel of right is \d+ mm"):
+            read_measurements(file, starfish())
+    else:
+        assert len(read_measurements(file, starfish()).commands) == 2

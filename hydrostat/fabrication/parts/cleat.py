@@ -4,17 +4,21 @@ import math
 from dataclasses import dataclass
 
 from hydrostat.fabrication.kit_options import PartOptions
-from hydrostat.fabrication.parts.stopper import FRICTION, Stopper
+from hydrostat.fabrication.parts.stopper import Stopper
 from hydrostat.fabrication.solids.assembly import PartAssembly, Placed
 from hydrostat.fabrication.solids.construct import Construction, Cylinder, Prism, Revolve, solid_of
 from hydrostat.fabrication.solids.printed import Printed
 
-TURNS = 7
+TURNS = 8
 """Turns of the line round a cleat."""
 
 PINCH = 0.5
 """Pull that the line withstands in a notch [N], assumed: it jams where the wedge is narrower than the line. Not
 measured."""
+
+FRICTION = 0.07
+"""Friction coefficient of the turns, assumed: below the 0.1 to 0.2 of UHMWPE on plastic, because most turns lie on
+line. Not measured. The holding force depends on it exponentially: 9 N at 0.055, 53 N at 0.09."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,7 +29,8 @@ class _CleatSizes:
         rim: radius of the foot on the cloth and of the head.
         waist: radius between both, which the line is wound round.
         foot: thickness of the foot.
-        straight: height of the waist below the cone of the head, whose sides rise by 45 degrees to print by themselves.
+        straight: least height of the waist below the cone of the head, whose sides rise by 45 degrees to print by
+            themselves; 1.5 times the diameter of a thick line.
         edge: height of the rim of the head.
         room: excess of the hole over the diameter of the line.
         chamfer: chamfer of the edge on the cloth.
@@ -33,19 +38,19 @@ class _CleatSizes:
         notches: number of notches.
     """
 
-    rim: float = 6.0
+    rim: float = 6.5
     waist: float = 2.6
     foot: float = 1.6
     straight: float = 0.6
     edge: float = 0.8
     room: float = 0.8
-    chamfer: float = 0.6
-    notch: float = 3.0
+    chamfer: float = 0.5
+    notch: float = 3.4
     notches: int = 4
 
 
 _SIZES = _CleatSizes()
-_WIND = f"wind the line {TURNS} times round its waist and pull the tail into a notch"
+_WIND = f"wind the line {TURNS} times round its waist, the tail taut, and pull the tail into a notch"
 
 
 def cleat(options: PartOptions) -> Stopper:
@@ -70,7 +75,9 @@ def cleat(options: PartOptions) -> Stopper:
         assembly=PartAssembly(name="stopper", pieces=(piece,)),
         screw=None,
         hold=holding_force(),
-        tail=40.0 + 5 * math.ceil(TURNS * 2 * math.pi * (_SIZES.waist + 0.8) / 5),
+        tail=40.0 + 5 * math.ceil(find_wound_length(options.cable) / 5),
+        begin="lay it into the slot of its stopper and wind it three times round the waist for now",
+        place="Hold its stopper, the line in its slot, on the {surface} at the cable's last point",
         fix=_WIND,
         reset=f"unwind its stopper, pull the line straight, {_WIND}",
         check="tails in their notches",
@@ -85,20 +92,35 @@ def holding_force(pinch: float = PINCH, friction: float = FRICTION, *, turns: fl
     return pinch * math.exp(friction * (2 * math.pi * turns + math.pi / 2))
 
 
+def find_wound_length(cable: float) -> float:
+    """Length of the turns of a line of a diameter [mm], in layers that fill the groove from the waist outward [mm]."""
+    length, radius, left = 0.0, _SIZES.waist + cable / 2, TURNS
+    while left > 0:
+        room = _find_straight(cable) + radius - _SIZES.waist  # height of the groove at this radius
+        turns = min(left, max(1, math.floor(room / cable)))
+        length, radius, left = length + 2 * math.pi * radius * turns, radius + cable, left - turns
+    return length
+
+
+def _find_straight(cable: float) -> float:
+    """Height of the waist below the cone [mm]: a thick line needs room for its turns inside the rim."""
+    return max(_SIZES.straight, 1.5 * cable)
+
+
 def _button(options: PartOptions) -> Construction:
-    """Foot, waist and head, without the way of the line and the notches."""
+    """Foot, waist and head, with a hole for the line and the notches."""
     rim, waist, chamfer = _SIZES.rim, _SIZES.waist, _SIZES.chamfer
-    neck = _SIZES.foot + _SIZES.straight
+    neck = _SIZES.foot + _find_straight(options.cable)
     crown = neck + rim - waist
     side = ((0, 0), (rim - chamfer, 0), (rim, chamfer), (rim, _SIZES.foot), (waist, _SIZES.foot), (waist, neck))
     body: Construction = Revolve((*side, (rim, crown), (rim, crown + _SIZES.edge), (0, crown + _SIZES.edge)))
-    body = body - _way_up(options)
+    body = body - _line_hole(options)
     for k in range(_SIZES.notches):
         body = body - _notch(options, crown + _SIZES.edge).rotate(z=(k + 0.5) * 360 / _SIZES.notches)
     return body
 
 
-def _way_up(options: PartOptions) -> Construction:
+def _line_hole(options: PartOptions) -> Construction:
     """Hole of the line through the foot next to the waist, rounded below, and the slot by which it is laid in."""
     radius = (options.cable + _SIZES.room) / 2
     x, half, height = _SIZES.waist + radius, (options.cable + 0.4) / 2, _SIZES.foot + 0.01
@@ -108,8 +130,8 @@ def _way_up(options: PartOptions) -> Construction:
 
 
 def _notch(options: PartOptions, top: float) -> Construction:
-    """A wedge across the rim of the head, wider than the line at the rim, sharp at its end."""
-    half, outer = options.cable / 2 + 0.1, _SIZES.rim + 0.5
+    """A wedge across the rim of the head, wider than the line at the rim, also as printed, sharp at its end."""
+    half, outer = options.cable / 2 + 0.1 + options.fit, _SIZES.rim + 0.5
     inner = _SIZES.rim - _SIZES.notch
     wedge = ((inner, 0.0), (_SIZES.rim, -half), (outer, -half - 0.3), (outer, half + 0.3), (_SIZES.rim, half))
     return Prism(wedge, top).move(0, 0, _SIZES.foot + _SIZES.straight / 2)

@@ -96,6 +96,11 @@ class RigidParts:
         return self.stopper.hold if self.stopper else None
 
     @property
+    def begin_stopper(self) -> str:
+        """Command that puts a stopper on for the time being; empty without stoppers."""
+        return self.stopper.begin if self.stopper else ""
+
+    @property
     def winch_assembly(self) -> PartAssembly | None:
         """The winch with the most cables; None without winches."""
         largest = max(self.units, key=lambda unit: len(unit.cables), default=None)

@@ -65,9 +65,11 @@ class Stopper:
     screw: str | None  # title of the screw that closes it; None without
     hold: float  # tension at which the cable begins to slip, estimated [N]
     tail: float  # line beyond it, to hold while it is set and to let out when it is adjusted [mm], assumed
-    fix: str  # what holds the line, as a command
-    reset: str  # what takes up slack, as a command
-    check: str  # what to look at, after the word Stoppers
+    begin: str  # command that puts it on for the time being
+    place: str  # command that puts it on the {surface} at the last point of its cable
+    fix: str  # command that makes it hold the line
+    reset: str  # command that takes up slack
+    check: str  # its final state
 
 
 def screw_stopper(options: PartOptions) -> Stopper:
@@ -116,6 +118,8 @@ def screw_stopper(options: PartOptions) -> Stopper:
         screw=M2X6.title,
         hold=holding_force(),
         tail=80.0,
+        begin="put the stopper on loosely",
+        place="Slide its stopper along the line until it touches the {surface} at the cable's last point",
         fix="clamp it there",
         reset="loosen its stopper by half a turn, pull the line straight and tighten the screw",
         check="screws tight",

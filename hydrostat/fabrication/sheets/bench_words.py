@@ -19,8 +19,7 @@ def list_calibration(plan: KitPlan) -> list[str]:
         "Turn all winches to zero: the spool mark of each cable must be where the line meets the spool. "
         + turn_words(plan),
         "Pull the first cable straight by its tail, not tight: the body must not move.",
-        f"Slide its stopper along the line until it touches the {SURFACES[plan.method]} at the cable's last point; "
-        f"then move it back by the listed slack, and {ends.fix}.",
+        f"{ends.place.format(surface=SURFACES[plan.method])}; then move it back by the listed slack, and {ends.fix}.",
         "Do the same for the other cables. Then reel in 10 mm with one winch after the other. Each limb must move, "
         "and return when you pay out.",
         f"If a limb moves late, its cable is slack: {ends.reset}. If it is bent at zero, move the stopper "

@@ -210,7 +210,7 @@ def _closing(mould: Mold) -> str:
 def skin_steps(plan: KitPlan, lists: Lists) -> tuple[AssemblyStep, ...]:
     """Steps from a cast body to a robot."""
     cables, fixed = len(plan.robot.cables), _SLIP_SILICONE if plan.is_silicone else _GLUE_FOAM
-    ends = " Lead the end of each line out through it at the last point of the line; put the stopper on loosely."
+    ends = f" Lead the end of each line out through it at the last point of the line; {plan.rigid.begin_stopper}."
     return (
         *(_cable_steps(plan, lists) if cables else ()),
         AssemblyStep(

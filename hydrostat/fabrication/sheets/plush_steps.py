@@ -137,7 +137,7 @@ def _cables(plan: KitPlan) -> tuple[AssemblyStep, ...]:
             work.route,
             f"{_panel_sentence(plan)} (lists/stitching.csv). Begin at the winch and follow the numbers of the map: "
             f"solid runs outside, dashed inside. {sheaths}"
-            f"End outside; put the stopper on loosely behind the last hole.{grommets}",
+            f"End outside; behind the last hole, {plan.rigid.begin_stopper}.{grommets}",
         ),
     )
 

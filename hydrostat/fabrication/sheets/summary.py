@@ -167,7 +167,7 @@ def print_steps(plan: KitPlan) -> tuple[AssemblyStep, ...]:
                     "Thread the cables",
                     work.route,
                     "Push a thin wire through the hole from the last point to the first, tie the line to it and draw "
-                    "the line through. Put the stopper on loosely at the last point.",
+                    f"the line through. At the last point, {plan.rigid.begin_stopper}.",
                 ),
             )
             if plan.robot.cables
