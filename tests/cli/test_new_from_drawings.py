@@ -29,7 +29,9 @@ def test_notes_are_printed(run: Run, tmp_path: Path) -> None:
 
 def test_size_is_asked_for(run: Run, tmp_path: Path) -> None:
     """Oracle: exit code 2 and one line."""
-    Image.new("RGB", (40, 40)).save(tmp_path / "a.jpg")
+    image = Image.new("RGB", (200, 200), "white")
+    ImageDraw.Draw(image).rectangle([40, 60, 160, 140], fill="black")
+    image.save(tmp_path / "a.jpg")
     code, _, errors = run("new", tmp_path / "robot", "--from", tmp_path / "a.jpg")
     assert code == 2
     assert errors.count("\n") == 1
