@@ -77,7 +77,7 @@ def cleat(options: PartOptions) -> Stopper:
         hold=holding_force(),
         tail=40.0 + 5 * math.ceil(find_wound_length(options.cable) / 5),
         begin="lay it into the slot of its stopper and wind it three times round the waist for now",
-        place="Slide its stopper, the line in its slot, until it touches the {surface} at the cable's last point",
+        place="Unwind its stopper; slide it along the line until it touches the {surface} at the cable's last point",
         fix=_WIND,
         reset=f"unwind its stopper, pull the line straight, {_WIND}",
         check="tails in their notches",
